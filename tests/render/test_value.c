@@ -205,15 +205,15 @@ static void what_it_does_not_draw_is_refused(void **state) {
     value_picture_free(&s);
 }
 
-static void looks_that_it_does_not_draw_are_refused(void **state) {
+static void labels_in_perspective_are_refused(void **state) {
     (void)state;
     static const snow_color_point names[] = {
         {0, 1, 0, 0}, {30, 1, 0, 0}, {30, 0, 1, 0}, {100, 0, 1, 0}};
-    const reference_scene plain = value_picture_scene(0);
-    reference_scene s = plain;
+    reference_scene s = value_picture_scene(0);
     s.colors = names;
     s.color_count = COUNT(names);
-    refused(&s, "labels");
+    s.view.fov = 30;
+    refused(&s, "labels in perspective");
     value_picture_free(&s);
 }
 
@@ -260,7 +260,7 @@ int main(void) {
         cmocka_unit_test(all_vector_levels_give_the_same_image),
         cmocka_unit_test(only_what_shows_more_is_encoded_anew),
         cmocka_unit_test(what_it_does_not_draw_is_refused),
-        cmocka_unit_test(looks_that_it_does_not_draw_are_refused),
+        cmocka_unit_test(labels_in_perspective_are_refused),
         cmocka_unit_test(volumes_that_it_does_not_draw_are_refused),
         cmocka_unit_test(odd_volumes_are_drawn),
     };

@@ -43,6 +43,14 @@ static int winner(const value_field *field, double (*ends)[2], double t) {
     return best;
 }
 
+/* Nothing where it is below the threshold. */
+static void look_of_label(const value_plan *plan, double name, double rgba[4]) {
+    double threshold = plan->scene->base.settings.threshold;
+    reference_classify(&plan->scene->base, name, rgba);
+    if (threshold > 0 && 255 * rgba[3] <= threshold + 0.0001)
+        rgba[3] = 0;
+}
+
 bool value_label_slab(value_field *field, const value_ray *ray, int slab,
                       const int part[2], double rgba[4], int *place) {
     const value_plan *plan = field->plan;
@@ -58,7 +66,7 @@ bool value_label_slab(value_field *field, const value_ray *ray, int slab,
     for (int n = 0; n < plan->steps; n++) {
         double t = part[0] / 32768.0 + share * (n + 0.5) / plan->steps, look[4];
         int label = winner(field, ends, t);
-        reference_classify(&plan->scene->base, field->names[label], look);
+        look_of_label(plan, field->names[label], look);
         double alpha = (1 - rgba[3]) * (1 - pow(1 - look[3], exponent));
         for (int c = 0; c < 3; c++)
             rgba[c] += alpha * look[c];

@@ -189,6 +189,21 @@ double snow_value_of(const snow_value_scale14 *scale, double v) {
     return scale->log ? pow(10, x) : x;
 }
 
+/* The number of a data value, or of the label that it is. */
+static int16_t coded(const snow_value_coder *coder, double value) {
+    int low = 0, high = coder->name_count;
+    if (!coder->names)
+        return snow_value_number(&coder->scale, value);
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (coder->names[middle] < value)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return (int16_t)low;
+}
+
 static bool is_wide(snow_type type) {
     return snow_type_size(type) > 2;
 }
@@ -210,9 +225,9 @@ snow_status snow_value_coder_make(const snow_volume *volume,
                     : info->type == SNOW_TYPE_INT16 ? INT16_MIN
                                                     : 0;
     for (size_t n = 0; n < count; n++)
-        coder->numbers[n] = snow_value_number(
-            scale, info->slope * (double)((int32_t)n + coder->lowest) +
-                       info->intercept);
+        coder->numbers[n] =
+            coded(coder, info->slope * (double)((int32_t)n + coder->lowest) +
+                             info->intercept);
     return SNOW_STATUS_OK;
 }
 
@@ -239,12 +254,13 @@ CODE_NARROW(UINT16, uint16_t)
                             const type *natives, size_t count, int16_t *out) { \
         const snow_value_scale14 scale = coder->scale;                         \
         const double slope = coder->slope, intercept = coder->intercept;       \
-        const bool plain = scale.high > scale.low && !scale.log;               \
+        const bool plain =                                                     \
+            scale.high > scale.low && !scale.log && !coder->names;             \
         for (size_t n = 0; n < count; n++) {                                   \
             double value = slope * (double)natives[n] + intercept;             \
             out[n] = plain && value == value                                   \
                          ? number_of(scale.low, scale.high, value)             \
-                         : snow_value_number(&scale, value);                   \
+                         : coded(coder, value);                                \
         }                                                                      \
     }
 

@@ -44,9 +44,10 @@ int16_t snow_value_number(const snow_value_scale14 *scale, double value);
 double snow_value_of(const snow_value_scale14 *scale, double v);
 
 /* The number beyond a side of the volume: the odd reflection of the one
- * inside, if both are there, else that at the side. */
-static inline int16_t snow_value_beyond(int16_t side, int16_t inside) {
-    bool odd = side != SNOW_VALUE_HOLE && inside != SNOW_VALUE_HOLE;
+ * inside, if both are there, else that at the side; of labels the latter. */
+static inline int16_t snow_value_beyond(int16_t side, int16_t inside,
+                                        bool labels) {
+    bool odd = !labels && side != SNOW_VALUE_HOLE && inside != SNOW_VALUE_HOLE;
     return (int16_t)(odd ? 2 * side - inside : side);
 }
 
@@ -55,13 +56,15 @@ typedef struct snow_value_coder {
     snow_value_scale14 scale;
     snow_type type;
     double slope, intercept;
-    int32_t lowest;   /* native value of the table's first number */
-    int16_t *numbers; /* of types of 8 and 16 bits: by native value */
-    size_t capacity;  /* bytes */
+    int32_t lowest;      /* native value of the table's first number */
+    int16_t *numbers;    /* of types of 8 and 16 bits: by native value */
+    const double *names; /* of labels, rising: a number is a place among them */
+    int name_count;
+    size_t capacity; /* bytes */
 } snow_value_coder;
 
-/* `coder` begins as zeros or was made before.  Errors: SNOW_STATUS_NO_MEMORY.
- * Free with snow_value_coder_fini. */
+/* `coder` begins as zeros or was made before; its names are set by the caller.
+ * Errors: SNOW_STATUS_NO_MEMORY.  Free with snow_value_coder_fini. */
 snow_status snow_value_coder_make(const snow_volume *volume,
                                   const snow_value_scale14 *scale,
                                   snow_value_coder *coder);

@@ -252,7 +252,7 @@ static snow_status fill_entries(snow_context *context,
  */
 
 /* Keeps the longest runs; they stay rising. */
-static void add_run(snow_value_table *table, snow_value_run run) {
+void snow_value_table_hide(snow_value_table *table, snow_value_run run) {
     int shortest = 0, count = table->run_count;
     if (count < SNOW_VALUE_RUNS) {
         table->runs[table->run_count++] = run;
@@ -292,7 +292,8 @@ static void find_runs(const snow_value_look *look, snow_value_table *table) {
         while (end <= SNOW_VALUE_MOST && node_of[end] <= last)
             end++;
         if (end > v)
-            add_run(table, (snow_value_run){(int16_t)v, (int16_t)(end - 1)});
+            snow_value_table_hide(
+                table, (snow_value_run){(int16_t)v, (int16_t)(end - 1)});
         for (last = node_of[v]; end <= SNOW_VALUE_MOST && node_of[end] <= last;)
             end++;
         v = end;
@@ -358,6 +359,15 @@ snow_status snow_value_table_make(snow_context *context,
     find_runs(look, table);
     table->made = *look;
     return SNOW_STATUS_OK;
+}
+
+void snow_value_table_begin_labels(const snow_value_look *look,
+                                   snow_value_table *table) {
+    table->made = *look;
+    table->made.nodes = 0;
+    table->run_count = 0;
+    table->faint = false;
+    table->unit = 1.0F / 32767;
 }
 
 void snow_value_table_fini(snow_context *context, snow_value_table *table) {

@@ -45,11 +45,12 @@ void snow_value_lines_slice(snow_value_lines *lines, int64_t slice) {
     lines->number = slice;
 }
 
-void snow_value_line_continue(int16_t *line, int64_t columns, int margin) {
+void snow_value_line_continue(int16_t *line, int64_t columns, int margin,
+                              bool labels) {
     int16_t *first = line + margin, *last = first + columns - 1;
     int step = columns > 1;
-    int16_t before = snow_value_beyond(first[0], first[step]);
-    int16_t behind = snow_value_beyond(last[0], last[-step]);
+    int16_t before = snow_value_beyond(first[0], first[step], labels);
+    int16_t behind = snow_value_beyond(last[0], last[-step], labels);
     for (int n = 1; n <= margin; n++) {
         first[-n] = before;
         last[n] = behind;
@@ -70,7 +71,8 @@ static void read_row(const snow_value_lines *lines, int64_t row, int16_t *out) {
         snow_value_code_clipped(lines->coder, lines->volume, at, p->u_axis,
                                 (size_t)lines->columns, out + lines->margin);
     }
-    snow_value_line_continue(out, lines->columns, lines->margin);
+    snow_value_line_continue(out, lines->columns, lines->margin,
+                             lines->coder->names);
 }
 
 void snow_value_lines_read(snow_value_lines *lines, int64_t row, int16_t *out) {
@@ -82,5 +84,6 @@ void snow_value_lines_read(snow_value_lines *lines, int64_t row, int16_t *out) {
         return;
     read_row(lines, inner, lines->spare);
     for (int64_t c = lines->margin; c < lines->columns + lines->margin; c++)
-        out[c] = snow_value_beyond(out[c], lines->spare[c]);
+        out[c] =
+            snow_value_beyond(out[c], lines->spare[c], lines->coder->names);
 }

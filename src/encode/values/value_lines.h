@@ -41,6 +41,7 @@ void snow_value_lines_read(snow_value_lines *lines, int64_t row, int16_t *out);
 
 /* Columns 0 and columns - 1 are there, and those beside them if there are any:
  * writes the margin of a line. */
-void snow_value_line_continue(int16_t *line, int64_t columns, int margin);
+void snow_value_line_continue(int16_t *line, int64_t columns, int margin,
+                              bool labels);
 
 #endif

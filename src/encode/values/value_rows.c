@@ -92,9 +92,9 @@ static void continue_row(const snow_value_store *s, const int32_t ends[2],
     int16_t *last = row + s->columns - 1;
     bool many = ends[1] - ends[0] > 1;
     for (int n = 1; ends[0] == 0 && n <= s->margin; n++)
-        row[-n] = snow_value_beyond(row[0], row[many]);
+        row[-n] = snow_value_beyond(row[0], row[many], s->labels);
     for (int n = 1; ends[1] == s->columns && n <= s->margin; n++)
-        last[n] = snow_value_beyond(last[0], last[-(int)many]);
+        last[n] = snow_value_beyond(last[0], last[-(int)many], s->labels);
 }
 
 void snow_value_rows_fill(snow_value_store *s, int64_t number,
@@ -134,7 +134,7 @@ static void fill_border(snow_value_store *s, int64_t slice, int64_t border,
     if (ends[0] == ends[1])
         return;
     for (int64_t c = ends[0]; c < ends[1]; c++)
-        to[c] = snow_value_beyond(a[c], b[c]);
+        to[c] = snow_value_beyond(a[c], b[c], s->labels);
     for (int64_t c = -s->margin; ends[0] == 0 && c < 0; c++)
         to[c] = a[c];
     for (int64_t c = s->columns;

@@ -37,7 +37,8 @@ typedef struct snow_value_store {
     int reach, margin; /* voxels that a ray moves aside; reach + 1 */
     snow_value_run runs[SNOW_VALUE_RUNS];
     int run_count;
-    bool holes; /* there are some: plane `run_count` of the masks is of them */
+    bool labels; /* numbers are labels */
+    bool holes;  /* there are some: plane `run_count` of the masks is of them */
     /* A word of 32 columns from column -32 - margin on; rows from that on. */
     uint32_t *masks; /* [run][slice][word][row] */
     size_t mask_words, mask_rows;

@@ -136,17 +136,20 @@ static void describe(snow_value_drawing *job) {
                                params->placement->rows};
     bool shaded = params->settings->shade == SNOW_SHADE_PHONG;
     bool fades = snow_transfer_has_gradient_opacity(params->transfer);
-    job->splat = (snow_value_splat){.store = &path->store,
-                                    .table = &path->table,
-                                    .light = shaded ? &path->light : NULL,
-                                    .fade = fades ? &path->fade : NULL,
-                                    .sheets = path->sheets,
-                                    .places = path->places,
-                                    .rays = l->perspective ? &path->rays : NULL,
-                                    .sheet_count = l->sheet_count,
-                                    .phases = l->phases,
-                                    .channels = params->channels,
-                                    .clips = (const double(*)[4])path->clips};
+    job->splat =
+        (snow_value_splat){.store = &path->store,
+                           .table = &path->table,
+                           .light = shaded ? &path->light : NULL,
+                           .fade = fades ? &path->fade : NULL,
+                           .sheets = path->sheets,
+                           .places = path->places,
+                           .rays = l->perspective ? &path->rays : NULL,
+                           .sheet_count = l->sheet_count,
+                           .phases = l->phases,
+                           .channels = params->channels,
+                           .clips = (const double(*)[4])path->clips,
+                           .labels = path->has_labels ? &path->labels : NULL};
+    job->splat.labels_nearest = params->settings->quality == SNOW_QUALITY_DRAFT;
     if (params->volume->clip)
         job->splat.clip_count = params->volume->clip->plane_count;
     bool high = params->settings->quality == SNOW_QUALITY_HIGH;

@@ -11,6 +11,7 @@ typedef struct snow_value_key {
     uint64_t generation; /* of the volume; 0: of none */
     int slice_axis;
     snow_value_scale14 scale;
+    bool labels;
     snow_encoding encoding; /* as asked for */
 } snow_value_key;
 
@@ -30,6 +31,8 @@ struct snow_value_path {
     uint64_t measured_of;
     snow_value_coder coder;
     snow_value_table table;
+    snow_value_labels labels;
+    bool has_labels; /* the picture is of them */
     snow_value_store store;
     snow_value_key key; /* of the store */
     int64_t interesting;

@@ -27,6 +27,7 @@ void snow_value_path_free(snow_value_path *path) {
     snow_context *context = path->context;
     snow_value_coder_fini(context, &path->coder);
     snow_value_table_fini(context, &path->table);
+    snow_value_labels_fini(context, &path->labels);
     snow_value_store_fini(&path->store);
     snow_release(context, path->sheets);
     snow_release(context, path->places);
@@ -59,8 +60,10 @@ snow_status snow_value_check(snow_context *context,
         {s->mode != SNOW_MODE_OVER, "modes other than over"},
         {s->kernel != SNOW_KERNEL_TENT || s->footprint != 2,
          "kernels other than the tent of 2 voxels"},
-        {snow_transfer_has_labels(params->transfer, params->volume->info.type),
-         "labels"},
+        {params->placement->perspective &&
+             snow_transfer_has_labels(params->transfer,
+                                      params->volume->info.type),
+         "labels in perspective"},
     };
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
         if (rows[n].refused)
@@ -139,7 +142,13 @@ static snow_status make_table(snow_value_path *path,
         .placed = s->shade == SNOW_SHADE_PHONG ||
                   snow_transfer_has_gradient_opacity(params->transfer),
         .threads = s->threads};
-    return snow_value_table_make(path->context, &look, &path->table);
+    path->has_labels =
+        snow_transfer_has_labels(params->transfer, params->volume->info.type);
+    if (!path->has_labels)
+        return snow_value_table_make(path->context, &look, &path->table);
+    SNOW_TRY(snow_value_labels_find(params->volume, &path->labels));
+    return snow_value_labels_look(path->context, &look, &path->labels,
+                                  &path->table);
 }
 
 snow_status snow_value_begin(snow_value_path *path,
@@ -181,8 +190,8 @@ static bool serves(const snow_value_path *path, const snow_value_key *key,
     return has->generation && has->generation == key->generation &&
            has->slice_axis == key->slice_axis &&
            snow_value_same_scale(&has->scale, &key->scale) &&
-           has->encoding == key->encoding && path->store.reach >= reach &&
-           shows_no_more(path);
+           has->labels == key->labels && has->encoding == key->encoding &&
+           path->store.reach >= reach && shows_no_more(path);
 }
 
 /* In perspective it changes from view to view: steps of it let an encoding
@@ -233,6 +242,8 @@ static snow_status encode_anew(snow_value_path *path,
                                            .encoding = s->encoding,
                                            .isa = s->isa,
                                            .threads = s->threads};
+    path->coder.names = path->has_labels ? path->labels.names : NULL;
+    path->coder.name_count = path->labels.count;
     SNOW_TRY(snow_value_coder_make(params->volume, &path->table.made.scale,
                                    &path->coder));
     SNOW_TRY(snow_value_store_encode(&path->store, &order));
@@ -251,6 +262,7 @@ snow_status snow_value_encode(snow_value_path *path,
     const snow_value_key key = {.generation = params->volume->generation,
                                 .slice_axis = params->placement->slice_axis,
                                 .scale = path->table.made.scale,
+                                .labels = path->has_labels,
                                 .encoding = params->settings->encoding};
     double mark = snow_seconds();
     int reach = 0;

@@ -172,17 +172,26 @@ NAME(color)(const snow_value_splat *p, float slope[2][2], value_queue *q,
             const bool eye) {
     for (int n = 0; n < count; n += 32) {
         V(row) color[4];
-        V(row_gather)
+        if (p->labels)
+            for (int c = 0; c < 4; c++)
+                color[c] = V(row_load)(q->color[c] + n);
+        else
+            V(row_gather)
         (p->table->entries, NAME(entries)(p->table, q->front + n, q->back + n),
          color);
         if (sloped) {
             V(row) within = NAME(split)(color), place = within;
             int16_t slopes[3][32];
-            if (cuts)
+            if (cuts && !p->labels)
                 place =
                     V(row_add)(V(row_load)(q->from + n),
                                V(row_mulhrs)(place, V(row_load)(q->part + n)));
-            NAME(slopes)(q, n, place, slopes, eye);
+            if (p->labels)
+                for (int axis = 0; axis < 3; axis++)
+                    memcpy(slopes[axis], q->slopes[axis] + n,
+                           sizeof slopes[axis]);
+            else
+                NAME(slopes)(q, n, place, slopes, eye);
             if (p->fade)
                 NAME(fade)(p, q, n, within, slopes, color);
             if (p->light)
@@ -197,6 +206,6 @@ NAME(color)(const snow_value_splat *p, float slope[2][2], value_queue *q,
             V(row_store)(q->color[c] + n, color[c]);
         V(row_store)(q->color[3] + n, color[3]);
     }
-    if (cuts && !eye)
+    if (cuts && !eye && !p->labels)
         snow_value_shorten(p->table, q, count, channels);
 }

@@ -72,9 +72,10 @@ NAME(lengthen)(const snow_value_table *table, const float shares[32],
         alphas[i] = (float)words[i] * (1.0F / 32767);
     if (table->faint) {
         for (int i = 0; i < 32; i++)
-            alphas[i] = value_lengthen(table, (float)words[i] * table->unit,
-                                       shares[i]) /
-                        (table->unit * 32767);
+            alphas[i] =
+                fminf(1, value_lengthen(table, (float)words[i] * table->unit,
+                                        shares[i]) /
+                             (table->unit * 32767));
     } else {
         NAME(fade16)(ones, shares, alphas);
         NAME(fade16)(ones, shares + 16, alphas + 16);

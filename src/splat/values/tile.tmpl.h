@@ -197,6 +197,11 @@ NAME(gather)(const snow_value_splat *p, int n, int first, int end,
         uint32_t across = sloped ? slab->rows : 0;
         if (!here)
             continue;
+        if (p->labels) {
+            count = snow_value_collect_labels(p, n, phase, tile, slab,
+                                              &room->queue, count, sloped);
+            continue;
+        }
         if (sloped && !eye)
             here |= here << 1 | here >> 1;
         NAME(sample)(p, n, phase, tile, here, across, f, eye);

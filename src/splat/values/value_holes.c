@@ -4,10 +4,6 @@
 
 #include <math.h>
 
-static int16_t saturate(int x) {
-    return (int16_t)(x < INT16_MIN ? INT16_MIN : x > INT16_MAX ? INT16_MAX : x);
-}
-
 /* The mean of what is there, from the sum of its values by weights. */
 static int16_t weighed(int value, int weight) {
     if (weight >= SNOW_VALUE_FULL)
@@ -34,9 +30,10 @@ void snow_value_weigh(int16_t values[32], const int16_t weights[32],
 static int16_t quotient(int before, int here, int after) {
     bool front = before != SNOW_VALUE_HOLE, back = after != SNOW_VALUE_HOLE;
     if (front && back)
-        return saturate(after - before);
+        return (int16_t)value_saturate(after - before);
     if (front || back)
-        return saturate(2 * (back ? after - here : here - before));
+        return (int16_t)value_saturate(2 *
+                                       (back ? after - here : here - before));
     return 0;
 }
 
@@ -44,10 +41,6 @@ void snow_value_slopes(const int16_t *before, const int16_t *here,
                        const int16_t *after, int16_t out[32]) {
     for (int n = 0; n < 32; n++)
         out[n] = quotient(before[n], here[n], after[n]);
-}
-
-static int between(int a, int b, int weight) {
-    return a + ((saturate(b - a) * weight + 0x4000) >> 15);
 }
 
 /* What sheet `n` has at lane `lane` of a row of another one. */
@@ -73,11 +66,11 @@ static int16_t value_at(const value_sides *s, int n, int lane) {
             b = b == SNOW_VALUE_HOLE ? 0 : b;
             v[x] = (a + b + 1) >> 1;
         }
-        value[y] = between(v[0], v[1], along);
-        weight[y] = between(w[0], w[1], along);
+        value[y] = value_between(v[0], v[1], along);
+        weight[y] = value_between(w[0], w[1], along);
     }
-    return weighed(between(value[0], value[1], s->weights[1]),
-                   between(weight[0], weight[1], s->weights[1]));
+    return weighed(value_between(value[0], value[1], s->weights[1]),
+                   value_between(weight[0], weight[1], s->weights[1]));
 }
 
 /* Between the sheets in front and behind, where slices have nothing. */
@@ -90,7 +83,7 @@ static int16_t near_difference(const value_sides *s, int lane) {
     int after = value_at(s, s->sheet + rising, lane);
     if (before == SNOW_VALUE_HOLE || after == SNOW_VALUE_HOLE)
         return 0;
-    return saturate(2 * (after - before));
+    return (int16_t)value_saturate(2 * (after - before));
 }
 
 void snow_value_bridge(const value_sides *s, uint32_t lanes, int16_t *across) {

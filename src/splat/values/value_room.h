@@ -185,6 +185,26 @@ static inline bool value_has_holes(const snow_value_store *s, int64_t slice,
     return any & 1;
 }
 
+/* --- arithmetic -------------------------------------------------------------
+ */
+
+static inline int value_saturate(int x) {
+    return x < INT16_MIN ? INT16_MIN : x > INT16_MAX ? INT16_MAX : x;
+}
+
+static inline int value_between(int a, int b, int weight) {
+    return a + ((value_saturate(b - a) * weight + 0x4000) >> 15);
+}
+
+/* --- labels -----------------------------------------------------------------
+ */
+
+/* Packs the visible samples of a phase of slab `n` from number `count` on, with
+ * their colours and gradients. */
+int snow_value_collect_labels(const snow_value_splat *splat, int n, int phase,
+                              const int tile[2], value_slab *slab,
+                              value_queue *queue, int count, bool sloped);
+
 /* --- holes ------------------------------------------------------------------
  */
 

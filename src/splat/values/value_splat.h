@@ -15,6 +15,7 @@
 #ifndef SNOW_SPLAT_VALUE_SPLAT_H
 #define SNOW_SPLAT_VALUE_SPLAT_H
 
+#include "classify/values/value_labels.h"
 #include "encode/values/value_store.h"
 
 #define SNOW_VALUE_COLUMNS 30 /* of a tile; 32 lanes with those beside */
@@ -109,11 +110,13 @@ typedef struct snow_value_splat {
     const snow_value_place *places; /* [sheet * phases + phase] */
     const snow_value_rays *rays;    /* perspective; NULL: places are used */
     int sheet_count, phases;
-    int channels;             /* 2 or 4 */
-    int16_t closed;           /* alpha that ends a pixel, of 32767 */
-    int64_t first[2];         /* cell of the lattice: lane 1 of tile 0; row 0 */
-    int64_t cells[2];         /* of the lattice */
-    double low[2], high[2];   /* the field's ends along u and v */
+    int channels;           /* 2 or 4 */
+    int16_t closed;         /* alpha that ends a pixel, of 32767 */
+    int64_t first[2];       /* cell of the lattice: lane 1 of tile 0; row 0 */
+    int64_t cells[2];       /* of the lattice */
+    double low[2], high[2]; /* the field's ends along u and v */
+    const snow_value_labels *labels; /* NULL: values */
+    bool labels_nearest;             /* not by membership */
     const double (*clips)[4]; /* seen is where a u + b v + c slice <= d */
     size_t clip_count;
     int slabs[2]; /* that are drawn: slab n is between sheets n and n + 1 */

@@ -1,0 +1,109 @@
+/* classify/values/value_labels.c - see value_labels.h. */
+#include "classify/values/value_labels.h"
+
+#include <math.h>
+#include <string.h>
+
+#define BLOCK 1024
+
+/* --- names ------------------------------------------------------------------
+ */
+
+/* The first name that is not below a value. */
+static int place_of(const snow_value_labels *labels, double value) {
+    int low = 0, high = labels->count;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (labels->names[middle] < value)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static snow_status add_name(snow_context *context, snow_value_labels *labels,
+                            double value) {
+    int at = place_of(labels, value);
+    if (at < labels->count && labels->names[at] == value)
+        return SNOW_STATUS_OK;
+    if (labels->count == SNOW_VALUE_LABELS_MOST)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "the volume has too many labels for method value: the "
+                         "limit is %d; take method footprint",
+                         SNOW_VALUE_LABELS_MOST);
+    size_t size = sizeof *labels->names, used = (size_t)labels->count * size;
+    SNOW_TRY(snow_reserve(context, &labels->names, &labels->names_capacity,
+                          used, used + size));
+    memmove(labels->names + at + 1, labels->names + at,
+            (size_t)(labels->count - at) * size);
+    labels->names[at] = value;
+    labels->count++;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_value_labels_find(const snow_volume *volume,
+                                   snow_value_labels *labels) {
+    const snow_volume_info *info = &volume->info;
+    int64_t all = info->dims[0] * info->dims[1] * info->dims[2];
+    double last = NAN;
+    if (labels->generation && labels->generation == volume->generation)
+        return SNOW_STATUS_OK;
+    labels->generation = 0;
+    labels->count = 0;
+    for (int64_t first = 0; first < all; first += BLOCK) {
+        double natives[BLOCK];
+        size_t count = all - first < BLOCK ? (size_t)(all - first) : BLOCK;
+        snow_volume_natives(volume, first, count, natives);
+        for (size_t n = 0; n < count; n++) {
+            if (natives[n] == last)
+                continue;
+            last = natives[n];
+            SNOW_TRY(add_name(volume->context, labels,
+                              info->slope * last + info->intercept));
+        }
+    }
+    labels->generation = volume->generation;
+    return SNOW_STATUS_OK;
+}
+
+/* --- looks ------------------------------------------------------------------
+ */
+
+static void find_look(const snow_value_look *look, snow_value_labels *labels,
+                      int n) {
+    snow_label_look *out = &labels->looks[n];
+    double rgba[4];
+    snow_transfer_evaluate(look->transfer, labels->names[n], rgba);
+    memcpy(out->rgb, rgba, sizeof out->rgb);
+    out->opacity = snow_is_interesting(rgba[3], look->threshold) ? rgba[3] : 0;
+    out->step = 1 - pow(1 - out->opacity, labels->exponent);
+}
+
+snow_status snow_value_labels_look(snow_context *context,
+                                   const snow_value_look *look,
+                                   snow_value_labels *labels,
+                                   snow_value_table *table) {
+    SNOW_TRY(snow_reserve(context, &labels->looks, &labels->looks_capacity, 0,
+                          (size_t)labels->count * sizeof *labels->looks));
+    labels->steps = look->steps;
+    labels->exponent = look->exponent / look->steps;
+    snow_value_table_begin_labels(look, table);
+    for (int n = 0; n < labels->count; n++)
+        find_look(look, labels, n);
+    for (int n = 0, first = 0; n < labels->count; n++) {
+        bool seen = labels->looks[n].step > 0, last = n + 1 == labels->count;
+        if ((seen || last) && n - seen >= first)
+            snow_value_table_hide(
+                table, (snow_value_run){(int16_t)first, (int16_t)(n - seen)});
+        if (seen)
+            first = n + 1;
+    }
+    return SNOW_STATUS_OK;
+}
+
+void snow_value_labels_fini(snow_context *context, snow_value_labels *labels) {
+    snow_release(context, labels->names);
+    snow_release(context, labels->looks);
+    *labels = (snow_value_labels){0};
+}

@@ -1,0 +1,41 @@
+/* classify/values/value_labels.h - volumes of labels for the value path:
+ * numbers that name things and are never interpolated. */
+#ifndef SNOW_CLASSIFY_VALUE_LABELS_H
+#define SNOW_CLASSIFY_VALUE_LABELS_H
+
+#include "classify/values/value_table.h"
+
+/* The most labels of a volume. */
+#define SNOW_VALUE_LABELS_MOST (SNOW_VALUE_MOST + 1)
+
+/* What a label looks like. */
+typedef struct snow_label_look {
+    double rgb[3], opacity; /* straight; of the reference length */
+    double step;            /* alpha of a step of a whole slab */
+} snow_label_look;
+
+typedef struct snow_value_labels {
+    double *names; /* data values, rising; label n is names[n] */
+    int count;
+    uint64_t generation;    /* of the volume that they are of; 0: of none */
+    snow_label_look *looks; /* of each */
+    int steps;              /* of a slab */
+    double exponent;        /* length of a step, in reference lengths */
+    size_t names_capacity, looks_capacity;
+} snow_value_labels;
+
+/* All labels of a volume, unless they are there.  Errors:
+ * SNOW_STATUS_NO_MEMORY, SNOW_STATUS_BAD_USAGE (too many). */
+snow_status snow_value_labels_find(const snow_volume *volume,
+                                   snow_value_labels *labels);
+
+/* Their looks; the table is one of labels then, which has invisible runs and no
+ * entries.  Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_value_labels_look(snow_context *context,
+                                   const snow_value_look *look,
+                                   snow_value_labels *labels,
+                                   snow_value_table *table);
+
+void snow_value_labels_fini(snow_context *context, snow_value_labels *labels);
+
+#endif

@@ -1,0 +1,286 @@
+/* splat/values/value_labels_splat.c - slabs of labels, sample by sample: each
+ * label has a membership, 1 in its voxels, which is interpolated; the largest
+ * wins. */
+#include "splat/values/value_room.h"
+
+#include <string.h>
+
+/* Voxels around the samples of both ends of a slab. */
+#define AROUND 16
+
+/* Where a sample is on a sheet. */
+typedef struct spot {
+    const snow_value_sheet *sheet;
+    int64_t i, j;
+    int wu, wv;
+} spot;
+
+/* A slab of a sample: its labels, and what they have at both ends. */
+typedef struct label_slab {
+    const snow_value_splat *splat;
+    spot ends[2];
+    int labels[AROUND], count;
+    int member[AROUND][2];
+} label_slab;
+
+/* --- membership -------------------------------------------------------------
+ */
+
+static int code_of(const snow_value_store *s, int64_t i, int64_t j, int64_t k) {
+    return s->values[snow_value_at(s, k)[j] + i];
+}
+
+static int64_t clamp(int64_t i, int64_t count) {
+    return i < 0 ? 0 : i < count ? i : count - 1;
+}
+
+/* The voxel inside of the one at a side. */
+static int64_t inner(int64_t i, int64_t count) {
+    return count == 1 ? 0 : i < 0 ? 1 : count - 2;
+}
+
+/* Of a voxel of a slice, beyond the box by the odd reflection. */
+static int slice_member(const snow_value_store *s, int label, int64_t i,
+                        int64_t j, int64_t k) {
+    int64_t u = clamp(i, s->columns), v = clamp(j, s->rows);
+    int here = code_of(s, u, v, k) == label ? SNOW_VALUE_MOST : 0;
+    if (u == i && v == j)
+        return here;
+    if (u != i)
+        u = inner(i, s->columns);
+    else
+        v = inner(j, s->rows);
+    return 2 * here - (code_of(s, u, v, k) == label ? SNOW_VALUE_MOST : 0);
+}
+
+static int voxel_member(const snow_value_store *s, int label, int64_t i,
+                        int64_t j, int64_t k, bool half) {
+    int here = slice_member(s, label, i, j, k);
+    return half ? (here + slice_member(s, label, i, j, k + 1) + 1) >> 1 : here;
+}
+
+/* At a sample, or one voxel aside. */
+static int member_at(const snow_value_store *s, int label, const spot *at,
+                     int du, int dv) {
+    int row[2];
+    for (int y = 0; y < 2; y++) {
+        int ends[2];
+        for (int x = 0; x < 2; x++)
+            ends[x] = voxel_member(s, label, at->i + du + x, at->j + dv + y,
+                                   at->sheet->slice, at->sheet->half);
+        row[y] = value_between(ends[0], ends[1], at->wu);
+    }
+    return value_between(row[0], row[1], at->wv);
+}
+
+/* --- gradients --------------------------------------------------------------
+ */
+
+/* Along P, of voxels. */
+static int across(const snow_value_store *s, int label, const spot *at) {
+    const snow_value_sheet *sheet = at->sheet;
+    int row[2];
+    for (int y = 0; y < 2; y++) {
+        int ends[2];
+        for (int x = 0; x < 2; x++) {
+            int64_t i = at->i + x, j = at->j + y;
+            int way = value_saturate(
+                voxel_member(s, label, i, j, sheet->after, sheet->half_across) -
+                voxel_member(s, label, i, j, sheet->before,
+                             sheet->half_across));
+            ends[x] = sheet->one_sided ? value_saturate(2 * way) : way;
+        }
+        row[y] = value_between(ends[0], ends[1], at->wu);
+    }
+    return value_between(row[0], row[1], at->wv);
+}
+
+static void find_slopes(const label_slab *slab, int label, int place,
+                        value_queue *q, int count) {
+    const snow_value_store *s = slab->splat->store;
+    int slopes[3][2];
+    for (int end = 0; end < 2; end++) {
+        const spot *at = &slab->ends[end];
+        slopes[0][end] = value_saturate(member_at(s, label, at, 1, 0) -
+                                        member_at(s, label, at, -1, 0));
+        slopes[1][end] = value_saturate(member_at(s, label, at, 0, 1) -
+                                        member_at(s, label, at, 0, -1));
+        slopes[2][end] = across(s, label, at);
+    }
+    for (int axis = 0; axis < 3; axis++)
+        q->slopes[axis][count] =
+            (int16_t)value_between(slopes[axis][0], slopes[axis][1], place);
+}
+
+/* --- labels of a slab -------------------------------------------------------
+ */
+
+static void add_label(label_slab *slab, int label) {
+    for (int n = 0; n < slab->count; n++)
+        if (slab->labels[n] == label)
+            return;
+    slab->labels[slab->count++] = label;
+}
+
+/* In draft a sheet has the label of the nearest voxel. */
+static int nearest(const snow_value_store *s, const spot *at) {
+    return code_of(s, clamp(at->i + (at->wu >= 16384), s->columns),
+                   clamp(at->j + (at->wv >= 16384), s->rows), at->sheet->slice);
+}
+
+static void find_labels(label_slab *slab) {
+    const snow_value_store *s = slab->splat->store;
+    bool draft = slab->splat->labels_nearest;
+    slab->count = 0;
+    for (int end = 0; end < 2; end++) {
+        const spot *at = &slab->ends[end];
+        for (int n = 0; n < (at->sheet->half ? 8 : 4) && !draft; n++)
+            add_label(slab, code_of(s, clamp(at->i + n % 2, s->columns),
+                                    clamp(at->j + n / 2 % 2, s->rows),
+                                    at->sheet->slice + n / 4));
+        if (draft)
+            add_label(slab, nearest(s, at));
+    }
+    for (int n = 0; n < slab->count; n++)
+        for (int end = 0; end < 2; end++)
+            slab->member[n][end] =
+                draft ? nearest(s, &slab->ends[end]) == slab->labels[n]
+                : slab->count == 1
+                    ? 1
+                    : member_at(s, slab->labels[n], &slab->ends[end], 0, 0);
+}
+
+/* The label whose membership is the largest at t, of equals the larger one; -1:
+ * none. */
+static int winner(const label_slab *slab, double t) {
+    int best = -1;
+    double most = 0;
+    for (int n = 0; n < slab->count; n++) {
+        const int *ends = slab->member[n];
+        double here = ends[0] + t * (ends[1] - ends[0]);
+        if (here > most ||
+            (here == most && here > 0 && best >= 0 && slab->labels[n] > best)) {
+            best = slab->labels[n];
+            most = here;
+        }
+    }
+    return best;
+}
+
+/* --- colours ----------------------------------------------------------------
+ */
+
+/* The part of a slab that is inside. */
+typedef struct label_part {
+    double from, share;
+} label_part;
+
+/* What a sample collects; *t: where its opacity lies. */
+static void collect(const label_slab *slab, label_part part, double rgba[4],
+                    double *t) {
+    const snow_value_labels *labels = slab->splat->labels;
+    double places = 0;
+    memset(rgba, 0, 4 * sizeof *rgba);
+    for (int n = 0; n < labels->steps; n++) {
+        double at = part.from + part.share * (n + 0.5) / labels->steps;
+        int label = winner(slab, at);
+        if (label < 0 || !(labels->looks[label].step > 0))
+            continue;
+        const snow_label_look *look = &labels->looks[label];
+        double alpha = part.share == 1 ? look->step
+                                       : 1 - pow(1 - look->opacity,
+                                                 part.share * labels->exponent);
+        alpha *= 1 - rgba[3];
+        for (int c = 0; c < 3; c++)
+            rgba[c] += alpha * look->rgb[c];
+        rgba[3] += alpha;
+        places += alpha * at;
+    }
+    *t = rgba[3] > 0 ? places / rgba[3] : 0;
+}
+
+/* Whether there is anything to see. */
+static bool is_seen(const label_slab *slab) {
+    for (int n = 0; n < slab->count; n++)
+        if (slab->labels[n] != SNOW_VALUE_HOLE &&
+            slab->splat->labels->looks[slab->labels[n]].step > 0)
+            return true;
+    return false;
+}
+
+static bool has_hole(const label_slab *slab) {
+    for (int n = 0; n < slab->count; n++)
+        if (slab->labels[n] == SNOW_VALUE_HOLE)
+            return true;
+    return false;
+}
+
+/* Packs a sample as number `count`, if it is seen. */
+static bool pack(label_slab *slab, label_part part, value_queue *q, int count,
+                 bool sloped) {
+    double rgba[4], t;
+    find_labels(slab);
+    if (has_hole(slab) || !is_seen(slab))
+        return false;
+    collect(slab, part, rgba, &t);
+    for (int c = 0; c < 4; c++)
+        q->color[c][count] = (int16_t)(rgba[c] * 32767 + 0.5);
+    if (!q->color[3][count])
+        return false;
+    if (sloped)
+        find_slopes(slab, winner(slab, t), (int)floor(32768 * t + 0.5), q,
+                    count);
+    return true;
+}
+
+/* --- a phase of a slab ------------------------------------------------------
+ */
+
+static label_part part_of(const value_slab *slab, int row, int lane) {
+    const value_cut *cut = slab->cut;
+    const value_clip *clip = &slab->clip;
+    int from = 0, to = INT16_MAX;
+    if (cut[0].cuts) {
+        from = cut[0].from[lane];
+        to = cut[0].to[lane];
+    }
+    if (cut[1].cuts) {
+        from = from > cut[1].from[row] ? from : cut[1].from[row];
+        to = to < cut[1].to[row] ? to : cut[1].to[row];
+    }
+    if (clip->cuts) {
+        from = from > clip->from[row][lane] ? from : clip->from[row][lane];
+        to = to < clip->to[row][lane] ? to : clip->to[row][lane];
+    }
+    to = to == INT16_MAX ? 32768 : to;
+    return (label_part){from / 32768.0, (to - from) / 32768.0};
+}
+
+int snow_value_collect_labels(const snow_value_splat *p, int n, int phase,
+                              const int tile[2], value_slab *slab,
+                              value_queue *q, int count, bool sloped) {
+    const snow_value_place *place = p->places + n * p->phases + phase;
+    int64_t column = value_tile_column(p, tile[0]);
+    int64_t line = value_tile_row(p, tile[1]);
+    label_slab sample = {.splat = p};
+    for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
+        int row = __builtin_ctz(rows);
+        uint32_t seen = 0;
+        for (uint32_t left = slab->active[row]; left; left &= left - 1) {
+            int lane = __builtin_ctz(left);
+            label_part part = part_of(slab, row, lane);
+            for (int end = 0; end < 2; end++) {
+                const snow_value_place *at = place + end * p->phases;
+                sample.ends[end] = (spot){
+                    p->sheets + n + end, column + lane + at->whole[0],
+                    line + row + at->whole[1], at->weight[0], at->weight[1]};
+            }
+            if (part.share > 0 && pack(&sample, part, q, count, sloped)) {
+                seen |= UINT32_C(1) << lane;
+                count++;
+            }
+        }
+        slab->active[row] = seen;
+    }
+    return count;
+}
