@@ -36,6 +36,10 @@ void warn_unused(const options *asked) {
 /* Reports a method that was requested by name but not used. */
 static void warn_method(const scene *s) {
     snow_mode mode = s->settings.mode;
+    if (strcmp(s->asked->method, "value") == 0 &&
+        s->stats.method == SNOW_METHOD_FOOTPRINT)
+        say("note: method footprint is used in place of value, which takes "
+            "kernels tent of 2 voxels and bspline of 4");
     if (strcmp(s->asked->method, "shear-warp") != 0 || mode == SNOW_MODE_ISO ||
         s->stats.method == SNOW_METHOD_SHEAR_WARP)
         return;

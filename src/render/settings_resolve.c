@@ -72,11 +72,15 @@ static bool takes_tent(const snow_settings *s) {
             s->quality == SNOW_QUALITY_DRAFT);
 }
 
+/* Kernels that interpolate values; the others are those of footprints. */
+static bool is_of_values(const snow_settings *s) {
+    return (s->kernel == SNOW_KERNEL_TENT && s->footprint == 2) ||
+           (s->kernel == SNOW_KERNEL_BSPLINE && s->footprint == 4);
+}
+
 static snow_status check_raycast(snow_context *context,
                                  const snow_settings *s) {
-    if (s->method != SNOW_METHOD_RAYCAST ||
-        (s->kernel == SNOW_KERNEL_TENT && s->footprint == 2) ||
-        (s->kernel == SNOW_KERNEL_BSPLINE && s->footprint == 4))
+    if (s->method != SNOW_METHOD_RAYCAST || is_of_values(s))
         return SNOW_STATUS_OK;
     return snow_fail(
         context, SNOW_STATUS_BAD_USAGE,
@@ -112,6 +116,8 @@ snow_status snow_settings_resolve(snow_context *context,
     if (s->footprint == 0)
         s->footprint = snow_kernel_default_support(s->kernel);
     SNOW_TRY(check_raycast(context, s));
+    if (s->method == SNOW_METHOD_VALUE && !is_of_values(s))
+        s->method = SNOW_METHOD_FOOTPRINT;
     const double *spacing = info->spacing;
     if (s->opacity_length == 0)
         s->opacity_length = fmin(spacing[0], fmin(spacing[1], spacing[2]));

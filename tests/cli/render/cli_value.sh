@@ -87,8 +87,17 @@ for mode in mip minip mean sum; do
     refuse "mode $mode" "modes other than over" -m $mode
 done
 refuse "mode iso" "modes other than over" -m iso --iso 90
-refuse "kernel bspline" "kernels other than the tent" --kernel bspline
-refuse "kernel gauss" "kernels other than the tent" --kernel gauss
+refuse "kernel bspline" "kernel bspline" --kernel bspline
+for options in "--kernel gauss" "--kernel box" "--footprint 3" \
+    "--kernel bspline --footprint 3"; do
+    # shellcheck disable=SC2086
+    run 0 "$options" render $options -o one.npy
+    says 'note: method footprint is used in place of value'
+    # shellcheck disable=SC2086
+    run 0 "$options by footprint" "$TOOL" render -q $scene $options \
+        --method footprint -o old.npy
+    check "is the same picture" cmp -s one.npy old.npy
+done
 run 2 "an eye near the slices" "$TOOL" render phantom:engine --dims 60x60x40 \
     --perspective 60 --position 0,0,-62 --target 0,0,0 -y --method value \
     -o no.png
