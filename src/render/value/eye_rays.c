@@ -61,6 +61,16 @@ static void place_light(const snow_value_params *params,
 static void describe(const snow_value_lattice *l, snow_value_rays *rays) {
     double height = l->front - l->eye[2];
     rays->middles = l->quincunx ? 2 : 1;
+    rays->line = rays->middles * l->cells[0];
+    for (int phase = 0; phase < l->phases; phase++) {
+        int middle = phase % rays->middles, cell = phase / rays->middles;
+        const int at[2] = {cell % l->cells[0], cell / l->cells[0]};
+        for (int axis = 0; axis < 2; axis++) {
+            rays->cell[phase][axis] = (uint8_t)at[axis];
+            rays->spot[phase][axis] =
+                (uint8_t)(at[axis] * rays->middles + middle);
+        }
+    }
     for (int axis = 0; axis < 2; axis++) {
         int side = axis == 0 ? SNOW_VALUE_COLUMNS : SNOW_VALUE_ROWS;
         rays->cells[axis] = l->cells[axis];

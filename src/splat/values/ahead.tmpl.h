@@ -5,12 +5,14 @@
  * seen. */
 TARGET static inline __attribute__((always_inline)) void
 NAME(activate)(const snow_value_splat *p, int n, int phase, const int tile[2],
-               const value_phase *state, value_slab *slab, const bool eye) {
+               const value_phase *state, value_cells cells[2], value_slab *slab,
+               const bool eye) {
     slab->rows = 0;
     if (!state->alive)
         return;
-    uint32_t rows = eye ? NAME(activate_eye)(p, n, phase, tile, state, slab)
-                        : NAME(activate_all)(p, n, phase, tile, state, slab);
+    uint32_t rows =
+        eye ? NAME(activate_eye)(p, n, phase, tile, state, cells, slab)
+            : NAME(activate_all)(p, n, phase, tile, state, slab);
     if (!rows)
         return;
     if (eye)
@@ -94,12 +96,13 @@ NAME(look_ahead)(const snow_value_splat *p, int n, int first, int end,
     uint32_t any = 0;
     for (int phase = first; phase < end; phase++) {
         value_slab *slab = &slabs[phase - first];
-        NAME(activate)(p, n, phase, tile, &room->phase[phase], slab, eye);
+        NAME(activate)
+        (p, n, phase, tile, &room->phase[phase], room->cells[phase], slab, eye);
         any |= slab->rows;
     }
     uint64_t here = (uint64_t)any << 1;
     int beside = sloped ? 1 + (p->sheets[n].half | p->sheets[n + 1].half) : 0;
-    if (eye || !any)
+    if (!any)
         return;
     for (int m = n - beside; m <= n + 1 + beside; m++) {
         uint64_t rows = here;
@@ -107,7 +110,10 @@ NAME(look_ahead)(const snow_value_splat *p, int n, int first, int end,
             continue;
         if (sloped && (m == n || m == n + 1))
             rows |= here << 1 | here >> 1;
-        NAME(ask)
-        (p, m, first, tile, rows | rows << 1, &room->asked[m % ASKED_RING]);
+        value_asked *asked = &room->asked[m % ASKED_RING];
+        if (eye)
+            NAME(ask_eye)(p, m, first, tile, rows, asked);
+        else
+            NAME(ask)(p, m, first, tile, rows | rows << 1, asked);
     }
 }

@@ -4,107 +4,123 @@
 /* --- masks ------------------------------------------------------------------
  */
 
-/* Ors the cells of a plane of masks under 32 rows of lanes. */
+/* Ors the cells of a plane of masks under some rows of lanes; lane 0 of v is
+ * the plane's row at `masks`. */
 TARGET static inline __attribute__((always_inline)) void
 NAME(pick_cells)(const snow_value_store *s, const uint32_t *masks,
-                 const snow_value_lanes *u, const int32_t rows[32],
-                 uint32_t *out) {
-    int words = (u->at[31] + 31) / 32 + 2, taken = 0;
-    for (int n = 0; n < words && n < SNOW_VALUE_WORDS; n++) {
-        uint32_t select = u->select[n];
+                 const snow_value_lanes *u, const snow_value_lanes *v,
+                 uint32_t rows, uint32_t *out) {
+    int taken = 0;
+    for (int n = 0; taken < 32; n++) {
+        const uint32_t select = u->select[n];
         int64_t word = u->word + n;
         if (select && word >= 0 && word < (int64_t)s->mask_words) {
-            const uint32_t *column = masks + (size_t)word * s->mask_rows;
-            for (int row = 0; row < 32; row++)
-                out[row] |= V(pick_bits)(column[rows[row]], select) << taken;
+            const uint32_t *column = masks + word * (int64_t)s->mask_rows;
+            for (uint32_t left = rows; left; left &= left - 1) {
+                int row = __builtin_ctz(left);
+                out[row] |= V(pick_bits)(column[v->at[row + 1]], select)
+                            << taken;
+            }
         }
         taken += __builtin_popcount(select);
     }
 }
 
-/* Whether the coarse mask of a run has anything under a tile. */
+/* Whether the coarse mask of a run has anything between two rows, in the
+ * columns under the lanes. */
 static inline bool NAME(any_cells)(const snow_value_store *s, int run,
                                    int64_t slice, const snow_value_lanes *u,
-                                   int32_t top, int32_t bottom) {
+                                   int64_t top, int64_t bottom) {
     const uint64_t *coarse = s->coarse + snow_value_coarse_at(s, run, slice);
-    int words = (u->at[31] + 31) / 32 + 2;
-    int first = top / SNOW_VALUE_COARSE, last = bottom / SNOW_VALUE_COARSE;
-    for (int n = 0; n < words; n++) {
-        int64_t word = u->word + n;
-        if (word < 0 || word >= (int64_t)s->mask_words)
-            continue;
-        const uint64_t *bits = coarse + (size_t)word * s->coarse_words;
-        for (int row = first; row <= last; row++)
-            if (bits[row / 64] >> row % 64 & 1)
-                return true;
-    }
-    return false;
+    int64_t low = u->word, high = low + (u->at[31] + 31) / 32 + 1;
+    int64_t words = (int64_t)s->mask_words, rows = (int64_t)s->mask_rows;
+    low = low < 0 ? 0 : low;
+    high = high < words ? high : words - 1;
+    top = (top < 0 ? 0 : top) / SNOW_VALUE_COARSE;
+    bottom = (bottom < rows ? bottom : rows - 1) / SNOW_VALUE_COARSE;
+    uint64_t any = 0;
+    for (int64_t word = low; word <= high; word++)
+        for (int64_t row = top; row <= bottom; row++)
+            any |=
+                coarse[word * (int64_t)s->coarse_words + row / 64] >> row % 64;
+    return any & 1;
 }
 
-/* The row of masks under a lane of v. */
-static inline int32_t NAME(row_of)(const snow_value_store *s,
-                                   const snow_value_lanes *v, int lane) {
-    int32_t row = v->first + v->at[lane] + s->margin + SNOW_VALUE_ROWS;
-    int32_t last = (int32_t)s->mask_rows - 1;
-    return row < 0 ? 0 : row > last ? last : row;
+/* The row of masks under lane 0 of v. */
+static inline int64_t NAME(mask_row)(const snow_value_store *s,
+                                     const snow_value_lanes *v) {
+    return (int64_t)v->first + s->margin + SNOW_VALUE_ROWS;
 }
 
-/* The same for the rows of a tile. */
-static inline void NAME(rows_of)(const snow_value_store *s,
-                                 const snow_value_lanes *v, int32_t rows[32]) {
-    for (int n = 0; n < 32; n++)
-        rows[n] = NAME(row_of)(s, v, n + 1);
-}
-
-/* The cells of a sheet under a tile that are not wholly within a run. */
-TARGET static inline bool NAME(cells_under)(const snow_value_store *s, int run,
-                                            const snow_value_sheet *sheet,
-                                            const snow_value_lanes *u,
-                                            const int32_t rows[32],
-                                            uint32_t *out) {
-    bool any = false;
-    for (int n = 0; n <= sheet->half; n++)
-        if (NAME(any_cells)(s, run, sheet->slice + n, u, rows[0], rows[31])) {
+/* The cells of a sheet under some rows of a tile that are not wholly within a
+ * run, for each run. */
+TARGET static void NAME(find_cells)(const snow_value_store *s,
+                                    const snow_value_sheet *sheet,
+                                    const snow_value_lanes *u,
+                                    const snow_value_lanes *v, uint32_t alive,
+                                    value_cells *out) {
+    int64_t first = NAME(mask_row)(s, v), rows = (int64_t)s->mask_rows;
+    int from = 0, to = SNOW_VALUE_ROWS;
+    while (from < to && first + v->at[from + 1] < 0)
+        from++;
+    while (from < to && first + v->at[to] >= rows)
+        to--;
+    uint64_t within = (UINT64_C(1) << to) - (UINT64_C(1) << from);
+    for (int run = 0; run < s->run_count; run++) {
+        out->any[run] = false;
+        for (int n = 0; n <= sheet->half && from < to; n++) {
+            if (!NAME(any_cells)(s, run, sheet->slice + n, u,
+                                 first + v->at[from + 1], first + v->at[to]))
+                continue;
+            if (!out->any[run])
+                memset(out->cells[run], 0, sizeof out->cells[run]);
+            out->any[run] = true;
             NAME(pick_cells)
-            (s, s->masks + snow_value_mask_at(s, run, sheet->slice + n), u,
-             rows, out);
-            any = true;
+            (s, s->masks + snow_value_mask_at(s, run, sheet->slice + n) + first,
+             u, v, alive & (uint32_t)within, out->cells[run]);
         }
-    return any;
+    }
 }
 
 /* Of a phase: its lanes on both sheets of a slab, along u and v. */
 static inline void NAME(slab_lanes)(const snow_value_splat *p, int n, int phase,
                                     const int tile[2],
                                     const snow_value_lanes *out[2][2]) {
-    int spot[2];
-    value_spot(p->rays, phase, spot);
     for (int side = 0; side < 2; side++)
         for (int axis = 0; axis < 2; axis++)
             out[side][axis] =
-                value_lanes_of(p->rays, n + side, axis, spot[axis], tile[axis]);
+                value_lanes_of(p->rays, n + side, phase, axis, tile[axis]);
 }
 
-/* As NAME(activate): rows that may have samples, before cuts. */
+/* As NAME(activate_all). */
 TARGET static uint32_t NAME(activate_eye)(const snow_value_splat *p, int n,
                                           int phase, const int tile[2],
                                           const value_phase *state,
+                                          value_cells cells[2],
                                           value_slab *slab) {
     const snow_value_store *s = p->store;
-    const snow_value_lanes *lanes[2][2];
-    int32_t rows[2][32];
     uint32_t left = ~UINT32_C(0);
-    NAME(slab_lanes)(p, n, phase, tile, lanes);
-    for (int side = 0; side < 2; side++)
-        NAME(rows_of)(s, lanes[side][1], rows[side]);
+    for (int side = 0; side < 2; side++) {
+        value_cells *of = &cells[(n + side) & 1];
+        if (of->sheet == n + side)
+            continue;
+        of->sheet = n + side;
+        NAME(find_cells)
+        (s, p->sheets + n + side,
+         value_lanes_of(p->rays, n + side, phase, 0, tile[0]),
+         value_lanes_of(p->rays, n + side, phase, 1, tile[1]), state->alive,
+         of);
+    }
+    for (int run = 0; run < s->run_count; run++)
+        if (!cells[0].any[run] && !cells[1].any[run])
+            return 0;
     memcpy(slab->active, state->open, sizeof slab->active);
     for (int run = 0; run < s->run_count && left; run++) {
-        uint32_t cells[SNOW_VALUE_ROWS] = {0};
-        bool any = false;
+        uint32_t both[SNOW_VALUE_ROWS] = {0};
         for (int side = 0; side < 2; side++)
-            any |= NAME(cells_under)(s, run, p->sheets + n + side,
-                                     lanes[side][0], rows[side], cells);
-        left &= any ? V(rows_and)(slab->active, cells, ~UINT32_C(0)) : 0;
+            for (int row = 0; cells[side].any[run] && row < 32; row++)
+                both[row] |= cells[side].cells[run][row];
+        left = V(rows_and)(slab->active, both, ~UINT32_C(0));
     }
     return left;
 }
@@ -219,12 +235,11 @@ static inline bool NAME(near_holes_eye)(const snow_value_store *s,
     const int64_t slices[5] = {sheet->slice, sheet->slice + sheet->half,
                                sheet->before, sheet->after,
                                sheet->after + sheet->half_across};
-    int32_t rows[2];
+    int64_t first = NAME(mask_row)(s, v);
     bool any = false;
-    for (int end = 0; end < 2; end++)
-        rows[end] = NAME(row_of)(s, v, end ? SNOW_VALUE_LANES - 1 : 0);
     for (int n = 0; s->holes && !any && n < 5; n++)
-        any = NAME(any_cells)(s, s->run_count, slices[n], u, rows[0], rows[1]);
+        any = NAME(any_cells)(s, s->run_count, slices[n], u, first,
+                              first + v->at[SNOW_VALUE_LANES - 1]);
     return any;
 }
 
@@ -307,10 +322,8 @@ NAME(sample_eye)(const snow_value_splat *p, int n, int phase, const int tile[2],
                  uint64_t rows, uint32_t across, value_rows *out) {
     const snow_value_store *s = p->store;
     const snow_value_sheet *sheet = p->sheets + n;
-    int spot[2];
-    value_spot(p->rays, phase, spot);
-    const snow_value_lanes *u = value_lanes_of(p->rays, n, 0, spot[0], tile[0]);
-    const snow_value_lanes *v = value_lanes_of(p->rays, n, 1, spot[1], tile[1]);
+    const snow_value_lanes *u = value_lanes_of(p->rays, n, phase, 0, tile[0]);
+    const snow_value_lanes *v = value_lanes_of(p->rays, n, phase, 1, tile[1]);
     NAME(source) from;
     if (out->sheet != n) {
         out->sheet = n;
@@ -355,5 +368,57 @@ NAME(sample_beside)(const snow_value_splat *p, int n, int phase,
         out->holes |= of->holes;
         out->at[way] =
             of->values[axis == 1 ? 1 + cells : 1] + (axis == 1 ? 0 : cells);
+    }
+}
+
+/* --- what is needed soon ----------------------------------------------------
+ */
+
+/* As NAME(ask). */
+static inline void NAME(ask_eye)(const snow_value_splat *p, int n, int phase,
+                                 const int tile[2], uint64_t rows,
+                                 value_asked *asked) {
+    const snow_value_store *s = p->store;
+    const snow_value_lanes *u = value_lanes_of(p->rays, n, phase, 0, tile[0]);
+    const snow_value_lanes *v = value_lanes_of(p->rays, n, phase, 1, tile[1]);
+    const int64_t *slice = snow_value_at(s, p->sheets[n].slice);
+    int64_t next = p->sheets[n].half ? s->rows + 2 * s->margin : 0;
+    if (asked->sheet != n)
+        *asked = (value_asked){.sheet = n};
+    rows &= ~asked->rows;
+    asked->rows |= rows;
+    for (; rows; rows &= rows - 1) {
+        int64_t row = NAME(voxel_row)(s, v, __builtin_ctzll(rows));
+        for (int below = 0; below < 2; below++) {
+            const int16_t *voxels = s->values + slice[row + below] + u->first;
+            for (int at = 0; at < u->at[31] + 32; at += 32)
+                __builtin_prefetch(voxels + at);
+            voxels = s->values + slice[row + below + next] + u->first;
+            for (int at = 0; next && at < u->at[31] + 32; at += 32)
+                __builtin_prefetch(voxels + at);
+        }
+    }
+}
+
+/* As NAME(ask_masks). */
+static inline void NAME(ask_masks_eye)(const snow_value_splat *p, int n,
+                                       int phase, const int tile[2]) {
+    const snow_value_store *s = p->store;
+    const snow_value_lanes *u =
+        value_lanes_of(p->rays, n + 1, phase, 0, tile[0]);
+    const snow_value_lanes *v =
+        value_lanes_of(p->rays, n + 1, phase, 1, tile[1]);
+    int64_t first = NAME(mask_row)(s, v), rows = v->at[32] + 1;
+    int64_t words = (u->at[31] + 31) / 32 + 2;
+    if (first < 0 || first + rows > (int64_t)s->mask_rows || u->word < 0 ||
+        u->word + words > (int64_t)s->mask_words)
+        return;
+    for (int run = 0; run < s->run_count; run++) {
+        const uint32_t *masks =
+            s->masks + snow_value_mask_at(s, run, p->sheets[n + 1].slice) +
+            u->word * (int64_t)s->mask_rows + first;
+        for (int64_t word = 0; word < words; word++, masks += s->mask_rows)
+            for (int64_t row = 0; row < rows + 15; row += 16)
+                __builtin_prefetch(masks + row);
     }
 }

@@ -69,20 +69,13 @@ NAME(lengthen)(const snow_value_table *table, const float shares[32],
         ones[i] = SNOW_GRADIENT_OPACITY_ONE;
     V(row_store)(words, color[3]);
     for (int i = 0; i < 32; i++)
-        alphas[i] = (float)words[i] * (1.0F / 32767);
-    if (table->faint) {
-        for (int i = 0; i < 32; i++)
-            alphas[i] =
-                fminf(1, value_lengthen(table, (float)words[i] * table->unit,
-                                        shares[i]) /
-                             (table->unit * 32767));
-    } else {
-        NAME(fade16)(ones, shares, alphas);
-        NAME(fade16)(ones, shares + 16, alphas + 16);
-    }
+        alphas[i] = (float)words[i] * table->unit;
+    NAME(fade16)(ones, shares, alphas);
+    NAME(fade16)(ones, shares + 16, alphas + 16);
     for (int i = 0; i < 32; i++) {
-        float alpha = (float)words[i];
-        factors[i] = alphas[i] * 32767 / (alpha > 1 ? alpha : 1);
+        float alpha = (float)words[i], longer = alphas[i] / table->unit;
+        longer = longer < 32767 ? longer : 32767;
+        factors[i] = longer / (alpha > 1 ? alpha : 1);
     }
     for (int c = channels == 2 ? 2 : 0; c < 4; c++) {
         int plane = channels == 2 && c == 2 ? 0 : c;

@@ -260,12 +260,12 @@ static void NAME(aim)(const snow_value_splat *p, const int tile[2],
     }
     for (int phase = 0; phase < p->phases; phase++) {
         value_phase *state = &room->phase[phase];
-        int spot[2];
-        value_spot(rays, phase, spot);
         for (int lane = 0; lane < 32; lane++)
-            state->columns[lane] = (int16_t)(lane * rays->phases[0] + spot[0]);
-        state->line = (int16_t)spot[1];
+            state->columns[lane] =
+                (int16_t)(lane * rays->phases[0] + rays->spot[phase][0]);
+        state->line = rays->spot[phase][1];
         state->lines = (int16_t)rays->phases[1];
+        room->cells[phase][0].sheet = room->cells[phase][1].sheet = -1;
     }
 }
 
@@ -330,7 +330,7 @@ static inline bool NAME(alive)(const value_room *room, int first, int end) {
 TARGET static inline __attribute__((always_inline)) bool
 NAME(phases)(const snow_value_splat *p, int first, int end, const int tile[2],
              snow_value_plane *planes, value_room *room, const int channels,
-             const bool sloped) {
+             const bool sloped, const bool eye) {
     int32_t *list = value_slabs(p, room);
     int count = value_list_slabs(p, first, end, tile, list);
     bool drawn = false;
@@ -338,41 +338,44 @@ NAME(phases)(const snow_value_splat *p, int first, int end, const int tile[2],
         room->asked[n].sheet = -1;
     for (int turn = 0, seen = 0; turn < count; turn++) {
         for (; seen < count && seen <= turn + AHEAD; seen++) {
-            if (seen + 2 < count)
+            if (seen + 2 < count && eye)
+                NAME(ask_masks_eye)(p, list[seen + 2], first, tile);
+            else if (seen + 2 < count)
                 NAME(ask_masks)(p, list[seen + 2], first, tile);
             NAME(look_ahead)
             (p, list[seen], first, end, tile, room,
-             room->slab[seen % AHEAD_RING], sloped, false);
+             room->slab[seen % AHEAD_RING], sloped, eye);
         }
         drawn |=
             NAME(slab)(p, list[turn], first, end, tile, planes, room,
-                       room->slab[turn % AHEAD_RING], channels, sloped, false);
+                       room->slab[turn % AHEAD_RING], channels, sloped, eye);
         if (!NAME(alive)(room, first, end))
             break;
     }
     return drawn;
 }
 
-/* The same of all phases in perspective, slab by slab: their samples'
+/* The same of many phases in perspective, slab by slab: their samples'
  * neighbours are of other phases. */
 TARGET static inline __attribute__((always_inline)) bool
 NAME(phases_eye)(const snow_value_splat *p, const int tile[2],
                  snow_value_plane *planes, value_room *room, const int channels,
                  const bool sloped) {
+    int32_t *list = value_slabs(p, room);
+    int count = value_list_slabs(p, 0, p->phases, tile, list);
     bool drawn = false;
-    NAME(aim)(p, tile, room);
-    for (int n = p->slabs[0]; n < p->slabs[1]; n++) {
+    for (int turn = 0; turn < count && NAME(alive)(room, 0, p->phases); turn++)
         for (int first = 0; first < p->phases; first += TOGETHER) {
             int end =
                 first + TOGETHER < p->phases ? first + TOGETHER : p->phases;
+            for (int n = 0; n < ASKED_RING; n++)
+                room->asked[n].sheet = -1;
             NAME(look_ahead)
-            (p, n, first, end, tile, room, room->slab[0], sloped, true);
-            drawn |= NAME(slab)(p, n, first, end, tile, planes, room,
+            (p, list[turn], first, end, tile, room, room->slab[0], sloped,
+             true);
+            drawn |= NAME(slab)(p, list[turn], first, end, tile, planes, room,
                                 room->slab[0], channels, sloped, true);
         }
-        if (!NAME(alive)(room, 0, p->phases))
-            break;
-    }
     return drawn;
 }
 
@@ -390,11 +393,13 @@ NAME(tile)(const snow_value_splat *p, int x, int y, void *memory,
     else
         memset(planes, 0, snow_value_planes_bytes(p));
     if (eye)
+        NAME(aim)(p, tile, room);
+    if (eye && p->phases > TOGETHER)
         return NAME(phases_eye)(p, tile, planes, room, channels, sloped);
     for (int first = 0; first < p->phases; first += TOGETHER) {
         int end = first + TOGETHER < p->phases ? first + TOGETHER : p->phases;
-        drawn |=
-            NAME(phases)(p, first, end, tile, planes, room, channels, sloped);
+        drawn |= NAME(phases)(p, first, end, tile, planes, room, channels,
+                              sloped, eye);
     }
     return drawn;
 }

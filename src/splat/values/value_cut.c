@@ -192,14 +192,12 @@ uint32_t snow_value_own_lanes(const snow_value_splat *p, int n, int phase,
                               const int tile[2], int axis) {
     int64_t first =
         axis ? value_tile_row(p, tile[1]) : value_tile_column(p, tile[0]);
-    int spot[2];
     if (!p->rays)
         return lanes_within(p->own[axis], first,
                             p->places[n * p->phases + phase].at[axis]);
-    value_spot(p->rays, phase, spot);
-    return spread_within(
-        p->own[axis], p->rays->stored[axis],
-        value_lanes_of(p->rays, n, axis, spot[axis], tile[axis]), axis);
+    return spread_within(p->own[axis], p->rays->stored[axis],
+                         value_lanes_of(p->rays, n, phase, axis, tile[axis]),
+                         axis);
 }
 
 void snow_value_shorten(const snow_value_table *table, value_queue *q,

@@ -85,6 +85,12 @@ typedef struct value_asked {
     uint64_t rows;
 } value_asked;
 #define ASKED_RING 8
+/* Perspective: the cells of a sheet under a phase. */
+typedef struct value_cells {
+    uint32_t cells[SNOW_VALUE_RUNS][SNOW_VALUE_ROWS];
+    bool any[SNOW_VALUE_RUNS]; /* else there are none */
+    int sheet;
+} value_cells;
 
 /* Laid out in a worker's memory behind the planes. */
 typedef struct value_room {
@@ -92,6 +98,7 @@ typedef struct value_room {
     value_slab slab[AHEAD_RING][TOGETHER]; /* [number in the list % ring] */
     value_phase phase[SNOW_VALUE_PHASES];
     value_asked asked[ASKED_RING];
+    value_cells cells[SNOW_VALUE_PHASES][2]; /* [sheet & 1] */
     float slope[2][2];    /* perspective: snow_value_rays' of the tile */
     value_rows rows[][2]; /* [phase][sheet & 1] */
 } value_room;
@@ -114,34 +121,22 @@ static inline int64_t value_tile_row(const snow_value_splat *splat, int y) {
     return splat->first[1] + (int64_t)y * SNOW_VALUE_ROWS;
 }
 
-/* The place of a phase in its cell, along u and v. */
-static inline void value_spot(const snow_value_rays *rays, int phase,
-                              int spot[2]) {
-    int middle = rays->middles == 2 ? phase & 1 : 0;
-    int cell = phase / rays->middles;
-    spot[0] = cell % rays->cells[0] * rays->middles + middle;
-    spot[1] = cell / rays->cells[0] * rays->middles + middle;
-}
-
 /* The phase `by` samples on along an axis, and how many cells on it is. */
 static inline int value_phase_beside(const snow_value_rays *rays, int phase,
                                      int axis, int by, int *cells) {
-    int count = rays->cells[axis], cell = phase / rays->middles;
-    int at = axis == 0 ? cell % rays->cells[0] : cell / rays->cells[0];
-    int to = at + by + count;
-    *cells = to / count - 1;
+    int at = rays->cell[phase][axis] + by, count = rays->cells[axis];
+    *cells = at < 0 ? -1 : at >= count;
     return phase +
-           (to % count - at) * rays->middles * (axis == 0 ? 1 : rays->cells[0]);
+           (by - *cells * count) * (axis == 0 ? rays->middles : rays->line);
 }
 
 /* The lanes of a phase of a tile along an axis of a sheet. */
 static inline const snow_value_lanes *
-value_lanes_of(const snow_value_rays *rays, int sheet, int axis, int spot,
+value_lanes_of(const snow_value_rays *rays, int sheet, int phase, int axis,
                int tile) {
-    return rays->lanes[axis] +
-           ((size_t)sheet * (size_t)rays->phases[axis] + (size_t)spot) *
-               (size_t)rays->tiles[axis] +
-           tile;
+    size_t at =
+        (size_t)sheet * (size_t)rays->phases[axis] + rays->spot[phase][axis];
+    return rays->lanes[axis] + at * (size_t)rays->tiles[axis] + tile;
 }
 
 /* Whether a tile's window of a sheet meets the voxels and their margins. */

@@ -7,15 +7,30 @@ typedef struct box {
     int64_t low[2], high[2];
 } box;
 
+/* Those of a phase along an axis of a sheet. */
+static void cover_axis(const snow_value_splat *p, int sheet, int phase,
+                       int axis, const int tile[2], int64_t ends[2]) {
+    if (p->rays) {
+        const snow_value_lanes *lanes =
+            value_lanes_of(p->rays, sheet, phase, axis, tile[axis]);
+        ends[0] = lanes->first + lanes->at[axis];
+        ends[1] = lanes->first + lanes->at[31 + axis];
+        return;
+    }
+    ends[0] = axis ? value_tile_row(p, tile[1]) : value_tile_column(p, tile[0]);
+    ends[0] += p->places[sheet * p->phases + phase].whole[axis];
+    ends[1] = ends[0] + 31;
+}
+
 /* Those of some phases on a sheet. */
 static void cover(const snow_value_splat *p, int sheet, int first, int end,
-                  const int64_t origin[2], box *b) {
-    const snow_value_place *place = p->places + sheet * p->phases;
+                  const int tile[2], box *b) {
     for (int phase = first; phase < end; phase++)
         for (int axis = 0; axis < 2; axis++) {
-            int64_t at = origin[axis] + place[phase].whole[axis];
-            b->low[axis] = at < b->low[axis] ? at : b->low[axis];
-            b->high[axis] = at + 31 > b->high[axis] ? at + 31 : b->high[axis];
+            int64_t at[2];
+            cover_axis(p, sheet, phase, axis, tile, at);
+            b->low[axis] = at[0] < b->low[axis] ? at[0] : b->low[axis];
+            b->high[axis] = at[1] > b->high[axis] ? at[1] : b->high[axis];
         }
 }
 
@@ -74,8 +89,6 @@ static int last_of_eight(const snow_value_splat *p, int sheet) {
 int value_list_slabs(const snow_value_splat *p, int first, int end,
                      const int tile[2], int32_t *out) {
     const snow_value_store *s = p->store;
-    const int64_t origin[2] = {value_tile_column(p, tile[0]),
-                               value_tile_row(p, tile[1])};
     const unsigned all = (1U << s->run_count) - 1;
     unsigned before = 0;
     int count = 0;
@@ -85,8 +98,8 @@ int value_list_slabs(const snow_value_splat *p, int first, int end,
         const snow_value_sheet *sheet = p->sheets + n;
         box b = nothing;
         last = last_of_eight(p, n);
-        cover(p, n, first, end, origin, &b);
-        cover(p, last, first, end, origin, &b);
+        cover(p, n, first, end, tile, &b);
+        cover(p, last, first, end, tile, &b);
         bool some = runs_of(s, s->eights, s->eight_count,
                             sheet->slice / SNOW_VALUE_EIGHT,
                             sheet->half || p->sheets[last].half, &b) != 0;
@@ -94,7 +107,7 @@ int value_list_slabs(const snow_value_splat *p, int first, int end,
             unsigned here = 0;
             if (some || !all) {
                 b = nothing;
-                cover(p, m, first, end, origin, &b);
+                cover(p, m, first, end, tile, &b);
                 here = runs_of(s, s->coarse, s->slices, sheet->slice,
                                sheet->half, &b);
             }

@@ -70,6 +70,9 @@ typedef struct snow_value_rays {
     int64_t stored[2];       /* the first voxel of the store */
     int phases[2], tiles[2]; /* of a cell, of the image */
     int cells[2], middles;   /* samples a voxel; 2: of a quincunx */
+    int line;                /* phases from one to that a cell on along v */
+    uint8_t cell[SNOW_VALUE_PHASES][2]; /* of a phase, along u and v; and its */
+    uint8_t spot[SNOW_VALUE_PHASES][2]; /* place among the phases of an axis */
     double slope[2][2]; /* du and dv of phase 0 of cell 0, and from there to
                            the next phase */
     float metric[6];    /* squared length of a ray's way: as snow_value_light */
