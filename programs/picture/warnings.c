@@ -39,7 +39,8 @@ static void warn_method(const scene *s) {
     if (strcmp(s->asked->method, "value") == 0 &&
         s->stats.method == SNOW_METHOD_FOOTPRINT)
         say("note: method footprint is used in place of value, which takes "
-            "kernels tent of 2 voxels and bspline of 4");
+            "kernels tent of 2 voxels and bspline of 4, and no eye beside "
+            "the slices or near to them");
     if (strcmp(s->asked->method, "shear-warp") != 0 || mode == SNOW_MODE_ISO ||
         s->stats.method == SNOW_METHOD_SHEAR_WARP)
         return;

@@ -91,6 +91,9 @@ static snow_status place_slab(snow_job *job, int parts, int part) {
     if (job->settings.method == SNOW_METHOD_SHEAR_WARP &&
         !snow_shear_warp_fits(&job->placement, &job->settings))
         job->settings.method = SNOW_METHOD_FOOTPRINT;
+    if (job->settings.method == SNOW_METHOD_VALUE &&
+        job->placement.perspective && !snow_value_eye_fits(&job->placement))
+        job->settings.method = SNOW_METHOD_FOOTPRINT;
     SNOW_TRY(check_stream(job, parts));
     cut_slab(job, parts, part);
     SNOW_TRY(check_raycast(job));

@@ -17,14 +17,29 @@ static double back_of(const snow_value_lattice *l, const snow_placement *p) {
     return l->nearest_first ? l->front + depth : l->front - depth;
 }
 
+/* The most voxels that rays move aside from one slice to the next. */
+static double slope_of(const snow_placement *p, const double heights[2]) {
+    double most = 0;
+    for (int axis = 0; axis < 2; axis++)
+        for (int corner = 0; corner < 4; corner++) {
+            double ends[2];
+            ends_of(p, axis, ends);
+            most = fmax(most, fabs((ends[corner >> 1] - p->eye.at[axis]) /
+                                   heights[corner & 1]));
+        }
+    return most;
+}
+
 bool snow_value_eye_fits(const snow_placement *p) {
     double half = p->slices == 1 ? 0.5 : 0;
-    double low = -half - p->eye.at[2];
-    double high = (double)(p->slices - 1) + half - p->eye.at[2];
-    double near = fmin(fabs(low), fabs(high)),
-           far = fmax(fabs(low), fabs(high));
-    return low * high > 0 && near > 1e-6 &&
-           far <= SNOW_VALUE_SPREAD_MOST * near;
+    const double heights[2] = {-half - p->eye.at[2],
+                               (double)(p->slices - 1) + half - p->eye.at[2]};
+    double near = fmin(fabs(heights[0]), fabs(heights[1]));
+    double spread = fmax(fabs(heights[0]), fabs(heights[1])) / near;
+    return heights[0] * heights[1] > 0 && near > 1e-6 &&
+           spread <= SNOW_VALUE_SPREAD_MOST &&
+           ceil(slope_of(p, heights)) + fmax(2, ceil(spread)) - 1 <=
+               SNOW_VALUE_REACH_MOST;
 }
 
 /* --- the image --------------------------------------------------------------
@@ -97,17 +112,8 @@ static int apart_of(int cells, double step) {
 
 double snow_value_eye_reach(const snow_value_lattice *l,
                             const snow_placement *p) {
-    double most = 0, wide = 1, back = back_of(l, p);
-    for (int axis = 0; axis < 2; axis++) {
-        double ends[2], slope = 0;
-        ends_of(p, axis, ends);
-        for (int corner = 0; corner < 4; corner++) {
-            double height = (corner & 1 ? l->front : back) - l->eye[2];
-            slope =
-                fmax(slope, fabs((ends[corner >> 1] - l->eye[axis]) / height));
-        }
-        most = fmax(most, slope);
-    }
+    double wide = 1, back = back_of(l, p);
+    const double heights[2] = {l->front - l->eye[2], back - l->eye[2]};
     for (int n = 0; n < l->sheet_count; n++) {
         double slice = l->front + (back - l->front) * n / (l->sheet_count - 1);
         double step = snow_value_eye_step(l, slice);
@@ -115,7 +121,8 @@ double snow_value_eye_reach(const snow_value_lattice *l,
             wide = fmax(wide,
                         apart_of(l->cells[axis], step) * step / l->cells[axis]);
     }
-    return ceil(most / l->halves * (1 - 1e-9)) + ceil(wide * (1 - 1e-9)) - 1;
+    double most = slope_of(p, heights) / l->halves;
+    return ceil(most * (1 - 1e-9)) + ceil(wide * (1 - 1e-9)) - 1;
 }
 
 snow_value_spread snow_value_eye_spread(const snow_value_lattice *l,

@@ -54,7 +54,8 @@ void snow_value_lattice_move(snow_value_lattice *lattice, int axis, double by);
 /* --- perspective: eye.c ---------------------------------------------------
  */
 
-/* Whether the eye is outside of the slices, and not too near. */
+/* Whether the eye is outside of the slices, and not too near: samples of the
+ * last sheet and rays are as far apart as encodings provide for. */
 bool snow_value_eye_fits(const snow_placement *placement);
 
 /* The image, of so many phases a voxel along u and v.  Errors:

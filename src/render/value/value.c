@@ -54,9 +54,6 @@ snow_status snow_value_check(snow_context *context,
         bool refused;
         const char *what;
     } rows[] = {
-        {params->placement->perspective &&
-             !snow_value_eye_fits(params->placement),
-         "slices beside the eye, or 8 times as far from it as the nearest"},
         {s->mode != SNOW_MODE_OVER, "modes other than over"},
         {s->kernel != SNOW_KERNEL_TENT, "kernel bspline"},
         {params->placement->perspective &&
@@ -195,27 +192,23 @@ static bool serves(const snow_value_path *path, const snow_value_key *key,
 
 /* In perspective it changes from view to view: steps of it let an encoding
  * serve many. */
-static snow_status find_eye_reach(snow_value_path *path,
-                                  const snow_value_params *params, int *reach) {
+static int eye_reach(const snow_value_path *path,
+                     const snow_value_params *params) {
     static const int steps[] = {
         1, 2, 3, 4, 6, 8, 12, 16, SNOW_VALUE_REACH_MOST};
     double most = snow_value_eye_reach(&path->lattice, params->placement);
-    for (size_t n = 0; n < sizeof steps / sizeof *steps; n++)
-        if (most <= steps[n]) {
-            *reach = steps[n];
-            return SNOW_STATUS_OK;
-        }
-    return snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
-                     "method value cannot draw rays that pass %.0f voxels from "
-                     "one slice to the next yet: the limit is %d; take method "
-                     "shear-warp",
-                     fmin(most, 1e6), SNOW_VALUE_REACH_MOST);
+    size_t n = 0;
+    while (n + 1 < sizeof steps / sizeof *steps && most > steps[n])
+        n++;
+    return steps[n]; /* snow_value_eye_fits: there are no more */
 }
 
 static snow_status find_reach(snow_value_path *path,
                               const snow_value_params *params, int *reach) {
-    if (path->lattice.perspective)
-        return find_eye_reach(path, params, reach);
+    if (path->lattice.perspective) {
+        *reach = eye_reach(path, params);
+        return SNOW_STATUS_OK;
+    }
     double most = snow_value_lattice_reach(
         &params->volume->info, params->placement, path->lattice.halves);
     *reach = (int)ceil(fmin(most, 1e6) * (1 - 1e-5));
