@@ -54,10 +54,50 @@ static void take_natives(const range_job *job, double *natives, size_t count) {
     }
 }
 
+/* Native values of one or two bytes. */
+#define LOOK_NARROW(name, type)                                         \
+    static void look_at_##name(found_range *found, const type *natives, \
+                               size_t count) {                          \
+        type low = natives[0], high = natives[0];                       \
+        for (size_t n = 0; n < count; n++) {                            \
+            low = natives[n] < low ? natives[n] : low;                  \
+            high = natives[n] > high ? natives[n] : high;               \
+        }                                                               \
+        found->low = low < found->low ? low : found->low;               \
+        found->high = high > found->high ? high : found->high;          \
+    }
+LOOK_NARROW(int8, int8_t)
+LOOK_NARROW(uint8, uint8_t)
+LOOK_NARROW(int16, int16_t)
+LOOK_NARROW(uint16, uint16_t)
+
+/* False where the voxels have another type, or logarithms are wanted. */
+static bool look_at_narrow(const range_job *job, found_range *found,
+                           int64_t first, size_t count) {
+    const unsigned char *voxels = job->volume->voxels;
+    snow_type type = job->volume->info.type;
+    const void *at = voxels + (size_t)first * snow_type_size(type);
+    if (job->log)
+        return false;
+    if (type == SNOW_TYPE_INT8)
+        look_at_int8(found, at, count);
+    else if (type == SNOW_TYPE_UINT8)
+        look_at_uint8(found, at, count);
+    else if (type == SNOW_TYPE_INT16)
+        look_at_int16(found, at, count);
+    else if (type == SNOW_TYPE_UINT16)
+        look_at_uint16(found, at, count);
+    else
+        return false;
+    return true;
+}
+
 static void look_at_item(void *of, int64_t item, int worker) {
     const range_job *job = of;
     int64_t first = item * ITEM, end = first + ITEM;
     end = end < job->voxels ? end : job->voxels;
+    if (look_at_narrow(job, &job->found[worker], first, (size_t)(end - first)))
+        return;
     for (; first < end; first += BLOCK) {
         double natives[BLOCK];
         size_t count = end - first < BLOCK ? (size_t)(end - first) : BLOCK;

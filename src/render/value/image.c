@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* A side of the blocks of a quincunx, pixels. */
-#define BLOCK 64
+#define BLOCK 16
 
 bool snow_value_shows(const snow_value_path *path) {
     return !path->lattice.empty && path->range.low <= path->range.high;
@@ -113,40 +113,51 @@ snow_status snow_value_reserve_image(snow_value_path *path,
 /* --- blocks of a quincunx --------------------------------------------------
  */
 
-/* Marks the blocks that a drawn tile may reach. */
-static void mark_blocks(const snow_value_lattice *l, unsigned char *marks,
-                        int64_t x, int64_t y) {
-    const int blocks = blocks_of(l);
-    const snow_value_pixels cell = snow_value_lattice_pixels(l, 0);
-    int64_t left = x * SNOW_VALUE_COLUMNS, top = y * SNOW_VALUE_ROWS;
-    int64_t right = left + SNOW_VALUE_COLUMNS, bottom = top + SNOW_VALUE_ROWS;
-    int64_t a0 = left * cell.along_u[0] + top * cell.along_v[0];
-    int64_t a1 = right * cell.along_u[0] + bottom * cell.along_v[0];
-    int64_t b0 = left * cell.along_u[1] + bottom * cell.along_v[1] + l->top;
-    int64_t b1 = right * cell.along_u[1] + top * cell.along_v[1] + l->top;
-    b0 = b0 > 0 ? b0 : 0;
-    a1 = a1 < l->width - 1 ? a1 : l->width - 1;
-    b1 = b1 < l->height - 1 ? b1 : l->height - 1;
-    for (int64_t b = b0 / BLOCK; b <= b1 / BLOCK; b++)
-        for (int64_t a = a0 / BLOCK; a <= a1 / BLOCK; a++)
-            marks[b * blocks + a] = 1;
+/* The tiles along an axis that have samples low .. high, of `cells` a voxel. */
+static void tiles_of(int64_t low, int64_t high, int cells, int side, int tiles,
+                     int range[2]) {
+    int64_t first = low < 0 ? 0 : low / cells / side;
+    int64_t last = high < 0 ? -1 : high / cells / side;
+    range[0] = (int)(first < tiles ? first : tiles);
+    range[1] = (int)(last < tiles ? last : tiles - 1);
 }
 
-/* Those of all layers. */
+/* Whether the block from pixel (a, b) on has pixels of a tile that a layer has
+ * drawn.  Pixel (a, b) is sample ((a + b - top) / 2, (a - b + top) / 2) of the
+ * lattice. */
+static bool is_drawn(const snow_value_path *path, const unsigned char *drawn,
+                     int64_t a, int64_t b) {
+    const snow_value_lattice *l = &path->lattice;
+    const snow_value_grid *grid = &path->grid;
+    const int64_t sum = a + b - l->top, difference = a - b + l->top;
+    int x[2], y[2];
+    tiles_of((sum - 1) / 2 - 1, (sum + 2 * BLOCK) / 2 + 1, l->cells[0],
+             SNOW_VALUE_COLUMNS, grid->tiles[0], x);
+    tiles_of((difference - BLOCK) / 2 - 1, (difference + BLOCK) / 2 + 1,
+             l->cells[1], SNOW_VALUE_ROWS, grid->tiles[1], y);
+    for (int row = y[0]; row <= y[1]; row++)
+        for (int column = x[0]; column <= x[1]; column++)
+            if (drawn[row * grid->tiles[0] + column])
+                return true;
+    return false;
+}
+
+/* The blocks of all layers. */
 static snow_status find_blocks(snow_value_path *path) {
     const snow_value_grid *grid = &path->grid;
-    const size_t blocks = (size_t)blocks_of(&path->lattice);
+    const int blocks = blocks_of(&path->lattice);
     const size_t layers = grid->layers > 1 ? (size_t)grid->layers : 1;
+    const size_t count = (size_t)blocks * (size_t)blocks;
     SNOW_TRY(snow_reserve(path->context, &path->blocks, &path->blocks_capacity,
-                          0, layers * blocks * blocks));
-    memset(path->blocks, 0, layers * blocks * blocks);
-    for (size_t n = 0; n < layers; n++)
-        for (int y = 0; y < grid->tiles[1]; y++)
-            for (int x = 0; x < grid->tiles[0]; x++)
-                if (path->drawn[n * snow_value_tiles(path) +
-                                (size_t)(y * grid->tiles[0] + x)])
-                    mark_blocks(&path->lattice,
-                                path->blocks + n * blocks * blocks, x, y);
+                          0, layers * count));
+    unsigned char *block = path->blocks;
+    for (size_t n = 0; n < layers; n++) {
+        const unsigned char *drawn = path->drawn + n * snow_value_tiles(path);
+        for (int b = 0; b < blocks; b++)
+            for (int a = 0; a < blocks; a++)
+                *block++ = is_drawn(path, drawn, (int64_t)a * BLOCK,
+                                    (int64_t)b * BLOCK);
+    }
     return SNOW_STATUS_OK;
 }
 
