@@ -203,18 +203,6 @@ static void what_it_does_not_draw_is_refused(void **state) {
     value_picture_free(&s);
 }
 
-static void labels_in_perspective_are_refused(void **state) {
-    (void)state;
-    static const snow_color_point names[] = {
-        {0, 1, 0, 0}, {30, 1, 0, 0}, {30, 0, 1, 0}, {100, 0, 1, 0}};
-    reference_scene s = value_picture_scene(0);
-    s.colors = names;
-    s.color_count = COUNT(names);
-    s.view.fov = 30;
-    refused(&s, "labels in perspective");
-    value_picture_free(&s);
-}
-
 static void volumes_that_it_does_not_draw_are_refused(void **state) {
     (void)state;
     reference_scene s = value_picture_scene(10);
@@ -258,7 +246,6 @@ int main(void) {
         cmocka_unit_test(all_vector_levels_give_the_same_image),
         cmocka_unit_test(only_what_shows_more_is_encoded_anew),
         cmocka_unit_test(what_it_does_not_draw_is_refused),
-        cmocka_unit_test(labels_in_perspective_are_refused),
         cmocka_unit_test(volumes_that_it_does_not_draw_are_refused),
         cmocka_unit_test(odd_volumes_are_drawn),
     };

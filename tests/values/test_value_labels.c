@@ -59,6 +59,8 @@ static value_scene labelled(int n) {
     scene.base.color_count = COUNT(colors);
     scene.base.opacities = looks[n / 2 % 3].points;
     scene.base.opacity_count = looks[n / 2 % 3].count;
+    if (n / 8 % 2 == 1)
+        scene.base.view.fov = 45;
     if (n % 7 == 3) {
         scene.base.gradients = curve;
         scene.base.gradient_count = COUNT(curve);

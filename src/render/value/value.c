@@ -56,10 +56,6 @@ snow_status snow_value_check(snow_context *context,
     } rows[] = {
         {s->mode != SNOW_MODE_OVER, "modes other than over"},
         {s->kernel != SNOW_KERNEL_TENT, "kernel bspline"},
-        {params->placement->perspective &&
-             snow_transfer_has_labels(params->transfer,
-                                      params->volume->info.type),
-         "labels in perspective"},
     };
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
         if (rows[n].refused)

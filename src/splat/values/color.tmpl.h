@@ -197,7 +197,7 @@ NAME(color)(const snow_value_splat *p, float slope[2][2], value_queue *q,
             if (p->light)
                 NAME(shade)(p, slope, q, n, slopes, channels, color, eye);
         }
-        if (eye) {
+        if (eye && !p->labels) {
             float shares[32];
             NAME(shares)(p->rays, slope, q, n, cuts, shares);
             NAME(lengthen)(p->table, shares, channels, color);

@@ -198,8 +198,9 @@ NAME(gather)(const snow_value_splat *p, int n, int first, int end,
         if (!here)
             continue;
         if (p->labels) {
-            count = snow_value_collect_labels(p, n, phase, tile, slab,
-                                              &room->queue, count, sloped);
+            count =
+                snow_value_collect_labels(p, n, phase, tile, room->slope, slab,
+                                          &room->queue, count, sloped);
             continue;
         }
         if (sloped && !eye)

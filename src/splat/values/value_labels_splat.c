@@ -3,6 +3,7 @@
  * wins. */
 #include "splat/values/value_room.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Voxels around the samples of both ends of a slab. */
@@ -15,13 +16,51 @@ typedef struct spot {
     int wu, wv;
 } spot;
 
+/* A sample of the lattice, on the sheets of a slab. */
+typedef struct label_sample {
+    const snow_value_splat *splat;
+    int slab, phase, row, lane;
+    const int *tile;
+} label_sample;
+
 /* A slab of a sample: its labels, and what they have at both ends. */
 typedef struct label_slab {
     const snow_value_splat *splat;
+    label_sample at;
+    double longer; /* than the table's way */
     spot ends[2];
     int labels[AROUND], count;
     int member[AROUND][2];
 } label_slab;
+
+/* --- places -----------------------------------------------------------------
+ */
+
+/* A sample on an end of its slab, or one some samples away along an axis. */
+static spot spot_of(const label_sample *at, int end, int axis, int by) {
+    const snow_value_splat *p = at->splat;
+    const int n = at->slab + end;
+    int cells[2] = {0, 0}, phase = at->phase;
+    if (!p->rays) {
+        const snow_value_place *place = p->places + n * p->phases + phase;
+        cells[axis] = by;
+        return (spot){p->sheets + n,
+                      value_tile_column(p, at->tile[0]) + at->lane + cells[0] +
+                          place->whole[0],
+                      value_tile_row(p, at->tile[1]) + at->row + cells[1] +
+                          place->whole[1],
+                      place->weight[0], place->weight[1]};
+    }
+    by *= p->rays->sheets[n].apart[axis];
+    phase = value_phase_beside(p->rays, phase, axis, by, &cells[axis]);
+    const snow_value_lanes *u =
+        value_lanes_of(p->rays, n, phase, 0, at->tile[0]);
+    const snow_value_lanes *v =
+        value_lanes_of(p->rays, n, phase, 1, at->tile[1]);
+    int lane = at->lane + cells[0], row = at->row + 1 + cells[1];
+    return (spot){p->sheets + n, u->first + u->at[lane], v->first + v->at[row],
+                  u->weight[lane], v->weight[row]};
+}
 
 /* --- membership -------------------------------------------------------------
  */
@@ -59,14 +98,12 @@ static int voxel_member(const snow_value_store *s, int label, int64_t i,
     return half ? (here + slice_member(s, label, i, j, k + 1) + 1) >> 1 : here;
 }
 
-/* At a sample, or one voxel aside. */
-static int member_at(const snow_value_store *s, int label, const spot *at,
-                     int du, int dv) {
+static int member_at(const snow_value_store *s, int label, const spot *at) {
     int row[2];
     for (int y = 0; y < 2; y++) {
         int ends[2];
         for (int x = 0; x < 2; x++)
-            ends[x] = voxel_member(s, label, at->i + du + x, at->j + dv + y,
+            ends[x] = voxel_member(s, label, at->i + x, at->j + y,
                                    at->sheet->slice, at->sheet->half);
         row[y] = value_between(ends[0], ends[1], at->wu);
     }
@@ -95,16 +132,26 @@ static int across(const snow_value_store *s, int label, const spot *at) {
     return value_between(row[0], row[1], at->wv);
 }
 
+/* Along an axis of a sheet. */
+static int aside(const label_slab *slab, int label, int end, int axis) {
+    const snow_value_store *s = slab->splat->store;
+    const snow_value_rays *rays = slab->splat->rays;
+    const spot before = spot_of(&slab->at, end, axis, -1);
+    const spot after = spot_of(&slab->at, end, axis, 1);
+    int way = value_saturate(member_at(s, label, &after) -
+                             member_at(s, label, &before));
+    int lack = rays ? rays->sheets[slab->at.slab + end].stretch[axis] : 0;
+    return value_saturate(way + ((way * lack + 0x4000) >> 15));
+}
+
 static void find_slopes(const label_slab *slab, int label, int place,
                         value_queue *q, int count) {
     const snow_value_store *s = slab->splat->store;
     int slopes[3][2];
     for (int end = 0; end < 2; end++) {
         const spot *at = &slab->ends[end];
-        slopes[0][end] = value_saturate(member_at(s, label, at, 1, 0) -
-                                        member_at(s, label, at, -1, 0));
-        slopes[1][end] = value_saturate(member_at(s, label, at, 0, 1) -
-                                        member_at(s, label, at, 0, -1));
+        for (int axis = 0; axis < 2; axis++)
+            slopes[axis][end] = aside(slab, label, end, axis);
         slopes[2][end] = across(s, label, at);
     }
     for (int axis = 0; axis < 3; axis++)
@@ -147,7 +194,7 @@ static void find_labels(label_slab *slab) {
                 draft ? nearest(s, &slab->ends[end]) == slab->labels[n]
                 : slab->count == 1
                     ? 1
-                    : member_at(s, slab->labels[n], &slab->ends[end], 0, 0);
+                    : member_at(s, slab->labels[n], &slab->ends[end]);
 }
 
 /* The label whose membership is the largest at t, of equals the larger one; -1:
@@ -187,9 +234,10 @@ static void collect(const label_slab *slab, label_part part, double rgba[4],
         if (label < 0 || !(labels->looks[label].step > 0))
             continue;
         const snow_label_look *look = &labels->looks[label];
-        double alpha = part.share == 1 ? look->step
-                                       : 1 - pow(1 - look->opacity,
-                                                 part.share * labels->exponent);
+        double share = part.share * slab->longer;
+        double alpha =
+            share == 1 ? look->step
+                       : 1 - pow(1 - look->opacity, share * labels->exponent);
         alpha *= 1 - rgba[3];
         for (int c = 0; c < 3; c++)
             rgba[c] += alpha * look->rgb[c];
@@ -256,24 +304,46 @@ static label_part part_of(const value_slab *slab, int row, int lane) {
     return (label_part){from / 32768.0, (to - from) / 32768.0};
 }
 
+/* The ray of a sample, in phases from the tile's first cell. */
+static void ray_of(const label_sample *at, int16_t out[2]) {
+    const snow_value_rays *rays = at->splat->rays;
+    const uint8_t *own = rays->spot[at->phase];
+    out[0] = (int16_t)(at->lane * rays->phases[0] + own[0]);
+    out[1] = (int16_t)(at->row * rays->phases[1] + own[1]);
+}
+
+/* Its length, in that of the table. */
+static double way_of(const snow_value_rays *rays, float slope[2][2],
+                     const int16_t ray[2]) {
+    const float *m = rays->metric;
+    double u = slope[0][0] + (double)slope[0][1] * ray[0];
+    double v = slope[1][0] + (double)slope[1][1] * ray[1];
+    return rays->usual * sqrt(m[0] * u * u + m[1] * v * v + m[2] +
+                              m[3] * u * v + m[4] * u + m[5] * v);
+}
+
 int snow_value_collect_labels(const snow_value_splat *p, int n, int phase,
-                              const int tile[2], value_slab *slab,
-                              value_queue *q, int count, bool sloped) {
-    const snow_value_place *place = p->places + n * p->phases + phase;
-    int64_t column = value_tile_column(p, tile[0]);
-    int64_t line = value_tile_row(p, tile[1]);
-    label_slab sample = {.splat = p};
+                              const int tile[2], float slope[2][2],
+                              value_slab *slab, value_queue *q, int count,
+                              bool sloped) {
+    label_slab sample = {
+        .splat = p, .at = {p, n, phase, 0, 0, tile}, .longer = 1};
     for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
         int row = __builtin_ctz(rows);
         uint32_t seen = 0;
         for (uint32_t left = slab->active[row]; left; left &= left - 1) {
             int lane = __builtin_ctz(left);
             label_part part = part_of(slab, row, lane);
-            for (int end = 0; end < 2; end++) {
-                const snow_value_place *at = place + end * p->phases;
-                sample.ends[end] = (spot){
-                    p->sheets + n + end, column + lane + at->whole[0],
-                    line + row + at->whole[1], at->weight[0], at->weight[1]};
+            sample.at.row = row;
+            sample.at.lane = lane;
+            for (int end = 0; end < 2; end++)
+                sample.ends[end] = spot_of(&sample.at, end, 0, 0);
+            if (p->rays) {
+                int16_t ray[2];
+                ray_of(&sample.at, ray);
+                q->ray[0][count] = ray[0];
+                q->ray[1][count] = ray[1];
+                sample.longer = way_of(p->rays, slope, ray);
             }
             if (part.share > 0 && pack(&sample, part, q, count, sloped)) {
                 seen |= UINT32_C(1) << lane;

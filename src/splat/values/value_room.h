@@ -197,8 +197,9 @@ static inline int value_between(int a, int b, int weight) {
 /* Packs the visible samples of a phase of slab `n` from number `count` on, with
  * their colours and gradients. */
 int snow_value_collect_labels(const snow_value_splat *splat, int n, int phase,
-                              const int tile[2], value_slab *slab,
-                              value_queue *queue, int count, bool sloped);
+                              const int tile[2], float slope[2][2],
+                              value_slab *slab, value_queue *queue, int count,
+                              bool sloped);
 
 /* --- holes ------------------------------------------------------------------
  */
