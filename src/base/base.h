@@ -42,7 +42,8 @@ struct snow_context {
     void *spare;         /* a block that the next volume may use for its voxels
                             (volume/stream.c); NULL: none */
     size_t spare_bytes;
-    bool opens_slab; /* a slab of a volume that stays in its file is opened */
+    bool leaves_clipped; /* a volume is opened for whom values next to clip
+                            planes are nothing */
     char message[SNOW_MESSAGE_BYTES];
 };
 

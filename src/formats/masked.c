@@ -132,7 +132,7 @@ static snow_status leave_out_of(const opening *o, const snow_volume *volume,
         .label_count = o->count,
         .planes = o->clip[0],
         .plane_count = SNOW_CLIPS_MAX,
-        .keeps_clipped = !volume->is_part && !o->context->opens_slab,
+        .keeps_clipped = !volume->is_part && !o->context->leaves_clipped,
     };
     bool any;
     SNOW_TRY(snow_mask_apply(volume, &by, &any, out));

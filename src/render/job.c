@@ -196,12 +196,13 @@ static bool has_ghosts(const snow_clip *clip) {
 static snow_status count_own(snow_frame *frame, const snow_job *job) {
     snow_stats *stats = job->stats;
     const int64_t *count = job->clip.count;
-    if (stats->encoded || (job->settings.method != SNOW_METHOD_SHEAR_WARP &&
-                           job->settings.method != SNOW_METHOD_VALUE))
+    stats->voxels = count[0] * count[1] * count[2];
+    if (job->settings.method == SNOW_METHOD_VALUE) /* its own count serves */
+        return SNOW_STATUS_OK;
+    if (stats->encoded || job->settings.method != SNOW_METHOD_SHEAR_WARP)
         SNOW_TRY(snow_count_interesting(
             job->volume, job->transfer, job->settings.threshold,
             job->settings.isa, &frame->own_interesting));
-    stats->voxels = count[0] * count[1] * count[2];
     stats->interesting = frame->own_interesting;
     return SNOW_STATUS_OK;
 }

@@ -55,10 +55,12 @@ static snow_status open_slabs(snow_parts *parts) {
     SNOW_TRY(snow_ghosts_needed(
         job->context, &job->volume->info, job->view, &job->settings,
         snow_transfer_has_gradient_opacity(job->transfer), false, layers));
-    parts->cut = (snow_slab_cut){.step = 1,
-                                 .ghosts = layers[2],
-                                 .made = made_of(job),
-                                 .from = nearest_slice(job)};
+    parts->cut =
+        (snow_slab_cut){.step = 1,
+                        .ghosts = layers[2],
+                        .made = made_of(job),
+                        .clipped = job->settings.method == SNOW_METHOD_VALUE,
+                        .from = nearest_slice(job)};
     snow_slabs_open(job->volume, &parts->cut, &parts->slabs);
     parts->many = true;
     return SNOW_STATUS_OK;

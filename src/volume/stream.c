@@ -211,7 +211,7 @@ static snow_status compare(const snow_volume *volume, const snow_volume *slab,
 }
 
 static snow_status open_slab(snow_context *context, snow_stream *stream,
-                             const snow_volume_options *options,
+                             const snow_volume_options *options, bool clipped,
                              snow_volume **out) {
     snow_volume_info info;
     double begin = snow_seconds();
@@ -219,18 +219,20 @@ static snow_status open_slab(snow_context *context, snow_stream *stream,
     /* A remark on what a mask or plane leaves does not hold for the volume. */
     if (snow_mask_asked(options))
         snow_context_set_warning(context, NULL, NULL);
-    context->opens_slab = true;
+    context->leaves_clipped = !clipped;
     snow_status status =
         stream->open(context, stream->path, options, &info, out);
-    context->opens_slab = false;
+    context->leaves_clipped = false;
     listen_again(context, stream);
     stream->seconds += snow_seconds() - begin;
     return status;
 }
 
 /* Slices first .. first + count - 1 with ghosts, as a part of the volume. */
-static snow_status read_slab(const snow_volume *volume, int64_t first,
-                             int64_t count, int64_t ghosts, snow_volume **out) {
+static snow_status read_slab(const snow_volume *volume,
+                             const snow_slab_cut *cut, int64_t first,
+                             int64_t count, snow_volume **out) {
+    const int64_t ghosts = cut->ghosts;
     snow_context *context = volume->context;
     const int64_t *dims = volume->info.dims;
     int64_t from = first > ghosts ? first - ghosts : 0;
@@ -245,7 +247,7 @@ static snow_status read_slab(const snow_volume *volume, int64_t first,
     options.crop[2][1] = options.crop[2][0] + end;
     options.crop[2][0] += from;
     snow_volume *slab;
-    SNOW_TRY(open_slab(context, volume->stream, &options, &slab));
+    SNOW_TRY(open_slab(context, volume->stream, &options, cut->clipped, &slab));
     snow_status status = compare(volume, slab, &part, end - from);
     if (status == SNOW_STATUS_OK)
         status = snow_volume_set_extent(slab, &part);
@@ -328,9 +330,9 @@ snow_status snow_slabs_next(snow_slabs *slabs, const snow_volume **slab) {
     slabs->whole =
         snow_monitor_divide(volume->context->monitor, (double)slabs->number++,
                             (double)((all + slabs->count - 1) / slabs->count));
-    SNOW_TRY(read_slab(volume, slabs->next,
+    SNOW_TRY(read_slab(volume, &slabs->cut, slabs->next,
                        left < slabs->count ? left : slabs->count,
-                       slabs->cut.ghosts, &slabs->slab));
+                       &slabs->slab));
     slabs->next += slabs->falls ? -slabs->count : slabs->count;
     snow_stream *stream = volume->stream;
     stream->left = stream->left || !slabs->slab->emptied;

@@ -36,6 +36,7 @@ typedef struct snow_slab_cut {
                        it; 0: few */
     int64_t from;   /* a slice: its slab comes first, then those above it,
                        rising, then those below it, falling */
+    bool clipped;   /* with the values next to clip planes (clip_planes.h) */
 } snow_slab_cut;
 
 /* A walk over all slabs. */

@@ -88,7 +88,7 @@ static snow_status measure_slab(const snow_volume *slab, void *user) {
 /* The statistics of a file serve, unless they leave out anything. */
 static snow_status measure_range(const snow_volume *volume, int threads,
                                  snow_data_range *out) {
-    static const snow_slab_cut cut = {.step = 1};
+    static const snow_slab_cut cut = {.step = 1, .clipped = true};
     measuring m = {out, threads};
     if (volume->stream && !out->log) {
         snow_volume_statistics known;
