@@ -63,14 +63,14 @@ snow_status snow_flight_agree_range(snow_flight *f) {
 /* A part without voxels of its own has none that count. */
 static snow_status measure_values(snow_flight *f, snow_data_range *range) {
     const snow_extent *part = &f->part;
-    snow_frame *frame = f->picture.frame;
     const snow_job *job = &f->picture.job;
+    snow_frame *frame = f->picture.frame;
     *range = (snow_data_range){
         .low = INFINITY, .high = -INFINITY, .log = job->transfer->log};
     SNOW_TRY(snow_value_path_new(frame->context, &frame->value_path));
     if (!part->count[0] || !part->count[1] || !part->count[2])
         return SNOW_STATUS_OK;
-    return snow_value_measure(frame->value_path, job->volume, range->log,
+    return snow_value_measure(frame->value_path, job->volume, job->transfer,
                               job->settings.threads, range);
 }
 

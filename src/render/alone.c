@@ -30,7 +30,7 @@ static snow_status find_values(snow_picture *p) {
     snow_data_range range;
     SNOW_TRY(snow_value_path_new(frame->context, &frame->value_path));
     SNOW_TRY(snow_value_measure(frame->value_path, p->job.volume,
-                                p->job.transfer->log, p->job.settings.threads,
+                                p->job.transfer, p->job.settings.threads,
                                 &range));
     snow_value_set_range(frame->value_path, &range);
     return SNOW_STATUS_OK;

@@ -31,6 +31,10 @@ static const snow_opacity_point bands[] = {{0, 0},    {20, 0}, {28, 0.4},
                                            {72, 0.1}, {80, 0}, {100, 0}};
 static const snow_opacity_point thin[] = {{0, 0.02}, {100, 0.1}};
 static const snow_opacity_point faint[] = {{0, 0.0002}, {100, 0.0015}};
+/* Steps between constant colours: whole numbers are labels. */
+static const snow_color_point names[] = {{0, 1, 0, 0},  {30, 1, 0, 0},
+                                         {30, 0, 1, 0}, {60, 0, 1, 0},
+                                         {60, 0, 0, 1}, {100, 0, 0, 1}};
 static const struct {
     const snow_opacity_point *points;
     size_t count;
@@ -78,6 +82,10 @@ static reference_scene numbered(int n, int64_t depth) {
     s.view.fov = n % 4 == 2 ? 25 : 0;
     if (n % 7 == 3)
         model_fade(&s);
+    if (n % 8 == 1) {
+        s.colors = names;
+        s.color_count = COUNT(names);
+    }
     if (n % 4 == 2 && n % 3 != 1)
         make_holes(&s);
     if (n % 13 == 0) /* smaller images are halved, or means */

@@ -42,15 +42,11 @@ static snow_status add_name(snow_context *context, snow_value_labels *labels,
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_value_labels_find(const snow_volume *volume,
-                                   snow_value_labels *labels) {
+snow_status snow_value_labels_add(const snow_volume *volume,
+                                  snow_value_labels *labels) {
     const snow_volume_info *info = &volume->info;
     int64_t all = info->dims[0] * info->dims[1] * info->dims[2];
     double last = NAN;
-    if (labels->generation && labels->generation == volume->generation)
-        return SNOW_STATUS_OK;
-    labels->generation = 0;
-    labels->count = 0;
     for (int64_t first = 0; first < all; first += BLOCK) {
         double natives[BLOCK];
         size_t count = all - first < BLOCK ? (size_t)(all - first) : BLOCK;
@@ -63,7 +59,6 @@ snow_status snow_value_labels_find(const snow_volume *volume,
                               info->slope * last + info->intercept));
         }
     }
-    labels->generation = volume->generation;
     return SNOW_STATUS_OK;
 }
 

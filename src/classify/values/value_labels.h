@@ -17,17 +17,16 @@ typedef struct snow_label_look {
 typedef struct snow_value_labels {
     double *names; /* data values, rising; label n is names[n] */
     int count;
-    uint64_t generation;    /* of the volume that they are of; 0: of none */
     snow_label_look *looks; /* of each */
     int steps;              /* of a slab */
     double exponent;        /* length of a step, in reference lengths */
     size_t names_capacity, looks_capacity;
 } snow_value_labels;
 
-/* All labels of a volume, unless they are there.  Errors:
+/* Adds the labels of a volume to a set that may be empty.  Errors:
  * SNOW_STATUS_NO_MEMORY, SNOW_STATUS_BAD_USAGE (too many). */
-snow_status snow_value_labels_find(const snow_volume *volume,
-                                   snow_value_labels *labels);
+snow_status snow_value_labels_add(const snow_volume *volume,
+                                  snow_value_labels *labels);
 
 /* Their looks; the table is one of labels then, which has invisible runs and no
  * entries.  Errors: SNOW_STATUS_NO_MEMORY. */

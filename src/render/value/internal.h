@@ -31,7 +31,8 @@ struct snow_value_path {
     uint64_t measured_of;
     snow_value_coder coder;
     snow_value_table table;
-    snow_value_labels labels;
+    snow_value_labels labels; /* of the volume of this generation */
+    uint64_t labels_of;
     bool has_labels; /* the picture is of them */
     snow_value_store store;
     snow_value_key key; /* of the store */

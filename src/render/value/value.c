@@ -69,6 +69,8 @@ snow_status snow_value_check(snow_context *context,
 /* --- values -----------------------------------------------------------------
  */
 
+static const snow_slab_cut every_slab = {.step = 1, .clipped = true};
+
 /* What the slabs of a file have together. */
 typedef struct measuring {
     snow_data_range *all;
@@ -88,7 +90,6 @@ static snow_status measure_slab(const snow_volume *slab, void *user) {
 /* The statistics of a file serve, unless they leave out anything. */
 static snow_status measure_range(const snow_volume *volume, int threads,
                                  snow_data_range *out) {
-    static const snow_slab_cut cut = {.step = 1, .clipped = true};
     measuring m = {out, threads};
     if (volume->stream && !out->log) {
         snow_volume_statistics known;
@@ -100,20 +101,38 @@ static snow_status measure_range(const snow_volume *volume, int threads,
     }
     out->low = INFINITY;
     out->high = -INFINITY;
-    return snow_slabs_visit(volume, &cut, measure_slab, &m);
+    return snow_slabs_visit(volume, &every_slab, measure_slab, &m);
+}
+
+static snow_status name_slab(const snow_volume *slab, void *user) {
+    return snow_value_labels_add(slab, user);
+}
+
+static snow_status find_labels(snow_value_path *path,
+                               const snow_volume *volume) {
+    if (path->labels_of && path->labels_of == volume->generation)
+        return SNOW_STATUS_OK;
+    path->labels_of = 0;
+    path->labels.count = 0;
+    SNOW_TRY(snow_slabs_visit(volume, &every_slab, name_slab, &path->labels));
+    path->labels_of = volume->generation;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_value_measure(snow_value_path *path, const snow_volume *volume,
-                               bool log, int threads, snow_data_range *out) {
+                               const snow_transfer *transfer, int threads,
+                               snow_data_range *out) {
     if (!path->measured_of || path->measured_of != volume->generation ||
-        path->measured.log != log) {
+        path->measured.log != transfer->log) {
         path->measured_of = 0;
-        path->measured = (snow_data_range){.log = log};
+        path->measured = (snow_data_range){.log = transfer->log};
         SNOW_TRY(measure_range(volume, threads, &path->measured));
         path->measured_of = volume->generation;
     }
     *out = path->measured;
-    return SNOW_STATUS_OK;
+    return snow_transfer_has_labels(transfer, volume->info.type)
+               ? find_labels(path, volume)
+               : SNOW_STATUS_OK;
 }
 
 void snow_value_set_range(snow_value_path *path, const snow_data_range *range) {
@@ -138,7 +157,6 @@ static snow_status make_table(snow_value_path *path,
         snow_transfer_has_labels(params->transfer, params->volume->info.type);
     if (!path->has_labels)
         return snow_value_table_make(path->context, &look, &path->table);
-    SNOW_TRY(snow_value_labels_find(params->volume, &path->labels));
     return snow_value_labels_look(path->context, &look, &path->labels,
                                   &path->table);
 }

@@ -36,13 +36,15 @@ snow_status snow_value_check(snow_context *context,
                              const snow_value_params *params);
 
 /* The finite values of a volume, or their logarithms, of which those in a file
- * are read, or of the part of one that it is; unless they are known.  Errors:
- * as snow_slabs_visit.
- */
+ * are read, or of the part of one that it is; and its labels, if it has some.
+ * Unless they are known.  Errors: as snow_slabs_visit; SNOW_STATUS_BAD_USAGE
+ * (too many labels). */
 snow_status snow_value_measure(snow_value_path *path, const snow_volume *volume,
-                               bool log, int threads, snow_data_range *out);
+                               const snow_transfer *transfer, int threads,
+                               snow_data_range *out);
 
-/* Makes the range of the whole known, which the pictures' numbers are of. */
+/* Makes the range of the whole known, which the pictures' numbers are of.
+ * Labels are a part's own, in the same order as the whole's. */
 void snow_value_set_range(snow_value_path *path, const snow_data_range *range);
 
 /* Begins a picture, whose parts follow: its lattice, the table of colours, and
