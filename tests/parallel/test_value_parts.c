@@ -79,7 +79,7 @@ static reference_scene numbered(int n, int64_t depth) {
                zooms[n / 5 % 4]);
     s.view.width = 50;
     s.view.height = 42;
-    s.view.fov = n % 4 == 2 ? 25 : 0;
+    s.view.fov = n % 4 == 2 || n % 16 == 9 ? 25 : 0;
     if (n % 7 == 3)
         model_fade(&s);
     if (n % 8 == 1) {
