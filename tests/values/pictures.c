@@ -114,8 +114,28 @@ void value_picture_compare(int n, const reference_scene *s,
                  most * 255, worst / 4, far, count);
 }
 
-/* --- planes ---------------------------------------------------------------
+/* --- holes and planes
+ * ---------------------------------------------------------------
  */
+
+void value_picture_punch(reference_scene *s, int n) {
+    const int64_t *dims = s->info.dims;
+    float *voxel = (float *)(uintptr_t)s->voxels;
+    uint64_t state = (uint64_t)n * 2 + 1;
+    for (int64_t k = 0; k < dims[2]; k++)
+        for (int64_t j = 0; j < dims[1]; j++)
+            for (int64_t i = 0; i < dims[0]; i++, voxel++) {
+                double noise = support_uniform(&state);
+                double at = (double)i / (double)dims[0] +
+                            0.7 * (double)j / (double)dims[1] -
+                            0.8 * (double)k / (double)dims[2];
+                bool hole = n % 3 == 0   ? noise < 0.15
+                            : n % 3 == 1 ? at > 0.5
+                                         : at > 0.6 || noise < 0.02;
+                if (hole)
+                    *voxel = NAN;
+            }
+}
 
 /* How far a voxel is beyond the farthest of two planes. */
 static double height_of(const snow_volume_info *info, double planes[2][4],

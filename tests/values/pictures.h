@@ -12,6 +12,10 @@
 reference_scene value_picture_scene(int n);
 void value_picture_free(reference_scene *scene);
 
+/* Makes holes of voxels of a scene of floats here and there, or of all beyond a
+ * surface. */
+void value_picture_punch(reference_scene *scene, int n);
+
 /* Cuts a scene by one or two planes through it, which are written to `planes`;
  * voxels with the largest and the smallest value are left. */
 void value_picture_clip(value_scene *scene, size_t count, double planes[2][4]);

@@ -10,33 +10,13 @@
 #define FLOATS(k) (5 * (k) + 2)
 #define SCENES 36
 
-/* Makes holes of voxels here and there, or of all beyond a surface. */
-static void punch(reference_scene *s, int n) {
-    const int64_t *dims = s->info.dims;
-    float *voxel = (float *)(uintptr_t)s->voxels;
-    uint64_t state = (uint64_t)n * 2 + 1;
-    for (int64_t k = 0; k < dims[2]; k++)
-        for (int64_t j = 0; j < dims[1]; j++)
-            for (int64_t i = 0; i < dims[0]; i++, voxel++) {
-                double noise = support_uniform(&state);
-                double at = (double)i / (double)dims[0] +
-                            0.7 * (double)j / (double)dims[1] -
-                            0.8 * (double)k / (double)dims[2];
-                bool hole = n % 3 == 0   ? noise < 0.15
-                            : n % 3 == 1 ? at > 0.5
-                                         : at > 0.6 || noise < 0.02;
-                if (hole)
-                    *voxel = NAN;
-            }
-}
-
 static void holes_are_the_references(void **state) {
     (void)state;
     model_stage stage = model_open();
     for (int k = 0; k < SCENES; k += (int)support_stride(17)) {
         int n = FLOATS(k);
         value_scene scene = {.base = value_picture_scene(n)};
-        punch(&scene.base, k);
+        value_picture_punch(&scene.base, k);
         value_picture_check(&stage, n, &scene);
         value_picture_free(&scene.base);
     }
@@ -80,7 +60,7 @@ static void bits_are_the_same(void **state) {
         int n = FLOATS(k);
         value_scene scene = {.base = value_picture_scene(n)};
         const double plane[1][4] = {{0.3, 0.5, 0.2, 12}};
-        punch(&scene.base, k);
+        value_picture_punch(&scene.base, k);
         scene.clips = plane;
         scene.clip_count = 1;
         value_picture_check_bits(&stage, n, &scene);

@@ -144,6 +144,28 @@ static void gather_rows(const uint32_t *masks, size_t rows, uint64_t *coarse) {
     }
 }
 
+/* Cells of 2x2 voxels to those of 4x4 around them. */
+static void widen_cells(const snow_value_store *s, uint32_t *masks) {
+    for (size_t w = 0; w < s->mask_words; w++) {
+        uint32_t *column = masks + w * s->mask_rows, before = 0;
+        for (size_t row = 0; row < s->mask_rows; row++) {
+            uint32_t here = column[row];
+            uint32_t next = row + 1 < s->mask_rows ? column[row + 1] : 0;
+            column[row] = before | here | next;
+            before = here;
+        }
+    }
+    for (size_t row = 0; row < s->mask_rows; row++) {
+        uint32_t before = 0;
+        for (size_t w = 0; w < s->mask_words; w++) {
+            uint32_t *at = masks + w * s->mask_rows + row, here = *at;
+            uint32_t next = w + 1 < s->mask_words ? at[s->mask_rows] : 0;
+            *at = here | here << 1 | here >> 1 | before >> 31 | next << 31;
+            before = here;
+        }
+    }
+}
+
 void snow_value_cells_coarse(snow_value_store *s, int64_t eight) {
     const size_t size = s->mask_words * s->coarse_words;
     int64_t first = eight * SNOW_VALUE_EIGHT, end = first + SNOW_VALUE_EIGHT;
@@ -152,8 +174,10 @@ void snow_value_cells_coarse(snow_value_store *s, int64_t eight) {
         uint64_t *all = s->eights + (size_t)(n * s->eight_count + eight) * size;
         memset(all, 0, size * sizeof *all);
         for (int64_t slice = first; slice < end; slice++) {
-            const uint32_t *masks = s->masks + snow_value_mask_at(s, n, slice);
+            uint32_t *masks = s->masks + snow_value_mask_at(s, n, slice);
             uint64_t *coarse = s->coarse + snow_value_coarse_at(s, n, slice);
+            if (s->cubic)
+                widen_cells(s, masks);
             memset(coarse, 0, size * sizeof *coarse);
             for (size_t w = 0; w < s->mask_words; w++)
                 gather_rows(masks + w * s->mask_rows, s->mask_rows,

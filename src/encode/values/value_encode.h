@@ -37,7 +37,8 @@ snow_status snow_value_cells_band(snow_value_store *store,
                                   const snow_value_store_params *params,
                                   int64_t band, int worker, void *scratch);
 
-/* The coarse masks of eight slices, once all their bands are there. */
+/* The coarse masks of eight slices, once all their bands are there; with kernel
+ * bspline cells grow before. */
 void snow_value_cells_coarse(snow_value_store *store, int64_t eight);
 
 size_t snow_value_shell_bytes(const snow_value_store *store,

@@ -16,33 +16,48 @@ static size_t line_bytes(const snow_value_store_params *params) {
            sizeof(int16_t);
 }
 
+static size_t aligned(size_t bytes) {
+    return (bytes + 63) / 64 * 64;
+}
+
 size_t snow_value_lines_bytes(const snow_value_store_params *params,
                               int64_t rows) {
     const snow_fetch_params from = fetch_params(params, 0, rows);
-    return (snow_fetch_bytes(&from) + 63) / 64 * 64 + line_bytes(params);
+    size_t one = aligned(snow_fetch_bytes(&from)) + aligned(line_bytes(params));
+    return params->cubic ? 3 * one : one;
 }
 
 void snow_value_lines_begin(snow_value_lines *lines,
                             const snow_value_store_params *params,
                             int64_t first, int64_t rows, void *scratch) {
     const snow_fetch_params from = fetch_params(params, first, rows);
-    unsigned char *at = scratch;
+    size_t line = aligned(line_bytes(params)) / sizeof(int16_t);
+    int count = params->cubic ? 3 : 1;
+    int16_t *at = (int16_t *)scratch;
     *lines = (snow_value_lines){.coder = params->coder,
                                 .volume = params->volume,
                                 .placement = params->placement,
+                                .cubic = params->cubic,
+                                .slices = params->placement->slices,
                                 .first = first,
                                 .rows = rows,
                                 .all_rows = params->placement->rows,
                                 .columns = params->placement->columns,
                                 .margin = params->reach + 1,
-                                .spare = (int16_t *)scratch};
-    snow_fetch_begin(&lines->fetch, &from,
-                     at + (line_bytes(params) + 63) / 64 * 64);
+                                .spare = at,
+                                .beside = {at + line, at + 2 * line}};
+    unsigned char *room = (unsigned char *)(at + (size_t)count * line);
+    for (int n = 0; n < count; n++, room += aligned(snow_fetch_bytes(&from)))
+        snow_fetch_begin(&lines->fetch[n], &from, room);
 }
 
 void snow_value_lines_slice(snow_value_lines *lines, int64_t slice) {
-    snow_fetch_slice(&lines->fetch, slice, &lines->slice);
     lines->number = slice;
+    snow_fetch_slice(&lines->fetch[0], slice, &lines->slice[0]);
+    if (lines->cubic && slice > 0)
+        snow_fetch_slice(&lines->fetch[1], slice - 1, &lines->slice[1]);
+    if (lines->cubic && slice + 1 < lines->slices)
+        snow_fetch_slice(&lines->fetch[2], slice + 1, &lines->slice[2]);
 }
 
 void snow_value_line_continue(int16_t *line, int64_t columns, int margin,
@@ -57,20 +72,45 @@ void snow_value_line_continue(int16_t *line, int64_t columns, int margin,
     }
 }
 
-static void read_row(const snow_value_lines *lines, int64_t row, int16_t *out) {
+/* A row of the slice (0), of that before (1) or behind it (2). */
+static void code_row(const snow_value_lines *lines, int of, int64_t row,
+                     int16_t *out) {
+    static const int steps[] = {0, -1, 1};
     const snow_placement *p = lines->placement;
+    const snow_rows *slice = &lines->slice[of];
     const unsigned char *natives =
-        lines->slice.voxels +
-        (size_t)(row - lines->first) * lines->slice.stride;
-    snow_value_code_row(lines->coder, natives, (size_t)lines->columns,
-                        out + lines->margin);
+        slice->voxels + (size_t)(row - lines->first) * slice->stride;
+    snow_value_code_row(lines->coder, natives, (size_t)lines->columns, out);
     if (lines->volume->clip) {
         int64_t at[3] = {0};
         at[p->v_axis] = row;
-        at[p->slice_axis] = lines->number;
+        at[p->slice_axis] = lines->number + steps[of];
         snow_value_code_clipped(lines->coder, lines->volume, at, p->u_axis,
-                                (size_t)lines->columns, out + lines->margin);
+                                (size_t)lines->columns, out);
     }
+}
+
+/* The cubic B-spline along P.  At the volume's ends it is the voxel itself, for
+ * beyond them the reflection is odd. */
+static void smooth_row(const snow_value_lines *lines, int64_t row,
+                       int16_t *out) {
+    if (lines->number == 0 || lines->number + 1 == lines->slices)
+        return;
+    for (int n = 0; n < 2; n++)
+        code_row(lines, n + 1, row, lines->beside[n]);
+    for (int64_t c = 0; c < lines->columns; c++) {
+        int here = out[c], a = lines->beside[0][c], b = lines->beside[1][c];
+        a = a == SNOW_VALUE_HOLE ? here : a;
+        b = b == SNOW_VALUE_HOLE ? here : b;
+        if (here != SNOW_VALUE_HOLE)
+            out[c] = (int16_t)((a + 4 * here + b + 3) / 6);
+    }
+}
+
+static void read_row(const snow_value_lines *lines, int64_t row, int16_t *out) {
+    code_row(lines, 0, row, out + lines->margin);
+    if (lines->cubic)
+        smooth_row(lines, row, out + lines->margin);
     snow_value_line_continue(out, lines->columns, lines->margin,
                              lines->coder->names);
 }

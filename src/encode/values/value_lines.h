@@ -8,15 +8,19 @@
 
 /* Some rows of all slices, for one thread. */
 typedef struct snow_value_lines {
-    snow_fetch fetch;
-    snow_rows slice; /* that is read */
+    /* Of the slice that is read; with kernel bspline also of those before and
+     * behind it. */
+    snow_fetch fetch[3];
+    snow_rows slice[3];
+    bool cubic;
+    int64_t slices;
     const snow_value_coder *coder;
     const snow_volume *volume;
     const snow_placement *placement;
     int64_t number; /* of the slice */
     int64_t first, rows, all_rows, columns;
     int margin;
-    int16_t *spare; /* room for a line */
+    int16_t *spare, *beside[2]; /* room for lines */
 } snow_value_lines;
 
 /* Numbers of a line, with its margins, in whole rows of 32. */

@@ -130,6 +130,7 @@ static snow_status begin(store_job *job) {
     memcpy(s->runs, params->runs,
            (size_t)params->run_count * sizeof *params->runs);
     s->holes = params->holes;
+    s->cubic = params->cubic;
     s->labels = params->coder->names != NULL;
     if (s->holes && !s->run_count) /* nothing is invisible but holes */
         s->runs[s->run_count++] = SNOW_VALUE_NO_RUN;

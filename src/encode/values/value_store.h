@@ -38,6 +38,8 @@ typedef struct snow_value_store {
     snow_value_run runs[SNOW_VALUE_RUNS];
     int run_count;
     bool labels; /* numbers are labels */
+    bool cubic;  /* of kernel bspline: slices are smoothed along P, and cells
+                    are those of 4x4 voxels */
     bool holes;  /* there are some: plane `run_count` of the masks is of them */
     /* A word of 32 columns from column -32 - margin on; rows from that on. */
     uint32_t *masks; /* [run][slice][word][row] */
@@ -70,7 +72,8 @@ typedef struct snow_value_store_params {
     const snow_value_run *runs; /* invisible numbers */
     int run_count;
     bool holes;
-    int reach;
+    int reach;              /* one more with kernel bspline */
+    bool cubic;             /* kernel bspline */
     snow_encoding encoding; /* AUTO: chosen by the cells */
     snow_isa isa;           /* resolved */
     int threads;

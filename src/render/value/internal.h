@@ -11,7 +11,7 @@ typedef struct snow_value_key {
     uint64_t generation; /* of the volume; 0: of none */
     int slice_axis;
     snow_value_scale14 scale;
-    bool labels;
+    bool labels, cubic;
     snow_encoding encoding; /* as asked for */
 } snow_value_key;
 

@@ -55,7 +55,11 @@ snow_status snow_value_check(snow_context *context,
         const char *what;
     } rows[] = {
         {s->mode != SNOW_MODE_OVER, "modes other than over"},
-        {s->kernel != SNOW_KERNEL_TENT, "kernel bspline"},
+        {s->kernel != SNOW_KERNEL_TENT && params->placement->perspective,
+         "kernel bspline in perspective"},
+        {s->kernel != SNOW_KERNEL_TENT &&
+             (params->volume->is_part || params->volume->stream),
+         "kernel bspline of parts of a volume"},
     };
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
         if (rows[n].refused)
@@ -194,14 +198,22 @@ static bool shows_no_more(const snow_value_path *path) {
     return true;
 }
 
+/* Labels have no means. */
+static bool is_cubic(const snow_value_params *params) {
+    return params->settings->kernel == SNOW_KERNEL_BSPLINE &&
+           !snow_transfer_has_labels(params->transfer,
+                                     params->volume->info.type);
+}
+
 static bool serves(const snow_value_path *path, const snow_value_key *key,
                    int reach) {
     const snow_value_key *has = &path->key;
     return has->generation && has->generation == key->generation &&
            has->slice_axis == key->slice_axis &&
            snow_value_same_scale(&has->scale, &key->scale) &&
-           has->labels == key->labels && has->encoding == key->encoding &&
-           path->store.reach >= reach && shows_no_more(path);
+           has->labels == key->labels && has->cubic == key->cubic &&
+           has->encoding == key->encoding && path->store.reach >= reach &&
+           shows_no_more(path);
 }
 
 /* In perspective it changes from view to view: steps of it let an encoding
@@ -226,6 +238,7 @@ static snow_status find_reach(snow_value_path *path,
     double most = snow_value_lattice_reach(
         &params->volume->info, params->placement, path->lattice.halves);
     *reach = (int)ceil(fmin(most, 1e6) * (1 - 1e-5));
+    *reach += is_cubic(params); /* its voxels are one farther away */
     if (*reach <= SNOW_VALUE_REACH_MOST)
         return SNOW_STATUS_OK;
     return snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
@@ -245,6 +258,7 @@ static snow_status encode_anew(snow_value_path *path,
                                            .run_count = path->table.run_count,
                                            .holes = path->range.holes,
                                            .reach = reach,
+                                           .cubic = is_cubic(params),
                                            .encoding = s->encoding,
                                            .isa = s->isa,
                                            .threads = s->threads};
@@ -269,6 +283,7 @@ snow_status snow_value_encode(snow_value_path *path,
                                 .slice_axis = params->placement->slice_axis,
                                 .scale = path->table.made.scale,
                                 .labels = path->has_labels,
+                                .cubic = is_cubic(params),
                                 .encoding = params->settings->encoding};
     double mark = snow_seconds();
     int reach = 0;

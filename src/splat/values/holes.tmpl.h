@@ -74,7 +74,10 @@ TARGET static void NAME(fill_holes)(const NAME(source) * s, int64_t first,
     }
 }
 
-/* Differences along P in the rows `across`, whose values are there. */
+#include "splat/values/cubic.tmpl.h"
+
+/* Differences along P in the rows `across`, whose values are there: where holes
+ * are, or with kernel bspline of all, those of the sheets beside. */
 TARGET static void NAME(cross_holes)(const snow_value_splat *p, int n,
                                      NAME(source) from, int64_t row,
                                      uint32_t across,
@@ -87,19 +90,26 @@ TARGET static void NAME(cross_holes)(const snow_value_splat *p, int n,
     uint32_t partial[2][SNOW_VALUE_ROWS];
     for (int side = 0; side < 2; side++) {
         from.slice = snow_value_at(s, slices[side]);
-        NAME(fill_holes)
-        (&from, row, across, place, beside[side], partial[side],
+        if (p->store->cubic)
+            NAME(fill_cubic)
+        (&from, row, across, place, beside[side], out->holes,
          sheet->half_across);
+        else NAME(fill_holes)(&from, row, across, place, beside[side],
+                              partial[side], sheet->half_across);
     }
     for (; across; across &= across - 1) {
         int r = __builtin_ctz(across);
-        uint32_t lanes = partial[0][r] | partial[1][r];
+        uint32_t lanes = p->store->cubic
+                             ? NAME(cross_cubic)(sheet, beside[0][r],
+                                                 beside[1][r], out->across[r])
+                             : partial[0][r] | partial[1][r];
         const value_sides sides = {
             .splat = p,
             .sheet = n,
             .column = from.column,
             .row = row + r,
             .weights = {place->weight[0], place->weight[1]},
+            .at = place->at,
             .here = out->values[r + 1],
             .before = beside[0][r],
             .after = beside[1][r]};

@@ -197,19 +197,23 @@ NAME(sample_all)(const snow_value_splat *p, int n, int phase, const int tile[2],
     NAME(begin)(s, sheet, &rows, &across, out, &from);
     from.column = column;
     uint32_t partial[SHEET_ROWS];
-    if (out->holes)
-        NAME(fill_holes)
-    (&from, first - 1, rows, place, out->values, partial, sheet->half);
+    if (s->cubic)
+        NAME(fill_cubic)
+    (&from, first - 1, rows, place, out->values, out->holes, sheet->half);
+    else if (out->holes) NAME(fill_holes)(&from, first - 1, rows, place,
+                                          out->values, partial, sheet->half);
     else if (sheet->half)
         NAME(fill)(&from, first - 1, rows, place, out->values, true, false);
     else NAME(fill)(&from, first - 1, rows, place, out->values, false, false);
     if (!across)
         return;
     NAME(begin_across)(s, sheet, &from);
-    if (sheet->half_across)
+    if (s->cubic)
+        ;
+    else if (sheet->half_across)
         NAME(fill)(&from, first, across, place, out->across, true, true);
     else
         NAME(fill)(&from, first, across, place, out->across, false, true);
-    if (out->holes)
+    if (out->holes || s->cubic)
         NAME(cross_holes)(p, n, from, first, across, place, out);
 }

@@ -43,29 +43,57 @@ void snow_value_slopes(const int16_t *before, const int16_t *here,
         out[n] = quotient(before[n], here[n], after[n]);
 }
 
+/* A voxel of a row of a sheet: its value by its weight, and the weight. */
+static void voxel_at(const snow_value_store *s, const snow_value_sheet *sheet,
+                     int64_t column, int64_t row, int *value, int *weight) {
+    int64_t next = sheet->half ? s->rows + 2 * s->margin : 0;
+    const int64_t *rows = snow_value_at(s, sheet->slice) + row;
+    int a = s->values[rows[0] + column], b = s->values[rows[next] + column];
+    *weight =
+        SNOW_VALUE_FULL / 2 * ((a != SNOW_VALUE_HOLE) + (b != SNOW_VALUE_HOLE));
+    a = a == SNOW_VALUE_HOLE ? 0 : a;
+    b = b == SNOW_VALUE_HOLE ? 0 : b;
+    *value = (a + b + 1) >> 1;
+}
+
+static void spline(double at, double out[4]) {
+    double t = at - floor(at), s = 1 - t;
+    out[0] = s * s * s / 6;
+    out[1] = (4 - 6 * t * t + 3 * t * t * t) / 6;
+    out[2] = (4 - 6 * s * s + 3 * s * s * s) / 6;
+    out[3] = t * t * t / 6;
+}
+
+static int16_t cubic_at(const value_sides *s, const snow_value_sheet *sheet,
+                        int lane) {
+    double u[4], v[4], value = 0, weight = 0;
+    spline(s->at[0], u);
+    spline(s->at[1], v);
+    for (int n = 0; n < 16; n++) {
+        int here, full;
+        voxel_at(s->splat->store, sheet, s->column + lane + n % 4 - 1,
+                 s->row + n / 4 - 1, &here, &full);
+        value += u[n % 4] * v[n / 4] * here;
+        weight += u[n % 4] * v[n / 4] * full;
+    }
+    return weighed((int)floor(value + 0.5), (int)floor(weight + 0.5));
+}
+
 /* What sheet `n` has at lane `lane` of a row of another one. */
 static int16_t value_at(const value_sides *s, int n, int lane) {
-    const snow_value_store *store = s->splat->store;
     if (n < 0 || n >= s->splat->sheet_count)
         return SNOW_VALUE_HOLE;
     const snow_value_sheet *sheet = s->splat->sheets + n;
-    const int64_t *rows = snow_value_at(store, sheet->slice) + s->row;
-    int64_t next = sheet->half ? store->rows + 2 * store->margin : 0;
     int along = s->lanes ? s->lanes->weight[lane] : s->weights[0];
     int64_t first = s->column + (s->lanes ? s->lanes->at[lane] : lane);
     int value[2], weight[2];
+    if (s->splat->store->cubic)
+        return cubic_at(s, sheet, lane);
     for (int y = 0; y < 2; y++) {
         int v[2], w[2];
-        for (int x = 0; x < 2; x++) {
-            int64_t column = first + x;
-            int a = store->values[rows[y] + column];
-            int b = store->values[rows[y + next] + column];
-            w[x] = SNOW_VALUE_FULL / 2 *
-                   ((a != SNOW_VALUE_HOLE) + (b != SNOW_VALUE_HOLE));
-            a = a == SNOW_VALUE_HOLE ? 0 : a;
-            b = b == SNOW_VALUE_HOLE ? 0 : b;
-            v[x] = (a + b + 1) >> 1;
-        }
+        for (int x = 0; x < 2; x++)
+            voxel_at(s->splat->store, sheet, first + x, s->row + y, &v[x],
+                     &w[x]);
         value[y] = value_between(v[0], v[1], along);
         weight[y] = value_between(w[0], w[1], along);
     }

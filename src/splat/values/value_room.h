@@ -222,6 +222,7 @@ typedef struct value_sides {
     int sheet;
     int64_t column, row;
     int16_t weights[2];            /* along u and v */
+    const double *at;              /* the place, for kernel bspline */
     const snow_value_lanes *lanes; /* perspective: u's, instead */
     const int16_t *here, *before, *after;
 } value_sides;

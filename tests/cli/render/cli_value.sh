@@ -45,7 +45,8 @@ check "do not change the picture" cmp -s normal.npy one.npy
 # What is left out, logarithms, gradient opacity: nearer to the truth of it.
 "$TOOL" phantom -q head --dims 60x60x40 -o head.nrrd
 for options in "--clip 0.3,0.5,-0.8,4" "--log" "--mask head.nrrd" \
-    "--gradient-opacity 0:0,20:1" "-c tab10"; do
+    "--gradient-opacity 0:0,20:1" "-c tab10" \
+    "--kernel bspline"; do
     # shellcheck disable=SC2086
     run 0 "the truth with $options" "$TOOL" render -q $scene $options \
         --method raycast --quality high -o truth.npy
@@ -87,7 +88,8 @@ for mode in mip minip mean sum; do
     refuse "mode $mode" "modes other than over" -m $mode
 done
 refuse "mode iso" "modes other than over" -m iso --iso 90
-refuse "kernel bspline" "kernel bspline" --kernel bspline
+refuse "kernel bspline of an eye" "kernel bspline in perspective" \
+    --kernel bspline --perspective
 for options in "--kernel gauss" "--kernel box" "--footprint 3" \
     "--kernel bspline --footprint 3"; do
     # shellcheck disable=SC2086

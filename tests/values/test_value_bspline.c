@@ -1,0 +1,54 @@
+/* tests/values/test_value_bspline.c - method value with kernel bspline, beside
+ * the float64 reference of the value model. */
+#include "values/pictures.h"
+
+static value_scene smoothed(int n) {
+    value_scene scene = {.base = value_picture_scene(n), .cubic = true};
+    scene.base.settings.kernel = SNOW_KERNEL_BSPLINE;
+    scene.base.settings.footprint = 4;
+    return scene;
+}
+
+static void pictures_are_the_references(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    for (int n = 3; n < VALUE_PICTURES; n += 8 * (int)support_stride(12)) {
+        value_scene scene = smoothed(n);
+        value_picture_check(&stage, n, &scene);
+        value_picture_free(&scene.base);
+    }
+    model_close(&stage);
+}
+
+/* Also where holes leave less than all weights. */
+static void holes_are_the_references(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    for (int n = 2; n < VALUE_PICTURES; n += 15 * (int)support_stride(12)) {
+        value_scene scene = smoothed(n);
+        value_picture_punch(&scene.base, n);
+        value_picture_check(&stage, n, &scene);
+        value_picture_free(&scene.base);
+    }
+    model_close(&stage);
+}
+
+static void bits_are_the_same(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    for (int n = 4; n < VALUE_PICTURES; n += 23 * (int)support_stride(8)) {
+        value_scene scene = smoothed(n);
+        value_picture_check_bits(&stage, n, &scene);
+        value_picture_free(&scene.base);
+    }
+    model_close(&stage);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pictures_are_the_references),
+        cmocka_unit_test(holes_are_the_references),
+        cmocka_unit_test(bits_are_the_same),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
