@@ -4,10 +4,8 @@
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
-    const snow_volume_options box = {.size = sizeof box,
-                                     .time = 1,
-                                     .channel = 1,
-                                     .crop = {{1, 2}, {0, 0}, {1, 0}}};
+    const snow_volume_options box = {
+        .size = sizeof box, .time = 1, .crop = {{1, 2}, {0, 0}, {1, 0}}};
     look_at("fuzz.den", bytes, size, NULL);
     look_at("fuzz.den", bytes, size, &box);
     return 0;

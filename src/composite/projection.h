@@ -9,8 +9,8 @@
  *   mip        (largest n / w of the sheets with w >= 1/2, 1), or (0, 0) if
  *              there is none; minip is the same for negated values
  *   mean, sum  (sum of n, sum of w) */
-#ifndef SNOW_REDUCE_H
-#define SNOW_REDUCE_H
+#ifndef SNOW_COMPOSITE_PROJECTION_H
+#define SNOW_COMPOSITE_PROJECTION_H
 
 #include "composite/over.h"
 

@@ -248,6 +248,36 @@ static bool is_wide(snow_type type) {
     return snow_type_size(type) > 2;
 }
 
+/* The number at a place of a straight table: vectors compute it sooner than
+ * they load it. */
+static inline int16_t straight_number(const snow_value_coder *coder,
+                                      uint8_t place) {
+    place = place > coder->first ? place : coder->first;
+    place = place < coder->last ? place : coder->last;
+    uint16_t n = (uint16_t)(place - coder->first);
+    uint32_t part = (uint32_t)n * coder->part;
+    return (int16_t)(uint16_t)(n * coder->whole + (part >> 16) +
+                               ((uint16_t)part >> 15));
+}
+
+static bool find_straight(snow_value_coder *coder) {
+    const int16_t *numbers = coder->numbers;
+    int first = 0, last = 255;
+    while (first < 255 && numbers[first + 1] == 0)
+        first++;
+    while (last > first && numbers[last - 1] == SNOW_VALUE_MOST)
+        last--;
+    double slope = (double)SNOW_VALUE_MOST / (last > first ? last - first : 1);
+    coder->first = (uint8_t)first;
+    coder->last = (uint8_t)last;
+    coder->whole = (uint16_t)slope;
+    coder->part = (uint16_t)((slope - floor(slope)) * 65536 + 0.5);
+    for (int n = 0; n < 256; n++)
+        if (straight_number(coder, (uint8_t)n) != numbers[n])
+            return false;
+    return true;
+}
+
 snow_status snow_value_coder_make(const snow_volume *volume,
                                   const snow_value_scale14 *scale,
                                   snow_value_coder *coder) {
@@ -257,6 +287,7 @@ snow_status snow_value_coder_make(const snow_volume *volume,
     coder->type = info->type;
     coder->slope = info->slope;
     coder->intercept = info->intercept;
+    coder->straight = false;
     if (is_wide(info->type))
         return SNOW_STATUS_OK;
     SNOW_TRY(snow_reserve(volume->context, &coder->numbers, &coder->capacity, 0,
@@ -268,12 +299,22 @@ snow_status snow_value_coder_make(const snow_volume *volume,
         coder->numbers[n] =
             coded(coder, info->slope * (double)((int32_t)n + coder->lowest) +
                              info->intercept);
+    coder->straight = snow_type_size(info->type) == 1 && find_straight(coder);
     return SNOW_STATUS_OK;
 }
 
 void snow_value_coder_fini(snow_context *context, snow_value_coder *coder) {
     snow_release(context, coder->numbers);
     *coder = (snow_value_coder){0};
+}
+
+/* Native values of 8 bits; those with a sign lie `flip` from their places. */
+static void code_straight(const snow_value_coder *all, const uint8_t *natives,
+                          size_t count, int16_t *restrict out) {
+    const snow_value_coder coder = *all;
+    const uint8_t flip = coder.type == SNOW_TYPE_INT8 ? 0x80 : 0;
+    for (size_t n = 0; n < count; n++)
+        out[n] = straight_number(&coder, natives[n] ^ flip);
 }
 
 #define CODE_NARROW(name, type)                                                \
@@ -313,6 +354,10 @@ CODE_WIDE(FLOAT64, double)
 
 void snow_value_code_row(const snow_value_coder *coder, const void *natives,
                          size_t count, int16_t *out) {
+    if (coder->straight) {
+        code_straight(coder, natives, count, out);
+        return;
+    }
     switch (coder->type) {
 #define CODE_CASE(name, type, text)              \
     case SNOW_TYPE_##name:                       \

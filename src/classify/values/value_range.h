@@ -56,8 +56,12 @@ typedef struct snow_value_coder {
     snow_value_scale14 scale;
     snow_type type;
     double slope, intercept;
-    int32_t lowest;      /* native value of the table's first number */
-    int16_t *numbers;    /* of types of 8 and 16 bits: by native value */
+    int32_t lowest;   /* native value of the table's first number */
+    int16_t *numbers; /* of types of 8 and 16 bits: by native value */
+    /* Of 8 bits, where the table is a straight line between two places. */
+    bool straight;
+    uint8_t first, last;  /* places in the table */
+    uint16_t whole, part; /* its slope, the latter of 2^16 */
     const double *names; /* of labels, rising: a number is a place among them */
     int name_count;
     size_t capacity; /* bytes */
