@@ -55,16 +55,21 @@ static int values_beside(const question *q) {
     return q->gradients ? 1 + (q->view->fov > 0) : 0;
 }
 
+/* A cubic kernel reaches one voxel more, in the plane and across it. */
+static int cubic(const question *q) {
+    return q->settings->kernel == SNOW_KERNEL_BSPLINE;
+}
+
 /* Layers for kernels of pixels that are `width` voxels wide along an axis that
  * lies in the slices. */
 static double layers_of(const question *q, double width) {
     const snow_settings *settings = q->settings;
     if (splats_values(q) && !settings->depth) /* depths are of footprints */
-        return 1 + values_beside(q);
+        return 1 + cubic(q) + values_beside(q);
     snow_scaled_kernel scaled_kernel =
         snow_scaled_kernel_make(settings->kernel, settings->footprint, width);
     return floor(snow_scaled_kernel_reach(&scaled_kernel) + 0.5) +
-           (splats_values(q) ? 1 + values_beside(q) : q->gradients);
+           (splats_values(q) ? 1 + cubic(q) + values_beside(q) : q->gradients);
 }
 
 static bool finds_surfaces(const question *q) {
@@ -74,7 +79,7 @@ static bool finds_surfaces(const question *q) {
 /* Those across slices: of values, the other sheet of a slab. */
 static double layers_across(const question *q) {
     if (splats_values(q))
-        return 1 + q->gradients;
+        return 1 + cubic(q) + q->gradients;
     return q->gradients + finds_surfaces(q) +
            (q->settings->quality == SNOW_QUALITY_HIGH &&
             q->settings->method == SNOW_METHOD_SHEAR_WARP);

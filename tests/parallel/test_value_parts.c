@@ -88,6 +88,10 @@ static reference_scene numbered(int n, int64_t depth) {
     }
     if (n % 4 == 2 && n % 3 != 1)
         make_holes(&s);
+    if (n % 5 == 4 && !(s.view.fov > 0)) {
+        s.settings.kernel = SNOW_KERNEL_BSPLINE;
+        s.settings.footprint = 4;
+    }
     if (n % 13 == 0) /* smaller images are halved, or means */
         s.view.width = s.view.height = n / 13 % 2 ? 3 : 9;
     return s;

@@ -57,9 +57,6 @@ snow_status snow_value_check(snow_context *context,
         {s->mode != SNOW_MODE_OVER, "modes other than over"},
         {s->kernel != SNOW_KERNEL_TENT && params->placement->perspective,
          "kernel bspline in perspective"},
-        {s->kernel != SNOW_KERNEL_TENT &&
-             (params->volume->is_part || params->volume->stream),
-         "kernel bspline of parts of a volume"},
     };
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
         if (rows[n].refused)
