@@ -90,7 +90,7 @@ static void clip_planes_are_the_references(void **state) {
 static void nothing_changes_a_bit(void **state) {
     (void)state;
     model_stage stage = model_open();
-    for (int n = 3; n < VALUE_PICTURES; n += 7 * (int)support_stride(5)) {
+    for (int n = 3; n < VALUE_PICTURES; n += 7 * (int)support_stride(11)) {
         reference_scene s = seen_from_an_eye(n);
         if (s.info.type == SNOW_TYPE_FLOAT32)
             punch(&s, n);
