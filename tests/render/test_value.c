@@ -196,11 +196,6 @@ static void what_it_does_not_draw_is_refused(void **state) {
         s.settings.mode = (snow_mode)mode;
         refused(&s, "modes other than over");
     }
-    s = plain;
-    s.settings.kernel = SNOW_KERNEL_BSPLINE;
-    s.settings.footprint = 4;
-    s.view.fov = 30;
-    refused(&s, "kernel bspline in perspective");
     value_picture_free(&s);
 }
 

@@ -6,6 +6,8 @@ static value_scene smoothed(int n) {
     value_scene scene = {.base = value_picture_scene(n), .cubic = true};
     scene.base.settings.kernel = SNOW_KERNEL_BSPLINE;
     scene.base.settings.footprint = 4;
+    if (n / 8 % 2)
+        scene.base.view.fov = 45;
     return scene;
 }
 

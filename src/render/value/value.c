@@ -55,8 +55,6 @@ snow_status snow_value_check(snow_context *context,
         const char *what;
     } rows[] = {
         {s->mode != SNOW_MODE_OVER, "modes other than over"},
-        {s->kernel != SNOW_KERNEL_TENT && params->placement->perspective,
-         "kernel bspline in perspective"},
     };
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
         if (rows[n].refused)
@@ -229,7 +227,7 @@ static int eye_reach(const snow_value_path *path,
 static snow_status find_reach(snow_value_path *path,
                               const snow_value_params *params, int *reach) {
     if (path->lattice.perspective) {
-        *reach = eye_reach(path, params);
+        *reach = eye_reach(path, params) + is_cubic(params);
         return SNOW_STATUS_OK;
     }
     double most = snow_value_lattice_reach(

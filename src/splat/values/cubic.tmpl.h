@@ -15,24 +15,19 @@ static inline void NAME(spline)(double at, float out[4]) {
     out[3] = (float)(t * t * t / 6);
 }
 
-/* Row `row` of voxels, mixed along u. */
+/* Mixes the four voxels of 32 numbers along u to line `at`. */
 TARGET static inline __attribute__((always_inline)) void
-NAME(mix_line)(const NAME(source) * s, int64_t row, const float u[4],
-               bool weigh, const bool half, NAME(lines) * out) {
+NAME(mix_parts_along)(const NAME(part) parts[4], float (*u)[32], bool weigh,
+                      int at, NAME(lines) * out) {
     int16_t voxels[4][32], weights[4][32];
-    int at = (int)(row & 3);
-    if (out->row[at] == row)
-        return;
-    out->row[at] = row;
     for (int x = 0; x < 4; x++) {
-        NAME(part) part = NAME(parts)(s, row, x - 1, half);
-        V(row_store)(voxels[x], part.value);
-        V(row_store)(weights[x], part.weight);
+        V(row_store)(voxels[x], parts[x].value);
+        V(row_store)(weights[x], parts[x].weight);
     }
     for (int n = 0; n < 32; n += LANES) {
         V(vec) value = V(set1)(0), weight = V(set1)(0);
         for (int x = 0; x < 4; x++) {
-            V(vec) share = V(set1)(u[x]);
+            V(vec) share = V(load)(u[x] + n);
             value = V(add)(value, V(mul)(share, V(row_floats)(voxels[x] + n)));
             if (weigh)
                 weight = V(add)(weight,
@@ -41,6 +36,20 @@ NAME(mix_line)(const NAME(source) * s, int64_t row, const float u[4],
         V(store)(out->values[at] + n, value);
         V(store)(out->weights[at] + n, weight);
     }
+}
+
+/* Row `row` of voxels, mixed along u. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(mix_line)(const NAME(source) * s, int64_t row, float (*u)[32], bool weigh,
+               const bool half, NAME(lines) * out) {
+    NAME(part) parts[4];
+    int at = (int)(row & 3);
+    if (out->row[at] == row)
+        return;
+    out->row[at] = row;
+    for (int x = 0; x < 4; x++)
+        parts[x] = NAME(parts)(s, row, x - 1, half);
+    NAME(mix_parts_along)(parts, u, weigh, at, out);
 }
 
 /* Four lines to one of numbers. */
@@ -56,28 +65,38 @@ NAME(mix_lines)(float (*lines)[32], int64_t row, const float v[4],
     }
 }
 
-/* As NAME(fill); `weigh`: there may be holes. */
+/* Four lines to a row of a sheet; `weigh`: there may be holes. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(mix_row)(NAME(lines) * lines, int64_t at, const float v[4], bool weigh,
+              int16_t *out) {
+    NAME(mix_lines)(lines->values, at, v, out);
+    if (weigh) {
+        int16_t weights[32];
+        NAME(mix_lines)(lines->weights, at, v, weights);
+        snow_value_weigh(out, weights, ~UINT32_C(0));
+    }
+}
+
+/* As NAME(fill). */
 TARGET static void NAME(fill_cubic)(const NAME(source) * s, int64_t first,
                                     uint64_t rows,
                                     const snow_value_place *place,
                                     int16_t (*out)[32], bool weigh, bool half) {
     NAME(lines) lines;
-    float u[4], v[4];
-    NAME(spline)(place->at[0], u);
+    float one[4], u[4][32], v[4];
+    NAME(spline)(place->at[0], one);
     NAME(spline)(place->at[1], v);
-    for (int n = 0; n < 4; n++)
+    for (int n = 0; n < 4; n++) {
         lines.row[n] = INT64_MIN;
+        for (int lane = 0; lane < 32; lane++)
+            u[n][lane] = one[n];
+    }
     for (; rows; rows &= rows - 1) {
         int row = __builtin_ctzll(rows);
         int64_t at = first + row;
         for (int y = -1; y < 3; y++)
             NAME(mix_line)(s, at + y, u, weigh, half, &lines);
-        NAME(mix_lines)(lines.values, at, v, out[row]);
-        if (weigh) {
-            int16_t weights[32];
-            NAME(mix_lines)(lines.weights, at, v, weights);
-            snow_value_weigh(out[row], weights, ~UINT32_C(0));
-        }
+        NAME(mix_row)(&lines, at, v, weigh, out[row]);
     }
 }
 

@@ -282,6 +282,67 @@ TARGET static void NAME(fill_holes_eye)(const NAME(source) * s,
     }
 }
 
+/* --- kernel bspline ---------------------------------------------------------
+ */
+
+/* As NAME(mix_line). */
+TARGET static inline __attribute__((always_inline)) void
+NAME(mix_line_eye)(const NAME(source) * s, const snow_value_lanes *lanes,
+                   int64_t row, float (*u)[32], bool weigh, const bool half,
+                   NAME(lines) * out) {
+    const int16_t *values = s->values + lanes->first - 1;
+    int span = lanes->at[31] + 2, at = (int)(row & 3);
+    NAME(part) parts[4];
+    V(row) here[4], next[4];
+    if (out->row[at] == row)
+        return;
+    out->row[at] = row;
+    for (int x = 0; x < 4; x += 2) {
+        V(row_pairs)(values + s->slice[row] + x, lanes->at, span, here + x);
+        if (half)
+            V(row_pairs)
+        (values + s->slice[row + s->next] + x, lanes->at, span, next + x);
+    }
+    for (int x = 0; x < 4; x++) {
+        parts[x] = NAME(part_of)(here[x]);
+        if (!half)
+            continue;
+        NAME(part) on = NAME(part_of)(next[x]);
+        parts[x].value = V(row_avg)(parts[x].value, on.value);
+        parts[x].weight = V(row_avg)(parts[x].weight, on.weight);
+    }
+    NAME(mix_parts_along)(parts, u, weigh, at, out);
+}
+
+/* As NAME(fill_cubic); bit 0 of `rows` is lane `first` of v. */
+TARGET static void
+NAME(fill_cubic_eye)(const NAME(source) * s, const snow_value_store *store,
+                     const snow_value_lanes *across,
+                     const snow_value_lanes *down, double step, int first,
+                     uint64_t rows, int16_t (*out)[32], bool weigh, bool half) {
+    NAME(lines) lines;
+    const int64_t low = 1 - store->margin;
+    const int64_t high = store->rows + store->margin - 3;
+    float u[4][32], v[4];
+    for (int n = 0; n < 4; n++)
+        lines.row[n] = INT64_MIN;
+    for (int lane = 0; lane < 32; lane++) {
+        NAME(spline)(value_lane_part(across, step, lane), v);
+        for (int n = 0; n < 4; n++)
+            u[n][lane] = v[n];
+    }
+    for (; rows; rows &= rows - 1) {
+        int n = __builtin_ctzll(rows);
+        int64_t row = NAME(voxel_row)(store, down, first + n);
+        row = row > low ? row : low;
+        row = row < high ? row : high;
+        for (int y = -1; y < 3; y++)
+            NAME(mix_line_eye)(s, across, row + y, u, weigh, half, &lines);
+        NAME(spline)(value_lane_part(down, step, first + n), v);
+        NAME(mix_row)(&lines, row, v, weigh, out[n]);
+    }
+}
+
 /* As NAME(cross_holes). */
 TARGET static void NAME(cross_holes_eye)(const snow_value_splat *p, int n,
                                          NAME(source) from,
@@ -291,18 +352,28 @@ TARGET static void NAME(cross_holes_eye)(const snow_value_splat *p, int n,
     const snow_value_store *s = p->store;
     const snow_value_sheet *sheet = p->sheets + n;
     const int64_t slices[2] = {sheet->before, sheet->after};
+    const double step = p->rays->sheets[n].step;
     int16_t beside[2][SNOW_VALUE_ROWS][32];
     uint32_t partial[2][SNOW_VALUE_ROWS];
     for (int side = 0; side < 2; side++) {
         from.slice = snow_value_at(s, slices[side]);
-        NAME(fill_holes_eye)
-        (&from, s, u, v, 1, across, beside[side], partial[side],
+        if (s->cubic)
+            NAME(fill_cubic_eye)
+        (&from, s, u, v, step, 1, across, beside[side], out->holes,
          sheet->half_across);
+        else NAME(fill_holes_eye)(&from, s, u, v, 1, across, beside[side],
+                                  partial[side], sheet->half_across);
     }
     for (; across; across &= across - 1) {
         int r = __builtin_ctz(across);
-        uint32_t lanes = partial[0][r] | partial[1][r];
-        const value_sides sides = {.splat = p,
+        uint32_t lanes = s->cubic
+                             ? NAME(cross_cubic)(sheet, beside[0][r],
+                                                 beside[1][r], out->across[r])
+                             : partial[0][r] | partial[1][r];
+        const double place[2] = {0, value_lane_part(v, step, 1 + r)};
+        const value_sides sides = {.at = place,
+                                   .step = step,
+                                   .splat = p,
                                    .sheet = n,
                                    .column = u->first,
                                    .row = NAME(voxel_row)(s, v, 1 + r),
@@ -332,20 +403,25 @@ NAME(sample_eye)(const snow_value_splat *p, int n, int phase, const int tile[2],
     }
     NAME(begin)(s, sheet, &rows, &across, out, &from);
     uint32_t partial[SHEET_ROWS];
-    if (out->holes)
-        NAME(fill_holes_eye)
-    (&from, s, u, v, 0, rows, out->values, partial, sheet->half);
+    if (s->cubic)
+        NAME(fill_cubic_eye)
+    (&from, s, u, v, p->rays->sheets[n].step, 0, rows, out->values, out->holes,
+     sheet->half);
+    else if (out->holes) NAME(fill_holes_eye)(
+        &from, s, u, v, 0, rows, out->values, partial, sheet->half);
     else if (sheet->half)
         NAME(fill_eye)(&from, s, u, v, 0, rows, out->values, true, false);
     else NAME(fill_eye)(&from, s, u, v, 0, rows, out->values, false, false);
     if (!across)
         return;
     NAME(begin_across)(s, sheet, &from);
-    if (sheet->half_across)
+    if (s->cubic)
+        ;
+    else if (sheet->half_across)
         NAME(fill_eye)(&from, s, u, v, 1, across, out->across, true, true);
     else
         NAME(fill_eye)(&from, s, u, v, 1, across, out->across, false, true);
-    if (out->holes)
+    if (out->holes || s->cubic)
         NAME(cross_holes_eye)(p, n, from, u, v, across, out);
 }
 

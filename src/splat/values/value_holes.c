@@ -67,11 +67,12 @@ static void spline(double at, double out[4]) {
 static int16_t cubic_at(const value_sides *s, const snow_value_sheet *sheet,
                         int lane) {
     double u[4], v[4], value = 0, weight = 0;
-    spline(s->at[0], u);
+    int along = s->lanes ? s->lanes->at[lane] : lane;
+    spline(s->lanes ? value_lane_part(s->lanes, s->step, lane) : s->at[0], u);
     spline(s->at[1], v);
     for (int n = 0; n < 16; n++) {
         int here, full;
-        voxel_at(s->splat->store, sheet, s->column + lane + n % 4 - 1,
+        voxel_at(s->splat->store, sheet, s->column + along + n % 4 - 1,
                  s->row + n / 4 - 1, &here, &full);
         value += u[n % 4] * v[n / 4] * here;
         weight += u[n % 4] * v[n / 4] * full;

@@ -139,6 +139,13 @@ value_lanes_of(const snow_value_rays *rays, int sheet, int phase, int axis,
     return rays->lanes[axis] + at * (size_t)rays->tiles[axis] + tile;
 }
 
+/* How far a lane is beyond the voxel below it. */
+static inline double value_lane_part(const snow_value_lanes *lanes, double step,
+                                     int n) {
+    double part = lanes->start - floor(lanes->start) + n * step - lanes->at[n];
+    return fmin(fmax(part, 0), 1 - 1e-12);
+}
+
 /* Whether a tile's window of a sheet meets the voxels and their margins. */
 static inline bool value_meets(const snow_value_store *s, int64_t column,
                                int64_t row) {
@@ -223,6 +230,7 @@ typedef struct value_sides {
     int64_t column, row;
     int16_t weights[2];            /* along u and v */
     const double *at;              /* the place, for kernel bspline */
+    double step;                   /* perspective: of lanes along u */
     const snow_value_lanes *lanes; /* perspective: u's, instead */
     const int16_t *here, *before, *after;
 } value_sides;

@@ -88,8 +88,6 @@ for mode in mip minip mean sum; do
     refuse "mode $mode" "modes other than over" -m $mode
 done
 refuse "mode iso" "modes other than over" -m iso --iso 90
-refuse "kernel bspline of an eye" "kernel bspline in perspective" \
-    --kernel bspline --perspective
 for options in "--kernel gauss" "--kernel box" "--footprint 3" \
     "--kernel bspline --footprint 3"; do
     # shellcheck disable=SC2086
