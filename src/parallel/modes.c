@@ -75,15 +75,21 @@ static snow_status measure_values(snow_flight *f, snow_data_range *range) {
 }
 
 snow_status snow_flight_agree_values(snow_flight *f) {
-    enum { MINUS_LOW, HIGH, HOLES, COUNT };
+    enum { MINUS_LOW, HIGH, HOLES, LOST, COUNT };
     snow_comm *comm = f->ranks->comm;
     snow_data_range range;
     SNOW_TRY(snow_comm_agree_status(comm, measure_values(f, &range)));
-    double words[COUNT] = {-range.low, range.high, range.holes};
+    double words[COUNT] = {-range.low, range.high, range.holes,
+                           f->picture.job.volume->lost_clip};
     SNOW_TRY(snow_comm_reduce_doubles(comm, words, COUNT, SNOW_MAX));
     range.low = -words[MINUS_LOW];
     range.high = words[HIGH];
     range.holes = words[HOLES] > 0;
+    if (words[LOST] > 0)
+        return snow_fail(f->ranks->context, SNOW_STATUS_BAD_USAGE,
+                         "method value cannot draw clip planes of voxels that "
+                         "are shared by count or as bricks yet; use --cut "
+                         "equal, or take method shear-warp");
     snow_value_set_range(f->picture.frame->value_path, &range);
     return SNOW_STATUS_OK;
 }

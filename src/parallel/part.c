@@ -104,6 +104,8 @@ static snow_status send_share(snow_comm *comm, const snow_volume_info *whole,
     if (status == SNOW_STATUS_OK)
         status = move_voxels(comm, held, &p, volume);
     if (status == SNOW_STATUS_OK)
+        volume->lost_clip = held->clip || held->lost_clip;
+    if (status == SNOW_STATUS_OK)
         *out = volume;
     else
         snow_volume_close(volume);

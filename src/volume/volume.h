@@ -20,6 +20,7 @@ struct snow_volume {
     const char *path;       /* of that file, within the block; else NULL */
     snow_clip_planes *clip; /* planes that have cut it, and values next to them;
                       NULL: none */
+    bool lost_clip;         /* there were some, but its voxels have moved */
     void *owned; /* the block to free, NULL when the voxels are shared */
     /* A number that no other volume of the context ever had, by which a frame
      * knows that it has encoded this one; 0 while the voxels may change. */

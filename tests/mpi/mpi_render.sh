@@ -53,6 +53,30 @@ run 0 "a deterministic picture" "$TOOL" $head --deterministic -y -o one.npy
 TOLERANCE=0 render 3 "a deterministic picture" --deterministic
 check "it has the same bits" cmp -s one.npy many.npy
 
+# The value path: ranks agree on the range of values, and share a lattice.
+value="--method value --azimuth 33 --elevation 21"
+for way in "" "--perspective" "--quality high"; do
+    # shellcheck disable=SC2086
+    run 0 "by value $way alone" "$TOOL" $head $value $way -y -o one.npy
+    # shellcheck disable=SC2086
+    render "$MOST" "by value in bricks $way" $value $way --cut bricks
+done
+clip="--clip 1,0.5,0,30"
+# shellcheck disable=SC2086
+run 0 "a plane by value alone" "$TOOL" $head $value $clip -y -o one.npy
+# shellcheck disable=SC2086
+render 3 "a plane by value" $value $clip --cut equal
+# shellcheck disable=SC2086
+run 2 "a plane in bricks" launch 3 "$MPI_TOOL" $head $value $clip -y \
+    --cut bricks -o many.npy
+says 'method value cannot draw clip planes of voxels .* yet; use --cut equal'
+# shellcheck disable=SC2086
+run 0 "deterministic by value" "$TOOL" $head $value --deterministic -y \
+    -o one.npy
+# shellcheck disable=SC2086
+TOLERANCE=0 render 3 "deterministic by value" $value --deterministic
+check "it has the same bits" cmp -s one.npy many.npy
+
 # shellcheck disable=SC2086
 run 0 "figures" launch 2 "$MPI_TOOL" $head -y -o many.png --stats -
 prints '"ranks": 2'

@@ -88,7 +88,7 @@ static reference_scene numbered(int n, int64_t depth) {
     }
     if (n % 4 == 2 && n % 3 != 1)
         make_holes(&s);
-    if (n % 5 == 4 && !(s.view.fov > 0)) {
+    if (n % 5 == 4) {
         s.settings.kernel = SNOW_KERNEL_BSPLINE;
         s.settings.footprint = 4;
     }
