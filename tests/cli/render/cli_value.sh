@@ -74,6 +74,11 @@ for view in +z +y; do
         exit substr($0, RSTART + 8, RLENGTH - 8) > 4194304 }' made.json
 done
 
+# shellcheck disable=SC2086
+run 5 "deterministic in slabs" "$TOOL" render $large -q --memory 4M \
+    --deterministic -o no.npy
+says 'a deterministic picture by method value needs all voxels in memory'
+
 # --- refusals ----------------------------------------------------------------
 # refuse WHAT WORDS OPTIONS: ends with the message, and leaves no picture.
 refuse() {
