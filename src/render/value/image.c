@@ -29,7 +29,7 @@ static bool keep_grid(const snow_value_path *path,
                       snow_value_grid *grid) {
     const snow_value_lattice *l = &path->lattice;
     const snow_value_grid *has = &path->grid;
-    const int spare = params->shared ? 0 : 2;
+    const int spare = params->shared || params->volume->stream ? 0 : 2;
     *grid = (snow_value_grid){
         .cells = {l->cells[0], l->cells[1]},
         .tiles = {wanted_tiles(l->voxels[0], SNOW_VALUE_COLUMNS),
