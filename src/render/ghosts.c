@@ -22,7 +22,8 @@
 #include "render/mipmap.h"
 #include "render/settings_resolve.h"
 #include "splat/kernel.h"
-#include "transform/perspective.h"
+#include "splat/values/value_splat.h"
+#include "transform/shear_perspective.h"
 #include "volume/volume.h"
 
 #include <math.h>
@@ -50,9 +51,12 @@ static bool splats_values(const question *q) {
 }
 
 /* How far gradients of values look in the plane: in perspective a voxel and a
- * half. */
-static int values_beside(const question *q) {
-    return q->gradients ? 1 + (q->view->fov > 0) : 0;
+ * half, and no less than the samples of the last sheet are apart, which is
+ * `ratio` times as far from the eye as the first. */
+static double values_beside(const question *q, double ratio) {
+    if (!q->gradients || q->view->fov == 0)
+        return q->gradients;
+    return fmax(2, fmin(ceil(ratio), SNOW_VALUE_SPREAD_MOST));
 }
 
 /* A cubic kernel reaches one voxel more, in the plane and across it. */
@@ -62,14 +66,15 @@ static int cubic(const question *q) {
 
 /* Layers for kernels of pixels that are `width` voxels wide along an axis that
  * lies in the slices. */
-static double layers_of(const question *q, double width) {
+static double layers_of(const question *q, double ratio, double width) {
     const snow_settings *settings = q->settings;
     if (splats_values(q) && !settings->depth) /* depths are of footprints */
-        return 1 + cubic(q) + values_beside(q);
+        return 1 + cubic(q) + values_beside(q, ratio);
     snow_scaled_kernel scaled_kernel =
         snow_scaled_kernel_make(settings->kernel, settings->footprint, width);
     return floor(snow_scaled_kernel_reach(&scaled_kernel) + 0.5) +
-           (splats_values(q) ? 1 + cubic(q) + values_beside(q) : q->gradients);
+           (splats_values(q) ? 1 + cubic(q) + values_beside(q, ratio)
+                             : q->gradients);
 }
 
 static bool finds_surfaces(const question *q) {
@@ -126,11 +131,13 @@ static void ask_placement(const question *q, const snow_placement *p,
     const int64_t *dims = q->whole->dims;
     const int axes[2] = {p->u_axis, p->v_axis};
     double width[2], slope[2] = {0, 0};
+    double ratio = p->perspective ? snow_perspective_shear_ratio(p) : 1;
     widest_pixel(p, width);
     if (finds_surfaces(q) || splats_values(q))
         widest_slope(p, slope);
     for (int n = 0; n < 2; n++)
-        at_least(&layers[axes[n]], layers_of(q, width[n]) + ceil(slope[n]),
+        at_least(&layers[axes[n]],
+                 layers_of(q, ratio, width[n]) + ceil(slope[n]),
                  dims[axes[n]] - 1);
     at_least(&layers[p->slice_axis], layers_across(q), dims[p->slice_axis] - 1);
 }
@@ -238,10 +245,11 @@ static snow_status ask_all(const question *q, int64_t layers[3]) {
     double spread = camera.distance > 0 ? reach / camera.distance : 0;
     double slant = least_slant(q, gradients, fmin(spread, 1));
     double pitch = camera.pitch * (1 + spread);
+    double ratio = spread < 1 ? (1 + spread) / (1 - spread) : INFINITY;
     for (int axis = 0; axis < 3; axis++) {
         double width =
             slant > 0 ? pitch * steepest(gradients, axis) / slant : INFINITY;
-        double wanted = width < 1e9 ? layers_of(q, width) : 1e9;
+        double wanted = width < 1e9 ? layers_of(q, ratio, width) : 1e9;
         if (finds_surfaces(q) || splats_values(q))
             wanted += ceil(steepest_slope(gradients, axis, slant));
         int64_t most = q->whole->dims[axis] - 1;
