@@ -3,10 +3,11 @@
 
 /* The samples of a phase of slab `n`, between sheets n and n + 1, that can be
  * seen. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(activate)(const snow_value_splat *p, int n, int phase, const int tile[2],
-               const value_phase *state, value_cells cells[2], value_slab *slab,
-               const bool eye) {
+TARGET VALUE_INLINE void NAME(activate)(const snow_value_splat *p, int n,
+                                        int phase, const int tile[2],
+                                        const value_phase *state,
+                                        value_cells cells[2], value_slab *slab,
+                                        const bool eye) {
     slab->rows = 0;
     if (!state->alive)
         return;
@@ -89,10 +90,10 @@ static inline void NAME(ask_masks)(const snow_value_splat *p, int n, int phase,
 }
 
 /* Finds what some phases of slab `n` will need, and asks the cache for it. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(look_ahead)(const snow_value_splat *p, int n, int first, int end,
-                 const int tile[2], value_room *room, value_slab *slabs,
-                 const bool sloped, const bool eye) {
+TARGET VALUE_INLINE void NAME(look_ahead)(const snow_value_splat *p, int n,
+                                          int first, int end, const int tile[2],
+                                          value_room *room, value_slab *slabs,
+                                          const bool sloped, const bool eye) {
     uint32_t any = 0;
     for (int phase = first; phase < end; phase++) {
         value_slab *slab = &slabs[phase - first];

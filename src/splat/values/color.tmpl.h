@@ -4,7 +4,7 @@
 /* --- light ------------------------------------------------------------------
  */
 
-TARGET static inline __attribute__((always_inline)) V(vec)
+TARGET VALUE_INLINE V(vec)
     NAME(dot)(const float by[3], V(vec) u, V(vec) v, V(vec) p) {
     V(vec) sum = V(mul)(V(set1)(by[0]), u);
     sum = V(add)(sum, V(mul)(V(set1)(by[1]), v));
@@ -14,8 +14,7 @@ TARGET static inline __attribute__((always_inline)) V(vec)
 #include "splat/values/ray.tmpl.h"
 
 /* base^(power / 2^SNOW_VALUE_ROOTS) for a base above 0. */
-TARGET static inline __attribute__((always_inline)) V(vec)
-    NAME(power_of)(V(vec) base, uint32_t power) {
+TARGET VALUE_INLINE V(vec) NAME(power_of)(V(vec) base, uint32_t power) {
     V(vec) result = V(set1)(1), square = base, root = base;
     for (uint32_t whole = power >> SNOW_VALUE_ROOTS; whole; whole >>= 1) {
         if (whole & 1)
@@ -32,9 +31,8 @@ TARGET static inline __attribute__((always_inline)) V(vec)
 }
 
 /* n . eye, light and half for LANES gradients, times their length. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(face)(const snow_value_light *l, V(vec) u, V(vec) v, V(vec) p,
-           V(vec) out[3]) {
+TARGET VALUE_INLINE void NAME(face)(const snow_value_light *l, V(vec) u,
+                                    V(vec) v, V(vec) p, V(vec) out[3]) {
     out[0] = out[1] = out[2] = NAME(dot)(l->eye, u, v, p);
     if (l->head)
         return;
@@ -44,7 +42,7 @@ NAME(face)(const snow_value_light *l, V(vec) u, V(vec) v, V(vec) p,
 
 /* LANES gradients to factors of the colour and of white, of 15 bits; samples
  * from `n` of the queue on. */
-TARGET static inline __attribute__((always_inline)) void
+TARGET VALUE_INLINE void
 NAME(light)(const snow_value_splat *s, float slope[2][2], const value_queue *q,
             int n, const int16_t *gu, const int16_t *gv, const int16_t *gp,
             int16_t *color, int16_t *white, const bool eye) {
@@ -80,8 +78,7 @@ NAME(light)(const snow_value_splat *s, float slope[2][2], const value_queue *q,
  */
 
 /* The place of the opacity, of 32768, from the top bits of the four words. */
-TARGET static inline __attribute__((always_inline)) V(row)
-    NAME(split)(V(row) color[4]) {
+TARGET VALUE_INLINE V(row) NAME(split)(V(row) color[4]) {
     V(row) place = V(row_set1)(0x400);
     for (int c = 0; c < 4; c++) {
         place =
@@ -93,7 +90,7 @@ TARGET static inline __attribute__((always_inline)) V(row)
 }
 
 /* The places of 32 samples in the table. */
-TARGET static inline __attribute__((always_inline)) V(row)
+TARGET VALUE_INLINE V(row)
     NAME(entries)(const snow_value_table *table, const int16_t *front,
                   const int16_t *back) {
     if (table->nodes) {
@@ -110,9 +107,8 @@ TARGET static inline __attribute__((always_inline)) V(row)
 }
 
 /* Twice the gradients of 32 samples along an axis of a slab's front or back. */
-TARGET static inline __attribute__((always_inline)) V(row)
-    NAME(slope_of)(const value_queue *q, int n, int side, int axis,
-                   const bool eye) {
+TARGET VALUE_INLINE V(row) NAME(slope_of)(const value_queue *q, int n, int side,
+                                          int axis, const bool eye) {
     V(row) slope = V(row_load)(q->slopes[3 * side + axis] + n);
     if (eye && axis < 2)
         slope = V(row_adds)(
@@ -121,9 +117,8 @@ TARGET static inline __attribute__((always_inline)) V(row)
 }
 
 /* Gradients of 32 samples from `n` on. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(slopes)(const value_queue *q, int n, V(row) place, int16_t slopes[3][32],
-             const bool eye) {
+TARGET VALUE_INLINE void NAME(slopes)(const value_queue *q, int n, V(row) place,
+                                      int16_t slopes[3][32], const bool eye) {
     for (int axis = 0; axis < 3; axis++)
         V(row_store)
     (slopes[axis], NAME(mix)(NAME(slope_of)(q, n, 0, axis, eye),
@@ -146,10 +141,11 @@ TARGET static void NAME(fade)(const snow_value_splat *p, const value_queue *q,
 }
 
 /* Lights 32 samples from `n` on. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(shade)(const snow_value_splat *p, float slope[2][2], const value_queue *q,
-            int n, int16_t slopes[3][32], const int channels, V(row) color[4],
-            const bool eye) {
+TARGET VALUE_INLINE void NAME(shade)(const snow_value_splat *p,
+                                     float slope[2][2], const value_queue *q,
+                                     int n, int16_t slopes[3][32],
+                                     const int channels, V(row) color[4],
+                                     const bool eye) {
     int16_t diffuse[32], white[32];
     for (int at = 0; at < 32; at += LANES)
         NAME(light)
@@ -166,10 +162,11 @@ NAME(shade)(const snow_value_splat *p, float slope[2][2], const value_queue *q,
 }
 
 /* All samples of a queue, whose last 32 numbers and more are 0. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(color)(const snow_value_splat *p, float slope[2][2], value_queue *q,
-            int count, const int channels, const bool sloped, bool cuts,
-            const bool eye) {
+TARGET VALUE_INLINE void NAME(color)(const snow_value_splat *p,
+                                     float slope[2][2], value_queue *q,
+                                     int count, const int channels,
+                                     const bool sloped, bool cuts,
+                                     const bool eye) {
     for (int n = 0; n < count; n += 32) {
         V(row) color[4];
         if (p->labels)

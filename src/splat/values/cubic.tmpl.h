@@ -16,9 +16,9 @@ static inline void NAME(spline)(double at, float out[4]) {
 }
 
 /* Mixes the four voxels of 32 numbers along u to line `at`. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(mix_parts_along)(const NAME(part) parts[4], float (*u)[32], bool weigh,
-                      int at, NAME(lines) * out) {
+TARGET VALUE_INLINE void NAME(mix_parts_along)(const NAME(part) parts[4],
+                                               float (*u)[32], bool weigh,
+                                               int at, NAME(lines) * out) {
     int16_t voxels[4][32], weights[4][32];
     for (int x = 0; x < 4; x++) {
         V(row_store)(voxels[x], parts[x].value);
@@ -39,9 +39,9 @@ NAME(mix_parts_along)(const NAME(part) parts[4], float (*u)[32], bool weigh,
 }
 
 /* Row `row` of voxels, mixed along u. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(mix_line)(const NAME(source) * s, int64_t row, float (*u)[32], bool weigh,
-               const bool half, NAME(lines) * out) {
+TARGET VALUE_INLINE void NAME(mix_line)(const NAME(source) * s, int64_t row,
+                                        float (*u)[32], bool weigh,
+                                        const bool half, NAME(lines) * out) {
     NAME(part) parts[4];
     int at = (int)(row & 3);
     if (out->row[at] == row)
@@ -53,9 +53,8 @@ NAME(mix_line)(const NAME(source) * s, int64_t row, float (*u)[32], bool weigh,
 }
 
 /* Four lines to one of numbers. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(mix_lines)(float (*lines)[32], int64_t row, const float v[4],
-                int16_t *out) {
+TARGET VALUE_INLINE void NAME(mix_lines)(float (*lines)[32], int64_t row,
+                                         const float v[4], int16_t *out) {
     for (int n = 0; n < 32; n += LANES) {
         V(vec) sum = V(set1)(0);
         for (int y = 0; y < 4; y++)
@@ -66,9 +65,9 @@ NAME(mix_lines)(float (*lines)[32], int64_t row, const float v[4],
 }
 
 /* Four lines to a row of a sheet; `weigh`: there may be holes. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(mix_row)(NAME(lines) * lines, int64_t at, const float v[4], bool weigh,
-              int16_t *out) {
+TARGET VALUE_INLINE void NAME(mix_row)(NAME(lines) * lines, int64_t at,
+                                       const float v[4], bool weigh,
+                                       int16_t *out) {
     NAME(mix_lines)(lines->values, at, v, out);
     if (weigh) {
         int16_t weights[32];

@@ -6,10 +6,11 @@
 
 /* Ors the cells of a plane of masks under some rows of lanes; lane 0 of v is
  * the plane's row at `masks`. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(pick_cells)(const snow_value_store *s, const uint32_t *masks,
-                 const snow_value_lanes *u, const snow_value_lanes *v,
-                 uint32_t rows, uint32_t *out) {
+TARGET VALUE_INLINE void NAME(pick_cells)(const snow_value_store *s,
+                                          const uint32_t *masks,
+                                          const snow_value_lanes *u,
+                                          const snow_value_lanes *v,
+                                          uint32_t rows, uint32_t *out) {
     int taken = 0;
     for (int n = 0; taken < 32; n++) {
         const uint32_t select = u->select[n];
@@ -163,10 +164,11 @@ static inline void NAME(clip_eye)(const snow_value_splat *p, int n, int phase,
 
 /* Voxels of a row on both sides of the lanes: of a slice, half way to the next
  * one, or the difference of two of them. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(voxels_under)(const NAME(source) * s, const snow_value_lanes *u,
-                   int64_t row, const bool half, const bool difference,
-                   V(row) out[2]) {
+TARGET VALUE_INLINE void NAME(voxels_under)(const NAME(source) * s,
+                                            const snow_value_lanes *u,
+                                            int64_t row, const bool half,
+                                            const bool difference,
+                                            V(row) out[2]) {
     const int16_t *values = s->values + u->first;
     int span = u->at[31] + 2;
     for (int end = 0; end <= difference; end++) {
@@ -186,7 +188,7 @@ NAME(voxels_under)(const NAME(source) * s, const snow_value_lanes *u,
             out[n] = V(row_adds)(out[n], out[n]);
 }
 
-TARGET static inline __attribute__((always_inline)) V(row)
+TARGET VALUE_INLINE V(row)
     NAME(along_lanes)(const NAME(source) * s, const snow_value_lanes *u,
                       int64_t row, const bool half, const bool difference) {
     V(row) ends[2];
@@ -203,7 +205,7 @@ static inline int64_t NAME(voxel_row)(const snow_value_store *s,
 }
 
 /* Rows of a sheet, a bit each, into `out`; bit 0 is lane `first` of v. */
-TARGET static inline __attribute__((always_inline)) void
+TARGET VALUE_INLINE void
 NAME(fill_eye)(const NAME(source) * s, const snow_value_store *store,
                const snow_value_lanes *u, const snow_value_lanes *v, int first,
                uint64_t rows, int16_t (*out)[32], const bool half,
@@ -244,7 +246,7 @@ static inline bool NAME(near_holes_eye)(const snow_value_store *s,
 }
 
 /* As NAME(parts_along). */
-TARGET static inline __attribute__((always_inline)) NAME(part)
+TARGET VALUE_INLINE NAME(part)
     NAME(parts_under)(const NAME(source) * s, const snow_value_lanes *u,
                       int64_t row, bool half) {
     const int16_t *values = s->values + u->first;
@@ -286,10 +288,11 @@ TARGET static void NAME(fill_holes_eye)(const NAME(source) * s,
  */
 
 /* As NAME(mix_line). */
-TARGET static inline __attribute__((always_inline)) void
-NAME(mix_line_eye)(const NAME(source) * s, const snow_value_lanes *lanes,
-                   int64_t row, float (*u)[32], bool weigh, const bool half,
-                   NAME(lines) * out) {
+TARGET VALUE_INLINE void NAME(mix_line_eye)(const NAME(source) * s,
+                                            const snow_value_lanes *lanes,
+                                            int64_t row, float (*u)[32],
+                                            bool weigh, const bool half,
+                                            NAME(lines) * out) {
     const int16_t *values = s->values + lanes->first - 1;
     int span = lanes->at[31] + 2, at = (int)(row & 3);
     NAME(part) parts[4];
@@ -388,9 +391,10 @@ TARGET static void NAME(cross_holes_eye)(const snow_value_splat *p, int n,
 }
 
 /* As NAME(sample). */
-TARGET static inline __attribute__((always_inline)) void
-NAME(sample_eye)(const snow_value_splat *p, int n, int phase, const int tile[2],
-                 uint64_t rows, uint32_t across, value_rows *out) {
+TARGET VALUE_INLINE void NAME(sample_eye)(const snow_value_splat *p, int n,
+                                          int phase, const int tile[2],
+                                          uint64_t rows, uint32_t across,
+                                          value_rows *out) {
     const snow_value_store *s = p->store;
     const snow_value_sheet *sheet = p->sheets + n;
     const snow_value_lanes *u = value_lanes_of(p->rays, n, phase, 0, tile[0]);
@@ -427,10 +431,11 @@ NAME(sample_eye)(const snow_value_splat *p, int n, int phase, const int tile[2],
 
 /* Samples the neighbours of a phase's samples on a sheet, and says where they
  * are. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(sample_beside)(const snow_value_splat *p, int n, int phase,
-                    const int tile[2], uint32_t rows, value_rows (*room)[2],
-                    value_beside *out) {
+TARGET VALUE_INLINE void NAME(sample_beside)(const snow_value_splat *p, int n,
+                                             int phase, const int tile[2],
+                                             uint32_t rows,
+                                             value_rows (*room)[2],
+                                             value_beside *out) {
     out->holes = room[phase][n & 1].holes;
     for (int way = 0; way < 4; way++) {
         int axis = way / 2, by = p->rays->sheets[n].apart[axis], cells;

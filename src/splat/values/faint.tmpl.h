@@ -2,8 +2,8 @@
  * floats.  Included by tile.tmpl.h. */
 
 /* LANES numbers of a plane: what shines through, times the colour. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(add_faint)(float *plane, const int16_t *color, V(vec) through) {
+TARGET VALUE_INLINE void NAME(add_faint)(float *plane, const int16_t *color,
+                                         V(vec) through) {
     V(store)
     (plane, V(add)(V(load)(plane), V(mul)(through, V(row_floats)(color))));
 }

@@ -7,8 +7,7 @@ typedef struct NAME(part) {
     V(row) value, weight;
 } NAME(part);
 
-TARGET static inline __attribute__((always_inline)) NAME(part)
-    NAME(part_of)(V(row) voxels) {
+TARGET VALUE_INLINE NAME(part) NAME(part_of)(V(row) voxels) {
     const V(row) zero = V(row_set1)(0);
     NAME(part) part;
     part.weight = V(row_adds)(voxels, V(row_set1)(INT16_MAX));
@@ -20,7 +19,7 @@ TARGET static inline __attribute__((always_inline)) NAME(part)
 }
 
 /* As NAME(voxels) of a slice or half way to the next one. */
-TARGET static inline __attribute__((always_inline)) NAME(part)
+TARGET VALUE_INLINE NAME(part)
     NAME(parts)(const NAME(source) * s, int64_t row, int by, bool half) {
     const int16_t *values = s->values + s->column + by;
     NAME(part) here = NAME(part_of)(V(row_load)(values + s->slice[row]));
@@ -33,7 +32,7 @@ TARGET static inline __attribute__((always_inline)) NAME(part)
     return here;
 }
 
-TARGET static inline __attribute__((always_inline)) NAME(part)
+TARGET VALUE_INLINE NAME(part)
     NAME(parts_along)(const NAME(source) * s, int64_t row, V(row) weight,
                       bool half) {
     NAME(part) a = NAME(parts)(s, row, 0, half);
@@ -44,8 +43,8 @@ TARGET static inline __attribute__((always_inline)) NAME(part)
 
 /* A row of values from those above and below; returns a bit for each number
  * whose weights are not full. */
-TARGET static inline __attribute__((always_inline)) uint32_t
-NAME(mix_parts)(NAME(part) above, NAME(part) below, V(row) v, int16_t out[32]) {
+TARGET VALUE_INLINE uint32_t NAME(mix_parts)(NAME(part) above, NAME(part) below,
+                                             V(row) v, int16_t out[32]) {
     V(row) weight = NAME(mix)(above.weight, below.weight, v);
     V(row_store)(out, NAME(mix)(above.value, below.value, v));
     uint32_t partial = V(row_gt)(V(row_set1)(SNOW_VALUE_FULL), weight);

@@ -3,7 +3,7 @@
 #include "classify/sample/gradient_opacity.tmpl.h"
 
 /* a . (uu vv 11 uv u1 v1) of LANES ways (u, v, 1). */
-TARGET static inline __attribute__((always_inline)) V(vec)
+TARGET VALUE_INLINE V(vec)
     NAME(square_of)(const float a[6], V(vec) u, V(vec) v) {
     V(vec) sum = V(add)(V(mul)(V(set1)(a[0]), V(mul)(u, u)), V(set1)(a[2]));
     sum = V(add)(sum, V(mul)(V(set1)(a[1]), V(mul)(v, v)));
@@ -13,17 +13,17 @@ TARGET static inline __attribute__((always_inline)) V(vec)
 }
 
 /* Ways of LANES samples along u (`axis` 0) or v. */
-TARGET static inline __attribute__((always_inline)) V(vec)
+TARGET VALUE_INLINE V(vec)
     NAME(ways_of)(const float slope[2], const int16_t *phases) {
     return V(add)(V(set1)(slope[0]),
                   V(mul)(V(set1)(slope[1]), V(row_floats)(phases)));
 }
 
 /* n . eye, light and half for LANES gradients, times their length. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(face_eye)(const snow_value_light *l, const snow_value_rays *rays,
-               V(vec) across, V(vec) down, V(vec) u, V(vec) v, V(vec) p,
-               V(vec) out[3]) {
+TARGET VALUE_INLINE void NAME(face_eye)(const snow_value_light *l,
+                                        const snow_value_rays *rays,
+                                        V(vec) across, V(vec) down, V(vec) u,
+                                        V(vec) v, V(vec) p, V(vec) out[3]) {
     V(vec)
     inverse = V(row_rsqrt)(NAME(square_of)(rays->metric, across, down));
     V(vec) eye = V(add)(V(add)(V(mul)(across, u), V(mul)(down, v)), p);
@@ -42,9 +42,9 @@ NAME(face_eye)(const snow_value_light *l, const snow_value_rays *rays,
 
 /* How much longer than the table's the parts of slabs are that 32 samples are
  * of. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(shares)(const snow_value_rays *rays, float slope[2][2],
-             const value_queue *q, int n, bool cuts, float out[32]) {
+TARGET VALUE_INLINE void NAME(shares)(const snow_value_rays *rays,
+                                      float slope[2][2], const value_queue *q,
+                                      int n, bool cuts, float out[32]) {
     for (int at = 0; at < 32; at += LANES) {
         V(vec)
         way = V(sqrt)(NAME(square_of)(
@@ -59,9 +59,9 @@ NAME(shares)(const snow_value_rays *rays, float slope[2][2],
 }
 
 /* Alpha and colours of 32 samples, for so much longer a way. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(lengthen)(const snow_value_table *table, const float shares[32],
-               const int channels, V(row) color[4]) {
+TARGET VALUE_INLINE void NAME(lengthen)(const snow_value_table *table,
+                                        const float shares[32],
+                                        const int channels, V(row) color[4]) {
     uint32_t ones[16];
     float alphas[32], factors[32];
     int16_t words[32];

@@ -5,9 +5,9 @@
  */
 
 /* Ors the cells of a sheet under a tile that are not wholly within a run. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(add_cells)(const snow_value_store *s, int run,
-                const snow_value_sheet *sheet, value_window w, uint32_t *out) {
+TARGET VALUE_INLINE void NAME(add_cells)(const snow_value_store *s, int run,
+                                         const snow_value_sheet *sheet,
+                                         value_window w, uint32_t *out) {
     const uint32_t *masks = s->masks +
                             snow_value_mask_at(s, run, sheet->slice) +
                             w.word * s->mask_rows + w.row;
@@ -80,8 +80,7 @@ static inline void NAME(clip_all)(const snow_value_splat *p, int n, int phase,
 /* --- sheets -----------------------------------------------------------------
  */
 
-TARGET static inline __attribute__((always_inline)) V(row)
-    NAME(mix)(V(row) a, V(row) b, V(row) weight) {
+TARGET VALUE_INLINE V(row) NAME(mix)(V(row) a, V(row) b, V(row) weight) {
     return V(row_add)(a, V(row_mulhrs)(V(row_subs)(b, a), weight));
 }
 
@@ -96,7 +95,7 @@ typedef struct NAME(source) {
 
 /* 32 voxels of row `row` from `column` + `by` on: of a slice or half way to the
  * next one; or the difference of two of them. */
-TARGET static inline __attribute__((always_inline)) V(row)
+TARGET VALUE_INLINE V(row)
     NAME(voxels)(const NAME(source) * s, int64_t row, int by, const bool half,
                  const bool difference) {
     const int16_t *values = s->values + s->column + by;
@@ -114,7 +113,7 @@ TARGET static inline __attribute__((always_inline)) V(row)
 }
 
 /* One row of voxels, mixed along u. */
-TARGET static inline __attribute__((always_inline)) V(row)
+TARGET VALUE_INLINE V(row)
     NAME(along)(const NAME(source) * s, int64_t row, V(row) weight,
                 const bool half, const bool difference) {
     return NAME(mix)(NAME(voxels)(s, row, 0, half, difference),
@@ -122,10 +121,11 @@ TARGET static inline __attribute__((always_inline)) V(row)
 }
 
 /* Rows of a sheet, a bit each from row `first` on, into `out`. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(fill)(const NAME(source) * s, int64_t first, uint64_t rows,
-           const snow_value_place *place, int16_t (*out)[32], const bool half,
-           const bool difference) {
+TARGET VALUE_INLINE void NAME(fill)(const NAME(source) * s, int64_t first,
+                                    uint64_t rows,
+                                    const snow_value_place *place,
+                                    int16_t (*out)[32], const bool half,
+                                    const bool difference) {
     const V(row) u = V(row_set1)(place->weight[0]);
     const V(row) v = V(row_set1)(place->weight[1]);
     while (rows) {
@@ -157,10 +157,10 @@ static inline bool NAME(near_holes)(const snow_value_store *s,
 }
 
 /* What of a sheet's rows is not there yet, and what it is made of. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(begin)(const snow_value_store *s, const snow_value_sheet *sheet,
-            uint64_t *rows, uint32_t *across, value_rows *out,
-            NAME(source) * from) {
+TARGET VALUE_INLINE void NAME(begin)(const snow_value_store *s,
+                                     const snow_value_sheet *sheet,
+                                     uint64_t *rows, uint32_t *across,
+                                     value_rows *out, NAME(source) * from) {
     *rows &= ~out->has;
     *across &= ~out->has_across;
     out->has |= *rows;
@@ -170,9 +170,9 @@ NAME(begin)(const snow_value_store *s, const snow_value_sheet *sheet,
                            .next = s->rows + 2 * s->margin};
 }
 
-TARGET static inline __attribute__((always_inline)) void
-NAME(begin_across)(const snow_value_store *s, const snow_value_sheet *sheet,
-                   NAME(source) * from) {
+TARGET VALUE_INLINE void NAME(begin_across)(const snow_value_store *s,
+                                            const snow_value_sheet *sheet,
+                                            NAME(source) * from) {
     from->slice = snow_value_at(s, sheet->before);
     from->after = snow_value_at(s, sheet->after);
     from->twice = sheet->one_sided;
@@ -180,9 +180,10 @@ NAME(begin_across)(const snow_value_store *s, const snow_value_sheet *sheet,
 
 /* The values of a sheet in some rows of a tile, and the differences across it
  * in others, unless they are there. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(sample_all)(const snow_value_splat *p, int n, int phase, const int tile[2],
-                 uint64_t rows, uint32_t across, value_rows *out) {
+TARGET VALUE_INLINE void NAME(sample_all)(const snow_value_splat *p, int n,
+                                          int phase, const int tile[2],
+                                          uint64_t rows, uint32_t across,
+                                          value_rows *out) {
     const snow_value_store *s = p->store;
     const snow_value_sheet *sheet = p->sheets + n;
     const snow_value_place *place = p->places + n * p->phases + phase;

@@ -12,9 +12,10 @@
 
 /* The values of a sheet in some rows of a tile, and the differences across it
  * in others, unless they are there. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(sample)(const snow_value_splat *p, int n, int phase, const int tile[2],
-             uint64_t rows, uint32_t across, value_rows *out, const bool eye) {
+TARGET VALUE_INLINE void NAME(sample)(const snow_value_splat *p, int n,
+                                      int phase, const int tile[2],
+                                      uint64_t rows, uint32_t across,
+                                      value_rows *out, const bool eye) {
     if (eye)
         NAME(sample_eye)(p, n, phase, tile, rows, across, out);
     else
@@ -22,8 +23,8 @@ NAME(sample)(const snow_value_splat *p, int n, int phase, const int tile[2],
 }
 
 /* Leaves out the samples whose front and back are in one invisible run. */
-TARGET static inline __attribute__((always_inline)) uint32_t
-NAME(see)(const snow_value_table *table, V(row) front, V(row) back) {
+TARGET VALUE_INLINE uint32_t NAME(see)(const snow_value_table *table,
+                                       V(row) front, V(row) back) {
     V(row) low = V(row_min)(front, back), high = V(row_max)(front, back);
     uint32_t seen = ~UINT32_C(0);
     for (int run = 0; run < table->run_count; run++)
@@ -33,9 +34,9 @@ NAME(see)(const snow_value_table *table, V(row) front, V(row) back) {
 }
 
 /* Ends of the part of a slab that is inside; the lanes that have any. */
-TARGET static inline __attribute__((always_inline)) uint32_t
-NAME(clip)(const value_cut cut[2], const value_clip *clip, int row,
-           V(row) * from, V(row) * part) {
+TARGET VALUE_INLINE uint32_t NAME(clip)(const value_cut cut[2],
+                                        const value_clip *clip, int row,
+                                        V(row) * from, V(row) * part) {
     V(row) to = V(row_set1)(INT16_MAX);
     *from = V(row_set1)(0);
     if (cut[0].cuts) {
@@ -55,7 +56,7 @@ NAME(clip)(const value_cut cut[2], const value_clip *clip, int row,
 }
 
 /* Differences of the neighbours on both sides. */
-TARGET static inline __attribute__((always_inline)) V(row)
+TARGET VALUE_INLINE V(row)
     NAME(slope)(const int16_t *before, const int16_t *here,
                 const int16_t *after, bool broken) {
     int16_t slopes[32];
@@ -66,7 +67,7 @@ TARGET static inline __attribute__((always_inline)) V(row)
 }
 
 /* Packs the visible samples of a phase, from number `count` on. */
-TARGET static inline __attribute__((always_inline)) int
+TARGET VALUE_INLINE int
 NAME(collect)(const snow_value_splat *p, const value_rows *f,
               const value_rows *b, const value_beside beside[2],
               const value_phase *state, value_slab *slab, value_queue *q,
@@ -132,9 +133,10 @@ NAME(collect)(const snow_value_splat *p, const value_rows *f,
 
 /* Behind what is in the planes; closes the pixels that nothing shines through.
  */
-TARGET static inline __attribute__((always_inline)) int
-NAME(blend)(snow_value_plane *plane, value_phase *state, const value_slab *slab,
-            const value_queue *q, int count, int16_t end, const int channels) {
+TARGET VALUE_INLINE int NAME(blend)(snow_value_plane *plane, value_phase *state,
+                                    const value_slab *slab,
+                                    const value_queue *q, int count,
+                                    int16_t end, const int channels) {
     const V(row) one = V(row_set1)(INT16_MAX);
     const V(row) closed = V(row_set1)(end);
     for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
@@ -163,9 +165,9 @@ NAME(blend)(snow_value_plane *plane, value_phase *state, const value_slab *slab,
 }
 
 /* Zeros behind a queue of slab `n`. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(end_queue)(const snow_value_splat *p, int n, value_queue *q, int count,
-                const bool eye) {
+TARGET VALUE_INLINE void NAME(end_queue)(const snow_value_splat *p, int n,
+                                         value_queue *q, int count,
+                                         const bool eye) {
     const V(row) zero = V(row_set1)(0);
     V(row_store)(q->front + count, zero);
     V(row_store)(q->back + count, zero);
@@ -180,10 +182,11 @@ NAME(end_queue)(const snow_value_splat *p, int n, value_queue *q, int count,
 }
 
 /* Samples of some phases of slab `n`, packed; returns how many. */
-TARGET static inline __attribute__((always_inline)) int
-NAME(gather)(const snow_value_splat *p, int n, int first, int end,
-             const int tile[2], value_room *room, value_slab *slabs, bool cuts,
-             const bool sloped, const bool eye) {
+TARGET VALUE_INLINE int NAME(gather)(const snow_value_splat *p, int n,
+                                     int first, int end, const int tile[2],
+                                     value_room *room, value_slab *slabs,
+                                     bool cuts, const bool sloped,
+                                     const bool eye) {
     int count = 0;
     for (int phase = first; phase < end; phase++) {
         const value_phase *state = &room->phase[phase];
@@ -217,11 +220,11 @@ NAME(gather)(const snow_value_splat *p, int n, int first, int end,
 }
 
 /* Some phases of slab `n`. */
-TARGET static inline __attribute__((always_inline)) bool
-NAME(slab)(const snow_value_splat *p, int n, int first, int end,
-           const int tile[2], snow_value_plane *planes, value_room *room,
-           value_slab *slabs, const int channels, const bool sloped,
-           const bool eye) {
+TARGET VALUE_INLINE bool NAME(slab)(const snow_value_splat *p, int n, int first,
+                                    int end, const int tile[2],
+                                    snow_value_plane *planes, value_room *room,
+                                    value_slab *slabs, const int channels,
+                                    const bool sloped, const bool eye) {
     value_queue *q = &room->queue;
     bool cuts = false;
     for (int at = 0; at < end - first; at++)
@@ -328,10 +331,11 @@ static inline bool NAME(alive)(const value_room *room, int first, int end) {
 
 /* Some phases of a tile over the whole depth.  Slabs are looked at before their
  * turn. */
-TARGET static inline __attribute__((always_inline)) bool
-NAME(phases)(const snow_value_splat *p, int first, int end, const int tile[2],
-             snow_value_plane *planes, value_room *room, const int channels,
-             const bool sloped, const bool eye) {
+TARGET VALUE_INLINE bool NAME(phases)(const snow_value_splat *p, int first,
+                                      int end, const int tile[2],
+                                      snow_value_plane *planes,
+                                      value_room *room, const int channels,
+                                      const bool sloped, const bool eye) {
     int32_t *list = value_slabs(p, room);
     int count = value_list_slabs(p, first, end, tile, list);
     bool drawn = false;
@@ -358,10 +362,11 @@ NAME(phases)(const snow_value_splat *p, int first, int end, const int tile[2],
 
 /* The same of many phases in perspective, slab by slab: their samples'
  * neighbours are of other phases. */
-TARGET static inline __attribute__((always_inline)) bool
-NAME(phases_eye)(const snow_value_splat *p, const int tile[2],
-                 snow_value_plane *planes, value_room *room, const int channels,
-                 const bool sloped) {
+TARGET VALUE_INLINE bool NAME(phases_eye)(const snow_value_splat *p,
+                                          const int tile[2],
+                                          snow_value_plane *planes,
+                                          value_room *room, const int channels,
+                                          const bool sloped) {
     int32_t *list = value_slabs(p, room);
     int count = value_list_slabs(p, 0, p->phases, tile, list);
     bool drawn = false;
@@ -380,9 +385,9 @@ NAME(phases_eye)(const snow_value_splat *p, const int tile[2],
     return drawn;
 }
 
-TARGET static inline __attribute__((always_inline)) bool
-NAME(tile)(const snow_value_splat *p, int x, int y, void *memory,
-           const int channels, const bool sloped, const bool eye) {
+TARGET VALUE_INLINE bool NAME(tile)(const snow_value_splat *p, int x, int y,
+                                    void *memory, const int channels,
+                                    const bool sloped, const bool eye) {
     snow_value_plane *planes = memory;
     value_room *room =
         (value_room *)(void *)((char *)memory + snow_value_planes_bytes(p));
@@ -419,3 +424,10 @@ VALUE_TILE(color_eye, 4, false, true)
 VALUE_TILE(grey_lit_eye, 2, true, true)
 VALUE_TILE(color_lit_eye, 4, true, true)
 #undef VALUE_TILE
+
+snow_value_tile_fn *const NAME(snow_value_tiles)[2][2][2] = {
+    {{NAME(tile_grey), NAME(tile_grey_eye)},
+     {NAME(tile_grey_lit), NAME(tile_grey_lit_eye)}},
+    {{NAME(tile_color), NAME(tile_color_eye)},
+     {NAME(tile_color_lit), NAME(tile_color_lit_eye)}},
+};

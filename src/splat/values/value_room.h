@@ -8,6 +8,15 @@
 #include <math.h>
 #include <string.h>
 
+/* Constants that are handed on make each kind of tile's loops short.  That is a
+ * lot of code: with sanitizers it would take minutes to compile. */
+#ifdef VALUE_INLINE /* by the file */
+#elif defined(SNOW_SANITIZED)
+#define VALUE_INLINE static __attribute__((unused))
+#else
+#define VALUE_INLINE static inline __attribute__((always_inline))
+#endif
+
 /* Rows of a sheet's tile: one more on each side, for gradients. */
 #define SHEET_ROWS (SNOW_VALUE_ROWS + 2)
 
@@ -280,5 +289,13 @@ uint32_t snow_value_own_lanes(const snow_value_splat *splat, int n, int phase,
 /* Alpha and colours of the samples of slabs that are cut. */
 void snow_value_shorten(const snow_value_table *table, value_queue *queue,
                         int count, int channels);
+
+/* --- instruction sets --------------------------------------------------------
+ */
+
+/* By [whether there are four channels][gradients are wanted][perspective]. */
+extern snow_value_tile_fn *const snow_value_tiles_scalar[2][2][2];
+extern snow_value_tile_fn *const snow_value_tiles_avx2[2][2][2];
+extern snow_value_tile_fn *const snow_value_tiles_avx512[2][2][2];
 
 #endif
