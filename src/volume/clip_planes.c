@@ -27,12 +27,20 @@ static void to_index(const snow_volume_info *info, const double plane[4],
     }
 }
 
+/* Slices are at most so many times as far apart as their voxels for method
+ * value (SNOW_VALUE_REACH_MOST). */
+#define APART_MOST 24
+
 /* A ray moves as far aside between two slices as they are apart, in perspective
- * often twice as far; values there and gradients look two voxels on. */
+ * often twice as far; values there and gradients look two voxels on.  Where
+ * slices are farther apart only raycast takes these values, from voxel to
+ * voxel. */
 static void find_reach(const snow_volume_info *info, double reach[3]) {
     const double *s = info->spacing;
-    for (int axis = 0; axis < 3; axis++)
-        reach[axis] = 2 + ceil(2 * fmax(s[0], fmax(s[1], s[2])) / s[axis]);
+    for (int axis = 0; axis < 3; axis++) {
+        double ratio = fmax(s[0], fmax(s[1], s[2])) / s[axis];
+        reach[axis] = ratio <= APART_MOST ? 2 + ceil(2 * ratio) : 3;
+    }
 }
 
 snow_status snow_clip_planes_new(snow_context *context,

@@ -253,6 +253,7 @@ snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
     info.type = snow_masked_type(info.type);
     SNOW_TRY(snow_volume_new(volume->context, &info, &made));
     made->is_part = volume->is_part;
+    made->lost_clip = volume->lost_clip;
     made->part = volume->part;
     made->knows_origin = volume->knows_origin;
     memcpy(made->origin, volume->origin, sizeof made->origin);

@@ -12,7 +12,8 @@ static snow_fetch_params fetch_params(const snow_value_store_params *params,
 }
 
 static size_t line_bytes(const snow_value_store_params *params) {
-    return snow_value_line(params->placement->columns, params->reach + 1) *
+    return snow_value_line(params->placement->columns,
+                           snow_value_margin(params)) *
            sizeof(int16_t);
 }
 
@@ -43,7 +44,7 @@ void snow_value_lines_begin(snow_value_lines *lines,
                                 .rows = rows,
                                 .all_rows = params->placement->rows,
                                 .columns = params->placement->columns,
-                                .margin = params->reach + 1,
+                                .margin = snow_value_margin(params),
                                 .spare = at,
                                 .beside = {at + line, at + 2 * line}};
     unsigned char *room = (unsigned char *)(at + (size_t)count * line);

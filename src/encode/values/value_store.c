@@ -125,7 +125,7 @@ static snow_status begin(store_job *job) {
     s->rows = p->rows;
     s->slices = p->slices;
     s->reach = params->reach;
-    s->margin = params->reach + 1;
+    s->margin = snow_value_margin(params);
     s->run_count = params->run_count;
     memcpy(s->runs, params->runs,
            (size_t)params->run_count * sizeof *params->runs);

@@ -34,7 +34,8 @@
 typedef struct snow_value_store {
     snow_context *context;
     int64_t columns, rows, slices;
-    int reach, margin; /* voxels that a ray moves aside; reach + 1 */
+    int reach;  /* voxels that a ray moves aside */
+    int margin; /* snow_value_margin */
     snow_value_run runs[SNOW_VALUE_RUNS];
     int run_count;
     bool labels; /* numbers are labels */
@@ -78,6 +79,13 @@ typedef struct snow_value_store_params {
     snow_isa isa;           /* resolved */
     int threads;
 } snow_value_store_params;
+
+/* Columns and rows beyond each side: those that rays and gradients reach.  A
+ * single voxel has samples up to half a voxel beyond it besides. */
+static inline int snow_value_margin(const snow_value_store_params *params) {
+    const snow_placement *p = params->placement;
+    return params->reach + 1 + (p->columns == 1 || p->rows == 1);
+}
 
 /* Encodes; buffers are reused.  `store` begins as zeros but for its context.
  * Errors: SNOW_STATUS_BAD_USAGE (a slice of 2^32 voxels or more),

@@ -76,6 +76,7 @@ static void place_fade(const snow_value_params *params, snow_value_path *path) {
     path->fade =
         (snow_value_fade){.transfer = params->transfer,
                           .scale = scale,
+                          .log = scale->log && !path->has_labels,
                           .share = (float)(path->lattice.path /
                                            params->settings->opacity_length)};
     measure(inverse, params->placement,

@@ -2,6 +2,9 @@
 #include "render/value/lattice.h"
 
 #include <math.h>
+
+/* Sheets and their phases are counted in an int. */
+#define SLICES_MOST (1 << 22)
 #include <string.h>
 
 /* World length of a step along an axis. */
@@ -227,6 +230,11 @@ snow_value_lattice_make(snow_context *context, const snow_volume_info *info,
                         snow_quality quality, snow_value_lattice *out) {
     snow_value_lattice l = {.cells = {1, 1}};
     double pixels;
+    if (p->slices > SLICES_MOST)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "%lld slices along this view are too many: the limit "
+                         "is %d; take a view along another axis",
+                         (long long)p->slices, SLICES_MOST);
     SNOW_TRY(measure_density(context, info, view, p, &pixels));
     choose_cells(info, p, quality, pixels, &l);
     choose_sheets(info, p, quality, &l);

@@ -240,7 +240,8 @@ static inline bool NAME(near_holes_eye)(const snow_value_store *s,
     int64_t first = NAME(mask_row)(s, v);
     bool any = false;
     for (int n = 0; s->holes && !any && n < 5; n++)
-        any = NAME(any_cells)(s, s->run_count, slices[n], u, first,
+        any = slices[n] < s->slices &&
+              NAME(any_cells)(s, s->run_count, slices[n], u, first,
                               first + v->at[SNOW_VALUE_LANES - 1]);
     return any;
 }

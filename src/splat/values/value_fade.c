@@ -13,7 +13,7 @@ static double magnitude_of(const float m[6], float u, float v, float p) {
 /* Of a logarithmic scale: the data's for one of the logarithm. */
 static double steepness(const snow_value_fade *fade, int front, int back,
                         int place) {
-    if (!fade->scale->log)
+    if (!fade->log)
         return 1;
     double v = front + (back - front) * (place / 32768.0);
     return log(10) * snow_value_of(fade->scale, v);

@@ -185,6 +185,8 @@ int value_list_slabs(const snow_value_splat *splat, int first, int end,
  */
 static inline bool value_has_holes(const snow_value_store *s, int64_t slice,
                                    value_window w) {
+    if (slice >= s->slices) /* of another part, which gradients need */
+        return false;
     const uint64_t *coarse = s->coarse +
                              snow_value_coarse_at(s, s->run_count, slice) +
                              w.word * s->coarse_words;

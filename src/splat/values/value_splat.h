@@ -99,6 +99,7 @@ typedef struct snow_value_light {
 typedef struct snow_value_fade {
     const snow_transfer *transfer;
     const snow_value_scale14 *scale;
+    bool log;        /* values are logarithms; labels have none */
     float metric[6]; /* |gradient|^2 in data units: uu vv pp uv up vp */
     float share;     /* a slab's length, in reference lengths */
 } snow_value_fade;
