@@ -4,8 +4,9 @@
 #   long     not run by the short tier: it takes long, or repeats with large data
 #            what another test shows with small
 #   late     not run by the short tier either, but under sanitizers by the long
-#            one: the bench program and its tables, the in situ adaptor, numbers
-#            held against a truth, and what another test of the short tier calls
+#            one: the bench program and its tables, the in situ adaptor, the
+#            installed library, numbers held against a truth, and what another
+#            test of the short tier calls
 #   surface  reads what comes from elsewhere: files, recipes, command lines;
 #            run under the address and undefined-behaviour sanitizers by each
 #            tier; all of formats/, and those named here
@@ -15,8 +16,9 @@
 # The sanitized builds of the long tier run all but `long` and `plain`.
 set(SNOW_LABEL_long cli_large simulate mpi_bench mpi_combine mpi_fail mpi_hosts
     mpi_insitu mpi_kill mpi_modes mpi_other mpi_stall)
-set(SNOW_LABEL_late catalyst cli_bench cli_figures cli_measurements mpi_comm
-    oracle_vtk test_model_raycast test_value_truth)
+set(SNOW_LABEL_late catalyst cli_balance cli_bench cli_figures cli_measurements
+    mpi_comm oracle_vtk test_model_raycast test_value_model test_value_truth
+    test_value_views)
 file(GLOB formats CONFIGURE_DEPENDS formats/test_*.c)
 list(TRANSFORM formats REPLACE ".*/(.*)[.]c$" "\\1")
 set(SNOW_LABEL_surface ${formats} test_base test_compare test_convert test_image
