@@ -306,3 +306,25 @@ void value_picture_check_bits(const model_stage *stage, int n,
     free(first);
     check_levels(stage, n, other);
 }
+
+typedef void check_fn(const model_stage *stage, int n,
+                      const value_scene *scene);
+
+static void check_each(int first, int step, value_scene_fn *make,
+                       check_fn *check) {
+    model_stage stage = model_open();
+    for (int n = first; n < VALUE_PICTURES; n += step) {
+        value_scene scene = make(n);
+        check(&stage, n, &scene);
+        value_picture_free(&scene.base);
+    }
+    model_close(&stage);
+}
+
+void value_pictures_check(int first, int step, value_scene_fn *scene) {
+    check_each(first, step, scene, value_picture_check);
+}
+
+void value_pictures_check_bits(int first, int step, value_scene_fn *scene) {
+    check_each(first, step, scene, value_picture_check_bits);
+}

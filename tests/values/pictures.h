@@ -35,6 +35,11 @@ void value_picture_check(const model_stage *stage, int n,
 void value_picture_check_bits(const model_stage *stage, int n,
                               const value_scene *scene);
 
+/* The same of scenes first, first + step and so on, which `scene` makes. */
+typedef value_scene value_scene_fn(int n);
+void value_pictures_check(int first, int step, value_scene_fn *scene);
+void value_pictures_check_bits(int first, int step, value_scene_fn *scene);
+
 /* The test fails, with the scene's number, where a picture is too far from the
  * reference's. */
 void value_picture_compare(int n, const reference_scene *scene,

@@ -13,37 +13,24 @@ static value_scene smoothed(int n) {
 
 static void pictures_are_the_references(void **state) {
     (void)state;
-    model_stage stage = model_open();
-    for (int n = 3; n < VALUE_PICTURES; n += 8 * (int)support_stride(12)) {
-        value_scene scene = smoothed(n);
-        value_picture_check(&stage, n, &scene);
-        value_picture_free(&scene.base);
-    }
-    model_close(&stage);
+    value_pictures_check(3, 8 * (int)support_stride(12), smoothed);
+}
+
+static value_scene punched(int n) {
+    value_scene scene = smoothed(n);
+    value_picture_punch(&scene.base, n);
+    return scene;
 }
 
 /* Also where holes leave less than all weights. */
 static void holes_are_the_references(void **state) {
     (void)state;
-    model_stage stage = model_open();
-    for (int n = 2; n < VALUE_PICTURES; n += 15 * (int)support_stride(12)) {
-        value_scene scene = smoothed(n);
-        value_picture_punch(&scene.base, n);
-        value_picture_check(&stage, n, &scene);
-        value_picture_free(&scene.base);
-    }
-    model_close(&stage);
+    value_pictures_check(2, 15 * (int)support_stride(12), punched);
 }
 
 static void bits_are_the_same(void **state) {
     (void)state;
-    model_stage stage = model_open();
-    for (int n = 4; n < VALUE_PICTURES; n += 23 * (int)support_stride(8)) {
-        value_scene scene = smoothed(n);
-        value_picture_check_bits(&stage, n, &scene);
-        value_picture_free(&scene.base);
-    }
-    model_close(&stage);
+    value_pictures_check_bits(4, 23 * (int)support_stride(8), smoothed);
 }
 
 int main(void) {

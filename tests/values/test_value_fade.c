@@ -23,13 +23,7 @@ static value_scene faded(int n) {
 
 static void pictures_are_the_references(void **state) {
     (void)state;
-    model_stage stage = model_open();
-    for (int n = 1; n < VALUE_PICTURES; n += 7 * (int)support_stride(13)) {
-        value_scene scene = faded(n);
-        value_picture_check(&stage, n, &scene);
-        value_picture_free(&scene.base);
-    }
-    model_close(&stage);
+    value_pictures_check(1, 7 * (int)support_stride(13), faded);
 }
 
 /* A cut takes a part of the length, and the gradient is that of the field. */
@@ -48,13 +42,7 @@ static void cut_slabs_are_the_references(void **state) {
 
 static void bits_are_the_same(void **state) {
     (void)state;
-    model_stage stage = model_open();
-    for (int n = 3; n < VALUE_PICTURES; n += 19 * (int)support_stride(6)) {
-        value_scene scene = faded(n);
-        value_picture_check_bits(&stage, n, &scene);
-        value_picture_free(&scene.base);
-    }
-    model_close(&stage);
+    value_pictures_check_bits(3, 19 * (int)support_stride(6), faded);
 }
 
 int main(void) {
