@@ -223,14 +223,17 @@ static void find_range(value_plan *plan) {
 static void find_visible(const value_plan *plan, double visible[2]) {
     const reference_scene *scene = &plan->scene->base;
     const snow_opacity_point *p = scene->opacities;
+    const snow_color_point *c = scene->colors;
     size_t count = scene->opacity_count;
     double low = INFINITY, high = -INFINITY;
+    double first = fmin(p[0].value, c[0].value);
+    double last = fmax(p[count - 1].value, c[scene->color_count - 1].value);
     for (size_t n = 0; n <= count; n++) {
-        double a = n > 0 ? p[n - 1].value : -INFINITY;
-        double b = n < count ? p[n].value : INFINITY;
+        double a = n > 0 ? p[n - 1].value : first;
+        double b = n < count ? p[n].value : last;
         if (scene->log) {
-            a = n > 0 ? log10(a) : a;
-            b = n < count ? log10(b) : b;
+            a = log10(a);
+            b = log10(b);
         }
         bool seen =
             (n > 0 && p[n - 1].opacity > 0) || (n < count && p[n].opacity > 0);

@@ -166,16 +166,20 @@ static double point_of(const snow_data_range *data, double value) {
     return data->log ? log10(value) : value;
 }
 
-/* The hull of the data's values that have an opacity. */
+/* The hull of the data's values that have an opacity, but for those beyond the
+ * look's points, where it is constant. */
 static void find_visible(const snow_data_range *data,
                          const snow_transfer *transfer, double visible[2]) {
     const snow_opacity_point *p = transfer->opacities;
+    const snow_color_point *c = transfer->colors;
     size_t count = transfer->opacity_count;
+    double first = fmin(p[0].value, c[0].value);
+    double last = fmax(p[count - 1].value, c[transfer->color_count - 1].value);
     visible[0] = INFINITY;
     visible[1] = -INFINITY;
     for (size_t n = 0; n <= count; n++) {
-        double a = n > 0 ? point_of(data, p[n - 1].value) : -INFINITY;
-        double b = n < count ? point_of(data, p[n].value) : INFINITY;
+        double a = point_of(data, n > 0 ? p[n - 1].value : first);
+        double b = point_of(data, n < count ? p[n].value : last);
         bool seen =
             (n > 0 && p[n - 1].opacity > 0) || (n < count && p[n].opacity > 0);
         if (!seen || a > data->high || b < data->low)
