@@ -2,6 +2,7 @@
  * value model, and what must not change a bit of its pictures. */
 #include <math.h>
 
+#include "classify/values/value_range.h"
 #include "frame.h"
 #include "reference/model.h"
 #include "simd/isa.h"
@@ -235,6 +236,25 @@ static void odd_volumes_are_drawn(void **state) {
     model_close(&stage);
 }
 
+/* One voxel of 3e38, and a look that is visible to its end. */
+static void far_values_of_a_constant_look_take_no_numbers(void **state) {
+    (void)state;
+    const snow_color_point colors[] = {{2, 0, 0, 0}, {110, 1, 1, 1}};
+    const snow_opacity_point opacities[] = {{18, 0}, {100, 0.7}};
+    const snow_data_range data = {.low = -5, .high = 3e38};
+    snow_context *context = NULL;
+    snow_transfer *transfer = NULL;
+    assert_int_equal(snow_context_new(NULL, &context), SNOW_STATUS_OK);
+    assert_int_equal(
+        snow_transfer_new(context, colors, 2, opacities, 2, &transfer),
+        SNOW_STATUS_OK);
+    snow_value_scale14 scale = snow_value_scale_of(&data, transfer);
+    assert_near(scale.low, -5, 1e-9);
+    assert_near(scale.high, 110 + 4 * (110 - 18), 1e-9);
+    snow_transfer_free(transfer);
+    snow_context_free(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_are_the_references),
@@ -244,6 +264,7 @@ int main(void) {
         cmocka_unit_test(what_it_does_not_draw_is_refused),
         cmocka_unit_test(volumes_that_it_does_not_draw_are_refused),
         cmocka_unit_test(odd_volumes_are_drawn),
+        cmocka_unit_test(far_values_of_a_constant_look_take_no_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -463,8 +463,11 @@ static inline void NAME(ask_eye)(const snow_value_splat *p, int n, int phase,
     const snow_value_store *s = p->store;
     const snow_value_lanes *u = value_lanes_of(p->rays, n, phase, 0, tile[0]);
     const snow_value_lanes *v = value_lanes_of(p->rays, n, phase, 1, tile[1]);
-    const int64_t *slice = snow_value_at(s, p->sheets[n].slice);
-    int64_t next = p->sheets[n].half ? s->rows + 2 * s->margin : 0;
+    const snow_value_sheet *sheet = p->sheets + n;
+    if (sheet->slice < 0 || sheet->slice + sheet->half >= s->slices)
+        return; /* of another part */
+    const int64_t *slice = snow_value_at(s, sheet->slice);
+    int64_t next = sheet->half ? s->rows + 2 * s->margin : 0;
     if (asked->sheet != n)
         *asked = (value_asked){.sheet = n};
     rows &= ~asked->rows;
