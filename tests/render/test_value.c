@@ -248,7 +248,8 @@ static void far_values_of_a_constant_look_take_no_numbers(void **state) {
     assert_int_equal(
         snow_transfer_new(context, colors, 2, opacities, 2, &transfer),
         SNOW_STATUS_OK);
-    snow_value_scale14 scale = snow_value_scale_of(&data, transfer);
+    const snow_volume_info floats = {.type = SNOW_TYPE_FLOAT32, .slope = 1};
+    snow_value_scale14 scale = snow_value_scale_of(&data, transfer, &floats);
     assert_near(scale.low, -5, 1e-9);
     assert_near(scale.high, 110 + 4 * (110 - 18), 1e-9);
     snow_transfer_free(transfer);

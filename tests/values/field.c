@@ -30,9 +30,31 @@ int value_weight(double part) {
 
 /* --- voxels --------------------------------------------------------------- */
 
+value_rule value_rule_of(int steps) {
+    value_rule rule = {VALUE_MOST / steps, 1, 32768};
+    if (steps <= 2047)
+        return rule;
+    rule.factor = 1;
+    rule.divisor = steps >= 32768 ? 2 : 1;
+    while (steps * rule.factor * 2 / rule.divisor < 32768)
+        rule.factor *= 2;
+    rule.weight =
+        (int64_t)VALUE_MOST * 32768 / (steps * rule.factor / rule.divisor);
+    return rule;
+}
+
+static int whole_code(const value_plan *plan, double value) {
+    value_rule rule = value_rule_of(plan->natives);
+    double n = rint((value - plan->low) / plan->step);
+    int64_t t = (int64_t)fmin(fmax(n, 0), plan->natives) * rule.factor;
+    return value_scale(t / rule.divisor, (int)rule.weight);
+}
+
 static int code_of(const value_plan *plan, double value) {
     if (isnan(value))
         return VALUE_HOLE;
+    if (plan->natives)
+        return whole_code(plan, value);
     if (!(plan->high > plan->low))
         return 0;
     value = fmin(fmax(value, plan->low), plan->high);

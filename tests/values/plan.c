@@ -257,6 +257,25 @@ static void narrow_range(value_plan *plan) {
     plan->high = fmin(plan->high, visible[1] + 4 * length);
 }
 
+/* Of integers the ends are some, and `high` is where the rule has 16383. */
+static void take_integers(value_plan *plan) {
+    const snow_volume_info *info = &plan->scene->base.info;
+    const double slope = fabs(info->slope), zero = info->intercept;
+    if (snow_type_size(info->type) > 2 || plan->scene->base.log ||
+        plan->scene->labels || plan->scene->clip_count)
+        return;
+    double low = floor((plan->low - zero) / slope + 1e-6);
+    double high = ceil((plan->high - zero) / slope - 1e-6);
+    if (!(high > low))
+        return;
+    plan->natives = (int)(high - low);
+    plan->step = slope;
+    value_rule rule = value_rule_of(plan->natives);
+    plan->low = low * slope + zero;
+    plan->high = plan->low + slope * VALUE_MOST * 32768 * (double)rule.divisor /
+                                 ((double)rule.factor * (double)rule.weight);
+}
+
 /* The steepest part of the look, in nodes of a table that are evenly placed:
  * the shortest way between two points of different opacity, steps left out. */
 static double steepest(const value_plan *plan) {
@@ -280,6 +299,7 @@ static void choose_table(value_plan *plan) {
     if (plan->scene->base.settings.mode != SNOW_MODE_OVER)
         return;
     narrow_range(plan);
+    take_integers(plan);
     plan->measured = steepest(plan) < 4;
 }
 

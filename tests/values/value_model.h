@@ -57,6 +57,8 @@ typedef struct value_plan {
     int halvings;     /* of the lattice image by boxes, before the warp */
     int mean;         /* samples a side of a pixel */
     double low, high; /* data values of V = 0 and V = 16383 */
+    int natives;      /* of integers: steps from low to the highest */
+    double step;      /* of a native value, in data units */
     double path;      /* world length of a slab in the table */
     bool plain_fade;  /* experiments only: gradient opacity as a factor */
     bool exact_cut;   /* experiments only: values at cuts from the voxels */
@@ -69,6 +71,14 @@ bool value_plan_of(const value_scene *scene, value_plan *plan);
 /* The choices that depend on others, after a change of sheets or low, high. */
 void value_plan_sheets(value_plan *plan, int halves);
 double value_plan_path(const value_plan *plan);
+
+/* How integers become numbers: V of step n is (t weight + 2^14) / 2^15, rounded
+ * down, with t = n factor / divisor. */
+typedef struct value_rule {
+    int64_t factor, divisor, weight;
+} value_rule;
+
+value_rule value_rule_of(int steps);
 
 /* An entry of the table: 15 bits each, in units of the table, and the place of
  * the opacity in sixteenths of the slab. */

@@ -189,201 +189,63 @@ static void find_visible(const snow_data_range *data,
     }
 }
 
+/* The rule for natives bottom .. top, which are different; *unit is the data
+ * value of a number. */
+static snow_value_rule rule_of(int32_t bottom, int32_t top, double slope,
+                               double *unit) {
+    snow_value_rule rule = {.bottom = bottom, .top = top, .weight = INT16_MAX};
+    int32_t range = top - bottom, first = slope < 0 ? top : bottom;
+    int32_t factor = range <= 2047 ? SNOW_VALUE_MOST / range : 1;
+    *unit = fabs(slope) / factor;
+    if (range > 2047) {
+        while (range * factor * 2 < 32768)
+            factor *= 2;
+        rule.shift = range >= 32768;
+        int32_t most = range * factor >> rule.shift;
+        rule.weight = (int16_t)(SNOW_VALUE_MOST * 32768 / most);
+        *unit = fabs(slope) * 32768 * (1 << rule.shift) /
+                ((double)rule.weight * factor);
+    }
+    factor = slope < 0 ? -factor : factor;
+    rule.factor = (uint16_t)factor;
+    rule.offset = (uint16_t)(-first * factor);
+    return rule;
+}
+
+/* The scale of integers, from that of all numbers. */
+static void make_whole(snow_value_scale14 *scale,
+                       const snow_volume_info *info) {
+    double a = (scale->low - info->intercept) / info->slope, unit;
+    double b = (scale->high - info->intercept) / info->slope;
+    int32_t bottom = (int32_t)floor(fmin(a, b) + 1e-6);
+    int32_t top = (int32_t)ceil(fmax(a, b) - 1e-6);
+    if (top <= bottom)
+        return;
+    scale->whole = true;
+    scale->rule = rule_of(bottom, top, info->slope, &unit);
+    scale->low =
+        info->slope * (info->slope < 0 ? top : bottom) + info->intercept;
+    scale->high = scale->low + SNOW_VALUE_MOST * unit;
+}
+
 snow_value_scale14 snow_value_scale_of(const snow_data_range *data,
-                                       const snow_transfer *transfer) {
-    snow_value_scale14 scale = {data->low, data->high, data->log};
+                                       const snow_transfer *transfer,
+                                       const snow_volume_info *info) {
+    snow_value_scale14 scale = {
+        .low = data->low, .high = data->high, .log = data->log};
     double visible[2];
     find_visible(data, transfer, visible);
     double length = visible[1] - visible[0];
-    if (!(length > 0) || length * 64 >= data->high - data->low)
-        return scale;
-    scale.low = fmax(data->low, visible[0] - 4 * length);
-    scale.high = fmin(data->high, visible[1] + 4 * length);
+    if (length > 0 && length * 64 < data->high - data->low) {
+        scale.low = fmax(data->low, visible[0] - 4 * length);
+        scale.high = fmin(data->high, visible[1] + 4 * length);
+    }
+    if (snow_type_size(info->type) <= 2 && !data->log)
+        make_whole(&scale, info);
     return scale;
-}
-
-/* --- numbers ----------------------------------------------------------------
- */
-
-/* To the nearest integer, halves to the even one: adding this leaves no bit for
- * fractions. */
-static inline double nearest(double x) {
-    const double big = 0x1.8p52;
-    return x + big - big;
-}
-
-static inline int16_t number_of(double low, double high, double value) {
-    value = value < low ? low : value;
-    value = value > high ? high : value;
-    return (int16_t)(int)nearest((value - low) * SNOW_VALUE_MOST /
-                                 (high - low));
-}
-
-int16_t snow_value_number(const snow_value_scale14 *scale, double value) {
-    if (isnan(value) || (scale->log && !(value > 0)))
-        return SNOW_VALUE_HOLE;
-    if (!(scale->high > scale->low))
-        return 0;
-    return number_of(scale->low, scale->high,
-                     scale->log ? log10(value) : value);
 }
 
 double snow_value_of(const snow_value_scale14 *scale, double v) {
     double x = scale->low + v * (scale->high - scale->low) / SNOW_VALUE_MOST;
     return scale->log ? pow(10, x) : x;
-}
-
-/* The number of a data value, or of the label that it is. */
-static int16_t coded(const snow_value_coder *coder, double value) {
-    int low = 0, high = coder->name_count;
-    if (!coder->names)
-        return snow_value_number(&coder->scale, value);
-    while (low < high) {
-        int middle = (low + high) / 2;
-        if (coder->names[middle] < value)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return (int16_t)low;
-}
-
-static bool is_wide(snow_type type) {
-    return snow_type_size(type) > 2;
-}
-
-/* The number at a place of a straight table: vectors compute it sooner than
- * they load it. */
-static inline int16_t straight_number(const snow_value_coder *coder,
-                                      uint8_t place) {
-    place = place > coder->first ? place : coder->first;
-    place = place < coder->last ? place : coder->last;
-    uint16_t n = (uint16_t)(place - coder->first);
-    uint32_t part = (uint32_t)n * coder->part;
-    return (int16_t)(uint16_t)(n * coder->whole + (part >> 16) +
-                               ((uint16_t)part >> 15));
-}
-
-static bool find_straight(snow_value_coder *coder) {
-    const int16_t *numbers = coder->numbers;
-    int first = 0, last = 255;
-    while (first < 255 && numbers[first + 1] == 0)
-        first++;
-    while (last > first && numbers[last - 1] == SNOW_VALUE_MOST)
-        last--;
-    double slope = (double)SNOW_VALUE_MOST / (last > first ? last - first : 1);
-    coder->first = (uint8_t)first;
-    coder->last = (uint8_t)last;
-    coder->whole = (uint16_t)slope;
-    coder->part = (uint16_t)((slope - floor(slope)) * 65536 + 0.5);
-    for (int n = 0; n < 256; n++)
-        if (straight_number(coder, (uint8_t)n) != numbers[n])
-            return false;
-    return true;
-}
-
-snow_status snow_value_coder_make(const snow_volume *volume,
-                                  const snow_value_scale14 *scale,
-                                  snow_value_coder *coder) {
-    const snow_volume_info *info = &volume->info;
-    size_t count = (size_t)1 << 8 * (snow_type_size(info->type) & 3);
-    coder->scale = *scale;
-    coder->type = info->type;
-    coder->slope = info->slope;
-    coder->intercept = info->intercept;
-    coder->straight = false;
-    if (is_wide(info->type))
-        return SNOW_STATUS_OK;
-    SNOW_TRY(snow_reserve(volume->context, &coder->numbers, &coder->capacity, 0,
-                          count * sizeof *coder->numbers));
-    coder->lowest = info->type == SNOW_TYPE_INT8    ? INT8_MIN
-                    : info->type == SNOW_TYPE_INT16 ? INT16_MIN
-                                                    : 0;
-    for (size_t n = 0; n < count; n++)
-        coder->numbers[n] =
-            coded(coder, info->slope * (double)((int32_t)n + coder->lowest) +
-                             info->intercept);
-    coder->straight = snow_type_size(info->type) == 1 && find_straight(coder);
-    return SNOW_STATUS_OK;
-}
-
-void snow_value_coder_fini(snow_context *context, snow_value_coder *coder) {
-    snow_release(context, coder->numbers);
-    *coder = (snow_value_coder){0};
-}
-
-/* Native values of 8 bits; those with a sign lie `flip` from their places. */
-static void code_straight(const snow_value_coder *all, const uint8_t *natives,
-                          size_t count, int16_t *restrict out) {
-    const snow_value_coder coder = *all;
-    const uint8_t flip = coder.type == SNOW_TYPE_INT8 ? 0x80 : 0;
-    for (size_t n = 0; n < count; n++)
-        out[n] = straight_number(&coder, natives[n] ^ flip);
-}
-
-#define CODE_NARROW(name, type)                                                \
-    static void code_##name(const snow_value_coder *coder,                     \
-                            const type *natives, size_t count, int16_t *out) { \
-        const int16_t *numbers = coder->numbers - coder->lowest;               \
-        for (size_t n = 0; n < count; n++)                                     \
-            out[n] = numbers[natives[n]];                                      \
-    }
-
-CODE_NARROW(INT8, int8_t)
-CODE_NARROW(UINT8, uint8_t)
-CODE_NARROW(INT16, int16_t)
-CODE_NARROW(UINT16, uint16_t)
-
-#define CODE_WIDE(name, type)                                                  \
-    static void code_##name(const snow_value_coder *coder,                     \
-                            const type *natives, size_t count, int16_t *out) { \
-        const snow_value_scale14 scale = coder->scale;                         \
-        const double slope = coder->slope, intercept = coder->intercept;       \
-        const bool plain =                                                     \
-            scale.high > scale.low && !scale.log && !coder->names;             \
-        for (size_t n = 0; n < count; n++) {                                   \
-            double value = slope * (double)natives[n] + intercept;             \
-            out[n] = plain && value == value                                   \
-                         ? number_of(scale.low, scale.high, value)             \
-                         : coded(coder, value);                                \
-        }                                                                      \
-    }
-
-CODE_WIDE(INT32, int32_t)
-CODE_WIDE(UINT32, uint32_t)
-CODE_WIDE(INT64, int64_t)
-CODE_WIDE(UINT64, uint64_t)
-CODE_WIDE(FLOAT32, float)
-CODE_WIDE(FLOAT64, double)
-
-void snow_value_code_row(const snow_value_coder *coder, const void *natives,
-                         size_t count, int16_t *out) {
-    if (coder->straight) {
-        code_straight(coder, natives, count, out);
-        return;
-    }
-    switch (coder->type) {
-#define CODE_CASE(name, type, text)              \
-    case SNOW_TYPE_##name:                       \
-        code_##name(coder, natives, count, out); \
-        break;
-        SNOW_TYPE_MAP(CODE_CASE)
-#undef CODE_CASE
-    case SNOW_TYPE_NONE:
-        break;
-    }
-}
-
-void snow_value_code_clipped(const snow_value_coder *coder,
-                             const snow_volume *volume, const int64_t at[3],
-                             int axis, size_t count, int16_t *out) {
-    int64_t here[3] = {at[0], at[1], at[2]};
-    for (size_t n = 0; n < count; n++, here[axis]++) {
-        if (out[n] != SNOW_VALUE_HOLE)
-            continue;
-        double native =
-            snow_clip_planes_value_at(volume->clip, volume->info.dims, here);
-        out[n] = snow_value_number(&coder->scale,
-                                   coder->slope * native + coder->intercept);
-    }
 }

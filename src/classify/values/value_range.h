@@ -22,67 +22,53 @@ typedef struct snow_data_range {
 snow_status snow_data_range_measure(const snow_volume *volume, bool log,
                                     int threads, snow_data_range *out);
 
+/* Integers of 8 and 16 bits become numbers by a multiplication, which vectors
+ * do in registers.  Native value n, clamped to bottom .. top, is
+ *
+ *     t = ((n factor + offset) mod 2^16) >> shift
+ *     V = (t weight + 2^14) >> 15
+ *
+ * With R = top - bottom up to 2047 V is k (n - bottom), k the whole part of
+ * SNOW_VALUE_MOST / R: t is that, and the weight keeps it as it is.  With a
+ * larger R t is n - bottom times the largest power of 2 that leaves it below
+ * 2^15, and V at most SNOW_VALUE_MOST.  Where the slope is negative it is top -
+ * n. */
+typedef struct snow_value_rule {
+    int32_t bottom, top;
+    uint16_t factor, offset;
+    int16_t shift, weight;
+} snow_value_rule;
+
+static inline int16_t snow_value_by_rule(const snow_value_rule *rule,
+                                         int32_t native) {
+    uint16_t t = (uint16_t)((uint32_t)native * rule->factor + rule->offset);
+    return (int16_t)(((t >> rule->shift) * rule->weight + 0x4000) >> 15);
+}
+
 /* Number V stands for the data value low + V (high - low) / SNOW_VALUE_MOST, or
  * for its decimal logarithm; values beyond the ends are clamped. */
 typedef struct snow_value_scale14 {
     double low, high;
     bool log;
+    bool whole; /* numbers are made by the rule */
+    snow_value_rule rule;
 } snow_value_scale14;
 
 static inline bool snow_value_same_scale(const snow_value_scale14 *a,
                                          const snow_value_scale14 *b) {
-    return a->low == b->low && a->high == b->high && a->log == b->log;
+    return a->low == b->low && a->high == b->high && a->log == b->log &&
+           a->whole == b->whole && a->rule.bottom == b->rule.bottom &&
+           a->rule.top == b->rule.top;
 }
 
 /* The scale of a look: all of the data, or, where the look shows less than 1/64
- * of that, what it shows, widened by four times its length on each side. */
+ * of that, what it shows, widened by four times its length on each side.  Of
+ * integers it ends at one, and `high` is where the rule has SNOW_VALUE_MOST. */
 snow_value_scale14 snow_value_scale_of(const snow_data_range *data,
-                                       const snow_transfer *transfer);
+                                       const snow_transfer *transfer,
+                                       const snow_volume_info *info);
 
-/* The number of a data value, and the data value of any number V. */
-int16_t snow_value_number(const snow_value_scale14 *scale, double value);
+/* The data value of any number V. */
 double snow_value_of(const snow_value_scale14 *scale, double v);
-
-/* The number beyond a side of the volume: the odd reflection of the one
- * inside, if both are there, else that at the side; of labels the latter. */
-static inline int16_t snow_value_beyond(int16_t side, int16_t inside,
-                                        bool labels) {
-    bool odd = !labels && side != SNOW_VALUE_HOLE && inside != SNOW_VALUE_HOLE;
-    return (int16_t)(odd ? 2 * side - inside : side);
-}
-
-/* A converter of native values of one type. */
-typedef struct snow_value_coder {
-    snow_value_scale14 scale;
-    snow_type type;
-    double slope, intercept;
-    int32_t lowest;   /* native value of the table's first number */
-    int16_t *numbers; /* of types of 8 and 16 bits: by native value */
-    /* Of 8 bits, where the table is a straight line between two places. */
-    bool straight;
-    uint8_t first, last;  /* places in the table */
-    uint16_t whole, part; /* its slope, the latter of 2^16 */
-    const double *names; /* of labels, rising: a number is a place among them */
-    int name_count;
-    size_t capacity; /* bytes */
-} snow_value_coder;
-
-/* `coder` begins as zeros or was made before; its names are set by the caller.
- * Errors: SNOW_STATUS_NO_MEMORY.  Free with snow_value_coder_fini. */
-snow_status snow_value_coder_make(const snow_volume *volume,
-                                  const snow_value_scale14 *scale,
-                                  snow_value_coder *coder);
-void snow_value_coder_fini(snow_context *context, snow_value_coder *coder);
-
-/* The numbers of `count` native values in a row. */
-void snow_value_code_row(const snow_value_coder *coder, const void *natives,
-                         size_t count, int16_t *out);
-
-/* The same of voxels that clip planes have left out: where a slab that is seen
- * may read them they have their values still, and are no holes.  `count` voxels
- * along `axis`, the first at `at`. */
-void snow_value_code_clipped(const snow_value_coder *coder,
-                             const snow_volume *volume, const int64_t at[3],
-                             int axis, size_t count, int16_t *out);
 
 #endif

@@ -17,7 +17,7 @@
 #ifndef SNOW_ENCODE_VALUE_STORE_H
 #define SNOW_ENCODE_VALUE_STORE_H
 
-#include "classify/values/value_range.h"
+#include "classify/values/value_coder.h"
 #include "classify/values/value_table.h"
 #include "encode/encode.h"
 #include "transform/transform.h"

@@ -144,7 +144,8 @@ static snow_status make_table(snow_value_path *path,
     bool high = s->quality == SNOW_QUALITY_HIGH;
     const snow_value_look look = {
         .transfer = params->transfer,
-        .scale = snow_value_scale_of(&path->range, params->transfer),
+        .scale = snow_value_scale_of(&path->range, params->transfer,
+                                     &params->volume->info),
         .threshold = s->threshold,
         .exponent = path->lattice.path / s->opacity_length,
         .nodes = high ? 256 : 129,
