@@ -3,8 +3,8 @@
 
 /* Without branches, so that compilers can vectorize it. Values are never
  * negative; an image begins as zeros. */
-static void keep_largest(float *restrict image, const float *restrict sheet,
-                         size_t count) {
+void snow_keep_largest(float *restrict image, const float *restrict sheet,
+                       size_t count) {
     for (size_t i = 0; i < count; i++) {
         bool known = sheet[2 * i + 1] >= SNOW_WEIGHT_ENOUGH;
         float weight = known ? sheet[2 * i + 1] : 1;
@@ -14,13 +14,13 @@ static void keep_largest(float *restrict image, const float *restrict sheet,
     }
 }
 
-static void add_up(float *restrict image, const float *restrict sheet,
-                   size_t count) {
+void snow_add_up(float *restrict image, const float *restrict sheet,
+                 size_t count) {
     for (size_t i = 0; i < 2 * count; i++)
         image[i] += sheet[i];
 }
 
 snow_composite_fn *snow_projection_op_of(snow_mode mode) {
-    return mode == SNOW_MODE_MIP || mode == SNOW_MODE_MINIP ? keep_largest
-                                                            : add_up;
+    return mode == SNOW_MODE_MIP || mode == SNOW_MODE_MINIP ? snow_keep_largest
+                                                            : snow_add_up;
 }

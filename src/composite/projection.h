@@ -18,7 +18,11 @@
  * rounding has no effect in the many views where a weight is exactly 1/2. */
 #define SNOW_WEIGHT_ENOUGH 0.499f
 
-/* The loop of a mode other than over and iso, for two channels. */
+/* The loops, and that of a mode other than over and iso, for two channels. */
+void snow_keep_largest(float *restrict image, const float *restrict sheet,
+                       size_t count);
+void snow_add_up(float *restrict image, const float *restrict sheet,
+                 size_t count);
 snow_composite_fn *snow_projection_op_of(snow_mode mode);
 
 #endif

@@ -65,12 +65,14 @@ static snow_status measure_values(snow_flight *f, snow_data_range *range) {
     const snow_extent *part = &f->part;
     const snow_job *job = &f->picture.job;
     snow_frame *frame = f->picture.frame;
+    const snow_transfer *look =
+        job->settings.mode == SNOW_MODE_OVER ? job->transfer : NULL;
     *range = (snow_data_range){
-        .low = INFINITY, .high = -INFINITY, .log = job->transfer->log};
+        .low = INFINITY, .high = -INFINITY, .log = look && look->log};
     SNOW_TRY(snow_value_path_new(frame->context, &frame->value_path));
     if (!part->count[0] || !part->count[1] || !part->count[2])
         return SNOW_STATUS_OK;
-    return snow_value_measure(frame->value_path, job->volume, job->transfer,
+    return snow_value_measure(frame->value_path, job->volume, look,
                               job->settings.threads, range);
 }
 

@@ -194,7 +194,7 @@ static snow_status synchronize(snow_picture *p, snow_status status) {
     bool new_parts;
     SNOW_TRY(synchronize_all(f, status, &new_parts));
     if (p->job.settings.mode != SNOW_MODE_OVER)
-        return snow_flight_agree_range(f);
+        SNOW_TRY(snow_flight_agree_range(f));
     return p->job.settings.method == SNOW_METHOD_VALUE
                ? snow_flight_agree_values(f)
                : SNOW_STATUS_OK;

@@ -29,9 +29,10 @@ static snow_status find_values(snow_picture *p) {
     snow_frame *frame = p->frame;
     snow_data_range range;
     SNOW_TRY(snow_value_path_new(frame->context, &frame->value_path));
-    SNOW_TRY(snow_value_measure(frame->value_path, p->job.volume,
-                                p->job.transfer, p->job.settings.threads,
-                                &range));
+    SNOW_TRY(snow_value_measure(
+        frame->value_path, p->job.volume,
+        p->job.settings.mode == SNOW_MODE_OVER ? p->job.transfer : NULL,
+        p->job.settings.threads, &range));
     snow_value_set_range(frame->value_path, &range);
     return SNOW_STATUS_OK;
 }
@@ -81,10 +82,15 @@ static snow_status make_image(snow_picture *p) {
                           p->job.channels, &p->image);
 }
 
+/* Whether pairs are warped when they are painted, line by line. */
+static bool warps_lines(const snow_picture *p) {
+    return p->pass->method->warps && !p->pass->method->show;
+}
+
 /* Pairs become the image when they are shown. */
 static snow_status place_pairs(snow_picture *p) {
     const snow_job *job = &p->pass->job;
-    bool warps = p->pass->method->warps;
+    bool warps = warps_lines(p);
     size_t line = snow_job_bytes(job) / (size_t)p->view.height;
     size_t lines = (size_t)(warps ? job->settings.threads : p->view.height);
     return take_layer(p, line * lines, !warps);
@@ -195,8 +201,10 @@ static snow_status warp(snow_picture *p) {
 }
 
 static snow_status paint(snow_picture *p) {
-    bool warps = p->pass->method->warps;
+    bool warps = warps_lines(p);
     double mark = snow_seconds();
+    if (p->pass->method->show)
+        SNOW_TRY(p->pass->method->show(p, &p->pass->job));
     SNOW_TRY(snow_modes_paint(p->frame, &p->job, warps ? &p->local.image : NULL,
                               p->local.pixels, &p->image));
     if (warps)

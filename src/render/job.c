@@ -62,16 +62,6 @@ static snow_status check_raycast(const snow_job *job) {
     return SNOW_STATUS_OK;
 }
 
-static snow_status check_value(const snow_job *job) {
-    const snow_value_params params = {.volume = job->volume,
-                                      .transfer = job->transfer,
-                                      .settings = &job->settings,
-                                      .placement = &job->placement};
-    return job->settings.method == SNOW_METHOD_VALUE
-               ? snow_value_check(job->context, &params)
-               : SNOW_STATUS_OK;
-}
-
 /* What the kernel has to know of a level. */
 static void set_level(const snow_volume *volume, snow_placement *p) {
     if (volume->fine[0] == 0)
@@ -97,7 +87,8 @@ static snow_status place_slab(snow_job *job, int parts, int part) {
     SNOW_TRY(check_stream(job, parts));
     cut_slab(job, parts, part);
     SNOW_TRY(check_raycast(job));
-    SNOW_TRY(check_value(job));
+    if (job->settings.method == SNOW_METHOD_VALUE)
+        SNOW_TRY(snow_value_check(job->context, &job->settings));
     return check_part(job);
 }
 

@@ -11,6 +11,7 @@
  *   V(row_and)(a, b), V(row_or)
  *   V(row_srl)(a, bits), V(row_sll)        unsigned
  *   V(row_gt)(a, b)               a bit for each number where a > b
+ *   V(row_choose)(mask, a, b)     a where a bit is set, else b
  *   V(row_compress)(p, a, mask)   numbers whose bits are set, to p; may write
  * 32 V(row_expand)(p, mask)        the next of the numbers at p where a bit is
  *                                 set, else 0; may read 32

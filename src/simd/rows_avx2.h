@@ -71,6 +71,23 @@ SNOW_AVX2_INLINE uint32_t snow_avx2_row_gt(snow_avx2_row a, snow_avx2_row b) {
  * kept ones come from. */
 extern const uint8_t snow_rows_compress[256][16], snow_rows_expand[256][16];
 
+/* All ones in each of 16 numbers whose bit is set. */
+SNOW_AVX2_INLINE __m256i snow_avx2_lanes(uint32_t mask) {
+    const __m256i bits =
+        _mm256_set_epi16(INT16_MIN, 0x4000, 0x2000, 0x1000, 0x800, 0x400, 0x200,
+                         0x100, 0x80, 0x40, 0x20, 0x10, 8, 4, 2, 1);
+    __m256i all = _mm256_set1_epi16((int16_t)(uint16_t)mask);
+    return _mm256_cmpeq_epi16(_mm256_and_si256(all, bits), bits);
+}
+
+SNOW_AVX2_INLINE snow_avx2_row snow_avx2_row_choose(uint32_t mask,
+                                                    snow_avx2_row a,
+                                                    snow_avx2_row b) {
+    return (snow_avx2_row){
+        _mm256_blendv_epi8(b.low, a.low, snow_avx2_lanes(mask)),
+        _mm256_blendv_epi8(b.high, a.high, snow_avx2_lanes(mask >> 16))};
+}
+
 SNOW_AVX2_INLINE __m128i snow_avx2_bytes(const uint8_t table[16]) {
     return _mm_load_si128((const __m128i *)(const void *)table);
 }

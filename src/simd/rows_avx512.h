@@ -57,6 +57,12 @@ SNOW_AVX512_INLINE uint32_t snow_avx512_row_gt(snow_avx512_row a,
     return _mm512_cmpgt_epi16_mask(a, b);
 }
 
+SNOW_AVX512_INLINE snow_avx512_row snow_avx512_row_choose(uint32_t mask,
+                                                          snow_avx512_row a,
+                                                          snow_avx512_row b) {
+    return _mm512_mask_blend_epi16(mask, b, a);
+}
+
 /* In a register, for compressing to memory is slow on some machines. */
 SNOW_AVX512_INLINE void snow_avx512_row_compress(int16_t *p, snow_avx512_row a,
                                                  uint32_t mask) {

@@ -80,6 +80,16 @@ static inline uint32_t snow_scalar_row_gt(snow_scalar_row a,
     return mask;
 }
 
+static inline snow_scalar_row
+snow_scalar_row_choose(uint32_t mask, snow_scalar_row a, snow_scalar_row b) {
+    int16_t x[32], y[32];
+    memcpy(x, &a, sizeof x);
+    memcpy(y, &b, sizeof y);
+    for (int n = 0; n < 32; n++)
+        x[n] = mask >> n & 1 ? x[n] : y[n];
+    return snow_scalar_row_load(x);
+}
+
 static inline void snow_scalar_row_compress(int16_t *p, snow_scalar_row a,
                                             uint32_t mask) {
     int16_t x[32];

@@ -194,6 +194,8 @@ double play_gap(const play *p, const float *serial) {
     double most = 0;
     for (size_t n = 0; n < play_floats(p); n++) {
         double gap = fabs((double)p->picture[n] - (double)serial[n]);
+        if (isnan(p->picture[n]) && isnan(serial[n])) /* no value */
+            continue;
         most = gap <= most ? most : gap;
     }
     return most;

@@ -79,7 +79,7 @@ double value_data(const value_scene *scene, const int64_t at[3]) {
     const snow_volume_info *info = &scene->base.info;
     double native = reference_native(&scene->base, at[0], at[1], at[2]);
     double value = info->slope * native + info->intercept;
-    if (!scene->base.log)
+    if (!scene->base.log || scene->base.settings.mode != SNOW_MODE_OVER)
         return value;
     return value > 0 ? log10(value) : (double)NAN;
 }
@@ -89,8 +89,6 @@ void value_field_make(const value_plan *plan, value_field *field) {
     size_t count = (size_t)n[0] * (size_t)n[1] * (size_t)n[2], to = 0;
     *field = (value_field){.plan = plan, .member = -1};
     field->codes = calloc(count, sizeof *field->codes);
-    if (plan->scene->base.settings.mode != SNOW_MODE_OVER)
-        field->data = calloc(count, sizeof *field->data);
     for (int64_t p = 0; p < n[2]; p++)
         for (int64_t v = 0; v < n[1]; v++)
             for (int64_t u = 0; u < n[0]; u++, to++) {
@@ -101,16 +99,11 @@ void value_field_make(const value_plan *plan, value_field *field) {
                 double value = value_data(plan->scene, at);
                 field->codes[to] = plan->scene->labels ? number_of(field, value)
                                                        : code_of(plan, value);
-                if (field->data)
-                    field->data[to] =
-                        isnan(value) ? value
-                                     : fmin(fmax(value, plan->low), plan->high);
             }
 }
 
 void value_field_free(value_field *field) {
     free(field->codes);
-    free(field->data);
     free(field->names);
 }
 
@@ -246,49 +239,6 @@ int value_sheet(const value_field *field, int sheet, double u, double v) {
     }
     return weighed(value_between(row[0], row[1], wv),
                    value_between(weight[0], weight[1], wv));
-}
-
-static double data_at(const value_field *field, int64_t i, int64_t j,
-                      const int64_t k[2]) {
-    return (field->data[offset(field->plan, i, j, k[0])] +
-            field->data[offset(field->plan, i, j, k[1])]) /
-           2;
-}
-
-/* Odd reflection by one voxel along both axes: here nothing overflows. */
-static double data_voxel(const value_field *field, const int64_t k[2],
-                         int64_t i, int64_t j) {
-    const int64_t *n = field->plan->dims;
-    int64_t u = i < 0 ? 0 : i >= n[0] ? n[0] - 1 : i;
-    int64_t v = j < 0 ? 0 : j >= n[1] ? n[1] - 1 : j;
-    double border = data_at(field, u, v, k), inside = (double)NAN;
-    if (u == i && v == j)
-        return border;
-    if (u != i) {
-        border = data_voxel(field, k, u, j);
-        inside = data_voxel(field, k, n[0] == 1 ? u : i < 0 ? 1 : n[0] - 2, j);
-    } else {
-        inside = data_at(field, u, n[1] == 1 ? v : j < 0 ? 1 : n[1] - 2, k);
-    }
-    return isnan(inside) ? border : 2 * border - inside;
-}
-
-double value_sheet_data(const value_field *field, int sheet, double u,
-                        double v) {
-    int64_t i = (int64_t)floor(u), j = (int64_t)floor(v), k[2];
-    double sum = 0, weights = 0;
-    slices_of(field->plan, sheet, k);
-    for (int corner = 0; corner < 4; corner++) {
-        double x = u - (double)i, y = v - (double)j;
-        double weight = (corner & 1 ? x : 1 - x) * (corner >> 1 ? y : 1 - y);
-        double value =
-            data_voxel(field, k, i + (corner & 1), j + (corner >> 1));
-        if (isnan(value))
-            continue;
-        sum += weight * value;
-        weights += weight;
-    }
-    return weights >= 0.499 ? sum / weights : (double)NAN;
 }
 
 int value_sheet_label(const value_field *field, int sheet, double u, double v) {

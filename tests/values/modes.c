@@ -87,7 +87,7 @@ typedef struct tally {
     bool any;
 } tally;
 
-/* A kept part of a slab from value f to value b. */
+/* A kept part of a slab from f to b. */
 static void count_slab(tally *sums, double f, double b, double length) {
     sums->most = sums->any ? fmax(sums->most, fmax(f, b)) : fmax(f, b);
     sums->least = sums->any ? fmin(sums->least, fmin(f, b)) : fmin(f, b);
@@ -96,21 +96,26 @@ static void count_slab(tally *sums, double f, double b, double length) {
     sums->any = true;
 }
 
-/* The values at both ends of the kept part of a slab; false where there is
- * none. */
+/* V at both ends of the kept part of a slab; false where there is none. */
 static bool slab_ends(const value_field *field, const value_ray *ray, int slab,
                       const int part[2], double ends[2]) {
-    double value[2];
+    int value[2];
     for (int end = 0; end < 2; end++) {
         double at[3];
         value_ray_at(field->plan, ray, slab + end, at);
-        value[end] = value_sheet_data(field, slab + end, at[0], at[1]);
-        if (isnan(value[end]))
+        value[end] = value_sheet(field, slab + end, at[0], at[1]);
+        if (value[end] == VALUE_HOLE)
             return false;
     }
     for (int end = 0; end < 2; end++)
-        ends[end] = value[0] + part[end] / 32768.0 * (value[1] - value[0]);
+        ends[end] = fmin(fmax(value_between(value[0], value[1], part[end]), 0),
+                         VALUE_MOST);
     return true;
+}
+
+/* The data value of any V. */
+static double data_of(const value_plan *plan, double v) {
+    return plan->low + v * (plan->high - plan->low) / VALUE_MOST;
 }
 
 static void show_surface(const value_field *field, const value_ray *ray,
@@ -129,9 +134,9 @@ static void show_surface(const value_field *field, const value_ray *ray,
 static bool meet_surface(const value_field *field, const value_ray *ray,
                          int slab, const int part[2], const double ends[2],
                          double rgba[4]) {
-    double iso = field->plan->scene->base.settings.iso, t = 0;
-    if (field->plan->scene->base.log)
-        iso = log10(iso);
+    const value_plan *plan = field->plan;
+    double iso = plan->scene->base.settings.iso, t = 0;
+    iso = (iso - plan->low) * VALUE_MOST / (plan->high - plan->low);
     if (ends[0] < iso && ends[1] < iso)
         return false;
     if (ends[0] < iso)
@@ -161,10 +166,13 @@ void value_mode_sample(const value_field *field, const value_ray *ray,
     }
     if (mode == SNOW_MODE_ISO || !sums.any)
         return;
-    out[0] = mode == SNOW_MODE_MIP     ? sums.most
-             : mode == SNOW_MODE_MINIP ? sums.least
+    double length = reference_opacity_length(&plan->scene->base);
+    out[0] = mode == SNOW_MODE_MIP     ? data_of(plan, sums.most)
+             : mode == SNOW_MODE_MINIP ? data_of(plan, sums.least)
              : mode == SNOW_MODE_MEAN
-                 ? sums.sum / sums.length
-                 : sums.sum / reference_opacity_length(&plan->scene->base);
+                 ? data_of(plan, sums.sum / sums.length)
+                 : (plan->low * sums.length +
+                    (plan->high - plan->low) * sums.sum / VALUE_MOST) /
+                       length;
     out[1] = 1;
 }

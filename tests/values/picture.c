@@ -292,7 +292,7 @@ static void finish(const value_plan *plan, double sum[4], double out[4]) {
         out[0] = value;
         return;
     }
-    reference_classify(scene, scene->log ? pow(10, value) : value, out);
+    reference_classify(scene, value, out);
     out[3] = 1;
 }
 

@@ -79,6 +79,18 @@ void value_picture_free(reference_scene *s) {
     free((void *)(uintptr_t)s->voxels);
 }
 
+/* A pixel that is a data value: the value with alpha 1, or nothing. */
+static void spread_value(double value, double out[4]) {
+    out[1] = out[2] = 0;
+    out[3] = !isnan(value);
+    out[0] = isnan(value) ? 0 : value;
+}
+
+static bool is_of_values(const reference_scene *s) {
+    return s->settings.mode == SNOW_MODE_MEAN ||
+           s->settings.mode == SNOW_MODE_SUM;
+}
+
 double *value_picture_expected(const value_scene *scene) {
     const reference_scene *s = &scene->base;
     value_plan plan;
@@ -92,17 +104,31 @@ double *value_picture_expected(const value_scene *scene) {
     for (size_t n = 0; n < count; n++)
         value_model_pixel(model, (int)n % s->view.width, (int)n / s->view.width,
                           picture + 4 * n);
+    for (size_t n = 0; n < count && is_of_values(s); n++)
+        spread_value(picture[4 * n], picture + 4 * n);
     value_model_free(model);
     return picture;
+}
+
+/* What differences of the first channel are measured by: data values by the
+ * largest. */
+static double unit_of(const reference_scene *s, const double *expected) {
+    double most = 1e-9;
+    if (!is_of_values(s))
+        return 1;
+    for (int n = 0; n < s->view.width * s->view.height; n++)
+        most = fmax(most, fabs(expected[4 * n]));
+    return most;
 }
 
 void value_picture_compare(int n, const reference_scene *s,
                            const float *picture, const double *expected) {
     size_t count = 4 * (size_t)s->view.width * (size_t)s->view.height;
     size_t far = 0, worst = 0;
-    double most = 0;
+    double most = 0, unit = unit_of(s, expected);
     for (size_t i = 0; i < count; i++) {
         double difference = fabs((double)picture[i] - expected[i]);
+        difference /= i % 4 ? 1 : unit;
         far += difference > BOUND;
         if (!(difference <= most)) {
             most = difference;
@@ -231,6 +257,21 @@ static snow_volume *open_volume(const model_stage *stage,
     return cut;
 }
 
+static float *spread_values(snow_image *image) {
+    size_t count =
+        (size_t)snow_image_width(image) * (size_t)snow_image_height(image);
+    const float *from = snow_image_pixels(image);
+    float *to = calloc(count * 4, sizeof *to);
+    assert_int_equal(snow_image_channels(image), 1);
+    assert_non_null(to);
+    for (size_t n = 0; n < 4 * count; n++) {
+        double pixel[4];
+        spread_value((double)from[n / 4], pixel);
+        to[n] = (float)pixel[n % 4];
+    }
+    return to;
+}
+
 float *value_picture_render(const model_stage *stage,
                             const value_scene *scene) {
     const reference_scene *s = &scene->base;
@@ -241,7 +282,8 @@ float *value_picture_render(const model_stage *stage,
                           &s->settings, &image) != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(stage->context));
     assert_int_equal(snow_frame_stats(stage->frame)->method, SNOW_METHOD_VALUE);
-    float *picture = model_spread(image);
+    float *picture =
+        is_of_values(s) ? spread_values(image) : model_spread(image);
     snow_transfer_free(transfer);
     snow_volume_close(volume);
     snow_image_free(image);

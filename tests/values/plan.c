@@ -249,6 +249,8 @@ static void find_visible(const value_plan *plan, double visible[2]) {
 /* A look that shows a small part of the range gets the integers for itself. */
 static void narrow_range(value_plan *plan) {
     double visible[2];
+    if (plan->scene->base.settings.mode != SNOW_MODE_OVER)
+        return;
     find_visible(plan, visible);
     double length = visible[1] - visible[0];
     if (!(length > 0) || length * 64 >= plan->high - plan->low)

@@ -104,24 +104,21 @@ void value_look(const value_plan *plan, double v, double rgba[4]);
 typedef struct value_field {
     const value_plan *plan;
     int *codes;    /* 0 to 16383, VALUE_HOLE; of labels their numbers */
-    double *data;  /* data values, NaN where there is none */
     double *names; /* of labels: the value of each number */
     int name_count;
     int member; /* of labels: sheets are the membership of this one */
 } value_field;
 
-/* The data value of a voxel at (i, j, k), its logarithm where the look is one
- * of logarithms; NaN where it has none. */
+/* The data value of a voxel at (i, j, k), in mode over its logarithm where the
+ * look is one of logarithms; NaN where it has none. */
 double value_data(const value_scene *scene, const int64_t at[3]);
 
 void value_field_make(const value_plan *plan, value_field *field);
 void value_field_free(value_field *field);
 
-/* What a sheet has at (u, v): V, or VALUE_HOLE; its data value, or NaN; the
- * number of the nearest label, or VALUE_HOLE. */
+/* What a sheet has at (u, v): V, or VALUE_HOLE; the number of the nearest
+ * label, or VALUE_HOLE. */
 int value_sheet(const value_field *field, int sheet, double u, double v);
-double value_sheet_data(const value_field *field, int sheet, double u,
-                        double v);
 int value_sheet_label(const value_field *field, int sheet, double u, double v);
 
 /* One voxel of a sheet, for kernels: its value times its weight, and its weight

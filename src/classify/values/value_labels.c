@@ -83,7 +83,7 @@ snow_status snow_value_labels_look(snow_context *context,
                           (size_t)labels->count * sizeof *labels->looks));
     labels->steps = look->steps;
     labels->exponent = look->exponent / look->steps;
-    snow_value_table_begin_labels(look, table);
+    snow_value_table_begin(look, table);
     for (int n = 0; n < labels->count; n++)
         find_look(look, labels, n);
     for (int n = 0, first = 0; n < labels->count; n++) {

@@ -361,7 +361,7 @@ snow_status snow_value_table_make(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-void snow_value_table_begin_labels(const snow_value_look *look,
+void snow_value_table_begin(const snow_value_look *look,
                                    snow_value_table *table) {
     table->made = *look;
     table->made.nodes = 0;

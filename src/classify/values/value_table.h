@@ -59,9 +59,9 @@ typedef struct snow_value_table {
 snow_status snow_value_table_make(snow_context *context,
                                   const snow_value_look *look,
                                   snow_value_table *table);
-/* A table without entries, of labels: no number is invisible until it is
- * hidden.  Runs rise. */
-void snow_value_table_begin_labels(const snow_value_look *look,
+/* A table without entries, of labels and of values that have no colours yet: no
+ * number is invisible until it is hidden.  Runs rise. */
+void snow_value_table_begin(const snow_value_look *look,
                                    snow_value_table *table);
 void snow_value_table_hide(snow_value_table *table, snow_value_run run);
 

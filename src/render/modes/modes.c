@@ -135,6 +135,7 @@ static snow_status choose_identity_transfer(snow_job *job,
 typedef struct finish_job {
     const snow_job *job;
     const snow_identity_transfer *identity;
+    const snow_value_path *value_path; /* of method value; else NULL */
     const snow_mode_colors *colors;
     const snow_shear_warp_image
         *shear_warp; /* that pairs are warped from; or NULL */
@@ -147,13 +148,11 @@ typedef struct finish_job {
 
 /* Colours of numbers 0 to 1 at equal steps.  Between two of them colours are
  * linear but where a control point lies. */
-static void fill_colors(const snow_job *job,
-                        const snow_identity_transfer *identity,
+static void fill_colors(const snow_job *job, const snow_value_scale *scale,
                         snow_mode_colors *colors) {
     const snow_transfer *transfer = job->transfer;
-    double range = identity->high - identity->low;
-    colors->from = identity->kind.inverted ? identity->high : identity->low;
-    colors->range = identity->kind.inverted ? -range : range;
+    colors->from = scale->from;
+    colors->range = scale->step;
     memset(colors->nonlinear, 0, sizeof colors->nonlinear);
     for (int n = 0; n <= SNOW_MODE_COLORS; n++) {
         double part = (double)n / SNOW_MODE_COLORS, rgb[3];
@@ -257,6 +256,18 @@ static void weigh_line(const finish_job *f, int y, int count, float *pairs) {
     }
 }
 
+/* (number, 1) of method value to data units. */
+static void number_line(const finish_job *f, const float *pairs, int count,
+                        float *pixels) {
+    const snow_value_scale scale =
+        snow_value_projected(f->value_path, f->job->settings.mode);
+    for (int x = 0; x < count; x++, pairs += 2) {
+        bool known = pairs[1] >= SNOW_WEIGHT_ENOUGH;
+        double number = known ? (double)pairs[0] / (double)pairs[1] : NAN;
+        pixels[x] = (float)(scale.from + scale.step * number);
+    }
+}
+
 static void finish_line(void *of, int64_t y, int worker) {
     const finish_job *f = of;
     int width = f->image->width;
@@ -271,10 +282,22 @@ static void finish_line(void *of, int64_t y, int worker) {
     }
     if (f->weigh)
         weigh_line(f, (int)y, width, pairs);
-    if (f->image->channels == 1)
+    if (f->image->channels == 1 && f->value_path)
+        number_line(f, pairs, width, pixels);
+    else if (f->image->channels == 1)
         value_line(f, pairs, width, pixels);
     else
         color_line(f, pairs, width, pixels);
+}
+
+/* What 0 to 1 stands for. */
+static snow_value_scale scale_of(const snow_frame *frame, const snow_job *job) {
+    const snow_identity_transfer *identity = &frame->identity;
+    double range = identity->high - identity->low;
+    if (job->settings.method == SNOW_METHOD_VALUE)
+        return snow_value_projected(frame->value_path, job->settings.mode);
+    return identity->kind.inverted ? (snow_value_scale){identity->high, -range}
+                                   : (snow_value_scale){identity->low, range};
 }
 
 /* A ray misses where the weights of all its sheets add up to less than half of
@@ -290,10 +313,13 @@ static snow_status paint_lines(snow_frame *frame, const snow_job *job,
     bool seen = job->placement.perspective;
     bool weighed = job->settings.mode == SNOW_MODE_SUM && seen;
     double slices = shear_warp ? (double)job->placement.slices : 1;
+    const snow_value_scale scale = scale_of(frame, job);
+    bool values = job->settings.method == SNOW_METHOD_VALUE;
     if (image->channels > 1)
-        fill_colors(job, &frame->identity, &frame->mode_colors);
+        fill_colors(job, &scale, &frame->mode_colors);
     finish_job f = {.job = job,
                     .identity = &frame->identity,
+                    .value_path = values ? frame->value_path : NULL,
                     .colors = &frame->mode_colors,
                     .shear_warp = drawn,
                     .pairs = pairs,
@@ -334,7 +360,8 @@ snow_status snow_modes_value_weight(snow_frame *frame, snow_job *job,
     pairs->settings.shade = SNOW_SHADE_NONE;
     pairs->settings.threshold = 0;
     pairs->settings.deterministic = 0; /* of one part, by the scalar loops */
-    if (pairs->settings.quality == SNOW_QUALITY_HIGH)
+    if (job->settings.method != SNOW_METHOD_VALUE &&
+        pairs->settings.quality == SNOW_QUALITY_HIGH)
         pairs->settings.quality = SNOW_QUALITY_NORMAL;
     pairs->composite = snow_projection_op_of(job->settings.mode);
     return SNOW_STATUS_OK;

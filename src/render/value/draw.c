@@ -163,8 +163,13 @@ static void describe(snow_value_drawing *job) {
             voxels[axis] == 1 ? 0.5 : (double)(voxels[axis] - 1);
     }
     snow_value_own(params, &job->splat);
-    job->tile = snow_value_tile_of(params->settings->isa, params->channels,
-                                   shaded || fades, l->perspective);
+    job->splat.reduction = path->op->reduction;
+    job->tile =
+        job->splat.reduction == SNOW_VALUE_OVER
+            ? snow_value_tile_of(params->settings->isa, params->channels,
+                                 shaded || fades, l->perspective)
+            : snow_value_projection_of(params->settings->isa,
+                                       job->splat.reduction, l->perspective);
     job->scratch_bytes = snow_value_splat_bytes(&job->splat);
     if (params->settings->deterministic)
         job->scratch_bytes += snow_value_node_floats(job) * sizeof(float);
@@ -190,30 +195,29 @@ static float *find_row(const snow_value_drawing *job, int layer, int phase,
            x * channels;
 }
 
-/* Pixels of a phase of a tile to their places. */
+/* Pixels of a row of a tile to their places, every `step`-th float; or behind
+ * what is there. */
+static void store_row(const snow_value_drawing *job, const float *pixels,
+                      ptrdiff_t step, bool behind, float *out) {
+    const size_t channels = (size_t)job->splat.channels;
+    for (int n = 0; n < SNOW_VALUE_COLUMNS;
+         n++, out += step, pixels += channels)
+        if (behind)
+            job->path->op->combine(out, pixels, 1);
+        else
+            memcpy(out, pixels, channels * sizeof *out);
+}
+
+/* The same of a phase of a tile; nothing where there are no planes. */
 static void store_phase(const snow_value_drawing *job, const void *planes,
-                        int phase, int64_t column, int64_t row) {
-    const bool faint = job->splat.table->faint;
-    const snow_value_plane *plane = (const snow_value_plane *)planes + phase;
-    const snow_value_faint_plane *floats =
-        (const snow_value_faint_plane *)planes + phase;
+                        int phase, int64_t column, int64_t row, bool behind) {
     for (int r = 0; r < SNOW_VALUE_ROWS; r++) {
         ptrdiff_t step;
         float *out = find_row(job, 0, phase, column, row + r, &step);
-        float pixels[SNOW_VALUE_COLUMNS][4];
-        for (int c = 0; c < 4; c++)
-            for (int n = 0; n < SNOW_VALUE_COLUMNS; n++)
-                pixels[n][c] =
-                    faint ? (*floats)[c][r][n + 1]
-                          : (float)(*plane)[c][r][n + 1] * (1.0F / 32767);
-        if (job->splat.channels == 4)
-            for (int n = 0; n < SNOW_VALUE_COLUMNS; n++, out += step)
-                memcpy(out, pixels[n], sizeof pixels[n]);
-        else
-            for (int n = 0; n < SNOW_VALUE_COLUMNS; n++, out += step) {
-                out[0] = pixels[n][0];
-                out[1] = pixels[n][3];
-            }
+        float pixels[SNOW_VALUE_COLUMNS * 4] = {0};
+        if (planes)
+            job->path->op->read(&job->splat, planes, phase, r, pixels);
+        store_row(job, pixels, step, behind, out);
     }
 }
 
@@ -249,19 +253,19 @@ static void draw_tile(void *of, int64_t item, int worker) {
     void *room = path->scratch + (size_t)worker * job->scratch_bytes;
     bool within = column < l->voxels[0] && row < l->voxels[1];
     snow_value_splat splat = job->splat;
-    splat.resumes = job->params->resumes && path->drawn[item];
+    const bool behind = job->params->resumes && path->drawn[item];
+    splat.resumes = behind && !path->op->combine;
     if (splat.resumes)
         memset(room, 0, snow_value_planes_bytes(&splat));
     for (int phase = 0; splat.resumes && phase < l->phases; phase++)
         load_phase(job, room, phase, column, row);
     bool drawn = within && job->tile(&splat, x, y, room);
-    if (!drawn && (!path->drawn[item] || splat.resumes))
+    if (!drawn && (!path->drawn[item] || behind))
         return;
-    if (!drawn)
-        memset(room, 0, snow_value_planes_bytes(&job->splat));
     path->drawn[item] = drawn;
     for (int phase = 0; phase < l->phases; phase++)
-        store_phase(job, room, phase, column, row);
+        store_phase(job, drawn ? room : NULL, phase, column, row,
+                    behind && !splat.resumes);
 }
 
 /* The same in a layer of a deterministic picture. */
@@ -290,9 +294,8 @@ static void draw_layer(const snow_value_drawing *job, int layer, int64_t item,
         for (int r = 0; r < SNOW_VALUE_ROWS; r++) {
             ptrdiff_t step;
             float *out = find_row(job, layer, phase, column, row + r, &step);
-            for (int n = 0; n < SNOW_VALUE_COLUMNS;
-                 n++, out += step, pixels += channels)
-                memcpy(out, pixels, channels * sizeof *out);
+            store_row(job, pixels, step, false, out);
+            pixels += SNOW_VALUE_COLUMNS * channels;
         }
 }
 

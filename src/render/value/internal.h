@@ -23,10 +23,28 @@ typedef struct snow_value_grid {
     bool quincunx, shared;
 } snow_value_grid;
 
+/* A mode: what becomes of the slabs of a ray.  Those that make no colours have
+ * pixels (number, weight), and NULL where over needs nothing. */
+typedef struct snow_value_operator {
+    snow_mode mode;
+    snow_value_reduction reduction;
+    /* Which numbers the pictures do not need; NULL: those of the look. */
+    void (*hides)(snow_value_path *path, const snow_value_look *look);
+    /* A row of a phase of a tile as pixels of the picture's channels. */
+    void (*read)(const snow_value_splat *splat, const void *planes, int phase,
+                 int row, float *out);
+    /* Lays pixels of a part behind those of others; NULL: tiles resume. */
+    snow_composite_fn *combine;
+    /* Makes pixels of all parts (number of 0 to 1, 1), or (0, 0). */
+    void (*finish)(const snow_value_path *path, float *pixels, int count);
+} snow_value_operator;
+
 struct snow_value_path {
     snow_context *context;
-    snow_value_lattice lattice; /* of the picture */
-    snow_data_range range;      /* of the whole */
+    const snow_value_operator *op; /* of the picture */
+    snow_value_lattice lattice;    /* of the picture */
+    double reference, longest; /* world lengths: of an opacity, of any ray */
+    snow_data_range range;     /* of the whole */
     snow_data_range measured; /* of the volume of this generation; 0: of none */
     uint64_t measured_of;
     snow_value_coder coder;
@@ -62,6 +80,10 @@ struct snow_value_path {
         halved_capacity, lines_capacity, clips_capacity,
         scratch_capacity; /* bytes */
 };
+
+/* --- operators.c --- */
+
+const snow_value_operator *snow_value_operator_of(snow_mode mode);
 
 /* In perspective: the rays of the sheets, which are there.  Errors:
  * SNOW_STATUS_NO_MEMORY, SNOW_STATUS_STOPPED. */

@@ -74,17 +74,10 @@ size_t snow_value_node_floats(const snow_value_drawing *d) {
 
 /* The planes of a tile as pixels. */
 static void weave(const snow_value_drawing *d, const void *planes, float *out) {
-    const bool color = d->splat.channels == 4, faint = d->splat.table->faint;
-    const snow_value_plane *words = (const snow_value_plane *)planes;
-    const snow_value_faint_plane *floats =
-        (const snow_value_faint_plane *)planes;
+    const int floats = SNOW_VALUE_COLUMNS * d->splat.channels;
     for (int phase = 0; phase < d->splat.phases; phase++)
-        for (int row = 0; row < SNOW_VALUE_ROWS; row++)
-            for (int n = 1; n <= SNOW_VALUE_COLUMNS; n++)
-                for (int c = 0; c < 4; c += color ? 1 : 3)
-                    *out++ =
-                        faint ? floats[phase][c][row][n]
-                              : (float)words[phase][c][row][n] * (1.0F / 32767);
+        for (int row = 0; row < SNOW_VALUE_ROWS; row++, out += floats)
+            d->path->op->read(&d->splat, planes, phase, row, out);
 }
 
 static bool draw_group(const snow_value_drawing *d, int group, int x, int y,

@@ -77,6 +77,16 @@ static void halve(const snow_shear_warp_warping *w) {
                     small->stride);
 }
 
+/* Pixels of all parts to what is warped, and that made smaller. */
+static void make_shown(const snow_shear_warp_warping *w) {
+    const snow_value_path *path = w->of;
+    for (int y = 0; path->op->finish && y < w->plane.height; y++)
+        path->op->finish(path, path->plane + (size_t)y * path->stride,
+                         w->plane.width);
+    if (path->lattice.halvings)
+        halve(w);
+}
+
 /* Room for it, and its map. */
 static snow_status place_halved(snow_value_path *path) {
     static const unsigned char all = 1;
@@ -166,6 +176,8 @@ snow_status snow_value_place_show(snow_value_path *path,
                                   const snow_shear_warp_image *image) {
     const snow_value_lattice *l = &path->lattice;
     const snow_isa isa = params->settings->isa;
+    const snow_filter filter =
+        path->op->hides ? SNOW_BILINEAR : l->filter; /* numbers, not colours */
     snow_shear_warp_warping *w = &path->warping;
     *w = (snow_shear_warp_warping){
         .plane = {image->pixels, image->stride, image->width, image->height,
@@ -174,9 +186,9 @@ snow_status snow_value_place_show(snow_value_path *path,
         .perspective = l->perspective,
         .shear = l->shear,
         .scaled = l->scaled,
-        .filter = l->filter,
-        .warp = snow_warp_of(isa, l->filter, image->channels),
-        .places = snow_warp_places_of(isa, l->filter, image->channels),
+        .filter = filter,
+        .warp = snow_warp_of(isa, filter, image->channels),
+        .places = snow_warp_places_of(isa, filter, image->channels),
         .width = params->view->width,
         .height = params->view->height,
         .before = SNOW_WARP_BEFORE,
@@ -188,10 +200,9 @@ snow_status snow_value_place_show(snow_value_path *path,
         w->spare_floats = (size_t)(l->means * w->width * image->channels + 64);
         w->before = w->behind = lines_around(l);
     }
-    if (!l->halvings)
-        return SNOW_STATUS_OK;
-    w->made = halve;
-    return place_halved(path);
+    if (l->halvings || path->op->finish)
+        w->made = make_shown;
+    return l->halvings ? place_halved(path) : SNOW_STATUS_OK;
 }
 
 static void show_lines(void *of, int64_t item, int worker) {

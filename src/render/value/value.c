@@ -44,25 +44,13 @@ void snow_value_path_free(snow_value_path *path) {
     snow_release(context, path);
 }
 
-/* --- what it does not draw --------------------------------------------------
- */
-
 snow_status snow_value_check(snow_context *context,
-                             const snow_value_params *params) {
-    const snow_settings *s = params->settings;
-    const struct {
-        bool refused;
-        const char *what;
-    } rows[] = {
-        {s->mode != SNOW_MODE_OVER, "modes other than over"},
-    };
-    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
-        if (rows[n].refused)
-            return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                             "method value cannot draw %s yet; take method "
-                             "shear-warp",
-                             rows[n].what);
-    return SNOW_STATUS_OK;
+                             const snow_settings *settings) {
+    if (settings->mode != SNOW_MODE_ISO)
+        return SNOW_STATUS_OK;
+    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                     "method value cannot draw mode iso yet; take method "
+                     "shear-warp");
 }
 
 /* --- values -----------------------------------------------------------------
@@ -121,21 +109,27 @@ static snow_status find_labels(snow_value_path *path,
 snow_status snow_value_measure(snow_value_path *path, const snow_volume *volume,
                                const snow_transfer *transfer, int threads,
                                snow_data_range *out) {
+    const bool log = transfer && transfer->log;
     if (!path->measured_of || path->measured_of != volume->generation ||
-        path->measured.log != transfer->log) {
+        path->measured.log != log) {
         path->measured_of = 0;
-        path->measured = (snow_data_range){.log = transfer->log};
+        path->measured = (snow_data_range){.log = log};
         SNOW_TRY(measure_range(volume, threads, &path->measured));
         path->measured_of = volume->generation;
     }
     *out = path->measured;
-    return snow_transfer_has_labels(transfer, volume->info.type)
+    return transfer && snow_transfer_has_labels(transfer, volume->info.type)
                ? find_labels(path, volume)
                : SNOW_STATUS_OK;
 }
 
 void snow_value_set_range(snow_value_path *path, const snow_data_range *range) {
     path->range = *range;
+}
+
+static bool has_labels(const snow_value_params *params) {
+    return snow_transfer_has_labels(params->transfer,
+                                    params->volume->info.type);
 }
 
 static snow_status make_table(snow_value_path *path,
@@ -153,8 +147,12 @@ static snow_status make_table(snow_value_path *path,
         .placed = s->shade == SNOW_SHADE_PHONG ||
                   snow_transfer_has_gradient_opacity(params->transfer),
         .threads = s->threads};
-    path->has_labels =
-        snow_transfer_has_labels(params->transfer, params->volume->info.type);
+    path->op = snow_value_operator_of(s->mode);
+    path->has_labels = s->mode == SNOW_MODE_OVER && has_labels(params);
+    if (path->op->hides) {
+        path->op->hides(path, &look);
+        return SNOW_STATUS_OK;
+    }
     if (!path->has_labels)
         return snow_value_table_make(path->context, &look, &path->table);
     return snow_value_labels_look(path->context, &look, &path->labels,
@@ -170,6 +168,10 @@ snow_status snow_value_begin(snow_value_path *path,
     SNOW_TRY(snow_value_lattice_make(
         path->context, &whole, params->view, params->placement,
         params->settings->quality, &path->lattice));
+    path->reference = params->settings->opacity_length;
+    path->longest = 0;
+    for (int n = 0; n < 3; n++)
+        path->longest += (double)whole.dims[n] * whole.spacing[n];
     if (path->range.low <= path->range.high)
         SNOW_TRY(make_table(path, params));
     if (snow_value_shows(path))
@@ -195,10 +197,9 @@ static bool shows_no_more(const snow_value_path *path) {
 }
 
 /* Labels have no means. */
-static bool is_cubic(const snow_value_params *params) {
-    return params->settings->kernel == SNOW_KERNEL_BSPLINE &&
-           !snow_transfer_has_labels(params->transfer,
-                                     params->volume->info.type);
+static bool is_cubic(const snow_value_path *path,
+                     const snow_value_params *params) {
+    return params->settings->kernel == SNOW_KERNEL_BSPLINE && !path->has_labels;
 }
 
 static bool serves(const snow_value_path *path, const snow_value_key *key,
@@ -228,13 +229,13 @@ static int eye_reach(const snow_value_path *path,
 static snow_status find_reach(snow_value_path *path,
                               const snow_value_params *params, int *reach) {
     if (path->lattice.perspective) {
-        *reach = eye_reach(path, params) + is_cubic(params);
+        *reach = eye_reach(path, params) + is_cubic(path, params);
         return SNOW_STATUS_OK;
     }
     double most = snow_value_lattice_reach(
         &params->volume->info, params->placement, path->lattice.halves);
     *reach = (int)ceil(fmin(most, 1e6) * (1 - 1e-5));
-    *reach += is_cubic(params); /* its voxels are one farther away */
+    *reach += is_cubic(path, params); /* its voxels are one farther away */
     if (*reach <= SNOW_VALUE_REACH_MOST)
         return SNOW_STATUS_OK;
     return snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
@@ -254,7 +255,7 @@ static snow_status encode_anew(snow_value_path *path,
                                            .run_count = path->table.run_count,
                                            .holes = path->range.holes,
                                            .reach = reach,
-                                           .cubic = is_cubic(params),
+                                           .cubic = is_cubic(path, params),
                                            .encoding = s->encoding,
                                            .isa = s->isa,
                                            .threads = s->threads};
@@ -279,7 +280,7 @@ snow_status snow_value_encode(snow_value_path *path,
                                 .slice_axis = params->placement->slice_axis,
                                 .scale = path->table.made.scale,
                                 .labels = path->has_labels,
-                                .cubic = is_cubic(params),
+                                .cubic = is_cubic(path, params),
                                 .encoding = params->settings->encoding};
     double mark = snow_seconds();
     int reach = 0;

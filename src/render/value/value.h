@@ -33,12 +33,13 @@ typedef struct snow_value_params {
 /* Whether the value path draws this picture.  Errors: SNOW_STATUS_BAD_USAGE,
  * with what to use instead. */
 snow_status snow_value_check(snow_context *context,
-                             const snow_value_params *params);
+                             const snow_settings *settings);
 
 /* The finite values of a volume, or their logarithms, of which those in a file
  * are read, or of the part of one that it is; and its labels, if it has some.
  * Unless they are known.  Errors: as snow_slabs_visit; SNOW_STATUS_BAD_USAGE
- * (too many labels). */
+ * (too many labels).  Modes other than over are of data values: `transfer` is
+ * NULL. */
 snow_status snow_value_measure(snow_value_path *path, const snow_volume *volume,
                                const snow_transfer *transfer, int threads,
                                snow_data_range *out);
@@ -68,8 +69,14 @@ snow_status snow_value_draw(snow_value_path *path,
                             const snow_value_params *params, snow_stats *stats,
                             snow_shear_warp_image *out);
 
+/* What the numbers 0 to 1 of a projection's pixels stand for, when it is
+ * begun. */
+snow_value_scale snow_value_projected(const snow_value_path *path,
+                                      snow_mode mode);
+
 /* The image of one layer to all of the picture: width * height * channels
- * floats.  Errors: as above. */
+ * floats; of projections (number, 1) or (0, 0), or less where a pixel is not
+ * wholly of one.  Errors: as above. */
 snow_status snow_value_display(snow_value_path *path,
                                const snow_value_params *params,
                                const snow_shear_warp_image *image,

@@ -1,27 +1,17 @@
 /* splat/values/ahead.tmpl.h - slabs before their turn: which samples can be
  * seen, and what the cache is asked for.  Included by tile.tmpl.h. */
 
-/* The samples of a phase of slab `n`, between sheets n and n + 1, that can be
- * seen. */
-TARGET VALUE_INLINE void NAME(activate)(const snow_value_splat *p, int n,
-                                        int phase, const int tile[2],
-                                        const value_phase *state,
-                                        value_cells cells[2], value_slab *slab,
-                                        const bool eye) {
-    slab->rows = 0;
-    if (!state->alive)
-        return;
-    uint32_t rows =
-        eye ? NAME(activate_eye)(p, n, phase, tile, state, cells, slab)
-            : NAME(activate_all)(p, n, phase, tile, state, slab);
-    if (!rows)
-        return;
+/* Leaves of the active samples of a phase of slab `n` those that are inside and
+ * open. */
+TARGET VALUE_INLINE void NAME(trim)(const snow_value_splat *p, int n, int phase,
+                                    const int tile[2], const value_phase *state,
+                                    value_slab *slab, const bool eye) {
     if (eye)
         NAME(cut_eye)(p, n, phase, tile, slab->cut);
     else
         NAME(cut_all)(p, n, phase, tile, slab->cut);
     uint32_t lanes = slab->cut[0].some;
-    rows = slab->cut[1].some;
+    uint32_t rows = slab->cut[1].some;
     if (p->parted) {
         lanes &= snow_value_own_lanes(p, n, phase, tile, 0);
         rows &= snow_value_own_lanes(p, n, phase, tile, 1);
@@ -35,6 +25,23 @@ TARGET VALUE_INLINE void NAME(activate)(const snow_value_splat *p, int n,
     if (slab->clip.cuts)
         rows &= V(rows_and)(slab->active, slab->clip.some, ~UINT32_C(0));
     slab->rows = rows;
+}
+
+/* The samples of a phase of slab `n`, between sheets n and n + 1, that can be
+ * seen. */
+TARGET VALUE_INLINE void NAME(activate)(const snow_value_splat *p, int n,
+                                        int phase, const int tile[2],
+                                        const value_phase *state,
+                                        value_cells cells[2], value_slab *slab,
+                                        const bool eye) {
+    slab->rows = 0;
+    if (!state->alive)
+        return;
+    uint32_t rows =
+        eye ? NAME(activate_eye)(p, n, phase, tile, state, cells, slab)
+            : NAME(activate_all)(p, n, phase, tile, state, slab);
+    if (rows)
+        NAME(trim)(p, n, phase, tile, state, slab, eye);
 }
 
 /* Asks for rows of voxels of a sheet; a bit each, from row -1 on. */

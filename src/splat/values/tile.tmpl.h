@@ -66,33 +66,46 @@ TARGET VALUE_INLINE V(row)
     return V(row_load)(slopes);
 }
 
+/* The values at both ends of what is left of a slab in a row of a tile, and of
+ * its active samples those that have them. */
+TARGET VALUE_INLINE uint32_t NAME(ends)(const value_rows *f,
+                                        const value_rows *b,
+                                        const value_slab *slab, int row,
+                                        bool cuts, V(row) * x, V(row) * y,
+                                        V(row) * from, V(row) * part) {
+    const V(row) zero = V(row_set1)(0), most = V(row_set1)(SNOW_VALUE_MOST);
+    const V(row) none = V(row_set1)(SNOW_VALUE_HOLE);
+    const bool holes = f->holes || b->holes;
+    uint32_t mask = slab->active[row];
+    *x = V(row_load)(f->values[row + 1]);
+    *y = V(row_load)(b->values[row + 1]);
+    if (holes)
+        mask &= V(row_gt)(*x, none) & V(row_gt)(*y, none);
+    if (cuts) {
+        mask &= NAME(clip)(slab->cut, &slab->clip, row, from, part);
+        V(row) first = *x;
+        *x = NAME(mix)(first, *y, *from);
+        *y = NAME(mix)(first, *y, V(row_add)(*from, *part));
+    }
+    if (cuts || holes) {
+        *x = V(row_min)(V(row_max)(*x, zero), most);
+        *y = V(row_min)(V(row_max)(*y, zero), most);
+    }
+    return mask;
+}
+
 /* Packs the visible samples of a phase, from number `count` on. */
 TARGET VALUE_INLINE int
 NAME(collect)(const snow_value_splat *p, const value_rows *f,
               const value_rows *b, const value_beside beside[2],
               const value_phase *state, value_slab *slab, value_queue *q,
               int count, const bool sloped, bool cuts, const bool eye) {
-    const V(row) zero = V(row_set1)(0), most = V(row_set1)(SNOW_VALUE_MOST);
-    const V(row) none = V(row_set1)(SNOW_VALUE_HOLE);
-    const bool holes = f->holes || b->holes;
+    const V(row) zero = V(row_set1)(0);
     for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
         int row = __builtin_ctz(rows);
         const int16_t *front = f->values[row + 1], *back = b->values[row + 1];
-        V(row) x = V(row_load)(front), y = V(row_load)(back);
-        V(row) from = zero, part = zero;
-        uint32_t mask = slab->active[row];
-        if (holes)
-            mask &= V(row_gt)(x, none) & V(row_gt)(y, none);
-        if (cuts) {
-            mask &= NAME(clip)(slab->cut, &slab->clip, row, &from, &part);
-            V(row) first = x;
-            x = NAME(mix)(first, y, from);
-            y = NAME(mix)(first, y, V(row_add)(from, part));
-        }
-        if (cuts || holes) {
-            x = V(row_min)(V(row_max)(x, zero), most);
-            y = V(row_min)(V(row_max)(y, zero), most);
-        }
+        V(row) x, y, from = zero, part = zero;
+        uint32_t mask = NAME(ends)(f, b, slab, row, cuts, &x, &y, &from, &part);
         mask &= NAME(see)(p->table, x, y);
         slab->active[row] = mask;
         if (!mask)
@@ -431,3 +444,5 @@ snow_value_tile_fn *const NAME(snow_value_tiles)[2][2][2] = {
     {{NAME(tile_color), NAME(tile_color_eye)},
      {NAME(tile_color_lit), NAME(tile_color_lit_eye)}},
 };
+
+#include "splat/values/project.tmpl.h"

@@ -24,3 +24,17 @@ snow_value_tile_fn *snow_value_tile_of(snow_isa isa, int channels, bool sloped,
     (void)isa;
     return snow_value_tiles_scalar[colors][sloped][perspective];
 }
+
+snow_value_tile_fn *snow_value_projection_of(snow_isa isa,
+                                             snow_value_reduction reduction,
+                                             bool perspective) {
+    const unsigned of = reduction - SNOW_VALUE_LARGEST;
+#if SNOW_HAS_AVX
+    if (isa == SNOW_ISA_AVX512)
+        return snow_value_projections_avx512[of][perspective];
+    if (isa == SNOW_ISA_AVX2)
+        return snow_value_projections_avx2[of][perspective];
+#endif
+    (void)isa;
+    return snow_value_projections_scalar[of][perspective];
+}

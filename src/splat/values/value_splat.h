@@ -104,6 +104,14 @@ typedef struct snow_value_fade {
     float share;     /* a slab's length, in reference lengths */
 } snow_value_fade;
 
+/* What becomes of the slabs of a ray. */
+typedef enum snow_value_reduction {
+    SNOW_VALUE_OVER,     /* colours */
+    SNOW_VALUE_LARGEST,  /* of the values at their ends */
+    SNOW_VALUE_SMALLEST, /* the same, of numbers SNOW_VALUE_MOST - V */
+    SNOW_VALUE_SUM       /* of both ends' values by their lengths */
+} snow_value_reduction;
+
 /* A picture. */
 typedef struct snow_value_splat {
     const snow_value_store *store;
@@ -127,19 +135,22 @@ typedef struct snow_value_splat {
     bool parted;  /* only samples of slabs whose front sheet has them within
                     own[0][0] <= u < own[0][1], and so along v */
     double own[2][2];
-    bool resumes; /* the planes hold what is in front */
+    bool resumes; /* the planes hold what is in front; of over only */
+    snow_value_reduction reduction;
 } snow_value_splat;
 
 /* Pixels of a tile: planes of 15 bits, of which channels are used; of floats
- * where the table is faint. */
+ * where the table is faint, and of sums.  Extremes have their numbers in the
+ * first plane, below 0 where there is none; sums 2 V in the first one, and the
+ * lengths, in those that the table is for, in the last. */
 typedef int16_t snow_value_plane[4][SNOW_VALUE_ROWS][32];
 typedef float snow_value_faint_plane[4][SNOW_VALUE_ROWS][32];
 
 /* Bytes of the planes of all phases. */
 static inline size_t snow_value_planes_bytes(const snow_value_splat *splat) {
-    return (size_t)splat->phases * (splat->table->faint
-                                        ? sizeof(snow_value_faint_plane)
-                                        : sizeof(snow_value_plane));
+    bool floats = splat->table->faint || splat->reduction == SNOW_VALUE_SUM;
+    return (size_t)splat->phases *
+           (floats ? sizeof(snow_value_faint_plane) : sizeof(snow_value_plane));
 }
 
 /* Bytes of a worker's memory. */
@@ -152,5 +163,9 @@ typedef bool snow_value_tile_fn(const snow_value_splat *splat, int x, int y,
                                 void *room);
 snow_value_tile_fn *snow_value_tile_of(snow_isa isa, int channels, bool sloped,
                                        bool perspective);
+/* The same of reductions other than over. */
+snow_value_tile_fn *snow_value_projection_of(snow_isa isa,
+                                             snow_value_reduction reduction,
+                                             bool perspective);
 
 #endif

@@ -89,10 +89,7 @@ refuse() {
     says '; take method shear-warp$'
     check "no picture is left" test ! -e no.png
 }
-for mode in mip minip mean sum; do
-    refuse "mode $mode" "modes other than over" -m $mode
-done
-refuse "mode iso" "modes other than over" -m iso --iso 90
+refuse "mode iso" "mode iso" -m iso --iso 90
 for options in "--kernel gauss" "--kernel box" "--footprint 3" \
     "--kernel bspline --footprint 3"; do
     # shellcheck disable=SC2086
