@@ -4,7 +4,9 @@
  *   V(row)                        the type; all levels give the same bits
  *   V(row_load)(p), V(row_store)(p, a)     any alignment
  *   V(row_set1)(x)
+ *   V(row_bytes)(p)               32 unsigned bytes at p
  *   V(row_add)(a, b), V(row_adds), V(row_subs)   the latter two saturate
+ *   V(row_mul)(a, b)              the lower 16 bits
  *   V(row_mulhrs)(a, b)           (a b + 2^14) / 2^15, rounded down
  *   V(row_min)(a, b), V(row_max)  signed
  *   V(row_avg)(a, b)              (a + b + 1) / 2, rounded down
@@ -12,6 +14,9 @@
  *   V(row_srl)(a, bits), V(row_sll)        unsigned
  *   V(row_gt)(a, b)               a bit for each number where a > b
  *   V(row_choose)(mask, a, b)     a where a bit is set, else b
+ *   V(bytes_outside)(p, first, width)  a bit for each of 64 unsigned bytes at p
+ *                                 that is not first .. first + width, which may
+ *                                 go round beyond 255
  *   V(row_compress)(p, a, mask)   numbers whose bits are set, to p; may write
  * 32 V(row_expand)(p, mask)        the next of the numbers at p where a bit is
  *                                 set, else 0; may read 32

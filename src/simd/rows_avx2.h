@@ -25,6 +25,27 @@ SNOW_AVX2_INLINE snow_avx2_row snow_avx2_row_set1(int16_t x) {
     return (snow_avx2_row){_mm256_set1_epi16(x), _mm256_set1_epi16(x)};
 }
 
+SNOW_AVX2_INLINE snow_avx2_row snow_avx2_row_bytes(const uint8_t *p) {
+    const __m128i *at = (const __m128i *)(const void *)p;
+    return (snow_avx2_row){_mm256_cvtepu8_epi16(_mm_loadu_si128(at)),
+                           _mm256_cvtepu8_epi16(_mm_loadu_si128(at + 1))};
+}
+
+SNOW_AVX2_INLINE uint64_t snow_avx2_bytes_outside(const uint8_t *p,
+                                                  uint8_t first,
+                                                  uint8_t width) {
+    const __m256i *at = (const __m256i *)(const void *)p;
+    const __m256i most = _mm256_set1_epi8((char)width);
+    uint64_t inside = 0;
+    for (int n = 0; n < 2; n++) {
+        __m256i from = _mm256_sub_epi8(_mm256_loadu_si256(at + n),
+                                       _mm256_set1_epi8((char)first));
+        __m256i equal = _mm256_cmpeq_epi8(_mm256_max_epu8(from, most), most);
+        inside |= (uint64_t)(uint32_t)_mm256_movemask_epi8(equal) << 32 * n;
+    }
+    return ~inside;
+}
+
 /* An operation on each number of two rows. */
 #define SNOW_AVX2_ROW_OF(name, of)                                         \
     SNOW_AVX2_INLINE snow_avx2_row snow_avx2_row_##name(snow_avx2_row a,   \
@@ -35,6 +56,7 @@ SNOW_AVX2_INLINE snow_avx2_row snow_avx2_row_set1(int16_t x) {
 SNOW_AVX2_ROW_OF(add, _mm256_add_epi16)
 SNOW_AVX2_ROW_OF(adds, _mm256_adds_epi16)
 SNOW_AVX2_ROW_OF(subs, _mm256_subs_epi16)
+SNOW_AVX2_ROW_OF(mul, _mm256_mullo_epi16)
 SNOW_AVX2_ROW_OF(mulhrs, _mm256_mulhrs_epi16)
 SNOW_AVX2_ROW_OF(min, _mm256_min_epi16)
 SNOW_AVX2_ROW_OF(max, _mm256_max_epi16)

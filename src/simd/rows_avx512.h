@@ -19,6 +19,19 @@ SNOW_AVX512_INLINE snow_avx512_row snow_avx512_row_set1(int16_t x) {
     return _mm512_set1_epi16(x);
 }
 
+SNOW_AVX512_INLINE snow_avx512_row snow_avx512_row_bytes(const uint8_t *p) {
+    return _mm512_cvtepu8_epi16(
+        _mm256_loadu_si256((const __m256i *)(const void *)p));
+}
+
+SNOW_AVX512_INLINE uint64_t snow_avx512_bytes_outside(const uint8_t *p,
+                                                      uint8_t first,
+                                                      uint8_t width) {
+    __m512i from =
+        _mm512_sub_epi8(_mm512_loadu_si512(p), _mm512_set1_epi8((char)first));
+    return _mm512_cmpgt_epu8_mask(from, _mm512_set1_epi8((char)width));
+}
+
 /* An operation on each number of two rows. */
 #define SNOW_AVX512_ROW_OF(name, of)                           \
     SNOW_AVX512_INLINE snow_avx512_row snow_avx512_row_##name( \
@@ -29,6 +42,7 @@ SNOW_AVX512_INLINE snow_avx512_row snow_avx512_row_set1(int16_t x) {
 SNOW_AVX512_ROW_OF(add, _mm512_add_epi16)
 SNOW_AVX512_ROW_OF(adds, _mm512_adds_epi16)
 SNOW_AVX512_ROW_OF(subs, _mm512_subs_epi16)
+SNOW_AVX512_ROW_OF(mul, _mm512_mullo_epi16)
 SNOW_AVX512_ROW_OF(mulhrs, _mm512_mulhrs_epi16)
 SNOW_AVX512_ROW_OF(min, _mm512_min_epi16)
 SNOW_AVX512_ROW_OF(max, _mm512_max_epi16)

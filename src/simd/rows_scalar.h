@@ -25,6 +25,21 @@ static inline snow_scalar_row snow_scalar_row_set1(int16_t x) {
     return (snow_scalar_row){{all, all, all, all}};
 }
 
+static inline snow_scalar_row snow_scalar_row_bytes(const uint8_t *p) {
+    int16_t x[32];
+    for (int n = 0; n < 32; n++)
+        x[n] = p[n];
+    return snow_scalar_row_load(x);
+}
+
+static inline uint64_t snow_scalar_bytes_outside(const uint8_t *p,
+                                                 uint8_t first, uint8_t width) {
+    uint64_t bits = 0;
+    for (int n = 0; n < 64; n++)
+        bits |= (uint64_t)((uint8_t)(p[n] - first) > width) << n;
+    return bits;
+}
+
 /* An operation on each number of two rows. */
 #define SNOW_SCALAR_ROW_OF(name, each)                                        \
     static inline snow_scalar_row snow_scalar_row_##name(snow_scalar_row a,   \
@@ -44,6 +59,7 @@ static inline int snow_scalar_saturate(int x) {
 SNOW_SCALAR_ROW_OF(add, x[n] + y[n])
 SNOW_SCALAR_ROW_OF(adds, snow_scalar_saturate(x[n] + y[n]))
 SNOW_SCALAR_ROW_OF(subs, snow_scalar_saturate(x[n] - y[n]))
+SNOW_SCALAR_ROW_OF(mul, x[n] * y[n])
 SNOW_SCALAR_ROW_OF(mulhrs, (x[n] * y[n] + 0x4000) >> 15)
 SNOW_SCALAR_ROW_OF(min, x[n] < y[n] ? x[n] : y[n])
 SNOW_SCALAR_ROW_OF(max, x[n] > y[n] ? x[n] : y[n])

@@ -239,6 +239,7 @@ snow_value_scale14 snow_value_scale_of(const snow_data_range *data,
     if (length > 0 && length * 64 < data->high - data->low) {
         scale.low = fmax(data->low, visible[0] - 4 * length);
         scale.high = fmin(data->high, visible[1] + 4 * length);
+        scale.clamps = true;
     }
     if (snow_type_size(info->type) <= 2 && !data->log)
         make_whole(&scale, info);

@@ -50,7 +50,8 @@ static inline int16_t snow_value_by_rule(const snow_value_rule *rule,
 typedef struct snow_value_scale14 {
     double low, high;
     bool log;
-    bool whole; /* numbers are made by the rule */
+    bool whole;  /* numbers are made by the rule */
+    bool clamps; /* there are values beyond the ends */
     snow_value_rule rule;
 } snow_value_scale14;
 

@@ -9,10 +9,15 @@
 #include "simd/each_isa.h"
 
 const snow_value_loops *snow_value_loops_of(snow_isa isa) {
-    static const snow_value_loops scalar = {outside_scalar, pack_scalar};
+    static const snow_value_loops scalar = {outside_scalar, pack_scalar,
+                                            outside_bytes_scalar,
+                                            outside_words_scalar};
 #if SNOW_HAS_AVX
-    static const snow_value_loops avx2 = {outside_avx2, pack_avx2};
-    static const snow_value_loops avx512 = {outside_avx512, pack_avx512};
+    static const snow_value_loops avx2 = {
+        outside_avx2, pack_avx2, outside_bytes_avx2, outside_words_avx2};
+    static const snow_value_loops avx512 = {outside_avx512, pack_avx512,
+                                            outside_bytes_avx512,
+                                            outside_words_avx512};
     if (isa == SNOW_ISA_AVX512)
         return &avx512;
     if (isa == SNOW_ISA_AVX2)
@@ -89,18 +94,42 @@ static void mark_line(const snow_value_store *s, const snow_value_loops *loops,
     }
 }
 
+/* What marks a band of rows. */
+typedef struct marker {
+    snow_value_store *store;
+    const snow_value_store_params *params;
+    const snow_value_loops *loops;
+    snow_value_lines lines;
+    bool by_natives;
+    snow_value_natives ranges[SNOW_VALUE_RUNS]; /* of the runs */
+    int16_t *line;
+    uint64_t *natives; /* a bit for each voxel of a row */
+    uint32_t *bits;    /* of two lines */
+} marker;
+
+/* Marks a row, or one beyond the first or last of the volume. */
+static void mark_row(marker *m, int64_t row, uint32_t *bits) {
+    const snow_value_store *s = m->store;
+    if (!m->by_natives || row < 0 || row >= s->rows) {
+        snow_value_lines_read(&m->lines, row, m->line);
+        mark_line(s, m->loops, m->line, bits);
+        return;
+    }
+    const unsigned char *natives = snow_value_lines_natives(&m->lines, row);
+    for (int run = 0; run < s->run_count; run++, bits += snow_value_words(s))
+        snow_value_mark_natives(s, m->params, &m->ranges[run], run, natives,
+                                m->natives, bits);
+}
+
 /* Rows of cells first .. end - 1 of a slice. */
-static void mark_slice(snow_value_store *s, snow_value_lines *lines,
-                       const snow_value_loops *loops, int64_t slice,
-                       int64_t first, int64_t end, int16_t *line,
-                       uint32_t *bits) {
+static void mark_slice(marker *m, int64_t slice, int64_t first, int64_t end) {
+    snow_value_store *s = m->store;
     size_t words = snow_value_words(s), all = words * (SNOW_VALUE_RUNS + 1);
     int out = s->margin - 1;
     for (int64_t row = first; row <= end; row++) {
-        uint32_t *below = bits + (row & 1 ? all : 0);
-        const uint32_t *above = bits + (row & 1 ? 0 : all);
-        snow_value_lines_read(lines, row, line);
-        mark_line(s, loops, line, below);
+        uint32_t *below = m->bits + (row & 1 ? all : 0);
+        const uint32_t *above = m->bits + (row & 1 ? 0 : all);
+        mark_row(m, row, below);
         for (int n = 0; row > first && n < snow_value_planes(s); n++) {
             bool top = row == 0, bottom = row == s->rows;
             write_cells(s, n, slice, top ? -1 - out : row - 1,
@@ -110,28 +139,39 @@ static void mark_slice(snow_value_store *s, snow_value_lines *lines,
     }
 }
 
+/* Rows low .. high - 1 of voxels. */
+static void begin_marker(marker *m, int64_t low, int64_t high, void *scratch) {
+    const snow_value_store *s = m->store;
+    const snow_value_coder *coder = m->params->coder;
+    unsigned char *at = scratch;
+    m->loops = snow_value_loops_of(m->params->isa);
+    m->bits = (uint32_t *)scratch;
+    m->line = (int16_t *)(void *)(at + bits_bytes(s));
+    m->natives = (uint64_t *)(void *)m->line;
+    m->by_natives = coder->ruled && !s->cubic && !s->holes;
+    for (int run = 0; run < s->run_count && m->by_natives; run++)
+        m->ranges[run] = snow_value_natives_of(coder, s->runs[run]);
+    memset(m->line, 0, line_bytes(s));
+    snow_value_lines_begin(&m->lines, m->params, low, high - low,
+                           at + bits_bytes(s) + line_bytes(s));
+}
+
 snow_status snow_value_cells_band(snow_value_store *s,
                                   const snow_value_store_params *params,
                                   int64_t band, int worker, void *scratch) {
-    const snow_value_loops *loops = snow_value_loops_of(params->isa);
+    marker m = {.store = s, .params = params};
     /* The first band has the row of cells above the volume too. */
     int64_t first = band ? band * SNOW_VALUE_BAND : -1;
     int64_t end = (band + 1) * SNOW_VALUE_BAND;
     end = end < s->rows ? end : s->rows;
     int64_t low = first < 1 ? 0 : first - 1;
     int64_t high = end + 2 < s->rows ? end + 2 : s->rows;
-    unsigned char *at = scratch;
-    uint32_t *bits = (uint32_t *)scratch;
-    int16_t *line = (int16_t *)(void *)(at + bits_bytes(s));
-    snow_value_lines lines;
-    memset(line, 0, line_bytes(s));
-    snow_value_lines_begin(&lines, params, low, high - low,
-                           at + bits_bytes(s) + line_bytes(s));
+    begin_marker(&m, low, high, scratch);
     for (int64_t slice = 0; slice < s->slices; slice++) {
         if (snow_monitor_look(s->context->monitor, worker))
             return SNOW_STATUS_OK; /* snow_parallel fails */
-        snow_value_lines_slice(&lines, slice);
-        mark_slice(s, &lines, loops, slice, first, end, line, bits);
+        snow_value_lines_slice(&m.lines, slice);
+        mark_slice(&m, slice, first, end);
     }
     return SNOW_STATUS_OK;
 }

@@ -8,12 +8,23 @@
 /* Voxel rows of a band. */
 #define SNOW_VALUE_BAND 32
 
+/* Natives first .. first + width, which may go round beyond the largest of
+ * their type; none: there are no such. */
+typedef struct snow_value_natives {
+    uint16_t first, width;
+    bool none;
+} snow_value_natives;
+
 /* Loops of an instruction set (value_rows.tmpl.h). */
 typedef struct snow_value_loops {
     void (*outside)(const int16_t *line, size_t words, snow_value_run run,
                     uint32_t *out);
     int16_t *(*pack)(const int16_t *line, const uint32_t *bits, size_t words,
                      int16_t *out);
+    void (*outside_bytes)(const unsigned char *natives, size_t count,
+                          snow_value_natives range, uint64_t *out);
+    void (*outside_words)(const unsigned char *natives, size_t count,
+                          snow_value_natives range, uint64_t *out);
 } snow_value_loops;
 
 const snow_value_loops *snow_value_loops_of(snow_isa isa);
@@ -27,6 +38,18 @@ static inline int snow_value_planes(const snow_value_store *s) {
 static inline size_t snow_value_words(const snow_value_store *s) {
     return snow_value_line(s->columns, s->margin) / 32;
 }
+
+/* The natives whose numbers are in a run. */
+snow_value_natives snow_value_natives_of(const snow_value_coder *coder,
+                                         snow_value_run run);
+
+/* Marks the numbers of a line that are outside of a run, which `range` is of,
+ * from a row of natives; `room` for a bit of each. */
+void snow_value_mark_natives(const snow_value_store *store,
+                             const snow_value_store_params *params,
+                             const snow_value_natives *range, int run,
+                             const unsigned char *natives, uint64_t *room,
+                             uint32_t *bits);
 
 size_t snow_value_cells_bytes(const snow_value_store *store,
                               const snow_value_store_params *params);

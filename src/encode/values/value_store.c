@@ -90,6 +90,22 @@ static snow_status reserve_bands(snow_value_store *s) {
     return SNOW_STATUS_OK;
 }
 
+/* Gives up EA, IA, PA and rows. */
+static void forget_copies(snow_value_store *s) {
+    for (size_t n = 0; n < s->bands_capacity / sizeof *s->bands; n++)
+        snow_sparse_fini(&s->bands[n]);
+    snow_release(s->context, s->bands);
+    snow_release(s->context, s->values);
+    snow_release(s->context, s->at);
+    snow_release(s->context, s->ends);
+    s->bands = NULL;
+    s->values = NULL;
+    s->at = NULL;
+    s->ends = NULL;
+    s->bands_capacity = s->values_capacity = 0;
+    s->at_capacity = s->ends_capacity = 0;
+}
+
 static snow_status reserve_rows(snow_value_store *s) {
     size_t rows = (size_t)s->slices * (size_t)(s->rows + 2 * s->margin);
     SNOW_TRY(snow_reserve(s->context, &s->at, &s->at_capacity, 0,
@@ -98,12 +114,35 @@ static snow_status reserve_rows(snow_value_store *s) {
                         rows * sizeof *s->ends);
 }
 
+/* Whether rows are read in place, and where they are. */
+static void place_natives(snow_value_store *s,
+                          const snow_value_store_params *params) {
+    const snow_placement *p = params->placement;
+    const snow_volume *volume = params->volume;
+    const snow_value_coder *coder = params->coder;
+    const int64_t *dims = volume->info.dims;
+    const int64_t strides[3] = {1, dims[0], dims[0] * dims[1]};
+    s->in_place = params->encoding == SNOW_ENCODING_AUTO && coder->ruled &&
+                  !coder->scale.clamps && coder->type != SNOW_TYPE_INT8 &&
+                  !s->cubic && !s->holes && p->u_axis == 0;
+    s->kind = SNOW_VALUE_NUMBERS;
+    if (!s->in_place)
+        return;
+    s->kind =
+        snow_type_size(coder->type) == 1 ? SNOW_VALUE_BYTES : SNOW_VALUE_WORDS;
+    s->rule = coder->scale.rule;
+    s->natives = volume->voxels;
+    s->native_count = dims[0] * dims[1] * dims[2];
+    s->slice_step = strides[p->slice_axis];
+    s->row_step = strides[p->v_axis];
+}
+
 /* Scratch for whichever step takes most. */
 static snow_status reserve_scratch(store_job *job) {
     snow_value_store *s = job->store;
     size_t most = ((size_t)s->columns / 2 + 2) * sizeof(snow_span);
     size_t cells = snow_value_cells_bytes(s, job->params);
-    size_t shell = snow_value_shell_bytes(s, job->params);
+    size_t shell = s->in_place ? 0 : snow_value_shell_bytes(s, job->params);
     most = cells > most ? cells : most;
     most = shell > most ? shell : most;
     job->scratch_bytes = (most + 63) / 64 * 64;
@@ -134,9 +173,13 @@ static snow_status begin(store_job *job) {
     s->labels = params->coder->names != NULL;
     if (s->holes && !s->run_count) /* nothing is invisible but holes */
         s->runs[s->run_count++] = SNOW_VALUE_NO_RUN;
+    place_natives(s, params);
     SNOW_TRY(reserve_masks(s));
+    if (s->in_place)
+        forget_copies(s);
     SNOW_TRY(reserve_bands(s));
-    SNOW_TRY(reserve_rows(s));
+    if (!s->in_place)
+        SNOW_TRY(reserve_rows(s));
     return reserve_scratch(job);
 }
 
@@ -161,8 +204,16 @@ static snow_encoding choose(const snow_value_store *s) {
                                 cells, runs);
 }
 
+/* In place the masks are all that there is. */
 static void add_up(snow_value_store *s) {
     s->voxels = s->ea_bytes = 0;
+    if (s->in_place) {
+        s->encoding = SNOW_ENCODING_BITMAP;
+        s->ea_bytes = (uint64_t)snow_value_planes(s) * (uint64_t)s->slices *
+                      s->mask_words * s->mask_rows * sizeof *s->masks;
+        s->ia_bytes = s->pa_bytes = 0;
+        return;
+    }
     for (int64_t n = 0; n < s->band_count; n++) {
         s->voxels += s->bands[n].ia_voxels;
         s->ea_bytes += s->bands[n].ea_bytes;
@@ -188,6 +239,10 @@ snow_status snow_value_store_encode(snow_value_store *s,
     snow_monitor_next(s->context->monitor, SNOW_STAGE_ENCODE, 0, 0.5);
     SNOW_TRY(each(&job, s->band_count, cells_item));
     SNOW_TRY(each(&job, s->eight_count, coarse_item));
+    if (s->in_place) {
+        add_up(s);
+        return SNOW_STATUS_OK;
+    }
     s->encoding =
         params->encoding == SNOW_ENCODING_AUTO ? choose(s) : params->encoding;
     snow_monitor_next(s->context->monitor, SNOW_STAGE_ENCODE, 0.5, 1);
@@ -201,15 +256,10 @@ snow_status snow_value_store_encode(snow_value_store *s,
 }
 
 void snow_value_store_fini(snow_value_store *s) {
-    for (size_t n = 0; n < s->bands_capacity / sizeof *s->bands; n++)
-        snow_sparse_fini(&s->bands[n]);
-    snow_release(s->context, s->bands);
+    forget_copies(s);
     snow_release(s->context, s->masks);
     snow_release(s->context, s->coarse);
     snow_release(s->context, s->eights);
-    snow_release(s->context, s->values);
-    snow_release(s->context, s->at);
-    snow_release(s->context, s->ends);
     snow_release(s->context, s->scratch);
     *s = (snow_value_store){.context = s->context};
 }

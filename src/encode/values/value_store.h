@@ -8,8 +8,13 @@
  *          --> rows    IA once more, row by row from the first to the last
  *                      voxel of the shell, so that 32 samples are two loads
  *
+ * Where rows of the volume are those of slices (slice axes z and y), and its
+ * voxels are integers that become numbers by a rule (value_range.h), rows are
+ * read in place, unless an encoding is asked for: there are masks alone.
+ *
  * Beyond each side of the volume there are `margin` more columns and rows,
  * which continue it oddly: v[-1] = 2 v[0] - v[1], and the same farther out.
+ * Rows of natives have none: whoever reads them makes them.
  * Cell (c, r) has voxels c, c + 1 of rows r, r + 1.
  *
  * Holes are SNOW_VALUE_HOLE in IA and in rows.  They show nothing; cells that
@@ -22,6 +27,8 @@
 #include "encode/encode.h"
 #include "transform/transform.h"
 
+#include <string.h>
+
 /* Rows of a tile, and of zeros beside the masks. */
 #define SNOW_VALUE_ROWS 32
 /* Rows of cells that share a bit of the coarse mask. */
@@ -30,6 +37,13 @@
 #define SNOW_VALUE_EIGHT 8
 /* The most voxels that a ray may move aside from one slice to the next. */
 #define SNOW_VALUE_REACH_MOST 24
+
+/* What rows hold. */
+typedef enum snow_value_kind {
+    SNOW_VALUE_NUMBERS, /* of 16 bits, with margins */
+    SNOW_VALUE_BYTES,   /* native values, unsigned, of 8 bits */
+    SNOW_VALUE_WORDS,   /* native values of 16 bits */
+} snow_value_kind;
 
 typedef struct snow_value_store {
     snow_context *context;
@@ -55,7 +69,14 @@ typedef struct snow_value_store {
     int64_t band_count;
     snow_encoding encoding;
     uint64_t voxels, ea_bytes, ia_bytes, pa_bytes;
-    /* Voxel (c, r) of slice k is values[at[k][r] + c]; elsewhere anything may
+    snow_value_kind kind;
+    bool in_place;
+    snow_value_rule rule; /* from natives to numbers */
+    /* In place voxel (c, r) of slice k is native number k slice_step + r
+     * row_step + c of native_count. */
+    const unsigned char *natives;
+    int64_t slice_step, row_step, native_count;
+    /* Else it is number, or native number, at[k][r] + c; elsewhere anything may
      * be read. */
     int16_t *values;
     int64_t *at;            /* [slice][row + margin] */
@@ -109,6 +130,23 @@ static inline size_t snow_value_coarse_at(const snow_value_store *s, int run,
 static inline const int64_t *snow_value_at(const snow_value_store *s,
                                            int64_t slice) {
     return s->at + slice * (s->rows + 2 * s->margin) + s->margin;
+}
+
+/* The place of a row of natives, which is one of the volume. */
+static inline int64_t snow_value_native_row(const snow_value_store *s,
+                                            int64_t slice, int64_t row) {
+    return s->in_place ? slice * s->slice_step + row * s->row_step
+                       : snow_value_at(s, slice)[row];
+}
+
+/* The number of a native value. */
+static inline int16_t snow_value_of_native(const snow_value_store *s,
+                                           int64_t place) {
+    uint16_t word;
+    if (s->kind == SNOW_VALUE_BYTES)
+        return snow_value_by_rule(&s->rule, s->natives[place]);
+    memcpy(&word, s->natives + 2 * place, sizeof word);
+    return snow_value_by_rule(&s->rule, word);
 }
 
 #endif

@@ -51,13 +51,10 @@ static inline void NAME(ask)(const snow_value_splat *p, int n, int phase,
     const snow_value_store *s = p->store;
     const snow_value_sheet *sheet = p->sheets + n;
     const snow_value_place *place = p->places + n * p->phases + phase;
-    const int64_t next = s->rows + 2 * s->margin;
+    int64_t column = value_tile_column(p, tile[0]) + place->whole[0];
     int64_t first = value_tile_row(p, tile[1]) + place->whole[1] - 1;
     if (sheet->slice < 0 || sheet->slice + sheet->half >= s->slices)
         return; /* of another part */
-    const int64_t *at = snow_value_at(s, sheet->slice) + first;
-    const int16_t *values =
-        s->values + value_tile_column(p, tile[0]) + place->whole[0];
     if (asked->sheet != n)
         *asked = (value_asked){.sheet = n};
     rows &= ~asked->rows;
@@ -67,9 +64,11 @@ static inline void NAME(ask)(const snow_value_splat *p, int n, int phase,
         if (first + bit < -s->margin || first + bit >= s->rows + s->margin)
             continue;
         for (int half = 0; half <= sheet->half; half++) {
-            const int16_t *voxels = values + at[bit + half * next];
+            int next;
+            const unsigned char *voxels = value_address(
+                s, sheet->slice + half, first + bit, column, &next);
             __builtin_prefetch(voxels);
-            __builtin_prefetch(voxels + 32);
+            __builtin_prefetch(voxels + next);
         }
     }
 }

@@ -169,14 +169,16 @@ TARGET VALUE_INLINE void NAME(voxels_under)(const NAME(source) * s,
                                             int64_t row, const bool half,
                                             const bool difference,
                                             V(row) out[2]) {
-    const int16_t *values = s->values + u->first;
+    int16_t room[LINE_NUMBERS];
     int span = u->at[31] + 2;
     for (int end = 0; end <= difference; end++) {
-        const int64_t *slice = end ? s->after : s->slice;
         V(row) here[2], next[2];
-        V(row_pairs)(values + slice[row], u->at, span, here);
+        V(row_pairs)
+        (NAME(line)(s, end, 0, row, u->first, span, room), u->at, span, here);
         if (half) {
-            V(row_pairs)(values + slice[row + s->next], u->at, span, next);
+            V(row_pairs)
+            (NAME(line)(s, end, 1, row, u->first, span, room), u->at, span,
+             next);
             here[0] = V(row_avg)(here[0], next[0]);
             here[1] = V(row_avg)(here[1], next[1]);
         }
@@ -360,7 +362,7 @@ TARGET static void NAME(cross_holes_eye)(const snow_value_splat *p, int n,
     int16_t beside[2][SNOW_VALUE_ROWS][32];
     uint32_t partial[2][SNOW_VALUE_ROWS];
     for (int side = 0; side < 2; side++) {
-        from.slice = snow_value_at(s, slices[side]);
+        NAME(set_slices)(&from, slices[side], slices[side]);
         if (s->cubic)
             NAME(fill_cubic_eye)
         (&from, s, u, v, step, 1, across, beside[side], out->holes,
@@ -419,7 +421,7 @@ TARGET VALUE_INLINE void NAME(sample_eye)(const snow_value_splat *p, int n,
     else NAME(fill_eye)(&from, s, u, v, 0, rows, out->values, false, false);
     if (!across)
         return;
-    NAME(begin_across)(s, sheet, &from);
+    NAME(begin_across)(sheet, &from);
     if (s->cubic)
         ;
     else if (sheet->half_across)
@@ -466,21 +468,18 @@ static inline void NAME(ask_eye)(const snow_value_splat *p, int n, int phase,
     const snow_value_sheet *sheet = p->sheets + n;
     if (sheet->slice < 0 || sheet->slice + sheet->half >= s->slices)
         return; /* of another part */
-    const int64_t *slice = snow_value_at(s, sheet->slice);
-    int64_t next = sheet->half ? s->rows + 2 * s->margin : 0;
     if (asked->sheet != n)
         *asked = (value_asked){.sheet = n};
     rows &= ~asked->rows;
     asked->rows |= rows;
     for (; rows; rows &= rows - 1) {
         int64_t row = NAME(voxel_row)(s, v, __builtin_ctzll(rows));
-        for (int below = 0; below < 2; below++) {
-            const int16_t *voxels = s->values + slice[row + below] + u->first;
-            for (int at = 0; at < u->at[31] + 32; at += 32)
-                __builtin_prefetch(voxels + at);
-            voxels = s->values + slice[row + below + next] + u->first;
-            for (int at = 0; next && at < u->at[31] + 32; at += 32)
-                __builtin_prefetch(voxels + at);
+        for (int of = 0; of < 2 + 2 * sheet->half; of++) {
+            int next;
+            const unsigned char *voxels = value_address(
+                s, sheet->slice + of / 2, row + of % 2, u->first, &next);
+            for (int at = 0; at < u->at[31] + 32; at += 32, voxels += next)
+                __builtin_prefetch(voxels);
         }
     }
 }

@@ -82,13 +82,12 @@ TARGET static void NAME(cross_holes)(const snow_value_splat *p, int n,
                                      uint32_t across,
                                      const snow_value_place *place,
                                      value_rows *out) {
-    const snow_value_store *s = p->store;
     const snow_value_sheet *sheet = p->sheets + n;
     const int64_t slices[2] = {sheet->before, sheet->after};
     int16_t beside[2][SNOW_VALUE_ROWS][32];
     uint32_t partial[2][SNOW_VALUE_ROWS];
     for (int side = 0; side < 2; side++) {
-        from.slice = snow_value_at(s, slices[side]);
+        NAME(set_slices)(&from, slices[side], slices[side]);
         if (p->store->cubic)
             NAME(fill_cubic)
         (&from, row, across, place, beside[side], out->holes,

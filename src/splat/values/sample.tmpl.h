@@ -84,60 +84,109 @@ TARGET VALUE_INLINE V(row) NAME(mix)(V(row) a, V(row) b, V(row) weight) {
     return V(row_add)(a, V(row_mulhrs)(V(row_subs)(b, a), weight));
 }
 
-/* The rows that a sheet is made of. */
-typedef struct NAME(source) {
-    const int16_t *values;
-    const int64_t *slice, *after; /* places of rows; of the difference's end */
-    int64_t next;                 /* places to the next slice */
-    int64_t column;
-    bool twice; /* of a difference */
-} NAME(source);
+#include "splat/values/rows.tmpl.h"
 
 /* 32 voxels of row `row` from `column` + `by` on: of a slice or half way to the
  * next one; or the difference of two of them. */
 TARGET VALUE_INLINE V(row)
     NAME(voxels)(const NAME(source) * s, int64_t row, int by, const bool half,
-                 const bool difference) {
-    const int16_t *values = s->values + s->column + by;
-    V(row) here = V(row_load)(values + s->slice[row]);
-    if (half)
-        here = V(row_avg)(here, V(row_load)(values + s->slice[row + s->next]));
+                 const bool difference, const int kind, const bool sided) {
+    const int64_t column = s->column + by;
+    V(row) ends[2];
+    for (int end = 0; end <= difference; end++) {
+        ends[end] = NAME(numbers)(s, end, 0, row, column, kind, sided);
+        if (half)
+            ends[end] = V(row_avg)(
+                ends[end], NAME(numbers)(s, end, 1, row, column, kind, sided));
+    }
     if (!difference)
-        return here;
-    V(row) there = V(row_load)(values + s->after[row]);
-    if (half)
-        there =
-            V(row_avg)(there, V(row_load)(values + s->after[row + s->next]));
-    there = V(row_subs)(there, here);
-    return s->twice ? V(row_adds)(there, there) : there;
+        return ends[0];
+    ends[1] = V(row_subs)(ends[1], ends[0]);
+    return s->twice ? V(row_adds)(ends[1], ends[1]) : ends[1];
 }
 
 /* One row of voxels, mixed along u. */
 TARGET VALUE_INLINE V(row)
     NAME(along)(const NAME(source) * s, int64_t row, V(row) weight,
-                const bool half, const bool difference) {
-    return NAME(mix)(NAME(voxels)(s, row, 0, half, difference),
-                     NAME(voxels)(s, row, 1, half, difference), weight);
+                const bool half, const bool difference, const int kind,
+                const bool sided) {
+    return NAME(mix)(NAME(voxels)(s, row, 0, half, difference, kind, sided),
+                     NAME(voxels)(s, row, 1, half, difference, kind, sided),
+                     weight);
 }
 
-/* Rows of a sheet, a bit each from row `first` on, into `out`. */
-TARGET VALUE_INLINE void NAME(fill)(const NAME(source) * s, int64_t first,
-                                    uint64_t rows,
-                                    const snow_value_place *place,
-                                    int16_t (*out)[32], const bool half,
-                                    const bool difference) {
+TARGET VALUE_INLINE void NAME(fill_rows)(const NAME(source) * from,
+                                         int64_t first, uint64_t rows,
+                                         const snow_value_place *place,
+                                         int16_t (*out)[32], const bool half,
+                                         const bool difference, const int kind,
+                                         const bool sided) {
+    const NAME(source) s = *from;
     const V(row) u = V(row_set1)(place->weight[0]);
     const V(row) v = V(row_set1)(place->weight[1]);
     while (rows) {
         int row = __builtin_ctzll(rows);
-        V(row) above = NAME(along)(s, first + row, u, half, difference);
+        V(row)
+        above = NAME(along)(&s, first + row, u, half, difference, kind, sided);
         for (; rows >> row & 1; row++) {
-            V(row) below = NAME(along)(s, first + row + 1, u, half, difference);
+            V(row)
+            below = NAME(along)(&s, first + row + 1, u, half, difference, kind,
+                                sided);
             V(row_store)(out[row], NAME(mix)(above, below, v));
             above = below;
             rows &= rows - 1;
         }
     }
+}
+
+/* Whether rows of a window, and the one below, or the columns reach a side. */
+static inline bool NAME(is_sided)(const NAME(source) * s, int64_t first,
+                                  uint64_t rows) {
+    const snow_value_store *store = s->store;
+    return s->column < 0 || s->column + 33 > store->columns ||
+           first + __builtin_ctzll(rows) < 0 ||
+           first + 64 - __builtin_clzll(rows) >= store->rows;
+}
+
+/* Of each kind of rows. */
+#define VALUE_FILL(word, kind, sides)                                        \
+    TARGET static void NAME(fill_##word)(                                    \
+        const NAME(source) * s, int64_t first, uint64_t rows,                \
+        const snow_value_place *place, int16_t(*out)[32], bool half,         \
+        bool difference) {                                                   \
+        if (half && difference)                                              \
+            NAME(fill_rows)                                                  \
+        (s, first, rows, place, out, true, true, kind, sides);               \
+        else if (half) NAME(fill_rows)(s, first, rows, place, out, true,     \
+                                       false, kind, sides);                  \
+        else if (difference) NAME(fill_rows)(s, first, rows, place, out,     \
+                                             false, true, kind, sides);      \
+        else NAME(fill_rows)(s, first, rows, place, out, false, false, kind, \
+                             sides);                                         \
+    }
+VALUE_FILL(numbers, SNOW_VALUE_NUMBERS, false)
+VALUE_FILL(bytes, SNOW_VALUE_BYTES, false)
+VALUE_FILL(sided_bytes, SNOW_VALUE_BYTES, true)
+VALUE_FILL(words, SNOW_VALUE_WORDS, false)
+VALUE_FILL(sided_words, SNOW_VALUE_WORDS, true)
+#undef VALUE_FILL
+
+/* Rows of a sheet, a bit each from row `first` on, into `out`. */
+TARGET static void NAME(fill)(const NAME(source) * s, int64_t first,
+                              uint64_t rows, const snow_value_place *place,
+                              int16_t (*out)[32], bool half, bool difference) {
+    if (!rows)
+        return;
+    if (s->store->kind == SNOW_VALUE_NUMBERS)
+        NAME(fill_numbers)(s, first, rows, place, out, half, difference);
+    else if (s->store->kind == SNOW_VALUE_BYTES)
+        (NAME(is_sided)(s, first, rows)
+             ? NAME(fill_sided_bytes)
+             : NAME(fill_bytes))(s, first, rows, place, out, half, difference);
+    else
+        (NAME(is_sided)(s, first, rows)
+             ? NAME(fill_sided_words)
+             : NAME(fill_words))(s, first, rows, place, out, half, difference);
 }
 
 #include "splat/values/holes.tmpl.h"
@@ -165,16 +214,12 @@ TARGET VALUE_INLINE void NAME(begin)(const snow_value_store *s,
     *across &= ~out->has_across;
     out->has |= *rows;
     out->has_across |= *across;
-    *from = (NAME(source)){.values = s->values,
-                           .slice = snow_value_at(s, sheet->slice),
-                           .next = s->rows + 2 * s->margin};
+    *from = NAME(source_of)(s, sheet->slice);
 }
 
-TARGET VALUE_INLINE void NAME(begin_across)(const snow_value_store *s,
-                                            const snow_value_sheet *sheet,
+TARGET VALUE_INLINE void NAME(begin_across)(const snow_value_sheet *sheet,
                                             NAME(source) * from) {
-    from->slice = snow_value_at(s, sheet->before);
-    from->after = snow_value_at(s, sheet->after);
+    NAME(set_slices)(from, sheet->before, sheet->after);
     from->twice = sheet->one_sided;
 }
 
@@ -203,18 +248,14 @@ TARGET VALUE_INLINE void NAME(sample_all)(const snow_value_splat *p, int n,
     (&from, first - 1, rows, place, out->values, out->holes, sheet->half);
     else if (out->holes) NAME(fill_holes)(&from, first - 1, rows, place,
                                           out->values, partial, sheet->half);
-    else if (sheet->half)
-        NAME(fill)(&from, first - 1, rows, place, out->values, true, false);
-    else NAME(fill)(&from, first - 1, rows, place, out->values, false, false);
+    else NAME(fill)(&from, first - 1, rows, place, out->values, sheet->half,
+                    false);
     if (!across)
         return;
-    NAME(begin_across)(s, sheet, &from);
-    if (s->cubic)
-        ;
-    else if (sheet->half_across)
-        NAME(fill)(&from, first, across, place, out->across, true, true);
-    else
-        NAME(fill)(&from, first, across, place, out->across, false, true);
+    NAME(begin_across)(sheet, &from);
+    if (!s->cubic)
+        NAME(fill)
+    (&from, first, across, place, out->across, sheet->half_across, true);
     if (out->holes || s->cubic)
         NAME(cross_holes)(p, n, from, first, across, place, out);
 }

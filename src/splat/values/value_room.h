@@ -162,6 +162,20 @@ static inline bool value_meets(const snow_value_store *s, int64_t column,
            row > -32 - s->margin && row < s->rows + s->margin;
 }
 
+/* Where a voxel is, for what the cache is asked for; *next is how many bytes it
+ * is from there to 32 voxels on. */
+static inline const unsigned char *value_address(const snow_value_store *s,
+                                                 int64_t slice, int64_t row,
+                                                 int64_t column, int *next) {
+    *next = s->kind == SNOW_VALUE_BYTES ? 32 : 64;
+    if (s->kind == SNOW_VALUE_NUMBERS)
+        return (const unsigned char *)(s->values +
+                                       snow_value_at(s, slice)[row] + column);
+    row = row < 0 ? 0 : row < s->rows ? row : s->rows - 1;
+    return s->natives +
+           (snow_value_native_row(s, slice, row) + column) * (*next / 32);
+}
+
 /* Words and shift of a window of 32 columns from `column` on. */
 typedef struct value_window {
     size_t word, row; /* of the masks */

@@ -1,4 +1,4 @@
-/* tests/values/test_value_numbers.c - the numbers of 14 bits that integers of 8
+/* tests/stages/test_value_numbers.c - the numbers of 14 bits that integers of 8
  * and 16 bits become: exactly those of docs/model.md, the value model, point 2.
  */
 #include "classify/values/value_coder.h"
