@@ -121,3 +121,24 @@ snow_status snow_count_interesting(const snow_volume *volume,
     *out = count;
     return SNOW_STATUS_OK;
 }
+
+int snow_interesting_ranges(const snow_volume_info *info,
+                            const snow_transfer *transfer, double threshold,
+                            int32_t first, int32_t last, snow_native_range *out,
+                            int most) {
+    bool before = false;
+    int count = 0;
+    for (int32_t native = first; native <= last; native++) {
+        double value = info->slope * native + info->intercept;
+        double opacity = snow_transfer_opacity(transfer, value);
+        bool here = opacity > 0 && snow_is_interesting(opacity, threshold);
+        if (here && !before && count == most)
+            return -1;
+        if (here && !before)
+            out[count++].first = native;
+        if (here)
+            out[count - 1].last = native;
+        before = here;
+    }
+    return count;
+}

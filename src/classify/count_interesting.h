@@ -21,4 +21,17 @@ snow_status snow_count_interesting(const snow_volume *volume,
                                    double threshold, snow_isa isa,
                                    int64_t *out);
 
+/* Native values first .. last. */
+typedef struct snow_native_range {
+    int32_t first, last;
+} snow_native_range;
+
+/* The ranges of interesting native values of a type of 8 or 16 bits, of first
+ * .. last, without a gradient opacity; returns their number, -1 where they are
+ * more than `most`. */
+int snow_interesting_ranges(const snow_volume_info *info,
+                            const snow_transfer *transfer, double threshold,
+                            int32_t first, int32_t last, snow_native_range *out,
+                            int most);
+
 #endif

@@ -1,31 +1,7 @@
 /* encode/values/value_cells.c - which cells of a slice a look can show. */
 #include "encode/values/value_encode.h"
 
-#include "simd/rows.h"
-
 #include <string.h>
-
-#define TEMPLATE "encode/values/value_rows.tmpl.h"
-#include "simd/each_isa.h"
-
-const snow_value_loops *snow_value_loops_of(snow_isa isa) {
-    static const snow_value_loops scalar = {outside_scalar, pack_scalar,
-                                            outside_bytes_scalar,
-                                            outside_words_scalar};
-#if SNOW_HAS_AVX
-    static const snow_value_loops avx2 = {
-        outside_avx2, pack_avx2, outside_bytes_avx2, outside_words_avx2};
-    static const snow_value_loops avx512 = {outside_avx512, pack_avx512,
-                                            outside_bytes_avx512,
-                                            outside_words_avx512};
-    if (isa == SNOW_ISA_AVX512)
-        return &avx512;
-    if (isa == SNOW_ISA_AVX2)
-        return &avx2;
-#endif
-    (void)isa;
-    return &scalar;
-}
 
 /* By so much the mean of what is there may be beyond the voxels' values, for
  * means and weights are rounded. */
@@ -100,6 +76,7 @@ typedef struct marker {
     const snow_value_store_params *params;
     const snow_value_loops *loops;
     snow_value_lines lines;
+    int64_t band;
     bool by_natives;
     snow_value_natives ranges[SNOW_VALUE_RUNS]; /* of the runs */
     int16_t *line;
@@ -107,7 +84,8 @@ typedef struct marker {
     uint32_t *bits;    /* of two lines */
 } marker;
 
-/* Marks a row, or one beyond the first or last of the volume. */
+/* Marks a row, or one beyond the first or last of the volume; counts what is
+ * seen of those of the band. */
 static void mark_row(marker *m, int64_t row, uint32_t *bits) {
     const snow_value_store *s = m->store;
     if (!m->by_natives || row < 0 || row >= s->rows) {
@@ -119,6 +97,9 @@ static void mark_row(marker *m, int64_t row, uint32_t *bits) {
     for (int run = 0; run < s->run_count; run++, bits += snow_value_words(s))
         snow_value_mark_natives(s, m->params, &m->ranges[run], run, natives,
                                 m->natives, bits);
+    if (m->params->seen_count && row / SNOW_VALUE_BAND == m->band)
+        m->store->seen[m->band] +=
+            snow_value_count_natives(s, m->params, natives, m->natives);
 }
 
 /* Rows of cells first .. end - 1 of a slice. */
@@ -148,7 +129,7 @@ static void begin_marker(marker *m, int64_t low, int64_t high, void *scratch) {
     m->bits = (uint32_t *)scratch;
     m->line = (int16_t *)(void *)(at + bits_bytes(s));
     m->natives = (uint64_t *)(void *)m->line;
-    m->by_natives = coder->ruled && !s->cubic && !s->holes;
+    m->by_natives = snow_value_store_by_natives(m->params);
     for (int run = 0; run < s->run_count && m->by_natives; run++)
         m->ranges[run] = snow_value_natives_of(coder, s->runs[run]);
     memset(m->line, 0, line_bytes(s));
@@ -159,7 +140,7 @@ static void begin_marker(marker *m, int64_t low, int64_t high, void *scratch) {
 snow_status snow_value_cells_band(snow_value_store *s,
                                   const snow_value_store_params *params,
                                   int64_t band, int worker, void *scratch) {
-    marker m = {.store = s, .params = params};
+    marker m = {.store = s, .params = params, .band = band};
     /* The first band has the row of cells above the volume too. */
     int64_t first = band ? band * SNOW_VALUE_BAND : -1;
     int64_t end = (band + 1) * SNOW_VALUE_BAND;
@@ -178,9 +159,14 @@ snow_status snow_value_cells_band(snow_value_store *s,
 
 /* Bits of the rows of a column of words that have any. */
 static void gather_rows(const uint32_t *masks, size_t rows, uint64_t *coarse) {
-    for (size_t row = 0; row < rows; row++) {
+    for (size_t row = 0; row < rows; row += SNOW_VALUE_COARSE) {
         size_t block = row / SNOW_VALUE_COARSE;
-        coarse[block / 64] |= (uint64_t)(masks[row] != 0) << block % 64;
+        size_t end =
+            row + SNOW_VALUE_COARSE < rows ? row + SNOW_VALUE_COARSE : rows;
+        uint32_t any = 0;
+        for (size_t n = row; n < end; n++)
+            any |= masks[n];
+        coarse[block / 64] |= (uint64_t)(any != 0) << block % 64;
     }
 }
 

@@ -8,13 +8,6 @@
 /* Voxel rows of a band. */
 #define SNOW_VALUE_BAND 32
 
-/* Natives first .. first + width, which may go round beyond the largest of
- * their type; none: there are no such. */
-typedef struct snow_value_natives {
-    uint16_t first, width;
-    bool none;
-} snow_value_natives;
-
 /* Loops of an instruction set (value_rows.tmpl.h). */
 typedef struct snow_value_loops {
     void (*outside)(const int16_t *line, size_t words, snow_value_run run,
@@ -39,10 +32,6 @@ static inline size_t snow_value_words(const snow_value_store *s) {
     return snow_value_line(s->columns, s->margin) / 32;
 }
 
-/* The natives whose numbers are in a run. */
-snow_value_natives snow_value_natives_of(const snow_value_coder *coder,
-                                         snow_value_run run);
-
 /* Marks the numbers of a line that are outside of a run, which `range` is of,
  * from a row of natives; `room` for a bit of each. */
 void snow_value_mark_natives(const snow_value_store *store,
@@ -50,6 +39,11 @@ void snow_value_mark_natives(const snow_value_store *store,
                              const snow_value_natives *range, int run,
                              const unsigned char *natives, uint64_t *room,
                              uint32_t *bits);
+
+/* The natives of a row that are in one of the ranges of what is seen. */
+int64_t snow_value_count_natives(const snow_value_store *store,
+                                 const snow_value_store_params *params,
+                                 const unsigned char *natives, uint64_t *room);
 
 size_t snow_value_cells_bytes(const snow_value_store *store,
                               const snow_value_store_params *params);

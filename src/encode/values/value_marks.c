@@ -52,25 +52,23 @@ snow_value_natives snow_value_natives_of(const snow_value_coder *coder,
 /* --- rows -------------------------------------------------------------------
  */
 
-/* Bits first .. first + count - 1. */
-static void set_bits(uint32_t *bits, size_t first, size_t count) {
-    for (size_t n = first; n < first + count; n++)
-        bits[n / 32] |= UINT32_C(1) << n % 32;
+/* The words of a row, moved on by `margin` bits (1 to 31), to `words` words. */
+static void place_bits(const uint32_t *from, size_t count, int margin,
+                       uint32_t *bits, size_t words) {
+    size_t own = (count + 31) / 32;
+    bits[0] = from[0] << margin;
+    for (size_t w = 1; w < own; w++)
+        bits[w] = from[w] << margin | from[w - 1] >> (32 - margin);
+    for (size_t w = own; w < words; w++)
+        bits[w] = w == own ? from[w - 1] >> (32 - margin) : 0;
 }
 
-/* Bits of a row, at bit `first` of `words` words, which are zeros. */
-static void place_bits(const uint64_t *from, size_t count, size_t first,
-                       uint32_t *bits, size_t words) {
-    const size_t shift = first % 32;
-    for (size_t n = 0; n < count; n += 64) {
-        size_t word = (first + n) / 32;
-        uint64_t here = from[n / 64];
-        bits[word] |= (uint32_t)(here << shift);
-        if (word + 1 < words)
-            bits[word + 1] |= (uint32_t)(here << shift >> 32);
-        if (shift && word + 2 < words)
-            bits[word + 2] |= (uint32_t)(here >> (64 - shift));
-    }
+/* Sets `count` bits, up to 31, from bit `first` on. */
+static void set_bits(uint32_t *bits, size_t first, int count) {
+    uint64_t some = ((UINT64_C(1) << count) - 1) << first % 32;
+    bits[first / 32] |= (uint32_t)some;
+    if (some >> 32)
+        bits[first / 32 + 1] |= (uint32_t)(some >> 32);
 }
 
 /* Whether the number beyond a side is outside of a run: that of a voxel, of
@@ -86,32 +84,58 @@ static bool is_beyond_outside(const snow_value_coder *coder,
     return beyond < run.first || beyond > run.last;
 }
 
+/* A bit for each native of a row that is not in a range. */
+static void find_outside(const snow_value_store *s,
+                         const snow_value_store_params *params,
+                         const snow_value_natives *range,
+                         const unsigned char *natives, uint64_t *out) {
+    const snow_value_loops *loops = snow_value_loops_of(params->isa);
+    const size_t count = (size_t)s->columns;
+    if (range->none)
+        memset(out, 0xff, (count + 63) / 64 * sizeof *out);
+    else if (snow_type_size(params->coder->type) == 1)
+        loops->outside_bytes(natives, count, *range, out);
+    else
+        loops->outside_words(natives, count, *range, out);
+    if (count % 64)
+        out[count / 64] &= ~UINT64_C(0) >> (64 - count % 64);
+}
+
+static bool is_same(const unsigned char *a, const unsigned char *b,
+                    int64_t size) {
+    return a[0] == b[0] && (size == 1 || a[1] == b[1]);
+}
+
 void snow_value_mark_natives(const snow_value_store *s,
                              const snow_value_store_params *params,
                              const snow_value_natives *range, int run,
                              const unsigned char *natives, uint64_t *room,
                              uint32_t *bits) {
-    const snow_value_loops *loops = snow_value_loops_of(params->isa);
-    const size_t count = (size_t)s->columns, margin = (size_t)s->margin;
-    const size_t size = snow_type_size(params->coder->type);
+    const size_t count = (size_t)s->columns;
+    const int64_t size = (int64_t)snow_type_size(params->coder->type);
     const int64_t step = s->columns > 1;
-    memset(bits, 0, snow_value_words(s) * sizeof *bits);
-    if (range->none)
-        memset(room, 0xff, (count + 63) / 64 * sizeof *room);
-    else if (size == 1)
-        loops->outside_bytes(natives, count, *range, room);
-    else
-        loops->outside_words(natives, count, *range, room);
-    if (count % 64)
-        room[count / 64] &= ~UINT64_C(0) >> (64 - count % 64);
-    place_bits(room, count, margin, bits, snow_value_words(s));
+    find_outside(s, params, range, natives, room);
+    place_bits((const uint32_t *)(const void *)room, count, s->margin, bits,
+               snow_value_words(s));
     for (int end = 0; end < 2; end++) {
         int64_t column = end ? s->columns - 1 : 0, in = end ? -step : step;
-        const unsigned char *side = natives + column * (int64_t)size;
-        bool same = memcmp(side, side + in * (int64_t)size, size) == 0;
-        if (same ? room[column / 64] >> column % 64 & 1
-                 : is_beyond_outside(params->coder, natives, column, in,
-                                     s->runs[run]))
-            set_bits(bits, end ? margin + count : 0, margin);
+        const unsigned char *side = natives + column * size;
+        if (is_same(side, side + in * size, size)
+                ? room[column / 64] >> column % 64 & 1
+                : is_beyond_outside(params->coder, natives, column, in,
+                                    s->runs[run]))
+            set_bits(bits, end ? (size_t)s->margin + count : 0, s->margin);
     }
+}
+
+int64_t snow_value_count_natives(const snow_value_store *s,
+                                 const snow_value_store_params *params,
+                                 const unsigned char *natives, uint64_t *room) {
+    int64_t outside = 0;
+    for (int n = 0; n < params->seen_count; n++) {
+        find_outside(s, params, &params->seen[n], natives, room);
+        for (int64_t word = 0; word < (s->columns + 63) / 64; word++)
+            outside += __builtin_popcountll(room[word]);
+    }
+    return params->seen_count * s->columns - outside;
 }

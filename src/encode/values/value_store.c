@@ -87,6 +87,9 @@ static snow_status reserve_bands(snow_value_store *s) {
     for (size_t n = before / sizeof *s->bands;
          n < s->bands_capacity / sizeof *s->bands; n++)
         s->bands[n] = (snow_sparse){.context = s->context};
+    SNOW_TRY(snow_reserve(s->context, &s->seen, &s->seen_capacity, 0,
+                          (size_t)s->band_count * sizeof *s->seen));
+    memset(s->seen, 0, (size_t)s->band_count * sizeof *s->seen);
     return SNOW_STATUS_OK;
 }
 
@@ -122,9 +125,9 @@ static void place_natives(snow_value_store *s,
     const snow_value_coder *coder = params->coder;
     const int64_t *dims = volume->info.dims;
     const int64_t strides[3] = {1, dims[0], dims[0] * dims[1]};
-    s->in_place = params->encoding == SNOW_ENCODING_AUTO && coder->ruled &&
-                  !coder->scale.clamps && coder->type != SNOW_TYPE_INT8 &&
-                  !s->cubic && !s->holes && p->u_axis == 0;
+    s->in_place = params->encoding == SNOW_ENCODING_AUTO &&
+                  snow_value_store_by_natives(params) && !coder->scale.clamps &&
+                  coder->type != SNOW_TYPE_INT8 && p->u_axis == 0;
     s->kind = SNOW_VALUE_NUMBERS;
     if (!s->in_place)
         return;
@@ -260,6 +263,7 @@ void snow_value_store_fini(snow_value_store *s) {
     snow_release(s->context, s->masks);
     snow_release(s->context, s->coarse);
     snow_release(s->context, s->eights);
+    snow_release(s->context, s->seen);
     snow_release(s->context, s->scratch);
     *s = (snow_value_store){.context = s->context};
 }

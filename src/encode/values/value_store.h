@@ -68,6 +68,7 @@ typedef struct snow_value_store {
     snow_sparse *bands;
     int64_t band_count;
     snow_encoding encoding;
+    int64_t *seen; /* natives that were counted, by bands */
     uint64_t voxels, ea_bytes, ia_bytes, pa_bytes;
     snow_value_kind kind;
     bool in_place;
@@ -83,8 +84,16 @@ typedef struct snow_value_store {
     int32_t (*ends)[2];     /* of the rows: first column, and behind the last */
     unsigned char *scratch; /* of the threads, while encoding */
     size_t masks_capacity, coarse_capacity, eights_capacity, bands_capacity,
-        values_capacity, at_capacity, ends_capacity, scratch_capacity;
+        values_capacity, at_capacity, ends_capacity, seen_capacity,
+        scratch_capacity;
 } snow_value_store;
+
+/* Natives first .. first + width, which may go round beyond the largest of
+ * their type; none: there are no such. */
+typedef struct snow_value_natives {
+    uint16_t first, width;
+    bool none;
+} snow_value_natives;
 
 /* What is encoded. */
 typedef struct snow_value_store_params {
@@ -99,6 +108,8 @@ typedef struct snow_value_store_params {
     snow_encoding encoding; /* AUTO: chosen by the cells */
     snow_isa isa;           /* resolved */
     int threads;
+    const snow_value_natives *seen; /* ranges of natives that are counted: */
+    int seen_count;                 /* 0: none are */
 } snow_value_store_params;
 
 /* Columns and rows beyond each side: those that rays and gradients reach.  A
@@ -106,6 +117,16 @@ typedef struct snow_value_store_params {
 static inline int snow_value_margin(const snow_value_store_params *params) {
     const snow_placement *p = params->placement;
     return params->reach + 1 + (p->columns == 1 || p->rows == 1);
+}
+
+/* The natives whose numbers are in a run. */
+snow_value_natives snow_value_natives_of(const snow_value_coder *coder,
+                                         snow_value_run run);
+
+/* Whether cells are marked by natives, which can be counted then. */
+static inline bool
+snow_value_store_by_natives(const snow_value_store_params *params) {
+    return params->coder->ruled && !params->cubic && !params->holes;
 }
 
 /* Encodes; buffers are reused.  `store` begins as zeros but for its context.

@@ -31,7 +31,8 @@ static void read_over(const snow_value_splat *splat, const void *planes,
 static void hide(snow_value_path *path, const snow_value_look *look,
                  int16_t number) {
     snow_value_look all = *look;
-    all.scale = (snow_value_scale14){path->range.low, path->range.high, false};
+    all.scale =
+        (snow_value_scale14){.low = path->range.low, .high = path->range.high};
     snow_value_table_begin(&all, &path->table);
     if (!path->range.holes)
         snow_value_table_hide(&path->table, (snow_value_run){number, number});

@@ -10,6 +10,9 @@
 #include <math.h>
 #include <string.h>
 
+/* Ranges of interesting natives that are counted while cells are marked. */
+#define SEEN_MOST 4
+
 snow_status snow_value_path_new(snow_context *context, snow_value_path **out) {
     if (*out)
         return SNOW_STATUS_OK;
@@ -245,25 +248,54 @@ static snow_status find_reach(snow_value_path *path,
                      *reach, SNOW_VALUE_REACH_MOST);
 }
 
+/* The ranges of interesting natives; 0: voxels cannot be counted by them. */
+static int find_seen(const snow_value_path *path,
+                     const snow_value_params *params,
+                     snow_value_natives out[SEEN_MOST]) {
+    const snow_value_rule *rule = &path->coder.scale.rule;
+    snow_native_range ranges[SEEN_MOST];
+    if (!path->coder.ruled || path->coder.scale.clamps ||
+        params->volume->is_part ||
+        snow_transfer_has_gradient_opacity(params->transfer))
+        return 0;
+    int count = snow_interesting_ranges(
+        &params->volume->info, params->transfer, params->settings->threshold,
+        rule->bottom, rule->top, ranges, SEEN_MOST);
+    for (int n = 0; n < count; n++)
+        out[n] = (snow_value_natives){
+            .first = (uint16_t)ranges[n].first,
+            .width = (uint16_t)(ranges[n].last - ranges[n].first)};
+    return count > 0 ? count : 0;
+}
+
 static snow_status encode_anew(snow_value_path *path,
                                const snow_value_params *params, int reach) {
     const snow_settings *s = params->settings;
-    const snow_value_store_params order = {.volume = params->volume,
-                                           .placement = params->stored,
-                                           .coder = &path->coder,
-                                           .runs = path->table.runs,
-                                           .run_count = path->table.run_count,
-                                           .holes = path->range.holes,
-                                           .reach = reach,
-                                           .cubic = is_cubic(path, params),
-                                           .encoding = s->encoding,
-                                           .isa = s->isa,
-                                           .threads = s->threads};
+    snow_value_natives seen[SEEN_MOST];
+    snow_value_store_params order = {.volume = params->volume,
+                                     .placement = params->stored,
+                                     .coder = &path->coder,
+                                     .runs = path->table.runs,
+                                     .run_count = path->table.run_count,
+                                     .holes = path->range.holes,
+                                     .reach = reach,
+                                     .cubic = is_cubic(path, params),
+                                     .encoding = s->encoding,
+                                     .isa = s->isa,
+                                     .threads = s->threads,
+                                     .seen = seen};
     path->coder.names = path->has_labels ? path->labels.names : NULL;
     path->coder.name_count = path->labels.count;
     SNOW_TRY(snow_value_coder_make(params->volume, &path->table.made.scale,
                                    &path->coder));
+    if (snow_value_store_by_natives(&order))
+        order.seen_count = find_seen(path, params, seen);
     SNOW_TRY(snow_value_store_encode(&path->store, &order));
+    path->interesting = 0;
+    for (int64_t n = 0; order.seen_count && n < path->store.band_count; n++)
+        path->interesting += path->store.seen[n];
+    if (order.seen_count)
+        return SNOW_STATUS_OK;
     return snow_count_interesting(params->volume, params->transfer,
                                   s->threshold, s->isa, &path->interesting);
 }

@@ -1,4 +1,4 @@
-/* tests/values/test_value_rows.c - rows that are read in place give the bits of
+/* tests/render/test_value_rows.c - rows that are read in place give the bits of
  * rows that are copied: along every axis, of 8 and 16 bits, with windows beyond
  * every side, by every instruction set. */
 #include "frame.h"
@@ -53,6 +53,7 @@ static void check(const model_stage *stage, int n, reference_scene *s) {
     if (is_in_place(stats, s->info.type) != (stats->ia_bytes == 0))
         fail_msg("scene %d: %llu bytes of IA along axis %d", n,
                  (unsigned long long)stats->ia_bytes, stats->slice_axis);
+    int64_t interesting = stats->interesting;
     s->settings.encoding = SNOW_ENCODING_BITMAP;
     float *copied = model_picture(stage, s);
     assert_true(snow_frame_stats(stage->frame)->ia_bytes > 0);
@@ -61,6 +62,10 @@ static void check(const model_stage *stage, int n, reference_scene *s) {
                  (int)s->settings.isa);
     free(here);
     free(copied);
+    s->settings.method = SNOW_METHOD_RAYCAST; /* counts voxel by voxel */
+    free(model_picture(stage, s));
+    assert_int_equal(interesting, snow_frame_stats(stage->frame)->interesting);
+    s->settings.method = SNOW_METHOD_VALUE;
 }
 
 static void rows_in_place_give_the_bits_of_copies(void **state) {
