@@ -138,10 +138,12 @@ static snow_status place(snow_picture *p, snow_status status) {
         p->local.depths = p->depth->pixels;
         return take_layer(p, snow_job_bytes(job), true);
     }
-    if (job->settings.mode == SNOW_MODE_ISO)
+    if (job->settings.mode == SNOW_MODE_ISO && !p->pass->method->warps)
         return place_surfaces(p);
-    return job->settings.mode == SNOW_MODE_OVER ? place_over(p)
-                                                : place_pairs(p);
+    return job->settings.mode == SNOW_MODE_OVER ||
+                   job->settings.mode == SNOW_MODE_ISO
+               ? place_over(p)
+               : place_pairs(p);
 }
 
 /* --- combination ---------------------------------------------------------- */

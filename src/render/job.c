@@ -87,8 +87,6 @@ static snow_status place_slab(snow_job *job, int parts, int part) {
     SNOW_TRY(check_stream(job, parts));
     cut_slab(job, parts, part);
     SNOW_TRY(check_raycast(job));
-    if (job->settings.method == SNOW_METHOD_VALUE)
-        SNOW_TRY(snow_value_check(job->context, &job->settings));
     return check_part(job);
 }
 

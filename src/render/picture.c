@@ -64,10 +64,13 @@ snow_status snow_picture_plan_mode(snow_picture *p) {
         status = snow_modes_value_weight(p->frame, &p->job, &job);
     else if (job.settings.method == SNOW_METHOD_RAYCAST)
         status = SNOW_STATUS_OK; /* as it is */
+    else if (job.settings.method == SNOW_METHOD_VALUE && !job.settings.depth)
+        status = snow_identity_transfer_above(&job, &p->frame->identity);
     else if (job.settings.method != SNOW_METHOD_ORIGINAL || job.volume->stream)
         job.settings.method = SNOW_METHOD_FOOTPRINT;
     job.settings.deterministic = false; /* bits do not depend on parts */
-    if (job.volume->stream && job.settings.mode == SNOW_MODE_ISO)
+    if (job.volume->stream && job.settings.mode == SNOW_MODE_ISO &&
+        job.settings.method != SNOW_METHOD_VALUE)
         job.settings.depth = true; /* by depths the nearest surface is found */
     add_pass(p, &job, job.placement.slice_axis, 1)->method =
         snow_method_of(&job);

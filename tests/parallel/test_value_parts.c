@@ -100,9 +100,11 @@ static reference_scene numbered(int n, int64_t depth) {
 /* The same in a mode other than over. */
 static reference_scene projected(int n, int64_t depth) {
     static const snow_mode modes[] = {SNOW_MODE_MIP, SNOW_MODE_MEAN,
-                                      SNOW_MODE_MINIP, SNOW_MODE_SUM};
+                                      SNOW_MODE_MINIP, SNOW_MODE_SUM,
+                                      SNOW_MODE_ISO};
     reference_scene s = numbered(n, depth);
-    s.settings.mode = modes[(size_t)(n + n / 5) % COUNT(modes)];
+    s.settings.iso = 30 + n * 17 % 50;
+    s.settings.mode = modes[(size_t)(n + n / 6) % COUNT(modes)];
     return s;
 }
 
@@ -233,6 +235,7 @@ static const int rank_counts[] = {2, 3, 5, 8, 16, 33};
 static double bound_of(const reference_scene *s, int ranks) {
     switch (s->settings.mode) {
     case SNOW_MODE_OVER:
+    case SNOW_MODE_ISO:
         return BOUND_PARTS(ranks);
     case SNOW_MODE_MIP:
     case SNOW_MODE_MINIP:

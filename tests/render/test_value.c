@@ -189,15 +189,6 @@ static void refused(const reference_scene *s, const char *what) {
     model_close(&stage);
 }
 
-static void what_it_does_not_draw_is_refused(void **state) {
-    (void)state;
-    const reference_scene plain = value_picture_scene(0);
-    reference_scene s = plain;
-    s.settings.mode = SNOW_MODE_ISO;
-    refused(&s, "mode iso");
-    value_picture_free(&s);
-}
-
 static void volumes_that_it_does_not_draw_are_refused(void **state) {
     (void)state;
     reference_scene s = value_picture_scene(10);
@@ -260,7 +251,6 @@ int main(void) {
         cmocka_unit_test(threads_and_encodings_give_the_same_bits),
         cmocka_unit_test(all_vector_levels_give_the_same_image),
         cmocka_unit_test(only_what_shows_more_is_encoded_anew),
-        cmocka_unit_test(what_it_does_not_draw_is_refused),
         cmocka_unit_test(volumes_that_it_does_not_draw_are_refused),
         cmocka_unit_test(odd_volumes_are_drawn),
         cmocka_unit_test(far_values_of_a_constant_look_take_no_numbers),

@@ -136,7 +136,9 @@ static bool meet_surface(const value_field *field, const value_ray *ray,
                          double rgba[4]) {
     const value_plan *plan = field->plan;
     double iso = plan->scene->base.settings.iso, t = 0;
-    iso = (iso - plan->low) * VALUE_MOST / (plan->high - plan->low);
+    iso = iso > plan->low
+              ? (iso - plan->low) * VALUE_MOST / (plan->high - plan->low) - 1e-4
+              : 0;
     if (ends[0] < iso && ends[1] < iso)
         return false;
     if (ends[0] < iso)

@@ -249,8 +249,6 @@ static void find_visible(const value_plan *plan, double visible[2]) {
 /* A look that shows a small part of the range gets the integers for itself. */
 static void narrow_range(value_plan *plan) {
     double visible[2];
-    if (plan->scene->base.settings.mode != SNOW_MODE_OVER)
-        return;
     find_visible(plan, visible);
     double length = visible[1] - visible[0];
     if (!(length > 0) || length * 64 >= plan->high - plan->low)
@@ -263,8 +261,10 @@ static void narrow_range(value_plan *plan) {
 static void take_integers(value_plan *plan) {
     const snow_volume_info *info = &plan->scene->base.info;
     const double slope = fabs(info->slope), zero = info->intercept;
-    if (snow_type_size(info->type) > 2 || plan->scene->base.log ||
-        plan->scene->labels || plan->scene->clip_count)
+    bool log = plan->scene->base.log &&
+               plan->scene->base.settings.mode == SNOW_MODE_OVER;
+    if (snow_type_size(info->type) > 2 || log || plan->scene->labels ||
+        plan->scene->clip_count)
         return;
     double low = floor((plan->low - zero) / slope + 1e-6);
     double high = ceil((plan->high - zero) / slope - 1e-6);
@@ -298,11 +298,11 @@ static void choose_table(value_plan *plan) {
     plan->nodes = high ? 256 : 129;
     plan->steps = high ? 64 : 16;
     find_range(plan);
-    if (plan->scene->base.settings.mode != SNOW_MODE_OVER)
-        return;
-    narrow_range(plan);
+    bool over = plan->scene->base.settings.mode == SNOW_MODE_OVER;
+    if (over)
+        narrow_range(plan);
     take_integers(plan);
-    plan->measured = steepest(plan) < 4;
+    plan->measured = over && steepest(plan) < 4;
 }
 
 bool value_plan_of(const value_scene *scene, value_plan *plan) {

@@ -233,8 +233,9 @@ snow_value_scale14 snow_value_scale_of(const snow_data_range *data,
                                        const snow_volume_info *info) {
     snow_value_scale14 scale = {
         .low = data->low, .high = data->high, .log = data->log};
-    double visible[2];
-    find_visible(data, transfer, visible);
+    double visible[2] = {data->low, data->high};
+    if (transfer)
+        find_visible(data, transfer, visible);
     double length = visible[1] - visible[0];
     if (length > 0 && length * 64 < data->high - data->low) {
         scale.low = fmax(data->low, visible[0] - 4 * length);

@@ -136,12 +136,15 @@ static void describe(snow_value_drawing *job) {
     const int64_t voxels[2] = {params->placement->columns,
                                params->placement->rows};
     bool shaded = params->settings->shade == SNOW_SHADE_PHONG;
-    bool fades = snow_transfer_has_gradient_opacity(params->transfer);
+    bool surface = params->settings->mode == SNOW_MODE_ISO;
+    bool fades =
+        !surface && snow_transfer_has_gradient_opacity(params->transfer);
     job->splat =
         (snow_value_splat){.store = &path->store,
                            .table = &path->table,
                            .light = shaded ? &path->light : NULL,
                            .fade = fades ? &path->fade : NULL,
+                           .surface = surface ? &path->surface : NULL,
                            .sheets = path->sheets,
                            .places = path->places,
                            .rays = l->perspective ? &path->rays : NULL,

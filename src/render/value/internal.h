@@ -28,8 +28,10 @@ typedef struct snow_value_grid {
 typedef struct snow_value_operator {
     snow_mode mode;
     snow_value_reduction reduction;
-    /* Which numbers the pictures do not need; NULL: those of the look. */
-    void (*hides)(snow_value_path *path, const snow_value_look *look);
+    /* Which numbers the pictures do not need, of all data values; NULL: of the
+     * look's those that are invisible. */
+    void (*hides)(snow_value_path *path, const snow_value_look *look,
+                  const snow_settings *settings);
     /* A row of a phase of a tile as pixels of the picture's channels. */
     void (*read)(const snow_value_splat *splat, const void *planes, int phase,
                  int row, float *out);
@@ -57,6 +59,7 @@ struct snow_value_path {
     int64_t interesting;
     snow_value_light light;
     snow_value_fade fade;
+    snow_value_surface surface;
     snow_value_sheet *sheets;
     snow_value_place *places;
     snow_value_rays rays; /* perspective: instead of places */

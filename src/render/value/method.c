@@ -5,8 +5,11 @@
 #include "render/value/value.h"
 
 static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
+    bool surface = job->settings.mode == SNOW_MODE_ISO;
     return (snow_value_params){.volume = job->volume,
                                .transfer = job->transfer,
+                               .counted = surface ? p->frame->identity.transfer
+                                                  : job->transfer,
                                .view = job->view,
                                .settings = &job->settings,
                                .placement = &job->placement,

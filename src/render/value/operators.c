@@ -30,19 +30,20 @@ static void read_over(const snow_value_splat *splat, const void *planes,
  * number says that a ray is there. */
 static void hide(snow_value_path *path, const snow_value_look *look,
                  int16_t number) {
-    snow_value_look all = *look;
-    all.scale =
-        (snow_value_scale14){.low = path->range.low, .high = path->range.high};
-    snow_value_table_begin(&all, &path->table);
+    snow_value_table_begin(look, &path->table);
     if (!path->range.holes)
         snow_value_table_hide(&path->table, (snow_value_run){number, number});
 }
 
-static void hide_least(snow_value_path *path, const snow_value_look *look) {
+static void hide_least(snow_value_path *path, const snow_value_look *look,
+                       const snow_settings *settings) {
+    (void)settings;
     hide(path, look, 0);
 }
 
-static void hide_most(snow_value_path *path, const snow_value_look *look) {
+static void hide_most(snow_value_path *path, const snow_value_look *look,
+                      const snow_settings *settings) {
+    (void)settings;
     hide(path, look, SNOW_VALUE_MOST);
 }
 
@@ -84,7 +85,8 @@ static void finish_means(const snow_value_path *path, float *pixels,
 static void finish_sums(const snow_value_path *path, float *pixels, int count) {
     const snow_value_scale scale = snow_value_projected(path, SNOW_MODE_SUM);
     const double unit = path->lattice.path / path->reference;
-    const double low = path->range.low, range = path->range.high - low;
+    const snow_value_scale14 *values = &path->table.made.scale;
+    const double low = values->low, range = values->high - low;
     const double inverse = scale.step > 0 ? 1 / scale.step : 0;
     for (float *end = pixels + 2 * count; pixels < end; pixels += 2)
         if (pixels[1] > 0) {
@@ -93,6 +95,35 @@ static void finish_sums(const snow_value_path *path, float *pixels, int count) {
             pixels[0] = (float)((sum - scale.from) * inverse);
             pixels[1] = 1;
         }
+}
+
+/* --- isosurfaces ------------------------------------------------------------
+ *
+ * Over, of slabs that are opaque where they reach a value. */
+
+/* So much a number may be below and is on the surface, for rounding must not
+ * decide where voxels have its very value. */
+#define MARGIN 1e-4
+
+/* Hides what is below the surface, and colours it. */
+static void hide_below(snow_value_path *path, const snow_value_look *look,
+                       const snow_settings *settings) {
+    const snow_value_scale14 *scale = &look->scale;
+    snow_value_surface *surface = &path->surface;
+    double at = (settings->iso - scale->low) * SNOW_VALUE_MOST /
+                    (scale->high - scale->low) -
+                MARGIN;
+    double rgba[4];
+    at = settings->iso > scale->low ? fmin(at, SNOW_VALUE_MOST + 1) : 0;
+    snow_value_table_begin(look, &path->table);
+    if (at > 0)
+        snow_value_table_hide(&path->table,
+                              (snow_value_run){0, (int16_t)(ceil(at) - 1)});
+    snow_transfer_evaluate(look->transfer, settings->iso, rgba);
+    surface->at = (float)at;
+    for (int c = 0; c < 3; c++)
+        surface->color[c] = (int16_t)(rgba[c] * INT16_MAX + 0.5);
+    surface->color[3] = INT16_MAX;
 }
 
 /* --- the records ------------------------------------------------------------
@@ -113,6 +144,7 @@ const snow_value_operator *snow_value_operator_of(snow_mode mode) {
          finish_means},
         {SNOW_MODE_SUM, SNOW_VALUE_SUM, hide_least, read_sums, snow_add_up,
          finish_sums},
+        {SNOW_MODE_ISO, SNOW_VALUE_OVER, hide_below, read_over, NULL, NULL},
     };
     for (size_t n = 0; n < sizeof others / sizeof *others; n++)
         if (others[n].mode == mode)
@@ -122,8 +154,9 @@ const snow_value_operator *snow_value_operator_of(snow_mode mode) {
 
 snow_value_scale snow_value_projected(const snow_value_path *path,
                                       snow_mode mode) {
-    const double low = path->range.low, high = path->range.high;
-    if (!(low <= high)) /* nothing is there */
+    const snow_value_scale14 *values = &path->table.made.scale;
+    const double low = values->low, high = values->high;
+    if (!(path->range.low <= path->range.high)) /* nothing is there */
         return (snow_value_scale){0, 0};
     if (mode == SNOW_MODE_MINIP)
         return (snow_value_scale){high, low - high};

@@ -176,8 +176,8 @@ snow_status snow_value_place_show(snow_value_path *path,
                                   const snow_shear_warp_image *image) {
     const snow_value_lattice *l = &path->lattice;
     const snow_isa isa = params->settings->isa;
-    const snow_filter filter =
-        path->op->hides ? SNOW_BILINEAR : l->filter; /* numbers, not colours */
+    const bool colors = path->op->reduction == SNOW_VALUE_OVER;
+    const snow_filter filter = colors ? l->filter : SNOW_BILINEAR;
     snow_shear_warp_warping *w = &path->warping;
     *w = (snow_shear_warp_warping){
         .plane = {image->pixels, image->stride, image->width, image->height,

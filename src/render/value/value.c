@@ -47,15 +47,6 @@ void snow_value_path_free(snow_value_path *path) {
     snow_release(context, path);
 }
 
-snow_status snow_value_check(snow_context *context,
-                             const snow_settings *settings) {
-    if (settings->mode != SNOW_MODE_ISO)
-        return SNOW_STATUS_OK;
-    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                     "method value cannot draw mode iso yet; take method "
-                     "shear-warp");
-}
-
 /* --- values -----------------------------------------------------------------
  */
 
@@ -139,9 +130,11 @@ static snow_status make_table(snow_value_path *path,
                               const snow_value_params *params) {
     const snow_settings *s = params->settings;
     bool high = s->quality == SNOW_QUALITY_HIGH;
+    path->op = snow_value_operator_of(s->mode);
     const snow_value_look look = {
         .transfer = params->transfer,
-        .scale = snow_value_scale_of(&path->range, params->transfer,
+        .scale = snow_value_scale_of(&path->range,
+                                     path->op->hides ? NULL : params->transfer,
                                      &params->volume->info),
         .threshold = s->threshold,
         .exponent = path->lattice.path / s->opacity_length,
@@ -150,10 +143,9 @@ static snow_status make_table(snow_value_path *path,
         .placed = s->shade == SNOW_SHADE_PHONG ||
                   snow_transfer_has_gradient_opacity(params->transfer),
         .threads = s->threads};
-    path->op = snow_value_operator_of(s->mode);
     path->has_labels = s->mode == SNOW_MODE_OVER && has_labels(params);
     if (path->op->hides) {
-        path->op->hides(path, &look);
+        path->op->hides(path, &look, s);
         return SNOW_STATUS_OK;
     }
     if (!path->has_labels)
@@ -256,10 +248,10 @@ static int find_seen(const snow_value_path *path,
     snow_native_range ranges[SEEN_MOST];
     if (!path->coder.ruled || path->coder.scale.clamps ||
         params->volume->is_part ||
-        snow_transfer_has_gradient_opacity(params->transfer))
+        snow_transfer_has_gradient_opacity(params->counted))
         return 0;
     int count = snow_interesting_ranges(
-        &params->volume->info, params->transfer, params->settings->threshold,
+        &params->volume->info, params->counted, params->settings->threshold,
         rule->bottom, rule->top, ranges, SEEN_MOST);
     for (int n = 0; n < count; n++)
         out[n] = (snow_value_natives){
@@ -296,8 +288,8 @@ static snow_status encode_anew(snow_value_path *path,
         path->interesting += path->store.seen[n];
     if (order.seen_count)
         return SNOW_STATUS_OK;
-    return snow_count_interesting(params->volume, params->transfer,
-                                  s->threshold, s->isa, &path->interesting);
+    return snow_count_interesting(params->volume, params->counted, s->threshold,
+                                  s->isa, &path->interesting);
 }
 
 void snow_value_forget(snow_value_path *path) {

@@ -16,8 +16,8 @@ void snow_value_path_free(snow_value_path *path);
 
 /* What a picture, or a part of it, is made of; settings are resolved. */
 typedef struct snow_value_params {
-    const snow_volume *volume; /* may be a part, with ghosts */
-    const snow_transfer *transfer;
+    const snow_volume *volume;               /* may be a part, with ghosts */
+    const snow_transfer *transfer, *counted; /* the latter: for statistics */
     const snow_view *view;
     const snow_settings *settings;
     const snow_placement *placement; /* of the whole */
@@ -29,11 +29,6 @@ typedef struct snow_value_params {
                        alone, and a deterministic one has a layer for each node */
     bool resumes;   /* draws behind the parts that were drawn before */
 } snow_value_params;
-
-/* Whether the value path draws this picture.  Errors: SNOW_STATUS_BAD_USAGE,
- * with what to use instead. */
-snow_status snow_value_check(snow_context *context,
-                             const snow_settings *settings);
 
 /* The finite values of a volume, or their logarithms, of which those in a file
  * are read, or of the part of one that it is; and its labels, if it has some.

@@ -169,7 +169,10 @@ TARGET VALUE_INLINE void NAME(color)(const snow_value_splat *p,
                                      const bool eye) {
     for (int n = 0; n < count; n += 32) {
         V(row) color[4];
-        if (p->labels)
+        if (p->surface)
+            for (int c = 0; c < 4; c++)
+                color[c] = V(row_set1)(p->surface->color[c]);
+        else if (p->labels)
             for (int c = 0; c < 4; c++)
                 color[c] = V(row_load)(q->color[c] + n);
         else
@@ -177,9 +180,13 @@ TARGET VALUE_INLINE void NAME(color)(const snow_value_splat *p,
         (p->table->entries, NAME(entries)(p->table, q->front + n, q->back + n),
          color);
         if (sloped) {
-            V(row) within = NAME(split)(color), place = within;
-            int16_t slopes[3][32];
-            if (cuts && !p->labels)
+            V(row) within = p->surface ? V(row_set1)(0) : NAME(split)(color);
+            V(row) place = within;
+            int16_t slopes[3][32], places[32];
+            if (p->surface) {
+                snow_value_meet(p->surface, q, n, cuts, places);
+                place = V(row_load)(places);
+            } else if (cuts && !p->labels)
                 place =
                     V(row_add)(V(row_load)(q->from + n),
                                V(row_mulhrs)(place, V(row_load)(q->part + n)));
@@ -194,7 +201,7 @@ TARGET VALUE_INLINE void NAME(color)(const snow_value_splat *p,
             if (p->light)
                 NAME(shade)(p, slope, q, n, slopes, channels, color, eye);
         }
-        if (eye && !p->labels) {
+        if (eye && !p->labels && !p->surface) {
             float shares[32];
             NAME(shares)(p->rays, slope, q, n, cuts, shares);
             NAME(lengthen)(p->table, shares, channels, color);
@@ -203,6 +210,6 @@ TARGET VALUE_INLINE void NAME(color)(const snow_value_splat *p,
             V(row_store)(q->color[c] + n, color[c]);
         V(row_store)(q->color[3] + n, color[3]);
     }
-    if (cuts && !eye && !p->labels)
+    if (cuts && !eye && !p->labels && !p->surface)
         snow_value_shorten(p->table, q, count, channels);
 }

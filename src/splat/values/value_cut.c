@@ -214,3 +214,19 @@ void snow_value_shorten(const snow_value_table *table, value_queue *q,
             q->color[0][n] = (int16_t)((float)q->color[0][n] * share + 0.5F);
     }
 }
+
+/* Beyond the queue there are zeros. */
+void snow_value_meet(const snow_value_surface *surface, const value_queue *q,
+                     int n, bool cuts, int16_t places[32]) {
+    for (int i = 0; i < 32; i++) {
+        float front = q->front[n + i], back = q->back[n + i];
+        float from = 0, part = 32768, t = 0;
+        if (cuts) {
+            from = q->from[n + i];
+            part = q->part[n + i] == INT16_MAX ? 32768 : q->part[n + i];
+        }
+        if (front < surface->at && back > front)
+            t = (surface->at - front) / (back - front);
+        places[i] = (int16_t)fminf(floorf(from + t * part + 0.5F), INT16_MAX);
+    }
+}

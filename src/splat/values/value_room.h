@@ -297,6 +297,11 @@ void snow_value_cut(const double front[2], const double back[2], double low,
 void snow_value_clip(const snow_value_splat *splat, const double front[4],
                      const double back[4], value_clip *out);
 
+/* Where 32 samples from `n` on meet a surface, of 32768 of a slab. */
+void snow_value_meet(const snow_value_surface *surface,
+                     const value_queue *queue, int n, bool cuts,
+                     int16_t places[32]);
+
 /* The samples of a tile that are the part's in slab `n`: lanes along u, or
  * rows. */
 uint32_t snow_value_own_lanes(const snow_value_splat *splat, int n, int phase,

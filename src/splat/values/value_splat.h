@@ -104,6 +104,12 @@ typedef struct snow_value_fade {
     float share;     /* a slab's length, in reference lengths */
 } snow_value_fade;
 
+/* An opaque surface where numbers reach `at`; the table hides what is below. */
+typedef struct snow_value_surface {
+    float at;
+    int16_t color[4]; /* of 32767; of two channels the first and the last */
+} snow_value_surface;
+
 /* What becomes of the slabs of a ray. */
 typedef enum snow_value_reduction {
     SNOW_VALUE_OVER,     /* colours */
@@ -116,8 +122,9 @@ typedef enum snow_value_reduction {
 typedef struct snow_value_splat {
     const snow_value_store *store;
     const snow_value_table *table;
-    const snow_value_light *light; /* NULL: unshaded */
-    const snow_value_fade *fade;   /* NULL: none */
+    const snow_value_light *light;     /* NULL: unshaded */
+    const snow_value_fade *fade;       /* NULL: none */
+    const snow_value_surface *surface; /* NULL: colours by the table */
     const snow_value_sheet *sheets;
     const snow_value_place *places; /* [sheet * phases + phase] */
     const snow_value_rays *rays;    /* perspective; NULL: places are used */

@@ -1,6 +1,6 @@
 #!/bin/bash
-# --method value: pictures, figures and what is refused.  What the pictures must
-# be is known by tests/render/test_value.c.
+# --method value: pictures, figures and what is left to others.  What the
+# pictures must be is known by tests/render/test_value.c.
 . "$(dirname "$0")/../../support/shell.sh"
 
 scene="phantom:engine --dims 60x60x40 -s 110x90 --azimuth 30 --elevation 20 -y"
@@ -79,17 +79,7 @@ run 5 "deterministic in slabs" "$TOOL" render $large -q --memory 4M \
     --deterministic -o no.npy
 says 'a deterministic picture by method value needs all voxels in memory'
 
-# --- refusals ----------------------------------------------------------------
-# refuse WHAT WORDS OPTIONS: ends with the message, and leaves no picture.
-refuse() {
-    local what=$1 words=$2
-    shift 2
-    run 2 "$what" render "$@" -o no.png
-    says "^snowglass: .*$words.* yet"
-    says '; take method shear-warp$'
-    check "no picture is left" test ! -e no.png
-}
-refuse "mode iso" "mode iso" -m iso --iso 90
+# --- what footprints draw ----------------------------------------------------------------
 for options in "--kernel gauss" "--kernel box" "--footprint 3" \
     "--kernel bspline --footprint 3"; do
     # shellcheck disable=SC2086

@@ -1,4 +1,4 @@
-/* tests/values/test_value_modes.c - modes other than over by method value
+/* tests/render/test_value_modes.c - modes other than over by method value
  * beside the float64 reference of the value model. */
 #include "values/pictures.h"
 
@@ -21,6 +21,20 @@ static value_scene projected(int n) {
     return scene;
 }
 
+/* The same with a surface at a value, some of which are beyond the data. */
+static value_scene surface(int n) {
+    value_scene scene = projected(n);
+    scene.base.settings.mode = SNOW_MODE_ISO;
+    scene.base.settings.iso = n % 9 == 8 ? -500 + n * 8 : 30 + n * 17 % 50;
+    return scene;
+}
+
+static value_scene punched_surface(int n) {
+    value_scene scene = surface(n);
+    value_picture_punch(&scene.base, n);
+    return scene;
+}
+
 static value_scene punched(int n) {
     value_scene scene = projected(n);
     value_picture_punch(&scene.base, n);
@@ -32,6 +46,12 @@ static void projections_are_the_references(void **state) {
     value_pictures_check(0, (int)support_stride(5), projected);
 }
 
+static void surfaces_are_the_references(void **state) {
+    (void)state;
+    value_pictures_check(0, (int)support_stride(5), surface);
+    value_pictures_check(2, 5 * (int)support_stride(5), punched_surface);
+}
+
 static void holes_are_the_references(void **state) {
     (void)state;
     value_pictures_check(2, 5 * (int)support_stride(5), punched);
@@ -41,7 +61,7 @@ static void clip_planes_are_the_references(void **state) {
     (void)state;
     model_stage stage = model_open();
     for (int n = 0; n < VALUE_PICTURES; n += 4 * (int)support_stride(7)) {
-        value_scene scene = projected(n);
+        value_scene scene = n % 3 ? projected(n) : surface(n);
         double planes[2][4];
         value_picture_clip(&scene, n % 2 ? 2 : 1, planes);
         value_picture_check(&stage, n, &scene);
@@ -53,12 +73,14 @@ static void clip_planes_are_the_references(void **state) {
 static void nothing_changes_a_bit(void **state) {
     (void)state;
     value_pictures_check_bits(1, 3 * (int)support_stride(11), projected);
+    value_pictures_check_bits(2, 7 * (int)support_stride(11), surface);
     value_pictures_check_bits(2, 15 * (int)support_stride(11), punched);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(projections_are_the_references),
+        cmocka_unit_test(surfaces_are_the_references),
         cmocka_unit_test(holes_are_the_references),
         cmocka_unit_test(clip_planes_are_the_references),
         cmocka_unit_test(nothing_changes_a_bit),
