@@ -73,19 +73,16 @@ TARGET VALUE_INLINE V(row)
 /* --- sides ------------------------------------------------------------------
  */
 
-/* -1 in lanes 0 .. n - 1; in the others. */
-static const int16_t NAME(lanes)[96] = {
-#define EIGHT -1, -1, -1, -1, -1, -1, -1, -1
-    [32] = EIGHT, EIGHT, EIGHT, EIGHT
-#undef EIGHT
-};
-
-TARGET VALUE_INLINE V(row) NAME(lanes_below)(int64_t n) {
-    return V(row_load)(NAME(lanes) + 64 - (n < 0 ? 0 : n < 32 ? n : 32));
+/* A bit for each of the first n of 32 lanes. */
+static inline uint32_t NAME(first_lanes)(int64_t n) {
+    return n < 1 ? 0 : n < 32 ? (UINT32_C(1) << n) - 1 : ~UINT32_C(0);
 }
 
-TARGET VALUE_INLINE V(row) NAME(lanes_from)(int64_t n) {
-    return V(row_load)(NAME(lanes) + 32 - (n < 0 ? 0 : n < 32 ? n : 32));
+/* The number beyond the side at a voxel; the one inside is `step` on. */
+static inline int16_t NAME(beyond)(const snow_value_store *s, int64_t place,
+                                   int64_t step) {
+    return snow_value_beyond(snow_value_of_native(s, place),
+                             snow_value_of_native(s, place + step), false);
 }
 
 /* 32 natives of which only some may be there to be read. */
@@ -114,62 +111,76 @@ TARGET VALUE_INLINE V(row)
     return NAME(by_rule)(natives, &s->rule, kind);
 }
 
-/* 32 numbers of a row of natives, which may be beyond any side. */
-TARGET static V(row)
-    NAME(row_beyond)(const NAME(source) * from, int end, int half, int64_t row,
-                     int64_t column, int kind) {
-    const snow_value_store *s = from->store;
-    const int64_t last = s->rows - 1, behind = s->columns - 1;
-    int64_t border = row < 0 ? 0 : row < last ? row : last;
-    int64_t place = NAME(place_of)(from, end, half, border);
-    V(row) here = NAME(row_inside)(s, place, column, kind);
-    if (border != row && last > 0) {
-        int64_t next = NAME(place_of)(from, end, half, row < 0 ? 1 : last - 1);
-        V(row) inner = NAME(row_inside)(s, next, column, kind);
-        here = V(row_add)(here, V(row_subs)(here, inner));
+/* 32 numbers of a row of the volume from `column` on, and from the next one on;
+ * columns may be beyond the sides. */
+TARGET VALUE_INLINE void NAME(pair_inside)(const snow_value_store *s,
+                                           int64_t place, int64_t column,
+                                           const int kind, V(row) out[2]) {
+    const int64_t behind = s->columns - 1, step = behind > 0;
+    for (int n = 0; n < 2; n++)
+        out[n] = NAME(row_inside)(s, place, column + n, kind);
+    if (column < 0) {
+        V(row) beyond = V(row_set1)(NAME(beyond)(s, place, step));
+        for (int n = 0; n < 2; n++)
+            out[n] =
+                V(row_choose)(NAME(first_lanes)(-column - n), beyond, out[n]);
     }
-    if (column >= 0 && column + 32 <= s->columns)
-        return here;
-    int step = behind > 0;
-    int16_t before =
-        snow_value_beyond(snow_value_of_native(s, place),
-                          snow_value_of_native(s, place + step), false);
-    int16_t after = snow_value_beyond(
-        snow_value_of_native(s, place + behind),
-        snow_value_of_native(s, place + behind - step), false);
-    here = V(row_and)(here, V(row_and)(NAME(lanes_from)(-column),
-                                       NAME(lanes_below)(s->columns - column)));
-    here = V(row_or)(
-        here, V(row_and)(V(row_set1)(before), NAME(lanes_below)(-column)));
-    return V(row_or)(here, V(row_and)(V(row_set1)(after),
-                                      NAME(lanes_from)(s->columns - column)));
+    if (column + 33 > s->columns) {
+        V(row) beyond = V(row_set1)(NAME(beyond)(s, place + behind, -step));
+        for (int n = 0; n < 2; n++)
+            out[n] = V(row_choose)(NAME(first_lanes)(s->columns - column - n),
+                                   out[n], beyond);
+    }
 }
 
-/* Whether 32 natives of a row have one that is beyond a side. */
-static inline bool NAME(is_beyond)(const snow_value_store *s, int64_t row,
-                                   int64_t column) {
-    return column < 0 || column + 32 > s->columns || row < 0 || row >= s->rows;
+/* The same of a row above the first or below the last one, which is odd within
+ * the columns, and beyond them as the row at the side. */
+TARGET static void NAME(pair_beyond)(const NAME(source) * from, int end,
+                                     int half, int64_t row, int64_t column,
+                                     int kind, V(row) out[2]) {
+    const snow_value_store *s = from->store;
+    const int64_t last = s->rows - 1;
+    int64_t side = NAME(place_of)(from, end, half, row < 0 ? 0 : last);
+    int64_t next = row < 0 ? 1 : last - 1;
+    NAME(pair_inside)(s, side, column, kind, out);
+    if (last == 0)
+        return;
+    next = NAME(place_of)(from, end, half, next);
+    for (int n = 0; n < 2; n++) {
+        V(row) inner = NAME(row_inside)(s, next, column + n, kind);
+        V(row) odd = V(row_add)(out[n], V(row_subs)(out[n], inner));
+        uint32_t within = NAME(first_lanes)(s->columns - column - n) &
+                          ~NAME(first_lanes)(-column - n);
+        out[n] = V(row_choose)(within, odd, out[n]);
+    }
 }
 
 /* --- rows -------------------------------------------------------------------
  */
 
-/* 32 numbers of a row from `column` on, wherever they are; `sided`: some may be
- * beyond a side. */
-TARGET VALUE_INLINE V(row)
-    NAME(numbers)(const NAME(source) * s, int end, int half, int64_t row,
-                  int64_t column, const int kind, const bool sided) {
-    int64_t place;
-    if (kind != SNOW_VALUE_NUMBERS && sided &&
-        NAME(is_beyond)(s->store, row, column))
-        return NAME(row_beyond)(s, end, half, row, column, kind);
-    if (kind == SNOW_VALUE_NUMBERS)
-        return V(row_load)(s->values +
-                           (end ? s->after : s->slice)[row + half * s->next] +
-                           column);
-    place = NAME(place_of)(s, end, half, row) + column;
-    return NAME(by_rule)(NAME(load_natives)(s->natives, place, kind), &s->rule,
-                         kind);
+/* 32 numbers of a row from `column` on, and from the next one on, wherever they
+ * are; `sided`: some may be beyond a side. */
+TARGET VALUE_INLINE void NAME(pair)(const NAME(source) * s, int end, int half,
+                                    int64_t row, int64_t column, const int kind,
+                                    const bool sided, V(row) out[2]) {
+    if (kind == SNOW_VALUE_NUMBERS) {
+        const int16_t *at = s->values +
+                            (end ? s->after : s->slice)[row + half * s->next] +
+                            column;
+        out[0] = V(row_load)(at);
+        out[1] = V(row_load)(at + 1);
+    } else if (sided && (row < 0 || row >= s->store->rows)) {
+        NAME(pair_beyond)(s, end, half, row, column, kind, out);
+    } else if (sided) {
+        NAME(pair_inside)
+        (s->store, NAME(place_of)(s, end, half, row), column, kind, out);
+    } else {
+        int64_t place = NAME(place_of)(s, end, half, row) + column;
+        for (int n = 0; n < 2; n++)
+            out[n] =
+                NAME(by_rule)(NAME(load_natives)(s->natives, place + n, kind),
+                              &s->rule, kind);
+    }
 }
 
 /* Numbers of voxels that lanes of perspective may reach. */
@@ -183,12 +194,14 @@ TARGET static const int16_t *NAME(line)(const NAME(source) * s, int end,
     if (kind == SNOW_VALUE_NUMBERS)
         return s->values + (end ? s->after : s->slice)[row + half * s->next] +
                column;
-    for (int n = 0; n < count; n += 32)
+    for (int n = 0; n < count; n += 32) {
+        V(row) both[2];
         if (kind == SNOW_VALUE_BYTES)
-            V(row_store)
-    (room + n,
-     NAME(numbers)(s, end, half, row, column + n, SNOW_VALUE_BYTES, true));
-    else V(row_store)(room + n, NAME(numbers)(s, end, half, row, column + n,
-                                              SNOW_VALUE_WORDS, true));
+            NAME(pair)
+        (s, end, half, row, column + n, SNOW_VALUE_BYTES, true, both);
+        else NAME(pair)(s, end, half, row, column + n, SNOW_VALUE_WORDS, true,
+                        both);
+        V(row_store)(room + n, both[0]);
+    }
     return room;
 }

@@ -86,33 +86,27 @@ TARGET VALUE_INLINE V(row) NAME(mix)(V(row) a, V(row) b, V(row) weight) {
 
 #include "splat/values/rows.tmpl.h"
 
-/* 32 voxels of row `row` from `column` + `by` on: of a slice or half way to the
- * next one; or the difference of two of them. */
-TARGET VALUE_INLINE V(row)
-    NAME(voxels)(const NAME(source) * s, int64_t row, int by, const bool half,
-                 const bool difference, const int kind, const bool sided) {
-    const int64_t column = s->column + by;
-    V(row) ends[2];
-    for (int end = 0; end <= difference; end++) {
-        ends[end] = NAME(numbers)(s, end, 0, row, column, kind, sided);
-        if (half)
-            ends[end] = V(row_avg)(
-                ends[end], NAME(numbers)(s, end, 1, row, column, kind, sided));
-    }
-    if (!difference)
-        return ends[0];
-    ends[1] = V(row_subs)(ends[1], ends[0]);
-    return s->twice ? V(row_adds)(ends[1], ends[1]) : ends[1];
-}
-
-/* One row of voxels, mixed along u. */
+/* One row of voxels, mixed along u: of a slice or half way to the next one; or
+ * the difference of two of them. */
 TARGET VALUE_INLINE V(row)
     NAME(along)(const NAME(source) * s, int64_t row, V(row) weight,
                 const bool half, const bool difference, const int kind,
                 const bool sided) {
-    return NAME(mix)(NAME(voxels)(s, row, 0, half, difference, kind, sided),
-                     NAME(voxels)(s, row, 1, half, difference, kind, sided),
-                     weight);
+    V(row) ends[2][2], next[2];
+    for (int end = 0; end <= difference; end++) {
+        NAME(pair)(s, end, 0, row, s->column, kind, sided, ends[end]);
+        if (!half)
+            continue;
+        NAME(pair)(s, end, 1, row, s->column, kind, sided, next);
+        for (int n = 0; n < 2; n++)
+            ends[end][n] = V(row_avg)(ends[end][n], next[n]);
+    }
+    for (int n = 0; n < 2 && difference; n++) {
+        ends[0][n] = V(row_subs)(ends[1][n], ends[0][n]);
+        if (s->twice)
+            ends[0][n] = V(row_adds)(ends[0][n], ends[0][n]);
+    }
+    return NAME(mix)(ends[0][0], ends[0][1], weight);
 }
 
 TARGET VALUE_INLINE void NAME(fill_rows)(const NAME(source) * from,
@@ -139,15 +133,6 @@ TARGET VALUE_INLINE void NAME(fill_rows)(const NAME(source) * from,
     }
 }
 
-/* Whether rows of a window, and the one below, or the columns reach a side. */
-static inline bool NAME(is_sided)(const NAME(source) * s, int64_t first,
-                                  uint64_t rows) {
-    const snow_value_store *store = s->store;
-    return s->column < 0 || s->column + 33 > store->columns ||
-           first + __builtin_ctzll(rows) < 0 ||
-           first + 64 - __builtin_clzll(rows) >= store->rows;
-}
-
 /* Of each kind of rows. */
 #define VALUE_FILL(word, kind, sides)                                        \
     TARGET static void NAME(fill_##word)(                                    \
@@ -171,22 +156,36 @@ VALUE_FILL(words, SNOW_VALUE_WORDS, false)
 VALUE_FILL(sided_words, SNOW_VALUE_WORDS, true)
 #undef VALUE_FILL
 
+/* Of rows first .. those that need none beyond the volume's, nor does the one
+ * below. */
+static inline uint64_t NAME(rows_inside)(const snow_value_store *s,
+                                         int64_t first) {
+    int64_t low = first < 0 ? -first : 0, end = s->rows - 1 - first;
+    if (low > 63 || end <= low)
+        return 0;
+    return (end > 63 ? ~UINT64_C(0) : (UINT64_C(1) << end) - 1) & ~UINT64_C(0)
+                                                                      << low;
+}
+
 /* Rows of a sheet, a bit each from row `first` on, into `out`. */
 TARGET static void NAME(fill)(const NAME(source) * s, int64_t first,
                               uint64_t rows, const snow_value_place *place,
                               int16_t (*out)[32], bool half, bool difference) {
-    if (!rows)
-        return;
-    if (s->store->kind == SNOW_VALUE_NUMBERS)
+    const snow_value_store *store = s->store;
+    const bool bytes = store->kind == SNOW_VALUE_BYTES;
+    if (store->kind == SNOW_VALUE_NUMBERS) {
         NAME(fill_numbers)(s, first, rows, place, out, half, difference);
-    else if (s->store->kind == SNOW_VALUE_BYTES)
-        (NAME(is_sided)(s, first, rows)
-             ? NAME(fill_sided_bytes)
-             : NAME(fill_bytes))(s, first, rows, place, out, half, difference);
-    else
-        (NAME(is_sided)(s, first, rows)
-             ? NAME(fill_sided_words)
-             : NAME(fill_words))(s, first, rows, place, out, half, difference);
+        return;
+    }
+    uint64_t inside = 0;
+    if (s->column >= 0 && s->column + 33 <= store->columns)
+        inside = rows & NAME(rows_inside)(store, first);
+    if (inside)
+        (bytes ? NAME(fill_bytes) : NAME(fill_words))(s, first, inside, place,
+                                                      out, half, difference);
+    if (rows != inside)
+        (bytes ? NAME(fill_sided_bytes) : NAME(fill_sided_words))(
+            s, first, rows & ~inside, place, out, half, difference);
 }
 
 #include "splat/values/holes.tmpl.h"
