@@ -106,9 +106,8 @@ typedef struct snow_stats {
     bool encoded;                /* anew, for this picture */
     int64_t voxels, interesting; /* of the mipmap level that was drawn */
     double sparse_ratio;         /* share of uninteresting voxels, 0 to 1 */
-    uint64_t ea_bytes, ia_bytes, pa_bytes; /* the encoding's arrays; IA and PA
-                                              are 0 where voxels are read in
-                                              place */
+    uint64_t ea_bytes, ia_bytes, pa_bytes; /* the encoding's arrays; IA is 0
+                                              where voxels are read in place */
     double seconds_classify, seconds_shade, seconds_encode; /* stages of */
     double seconds_splat, seconds_composite, seconds_warp;  /*   figure 7 */
     double seconds_frame; /* the whole picture */

@@ -84,8 +84,21 @@ typedef struct marker {
     uint32_t *bits;    /* of two lines */
 } marker;
 
-/* Marks a row, or one beyond the first or last of the volume; counts what is
- * seen of those of the band. */
+/* Counts what is seen of a row of the band, and copies it where rows are
+ * turned. */
+static void take_row(marker *m, int64_t row, const unsigned char *natives) {
+    snow_value_store *s = m->store;
+    const size_t size = snow_type_size(m->params->coder->type);
+    int64_t place = m->lines.number * s->slice_step + row * s->row_step;
+    if (s->turned)
+        memcpy(s->copy + (size_t)place * size, natives,
+               (size_t)s->columns * size);
+    if (m->params->seen_count)
+        s->seen[m->band] +=
+            snow_value_count_natives(s, m->params, natives, m->natives);
+}
+
+/* Marks a row, or one beyond the first or last of the volume. */
 static void mark_row(marker *m, int64_t row, uint32_t *bits) {
     const snow_value_store *s = m->store;
     if (!m->by_natives || row < 0 || row >= s->rows) {
@@ -97,9 +110,8 @@ static void mark_row(marker *m, int64_t row, uint32_t *bits) {
     for (int run = 0; run < s->run_count; run++, bits += snow_value_words(s))
         snow_value_mark_natives(s, m->params, &m->ranges[run], run, natives,
                                 m->natives, bits);
-    if (m->params->seen_count && row / SNOW_VALUE_BAND == m->band)
-        m->store->seen[m->band] +=
-            snow_value_count_natives(s, m->params, natives, m->natives);
+    if (row / SNOW_VALUE_BAND == m->band)
+        take_row(m, row, natives);
 }
 
 /* Rows of cells first .. end - 1 of a slice. */

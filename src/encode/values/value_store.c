@@ -93,8 +93,14 @@ static snow_status reserve_bands(snow_value_store *s) {
     return SNOW_STATUS_OK;
 }
 
+static void forget_turned(snow_value_store *s) {
+    snow_release(s->context, s->copy);
+    s->copy = NULL;
+    s->copy_capacity = 0;
+}
+
 /* Gives up EA, IA, PA and rows. */
-static void forget_copies(snow_value_store *s) {
+static void forget_rows(snow_value_store *s) {
     for (size_t n = 0; n < s->bands_capacity / sizeof *s->bands; n++)
         snow_sparse_fini(&s->bands[n]);
     snow_release(s->context, s->bands);
@@ -117,27 +123,40 @@ static snow_status reserve_rows(snow_value_store *s) {
                         rows * sizeof *s->ends);
 }
 
-/* Whether rows are read in place, and where they are. */
+/* Whether rows are natives, and where they are. */
 static void place_natives(snow_value_store *s,
                           const snow_value_store_params *params) {
     const snow_placement *p = params->placement;
-    const snow_volume *volume = params->volume;
     const snow_value_coder *coder = params->coder;
-    const int64_t *dims = volume->info.dims;
+    const int64_t *dims = params->volume->info.dims;
     const int64_t strides[3] = {1, dims[0], dims[0] * dims[1]};
     s->in_place = params->encoding == SNOW_ENCODING_AUTO &&
                   snow_value_store_by_natives(params) && !coder->scale.clamps &&
-                  coder->type != SNOW_TYPE_INT8 && p->u_axis == 0;
+                  coder->type != SNOW_TYPE_INT8;
+    s->turned = s->in_place && p->u_axis != 0;
     s->kind = SNOW_VALUE_NUMBERS;
     if (!s->in_place)
         return;
     s->kind =
         snow_type_size(coder->type) == 1 ? SNOW_VALUE_BYTES : SNOW_VALUE_WORDS;
     s->rule = coder->scale.rule;
-    s->natives = volume->voxels;
+    s->natives = params->volume->voxels;
     s->native_count = dims[0] * dims[1] * dims[2];
     s->slice_step = strides[p->slice_axis];
     s->row_step = strides[p->v_axis];
+}
+
+/* Room for rows that are turned.  They are a cache line farther apart than they
+ * are long: at steps of a power of 2 many would share a place in the cache. */
+static snow_status reserve_turned(snow_value_store *s) {
+    const int64_t size = s->kind == SNOW_VALUE_BYTES ? 1 : 2;
+    s->row_step = (s->columns * size + 127) / 64 * 64 / size;
+    s->slice_step = s->rows * s->row_step;
+    s->native_count = s->slices * s->slice_step;
+    SNOW_TRY(snow_reserve(s->context, &s->copy, &s->copy_capacity, 0,
+                          (size_t)(s->native_count * size)));
+    s->natives = s->copy;
+    return SNOW_STATUS_OK;
 }
 
 /* Scratch for whichever step takes most. */
@@ -179,8 +198,12 @@ static snow_status begin(store_job *job) {
     place_natives(s, params);
     SNOW_TRY(reserve_masks(s));
     if (s->in_place)
-        forget_copies(s);
+        forget_rows(s);
+    if (!s->turned)
+        forget_turned(s);
     SNOW_TRY(reserve_bands(s));
+    if (s->turned)
+        SNOW_TRY(reserve_turned(s));
     if (!s->in_place)
         SNOW_TRY(reserve_rows(s));
     return reserve_scratch(job);
@@ -207,14 +230,17 @@ static snow_encoding choose(const snow_value_store *s) {
                                 cells, runs);
 }
 
-/* In place the masks are all that there is. */
+/* Of natives there are masks and at most a copy, which counts as IA. */
 static void add_up(snow_value_store *s) {
     s->voxels = s->ea_bytes = 0;
     if (s->in_place) {
         s->encoding = SNOW_ENCODING_BITMAP;
         s->ea_bytes = (uint64_t)snow_value_planes(s) * (uint64_t)s->slices *
                       s->mask_words * s->mask_rows * sizeof *s->masks;
-        s->ia_bytes = s->pa_bytes = 0;
+        s->ia_bytes = s->turned ? (uint64_t)s->native_count *
+                                      (s->kind == SNOW_VALUE_BYTES ? 1 : 2)
+                                : 0;
+        s->pa_bytes = 0;
         return;
     }
     for (int64_t n = 0; n < s->band_count; n++) {
@@ -259,7 +285,8 @@ snow_status snow_value_store_encode(snow_value_store *s,
 }
 
 void snow_value_store_fini(snow_value_store *s) {
-    forget_copies(s);
+    forget_rows(s);
+    forget_turned(s);
     snow_release(s->context, s->masks);
     snow_release(s->context, s->coarse);
     snow_release(s->context, s->eights);

@@ -8,9 +8,9 @@
  *          --> rows    IA once more, row by row from the first to the last
  *                      voxel of the shell, so that 32 samples are two loads
  *
- * Where rows of the volume are those of slices (slice axes z and y), and its
- * voxels are integers that become numbers by a rule (value_range.h), rows are
- * read in place, unless an encoding is asked for: there are masks alone.
+ * Where voxels are integers that become numbers by a rule (value_range.h), and
+ * no encoding is asked for, there are masks alone, and rows are natives: along
+ * z and y those of the volume, in place; along x a copy that is turned.
  *
  * Beyond each side of the volume there are `margin` more columns and rows,
  * which continue it oddly: v[-1] = 2 v[0] - v[1], and the same farther out.
@@ -71,7 +71,8 @@ typedef struct snow_value_store {
     int64_t *seen; /* natives that were counted, by bands */
     uint64_t voxels, ea_bytes, ia_bytes, pa_bytes;
     snow_value_kind kind;
-    bool in_place;
+    bool in_place;        /* rows are natives at regular steps */
+    bool turned;          /* in a copy */
     snow_value_rule rule; /* from natives to numbers */
     /* In place voxel (c, r) of slice k is native number k slice_step + r
      * row_step + c of native_count. */
@@ -79,13 +80,14 @@ typedef struct snow_value_store {
     int64_t slice_step, row_step, native_count;
     /* Else it is number, or native number, at[k][r] + c; elsewhere anything may
      * be read. */
+    unsigned char *copy;
     int16_t *values;
     int64_t *at;            /* [slice][row + margin] */
     int32_t (*ends)[2];     /* of the rows: first column, and behind the last */
     unsigned char *scratch; /* of the threads, while encoding */
     size_t masks_capacity, coarse_capacity, eights_capacity, bands_capacity,
-        values_capacity, at_capacity, ends_capacity, seen_capacity,
-        scratch_capacity;
+        values_capacity, copy_capacity, at_capacity, ends_capacity,
+        seen_capacity, scratch_capacity;
 } snow_value_store;
 
 /* Natives first .. first + width, which may go round beyond the largest of
