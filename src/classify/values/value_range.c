@@ -54,22 +54,31 @@ static void take_natives(const range_job *job, double *natives, size_t count) {
     }
 }
 
-/* Native values of one or two bytes. */
-#define LOOK_NARROW(name, type)                                         \
-    static void look_at_##name(found_range *found, const type *natives, \
-                               size_t count) {                          \
-        type low = natives[0], high = natives[0];                       \
-        for (size_t n = 0; n < count; n++) {                            \
-            low = natives[n] < low ? natives[n] : low;                  \
-            high = natives[n] > high ? natives[n] : high;               \
-        }                                                               \
-        found->low = low < found->low ? low : found->low;               \
-        found->high = high > found->high ? high : found->high;          \
+/* Native values of one or two bytes, as those of a type whose extremes vectors
+ * of any machine find: with the sign bit turned over where `flip` has it. */
+#define LOOK_NARROW(name, type, vector, flip)                            \
+    static void look_at_##name(found_range *found, const type *natives,  \
+                               size_t count) {                           \
+        vector low = (vector)(natives[0] ^ (flip)), high = low;          \
+        for (size_t n = 0; n < count; n++) {                             \
+            vector here = (vector)(natives[n] ^ (flip));                 \
+            low = here < low ? here : low;                               \
+            high = here > high ? here : high;                            \
+        }                                                                \
+        type first = (type)(low ^ (flip)), last = (type)(high ^ (flip)); \
+        found->low = first < found->low ? first : found->low;            \
+        found->high = last > found->high ? last : found->high;           \
     }
-LOOK_NARROW(int8, int8_t)
-LOOK_NARROW(uint8, uint8_t)
-LOOK_NARROW(int16, int16_t)
-LOOK_NARROW(uint16, uint16_t)
+LOOK_NARROW(int8, int8_t, uint8_t, 0x80)
+LOOK_NARROW(uint8, uint8_t, uint8_t, 0)
+LOOK_NARROW(int16, int16_t, int16_t, 0)
+LOOK_NARROW(uint16, uint16_t, int16_t, 0x8000)
+
+/* Whether all values that 8 bits have were found. */
+static bool is_full(const range_job *job, const found_range *found) {
+    return snow_type_size(job->volume->info.type) == 1 && !job->log &&
+           found->high - found->low == UINT8_MAX;
+}
 
 /* False where the voxels have another type, or logarithms are wanted. */
 static bool look_at_narrow(const range_job *job, found_range *found,
@@ -96,6 +105,8 @@ static void look_at_item(void *of, int64_t item, int worker) {
     const range_job *job = of;
     int64_t first = item * ITEM, end = first + ITEM;
     end = end < job->voxels ? end : job->voxels;
+    if (is_full(job, &job->found[worker]))
+        return;
     if (look_at_narrow(job, &job->found[worker], first, (size_t)(end - first)))
         return;
     for (; first < end; first += BLOCK) {
