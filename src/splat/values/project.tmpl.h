@@ -151,11 +151,23 @@ TARGET VALUE_INLINE void NAME(keep_sum)(snow_value_faint_plane *plane, int row,
     }
 }
 
+/* Closes the pixels of a row that nothing is better than. */
+TARGET VALUE_INLINE void NAME(close_best)(const int16_t *pixels, int row,
+                                          value_phase *state) {
+    state->open[row] &=
+        V(row_gt)(V(row_set1)(SNOW_VALUE_MOST), V(row_load)(pixels));
+    if (!state->open[row])
+        state->alive &= ~(UINT32_C(1) << row);
+}
+
 /* A phase of slab `n`; whether it has anything. */
 TARGET VALUE_INLINE bool
 NAME(project)(const snow_value_splat *p, int n, int phase, const int tile[2],
-              void *planes, value_room *room, const value_slab *slab,
+              void *planes, value_room *room, value_slab *slab,
               const snow_value_reduction reduction, const bool eye) {
+    value_phase *state = &room->phase[phase];
+    if (slab->rows && reduction != SNOW_VALUE_SUM)
+        slab->rows &= V(rows_and)(slab->active, state->open, ~UINT32_C(0));
     const uint64_t here = (uint64_t)slab->rows << 1;
     const bool cuts = NAME(is_cut)(slab);
     value_rows *f = &room->rows[phase][n & 1];
@@ -170,12 +182,16 @@ NAME(project)(const snow_value_splat *p, int n, int phase, const int tile[2],
         V(row) x, y, from, part = V(row_set1)(INT16_MAX);
         uint32_t mask = NAME(ends)(f, b, slab, row, cuts, &x, &y, &from, &part);
         any |= mask;
-        if (reduction == SNOW_VALUE_SUM)
+        if (reduction == SNOW_VALUE_SUM) {
             NAME(keep_sum)
-        ((snow_value_faint_plane *)planes + phase, row, x, y, part, mask, cuts,
-         p->store->holes);
-        else NAME(keep_best)(((snow_value_plane *)planes)[phase][0][row], x, y,
-                             mask, reduction == SNOW_VALUE_SMALLEST);
+            ((snow_value_faint_plane *)planes + phase, row, x, y, part, mask,
+             cuts, p->store->holes);
+        } else {
+            int16_t *pixels = ((snow_value_plane *)planes)[phase][0][row];
+            NAME(keep_best)
+            (pixels, x, y, mask, reduction == SNOW_VALUE_SMALLEST);
+            NAME(close_best)(pixels, row, state);
+        }
     }
     return any != 0;
 }
@@ -199,6 +215,8 @@ NAME(project_phases)(const snow_value_splat *p, int first, int end,
             drawn |= NAME(project)(
                 p, list[turn], phase, tile, planes, room,
                 &room->slab[turn % AHEAD_RING][phase - first], reduction, eye);
+        if (!NAME(alive)(room, first, end))
+            break;
     }
     return drawn;
 }
