@@ -31,6 +31,7 @@ TARGET VALUE_INLINE void NAME(lengths_of)(V(row) part, uint32_t mask,
 /* --- the rays that there are ------------------------------------------------
  */
 
+/* Of a slab that has rows; cuts of others are not known. */
 static inline bool NAME(is_cut)(const value_slab *slab) {
     return slab->cut[0].cuts || slab->cut[1].cuts || slab->clip.cuts;
 }
@@ -60,7 +61,7 @@ TARGET VALUE_INLINE void NAME(add_lengths)(const value_slab *slab, int row,
 /* Whether all open pixels of a phase are active in an uncut slab. */
 static inline bool NAME(is_whole)(const value_phase *state,
                                   const value_slab *slab) {
-    return !NAME(is_cut)(slab) && slab->rows == state->alive &&
+    return slab->rows && slab->rows == state->alive && !NAME(is_cut)(slab) &&
            memcmp(slab->active, state->open, sizeof slab->active) == 0;
 }
 
@@ -169,7 +170,7 @@ NAME(project)(const snow_value_splat *p, int n, int phase, const int tile[2],
     if (slab->rows && reduction != SNOW_VALUE_SUM)
         slab->rows &= V(rows_and)(slab->active, state->open, ~UINT32_C(0));
     const uint64_t here = (uint64_t)slab->rows << 1;
-    const bool cuts = NAME(is_cut)(slab);
+    const bool cuts = here && NAME(is_cut)(slab);
     value_rows *f = &room->rows[phase][n & 1];
     value_rows *b = &room->rows[phase][~n & 1];
     uint32_t any = 0;
