@@ -25,6 +25,7 @@
 #include "parallel/internal.h"
 
 #include "image/image.h"
+#include "render/settings_resolve.h"
 #include "volume/volume.h"
 
 #include <string.h>
@@ -36,6 +37,7 @@
 static bool is_ahead(const snow_picture *p) {
     double shares[3];
     return p->job.settings.method == SNOW_METHOD_SHEAR_WARP &&
+           !snow_draws_values(&p->job.settings) &&
            p->job.settings.mode == SNOW_MODE_OVER && !p->job.settings.depth &&
            snow_job_shares(&p->job, shares) == SNOW_STATUS_OK &&
            shares[p->job.placement.slice_axis] == 1;
@@ -75,6 +77,7 @@ static snow_status begin(snow_picture *p, snow_status status) {
         status = make_images(f);
     p->ahead = is_ahead(p);
     p->layered = p->job.settings.method == SNOW_METHOD_SHEAR_WARP &&
+                 !snow_draws_values(&p->job.settings) &&
                  p->job.settings.mode == SNOW_MODE_OVER && !p->ahead;
     f->drawn_cpu = snow_flight_cpu(f);
     return status;
@@ -195,7 +198,7 @@ static snow_status synchronize(snow_picture *p, snow_status status) {
     SNOW_TRY(synchronize_all(f, status, &new_parts));
     if (p->job.settings.mode != SNOW_MODE_OVER)
         SNOW_TRY(snow_flight_agree_range(f));
-    return p->job.settings.method == SNOW_METHOD_VALUE
+    return snow_draws_values(&p->job.settings)
                ? snow_flight_agree_values(f)
                : SNOW_STATUS_OK;
 }

@@ -4,6 +4,7 @@
  * order; of surfaces the nearest one counts. */
 #include "image/image.h"
 #include "render/picture.h"
+#include "render/settings_resolve.h"
 #include "transfer/transfer.h"
 
 #include <math.h>
@@ -42,7 +43,7 @@ static snow_status synchronize(snow_picture *p, snow_status status) {
     SNOW_TRY(status);
     snow_image_free(p->frame->depth);
     p->frame->depth = NULL;
-    if (s->method == SNOW_METHOD_VALUE)
+    if (snow_draws_values(s))
         SNOW_TRY(find_values(p));
     if (s->mode == SNOW_MODE_OVER)
         return s->depth && !snow_job_whole(&p->job) ? fail_part(p, "depth", "")

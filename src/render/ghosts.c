@@ -46,7 +46,7 @@ static void at_least(int64_t *layers, double wanted, int64_t most) {
 }
 
 static bool splats_values(const question *q) {
-    return q->settings->method == SNOW_METHOD_VALUE;
+    return snow_draws_values(q->settings);
 }
 
 /* How far gradients of values look in the plane: in perspective a voxel and a

@@ -4,6 +4,7 @@
 #include "classify/count_interesting.h"
 #include "classify/gradient_opacity.h"
 #include "render/ghosts.h"
+#include "render/settings_resolve.h"
 #include "transfer/transfer.h"
 
 #include <string.h>
@@ -79,10 +80,11 @@ static snow_status place_slab(snow_job *job, int parts, int part) {
         snow_placement_make(job->context, &whole, job->view, &job->placement));
     set_level(job->volume, &job->placement);
     if (job->settings.method == SNOW_METHOD_SHEAR_WARP &&
+        !snow_draws_values(&job->settings) &&
         !snow_shear_warp_fits(&job->placement, &job->settings))
         job->settings.method = SNOW_METHOD_FOOTPRINT;
-    if (job->settings.method == SNOW_METHOD_VALUE &&
-        job->placement.perspective && !snow_value_eye_fits(&job->placement))
+    if (snow_draws_values(&job->settings) &&
+        !snow_value_fits(&whole, &job->placement, job->settings.kernel))
         job->settings.method = SNOW_METHOD_FOOTPRINT;
     SNOW_TRY(check_stream(job, parts));
     cut_slab(job, parts, part);
@@ -186,7 +188,7 @@ static snow_status count_own(snow_frame *frame, const snow_job *job) {
     snow_stats *stats = job->stats;
     const int64_t *count = job->clip.count;
     stats->voxels = count[0] * count[1] * count[2];
-    if (job->settings.method == SNOW_METHOD_VALUE) /* its own count serves */
+    if (snow_draws_values(&job->settings)) /* its own count serves */
         return SNOW_STATUS_OK;
     if (stats->encoded || job->settings.method != SNOW_METHOD_SHEAR_WARP)
         SNOW_TRY(snow_count_interesting(

@@ -3,6 +3,7 @@
 #include "base/vec3.h"
 #include "classify/gradient_opacity.h"
 #include "render/ghosts.h"
+#include "render/settings_resolve.h"
 #include "transfer/transfer.h"
 #include "transform/transform.h"
 #include "volume/downsample.h"
@@ -206,7 +207,7 @@ static snow_status make_mipmap(snow_mipmap *levels, int lean, int threads,
 }
 
 bool snow_mipmap_serve(const snow_settings *s) {
-    return s->method == SNOW_METHOD_SHEAR_WARP &&
+    return s->method == SNOW_METHOD_SHEAR_WARP && !snow_draws_values(s) &&
            s->quality == SNOW_QUALITY_DRAFT && s->mode == SNOW_MODE_OVER &&
            !s->deterministic;
 }

@@ -4,6 +4,7 @@
 #include "classify/gradient_opacity.h"
 #include "render/ghosts.h"
 #include "render/modes/depth.h"
+#include "render/settings_resolve.h"
 
 #include <math.h>
 
@@ -33,7 +34,7 @@ static int64_t nearest_slice(const snow_job *job) {
 static int64_t made_of(const snow_job *job) {
     int64_t sample = job->channels * (int64_t)sizeof(float);
     int64_t voxel = (int64_t)snow_type_size(job->volume->info.type);
-    if (job->settings.method == SNOW_METHOD_VALUE)
+    if (snow_draws_values(&job->settings))
         return VALUE_BYTES / voxel;
     if (job->settings.mode == SNOW_MODE_ISO ||
         job->settings.method != SNOW_METHOD_FOOTPRINT)
@@ -59,7 +60,7 @@ static snow_status open_slabs(snow_parts *parts) {
         (snow_slab_cut){.step = 1,
                         .ghosts = layers[2],
                         .made = made_of(job),
-                        .clipped = job->settings.method == SNOW_METHOD_VALUE,
+                        .clipped = snow_draws_values(&job->settings),
                         .from = nearest_slice(job)};
     snow_slabs_open(job->volume, &parts->cut, &parts->slabs);
     parts->many = true;

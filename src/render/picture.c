@@ -24,7 +24,8 @@ static snow_status add_axes(snow_picture *p) {
     double shares[3] = {0, 0, 0};
     const snow_job *job = &p->job;
     shares[job->placement.slice_axis] = 1;
-    if (job->settings.method == SNOW_METHOD_SHEAR_WARP && job->all) {
+    if (job->settings.method == SNOW_METHOD_SHEAR_WARP && job->all &&
+        !snow_draws_values(&job->settings)) {
         SNOW_TRY(snow_job_shares(job, shares));
         p->layered = job->settings.quality == SNOW_QUALITY_HIGH;
     }
@@ -81,7 +82,7 @@ const snow_render_method *snow_method_of(const snow_job *job) {
     const snow_settings *s = &job->settings;
     if (s->method == SNOW_METHOD_RAYCAST)
         return &snow_method_raycast;
-    if (s->method == SNOW_METHOD_VALUE)
+    if (snow_draws_values(s))
         return &snow_method_value;
     if (s->mode == SNOW_MODE_ISO)
         return &snow_method_iso;

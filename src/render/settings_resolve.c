@@ -69,7 +69,7 @@ static snow_status resolve_machine(snow_context *context, snow_settings *s) {
 static bool takes_tent(const snow_settings *s) {
     return s->method == SNOW_METHOD_RAYCAST || s->method == SNOW_METHOD_VALUE ||
            (s->method == SNOW_METHOD_SHEAR_WARP &&
-            s->quality == SNOW_QUALITY_DRAFT);
+            (s->mode == SNOW_MODE_OVER || s->quality == SNOW_QUALITY_DRAFT));
 }
 
 /* Kernels that interpolate values; the others are those of footprints. */
@@ -116,7 +116,7 @@ snow_status snow_settings_resolve(snow_context *context,
     if (s->footprint == 0)
         s->footprint = snow_kernel_default_support(s->kernel);
     SNOW_TRY(check_raycast(context, s));
-    if (s->method == SNOW_METHOD_VALUE && !is_of_values(s))
+    if (snow_draws_values(s) && !is_of_values(s))
         s->method = SNOW_METHOD_FOOTPRINT;
     const double *spacing = info->spacing;
     if (s->opacity_length == 0)

@@ -80,6 +80,15 @@ double snow_value_lattice_reach(const snow_volume_info *info,
     return most / halves;
 }
 
+bool snow_value_fits(const snow_volume_info *info, const snow_placement *p,
+                     snow_kernel kernel) {
+    if (p->perspective)
+        return snow_value_eye_fits(p);
+    return ceil(snow_value_lattice_reach(info, p, 1)) +
+               (kernel == SNOW_KERNEL_BSPLINE) <=
+           SNOW_VALUE_REACH_MOST;
+}
+
 void snow_value_lattice_sheets(const snow_value_lattice *l,
                                const snow_placement *p,
                                snow_value_sheet *sheets,

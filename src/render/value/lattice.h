@@ -58,6 +58,11 @@ void snow_value_lattice_move(snow_value_lattice *lattice, int axis, double by);
  * last sheet and rays are as far apart as encodings provide for. */
 bool snow_value_eye_fits(const snow_placement *placement);
 
+/* Whether rays move aside by no more voxels from one slice to the next than
+ * encodings provide for, whatever the view; in perspective, as above. */
+bool snow_value_fits(const snow_volume_info *info,
+                     const snow_placement *placement, snow_kernel kernel);
+
 /* The image, of so many phases a voxel along u and v.  Errors:
  * SNOW_STATUS_BAD_USAGE (too large). */
 snow_status snow_value_eye_image(snow_context *context,
