@@ -104,11 +104,17 @@ static void widest_pixel(const snow_placement *p, double width[2]) {
     }
 }
 
-/* How many voxels rays go aside along u and v from slice to slice, at most. */
-static void widest_slope(const snow_placement *p, double slope[2]) {
+/* How many voxels rays go aside along u and v from slice to slice, at most; in
+ * parallel projection no less than those of any view along this axis where axes
+ * are at right angles, so that a part serves all of them. */
+static void widest_slope(const question *q, const snow_placement *p,
+                         double slope[2]) {
+    const double *spacing = q->whole->spacing;
+    const int axes[2] = {p->u_axis, p->v_axis};
     for (int axis = 0; axis < 2; axis++)
-        slope[axis] = fabs(p->inverse[axis][0] * p->step_slice[0] +
-                           p->inverse[axis][1] * p->step_slice[1]);
+        slope[axis] = fmax(fabs(p->inverse[axis][0] * p->step_slice[0] +
+                                p->inverse[axis][1] * p->step_slice[1]),
+                           spacing[p->slice_axis] / spacing[axes[axis]]);
     if (!p->perspective)
         return;
     slope[0] = slope[1] = 0;
@@ -133,7 +139,7 @@ static void ask_placement(const question *q, const snow_placement *p,
     double ratio = p->perspective ? snow_perspective_shear_ratio(p) : 1;
     widest_pixel(p, width);
     if (finds_surfaces(q) || splats_values(q))
-        widest_slope(p, slope);
+        widest_slope(q, p, slope);
     for (int n = 0; n < 2; n++)
         at_least(&layers[axes[n]],
                  layers_of(q, ratio, width[n]) + ceil(slope[n]),

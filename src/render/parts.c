@@ -56,12 +56,14 @@ static snow_status open_slabs(snow_parts *parts) {
     SNOW_TRY(snow_ghosts_needed(
         job->context, &job->volume->info, job->view, &job->settings,
         snow_transfer_has_gradient_opacity(job->transfer), false, layers));
-    parts->cut =
-        (snow_slab_cut){.step = 1,
-                        .ghosts = layers[2],
-                        .made = made_of(job),
-                        .clipped = snow_draws_values(&job->settings),
-                        .from = nearest_slice(job)};
+    parts->cut = (snow_slab_cut){.step = 1,
+                                 .ghosts = layers[2],
+                                 .made = made_of(job),
+                                 .clipped = snow_draws_values(&job->settings),
+                                 .from = nearest_slice(job)};
+    if (parts->picture->pass->method->cut)
+        parts->picture->pass->method->cut(parts->picture, parts->whole,
+                                          &parts->cut);
     snow_slabs_open(job->volume, &parts->cut, &parts->slabs);
     parts->many = true;
     return SNOW_STATUS_OK;
@@ -103,6 +105,15 @@ static snow_status add_stats(snow_parts *parts) {
     return SNOW_STATUS_OK;
 }
 
+/* A slab that was drawn. */
+static snow_status end_slab(snow_parts *parts) {
+    const snow_render_method *method = parts->picture->pass->method;
+    SNOW_TRY(add_stats(parts));
+    if (method->keep)
+        method->keep(parts->picture, &parts->slab, &parts->slabs);
+    return SNOW_STATUS_OK;
+}
+
 /* The slab's job is the whole's, of its own voxels. */
 static snow_status begin_slab(snow_parts *parts, const snow_volume *volume) {
     const snow_job *whole = parts->whole;
@@ -123,7 +134,7 @@ static snow_status begin_slab(snow_parts *parts, const snow_volume *volume) {
 static snow_status next_slab(snow_parts *parts, bool *any) {
     const snow_volume *volume;
     if (parts->part)
-        SNOW_TRY(add_stats(parts));
+        SNOW_TRY(end_slab(parts));
     parts->part = &parts->slab;
     SNOW_TRY(snow_slabs_next(&parts->slabs, &volume));
     *any = volume != NULL;

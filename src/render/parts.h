@@ -14,8 +14,8 @@
  *        eye                 along z; the slab that the eye is level with comes
  *   5  4  3 | 0 | 1  2       first, then those on either side, away from it
  *
- * No ray meets slabs on both sides.  Nothing of a slab is kept, so that each
- * picture reads the file. */
+ * No ray meets slabs on both sides.  What methods keep of slabs spares the next
+ * picture reading them; of others each picture reads the file. */
 #ifndef SNOW_RENDER_PARTS_H
 #define SNOW_RENDER_PARTS_H
 

@@ -15,6 +15,7 @@
 
 #include "base/monitor.h"
 #include "render/job.h"
+#include "volume/stream.h"
 
 typedef struct snow_picture snow_picture;
 
@@ -32,6 +33,11 @@ typedef struct snow_render_method {
                                             snow_shear_warp_show */
     snow_method_fn *figures;             /* of a job whose image is made; NULL:
                                             snow_job_finish */
+    /* Slabs of a file whose encoding is kept from picture to picture are not
+     * read again: says which there are; then of each slab that was drawn
+     * whether it is one.  NULL: none. */
+    void (*cut)(snow_picture *picture, snow_job *job, snow_slab_cut *cut);
+    void (*keep)(snow_picture *picture, snow_job *job, snow_slabs *slabs);
     bool slabs;  /* of a volume in its file local images are made slab by slab;
                     else the encoding is (shear_warp/stream.c) */
     bool warps;  /* the local image is an intermediate one */

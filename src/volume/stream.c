@@ -175,6 +175,8 @@ static uint64_t slab_room(const snow_volume *volume, int64_t made) {
 static int64_t slab_slices(const snow_volume *volume,
                            const snow_slab_cut *cut) {
     const int64_t *dims = volume->info.dims;
+    if (cut->slices)
+        return cut->slices;
     uint64_t slice = (uint64_t)(dims[0] * dims[1]) *
                      (uint64_t)snow_type_size(volume->info.type);
     uint64_t room = slab_room(volume, cut->made) / slice;
@@ -228,29 +230,38 @@ static snow_status open_slab(snow_context *context, snow_stream *stream,
     return status;
 }
 
-/* Slices first .. first + count - 1 with ghosts, as a part of the volume. */
-static snow_status read_slab(const snow_volume *volume,
-                             const snow_slab_cut *cut, int64_t first,
-                             int64_t count, snow_volume **out) {
-    const int64_t ghosts = cut->ghosts;
-    snow_context *context = volume->context;
+/* Slices first .. first + count - 1 of a volume; from its first ghost on. */
+static snow_extent part_of(const snow_volume *volume, int64_t ghosts,
+                           int64_t first, int64_t count) {
     const int64_t *dims = volume->info.dims;
     int64_t from = first > ghosts ? first - ghosts : 0;
-    int64_t end = first + count + ghosts;
-    end = end < dims[2] ? end : dims[2];
-    snow_extent part = {.size = sizeof part,
-                        .dims = {dims[0], dims[1], dims[2]},
-                        .stored = {0, 0, from},
-                        .first = {0, 0, first},
-                        .count = {dims[0], dims[1], count}};
+    return (snow_extent){.size = sizeof(snow_extent),
+                         .dims = {dims[0], dims[1], dims[2]},
+                         .stored = {0, 0, from},
+                         .first = {0, 0, first},
+                         .count = {dims[0], dims[1], count}};
+}
+
+/* Its slices, with ghosts on both sides. */
+static int64_t stored_slices(const snow_extent *part, int64_t ghosts) {
+    int64_t end = part->first[2] + part->count[2] + ghosts;
+    return (end < part->dims[2] ? end : part->dims[2]) - part->stored[2];
+}
+
+/* A slab with its ghosts, as a part of the volume. */
+static snow_status read_slab(const snow_volume *volume,
+                             const snow_slab_cut *cut, const snow_extent *part,
+                             snow_volume **out) {
+    snow_context *context = volume->context;
+    int64_t slices = stored_slices(part, cut->ghosts);
     snow_volume_options options = volume->stream->options;
-    options.crop[2][1] = options.crop[2][0] + end;
-    options.crop[2][0] += from;
+    options.crop[2][0] += part->stored[2];
+    options.crop[2][1] = options.crop[2][0] + slices;
     snow_volume *slab;
     SNOW_TRY(open_slab(context, volume->stream, &options, cut->clipped, &slab));
-    snow_status status = compare(volume, slab, &part, end - from);
+    snow_status status = compare(volume, slab, part, slices);
     if (status == SNOW_STATUS_OK)
-        status = snow_volume_set_extent(slab, &part);
+        status = snow_volume_set_extent(slab, part);
     if (status == SNOW_STATUS_OK)
         status = snow_volume_set_whole(slab, &volume->info);
     if (status != SNOW_STATUS_OK) {
@@ -301,7 +312,15 @@ static void drop_present(snow_slabs *slabs) {
     context->spare = slab->owned;
     context->spare_bytes = (size_t)bytes;
     slab->owned = NULL;
-    snow_volume_close(slab);
+    slab->voxels = NULL;
+    if (!slabs->keep)
+        snow_volume_close(slab);
+    slabs->keep = false;
+}
+
+snow_volume *snow_slabs_keep(snow_slabs *slabs) {
+    slabs->keep = slabs->slab != NULL;
+    return slabs->slab;
 }
 
 /* Whether a slab of a file is left, from `next` on. */
@@ -311,6 +330,12 @@ static bool any_left(snow_slabs *slabs) {
         slabs->next = slabs->nearest - slabs->count;
     }
     return !slabs->falls || slabs->next >= 0;
+}
+
+static void note_mask(snow_stream *stream, const snow_volume *slab) {
+    stream->left = stream->left || !slab->emptied;
+    stream->mask_range[0] = fmin(stream->mask_range[0], slab->mask_range[0]);
+    stream->mask_range[1] = fmax(stream->mask_range[1], slab->mask_range[1]);
 }
 
 snow_status snow_slabs_next(snow_slabs *slabs, const snow_volume **slab) {
@@ -330,17 +355,17 @@ snow_status snow_slabs_next(snow_slabs *slabs, const snow_volume **slab) {
     slabs->whole =
         snow_monitor_divide(volume->context->monitor, (double)slabs->number++,
                             (double)((all + slabs->count - 1) / slabs->count));
-    SNOW_TRY(read_slab(volume, &slabs->cut, slabs->next,
-                       left < slabs->count ? left : slabs->count,
-                       &slabs->slab));
+    const snow_extent part = part_of(volume, slabs->cut.ghosts, slabs->next,
+                                     left < slabs->count ? left : slabs->count);
+    if (slabs->cut.kept)
+        *slab = slabs->cut.kept(slabs->cut.user, &part,
+                                stored_slices(&part, slabs->cut.ghosts));
+    if (!*slab) {
+        SNOW_TRY(read_slab(volume, &slabs->cut, &part, &slabs->slab));
+        *slab = slabs->slab;
+    }
     slabs->next += slabs->falls ? -slabs->count : slabs->count;
-    snow_stream *stream = volume->stream;
-    stream->left = stream->left || !slabs->slab->emptied;
-    stream->mask_range[0] =
-        fmin(stream->mask_range[0], slabs->slab->mask_range[0]);
-    stream->mask_range[1] =
-        fmax(stream->mask_range[1], slabs->slab->mask_range[1]);
-    *slab = slabs->slab;
+    note_mask(volume->stream, *slab);
     return SNOW_STATUS_OK;
 }
 

@@ -27,6 +27,12 @@ snow_status snow_stream_open(snow_context *context, const char *path,
                              uint64_t slab_bytes, snow_open_fn *open,
                              snow_volume **out);
 
+/* What was kept of a slab (snow_slabs_keep), which stores so many slices with
+ * its ghosts: the record that is handed out again, without its voxels; NULL:
+ * the slab is read. */
+typedef const snow_volume *
+snow_slab_kept_fn(void *user, const snow_extent *part, int64_t slices);
+
 /* How a volume is to be cut. */
 typedef struct snow_slab_cut {
     int64_t step;   /* slices of a slab are a multiple of it, but for the last
@@ -37,6 +43,9 @@ typedef struct snow_slab_cut {
     int64_t from;   /* a slice: its slab comes first, then those above it,
                        rising, then those below it, falling */
     bool clipped;   /* with the values next to clip planes (clip_planes.h) */
+    int64_t slices; /* of a slab, without ghosts; 0: as many as fit */
+    snow_slab_kept_fn *kept; /* NULL: all slabs are read */
+    void *user;              /* of kept */
 } snow_slab_cut;
 
 /* A walk over all slabs. */
@@ -48,7 +57,9 @@ typedef struct snow_slabs {
     bool begun, falls;
     int64_t number;          /* of slabs so far */
     snow_monitor_part whole; /* the progress outside of the present slab */
-    snow_volume *slab;       /* the present one; NULL: the volume in memory */
+    snow_volume *slab;       /* the present one; NULL: the volume in memory, or
+                                a slab that was kept */
+    bool keep;               /* the present one is the caller's */
 } snow_slabs;
 
 void snow_slabs_open(const snow_volume *volume, const snow_slab_cut *cut,
@@ -58,6 +69,10 @@ void snow_slabs_open(const snow_volume *volume, const snow_slab_cut *cut,
  * when the next is asked for; NULL after the last one.  Errors: those of
  * snow_volume_open; SNOW_STATUS_BAD_INPUT (the file is another one by now). */
 snow_status snow_slabs_next(snow_slabs *slabs, const snow_volume **slab);
+
+/* The record of the present slab becomes the caller's, who closes it; its
+ * voxels go when the next is asked for.  NULL: it is the caller's already. */
+snow_volume *snow_slabs_keep(snow_slabs *slabs);
 
 void snow_slabs_close(snow_slabs *slabs);
 

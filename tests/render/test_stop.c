@@ -206,8 +206,7 @@ static void stop_ways(const char *path, int threads, bool streamed) {
         snow_frame *frame;
         snow_image *asked = NULL;
         question all = {.asked = -1000000};
-        if (streamed && ways[n].deterministic &&
-            ways[n].method != SNOW_METHOD_SHEAR_WARP)
+        if (streamed && ways[n].deterministic)
             continue;
         scene_new(path, &ways[n], threads, streamed, 40, &s);
         assert_int_equal(snow_frame_new(s.context, &frame), SNOW_STATUS_OK);

@@ -15,6 +15,24 @@ typedef struct snow_value_key {
     snow_encoding encoding; /* as asked for */
 } snow_value_key;
 
+/* A slab of a file: its record without voxels, and their encoding, which is in
+ * the path while it is drawn. */
+typedef struct snow_value_kept_slab {
+    snow_volume *slab;
+    snow_value_store store;
+    snow_value_key key;
+    int64_t interesting;
+} snow_value_kept_slab;
+
+typedef struct snow_value_kept_slabs {
+    snow_value_kept_slab *slabs;
+    size_t capacity; /* bytes */
+    int count;
+    uint64_t of;    /* the generation of the volume in its file; 0: none */
+    int slice_axis; /* and of the encodings */
+    int64_t slices, ghosts; /* of a slab */
+} snow_value_kept_slabs;
+
 /* How tiles lie in the plane.  As long as that stays, only the tiles that were
  * drawn have to be cleared. */
 typedef struct snow_value_grid {
@@ -57,6 +75,7 @@ struct snow_value_path {
     snow_value_store store;
     snow_value_key key; /* of the store */
     int64_t interesting;
+    snow_value_kept_slabs kept;
     snow_value_light light;
     snow_value_fade fade;
     snow_value_surface surface;
@@ -92,6 +111,20 @@ const snow_value_operator *snow_value_operator_of(snow_mode mode);
  * SNOW_STATUS_NO_MEMORY, SNOW_STATUS_STOPPED. */
 snow_status snow_value_place_rays(snow_value_path *path,
                                   const snow_value_params *params);
+
+/* --- value.c --- */
+
+/* Whether the encoding under a key serves a part of a volume. */
+bool snow_value_serves(const snow_value_path *path, const snow_value_key *has,
+                       const snow_value_store *store,
+                       const snow_value_params *params, uint64_t generation);
+
+/* --- kept.c --- */
+
+/* The encoding of a slab of a file to its place in the path, if it was kept. */
+void snow_value_take_kept(snow_value_path *path, const snow_volume *slab);
+
+/* --- parallel projection and perspective --- */
 
 /* A part's image in the making. */
 typedef struct snow_value_drawing {

@@ -24,10 +24,14 @@ static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
 /* The image comes first, for the slabs of a file are cut to the memory that it
  * leaves. */
 static snow_status begin(snow_picture *p, snow_job *job) {
+    if (job->volume->stream && job->settings.encoding == SNOW_ENCODING_AUTO)
+        job->settings.encoding = SNOW_ENCODING_BITMAP; /* one for all slabs */
     const snow_value_params params = params_of(p, job);
     SNOW_TRY(snow_value_path_new(job->context, &p->frame->value_path));
     if (job->volume->stream)
         snow_value_forget(p->frame->value_path);
+    else
+        snow_value_forget_slabs(p->frame->value_path);
     p->local.placement = job->placement;
     p->local.begun = true;
     return snow_value_begin(p->frame->value_path, &params, job->stats);
@@ -37,11 +41,7 @@ static snow_status classify(snow_picture *p, snow_job *job) {
     return p->local.begun ? SNOW_STATUS_OK : begin(p, job);
 }
 
-/* All slabs of a file have one encoding. */
 static snow_status encode(snow_picture *p, snow_job *job) {
-    if (p->pass->job.volume->stream &&
-        job->settings.encoding == SNOW_ENCODING_AUTO)
-        job->settings.encoding = SNOW_ENCODING_BITMAP;
     const snow_value_params params = params_of(p, job);
     return snow_value_encode(p->frame->value_path, &params, job->stats);
 }
@@ -58,12 +58,36 @@ static snow_status show(snow_picture *p, snow_job *job) {
                               p->local.pixels, job->stats);
 }
 
+/* --- slabs of a file ------------------------------------------------------
+ */
+
+static const snow_volume *kept(void *user, const snow_extent *part,
+                               int64_t slices) {
+    const snow_picture *p = user;
+    const snow_value_params params = params_of(p, &p->pass->job);
+    return snow_value_kept(p->frame->value_path, &params, part, slices);
+}
+
+static void cut(snow_picture *p, snow_job *job, snow_slab_cut *slabs) {
+    const snow_value_params params = params_of(p, job);
+    snow_value_cut_slabs(p->frame->value_path, &params, slabs);
+    slabs->kept = kept;
+    slabs->user = p;
+}
+
+static void keep(snow_picture *p, snow_job *job, snow_slabs *slabs) {
+    const snow_value_params params = params_of(p, job);
+    snow_value_keep(p->frame->value_path, &params, slabs);
+}
+
 const snow_render_method snow_method_value = {
     .begin = begin,
     .classify_and_shade = classify,
     .encode = encode,
     .splat_and_composite = draw,
     .show = show,
+    .cut = cut,
+    .keep = keep,
     .slabs = true,
     .warps = true,
 };

@@ -32,6 +32,8 @@ void snow_value_path_free(snow_value_path *path) {
     snow_value_table_fini(context, &path->table);
     snow_value_labels_fini(context, &path->labels);
     snow_value_store_fini(&path->store);
+    snow_value_forget_slabs(path);
+    snow_release(context, path->kept.slabs);
     snow_release(context, path->sheets);
     snow_release(context, path->places);
     snow_release(context, path->spreads);
@@ -179,12 +181,13 @@ snow_status snow_value_begin(snow_value_path *path,
  */
 
 /* Whether the runs that were left out are invisible still. */
-static bool shows_no_more(const snow_value_path *path) {
-    for (int n = 0; n < path->store.run_count; n++) {
-        bool hidden = path->store.runs[n].first > path->store.runs[n].last;
-        for (int m = 0; m < path->table.run_count; m++)
-            hidden |= path->table.runs[m].first <= path->store.runs[n].first &&
-                      path->table.runs[m].last >= path->store.runs[n].last;
+static bool shows_no_more(const snow_value_table *table,
+                          const snow_value_store *store) {
+    for (int n = 0; n < store->run_count; n++) {
+        bool hidden = store->runs[n].first > store->runs[n].last;
+        for (int m = 0; m < table->run_count; m++)
+            hidden |= table->runs[m].first <= store->runs[n].first &&
+                      table->runs[m].last >= store->runs[n].last;
         if (!hidden)
             return false;
     }
@@ -195,17 +198,6 @@ static bool shows_no_more(const snow_value_path *path) {
 static bool is_cubic(const snow_value_path *path,
                      const snow_value_params *params) {
     return params->settings->kernel == SNOW_KERNEL_BSPLINE && !path->has_labels;
-}
-
-static bool serves(const snow_value_path *path, const snow_value_key *key,
-                   int reach) {
-    const snow_value_key *has = &path->key;
-    return has->generation && has->generation == key->generation &&
-           has->slice_axis == key->slice_axis &&
-           snow_value_same_scale(&has->scale, &key->scale) &&
-           has->labels == key->labels && has->cubic == key->cubic &&
-           has->encoding == key->encoding && path->store.reach >= reach &&
-           shows_no_more(path);
 }
 
 /* In perspective it changes from view to view: steps of it let an encoding
@@ -221,23 +213,39 @@ static int eye_reach(const snow_value_path *path,
     return steps[n]; /* snow_value_eye_fits: there are no more */
 }
 
-static snow_status find_reach(snow_value_path *path,
-                              const snow_value_params *params, int *reach) {
-    if (path->lattice.perspective) {
-        *reach = eye_reach(path, params) + is_cubic(path, params);
-        return SNOW_STATUS_OK;
-    }
+static int find_reach(const snow_value_path *path,
+                      const snow_value_params *params) {
+    if (path->lattice.perspective)
+        return eye_reach(path, params) + is_cubic(path, params);
     double most = snow_value_lattice_reach(
         &params->volume->info, params->placement, path->lattice.halves);
-    *reach = (int)ceil(fmin(most, 1e6) * (1 - 1e-5));
-    *reach += is_cubic(path, params); /* its voxels are one farther away */
-    if (*reach <= SNOW_VALUE_REACH_MOST)
-        return SNOW_STATUS_OK;
-    return snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
-                     "method value cannot draw slices %d times as far apart "
-                     "as their voxels yet: the limit is %d; take method "
-                     "shear-warp",
-                     *reach, SNOW_VALUE_REACH_MOST);
+    /* snow_value_fits: not too much; of a cubic kernel voxels are one farther
+     * away */
+    return (int)ceil(most * (1 - 1e-5)) + is_cubic(path, params);
+}
+
+static snow_value_key key_of(const snow_value_path *path,
+                             const snow_value_params *params,
+                             uint64_t generation) {
+    return (snow_value_key){.generation = generation,
+                            .slice_axis = params->placement->slice_axis,
+                            .scale = path->table.made.scale,
+                            .labels = path->has_labels,
+                            .cubic = is_cubic(path, params),
+                            .encoding = params->settings->encoding};
+}
+
+bool snow_value_serves(const snow_value_path *path, const snow_value_key *has,
+                       const snow_value_store *store,
+                       const snow_value_params *params, uint64_t generation) {
+    const snow_value_key key = key_of(path, params, generation);
+    return has->generation && has->generation == key.generation &&
+           has->slice_axis == key.slice_axis &&
+           snow_value_same_scale(&has->scale, &key.scale) &&
+           has->labels == key.labels && has->cubic == key.cubic &&
+           has->encoding == key.encoding &&
+           store->reach >= find_reach(path, params) &&
+           shows_no_more(&path->table, store);
 }
 
 /* The ranges of interesting natives; 0: voxels cannot be counted by them. */
@@ -300,21 +308,16 @@ void snow_value_forget(snow_value_path *path) {
 snow_status snow_value_encode(snow_value_path *path,
                               const snow_value_params *params,
                               snow_stats *stats) {
-    const snow_value_key key = {.generation = params->volume->generation,
-                                .slice_axis = params->placement->slice_axis,
-                                .scale = path->table.made.scale,
-                                .labels = path->has_labels,
-                                .cubic = is_cubic(path, params),
-                                .encoding = params->settings->encoding};
+    const uint64_t generation = params->volume->generation;
     double mark = snow_seconds();
-    int reach = 0;
     if (path->range.low > path->range.high)
         return SNOW_STATUS_OK;
-    SNOW_TRY(find_reach(path, params, &reach));
-    if (!serves(path, &key, reach)) {
+    snow_value_take_kept(path, params->volume);
+    if (!snow_value_serves(path, &path->key, &path->store, params,
+                           generation)) {
         path->key.generation = 0;
-        SNOW_TRY(encode_anew(path, params, reach));
-        path->key = key;
+        SNOW_TRY(encode_anew(path, params, find_reach(path, params)));
+        path->key = key_of(path, params, generation);
         stats->encoded = 1;
         stats->seconds_encode += snow_seconds() - mark;
     }

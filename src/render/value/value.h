@@ -6,6 +6,7 @@
 #include "decompose/deterministic.h"
 #include "render/shear_warp/shear_warp.h"
 #include "render/value/lattice.h"
+#include "volume/stream.h"
 
 /* Everything that is kept from picture to picture. */
 typedef struct snow_value_path snow_value_path;
@@ -57,6 +58,25 @@ void snow_value_forget(snow_value_path *path);
 snow_status snow_value_encode(snow_value_path *path,
                               const snow_value_params *params,
                               snow_stats *stats);
+
+/* Slabs of a file whose encodings are kept while memory lasts, so that the next
+ * pictures along the same axis read nothing.  Slabs are cut as these were;
+ * those of other volumes or along another axis are dropped, and others until
+ * there is room for what is read. */
+void snow_value_cut_slabs(snow_value_path *path,
+                          const snow_value_params *params, snow_slab_cut *cut);
+void snow_value_forget_slabs(snow_value_path *path);
+
+/* What was kept of a part that stores so many slices, of the whole's params, if
+ * that serves; else NULL. */
+const snow_volume *snow_value_kept(snow_value_path *path,
+                                   const snow_value_params *params,
+                                   const snow_extent *part, int64_t slices);
+
+/* Keeps the slab that was drawn, if there is room for the next one beside it.
+ */
+void snow_value_keep(snow_value_path *path, const snow_value_params *params,
+                     snow_slabs *slabs);
 
 /* Then the part's image on the lattice of the whole.  A deterministic one has a
  * layer for each of some nodes of the tree of groups.  Errors: as above. */
