@@ -124,6 +124,9 @@ bool snow_value_serves(const snow_value_path *path, const snow_value_key *has,
 /* The encoding of a slab of a file to its place in the path, if it was kept. */
 void snow_value_take_kept(snow_value_path *path, const snow_volume *slab);
 
+/* Whether memory was too small, and there is more now: kept slabs are gone. */
+bool snow_value_lacks_room(snow_value_path *path, snow_status status);
+
 /* --- parallel projection and perspective --- */
 
 /* A part's image in the making. */

@@ -19,6 +19,13 @@ void snow_value_forget_slabs(snow_value_path *path) {
     path->kept.of = 0;
 }
 
+bool snow_value_lacks_room(snow_value_path *path, snow_status status) {
+    if (status != SNOW_STATUS_NO_MEMORY || !path->kept.count)
+        return false;
+    snow_value_forget_slabs(path);
+    return true;
+}
+
 /* Bytes that another slab needs: its encoding may take all that slabs were cut
  * for. */
 static bool has_room(const snow_volume *volume, const snow_slab_cut *cut) {

@@ -77,7 +77,10 @@ static void cut(snow_picture *p, snow_job *job, snow_slab_cut *slabs) {
 
 static void keep(snow_picture *p, snow_job *job, snow_slabs *slabs) {
     const snow_value_params params = params_of(p, job);
-    snow_value_keep(p->frame->value_path, &params, slabs);
+    if (p->pass_count > 1) /* which reads them in another way */
+        snow_value_forget(p->frame->value_path);
+    else
+        snow_value_keep(p->frame->value_path, &params, slabs);
 }
 
 const snow_render_method snow_method_value = {

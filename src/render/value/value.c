@@ -171,8 +171,12 @@ snow_status snow_value_begin(snow_value_path *path,
         path->longest += (double)whole.dims[n] * whole.spacing[n];
     if (path->range.low <= path->range.high)
         SNOW_TRY(make_table(path, params));
-    if (snow_value_shows(path))
-        SNOW_TRY(snow_value_reserve_image(path, params));
+    snow_status status = snow_value_shows(path)
+                             ? snow_value_reserve_image(path, params)
+                             : SNOW_STATUS_OK;
+    if (snow_value_lacks_room(path, status))
+        status = snow_value_reserve_image(path, params);
+    SNOW_TRY(status);
     stats->seconds_classify += snow_seconds() - mark;
     return SNOW_STATUS_OK;
 }
@@ -269,7 +273,7 @@ static int find_seen(const snow_value_path *path,
 }
 
 static snow_status encode_anew(snow_value_path *path,
-                               const snow_value_params *params, int reach) {
+                               const snow_value_params *params) {
     const snow_settings *s = params->settings;
     snow_value_natives seen[SEEN_MOST];
     snow_value_store_params order = {.volume = params->volume,
@@ -278,7 +282,7 @@ static snow_status encode_anew(snow_value_path *path,
                                      .runs = path->table.runs,
                                      .run_count = path->table.run_count,
                                      .holes = path->range.holes,
-                                     .reach = reach,
+                                     .reach = find_reach(path, params),
                                      .cubic = is_cubic(path, params),
                                      .encoding = s->encoding,
                                      .isa = s->isa,
@@ -316,7 +320,10 @@ snow_status snow_value_encode(snow_value_path *path,
     if (!snow_value_serves(path, &path->key, &path->store, params,
                            generation)) {
         path->key.generation = 0;
-        SNOW_TRY(encode_anew(path, params, find_reach(path, params)));
+        snow_status status = encode_anew(path, params);
+        if (snow_value_lacks_room(path, status))
+            status = encode_anew(path, params);
+        SNOW_TRY(status);
         path->key = key_of(path, params, generation);
         stats->encoded = 1;
         stats->seconds_encode += snow_seconds() - mark;
