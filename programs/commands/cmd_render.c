@@ -156,12 +156,10 @@ static int opacity_length(const options *asked, const snow_volume_info *info,
                       info->unit);
 }
 
-/* A kernel that was asked for has its own size; the default one is raycast's
- * and value's to choose. */
+/* A kernel that was asked for has its own size; the default one is the method's
+ * to choose. */
 static int find_footprint(const options *asked) {
-    bool cubic = (strcmp(asked->method, "raycast") == 0 ||
-                  strcmp(asked->method, "value") == 0) &&
-                 strcmp(asked->kernel, "bspline") == 0 &&
+    bool cubic = strcmp(asked->kernel, "bspline") == 0 &&
                  options_given(asked, "kernel");
     return cubic && !asked->footprint ? 4 : (int)asked->footprint;
 }

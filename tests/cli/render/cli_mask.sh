@@ -100,10 +100,12 @@ for i in range(len(values)):
         values[i] = float("nan")
 open("clip.npy", "wb").write(head + values.tobytes())
 END
-run 0 "a mask and planes" render v.npy -o n.npy --mask m.npy --labels 2-3 \
+# Footprints leave out voxels, as by hand; of values planes cut slabs exactly.
+run 0 "a mask and planes" render v.npy --method footprint -o n.npy --mask m.npy --labels 2-3 \
     --clip 2,0,0,30,0,0,-1,-4,1,0,0,99,1,0,0,99,1,0,0,99,1,1,1,999 \
     --save-config n.json
-run 0 "masked and clipped by hand" render clip.npy -o o.npy
+run 0 "masked and clipped by hand" \
+    render clip.npy --method footprint -o o.npy
 check "is the same picture" cmp -s n.npy o.npy
 run 0 "taken from a recipe" render --config n.json -o q.npy
 check "they are the same" cmp -s n.npy q.npy

@@ -22,7 +22,7 @@ refused 5 "voxels over the limit" \
     "$TOOL" render a.nrrd "${small[@]}" --method footprint -o c.png --memory 3900K
 refused 5 "a picture over the limit" 'need 17.1 MiB' \
     "$TOOL" render a.nrrd -s 1024x1024 -o c.png --memory 6M
-refused 5 "encodings over the limit" 'voxels are interesting .100 %' \
+refused 5 "encodings over the limit" 'their encoding do not fit under the limit' \
     "$TOOL" render a.nrrd "${small[@]}" -q -o c.png --memory 4200K
 refused 5 "standard input" 'under a limit' bash -c \
     "'$TOOL' render - -o c.png --memory 3000K <a.nrrd"
