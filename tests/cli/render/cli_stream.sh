@@ -126,7 +126,7 @@ for limit in $(long_tier && echo 200M) 11M; do # in memory, and in slabs
         -s 64x64 --view -z -o none.png -y --clip 1,0,0,-9999 --memory $limit
     says 'clip: no voxel is left'
     run 0 "planes that leave some under $limit" "$TOOL" render a.nrrd \
-        -s 64x64 --view -z -o none.png -y --clip 0,0,1,-50 --memory $limit
+        -s 64x64 --view -z -o none.png -y --clip 1,0,0,-50 --memory $limit
     check "are not remarked on" bash -c "! grep -q 'no voxel' '$ERR'"
 done
 rm none.png
