@@ -141,7 +141,11 @@ snow_ranks_render(snow_frame *frame, snow_comm *comm, const snow_volume *volume,
         return snow_fail(
             frame->context, SNOW_STATUS_BAD_USAGE,
             "this frame has a picture in flight; call snow_ranks_finish first");
-    SNOW_TRY(
-        snow_ranks_begin(frame, comm, volume, transfer, view, settings, how));
-    return snow_ranks_finish(frame, image);
+    snow_status status;
+    do { /* once more where only some ranks could begin ahead */
+        SNOW_TRY(snow_ranks_begin(frame, comm, volume, transfer, view, settings,
+                                  how));
+        status = snow_ranks_finish(frame, image);
+    } while (frame->ranks->apart);
+    return status;
 }

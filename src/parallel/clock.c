@@ -41,7 +41,7 @@ double snow_ranks_pause(snow_ranks *r) {
 
 bool snow_ranks_draw(snow_ranks *r) {
     stop_clock(r);
-    return snow_shear_warp_step(r->drawn->picture.local.shear_warp);
+    return snow_line_batch_step(r->drawn->picture.drawing);
 }
 
 void snow_ranks_drain(snow_ranks *r) {
@@ -49,8 +49,8 @@ void snow_ranks_drain(snow_ranks *r) {
         return;
     snow_comm_occupy(r->comm, NULL, NULL);
     stop_clock(r);
-    snow_shear_warp_end(r->drawn->picture.local.shear_warp);
+    snow_line_batch_end(r->drawn->picture.drawing);
     snow_ranks_pause(r);
-    r->drawn->picture.drawing = false;
+    r->drawn->picture.drawing = NULL;
     r->drawn = NULL;
 }

@@ -44,7 +44,7 @@ static bool look_at_lines(const snow_flight *p, int y0, int y1,
     int first = y0 / image->tile_height,
         end = (y1 - 1) / image->tile_height + 1;
     if (p->picture.drawing &&
-        !snow_shear_warp_drawn(p->picture.local.shear_warp, first, end))
+        !snow_line_batch_drawn(p->picture.drawing, first, end))
         return false;
     snow_ranks_pause(p->ranks);
     *drawn = drawn_part(image, 0, first, end);

@@ -82,6 +82,11 @@ struct snow_ranks {
     int *order; /* ranks from front to back */
     /* Pieces of the combined image, pixels. */
     int64_t *firsts, *counts;
+    /* The range of values that all have agreed on, for a volume of which this
+     * rank has the generation; 0: it is not known. */
+    snow_data_range values;
+    uint64_t values_of;
+    bool apart; /* the last picture was begun ahead by some ranks only */
     /* Active pixels of the picture before (snow_exchange_counts). */
     int64_t group_counts[SNOW_COUNTS_MOST];
     int groups;             /* 0: it was not counted */
@@ -187,6 +192,13 @@ snow_status snow_flight_agree_range(snow_flight *flight);
 
 /* Collective.  The range of all parts, for the value path. */
 snow_status snow_flight_agree_values(snow_flight *flight);
+
+/* Whether it is known already: the same on all ranks, unless only some have a
+ * new volume. */
+bool snow_flight_knows_values(const snow_flight *flight);
+
+/* Local work: makes it known for a picture without asking the others. */
+snow_status snow_flight_recall_values(snow_flight *flight);
 
 /* Local work: colours or values of the pairs that were gathered. */
 snow_status snow_flight_paint(snow_flight *flight);

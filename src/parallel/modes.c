@@ -80,6 +80,7 @@ snow_status snow_flight_agree_values(snow_flight *f) {
     enum { MINUS_LOW, HIGH, HOLES, LOST, COUNT };
     snow_comm *comm = f->ranks->comm;
     snow_data_range range;
+    f->ranks->values_of = 0;
     SNOW_TRY(snow_comm_agree_status(comm, measure_values(f, &range)));
     double words[COUNT] = {-range.low, range.high, range.holes,
                            f->picture.job.volume->lost_clip};
@@ -92,7 +93,22 @@ snow_status snow_flight_agree_values(snow_flight *f) {
                          "method value cannot draw clip planes of voxels that "
                          "are shared by count or as bricks yet; use --cut "
                          "equal, or take method shear-warp");
+    f->ranks->values = range;
+    f->ranks->values_of = f->generation;
     snow_value_set_range(f->picture.frame->value_path, &range);
+    return SNOW_STATUS_OK;
+}
+
+bool snow_flight_knows_values(const snow_flight *f) {
+    const snow_ranks *r = f->ranks;
+    return r->values_of && r->values_of == f->generation &&
+           r->values.log == f->picture.job.transfer->log;
+}
+
+snow_status snow_flight_recall_values(snow_flight *f) {
+    snow_data_range own; /* labels are a part's own, too */
+    SNOW_TRY(measure_values(f, &own));
+    snow_value_set_range(f->picture.frame->value_path, &f->ranks->values);
     return SNOW_STATUS_OK;
 }
 

@@ -4,8 +4,8 @@
 void snow_flight_end(snow_flight *f) {
     snow_context *context = f->ranks->context;
     if (f->picture.drawing)
-        snow_shear_warp_end(f->picture.local.shear_warp);
-    f->picture.drawing = false;
+        snow_line_batch_end(f->picture.drawing);
+    f->picture.drawing = NULL;
     snow_image_free(f->gathered);
     f->gathered = NULL;
     snow_release(context, f->bytes);

@@ -32,15 +32,15 @@
 
 /* --- the beginning -------------------------------------------------------- */
 
-/* Whether a picture is of the shear-warp method, along one axis, and not
- * blended of several: the same on all ranks, whatever failed on this one. */
-static bool is_ahead(const snow_picture *p) {
-    double shares[3];
-    return p->job.settings.method == SNOW_METHOD_SHEAR_WARP &&
-           !snow_draws_values(&p->job.settings) &&
-           p->job.settings.mode == SNOW_MODE_OVER && !p->job.settings.depth &&
-           snow_job_shares(&p->job, shares) == SNOW_STATUS_OK &&
-           shares[p->job.placement.slice_axis] == 1;
+/* Whether a picture has one pass, whose method leaves its local image to be
+ * drawn, and needs no word of others first.  Ranks that have failed, or have a
+ * new volume alone, may differ: synchronize_all tells. */
+static bool is_ahead(const snow_flight *f) {
+    const snow_picture *p = &f->picture;
+    return p->job.settings.mode == SNOW_MODE_OVER && p->pass_count == 1 &&
+           p->passes[0].method->ahead &&
+           (!snow_draws_values(&p->job.settings) ||
+            snow_flight_knows_values(f));
 }
 
 static bool is_sum(snow_mode mode) {
@@ -70,16 +70,20 @@ static snow_status make_images(snow_flight *f) {
 static snow_status begin(snow_picture *p, snow_status status) {
     snow_flight *f = snow_flight_of(p);
     f->generation = p->job.volume->generation;
+    f->ranks->apart = false;
     snow_volume_find_extent(p->job.volume, &f->part);
     p->ranks_stats.ranks = f->ranks->ranks;
     p->begin_at = f->ranks->begin_at;
     if (status == SNOW_STATUS_OK)
         status = make_images(f);
-    p->ahead = is_ahead(p);
+    p->ahead = is_ahead(f);
     p->layered = p->job.settings.method == SNOW_METHOD_SHEAR_WARP &&
                  !snow_draws_values(&p->job.settings) &&
                  p->job.settings.mode == SNOW_MODE_OVER && !p->ahead;
     f->drawn_cpu = snow_flight_cpu(f);
+    if (status == SNOW_STATUS_OK && p->ahead &&
+        snow_draws_values(&p->job.settings))
+        status = snow_flight_recall_values(f);
     return status;
 }
 
@@ -162,16 +166,25 @@ static bool knows_parts(const snow_flight *p) {
     return p->generation && p->ranks->generation == p->generation;
 }
 
+/* Some drew it over a range of values that others have to ask for. */
+static snow_status fail_apart(snow_ranks *r) {
+    r->apart = true;
+    r->values_of = 0;
+    return snow_fail(r->context, SNOW_STATUS_BAD_USAGE,
+                     "a picture was begun with a new volume on some ranks "
+                     "only; begin it again, or give all ranks a new one");
+}
+
 /* Collective.  How the ranks' own work went, and what they have counted in the
  * picture before; parts, where one is new. */
 static snow_status synchronize_all(snow_flight *p, snow_status status,
                                    bool *new_parts) {
-    enum { FAILED, NEW, TERMS, MINUS_TERMS, COUNT };
+    enum { FAILED, NEW, AHEAD, NOT_AHEAD, TERMS, MINUS_TERMS, COUNT };
     snow_ranks *r = p->ranks;
     snow_comm *comm = r->comm;
     const int64_t *counts;
-    int64_t words[COUNT + SNOW_COUNTS_MOST] = {status != SNOW_STATUS_OK, 1, 0,
-                                               0};
+    int64_t words[COUNT + SNOW_COUNTS_MOST] = {
+        status != SNOW_STATUS_OK, 1, p->picture.ahead, !p->picture.ahead};
     r->groups = snow_exchange_counts(r->combiner, &counts);
     const size_t count_bytes = (size_t)r->groups * sizeof *counts;
     memcpy(words + COUNT, counts, count_bytes);
@@ -184,6 +197,8 @@ static snow_status synchronize_all(snow_flight *p, snow_status status,
     memcpy(r->group_counts, words + COUNT, count_bytes);
     if (words[FAILED])
         return snow_comm_agree_status(comm, status);
+    if (words[AHEAD] && words[NOT_AHEAD])
+        return fail_apart(r);
     if (words[TERMS] != -words[MINUS_TERMS])
         return snow_fail(
             r->context, SNOW_STATUS_BAD_USAGE,
@@ -198,9 +213,8 @@ static snow_status synchronize(snow_picture *p, snow_status status) {
     SNOW_TRY(synchronize_all(f, status, &new_parts));
     if (p->job.settings.mode != SNOW_MODE_OVER)
         SNOW_TRY(snow_flight_agree_range(f));
-    return snow_draws_values(&p->job.settings)
-               ? snow_flight_agree_values(f)
-               : SNOW_STATUS_OK;
+    return snow_draws_values(&p->job.settings) ? snow_flight_agree_values(f)
+                                               : SNOW_STATUS_OK;
 }
 
 /* --- places --------------------------------------------------------------- */
@@ -277,8 +291,8 @@ static snow_status end_local(snow_flight *f, const snow_job *job) {
     snow_picture *p = &f->picture;
     if (p->drawing) {
         double mark = snow_ranks_clock(f->ranks);
-        snow_shear_warp_end(p->local.shear_warp);
-        p->drawing = false;
+        snow_line_batch_end(p->drawing);
+        p->drawing = NULL;
         p->stats.seconds_splat += snow_ranks_clock(f->ranks) - mark;
     }
     p->ranks_stats.cpu_splat += snow_flight_cpu(f) - f->drawn_cpu;

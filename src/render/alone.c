@@ -170,9 +170,9 @@ static snow_status combine(snow_picture *p, const snow_job *part,
     SNOW_TRY(status);
     if (p->drawing) {
         double mark = snow_seconds();
-        snow_shear_warp_end(p->local.shear_warp);
+        snow_line_batch_end(p->drawing);
         p->stats.seconds_splat += snow_seconds() - mark;
-        p->drawing = false;
+        p->drawing = NULL;
     }
     if (p->near)
         take_nearer(p, part);

@@ -41,6 +41,7 @@ typedef struct snow_render_method {
     bool slabs;  /* of a volume in its file local images are made slab by slab;
                     else the encoding is (shear_warp/stream.c) */
     bool warps;  /* the local image is an intermediate one */
+    bool ahead;  /* and may be left to be drawn: picture->drawing */
     bool depths; /* those of mode over are made with the local image */
 } snow_render_method;
 
@@ -104,9 +105,9 @@ struct snow_picture {
     snow_stats stats, unused; /* of the passes that draw the picture; depths' */
     snow_ranks_stats ranks_stats;
     double start, start_cpu;
-    bool layered;    /* passes' pictures are added up */
-    bool ahead;      /* the local image is begun before it is asked for */
-    bool drawing;    /* its bands are not all drawn */
+    bool layered; /* passes' pictures are added up */
+    bool ahead;   /* the local image is begun before it is asked for */
+    snow_line_batch *drawing; /* of it, until its end; or NULL */
     bool aside;      /* another picture's local image is still needed */
     double begin_at; /* where drawing begins (snow_shear_warp_params) */
 };

@@ -288,6 +288,8 @@ static snow_status misuse_seat(seat *s) {
     REQUIRE(s->comm,
             snow_ranks_finish(s->frame, &image) == SNOW_STATUS_BAD_USAGE);
     REQUIRE(s->comm, says(s, "no picture is in flight"));
+    SNOW_TRY(begin(s, 0)); /* asks for the range of values: it is not ahead */
+    SNOW_TRY(finish(s, 0, true));
     SNOW_TRY(begin(s, 0));
     REQUIRE(s->comm,
             snow_ranks_render(s->frame, s->comm, s->volume, s->transfer,

@@ -444,7 +444,7 @@ static flat splat(const stage *s, const snow_volume *volume) {
     if (status == SNOW_STATUS_OK)
         status = snow_shear_warp_begin(sheared, &order, false, &stats, &image);
     if (status == SNOW_STATUS_OK)
-        snow_shear_warp_end(sheared);
+        snow_line_batch_end(snow_shear_warp_batch(sheared));
     else
         fail_msg("%s", snow_context_message(s->context));
     if (image.width)

@@ -35,7 +35,7 @@ static snow_status reduce(snow_picture *p, snow_job *job) {
                                        &local->image);
     SNOW_TRY(snow_shear_warp_begin(local->shear_warp, &local->params, false,
                                    job->stats, &local->image));
-    p->drawing = true;
+    p->drawing = snow_shear_warp_batch(local->shear_warp);
     return SNOW_STATUS_OK;
 }
 

@@ -4,7 +4,7 @@
 #ifndef SNOW_RENDER_SHEAR_WARP_INTERNAL_H
 #define SNOW_RENDER_SHEAR_WARP_INTERNAL_H
 
-#include "base/thread_pool.h"
+#include "base/line_batch.h"
 #include "classify/sample/sample.h"
 #include "composite/tile.h"
 #include "encode/decode.h"
@@ -88,16 +88,10 @@ struct snow_shear_warp {
     snow_comb *combs;                /* of all slices, along u and v */
     snow_intermediate *intermediate; /* that is drawn on: one of these */
     snow_intermediate intermediates[2];
-    char *scratch; /* of all workers */
-    void *pass;    /* the picture in the making, of either half */
-    /* Its bands (async_bands.c): how one is drawn, the first that is, and
-     * which are finished. */
-    snow_batch batch;
-    snow_work_fn *draw;
-    int64_t band_count, first_band;
-    atomic_uchar *finished;
-    snow_monitor *monitor;    /* of the picture that they are of, or NULL */
-    size_t finished_capacity; /* bytes */
+    char *scratch;         /* of all workers */
+    void *pass;            /* the picture in the making, of either half */
+    snow_monitor *monitor; /* of the picture, or NULL */
+    snow_line_batch batch; /* its bands */
     size_t gloss_capacity, combs_capacity, scratch_capacity,
         pass_capacity; /* bytes */
     /* In perspective: all slices, how they are resampled along u, and how far

@@ -25,7 +25,7 @@ static snow_status begin_bands(snow_picture *p, snow_job *job) {
     snow_local_image *local = &p->local;
     SNOW_TRY(snow_shear_warp_begin(local->shear_warp, &local->params, p->aside,
                                    job->stats, &local->image));
-    p->drawing = true;
+    p->drawing = snow_shear_warp_batch(local->shear_warp);
     return SNOW_STATUS_OK;
 }
 
@@ -33,4 +33,5 @@ const snow_render_method snow_method_shear_warp = {
     .encode = encode,
     .splat_and_composite = begin_bands,
     .warps = true,
+    .ahead = true,
 };

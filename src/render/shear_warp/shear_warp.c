@@ -125,7 +125,7 @@ void snow_shear_warp_free(snow_shear_warp *s) {
         snow_release(s->context, s->intermediates[n].drawn);
     }
     snow_release(s->context, s->scratch);
-    snow_release(s->context, s->finished);
+    snow_line_batch_fini(&s->batch);
     snow_release(s->context, s->pass);
     snow_release(s->context, s->seen);
     snow_release(s->context, s->teeth);
@@ -848,6 +848,24 @@ void snow_shear_warp_attach(snow_shear_warp *s, snow_shear_warp_image *image) {
 }
 
 /* --- a picture ------------------------------------------------------------ */
+
+snow_status snow_shear_warp_begin_bands(snow_shear_warp *s,
+                                        const snow_shear_warp_params *params,
+                                        int64_t bands, snow_work_fn *draw) {
+    const snow_line_batch_params order = {.lines = bands,
+                                          .width = 1,
+                                          .begin_at = params->begin_at,
+                                          .threads = params->settings->threads,
+                                          .draw = draw,
+                                          .job = s->pass};
+    s->monitor = s->context->monitor;
+    snow_monitor_next(s->monitor, SNOW_STAGE_RENDER, 0, 0.9);
+    return snow_line_batch_begin(s->context, &s->batch, &order);
+}
+
+snow_line_batch *snow_shear_warp_batch(snow_shear_warp *s) {
+    return &s->batch;
+}
 
 /* Whether the image is empty; the same for all parts. */
 static bool nothing_in_view(const shear_warp_pass *pass) {

@@ -3,7 +3,7 @@
 #ifndef SNOW_RENDER_SHEAR_WARP_SHEAR_WARP_H
 #define SNOW_RENDER_SHEAR_WARP_SHEAR_WARP_H
 
-#include "base/base.h"
+#include "base/line_batch.h"
 #include "composite/over.h"
 #include "decompose/deterministic.h"
 #include "transform/clip.h"
@@ -70,9 +70,8 @@ snow_status snow_shear_warp_encode(snow_shear_warp *shear_warp,
                                    const snow_shear_warp_params *params,
                                    snow_stats *stats);
 
-/* Lines 07 to 13, of what is encoded, in steps: begins, and describes the
- * image, which threads of the context then draw; the caller draws a band of it
- * with each step, which returns false when none is left; it is there after the
+/* Lines 07 to 13, of what is encoded: begins, and describes the image, whose
+ * bands are then drawn as a batch (base/line_batch.h); it is there after its
  * end.  The order stays until then; its volume and transfer function need not.
  * One image of a context at a time is drawn; the one before it stays as it is
  * where `aside` asks for the other place of two.  All parts have images of one
@@ -81,13 +80,7 @@ snow_status snow_shear_warp_begin(snow_shear_warp *shear_warp,
                                   const snow_shear_warp_params *params,
                                   bool aside, snow_stats *stats,
                                   snow_shear_warp_image *out);
-bool snow_shear_warp_step(snow_shear_warp *shear_warp);
-void snow_shear_warp_end(snow_shear_warp *shear_warp);
-
-/* Before the end: whether tile lines first .. end - 1 of the image are there.
- */
-bool snow_shear_warp_drawn(const snow_shear_warp *shear_warp, int first,
-                           int end);
+snow_line_batch *snow_shear_warp_batch(snow_shear_warp *shear_warp);
 
 /* Clears what was not drawn on of tiles x0 .. x1 - 1 of tile lines y0 .. y1 - 1
  * of a layer. */

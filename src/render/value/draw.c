@@ -69,12 +69,24 @@ static void place_light(const snow_value_params *params,
     light->least = fmaxf(light->least, 1e-6F);
 }
 
-static void place_fade(const snow_value_params *params, snow_value_path *path) {
+/* The curve is copied, since a look may go before the picture is drawn. */
+static snow_status place_fade(const snow_value_params *params,
+                              snow_value_path *path) {
     const snow_value_scale14 *scale = &path->table.made.scale;
+    const size_t count = params->transfer->gradient_count;
     double inverse[3][3];
+    if (!count)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_reserve(path->context, &path->curve_points,
+                          &path->curve_capacity, 0,
+                          count * sizeof *path->curve_points));
+    memcpy(path->curve_points, params->transfer->gradients,
+           count * sizeof *path->curve_points);
+    path->curve = (snow_transfer){.gradients = path->curve_points,
+                                  .gradient_count = count};
     snow_matrix_invert3(params->volume->info.matrix, inverse);
     path->fade =
-        (snow_value_fade){.transfer = params->transfer,
+        (snow_value_fade){.transfer = &path->curve,
                           .scale = scale,
                           .log = scale->log && !path->has_labels,
                           .share = (float)(path->lattice.path /
@@ -82,6 +94,7 @@ static void place_fade(const snow_value_params *params, snow_value_path *path) {
     measure(inverse, params->placement,
             (scale->high - scale->low) / SNOW_VALUE_MOST / 2,
             path->fade.metric);
+    return SNOW_STATUS_OK;
 }
 
 /* --- sheets and memory ------------------------------------------------------
@@ -131,7 +144,7 @@ static snow_status place_clips(snow_value_path *path,
 
 static void describe(snow_value_drawing *job) {
     snow_value_path *path = job->path;
-    const snow_value_params *params = job->params;
+    const snow_value_params *params = &job->params;
     const snow_value_lattice *l = &path->lattice;
     const int64_t voxels[2] = {params->placement->columns,
                                params->placement->rows};
@@ -186,15 +199,15 @@ static void describe(snow_value_drawing *job) {
  * pixel. */
 static float *find_row(const snow_value_drawing *job, int layer, int phase,
                        int64_t column, int64_t row, ptrdiff_t *step) {
-    const snow_value_path *path = job->path;
+    const snow_value_image *image = job->path->image;
     const snow_value_pixels to =
-        snow_value_lattice_pixels(&path->lattice, phase);
+        snow_value_lattice_pixels(&image->lattice, phase);
     const int channels = job->splat.channels;
-    const ptrdiff_t stride = (ptrdiff_t)path->stride;
+    const ptrdiff_t stride = (ptrdiff_t)image->stride;
     int64_t x = to.at[0] + column * to.along_u[0] + row * to.along_v[0];
     int64_t y = to.at[1] + column * to.along_u[1] + row * to.along_v[1];
     *step = to.along_u[0] * channels + to.along_u[1] * stride;
-    return path->plane + (size_t)layer * path->layer_floats + y * stride +
+    return image->plane + (size_t)layer * image->layer_floats + y * stride +
            x * channels;
 }
 
@@ -247,25 +260,25 @@ static void load_phase(const snow_value_drawing *job, void *planes, int phase,
 /* Draws a tile, or clears what an earlier picture has drawn there. */
 static void draw_tile(void *of, int64_t item, int worker) {
     const snow_value_drawing *job = of;
-    snow_value_path *path = job->path;
-    const snow_value_lattice *l = &path->lattice;
-    int x = (int)(item % path->grid.tiles[0]);
-    int y = (int)(item / path->grid.tiles[0]);
+    snow_value_image *image = job->path->image;
+    const snow_value_lattice *l = &image->lattice;
+    int x = (int)(item % image->grid.tiles[0]);
+    int y = (int)(item / image->grid.tiles[0]);
     int64_t column = (int64_t)x * SNOW_VALUE_COLUMNS;
     int64_t row = (int64_t)y * SNOW_VALUE_ROWS;
-    void *room = path->scratch + (size_t)worker * job->scratch_bytes;
+    void *room = job->path->scratch + (size_t)worker * job->scratch_bytes;
     bool within = column < l->voxels[0] && row < l->voxels[1];
     snow_value_splat splat = job->splat;
-    const bool behind = job->params->resumes && path->drawn[item];
-    splat.resumes = behind && !path->op->combine;
+    const bool behind = job->params.resumes && image->drawn[item];
+    splat.resumes = behind && !job->path->op->combine;
     if (splat.resumes)
         memset(room, 0, snow_value_planes_bytes(&splat));
     for (int phase = 0; splat.resumes && phase < l->phases; phase++)
         load_phase(job, room, phase, column, row);
     bool drawn = within && job->tile(&splat, x, y, room);
-    if (!drawn && (!path->drawn[item] || behind))
+    if (!drawn && (!image->drawn[item] || behind))
         return;
-    path->drawn[item] = drawn;
+    image->drawn[item] = drawn;
     for (int phase = 0; phase < l->phases; phase++)
         store_phase(job, drawn ? room : NULL, phase, column, row,
                     behind && !splat.resumes);
@@ -274,18 +287,18 @@ static void draw_tile(void *of, int64_t item, int worker) {
 /* The same in a layer of a deterministic picture. */
 static void draw_layer(const snow_value_drawing *job, int layer, int64_t item,
                        void *room, float *pixels) {
-    snow_value_path *path = job->path;
-    const snow_value_lattice *l = &path->lattice;
-    int x = (int)(item % path->grid.tiles[0]);
-    int y = (int)(item / path->grid.tiles[0]);
+    snow_value_image *image = job->path->image;
+    const snow_value_lattice *l = &image->lattice;
+    int x = (int)(item % image->grid.tiles[0]);
+    int y = (int)(item / image->grid.tiles[0]);
     int64_t column = (int64_t)x * SNOW_VALUE_COLUMNS;
     int64_t row = (int64_t)y * SNOW_VALUE_ROWS;
     const size_t channels = (size_t)job->splat.channels;
     unsigned char *flag =
-        path->drawn + (size_t)layer * snow_value_tiles(path) + item;
+        image->drawn + (size_t)layer * snow_value_tiles(image) + item;
     bool drawn =
         column < l->voxels[0] && row < l->voxels[1] &&
-        snow_value_node_tile(job, path->nodes[layer], x, y, room, pixels);
+        snow_value_node_tile(job, image->nodes[layer], x, y, room, pixels);
     if (!drawn && !*flag)
         return;
     if (!drawn)
@@ -307,43 +320,81 @@ static void draw_layers(void *of, int64_t item, int worker) {
     char *room = job->path->scratch + (size_t)worker * job->scratch_bytes;
     float *pixels =
         (float *)(void *)(room + snow_value_splat_bytes(&job->splat));
-    for (int n = 0; n < job->path->grid.layers; n++)
+    for (int n = 0; n < job->path->image->grid.layers; n++)
         draw_layer(job, n, item, room, pixels);
 }
 
 /* --- a picture --------------------------------------------------------------
  */
 
-static snow_status draw_tiles(snow_value_drawing *job) {
-    snow_value_path *path = job->path;
-    const snow_settings *settings = job->params->settings;
-    SNOW_TRY(snow_reserve(path->context, &path->scratch,
-                          &path->scratch_capacity, 0,
-                          job->scratch_bytes * (size_t)settings->threads));
-    snow_monitor_next(path->context->monitor, SNOW_STAGE_RENDER, 0, 0.9);
+/* Sheets, light and memory of the tiles. */
+static snow_status place_drawing(snow_value_path *path,
+                                 const snow_value_params *params) {
+    const snow_settings *settings = params->settings;
+    snow_value_drawing *job = &path->drawing;
+    *job = (snow_value_drawing){.path = path, .params = *params};
+    SNOW_TRY(place_sheets(path, params));
+    SNOW_TRY(place_clips(path, params));
+    if (settings->shade == SNOW_SHADE_PHONG)
+        place_light(params, &path->light);
+    SNOW_TRY(place_fade(params, path));
+    describe(job);
     if (!settings->deterministic)
-        job->splat = snow_value_splat_of(job, job->params->slab);
-    return snow_parallel(
-        path->context, settings->threads, (int64_t)snow_value_tiles(path),
-        settings->deterministic ? draw_layers : draw_tile, job);
+        job->splat = snow_value_splat_of(job, params->slab);
+    return snow_reserve(path->context, &path->scratch, &path->scratch_capacity,
+                        0, job->scratch_bytes * (size_t)settings->threads);
+}
+
+static snow_work_fn *work_of(const snow_value_params *params) {
+    return params->settings->deterministic ? draw_layers : draw_tile;
 }
 
 snow_status snow_value_draw(snow_value_path *path,
                             const snow_value_params *params, snow_stats *stats,
                             snow_shear_warp_image *out) {
-    snow_value_drawing job = {.path = path, .params = params};
     double mark = snow_seconds();
     *out = (snow_shear_warp_image){.channels = params->channels, .layers = 1};
     if (!snow_value_shows(path))
         return SNOW_STATUS_OK;
-    SNOW_TRY(place_sheets(path, params));
-    SNOW_TRY(place_clips(path, params));
-    if (params->settings->shade == SNOW_SHADE_PHONG)
-        place_light(params, &path->light);
-    place_fade(params, path);
-    describe(&job);
-    SNOW_TRY(draw_tiles(&job));
+    SNOW_TRY(place_drawing(path, params));
     SNOW_TRY(snow_value_describe_image(path, params, out));
+    snow_monitor_next(path->context->monitor, SNOW_STAGE_RENDER, 0, 0.9);
+    SNOW_TRY(snow_parallel(path->context, params->settings->threads,
+                           (int64_t)snow_value_tiles(path->image),
+                           work_of(params), &path->drawing));
+    snow_value_end_image(path->image);
+    stats->seconds_splat += snow_seconds() - mark;
+    return SNOW_STATUS_OK;
+}
+
+static void end_drawing(void *of) {
+    const snow_value_drawing *job = of;
+    snow_value_end_image(job->path->image);
+}
+
+snow_status snow_value_draw_ahead(snow_value_path *path,
+                                  const snow_value_params *params,
+                                  snow_stats *stats, snow_shear_warp_image *out,
+                                  snow_line_batch **batch) {
+    double mark = snow_seconds();
+    *out = (snow_shear_warp_image){.channels = params->channels, .layers = 1};
+    *batch = NULL;
+    if (!snow_value_shows(path))
+        return SNOW_STATUS_OK;
+    SNOW_TRY(place_drawing(path, params));
+    SNOW_TRY(snow_value_describe_image(path, params, out));
+    const snow_value_grid *grid = &path->image->grid;
+    const snow_line_batch_params order = {.lines = grid->tiles[1],
+                                          .width = grid->tiles[0],
+                                          .begin_at = params->begin_at,
+                                          .whole = grid->quincunx,
+                                          .threads = params->settings->threads,
+                                          .draw = work_of(params),
+                                          .made = end_drawing,
+                                          .job = &path->drawing};
+    snow_monitor_next(path->context->monitor, SNOW_STAGE_RENDER, 0, 0.9);
+    SNOW_TRY(snow_line_batch_begin(path->context, &path->batch, &order));
+    *batch = &path->batch;
     stats->seconds_splat += snow_seconds() - mark;
     return SNOW_STATUS_OK;
 }

@@ -28,7 +28,7 @@ static bool keep_grid(const snow_value_path *path,
                       const snow_value_params *params, int layers,
                       snow_value_grid *grid) {
     const snow_value_lattice *l = &path->lattice;
-    const snow_value_grid *has = &path->grid;
+    const snow_value_grid *has = &path->image->grid;
     const int spare = params->shared || params->volume->stream ? 0 : 2;
     *grid = (snow_value_grid){
         .cells = {l->cells[0], l->cells[1]},
@@ -52,8 +52,8 @@ static bool keep_grid(const snow_value_path *path,
 }
 
 /* The plane of all tiles; that of a quincunx becomes the image. */
-static void size_plane(snow_value_path *path, const snow_value_grid *grid) {
-    snow_value_lattice *l = &path->lattice;
+static void size_plane(snow_value_lattice *l, const snow_value_grid *grid,
+                       snow_value_image *image) {
     size_t width =
         (size_t)grid->tiles[0] * SNOW_VALUE_COLUMNS * (size_t)l->cells[0];
     size_t height =
@@ -66,8 +66,9 @@ static void size_plane(snow_value_path *path, const snow_value_grid *grid) {
     }
     if (l->quincunx && grid->shared) /* whole blocks are cleared */
         width = (size_t)blocks_of(l) * BLOCK;
-    path->stride = width * (size_t)grid->channels;
-    path->layer_floats = path->stride * (height + 1);
+    image->stride = width * (size_t)grid->channels;
+    image->layer_floats = image->stride * (height + 1);
+    image->lattice = *l;
 }
 
 /* How many layers; -1: these slices are not whole groups. */
@@ -76,12 +77,15 @@ static int count_layers(snow_value_path *path,
     if (!params->settings->deterministic)
         return 1;
     return snow_group_nodes(params->placement->slices, params->slab,
-                            path->nodes);
+                            path->image->nodes);
 }
 
 snow_status snow_value_reserve_image(snow_value_path *path,
                                      const snow_value_params *params) {
     snow_value_grid grid;
+    if (params->aside)
+        path->image = &path->images[path->image == path->images];
+    snow_value_image *image = path->image;
     int layers = count_layers(path, params);
     if (layers < 0)
         return snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
@@ -91,22 +95,22 @@ snow_status snow_value_reserve_image(snow_value_path *path,
     bool keep = keep_grid(path, params, layers, &grid);
     size_t planes = layers > 1 ? (size_t)layers : 1;
     uint64_t floats, bytes;
-    size_plane(path, &grid);
-    path->grid.tiles[0] = 0; /* until it is cleared */
-    if (!snow_mul_u64(path->layer_floats, planes, &floats) ||
-        !snow_mul_u64(floats, sizeof *path->plane, &bytes) || bytes > SIZE_MAX)
+    size_plane(&path->lattice, &grid, image);
+    image->grid.tiles[0] = 0; /* until it is cleared */
+    if (!snow_mul_u64(image->layer_floats, planes, &floats) ||
+        !snow_mul_u64(floats, sizeof *image->plane, &bytes) || bytes > SIZE_MAX)
         return snow_fail(path->context, SNOW_STATUS_NO_MEMORY,
                          "no memory for %zu intermediate images", planes);
-    SNOW_TRY(snow_reserve(path->context, &path->plane, &path->plane_capacity, 0,
-                          (size_t)bytes));
+    SNOW_TRY(snow_reserve(path->context, &image->plane, &image->plane_capacity,
+                          0, (size_t)bytes));
     size_t tiles = (size_t)grid.tiles[0] * (size_t)grid.tiles[1] * planes;
-    SNOW_TRY(snow_reserve(path->context, &path->drawn, &path->drawn_capacity,
+    SNOW_TRY(snow_reserve(path->context, &image->drawn, &image->drawn_capacity,
                           keep ? tiles : 0, tiles));
     if (!keep) {
-        memset(path->plane, 0, (size_t)bytes);
-        memset(path->drawn, 0, tiles);
+        memset(image->plane, 0, (size_t)bytes);
+        memset(image->drawn, 0, tiles);
     }
-    path->grid = grid;
+    image->grid = grid;
     return SNOW_STATUS_OK;
 }
 
@@ -125,10 +129,10 @@ static void tiles_of(int64_t low, int64_t high, int cells, int side, int tiles,
 /* Whether the block from pixel (a, b) on has pixels of a tile that a layer has
  * drawn.  Pixel (a, b) is sample ((a + b - top) / 2, (a - b + top) / 2) of the
  * lattice. */
-static bool is_drawn(const snow_value_path *path, const unsigned char *drawn,
+static bool is_drawn(const snow_value_image *image, const unsigned char *drawn,
                      int64_t a, int64_t b) {
-    const snow_value_lattice *l = &path->lattice;
-    const snow_value_grid *grid = &path->grid;
+    const snow_value_lattice *l = &image->lattice;
+    const snow_value_grid *grid = &image->grid;
     const int64_t sum = a + b - l->top, difference = a - b + l->top;
     int x[2], y[2];
     tiles_of((sum - 1) / 2 - 1, (sum + 2 * BLOCK) / 2 + 1, l->cells[0],
@@ -142,52 +146,55 @@ static bool is_drawn(const snow_value_path *path, const unsigned char *drawn,
     return false;
 }
 
+static size_t count_blocks(const snow_value_image *image) {
+    const size_t blocks = (size_t)blocks_of(&image->lattice);
+    const int layers = image->grid.layers > 1 ? image->grid.layers : 1;
+    return (size_t)layers * blocks * blocks;
+}
+
 /* The blocks of all layers. */
-static snow_status find_blocks(snow_value_path *path) {
-    const snow_value_grid *grid = &path->grid;
-    const int blocks = blocks_of(&path->lattice);
-    const size_t layers = grid->layers > 1 ? (size_t)grid->layers : 1;
-    const size_t count = (size_t)blocks * (size_t)blocks;
-    SNOW_TRY(snow_reserve(path->context, &path->blocks, &path->blocks_capacity,
-                          0, layers * count));
-    unsigned char *block = path->blocks;
+static void find_blocks(snow_value_image *image) {
+    const int blocks = blocks_of(&image->lattice);
+    const size_t layers =
+        image->grid.layers > 1 ? (size_t)image->grid.layers : 1;
+    unsigned char *block = image->blocks;
     for (size_t n = 0; n < layers; n++) {
-        const unsigned char *drawn = path->drawn + n * snow_value_tiles(path);
+        const unsigned char *drawn = image->drawn + n * snow_value_tiles(image);
         for (int b = 0; b < blocks; b++)
             for (int a = 0; a < blocks; a++)
-                *block++ = is_drawn(path, drawn, (int64_t)a * BLOCK,
+                *block++ = is_drawn(image, drawn, (int64_t)a * BLOCK,
                                     (int64_t)b * BLOCK);
     }
-    return SNOW_STATUS_OK;
 }
 
 /* --- the image --------------------------------------------------------------
  */
 
 /* The image as it is combined with others. */
-static snow_status describe_plane(snow_value_path *path,
+static snow_status describe_plane(snow_context *context, snow_value_image *of,
                                   snow_shear_warp_image *image) {
-    const snow_value_lattice *l = &path->lattice;
+    const snow_value_lattice *l = &of->lattice;
     const int blocks = blocks_of(l);
     *image =
         (snow_shear_warp_image){.width = l->width,
                                 .height = l->height,
-                                .channels = path->grid.channels,
-                                .pixels = path->plane,
-                                .stride = path->stride,
-                                .drawn = path->drawn,
+                                .channels = of->grid.channels,
+                                .pixels = of->plane,
+                                .stride = of->stride,
+                                .drawn = of->drawn,
                                 .tile_width = SNOW_VALUE_COLUMNS * l->cells[0],
                                 .tile_height = SNOW_VALUE_ROWS * l->cells[1],
-                                .tiles = path->grid.tiles[0],
-                                .layers = path->grid.layers,
-                                .layer_floats = path->layer_floats,
-                                .layer_tiles = snow_value_tiles(path),
-                                .warping = &path->warping};
-    memcpy(image->nodes, path->nodes, sizeof image->nodes);
+                                .tiles = of->grid.tiles[0],
+                                .layers = of->grid.layers,
+                                .layer_floats = of->layer_floats,
+                                .layer_tiles = snow_value_tiles(of),
+                                .warping = &of->warping};
+    memcpy(image->nodes, of->nodes, sizeof image->nodes);
     if (!l->quincunx)
         return SNOW_STATUS_OK;
-    SNOW_TRY(find_blocks(path));
-    image->drawn = path->blocks;
+    SNOW_TRY(snow_reserve(context, &of->blocks, &of->blocks_capacity, 0,
+                          count_blocks(of)));
+    image->drawn = of->blocks;
     image->tile_width = image->tile_height = BLOCK;
     image->tiles = blocks;
     image->layer_tiles = (size_t)(blocks * blocks);
@@ -197,6 +204,11 @@ static snow_status describe_plane(snow_value_path *path,
 snow_status snow_value_describe_image(snow_value_path *path,
                                       const snow_value_params *params,
                                       snow_shear_warp_image *out) {
-    SNOW_TRY(describe_plane(path, out));
+    SNOW_TRY(describe_plane(path->context, path->image, out));
     return snow_value_place_show(path, params, out);
+}
+
+void snow_value_end_image(snow_value_image *image) {
+    if (image->lattice.quincunx)
+        find_blocks(image);
 }

@@ -59,6 +59,34 @@ typedef struct snow_value_operator {
     void (*finish)(const snow_value_path *path, float *pixels, int count);
 } snow_value_operator;
 
+/* The image on the lattice. */
+typedef struct snow_value_image {
+    const snow_value_path *path;
+    snow_value_lattice lattice; /* of its picture */
+    float *plane;               /* layer by layer */
+    size_t stride;              /* floats of a line of it */
+    size_t layer_floats;
+    snow_group_node nodes[SNOW_NODES_MOST]; /* of the layers, deterministic */
+    snow_value_grid grid;            /* of it; no tiles: anything is there */
+    unsigned char *drawn;            /* its tiles */
+    unsigned char *blocks;           /* its blocks, of a quincunx */
+    snow_shear_warp_warping warping; /* of that */
+    /* What means read: the same, or an image halved. */
+    snow_shear_warp_warping shown;
+    float *halved; /* the image made smaller */
+    size_t plane_capacity, drawn_capacity, blocks_capacity,
+        halved_capacity; /* bytes */
+} snow_value_image;
+
+/* A part's image in the making. */
+typedef struct snow_value_drawing {
+    snow_value_path *path;
+    snow_value_params params; /* volume and transfer function may be gone */
+    snow_value_splat splat;   /* but for its sheets */
+    snow_value_tile_fn *tile;
+    size_t scratch_bytes; /* of a worker */
+} snow_value_drawing;
+
 struct snow_value_path {
     snow_context *context;
     const snow_value_operator *op; /* of the picture */
@@ -84,22 +112,17 @@ struct snow_value_path {
     snow_value_rays rays; /* perspective: instead of places */
     snow_value_spread *spreads;
     snow_value_lanes *lanes[2];
-    float *plane;  /* the image on the lattice, layer by layer */
-    size_t stride; /* floats of a line of it */
-    size_t layer_floats;
-    snow_group_node nodes[SNOW_NODES_MOST]; /* of the layers, deterministic */
-    snow_value_grid grid;            /* of it; no tiles: anything is there */
-    unsigned char *drawn;            /* its tiles */
-    unsigned char *blocks;           /* its blocks, of a quincunx */
-    snow_shear_warp_warping warping; /* of that */
-    /* What means read: the same, or an image halved. */
-    snow_shear_warp_warping shown;
-    float *halved, *lines; /* the image made smaller; lines of the warp */
-    double (*clips)[4];    /* clip planes by u, v and slice */
+    double (*clips)[4];               /* clip planes by u, v and slice */
+    snow_transfer curve;              /* its gradient opacity only, ... */
+    snow_opacity_point *curve_points; /* ... which are copied */
+    snow_value_image *image;          /* that is drawn: one of these */
+    snow_value_image images[2];
+    snow_value_drawing drawing; /* of that */
+    snow_line_batch batch;      /* of its tiles */
+    float *lines;               /* of the warp */
     char *scratch;
     size_t sheets_capacity, places_capacity, spreads_capacity,
-        lanes_capacity[2], plane_capacity, drawn_capacity, blocks_capacity,
-        halved_capacity, lines_capacity, clips_capacity,
+        lanes_capacity[2], clips_capacity, curve_capacity, lines_capacity,
         scratch_capacity; /* bytes */
 };
 
@@ -127,20 +150,9 @@ void snow_value_take_kept(snow_value_path *path, const snow_volume *slab);
 /* Whether memory was too small, and there is more now: kept slabs are gone. */
 bool snow_value_lacks_room(snow_value_path *path, snow_status status);
 
-/* --- parallel projection and perspective --- */
-
-/* A part's image in the making. */
-typedef struct snow_value_drawing {
-    snow_value_path *path;
-    const snow_value_params *params;
-    snow_value_splat splat; /* but for its sheets */
-    snow_value_tile_fn *tile;
-    size_t scratch_bytes; /* of a worker */
-} snow_value_drawing;
-
 /* Tiles of the grid. */
-static inline size_t snow_value_tiles(const snow_value_path *path) {
-    return (size_t)path->grid.tiles[0] * (size_t)path->grid.tiles[1];
+static inline size_t snow_value_tiles(const snow_value_image *image) {
+    return (size_t)image->grid.tiles[0] * (size_t)image->grid.tiles[1];
 }
 
 /* --- image.c --- */
@@ -154,10 +166,13 @@ bool snow_value_shows(const snow_value_path *path);
 snow_status snow_value_reserve_image(snow_value_path *path,
                                      const snow_value_params *params);
 
-/* What was drawn, and how it is warped.  Errors: SNOW_STATUS_NO_MEMORY. */
+/* What is to be drawn, and how it is warped.  Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_value_describe_image(snow_value_path *path,
                                       const snow_value_params *params,
                                       snow_shear_warp_image *out);
+
+/* When all of it is drawn. */
+void snow_value_end_image(snow_value_image *image);
 
 /* --- parts.c --- */
 

@@ -18,7 +18,9 @@ static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
                                .slab = job->slab,
                                .channels = job->channels,
                                .shared = p->combiner != &snow_combine_alone,
-                               .resumes = p->local.image.layers > 0};
+                               .aside = p->aside,
+                               .resumes = p->local.image.layers > 0,
+                               .begin_at = p->begin_at};
 }
 
 /* The image comes first, for the slabs of a file are cut to the memory that it
@@ -48,6 +50,9 @@ static snow_status encode(snow_picture *p, snow_job *job) {
 
 static snow_status draw(snow_picture *p, snow_job *job) {
     const snow_value_params params = params_of(p, job);
+    if (p->ahead)
+        return snow_value_draw_ahead(p->frame->value_path, &params, job->stats,
+                                     &p->local.image, &p->drawing);
     return snow_value_draw(p->frame->value_path, &params, job->stats,
                            &p->local.image);
 }
@@ -93,4 +98,5 @@ const snow_render_method snow_method_value = {
     .keep = keep,
     .slabs = true,
     .warps = true,
+    .ahead = true,
 };

@@ -49,7 +49,7 @@ void snow_value_own(const snow_value_params *params, snow_value_splat *splat) {
 snow_value_splat snow_value_splat_of(const snow_value_drawing *d,
                                      snow_slab slices) {
     const snow_value_lattice *l = &d->path->lattice;
-    const snow_placement *p = d->params->placement;
+    const snow_placement *p = d->params.placement;
     snow_value_splat splat = d->splat;
     int64_t first = slices.first, last = l->sheet_count - 1;
     if (!l->nearest_first)
@@ -82,7 +82,7 @@ static void weave(const snow_value_drawing *d, const void *planes, float *out) {
 
 static bool draw_group(const snow_value_drawing *d, int group, int x, int y,
                        void *room, float *out) {
-    const int64_t slices = d->params->placement->slices;
+    const int64_t slices = d->params.placement->slices;
     const snow_value_splat splat =
         snow_value_splat_of(d, snow_group_slab(slices, group));
     if (splat.slabs[0] >= splat.slabs[1] || !d->tile(&splat, x, y, room))
@@ -95,7 +95,7 @@ bool snow_value_node_tile(const snow_value_drawing *d, snow_group_node node,
                           int x, int y, void *room, float *out) {
     if (node.rank == 0)
         return draw_group(d, node.index, x, y, room, out);
-    bool rises = snow_group_rises(d->params->placement, node);
+    bool rises = snow_group_rises(d->params.placement, node);
     snow_group_node near = {node.rank - 1, 2 * node.index + !rises};
     snow_group_node far = {node.rank - 1, 2 * node.index + rises};
     if (!snow_value_node_tile(d, near, x, y, room, out))

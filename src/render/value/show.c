@@ -61,51 +61,52 @@ static int64_t first_block(const snow_value_lattice *l, int axis) {
 /* The image halved as often as the lattice says, in blocks that do not depend
  * on what of it is in view. */
 static void halve(const snow_shear_warp_warping *w) {
-    const snow_value_path *path = w->of;
-    const snow_value_lattice *l = &path->lattice;
-    const snow_intermediate_view *small = &path->shown.plane;
+    const snow_value_image *image = w->of;
+    const snow_value_lattice *l = &image->lattice;
+    const snow_intermediate_view *small = &image->shown.plane;
     const int64_t side = INT64_C(1) << l->halvings;
     const int64_t first[2] = {l->first[0] * l->cells[0],
                               l->first[1] * l->cells[1]};
-    memset(path->halved, 0,
-           small->stride * (size_t)small->height * sizeof *path->halved);
+    memset(image->halved, 0,
+           small->stride * (size_t)small->height * sizeof *image->halved);
     for (int y = 0; y < w->plane.height; y++)
         add_line(
             &w->plane, y, first[0], side,
-            path->halved +
+            image->halved +
                 (size_t)((first[1] + y - first_block(l, 1)) / side + BORDER) *
                     small->stride);
 }
 
 /* Pixels of all parts to what is warped, and that made smaller. */
 static void make_shown(const snow_shear_warp_warping *w) {
-    const snow_value_path *path = w->of;
-    for (int y = 0; path->op->finish && y < w->plane.height; y++)
-        path->op->finish(path, path->plane + (size_t)y * path->stride,
-                         w->plane.width);
-    if (path->lattice.halvings)
+    const snow_value_image *image = w->of;
+    const snow_value_operator *op = image->path->op;
+    for (int y = 0; op->finish && y < w->plane.height; y++)
+        op->finish(image->path, image->plane + (size_t)y * image->stride,
+                   w->plane.width);
+    if (image->lattice.halvings)
         halve(w);
 }
 
 /* Room for it, and its map. */
-static snow_status place_halved(snow_value_path *path) {
+static snow_status place_halved(snow_context *context, snow_value_image *of) {
     static const unsigned char all = 1;
-    const snow_value_lattice *l = &path->lattice;
+    const snow_value_lattice *l = &of->lattice;
     const int64_t side = INT64_C(1) << l->halvings;
-    snow_intermediate_view *image = &path->shown.plane;
+    snow_intermediate_view *image = &of->shown.plane;
     int *const sizes[2] = {&image->width, &image->height};
     for (int axis = 0; axis < 2; axis++) {
         int64_t first = l->first[axis] * l->cells[axis];
         int64_t low = first_block(l, axis);
         *sizes[axis] =
             (int)((first + *sizes[axis] - 1 - low) / side) + 1 + 2 * BORDER;
-        shrink(&path->shown, axis, (double)(first - low), (double)side);
+        shrink(&of->shown, axis, (double)(first - low), (double)side);
     }
     image->stride = (size_t)image->width * (size_t)image->channels;
-    SNOW_TRY(snow_reserve(
-        path->context, &path->halved, &path->halved_capacity, 0,
-        image->stride * (size_t)(image->height + 1) * sizeof *path->halved));
-    image->pixels = path->halved;
+    SNOW_TRY(snow_reserve(context, &of->halved, &of->halved_capacity, 0,
+                          image->stride * (size_t)(image->height + 1) *
+                              sizeof *of->halved));
+    image->pixels = of->halved;
     image->drawn = &all;
     image->block_width = image->width;
     image->block_height = image->height;
@@ -147,14 +148,14 @@ static snow_shear_warp_warping denser(const snow_shear_warp_warping *w, int n,
 /* Means of `means` x `means` places a pixel. */
 static void show_means(const snow_shear_warp_warping *w, int y, int from,
                        int to, float *fine, float *out) {
-    const snow_value_path *path = w->of;
-    int n = path->lattice.means, channels = w->plane.channels;
+    const snow_value_image *image = w->of;
+    int n = image->lattice.means, channels = w->plane.channels;
     float share = 1.0F / (float)(n * n);
     memset(out + from * channels, 0,
            (size_t)((to - from) * channels) * sizeof *out);
     for (int j = 0; j < n; j++) {
         const snow_shear_warp_warping places =
-            denser(&path->shown, n, (j + 0.5) / n - 0.5);
+            denser(&image->shown, n, (j + 0.5) / n - 0.5);
         show_row(&places, y, n * from, n * to, fine);
         for (int x = n * from; x < n * to; x++)
             for (int c = 0; c < channels; c++)
@@ -174,11 +175,12 @@ static int lines_around(const snow_value_lattice *l) {
 snow_status snow_value_place_show(snow_value_path *path,
                                   const snow_value_params *params,
                                   const snow_shear_warp_image *image) {
-    const snow_value_lattice *l = &path->lattice;
+    snow_value_image *of = path->image;
+    const snow_value_lattice *l = &of->lattice;
     const snow_isa isa = params->settings->isa;
     const bool colors = path->op->reduction == SNOW_VALUE_OVER;
     const snow_filter filter = colors ? l->filter : SNOW_BILINEAR;
-    snow_shear_warp_warping *w = &path->warping;
+    snow_shear_warp_warping *w = &of->warping;
     *w = (snow_shear_warp_warping){
         .plane = {image->pixels, image->stride, image->width, image->height,
                   image->channels, image->drawn, image->tile_width,
@@ -193,16 +195,17 @@ snow_status snow_value_place_show(snow_value_path *path,
         .height = params->view->height,
         .before = SNOW_WARP_BEFORE,
         .behind = SNOW_WARP_BEHIND,
-        .of = path};
-    path->shown = *w;
+        .of = of};
+    of->shown = *w;
     if (l->means > 1) {
         w->line = show_means;
         w->spare_floats = (size_t)(l->means * w->width * image->channels + 64);
         w->before = w->behind = lines_around(l);
     }
+    of->path = path;
     if (l->halvings || path->op->finish)
         w->made = make_shown;
-    return l->halvings ? place_halved(path) : SNOW_STATUS_OK;
+    return l->halvings ? place_halved(path->context, of) : SNOW_STATUS_OK;
 }
 
 static void show_lines(void *of, int64_t item, int worker) {
@@ -222,7 +225,7 @@ static void show_lines(void *of, int64_t item, int worker) {
 
 snow_status snow_value_show(snow_value_path *path,
                             const snow_value_params *params, float *pixels) {
-    const snow_shear_warp_warping *w = &path->warping;
+    const snow_shear_warp_warping *w = &path->image->warping;
     show_job job = {
         .warping = w, .pixels = pixels, .line_floats = w->spare_floats};
     size_t threads = (size_t)params->settings->threads;

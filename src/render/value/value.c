@@ -20,6 +20,7 @@ snow_status snow_value_path_new(snow_context *context, snow_value_path **out) {
     if (!path)
         return SNOW_STATUS_NO_MEMORY;
     path->context = path->store.context = context;
+    path->image = path->images;
     *out = path;
     return SNOW_STATUS_OK;
 }
@@ -39,10 +40,14 @@ void snow_value_path_free(snow_value_path *path) {
     snow_release(context, path->spreads);
     snow_release(context, path->lanes[0]);
     snow_release(context, path->lanes[1]);
-    snow_release(context, path->plane);
-    snow_release(context, path->drawn);
-    snow_release(context, path->blocks);
-    snow_release(context, path->halved);
+    for (int n = 0; n < 2; n++) {
+        snow_release(context, path->images[n].plane);
+        snow_release(context, path->images[n].drawn);
+        snow_release(context, path->images[n].blocks);
+        snow_release(context, path->images[n].halved);
+    }
+    snow_line_batch_fini(&path->batch);
+    snow_release(context, path->curve_points);
     snow_release(context, path->lines);
     snow_release(context, path->clips);
     snow_release(context, path->scratch);

@@ -28,7 +28,10 @@ typedef struct snow_value_params {
     int channels;   /* 2 or 4 */
     bool shared;    /* with other ranks: the image's size depends on the picture
                        alone, and a deterministic one has a layer for each node */
+    bool aside;     /* the image of the picture before is still needed */
     bool resumes;   /* draws behind the parts that were drawn before */
+    double begin_at; /* 0 to below 1: the share of the image's lines before the
+                        one that is drawn first */
 } snow_value_params;
 
 /* The finite values of a volume, or their logarithms, of which those in a file
@@ -88,6 +91,13 @@ snow_status snow_value_draw(snow_value_path *path,
  * begun. */
 snow_value_scale snow_value_projected(const snow_value_path *path,
                                       snow_mode mode);
+
+/* The same, left to be drawn: *batch is NULL where nothing is in view.  What
+ * params point to stays until its end, but for volume and transfer function. */
+snow_status snow_value_draw_ahead(snow_value_path *path,
+                                  const snow_value_params *params,
+                                  snow_stats *stats, snow_shear_warp_image *out,
+                                  snow_line_batch **batch);
 
 /* The image of one layer to all of the picture: width * height * channels
  * floats; of projections (number, 1) or (0, 0), or less where a pixel is not
