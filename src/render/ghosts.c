@@ -21,6 +21,7 @@
 #include "base/vec3.h"
 #include "render/mipmap.h"
 #include "render/settings_resolve.h"
+#include "render/value/lattice.h"
 #include "splat/kernel.h"
 #include "splat/values/value_splat.h"
 #include "transform/shear_perspective.h"
@@ -63,29 +64,44 @@ static int cubic(const question *q) {
     return q->settings->kernel == SNOW_KERNEL_BSPLINE;
 }
 
-/* Layers for kernels of pixels that are `width` voxels wide along an axis that
- * lies in the slices. */
-static double layers_of(const question *q, double ratio, double width) {
-    const snow_settings *settings = q->settings;
-    if (splats_values(q) && !settings->depth) /* depths are of footprints */
-        return 1 + cubic(q) + values_beside(q, ratio);
-    snow_scaled_kernel scaled_kernel =
-        snow_scaled_kernel_make(settings->kernel, settings->footprint, width);
-    return floor(snow_scaled_kernel_reach(&scaled_kernel) + 0.5) +
-           (splats_values(q) ? 1 + cubic(q) + values_beside(q, ratio)
-                             : q->gradients);
-}
-
 static bool finds_surfaces(const question *q) {
     return q->settings->mode == SNOW_MODE_ISO;
 }
 
+/* How a picture is made: values are splatted where encodings provide for the
+ * view; else, and for depths, footprints are. */
+typedef struct ways {
+    bool values, footprints;
+} ways;
+
+static ways ways_of(const question *q, bool fits) {
+    bool values = splats_values(q) && fits;
+    return (ways){values, !values || q->settings->depth};
+}
+
+/* Layers along an axis that lies in the slices, whose pixels are `width` voxels
+ * wide; from slice to slice rays go `slope` voxels aside. */
+static double layers_beside(const question *q, ways by, double ratio,
+                            double width, double slope) {
+    double values = 0, footprints = 0;
+    if (by.values)
+        values = 1 + cubic(q) + values_beside(q, ratio) +
+                 fmin(ceil(slope), SNOW_VALUE_REACH_MOST);
+    if (by.footprints) {
+        snow_scaled_kernel kernel = snow_scaled_kernel_make(
+            q->settings->kernel, q->settings->footprint, width);
+        footprints = floor(snow_scaled_kernel_reach(&kernel) + 0.5) +
+                     q->gradients + (finds_surfaces(q) ? ceil(slope) : 0);
+    }
+    return fmax(values, footprints);
+}
+
 /* Those across slices: of values, the other sheet of a slab. */
-static double layers_across(const question *q) {
-    if (splats_values(q))
+static double layers_across(const question *q, ways by) {
+    if (by.values)
         return 1 + cubic(q) + q->gradients;
     return q->gradients + finds_surfaces(q) +
-           (q->settings->quality == SNOW_QUALITY_HIGH &&
+           (q->settings->quality == SNOW_QUALITY_HIGH && !splats_values(q) &&
             q->settings->method == SNOW_METHOD_SHEAR_WARP);
 }
 
@@ -106,16 +122,19 @@ static void widest_pixel(const snow_placement *p, double width[2]) {
 
 /* How many voxels rays go aside along u and v from slice to slice, at most; in
  * parallel projection no less than those of any view along this axis where axes
- * are at right angles, so that a part serves all of them. */
+ * are at right angles, so that a part serves all of them; in perspective, for
+ * values, those of rays that meet the volume. */
 static void widest_slope(const question *q, const snow_placement *p,
                          double slope[2]) {
     const double *spacing = q->whole->spacing;
     const int axes[2] = {p->u_axis, p->v_axis};
     for (int axis = 0; axis < 2; axis++)
-        slope[axis] = fmax(fabs(p->inverse[axis][0] * p->step_slice[0] +
-                                p->inverse[axis][1] * p->step_slice[1]),
-                           spacing[p->slice_axis] / spacing[axes[axis]]);
-    if (!p->perspective)
+        slope[axis] = p->perspective
+                          ? snow_value_eye_slope(p, axis)
+                          : fmax(fabs(p->inverse[axis][0] * p->step_slice[0] +
+                                      p->inverse[axis][1] * p->step_slice[1]),
+                                 spacing[p->slice_axis] / spacing[axes[axis]]);
+    if (!p->perspective || splats_values(q))
         return;
     slope[0] = slope[1] = 0;
     for (int corner = 0; corner < 4; corner++) {
@@ -135,23 +154,25 @@ static void ask_placement(const question *q, const snow_placement *p,
                           int64_t layers[3]) {
     const int64_t *dims = q->whole->dims;
     const int axes[2] = {p->u_axis, p->v_axis};
-    double width[2], slope[2] = {0, 0};
+    const ways by =
+        ways_of(q, snow_value_fits(q->whole, p, q->settings->kernel));
+    double width[2], slope[2];
     double ratio = p->perspective ? snow_perspective_shear_ratio(p) : 1;
     widest_pixel(p, width);
-    if (finds_surfaces(q) || splats_values(q))
-        widest_slope(q, p, slope);
+    widest_slope(q, p, slope);
     for (int n = 0; n < 2; n++)
         at_least(&layers[axes[n]],
-                 layers_of(q, ratio, width[n]) + ceil(slope[n]),
+                 layers_beside(q, by, ratio, width[n], slope[n]),
                  dims[axes[n]] - 1);
-    at_least(&layers[p->slice_axis], layers_across(q), dims[p->slice_axis] - 1);
+    at_least(&layers[p->slice_axis], layers_across(q, by),
+             dims[p->slice_axis] - 1);
 }
 
 static snow_status ask_view(const question *q, int64_t layers[3]) {
     snow_placement p;
     double shares[3] = {0, 0, 0};
     SNOW_TRY(snow_placement_make(q->context, q->whole, q->view, &p));
-    if (q->settings->quality == SNOW_QUALITY_HIGH)
+    if (q->settings->quality == SNOW_QUALITY_HIGH && !splats_values(q))
         snow_placement_shares(q->whole, &p, shares);
     shares[p.slice_axis] = 1;
     for (int axis = 0; axis < 3; axis++) {
@@ -204,7 +225,8 @@ static double least_cosine(double gradients[3][3]) {
 static double least_slant(const question *q, double gradients[3][3],
                           double spread) {
     double cosine = least_cosine(gradients);
-    if (q->settings->quality == SNOW_QUALITY_HIGH) /* blends of axes */
+    if (q->settings->quality == SNOW_QUALITY_HIGH &&
+        !splats_values(q)) /* blends of axes */
         cosine -= sqrt(2.0) * sin(SNOW_BLEND_DEGREES * 0.017453292519943295769);
     double angle = acos(fmax(cosine, 0)) + asin(spread);
     return angle < 1.57 ? cos(angle) : 0;
@@ -235,6 +257,37 @@ static double steepest_slope(double gradients[3][3], int axis, double slant) {
     return most;
 }
 
+/* The largest ratio of the distances of the farthest and the nearest slice from
+ * the eye; infinite where it may be beside the volume. */
+static double largest_ratio(const question *q, const snow_camera *camera,
+                            double gradients[3][3]) {
+    double most = 1;
+    double height = camera->distance * least_cosine(gradients) -
+                    snow_length(camera->middle);
+    for (int axis = 0; axis < 3 && camera->distance > 0; axis++) {
+        double slices = fmax((double)(q->whole->dims[axis] - 1), 1);
+        double half = slices / 2 / snow_length(gradients[axis]);
+        most = fmax(most, height > half ? (height + half) / (height - half)
+                                        : INFINITY);
+    }
+    return most;
+}
+
+/* Whether encodings provide for every turn (snow_value_fits). */
+static bool every_turn_fits(const question *q, double gradients[3][3],
+                            double ratio, double slant) {
+    double reach = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        reach = fmax(reach, steepest_slope(gradients, axis, slant));
+        for (int other = 0; other < 3; other++)
+            reach = fmax(reach, q->whole->spacing[axis] /
+                                    q->whole->spacing[other] * (1 + 1e-6));
+    }
+    return ratio <= SNOW_VALUE_SPREAD_MOST &&
+           ceil(reach) + fmax(1, ceil(ratio) - 1) + cubic(q) <=
+               SNOW_VALUE_REACH_MOST;
+}
+
 static snow_status ask_all(const question *q, int64_t layers[3]) {
     double gradients[3][3]; /* of the indices: their directions are the slices'
                                normals */
@@ -250,15 +303,18 @@ static snow_status ask_all(const question *q, int64_t layers[3]) {
     double spread = camera.distance > 0 ? reach / camera.distance : 0;
     double slant = least_slant(q, gradients, fmin(spread, 1));
     double pitch = camera.pitch * (1 + spread);
-    double ratio = spread < 1 ? (1 + spread) / (1 - spread) : INFINITY;
+    double ratio = largest_ratio(q, &camera, gradients);
+    ways by = ways_of(q, true);
+    by.footprints |= !every_turn_fits(q, gradients, ratio, slant);
     for (int axis = 0; axis < 3; axis++) {
         double width =
             slant > 0 ? pitch * steepest(gradients, axis) / slant : INFINITY;
-        double wanted = width < 1e9 ? layers_of(q, ratio, width) : 1e9;
-        if (finds_surfaces(q) || splats_values(q))
-            wanted += ceil(steepest_slope(gradients, axis, slant));
+        double slope = steepest_slope(gradients, axis, slant);
+        double wanted = by.footprints && !(width < 1e9)
+                            ? 1e9
+                            : layers_beside(q, by, ratio, width, slope);
         int64_t most = q->whole->dims[axis] - 1;
-        at_least(&layers[axis], fmax(wanted, layers_across(q)), most);
+        at_least(&layers[axis], fmax(wanted, layers_across(q, by)), most);
     }
     return SNOW_STATUS_OK;
 }

@@ -17,28 +17,35 @@ static double back_of(const snow_value_lattice *l, const snow_placement *p) {
     return l->nearest_first ? l->front + depth : l->front - depth;
 }
 
-/* The most voxels that rays move aside from one slice to the next. */
-static double slope_of(const snow_placement *p, const double heights[2]) {
-    double most = 0;
-    for (int axis = 0; axis < 2; axis++)
-        for (int corner = 0; corner < 4; corner++) {
-            double ends[2];
-            ends_of(p, axis, ends);
-            most = fmax(most, fabs((ends[corner >> 1] - p->eye.at[axis]) /
-                                   heights[corner & 1]));
-        }
+/* From the eye to the ends of the field along the slices. */
+static void heights_of(const snow_placement *p, double heights[2]) {
+    double half = p->slices == 1 ? 0.5 : 0;
+    heights[0] = -half - p->eye.at[2];
+    heights[1] = (double)(p->slices - 1) + half - p->eye.at[2];
+}
+
+double snow_value_eye_slope(const snow_placement *p, int axis) {
+    double most = 0, heights[2], ends[2];
+    heights_of(p, heights);
+    ends_of(p, axis, ends);
+    for (int corner = 0; corner < 4; corner++)
+        most = fmax(most, fabs((ends[corner >> 1] - p->eye.at[axis]) /
+                               heights[corner & 1]));
     return most;
 }
 
+static double slope_of(const snow_placement *p) {
+    return fmax(snow_value_eye_slope(p, 0), snow_value_eye_slope(p, 1));
+}
+
 bool snow_value_eye_fits(const snow_placement *p) {
-    double half = p->slices == 1 ? 0.5 : 0;
-    const double heights[2] = {-half - p->eye.at[2],
-                               (double)(p->slices - 1) + half - p->eye.at[2]};
+    double heights[2];
+    heights_of(p, heights);
     double near = fmin(fabs(heights[0]), fabs(heights[1]));
     double spread = fmax(fabs(heights[0]), fabs(heights[1])) / near;
     return heights[0] * heights[1] > 0 && near > 1e-6 &&
            spread <= SNOW_VALUE_SPREAD_MOST &&
-           ceil(slope_of(p, heights)) + fmax(2, ceil(spread)) - 1 <=
+           ceil(slope_of(p)) + fmax(2, ceil(spread)) - 1 <=
                SNOW_VALUE_REACH_MOST;
 }
 
@@ -113,7 +120,6 @@ static int apart_of(int cells, double step) {
 double snow_value_eye_reach(const snow_value_lattice *l,
                             const snow_placement *p) {
     double wide = 1, back = back_of(l, p);
-    const double heights[2] = {l->front - l->eye[2], back - l->eye[2]};
     for (int n = 0; n < l->sheet_count; n++) {
         double slice = l->front + (back - l->front) * n / (l->sheet_count - 1);
         double step = snow_value_eye_step(l, slice);
@@ -121,7 +127,7 @@ double snow_value_eye_reach(const snow_value_lattice *l,
             wide = fmax(wide,
                         apart_of(l->cells[axis], step) * step / l->cells[axis]);
     }
-    double most = slope_of(p, heights) / l->halves;
+    double most = slope_of(p) / l->halves;
     return ceil(most * (1 - 1e-9)) + ceil(wide * (1 - 1e-9)) - 1;
 }
 
