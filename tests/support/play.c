@@ -162,7 +162,6 @@ float *play_alone(snow_context *context, play *p, double *strongest) {
         fail_msg("%s", snow_context_message(context));
     p->interesting = snow_frame_stats(frame)->interesting;
     p->voxels_drawn = snow_frame_stats(frame)->voxels;
-    memcpy(p->halvings, snow_frame_stats(frame)->halvings, sizeof p->halvings);
     p->channels = snow_image_channels(image);
     float *pixels = malloc(play_floats(p) * sizeof(float));
     assert_non_null(pixels);
@@ -206,8 +205,6 @@ void play_check_counts(const play *p, int ranks) {
     for (int rank = 0; rank < ranks; rank++) {
         interesting += p->each[rank].interesting;
         voxels += p->each[rank].voxels;
-        assert_memory_equal(p->each[rank].halvings, p->halvings,
-                            sizeof p->halvings);
     }
     if (interesting != p->interesting || voxels != all)
         fail_msg("%d ranks count %lld of %lld voxels as interesting, one "

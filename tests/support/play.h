@@ -42,7 +42,6 @@ typedef struct play {
     snow_stats each[PLAY_RANKS]; /* of every rank */
     /* Of the serial picture. */
     int64_t interesting, voxels_drawn;
-    int halvings[3];
 } play;
 
 size_t play_floats(const play *p);
