@@ -48,7 +48,7 @@ set(SNOW_COSTS
     cli_figures 52 test_shear_warp 46 oracle_zarr 46 test_modes 44
     cli_turntable 41 oracle_vtk 40 cli_render 39 test_stop 37
     example_installed 37 test_combine 35 cli_bench 34 cli_interrupt 34
-    test_mipmap 32 cli_documents 31 test_raycast 31 cli_matrix 31
+    cli_documents 31 test_raycast 31 cli_matrix 31
     oracle_dicom 31 cli_frame 30 test_pipeline 28 cli_measurements 28
     test_ranks_open 28 test_value 27 test_shear_warp_bits 27 test_insitu 26
     test_bands 25 test_model_picture 22 test_histogram 22 oracle_tiff 22

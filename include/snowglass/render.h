@@ -17,9 +17,8 @@ typedef enum snow_method {
     SNOW_METHOD_ORIGINAL,   /* every voxel, no sparse matrix: the baseline */
     SNOW_METHOD_TESTED,     /* the same, voxels tested against the threshold */
     SNOW_METHOD_FOOTPRINT,  /* interesting voxels, each onto the image: exact */
-    SNOW_METHOD_SHEAR_WARP, /* slices on their own grid, warped once: fast */
-    SNOW_METHOD_RAYCAST,    /* rays through interpolated values: slow truth */
-    SNOW_METHOD_VALUE       /* values on sheared slices; parallel, mode over */
+    SNOW_METHOD_SHEAR_WARP, /* values of sheared slices, warped once: fast */
+    SNOW_METHOD_RAYCAST     /* rays through interpolated values: slow truth */
 } snow_method;
 
 /* How the places of interesting voxels are written: section 3.2. */
@@ -40,9 +39,9 @@ typedef enum snow_kernel {
 
 /* Work for a picture; by raycast a ray's longest step, in smallest spacings. */
 typedef enum snow_quality {
-    SNOW_QUALITY_NORMAL = 0, /* two intermediate pixels a voxel; 1/4 */
-    SNOW_QUALITY_DRAFT,      /* one, the tent kernel, a mipmap level; 1/2 */
-    SNOW_QUALITY_HIGH        /* a slice between each two, axes blended; 1/16 */
+    SNOW_QUALITY_NORMAL = 0, /* one to four intermediate pixels a voxel; 1/4 */
+    SNOW_QUALITY_DRAFT,      /* one; 1/2 */
+    SNOW_QUALITY_HIGH        /* four or more, a slice between each two; 1/16 */
 } snow_quality;
 
 /* Of kernels. avx2 and avx512 give the same bits, others differ by rounding. */
@@ -104,7 +103,7 @@ typedef struct snow_stats {
     snow_kernel kernel;
     snow_quality quality;
     bool encoded;                /* anew, for this picture */
-    int64_t voxels, interesting; /* of the mipmap level that was drawn */
+    int64_t voxels, interesting;
     double sparse_ratio;         /* share of uninteresting voxels, 0 to 1 */
     uint64_t ea_bytes, ia_bytes, pa_bytes; /* the encoding's arrays; IA is 0
                                               where voxels are read in place */
@@ -112,7 +111,6 @@ typedef struct snow_stats {
     double seconds_splat, seconds_composite, seconds_warp;  /*   figure 7 */
     double seconds_frame; /* the whole picture */
     double cpu_frame;     /* the same in processor time of the process */
-    int halvings[3];      /* of each axis, for that level */
 } snow_stats;
 SNOW_RECORD(snow_stats);
 

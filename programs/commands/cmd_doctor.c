@@ -25,7 +25,7 @@ static const char *kernel_at(size_t i) {
 static const char *method_at(size_t i) {
     static const snow_method methods[] = {
         SNOW_METHOD_ORIGINAL, SNOW_METHOD_FOOTPRINT, SNOW_METHOD_SHEAR_WARP,
-        SNOW_METHOD_RAYCAST, SNOW_METHOD_VALUE};
+        SNOW_METHOD_RAYCAST};
     return i < 4 ? snow_method_name(methods[i]) : NULL;
 }
 

@@ -80,19 +80,19 @@ const option_row option_table[] = {
     {"encoding", 0, "auto|crs|bitmap|rle", TOPIC_SPARSE, RENDER, read_choice,
      FIELD(encoding), 0, 0, "",
      "how the positions of interesting voxels are stored (default auto)"},
-    {"method", 0, "auto|original|footprint|shear-warp|raycast|value", TOPIC_SPARSE, RENDER,
+    {"method", 0, "auto|original|footprint|shear-warp|raycast", TOPIC_SPARSE, RENDER,
      read_method, FIELD(method), 0, 0, "",
-     "rendering method. shear-warp: the fastest; sheared is its old name; "
-     "footprint: splats interesting voxels straight onto the picture; "
-     "original: the same with every voxel; raycast: interpolates values along "
-     "each ray and colours them after, slow, the truth that the others are "
-     "held against; value: what is to become shear-warp, values first and "
-     "colours after, for parallel views of mode over so far (default auto: "
+     "rendering method. shear-warp: interpolates values slice by slice and "
+     "colours them after, the fastest; sheared is its old name; raycast: the "
+     "same along each ray, slow, the truth that the others are held against; "
+     "footprint: splats interesting voxels straight onto the picture, as the "
+     "paper does; original: the same with every voxel (default auto: "
      "shear-warp)"},
 
     {"kernel", 0, "tent|gauss|bspline|box", TOPIC_KERNEL, RENDER, read_choice,
-     FIELD(kernel), 0, 0, "", "reconstruction kernel; method raycast takes tent and bspline (default "
-     "bspline; tent with raycast)"},
+     FIELD(kernel), 0, 0, "", "reconstruction kernel; shear-warp and raycast take tent and bspline, of "
+     "others footprint makes the picture (default tent; bspline with footprint "
+     "and original)"},
     {"footprint", 0, "K", TOPIC_KERNEL, RENDER, read_integer, FIELD(footprint),
      2, 9, "",
      "support of the kernel in voxels, 2 to 9 (default 2 for tent and box, "

@@ -92,13 +92,6 @@ static json_t *image_json(const snow_image *image) {
     return object;
 }
 
-/* Along x, y and z, for the level that the picture is made from. */
-static json_t *halvings_json(const snow_stats *stats) {
-    const int64_t halvings[3] = {stats->halvings[0], stats->halvings[1],
-                                 stats->halvings[2]};
-    return json_sizes(halvings, 3);
-}
-
 json_t *stats_json(const render_report *report) {
     const snow_stats *stats = report->stats;
     const snow_settings *settings = report->settings;
@@ -119,7 +112,6 @@ json_t *stats_json(const render_report *report) {
     json_object_set_new(o, "isa", json_string(snow_isa_name(stats->isa)));
     json_object_set_new(o, "quality",
                         json_string(snow_quality_name(stats->quality)));
-    json_object_set_new(o, "halvings", halvings_json(stats));
     json_object_set_new(o, "bytes", bytes_json(report));
     json_object_set_new(o, "seconds", seconds_json(report));
     json_object_set_new(o, "image", image_json(report->image));
@@ -141,10 +133,6 @@ void log_stats(const render_report *report) {
         stats->pa_bytes, report->peak);
     say("interesting voxels: %" PRId64 " of %" PRId64 ", sparse ratio %.1f %%",
         stats->interesting, stats->voxels, 100 * stats->sparse_ratio);
-    if (stats->halvings[0] || stats->halvings[1] || stats->halvings[2])
-        say("level: the volume is halved %d, %d and %d times along x, y and z; "
-            "voxels are counted at this level",
-            stats->halvings[0], stats->halvings[1], stats->halvings[2]);
     if (launch_ranks() > 1)
         say("ranks: %d, load of the largest part %.2f; combine %.3f s, gather "
             "%.3f s",

@@ -28,25 +28,20 @@ void warn_unused(const options *asked) {
         warn_option(asked, of_opacity[i]);
     for (size_t i = 0; i < sizeof of_light / sizeof *of_light && !lit; i++)
         warn_option(asked, of_light[i]);
-    if (lit && strcmp(asked->method, "shear-warp") == 0)
-        say("note: --method shear-warp has no effect in mode iso, which casts "
-            "rays through the encoded voxels");
 }
 
-/* Reports a method that was requested by name but not used. */
+/* Reports a method that was requested by name, or a kernel's, but not used. */
 static void warn_method(const scene *s) {
-    snow_mode mode = s->settings.mode;
-    if (strcmp(s->asked->method, "value") == 0 &&
-        s->stats.method == SNOW_METHOD_FOOTPRINT)
-        say("note: method footprint is used in place of value, which takes "
-            "kernels tent of 2 voxels and bspline of 4, and no eye beside "
-            "the slices or near to them");
-    if (strcmp(s->asked->method, "shear-warp") != 0 || mode == SNOW_MODE_ISO ||
-        s->stats.method == SNOW_METHOD_SHEAR_WARP)
+    bool asked = strcmp(s->asked->method, "shear-warp") == 0 ||
+                 (strcmp(s->asked->method, "auto") == 0 &&
+                  (options_given(s->asked, "kernel") ||
+                   options_given(s->asked, "footprint")));
+    if (!asked || s->stats.method == SNOW_METHOD_SHEAR_WARP)
         return;
-    say("note: method footprint is used in place of shear-warp: pixels are too "
-        "many voxels wide, the eye is too near%s",
-        mode == SNOW_MODE_OVER ? "" : ", or a voxel is not a finite number");
+    say("note: method %s is used in place of shear-warp, which takes kernels "
+        "tent of 2 voxels and bspline of 4, slices at most 24 times as far "
+        "apart as voxels, and no eye beside the slices or near to them",
+        snow_method_name(s->stats.method));
 }
 
 /* The only axis with a single voxel; -1 if there is none, or several. */

@@ -4,9 +4,9 @@
  *   limit    0 ........ smallest slab ........ voxels and picture ........
  *                refused      |     in slabs           |    in memory
  *
- * Bytes of an interesting voxel are those of the encodings: its value as a code
- * of 8 or 16 bits and a normal of 16 bits if it is shaded, or four floats for
- * the exact methods.  Its position takes little more than one bit. */
+ * Bytes of an interesting voxel are those of the encodings: its value of 8 or 16
+ * bits, or four floats for the exact methods.  Its position takes little more
+ * than one bit. */
 #include "run/memory.h"
 #include "commands/commands.h"
 #include "run/free_memory.h"
@@ -21,18 +21,12 @@
 
 #define PIXEL_BYTES 16  /* four floats */
 #define PLACE_SHARE 7   /* EA: one byte for this many voxels */
-#define BOUND_BYTES 0.5 /* 16 bits for four voxels */
-#define VALUE_BYTES 12  /* of method value: IA, rows, voxels around */
+#define MASK_BYTES 1    /* of shear-warp: masks and bounds of cells */
 
-static double shear_warp_bytes(const options *asked, double value_bytes) {
-    double code = value_bytes > 1 ? 2 : 1;
-    double normal = strcmp(asked->shade, "none") ? 2 : 0;
-    /* Bounds of the largest values; they have no normals. */
-    if (strcmp(asked->mode, "mip") == 0 || strcmp(asked->mode, "minip") == 0)
-        normal = normal > BOUND_BYTES ? normal : BOUND_BYTES;
-    /* Interpolated slices are encoded as well. */
-    double times = strcmp(asked->quality, "high") ? 1 : 2;
-    return times * (code + normal + 1.0 / PLACE_SHARE);
+/* Rows of integers of 8 and 16 bits are as they are, and other types numbers of
+ * 16 bits; where they are not read in place, they are packed too. */
+static double shear_warp_bytes(double value_bytes) {
+    return 2 * (value_bytes > 1 ? 2 : 1) + MASK_BYTES;
 }
 
 /* Bytes of an interesting voxel, without the arrays that all voxels share. */
@@ -43,15 +37,7 @@ static double encoded_bytes(const options *asked,
         return 0;
     if (strcmp(asked->method, "footprint") == 0)
         return PIXEL_BYTES + 1.0 / PLACE_SHARE;
-    if (strcmp(asked->method, "value") == 0)
-        return VALUE_BYTES;
-    double value = (double)snow_type_size(info->type);
-    double bytes = shear_warp_bytes(asked, value);
-    /* A draft with few pixels encodes a level of half the voxels or fewer in
-     * place of the volume. */
-    double level = (value + bytes) / 2;
-    bool draft = strcmp(asked->quality, "draft") == 0;
-    return draft && level > bytes ? level : bytes;
+    return shear_warp_bytes((double)snow_type_size(info->type));
 }
 
 /* Bytes of the largest intermediate image: the two sides of a slice, each

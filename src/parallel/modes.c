@@ -89,10 +89,11 @@ snow_status snow_flight_agree_values(snow_flight *f) {
     range.high = words[HIGH];
     range.holes = words[HOLES] > 0;
     if (words[LOST] > 0)
-        return snow_fail(f->ranks->context, SNOW_STATUS_BAD_USAGE,
-                         "method value cannot draw clip planes of voxels that "
-                         "are shared by count or as bricks yet; use --cut "
-                         "equal, or take method shear-warp");
+        return snow_fail(
+            f->ranks->context, SNOW_STATUS_BAD_USAGE,
+            "method shear-warp cannot draw clip planes of voxels that "
+            "are shared by count or as bricks yet; use --cut "
+            "equal, or take method shear-warp");
     f->ranks->values = range;
     f->ranks->values_of = f->generation;
     snow_value_set_range(f->picture.frame->value_path, &range);

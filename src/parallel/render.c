@@ -39,7 +39,7 @@ static bool is_ahead(const snow_flight *f) {
     const snow_picture *p = &f->picture;
     return p->job.settings.mode == SNOW_MODE_OVER && p->pass_count == 1 &&
            p->passes[0].method->ahead &&
-           (!snow_draws_values(&p->job.settings) ||
+           (p->job.settings.method != SNOW_METHOD_SHEAR_WARP ||
             snow_flight_knows_values(f));
 }
 
@@ -77,12 +77,9 @@ static snow_status begin(snow_picture *p, snow_status status) {
     if (status == SNOW_STATUS_OK)
         status = make_images(f);
     p->ahead = is_ahead(f);
-    p->layered = p->job.settings.method == SNOW_METHOD_SHEAR_WARP &&
-                 !snow_draws_values(&p->job.settings) &&
-                 p->job.settings.mode == SNOW_MODE_OVER && !p->ahead;
     f->drawn_cpu = snow_flight_cpu(f);
     if (status == SNOW_STATUS_OK && p->ahead &&
-        snow_draws_values(&p->job.settings))
+        p->job.settings.method == SNOW_METHOD_SHEAR_WARP)
         status = snow_flight_recall_values(f);
     return status;
 }
@@ -213,8 +210,9 @@ static snow_status synchronize(snow_picture *p, snow_status status) {
     SNOW_TRY(synchronize_all(f, status, &new_parts));
     if (p->job.settings.mode != SNOW_MODE_OVER)
         SNOW_TRY(snow_flight_agree_range(f));
-    return snow_draws_values(&p->job.settings) ? snow_flight_agree_values(f)
-                                               : SNOW_STATUS_OK;
+    return p->job.settings.method == SNOW_METHOD_SHEAR_WARP
+               ? snow_flight_agree_values(f)
+               : SNOW_STATUS_OK;
 }
 
 /* --- places --------------------------------------------------------------- */

@@ -43,7 +43,7 @@ static snow_status synchronize(snow_picture *p, snow_status status) {
     SNOW_TRY(status);
     snow_image_free(p->frame->depth);
     p->frame->depth = NULL;
-    if (snow_draws_values(s))
+    if (s->method == SNOW_METHOD_SHEAR_WARP)
         SNOW_TRY(find_values(p));
     if (s->mode == SNOW_MODE_OVER)
         return s->depth && !snow_job_whole(&p->job) ? fail_part(p, "depth", "")

@@ -30,7 +30,6 @@ void snow_buffers_free(snow_frame *frame) {
     snow_identity_transfer_fini(&frame->identity);
     snow_iso_free(frame->iso);
     snow_value_path_free(frame->value_path);
-    snow_mipmap_free(frame->levels);
     snow_image_free(frame->depth);
     snow_release(frame->context, frame);
 }

@@ -19,7 +19,6 @@
 #include "render/ghosts.h"
 
 #include "base/vec3.h"
-#include "render/mipmap.h"
 #include "render/settings_resolve.h"
 #include "render/value/lattice.h"
 #include "splat/kernel.h"
@@ -47,7 +46,7 @@ static void at_least(int64_t *layers, double wanted, int64_t most) {
 }
 
 static bool splats_values(const question *q) {
-    return snow_draws_values(q->settings);
+    return q->settings->method == SNOW_METHOD_SHEAR_WARP;
 }
 
 /* How far gradients of values look in the plane: in perspective a voxel and a
@@ -319,39 +318,16 @@ static snow_status ask_all(const question *q, int64_t layers[3]) {
     return SNOW_STATUS_OK;
 }
 
-/* --- levels --------------------------------------------------------------- */
-
-/* What a level of so many halvings needs, in voxels of the whole. */
-static snow_status ask_level(const question *q, bool any_turn,
-                             const int halvings[3], int64_t layers[3]) {
-    int64_t wanted[3] = {0, 0, 0};
-    const snow_volume_info level = snow_mipmap_info(q->whole, halvings);
-    question of_level = *q;
-    of_level.whole = &level;
-    SNOW_TRY(any_turn ? ask_all(&of_level, wanted)
-                      : ask_view(&of_level, wanted));
-    snow_mipmap_layers(q->whole, halvings, wanted);
-    for (int axis = 0; axis < 3; axis++)
-        at_least(&layers[axis], (double)wanted[axis], q->whole->dims[axis] - 1);
-    return SNOW_STATUS_OK;
-}
-
 snow_status
 snow_ghosts_needed(snow_context *context, const snow_volume_info *whole,
                    const snow_view *view, const snow_settings *settings,
                    bool gradient_factors, bool any_turn, int64_t layers[3]) {
     snow_settings resolved = *settings;
     int64_t found[3] = {0, 0, 0};
-    int halvings[3] = {0, 0, 0};
     SNOW_TRY(snow_settings_resolve(context, whole, &resolved));
     question q = {context, whole, view, &resolved,
                   gradient_factors || resolved.shade == SNOW_SHADE_PHONG};
     SNOW_TRY(any_turn ? ask_all(&q, found) : ask_view(&q, found));
-    /* Whether colours have steps is not known: then there is no level. */
-    if (snow_mipmap_serve(&resolved))
-        SNOW_TRY(snow_mipmap_wanted(context, whole, view, halvings));
-    if (halvings[0] || halvings[1] || halvings[2])
-        SNOW_TRY(ask_level(&q, any_turn, halvings, found));
     memcpy(layers, found, sizeof found);
     return SNOW_STATUS_OK;
 }
@@ -393,7 +369,7 @@ static snow_status check_layers(snow_context *context,
 snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
                               const snow_view *view,
                               const snow_settings *settings,
-                              bool gradient_factors, const int halvings[3]) {
+                              bool gradient_factors) {
     int64_t layers[3] = {0, 0, 0};
     snow_volume_info whole;
     snow_volume_whole(volume, &whole);
@@ -401,7 +377,6 @@ snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
         return SNOW_STATUS_OK;
     question q = {context, &whole, view, settings,
                   gradient_factors || settings->shade == SNOW_SHADE_PHONG};
-    SNOW_TRY(halvings ? ask_level(&q, false, halvings, layers)
-                      : ask_view(&q, layers));
+    SNOW_TRY(ask_view(&q, layers));
     return check_layers(context, volume, layers);
 }

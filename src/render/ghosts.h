@@ -9,8 +9,7 @@
 
 /* Layers of ghost voxels that a part of the volume `whole` must have on either
  * side along each axis, but beyond the grid, for a picture by these settings,
- * which need not be resolved; no more than dims - 1.  Where it may be one of a
- * level (levels.h), these are enough for the level too.
+ * which need not be resolved; no more than dims - 1.
  *
  * `fades` says that opacity depends on gradients, which then are wanted
  * unshaded too.  With `any_turn` for every direction that the camera may look
@@ -22,12 +21,11 @@ snow_ghosts_needed(snow_context *context, const snow_volume_info *whole,
                    const snow_view *view, const snow_settings *settings,
                    bool gradient_factors, bool any_turn, int64_t layers[3]);
 
-/* Whether a part has as many as a view needs, settings being resolved; where
- * `halvings` is not NULL, as its level of so many halvings needs.  Errors:
+/* Whether a part has as many as a view needs, settings being resolved.  Errors:
  * SNOW_STATUS_BAD_USAGE (it has not). */
 snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
                               const snow_view *view,
                               const snow_settings *settings,
-                              bool gradient_factors, const int halvings[3]);
+                              bool gradient_factors);
 
 #endif

@@ -31,9 +31,9 @@ static snow_status check_part(const snow_job *job) {
             "deterministic pictures need slabs along %c, and this part of the "
             "volume is not one; partition the volume into slabs",
             "xyz"[job->placement.slice_axis]);
-    return snow_ghosts_check(
-        job->context, job->volume, job->view, &job->settings,
-        snow_transfer_has_gradient_opacity(job->transfer), NULL);
+    return snow_ghosts_check(job->context, job->volume, job->view,
+                             &job->settings,
+                             snow_transfer_has_gradient_opacity(job->transfer));
 }
 
 /* Voxels that stay in their file are read by the encoding (shear_warp/stream.c)
@@ -63,14 +63,6 @@ static snow_status check_raycast(const snow_job *job) {
     return SNOW_STATUS_OK;
 }
 
-/* What the kernel has to know of a level. */
-static void set_level(const snow_volume *volume, snow_placement *p) {
-    if (volume->fine[0] == 0)
-        return;
-    p->fine[0] = volume->fine[p->u_axis];
-    p->fine[1] = volume->fine[p->v_axis];
-}
-
 static snow_status place_slab(snow_job *job, int parts, int part) {
     snow_volume_info whole;
     snow_volume_whole(job->volume, &whole);
@@ -78,14 +70,11 @@ static snow_status place_slab(snow_job *job, int parts, int part) {
                                    &job->settings));
     SNOW_TRY(
         snow_placement_make(job->context, &whole, job->view, &job->placement));
-    set_level(job->volume, &job->placement);
     if (job->settings.method == SNOW_METHOD_SHEAR_WARP &&
-        !snow_draws_values(&job->settings) &&
-        !snow_shear_warp_fits(&job->placement, &job->settings))
-        job->settings.method = SNOW_METHOD_FOOTPRINT;
-    if (snow_draws_values(&job->settings) &&
         !snow_value_fits(&whole, &job->placement, job->settings.kernel))
-        job->settings.method = SNOW_METHOD_FOOTPRINT;
+        job->settings.method = job->settings.mode == SNOW_MODE_ISO
+                                   ? SNOW_METHOD_RAYCAST
+                                   : SNOW_METHOD_FOOTPRINT;
     SNOW_TRY(check_stream(job, parts));
     cut_slab(job, parts, part);
     SNOW_TRY(check_raycast(job));
@@ -134,7 +123,6 @@ snow_status snow_job_shear_warp_params(const snow_job *job, int axis,
     snow_volume_whole(job->volume, &whole);
     SNOW_TRY(snow_placement_make_along(job->context, &whole, job->view, axis,
                                        placement));
-    set_level(job->volume, placement);
     *params = (snow_shear_warp_params){.volume = job->volume,
                                        .transfer = job->transfer,
                                        .view = job->view,
@@ -165,7 +153,6 @@ snow_status snow_job_shares(const snow_job *job, double shares[3]) {
             continue;
         SNOW_TRY(snow_placement_make_along(job->context, &info, job->view, axis,
                                            &placement));
-        set_level(job->volume, &placement);
         if (!snow_shear_warp_fits(&placement, &job->settings)) {
             left -= shares[axis];
             shares[axis] = 0;
@@ -188,7 +175,8 @@ static snow_status count_own(snow_frame *frame, const snow_job *job) {
     snow_stats *stats = job->stats;
     const int64_t *count = job->clip.count;
     stats->voxels = count[0] * count[1] * count[2];
-    if (snow_draws_values(&job->settings)) /* its own count serves */
+    if (job->settings.method ==
+        SNOW_METHOD_SHEAR_WARP) /* its own count serves */
         return SNOW_STATUS_OK;
     if (stats->encoded || job->settings.method != SNOW_METHOD_SHEAR_WARP)
         SNOW_TRY(snow_count_interesting(

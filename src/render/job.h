@@ -7,7 +7,6 @@
 #include "base/base.h"
 #include "composite/over.h"
 #include "decompose/slab.h"
-#include "render/mipmap.h"
 #include "render/modes/isosurface.h"
 #include "render/modes/modes.h"
 #include "render/settings_resolve.h"
@@ -42,10 +41,9 @@ struct snow_frame {
     int64_t own_interesting;         /* of the part that was encoded last */
     snow_identity_transfer identity; /* of modes other than over */
     snow_mode_colors mode_colors;
-    snow_iso *iso;           /* of mode iso; NULL until needed */
-    snow_image *depth;       /* of the last picture; NULL: not asked for */
-    snow_value_path *value_path; /* of method value; NULL until needed */
-    snow_mipmap *levels;     /* of the volume; NULL until needed */
+    snow_iso *iso;               /* of mode iso; NULL until needed */
+    snow_image *depth;           /* of the last picture; NULL: not asked for */
+    snow_value_path *value_path; /* of method shear-warp; NULL until needed */
     snow_ranks *ranks;       /* of pictures by many ranks; NULL until needed */
     snow_load_balance *work; /* of the same */
 };

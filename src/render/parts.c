@@ -34,7 +34,7 @@ static int64_t nearest_slice(const snow_job *job) {
 static int64_t made_of(const snow_job *job) {
     int64_t sample = job->channels * (int64_t)sizeof(float);
     int64_t voxel = (int64_t)snow_type_size(job->volume->info.type);
-    if (snow_draws_values(&job->settings))
+    if (job->settings.method == SNOW_METHOD_SHEAR_WARP)
         return VALUE_BYTES / voxel;
     if (job->settings.mode == SNOW_MODE_ISO ||
         job->settings.method != SNOW_METHOD_FOOTPRINT)
@@ -59,7 +59,8 @@ static snow_status open_slabs(snow_parts *parts) {
     parts->cut = (snow_slab_cut){.step = 1,
                                  .ghosts = layers[2],
                                  .made = made_of(job),
-                                 .clipped = snow_draws_values(&job->settings),
+                                 .clipped = job->settings.method ==
+                                            SNOW_METHOD_SHEAR_WARP,
                                  .from = nearest_slice(job)};
     if (parts->picture->pass->method->cut)
         parts->picture->pass->method->cut(parts->picture, parts->whole,

@@ -18,23 +18,6 @@ static snow_render_pass *add_pass(snow_picture *p, const snow_job *job,
     return pass;
 }
 
-/* In quality high, where two or three axes are nearly as good, the picture is a
- * blend of theirs, so that a turning one does not jump. */
-static snow_status add_axes(snow_picture *p) {
-    double shares[3] = {0, 0, 0};
-    const snow_job *job = &p->job;
-    shares[job->placement.slice_axis] = 1;
-    if (job->settings.method == SNOW_METHOD_SHEAR_WARP && job->all &&
-        !snow_draws_values(&job->settings)) {
-        SNOW_TRY(snow_job_shares(job, shares));
-        p->layered = job->settings.quality == SNOW_QUALITY_HIGH;
-    }
-    for (int axis = 0; axis < 3; axis++)
-        if (shares[axis] != 0)
-            add_pass(p, job, axis, shares[axis])->method = snow_method_of(job);
-    return SNOW_STATUS_OK;
-}
-
 /* Footprints once more, with an eye on opacity alone. */
 static void add_depth(snow_picture *p) {
     snow_render_pass *pass =
@@ -48,11 +31,12 @@ static void add_depth(snow_picture *p) {
     pass->method = snow_method_of(&pass->job);
 }
 
-static snow_status plan_over(snow_picture *p) {
-    SNOW_TRY(add_axes(p));
-    if (p->job.settings.depth && !p->passes[0].method->depths)
+static void plan_over(snow_picture *p) {
+    const snow_job *job = &p->job;
+    snow_render_pass *pass = add_pass(p, job, job->placement.slice_axis, 1);
+    pass->method = snow_method_of(job);
+    if (job->settings.depth && !pass->method->depths)
         add_depth(p);
-    return SNOW_STATUS_OK;
 }
 
 /* What fails has a pass too, for other ranks wait for this one in it. */
@@ -65,13 +49,14 @@ snow_status snow_picture_plan_mode(snow_picture *p) {
         status = snow_modes_value_weight(p->frame, &p->job, &job);
     else if (job.settings.method == SNOW_METHOD_RAYCAST)
         status = SNOW_STATUS_OK; /* as it is */
-    else if (job.settings.method == SNOW_METHOD_VALUE && !job.settings.depth)
+    else if (job.settings.method == SNOW_METHOD_SHEAR_WARP &&
+             !job.settings.depth)
         status = snow_identity_transfer_above(&job, &p->frame->identity);
     else if (job.settings.method != SNOW_METHOD_ORIGINAL || job.volume->stream)
         job.settings.method = SNOW_METHOD_FOOTPRINT;
     job.settings.deterministic = false; /* bits do not depend on parts */
     if (job.volume->stream && job.settings.mode == SNOW_MODE_ISO &&
-        job.settings.method != SNOW_METHOD_VALUE)
+        job.settings.method != SNOW_METHOD_SHEAR_WARP)
         job.settings.depth = true; /* by depths the nearest surface is found */
     add_pass(p, &job, job.placement.slice_axis, 1)->method =
         snow_method_of(&job);
@@ -82,13 +67,10 @@ const snow_render_method *snow_method_of(const snow_job *job) {
     const snow_settings *s = &job->settings;
     if (s->method == SNOW_METHOD_RAYCAST)
         return &snow_method_raycast;
-    if (snow_draws_values(s))
+    if (s->method == SNOW_METHOD_SHEAR_WARP)
         return &snow_method_value;
     if (s->mode == SNOW_MODE_ISO)
         return &snow_method_iso;
-    if (s->method == SNOW_METHOD_SHEAR_WARP)
-        return s->mode == SNOW_MODE_OVER ? &snow_method_shear_warp
-                                         : &snow_method_projection;
     if (s->deterministic)
         return &snow_method_groups;
     return job->placement.perspective ? &snow_method_exact_perspective
@@ -96,19 +78,6 @@ const snow_render_method *snow_method_of(const snow_job *job) {
 }
 
 /* --- the plan ------------------------------------------------------------- */
-
-/* The volume's level where the picture is of one (mipmap.h).  Its settings are
- * the volume's. */
-static snow_status take_level(snow_picture *p, snow_request *request,
-                              snow_settings *settings, int halvings[3]) {
-    if (request->parts > 1)
-        return SNOW_STATUS_OK;
-    SNOW_TRY(snow_settings_resolve(p->frame->context, &request->volume->info,
-                                   settings));
-    return snow_mipmap_select(&p->frame->levels, request->volume,
-                              request->transfer, request->view, settings,
-                              &request->volume, halvings);
-}
 
 static snow_status check_depth(const snow_job *job) {
     const snow_mode mode = job->settings.mode;
@@ -122,8 +91,9 @@ static snow_status check_depth(const snow_job *job) {
 static snow_status plan_job(snow_picture *p, const snow_request *request) {
     SNOW_TRY(snow_job_begin(p->frame->context, request, &p->stats, &p->job));
     SNOW_TRY(check_depth(&p->job));
-    return p->job.settings.mode == SNOW_MODE_OVER ? plan_over(p)
-                                                  : SNOW_STATUS_OK;
+    if (p->job.settings.mode == SNOW_MODE_OVER)
+        plan_over(p);
+    return SNOW_STATUS_OK;
 }
 
 /* A record that cannot be read is refused by the plan. */
@@ -146,10 +116,8 @@ static snow_status read_request(snow_picture *p, const snow_request *asked,
 }
 
 snow_status snow_picture_plan(snow_picture *p, const snow_request *asked) {
-    snow_context *context = p->frame->context;
     snow_settings settings;
     snow_request request = *asked;
-    int halvings[3] = {0, 0, 0};
     char message[SNOW_MESSAGE_BYTES];
     p->ranks_stats =
         (snow_ranks_stats){.size = sizeof p->ranks_stats, .ranks = 1};
@@ -158,18 +126,16 @@ snow_status snow_picture_plan(snow_picture *p, const snow_request *asked) {
     request.settings = &settings;
     request.view = &p->view;
     snow_status found = read_request(p, asked, &settings);
-    if (found == SNOW_STATUS_OK)
-        found = take_level(p, &request, &settings, halvings);
-    memcpy(message, context->message, sizeof message);
-    /* Also where there is no level: all ranks begin in the same way. */
+    memcpy(message, p->frame->context->message, sizeof message);
+    /* Also where there is nothing to plan: all ranks begin in the same way. */
     snow_status status = plan_job(p, &request);
-    memcpy(p->stats.halvings, halvings, sizeof halvings);
     /* As in snow_picture_plan_mode. */
     if (status != SNOW_STATUS_OK && !p->pass_count)
         add_pass(p, &p->job, p->job.placement.slice_axis, 1)->method =
             snow_method_of(&p->job);
-    return found == SNOW_STATUS_OK ? status
-                                   : snow_fail(context, found, "%s", message);
+    return found == SNOW_STATUS_OK
+               ? status
+               : snow_fail(p->frame->context, found, "%s", message);
 }
 
 /* --- the end -------------------------------------------------------------- */

@@ -11,7 +11,6 @@ static const char *const methods[] = {
     [SNOW_METHOD_FOOTPRINT] = "footprint",
     [SNOW_METHOD_SHEAR_WARP] = "shear-warp",
     [SNOW_METHOD_RAYCAST] = "raycast",
-    [SNOW_METHOD_VALUE] = "value",
 };
 
 static const char *const encodings[] = {

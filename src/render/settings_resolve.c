@@ -64,12 +64,10 @@ static snow_status resolve_machine(snow_context *context, snow_settings *s) {
     return SNOW_STATUS_OK;
 }
 
-/* A draft's default kernel is the cheapest that is continuous, and that of
- * raycast and value the one that goes through the voxels' values. */
+/* Methods that interpolate values go through those of voxels. */
 static bool takes_tent(const snow_settings *s) {
-    return s->method == SNOW_METHOD_RAYCAST || s->method == SNOW_METHOD_VALUE ||
-           (s->method == SNOW_METHOD_SHEAR_WARP &&
-            (s->mode == SNOW_MODE_OVER || s->quality == SNOW_QUALITY_DRAFT));
+    return s->method == SNOW_METHOD_RAYCAST ||
+           s->method == SNOW_METHOD_SHEAR_WARP;
 }
 
 /* Kernels that interpolate values; the others are those of footprints. */
@@ -92,8 +90,8 @@ static snow_status check_raycast(snow_context *context,
 snow_status snow_settings_resolve(snow_context *context,
                                   const snow_volume_info *info,
                                   snow_settings *s) {
-    SNOW_TRY(
-        check_choice(context, "method", (int)s->method, SNOW_METHOD_VALUE + 1));
+    SNOW_TRY(check_choice(context, "method", (int)s->method,
+                          SNOW_METHOD_RAYCAST + 1));
     SNOW_TRY(check_choice(context, "encoding", (int)s->encoding,
                           SNOW_ENCODING_RLE + 1));
     SNOW_TRY(
@@ -116,7 +114,7 @@ snow_status snow_settings_resolve(snow_context *context,
     if (s->footprint == 0)
         s->footprint = snow_kernel_default_support(s->kernel);
     SNOW_TRY(check_raycast(context, s));
-    if (snow_draws_values(s) && !is_of_values(s))
+    if (s->method == SNOW_METHOD_SHEAR_WARP && !is_of_values(s))
         s->method = SNOW_METHOD_FOOTPRINT;
     const double *spacing = info->spacing;
     if (s->opacity_length == 0)

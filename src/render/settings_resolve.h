@@ -13,11 +13,4 @@ snow_status snow_settings_resolve(snow_context *context,
                                   const snow_volume_info *info,
                                   snow_settings *settings);
 
-/* Whether the value path draws a picture of these, which are resolved. */
-static inline bool snow_draws_values(const snow_settings *settings) {
-    return settings->method == SNOW_METHOD_VALUE ||
-           (settings->method == SNOW_METHOD_SHEAR_WARP &&
-            settings->mode == SNOW_MODE_OVER);
-}
-
 #endif

@@ -30,9 +30,6 @@ struct snow_volume {
     bool knows_origin;
     double origin[3];  /* the last column of the whole's matrix, where known */
     char patient[256]; /* "" when unknown */
-    /* Of a level (levels.h): a step of the volume's that it was made of, in its
-     * own; else 0. */
-    double fine[3];
     bool emptied;         /* a mask or planes have left no voxel: */
     double mask_range[2]; /* the mask's values, NaN where there is none */
 };

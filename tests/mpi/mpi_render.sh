@@ -54,7 +54,7 @@ TOLERANCE=0 render 3 "a deterministic picture" --deterministic
 check "it has the same bits" cmp -s one.npy many.npy
 
 # The value path: ranks agree on the range of values, and share a lattice.
-value="--method value --azimuth 33 --elevation 21"
+value="--method shear-warp --azimuth 33 --elevation 21"
 for way in "" "--perspective" "--quality high"; do
     # shellcheck disable=SC2086
     run 0 "by value $way alone" "$TOOL" $head $value $way -y -o one.npy
@@ -69,7 +69,7 @@ render 3 "a plane by value" $value $clip --cut equal
 # shellcheck disable=SC2086
 run 2 "a plane in bricks" launch 3 "$MPI_TOOL" $head $value $clip -y \
     --cut bricks -o many.npy
-says 'method value cannot draw clip planes of voxels .* yet; use --cut equal'
+says 'method shear-warp cannot draw clip planes of voxels .* yet; use --cut equal'
 # shellcheck disable=SC2086
 run 0 "deterministic by value" "$TOOL" $head $value --deterministic -y \
     -o one.npy

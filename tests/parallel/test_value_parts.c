@@ -1,4 +1,4 @@
-/* tests/parallel/test_value_parts.c - method value by parts: slabs of a file
+/* tests/parallel/test_value_parts.c - method shear-warp by parts: slabs of a file
  * and many ranks make the picture of one process, which test_value.c holds
  * against the reference. */
 #include "reference/model.h"
@@ -67,7 +67,7 @@ static reference_scene numbered(int n, int64_t depth) {
     reference_scene s =
         model_scene((int64_t[]){25, 22, depth}, types[n % 4], n % 5 == 0,
                     matrices[n / 2 % 4], (uint64_t)n + 1);
-    s.settings.method = SNOW_METHOD_VALUE;
+    s.settings.method = SNOW_METHOD_SHEAR_WARP;
     s.settings.threads = 1 + n % 2;
     s.settings.quality = (snow_quality)(n % 3);
     s.settings.shade = n / 3 % 3 == 2 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
@@ -164,7 +164,7 @@ static void compare_stream(support_place *place, const reference_scene *s,
     const snow_stats given = *snow_frame_stats(frame);
     snow_image *b = image_of(frame, stream, transfer, s);
     const snow_stats *same = snow_frame_stats(frame);
-    assert_int_equal(same->method, SNOW_METHOD_VALUE);
+    assert_int_equal(same->method, SNOW_METHOD_SHEAR_WARP);
     if (same->interesting != given.interesting || same->voxels != given.voxels)
         fail_msg("%lld of %lld voxels, and in slabs %lld of %lld: %s",
                  (long long)given.interesting, (long long)given.voxels,

@@ -1,4 +1,4 @@
-/* tests/render/test_value.c - method value beside the float64 reference of the
+/* tests/render/test_value.c - method shear-warp beside the float64 reference of the
  * value model, and what must not change a bit of its pictures. */
 #include <math.h>
 
@@ -25,7 +25,7 @@ static void pictures_are_the_references(void **state) {
         float *picture = model_picture(&stage, &s);
         double *expected = value_picture_expected(&(value_scene){.base = s});
         assert_int_equal(snow_frame_stats(stage.frame)->method,
-                         SNOW_METHOD_VALUE);
+                         SNOW_METHOD_SHEAR_WARP);
         value_picture_compare(n, &s, picture, expected);
         free(picture);
         free(expected);
@@ -206,7 +206,7 @@ static void odd_volumes_are_drawn(void **state) {
     (void)state;
     model_stage stage = model_open();
     reference_scene s = model_blank((int64_t[]){6, 7, 8}, 0.5);
-    s.settings.method = SNOW_METHOD_VALUE;
+    s.settings.method = SNOW_METHOD_SHEAR_WARP;
     for (int kind = 0; kind < 3; kind++) {
         for (int n = 0; n < 6 * 7 * 8; n++)
             model_voxels(&s)[n] = kind == 0   ? 3

@@ -1,4 +1,4 @@
-/* tests/render/test_value_modes.c - modes other than over by method value
+/* tests/render/test_value_modes.c - modes other than over by method shear-warp
  * beside the float64 reference of the value model. */
 #include "values/pictures.h"
 

@@ -25,7 +25,7 @@ static reference_scene rows_scene(int n) {
     reference_scene s =
         model_scene(sizes[n % 9], types[n / 2 % 4], n % 2,
                     n % 3 ? MODEL_PLAIN : MODEL_ANISOTROPIC, (uint64_t)n);
-    s.settings.method = SNOW_METHOD_VALUE;
+    s.settings.method = SNOW_METHOD_SHEAR_WARP;
     s.settings.threads = 2;
     s.settings.quality = value_qualities[n / 9 % 3];
     s.settings.shade = n % 7 ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
@@ -65,7 +65,7 @@ static void check(const model_stage *stage, int n, reference_scene *s) {
     s->settings.method = SNOW_METHOD_RAYCAST; /* counts voxel by voxel */
     free(model_picture(stage, s));
     assert_int_equal(interesting, snow_frame_stats(stage->frame)->interesting);
-    s->settings.method = SNOW_METHOD_VALUE;
+    s->settings.method = SNOW_METHOD_SHEAR_WARP;
 }
 
 static void rows_in_place_give_the_bits_of_copies(void **state) {

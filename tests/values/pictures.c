@@ -54,7 +54,7 @@ reference_scene value_picture_scene(int n) {
     reference_scene s =
         model_scene(sizes[n / 5 % 9 < 6 ? 0 : n % 6], types[n % 5], n / 2 % 2,
                     matrices[n / 7 % 4], (uint64_t)n);
-    s.settings.method = SNOW_METHOD_VALUE;
+    s.settings.method = SNOW_METHOD_SHEAR_WARP;
     s.settings.threads = 2;
     s.settings.quality = qualities[n % 3];
     s.settings.shade = n / 3 % 4 == 3 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
@@ -286,7 +286,7 @@ float *value_picture_render(const model_stage *stage,
     if (snow_frame_render(stage->frame, volume, transfer, &s->view,
                           &s->settings, &image) != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(stage->context));
-    assert_int_equal(snow_frame_stats(stage->frame)->method, SNOW_METHOD_VALUE);
+    assert_int_equal(snow_frame_stats(stage->frame)->method, SNOW_METHOD_SHEAR_WARP);
     float *picture =
         is_of_values(s) ? spread_values(image) : model_spread(image);
     snow_transfer_free(transfer);

@@ -1,4 +1,4 @@
-/* tests/values/pictures.h - pictures of method value beside the float64
+/* tests/values/pictures.h - pictures of method shear-warp beside the float64
  * reference of the value model. */
 #ifndef SNOW_TEST_VALUE_PICTURES_H
 #define SNOW_TEST_VALUE_PICTURES_H

@@ -1,4 +1,4 @@
-/* tests/values/test_value_bspline.c - method value with kernel bspline, beside
+/* tests/values/test_value_bspline.c - method shear-warp with kernel bspline, beside
  * the float64 reference of the value model. */
 #include "values/pictures.h"
 

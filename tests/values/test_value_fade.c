@@ -1,4 +1,4 @@
-/* tests/values/test_value_fade.c - method value with gradient opacity, beside
+/* tests/values/test_value_fade.c - method shear-warp with gradient opacity, beside
  * the float64 reference of the value model. */
 #include "values/pictures.h"
 

@@ -1,4 +1,4 @@
-/* tests/values/test_value_faint.c - method value with looks of which each slab
+/* tests/values/test_value_faint.c - method shear-warp with looks of which each slab
  * shows next to nothing, beside the float64 reference of the value model. */
 #include "values/pictures.h"
 

@@ -1,4 +1,4 @@
-/* tests/values/test_value_holes.c - method value where voxels have no value or
+/* tests/values/test_value_holes.c - method shear-warp where voxels have no value or
  * are cut off, beside the float64 reference of the value model. */
 #include <math.h>
 

@@ -1,4 +1,4 @@
-/* tests/values/test_value_labels.c - method value with volumes of labels,
+/* tests/values/test_value_labels.c - method shear-warp with volumes of labels,
  * beside the float64 reference of the value model. */
 #include "values/pictures.h"
 

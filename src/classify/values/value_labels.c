@@ -29,7 +29,7 @@ static snow_status add_name(snow_context *context, snow_value_labels *labels,
         return SNOW_STATUS_OK;
     if (labels->count == SNOW_VALUE_LABELS_MOST)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "the volume has too many labels for method value: the "
+                         "the volume has too many labels for method shear-warp: the "
                          "limit is %d; take method footprint",
                          SNOW_VALUE_LABELS_MOST);
     size_t size = sizeof *labels->names, used = (size_t)labels->count * size;

@@ -115,17 +115,11 @@ snow_status snow_identity_transfer_above(snow_job *job,
     return prepare_identity_transfer(job, &wanted, identity);
 }
 
-/* The ramp of a picture of pairs; what the sheared method cannot do is left to
- * footprints. */
+/* The ramp of a picture of pairs. */
 static snow_status choose_identity_transfer(snow_job *job,
                                             snow_identity_transfer *identity) {
-    bool holes =
-        job->settings.method == SNOW_METHOD_SHEAR_WARP && !identity->whole;
-    if (holes)
-        job->settings.method = SNOW_METHOD_FOOTPRINT;
     const struct snow_identity_kind wanted = {
         .inverted = job->settings.mode == SNOW_MODE_MINIP,
-        .sparse = job->settings.method == SNOW_METHOD_SHEAR_WARP,
         .solid = job->placement.perspective};
     return prepare_identity_transfer(job, &wanted, identity);
 }
@@ -135,7 +129,7 @@ static snow_status choose_identity_transfer(snow_job *job,
 typedef struct finish_job {
     const snow_job *job;
     const snow_identity_transfer *identity;
-    const snow_value_path *value_path; /* of method value; else NULL */
+    const snow_value_path *value_path; /* of method shear-warp; else NULL */
     const snow_mode_colors *colors;
     const snow_shear_warp_image
         *shear_warp; /* that pairs are warped from; or NULL */
@@ -256,7 +250,7 @@ static void weigh_line(const finish_job *f, int y, int count, float *pairs) {
     }
 }
 
-/* (number, 1) of method value to data units. */
+/* (number, 1) of method shear-warp to data units. */
 static void number_line(const finish_job *f, const float *pairs, int count,
                         float *pixels) {
     const snow_value_scale scale =
@@ -294,7 +288,7 @@ static void finish_line(void *of, int64_t y, int worker) {
 static snow_value_scale scale_of(const snow_frame *frame, const snow_job *job) {
     const snow_identity_transfer *identity = &frame->identity;
     double range = identity->high - identity->low;
-    if (job->settings.method == SNOW_METHOD_VALUE)
+    if (job->settings.method == SNOW_METHOD_SHEAR_WARP)
         return snow_value_projected(frame->value_path, job->settings.mode);
     return identity->kind.inverted ? (snow_value_scale){identity->high, -range}
                                    : (snow_value_scale){identity->low, range};
@@ -314,7 +308,7 @@ static snow_status paint_lines(snow_frame *frame, const snow_job *job,
     bool weighed = job->settings.mode == SNOW_MODE_SUM && seen;
     double slices = shear_warp ? (double)job->placement.slices : 1;
     const snow_value_scale scale = scale_of(frame, job);
-    bool values = job->settings.method == SNOW_METHOD_VALUE;
+    bool values = job->settings.method == SNOW_METHOD_SHEAR_WARP;
     if (image->channels > 1)
         fill_colors(job, &scale, &frame->mode_colors);
     finish_job f = {.job = job,
@@ -360,7 +354,7 @@ snow_status snow_modes_value_weight(snow_frame *frame, snow_job *job,
     pairs->settings.shade = SNOW_SHADE_NONE;
     pairs->settings.threshold = 0;
     pairs->settings.deterministic = 0; /* of one part, by the scalar loops */
-    if (job->settings.method != SNOW_METHOD_VALUE &&
+    if (job->settings.method != SNOW_METHOD_SHEAR_WARP &&
         pairs->settings.quality == SNOW_QUALITY_HIGH)
         pairs->settings.quality = SNOW_QUALITY_NORMAL;
     pairs->composite = snow_projection_op_of(job->settings.mode);

@@ -1,11 +1,11 @@
 #!/bin/bash
-# --method value: pictures, figures and what is left to others.  What the
+# --method shear-warp: pictures, figures and what is left to others.  What the
 # pictures must be is known by tests/render/test_value.c.
 . "$(dirname "$0")/../../support/shell.sh"
 
 scene="phantom:engine --dims 60x60x40 -s 110x90 --azimuth 30 --elevation 20 -y"
 # shellcheck disable=SC2086
-render() { "$TOOL" render $scene --method value "$@"; }
+render() { "$TOOL" render $scene --method shear-warp "$@"; }
 
 # nearer A B: A is nearer to truth.npy than B is.
 nearer() {
@@ -62,7 +62,7 @@ run 0 "a deterministic picture" render -q --deterministic -o one.npy
 run 0 "is nearly the same" "$TOOL" compare normal.npy one.npy --tolerance 1/255
 "$TOOL" phantom engine --dims 160x160x160 -o large.npy -q
 for view in +z +y; do
-    large="large.npy -y -s 40x40 --method value --view $view"
+    large="large.npy -y -s 40x40 --method shear-warp --view $view"
     # shellcheck disable=SC2086
     run 0 "a volume in memory" "$TOOL" render $large -q -o one.npy
     # shellcheck disable=SC2086
@@ -77,7 +77,7 @@ done
 # shellcheck disable=SC2086
 run 5 "deterministic in slabs" "$TOOL" render $large -q --memory 4M \
     --deterministic -o no.npy
-says 'a deterministic picture by method value needs all voxels in memory'
+says 'a deterministic picture by method shear-warp needs all voxels in memory'
 
 # --- what footprints draw ----------------------------------------------------------------
 for options in "--kernel gauss" "--kernel box" "--footprint 3" \
@@ -91,7 +91,7 @@ for options in "--kernel gauss" "--kernel box" "--footprint 3" \
     check "is the same picture" cmp -s one.npy old.npy
 done
 run 0 "an eye near the slices" "$TOOL" render phantom:engine --dims 60x60x40 \
-    --perspective 60 --position 0,0,-62 --target 0,0,0 -y --method value \
+    --perspective 60 --position 0,0,-62 --target 0,0,0 -y --method shear-warp \
     -s 40x40 -o one.npy
 says 'note: method footprint is used in place of value'
 
