@@ -252,6 +252,19 @@ static void add_up(snow_value_store *s) {
                   sizeof(snow_slice_pointer);
 }
 
+void snow_value_store_count(const snow_value_store *s, int64_t first,
+                            int64_t count, uint64_t *ea, uint64_t *ia,
+                            uint64_t *pa) {
+    *ea = *ia = 0;
+    for (int64_t n = 0; n < s->band_count; n++) {
+        const snow_slice_pointer *from = &s->bands[n].pa[first];
+        *ea += from[count].ea - from->ea;
+        *ia += (from[count].ia - from->ia) * sizeof(int16_t);
+    }
+    *pa = (uint64_t)s->band_count * (uint64_t)(count + 1) *
+          sizeof(snow_slice_pointer);
+}
+
 static snow_status each(store_job *job, int64_t items, snow_work_fn *work) {
     int threads = job->params->threads;
     SNOW_TRY(snow_parallel(job->store->context,

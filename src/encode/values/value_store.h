@@ -138,6 +138,11 @@ snow_status snow_value_store_encode(snow_value_store *store,
                                     const snow_value_store_params *params);
 void snow_value_store_fini(snow_value_store *store);
 
+/* Bytes of EA, IA and PA of `count` slices from `first` on. */
+void snow_value_store_count(const snow_value_store *store, int64_t first,
+                            int64_t count, uint64_t *ea, uint64_t *ia,
+                            uint64_t *pa);
+
 static inline size_t snow_value_mask_at(const snow_value_store *s, int run,
                                         int64_t slice) {
     return ((size_t)run * (size_t)s->slices + (size_t)slice) * s->mask_words *

@@ -102,6 +102,7 @@ struct snow_value_path {
     bool has_labels; /* the picture is of them */
     snow_value_store store;
     snow_value_key key; /* of the store */
+    bool wavers; /* pictures of that key have shown more than the store had */
     int64_t interesting;
     snow_value_kept_slabs kept;
     snow_value_light light;

@@ -209,6 +209,28 @@ static bool is_cubic(const snow_value_path *path,
     return params->settings->kernel == SNOW_KERNEL_BSPLINE && !path->has_labels;
 }
 
+/* The most numbers from one node of a table to the next (docs/model.md, The
+ * value model, point 5). */
+#define NODE_MOST 256
+
+/* Nodes that are placed by a look move with the length of rays, and with them
+ * the ends of invisible runs: shorter ones serve all views. */
+static int store_runs(const snow_value_path *path,
+                      snow_value_run runs[SNOW_VALUE_RUNS]) {
+    const snow_value_table *table = &path->table;
+    const int by = path->wavers && table->nodes ? NODE_MOST : 0;
+    for (int n = 0; n < table->run_count; n++) {
+        runs[n] = table->runs[n];
+        if (runs[n].first > 0)
+            runs[n].first = (int16_t)(runs[n].first + by);
+        if (runs[n].last < SNOW_VALUE_MOST)
+            runs[n].last = (int16_t)(runs[n].last - by);
+        if (runs[n].first > runs[n].last)
+            runs[n] = SNOW_VALUE_NO_RUN;
+    }
+    return table->run_count;
+}
+
 /* In perspective it changes from view to view: steps of it let an encoding
  * serve many. */
 static int eye_reach(const snow_value_path *path,
@@ -233,6 +255,14 @@ static int find_reach(const snow_value_path *path,
     return (int)ceil(most * (1 - 1e-5)) + is_cubic(path, params);
 }
 
+static bool same_key(const snow_value_key *a, const snow_value_key *b) {
+    return a->generation && a->generation == b->generation &&
+           a->slice_axis == b->slice_axis &&
+           snow_value_same_scale(&a->scale, &b->scale) &&
+           a->labels == b->labels && a->cubic == b->cubic &&
+           a->encoding == b->encoding;
+}
+
 static snow_value_key key_of(const snow_value_path *path,
                              const snow_value_params *params,
                              uint64_t generation) {
@@ -248,12 +278,7 @@ bool snow_value_serves(const snow_value_path *path, const snow_value_key *has,
                        const snow_value_store *store,
                        const snow_value_params *params, uint64_t generation) {
     const snow_value_key key = key_of(path, params, generation);
-    return has->generation && has->generation == key.generation &&
-           has->slice_axis == key.slice_axis &&
-           snow_value_same_scale(&has->scale, &key.scale) &&
-           has->labels == key.labels && has->cubic == key.cubic &&
-           has->encoding == key.encoding &&
-           store->reach >= find_reach(path, params) &&
+    return same_key(has, &key) && store->reach >= find_reach(path, params) &&
            shows_no_more(&path->table, store);
 }
 
@@ -281,11 +306,12 @@ static snow_status encode_anew(snow_value_path *path,
                                const snow_value_params *params) {
     const snow_settings *s = params->settings;
     snow_value_natives seen[SEEN_MOST];
+    snow_value_run runs[SNOW_VALUE_RUNS];
     snow_value_store_params order = {.volume = params->volume,
                                      .placement = params->stored,
                                      .coder = &path->coder,
-                                     .runs = path->table.runs,
-                                     .run_count = path->table.run_count,
+                                     .runs = runs,
+                                     .run_count = store_runs(path, runs),
                                      .holes = path->range.holes,
                                      .reach = find_reach(path, params),
                                      .cubic = is_cubic(path, params),
@@ -314,6 +340,20 @@ void snow_value_forget(snow_value_path *path) {
     snow_value_store_fini(&path->store);
 }
 
+/* Among ranks, of a part's own slices: neighbours count theirs. */
+static void count_bytes(const snow_value_path *path,
+                        const snow_value_params *params, snow_stats *stats) {
+    uint64_t ea = path->store.ea_bytes, ia = path->store.ia_bytes;
+    uint64_t pa = path->store.pa_bytes;
+    if (params->shared && params->slab.count)
+        snow_value_store_count(&path->store,
+                               params->slab.first - params->clip->stored[2],
+                               params->slab.count, &ea, &ia, &pa);
+    stats->ea_bytes += ea;
+    stats->ia_bytes += ia;
+    stats->pa_bytes += pa;
+}
+
 snow_status snow_value_encode(snow_value_path *path,
                               const snow_value_params *params,
                               snow_stats *stats) {
@@ -324,19 +364,21 @@ snow_status snow_value_encode(snow_value_path *path,
     snow_value_take_kept(path, params->volume);
     if (!snow_value_serves(path, &path->key, &path->store, params,
                            generation)) {
+        const snow_value_key key = key_of(path, params, generation);
+        path->wavers = same_key(&path->key, &key) ||
+                       (path->wavers &&
+                        snow_value_same_scale(&path->key.scale, &key.scale));
         path->key.generation = 0;
         snow_status status = encode_anew(path, params);
         if (snow_value_lacks_room(path, status))
             status = encode_anew(path, params);
         SNOW_TRY(status);
-        path->key = key_of(path, params, generation);
+        path->key = key;
         stats->encoded = 1;
         stats->seconds_encode += snow_seconds() - mark;
     }
     stats->encoding = path->store.encoding;
     stats->interesting = path->interesting;
-    stats->ea_bytes += path->store.ea_bytes;
-    stats->ia_bytes += path->store.ia_bytes;
-    stats->pa_bytes += path->store.pa_bytes;
+    count_bytes(path, params, stats);
     return SNOW_STATUS_OK;
 }
