@@ -130,7 +130,7 @@ static void place_natives(snow_value_store *s,
     const snow_value_coder *coder = params->coder;
     const int64_t *dims = params->volume->info.dims;
     const int64_t strides[3] = {1, dims[0], dims[0] * dims[1]};
-    s->in_place = params->encoding == SNOW_ENCODING_AUTO &&
+    s->in_place = params->encoding == SNOW_ENCODING_AUTO && !params->copied &&
                   snow_value_store_by_natives(params) && !coder->scale.clamps &&
                   coder->type != SNOW_TYPE_INT8;
     s->turned = s->in_place && p->u_axis != 0;

@@ -110,6 +110,7 @@ typedef struct snow_value_store_params {
     snow_encoding encoding; /* AUTO: chosen by the cells */
     snow_isa isa;           /* resolved */
     int threads;
+    bool copied; /* the volume may go before the picture is drawn */
     const snow_value_natives *seen; /* ranges of natives that are counted: */
     int seen_count;                 /* 0: none are */
 } snow_value_store_params;
@@ -138,7 +139,7 @@ snow_status snow_value_store_encode(snow_value_store *store,
                                     const snow_value_store_params *params);
 void snow_value_store_fini(snow_value_store *store);
 
-/* Bytes of EA, IA and PA of `count` slices from `first` on. */
+/* Bytes of EA, IA and PA of `count` slices from `first` on; not in place. */
 void snow_value_store_count(const snow_value_store *store, int64_t first,
                             int64_t count, uint64_t *ea, uint64_t *ia,
                             uint64_t *pa);

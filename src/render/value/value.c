@@ -278,7 +278,8 @@ bool snow_value_serves(const snow_value_path *path, const snow_value_key *has,
                        const snow_value_store *store,
                        const snow_value_params *params, uint64_t generation) {
     const snow_value_key key = key_of(path, params, generation);
-    return same_key(has, &key) && store->reach >= find_reach(path, params) &&
+    return same_key(has, &key) && !(params->shared && store->in_place) &&
+           store->reach >= find_reach(path, params) &&
            shows_no_more(&path->table, store);
 }
 
@@ -318,6 +319,7 @@ static snow_status encode_anew(snow_value_path *path,
                                      .encoding = s->encoding,
                                      .isa = s->isa,
                                      .threads = s->threads,
+                                     .copied = params->shared,
                                      .seen = seen};
     path->coder.names = path->has_labels ? path->labels.names : NULL;
     path->coder.name_count = path->labels.count;
