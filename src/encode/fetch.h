@@ -13,8 +13,16 @@
 #define SNOW_FETCH_H
 
 #include "classify/classify.h"
-#include "encode/rows.h"
 #include "encode/transpose.h"
+
+/* Native voxels: each row is contiguous, and the next begins `stride` bytes
+ * later. Voxels needed next, for prefetching, lie `ahead` bytes further; 0 if
+ * there are none. */
+typedef struct snow_rows {
+    const unsigned char *voxels;
+    size_t stride, ahead;
+    size_t columns, rows;
+} snow_rows;
 
 /* The source of one band's rows, for one thread. */
 typedef struct snow_fetch {

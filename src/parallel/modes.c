@@ -119,8 +119,8 @@ snow_status snow_flight_paint(snow_flight *f) {
     snow_picture *p = &f->picture;
     if (!f->gathered)
         return SNOW_STATUS_OK;
-    SNOW_TRY(snow_modes_paint(p->frame, &p->job, NULL, f->gathered->pixels,
-                              &p->image));
+    SNOW_TRY(
+        snow_modes_paint(p->frame, &p->job, f->gathered->pixels, &p->image));
     if (f->how.pixel_bits == 8 && p->image->channels > 1)
         snow_round_pixels(p->image);
     return SNOW_STATUS_OK;

@@ -99,8 +99,8 @@ static void begin_early(snow_flight *f, snow_status status) {
     keep_status(f, status);
     p->stats.seconds_frame = snow_ranks_clock(r) - f->mark;
     p->stats.cpu_frame = snow_cpu_seconds() - f->mark_cpu;
-    p->job.volume = p->pass->job.volume = p->local.params.volume = NULL;
-    p->job.transfer = p->pass->job.transfer = p->local.params.transfer = NULL;
+    p->job.volume = p->pass->job.volume = NULL;
+    p->job.transfer = p->pass->job.transfer = NULL;
     if (p->drawing) {
         r->drawn = f;
         snow_comm_occupy(r->comm, draw_meanwhile, r);

@@ -220,8 +220,7 @@ static snow_status synchronize(snow_picture *p, snow_status status) {
 /* Where pixels come together that are not the picture yet. */
 static snow_status place_gathered(snow_flight *f) {
     const snow_job *job = &f->picture.pass->job;
-    if (!snow_flight_keeps(f) ||
-        (!f->picture.layered && !is_sum(job->settings.mode)))
+    if (!snow_flight_keeps(f) || !is_sum(job->settings.mode))
         return SNOW_STATUS_OK;
     if (f->gathered)
         memset(f->gathered->pixels, 0, snow_job_bytes(job));
@@ -315,32 +314,15 @@ static snow_status combine(snow_picture *p, const snow_job *job,
 
 /* --- the picture ---------------------------------------------------------- */
 
-/* Axes' shares travel as floats, and are added up on rank 0 in the order of
- * render/alone.c. */
-static void add_share(snow_flight *f) {
-    snow_picture *p = &f->picture;
-    size_t floats = snow_job_bytes(&p->job) / sizeof(float);
-    const snow_render_pass *next = p->pass + 1;
-    if (!p->image)
-        return;
-    for (size_t n = 0; n < floats; n++)
-        p->image->pixels[n] += p->pass->share * f->gathered->pixels[n];
-    if (f->how.pixel_bits == 8 &&
-        (next == p->passes + p->pass_count || next->depth))
-        snow_round_pixels(p->image);
-}
-
 static snow_status display(snow_picture *p, snow_status status) {
     snow_flight *f = snow_flight_of(p);
     const snow_job *job = &p->pass->job;
-    bool whole = !p->layered && !is_sum(job->settings.mode);
+    bool whole = !is_sum(job->settings.mode);
     SNOW_TRY(status);
     if (p->pass->depth)
         return snow_flight_combine_depths(f);
     SNOW_TRY(snow_flight_deliver(f, job, whole ? f->how.pixel_bits : 0,
                                  whole ? p->image : f->gathered));
-    if (p->layered)
-        add_share(f);
     if (is_sum(job->settings.mode))
         return snow_comm_agree_status(f->ranks->comm, snow_flight_paint(f));
     return p->near ? snow_flight_combine_depths(f) : SNOW_STATUS_OK;

@@ -1,7 +1,7 @@
 /* render/alone.c - the combiner of one process, which has no partner: its local
  * image is the picture.  Slabs of a file come in turn, from front to back: each
  * is drawn on top of what the slabs in front of it have left, which is over in
- * order; of surfaces the nearest one counts. */
+ * order. */
 #include "image/image.h"
 #include "render/picture.h"
 #include "render/settings_resolve.h"
@@ -74,50 +74,25 @@ static snow_status take_layer(snow_picture *p, size_t bytes, bool clear) {
     return SNOW_STATUS_OK;
 }
 
-/* A shear-warp picture that is not blended is written once, and whole. */
+/* A shear-warp picture is written once, and whole. */
 static snow_status make_image(snow_picture *p) {
-    bool written = p->pass->method->warps && !p->layered;
+    bool written = p->pass->method->warps;
     return p->image ? SNOW_STATUS_OK
                     : (written ? snow_image_make : snow_image_new)(
                           p->job.context, p->view.width, p->view.height,
                           p->job.channels, &p->image);
 }
 
-/* Whether pairs are warped when they are painted, line by line. */
-static bool warps_lines(const snow_picture *p) {
-    return p->pass->method->warps && !p->pass->method->show;
-}
-
 /* Pairs become the image when they are shown. */
 static snow_status place_pairs(snow_picture *p) {
     const snow_job *job = &p->pass->job;
-    bool warps = warps_lines(p);
-    size_t line = snow_job_bytes(job) / (size_t)p->view.height;
-    size_t lines = (size_t)(warps ? job->settings.threads : p->view.height);
-    return take_layer(p, line * lines, !warps);
-}
-
-/* Of surfaces a slab has an image of its own, with depths. */
-static snow_status place_surfaces(snow_picture *p) {
-    const snow_job *job = &p->pass->job;
-    SNOW_TRY(make_image(p));
-    p->local.pixels = p->image->pixels;
-    if (job->settings.depth)
-        SNOW_TRY(new_depths(p, &p->depth));
-    p->local.depths = p->depth ? p->depth->pixels : NULL;
-    if (!job->volume->stream)
-        return SNOW_STATUS_OK;
-    SNOW_TRY(new_depths(p, &p->near));
-    p->local.depths = p->near->pixels;
-    return take_layer(p, snow_job_bytes(job), true);
+    return take_layer(p, snow_job_bytes(job), !p->pass->method->warps);
 }
 
 static snow_status place_over(snow_picture *p) {
     const snow_job *job = &p->pass->job;
     const snow_group_node root = {SNOW_GROUP_RANKS, 0};
     SNOW_TRY(make_image(p));
-    if (p->layered)
-        return take_layer(p, snow_job_bytes(job), false);
     if (job->settings.depth && p->pass->method->depths) {
         SNOW_TRY(new_depths(p, &p->depth));
         p->local.depths = p->depth->pixels;
@@ -139,8 +114,6 @@ static snow_status place(snow_picture *p, snow_status status) {
         p->local.depths = p->depth->pixels;
         return take_layer(p, snow_job_bytes(job), true);
     }
-    if (job->settings.mode == SNOW_MODE_ISO && !p->pass->method->warps)
-        return place_surfaces(p);
     return job->settings.mode == SNOW_MODE_OVER ||
                    job->settings.mode == SNOW_MODE_ISO
                ? place_over(p)
@@ -149,24 +122,9 @@ static snow_status place(snow_picture *p, snow_status status) {
 
 /* --- combination ---------------------------------------------------------- */
 
-/* What of a slab's surfaces is in front of those found so far. */
-static void take_nearer(snow_picture *p, const snow_job *part) {
-    size_t channels = (size_t)part->channels;
-    size_t count = (size_t)p->view.width * (size_t)p->view.height;
-    float *nearest = p->depth->pixels;
-    for (size_t n = 0; n < count; n++) {
-        float here = part->depths[n];
-        if (!(here < nearest[n]) && !(isnan(nearest[n]) && !isnan(here)))
-            continue;
-        nearest[n] = here;
-        memcpy(p->image->pixels + n * channels, part->pixels + n * channels,
-               channels * sizeof *part->pixels);
-    }
-    memset(part->pixels, 0, snow_job_bytes(part));
-}
-
 static snow_status combine(snow_picture *p, const snow_job *part,
                            snow_status status) {
+    (void)part;
     SNOW_TRY(status);
     if (p->drawing) {
         double mark = snow_seconds();
@@ -174,45 +132,21 @@ static snow_status combine(snow_picture *p, const snow_job *part,
         p->stats.seconds_splat += snow_seconds() - mark;
         p->drawing = NULL;
     }
-    if (p->near)
-        take_nearer(p, part);
     return SNOW_STATUS_OK;
 }
 
 /* --- the picture ---------------------------------------------------------- */
 
-/* Adds share * layer to the picture. */
-static void blend(float *pixels, const float *layer, float share,
-                  size_t count) {
-    for (size_t i = 0; i < count; i++)
-        pixels[i] += share * layer[i];
-}
-
 static snow_status warp(snow_picture *p) {
-    const snow_local_image *local = &p->local;
-    const snow_render_pass *pass = p->pass;
-    if (local->image.layers > 1)
+    if (p->local.image.layers > 1)
         return fail_part(p, "deterministic rendering", "");
-    if (pass->method->show)
-        return pass->method->show(p, &p->pass->job);
-    SNOW_TRY(snow_shear_warp_show(&local->image, &local->params, local->pixels,
-                                  &p->stats));
-    if (p->layered)
-        blend(p->image->pixels, local->pixels, p->pass->share,
-              snow_job_bytes(&p->job) / sizeof *local->pixels);
-    return SNOW_STATUS_OK;
+    return p->pass->method->show(p, &p->pass->job);
 }
 
 static snow_status paint(snow_picture *p) {
-    bool warps = warps_lines(p);
-    double mark = snow_seconds();
     if (p->pass->method->show)
         SNOW_TRY(p->pass->method->show(p, &p->pass->job));
-    SNOW_TRY(snow_modes_paint(p->frame, &p->job, warps ? &p->local.image : NULL,
-                              p->local.pixels, &p->image));
-    if (warps)
-        p->stats.seconds_warp += snow_seconds() - mark;
-    return SNOW_STATUS_OK;
+    return snow_modes_paint(p->frame, &p->job, p->local.pixels, &p->image);
 }
 
 static snow_status show(snow_picture *p) {
@@ -222,16 +156,11 @@ static snow_status show(snow_picture *p) {
     return p->pass->method->warps ? warp(p) : SNOW_STATUS_OK;
 }
 
-/* Depths that only served to find the nearest surface are not the frame's. */
 static snow_status display(snow_picture *p, snow_status status) {
     SNOW_TRY(status);
     if (p->pass->depth)
         return SNOW_STATUS_OK;
     SNOW_TRY(show(p));
-    if (!p->job.settings.depth) {
-        snow_image_free(p->depth);
-        p->depth = NULL;
-    }
     p->stats.seconds_frame = snow_seconds() - p->start;
     p->stats.cpu_frame = snow_cpu_seconds() - p->start_cpu;
     return SNOW_STATUS_OK;

@@ -22,13 +22,10 @@ snow_status snow_buffers_new(snow_context *context, snow_frame **out) {
 void snow_buffers_free(snow_frame *frame) {
     snow_exact_free(frame->exact);
     snow_exact_eye_free(frame->context, frame->exact_eye);
-    for (int axis = 0; axis < 3; axis++)
-        snow_shear_warp_free(frame->shear_warp[axis]);
     for (int n = 0; n < SNOW_GROUP_RANKS; n++)
         snow_release(frame->context, frame->spare[n]);
     snow_release(frame->context, frame->layer);
     snow_identity_transfer_fini(&frame->identity);
-    snow_iso_free(frame->iso);
     snow_value_path_free(frame->value_path);
     snow_image_free(frame->depth);
     snow_release(frame->context, frame);

@@ -20,7 +20,7 @@
 
 #include "base/vec3.h"
 #include "render/settings_resolve.h"
-#include "render/value/lattice.h"
+#include "render/shear_warp/lattice.h"
 #include "splat/kernel.h"
 #include "splat/values/value_splat.h"
 #include "transform/shear_perspective.h"

@@ -79,5 +79,4 @@ static snow_status draw_nodes(snow_picture *p, snow_job *job) {
 
 const snow_render_method snow_method_groups = {
     .splat_and_composite = draw_nodes,
-    .slabs = true,
 };

@@ -36,8 +36,7 @@ static snow_status check_part(const snow_job *job) {
                              snow_transfer_has_gradient_opacity(job->transfer));
 }
 
-/* Voxels that stay in their file are read by the encoding (shear_warp/stream.c)
- * or slab by slab (parts.c), and not otherwise. */
+/* Voxels that stay in their file are read slab by slab (parts.c). */
 static snow_status check_stream(const snow_job *job, int parts) {
     if (!job->volume->stream || parts == 1)
         return SNOW_STATUS_OK;
@@ -63,6 +62,18 @@ static snow_status check_raycast(const snow_job *job) {
     return SNOW_STATUS_OK;
 }
 
+/* What shear-warp cannot draw is left to footprints; isosurfaces, which they
+ * have none of, and their depths to rays. */
+static void choose_method(snow_job *job, const snow_volume_info *whole) {
+    snow_settings *s = &job->settings;
+    const bool iso = s->mode == SNOW_MODE_ISO;
+    if (iso && s->method != SNOW_METHOD_RAYCAST)
+        s->method = s->depth ? SNOW_METHOD_RAYCAST : SNOW_METHOD_SHEAR_WARP;
+    if (s->method == SNOW_METHOD_SHEAR_WARP &&
+        !snow_value_fits(whole, &job->placement, s->kernel))
+        s->method = iso ? SNOW_METHOD_RAYCAST : SNOW_METHOD_FOOTPRINT;
+}
+
 static snow_status place_slab(snow_job *job, int parts, int part) {
     snow_volume_info whole;
     snow_volume_whole(job->volume, &whole);
@@ -70,11 +81,7 @@ static snow_status place_slab(snow_job *job, int parts, int part) {
                                    &job->settings));
     SNOW_TRY(
         snow_placement_make(job->context, &whole, job->view, &job->placement));
-    if (job->settings.method == SNOW_METHOD_SHEAR_WARP &&
-        !snow_value_fits(&whole, &job->placement, job->settings.kernel))
-        job->settings.method = job->settings.mode == SNOW_MODE_ISO
-                                   ? SNOW_METHOD_RAYCAST
-                                   : SNOW_METHOD_FOOTPRINT;
+    choose_method(job, &whole);
     SNOW_TRY(check_stream(job, parts));
     cut_slab(job, parts, part);
     SNOW_TRY(check_raycast(job));
@@ -116,53 +123,6 @@ void snow_job_clip_sheet(const snow_job *job, int64_t slice,
                                 (size_t)job->channels);
 }
 
-snow_status snow_job_shear_warp_params(const snow_job *job, int axis,
-                                       snow_placement *placement,
-                                       snow_shear_warp_params *params) {
-    snow_volume_info whole;
-    snow_volume_whole(job->volume, &whole);
-    SNOW_TRY(snow_placement_make_along(job->context, &whole, job->view, axis,
-                                       placement));
-    *params = (snow_shear_warp_params){.volume = job->volume,
-                                       .transfer = job->transfer,
-                                       .view = job->view,
-                                       .settings = &job->settings,
-                                       .placement = placement,
-                                       .slab = job->slab,
-                                       .channels = job->channels,
-                                       .composite = job->composite};
-    snow_clip_make(job->volume, placement, &params->clip);
-    if (job->all)
-        params->slab =
-            (snow_slab){params->clip.first[2], params->clip.count[2]};
-    return SNOW_STATUS_OK;
-}
-
-snow_status snow_job_shares(const snow_job *job, double shares[3]) {
-    snow_volume_info info;
-    double left = 1;
-    shares[0] = shares[1] = shares[2] = 0;
-    shares[job->placement.slice_axis] = 1;
-    if (job->settings.quality != SNOW_QUALITY_HIGH)
-        return SNOW_STATUS_OK;
-    snow_volume_whole(job->volume, &info);
-    snow_placement_shares(&info, &job->placement, shares);
-    for (int axis = 0; axis < 3; axis++) {
-        snow_placement placement;
-        if (shares[axis] == 0 || axis == job->placement.slice_axis)
-            continue;
-        SNOW_TRY(snow_placement_make_along(job->context, &info, job->view, axis,
-                                           &placement));
-        if (!snow_shear_warp_fits(&placement, &job->settings)) {
-            left -= shares[axis];
-            shares[axis] = 0;
-        }
-    }
-    for (int axis = 0; axis < 3; axis++)
-        shares[axis] /= left;
-    return SNOW_STATUS_OK;
-}
-
 /* --- figures -------------------------------------------------------------- */
 
 static bool has_ghosts(const snow_clip *clip) {
@@ -178,10 +138,9 @@ static snow_status count_own(snow_frame *frame, const snow_job *job) {
     if (job->settings.method ==
         SNOW_METHOD_SHEAR_WARP) /* its own count serves */
         return SNOW_STATUS_OK;
-    if (stats->encoded || job->settings.method != SNOW_METHOD_SHEAR_WARP)
-        SNOW_TRY(snow_count_interesting(
-            job->volume, job->transfer, job->settings.threshold,
-            job->settings.isa, &frame->own_interesting));
+    SNOW_TRY(snow_count_interesting(job->volume, job->transfer,
+                                    job->settings.threshold, job->settings.isa,
+                                    &frame->own_interesting));
     stats->interesting = frame->own_interesting;
     return SNOW_STATUS_OK;
 }

@@ -7,11 +7,9 @@
 #include "base/base.h"
 #include "composite/over.h"
 #include "decompose/slab.h"
-#include "render/modes/isosurface.h"
 #include "render/modes/modes.h"
 #include "render/settings_resolve.h"
 #include "render/shear_warp/shear_warp.h"
-#include "render/value/value.h"
 #include "splat/splat.h"
 #include "transform/clip.h"
 
@@ -31,17 +29,13 @@ struct snow_frame {
     snow_ranks_stats ranks_stats;
     snow_exact *exact;
     snow_exact_eye *exact_eye; /* in perspective; NULL until needed */
-    /* Made when first used; one for each axis where a picture is blended of
-     * several, else the first. */
-    snow_shear_warp *shear_warp[3];
-    float *layer; /* local pixels that are not the picture's */
+    float *layer;              /* local pixels that are not the picture's */
     size_t layer_capacity;
     float *spare[SNOW_GROUP_RANKS]; /* pictures of groups, to be combined */
     size_t spare_capacity[SNOW_GROUP_RANKS];
     int64_t own_interesting;         /* of the part that was encoded last */
     snow_identity_transfer identity; /* of modes other than over */
     snow_mode_colors mode_colors;
-    snow_iso *iso;               /* of mode iso; NULL until needed */
     snow_image *depth;           /* of the last picture; NULL: not asked for */
     snow_value_path *value_path; /* of method shear-warp; NULL until needed */
     snow_ranks *ranks;       /* of pictures by many ranks; NULL until needed */
@@ -87,17 +81,6 @@ snow_status snow_job_begin(snow_context *context, const snow_request *request,
 
 /* Whether the job draws all voxels that there are: one part of one is that. */
 bool snow_job_whole(const snow_job *job);
-
-/* What the shear-warp method wants, with slices along an axis: those of the
- * job's slab, or all that the volume answers for.  `placement` is filled and
- * must last as long as the order. */
-snow_status snow_job_shear_warp_params(const snow_job *job, int axis,
-                                       snow_placement *placement,
-                                       snow_shear_warp_params *params);
-
-/* The axes' shares in the picture; only the job's own has one but in quality
- * high.  One that the method cannot draw leaves its share to the others. */
-snow_status snow_job_shares(const snow_job *job, double shares[3]);
 
 /* What was chosen for the picture, and how much of it is interesting, when its
  * method has counted. */

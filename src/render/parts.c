@@ -78,8 +78,7 @@ snow_status snow_parts_open(snow_parts *parts, snow_picture *p,
         &p->monitor, (double)(p->pass - p->passes), p->pass_count);
     whole->pixels = p->local.pixels;
     whole->depths = p->local.depths;
-    return status == SNOW_STATUS_OK && whole->volume && whole->volume->stream &&
-                   p->pass->method->slabs
+    return status == SNOW_STATUS_OK && whole->volume && whole->volume->stream
                ? open_slabs(parts)
                : status;
 }

@@ -10,18 +10,15 @@
 
 /* --- passes --------------------------------------------------------------- */
 
-static snow_render_pass *add_pass(snow_picture *p, const snow_job *job,
-                                  int axis, double share) {
+static snow_render_pass *add_pass(snow_picture *p, const snow_job *job) {
     snow_render_pass *pass = &p->passes[p->pass_count++];
-    *pass =
-        (snow_render_pass){.job = *job, .axis = axis, .share = (float)share};
+    *pass = (snow_render_pass){.job = *job, .method = snow_method_of(job)};
     return pass;
 }
 
 /* Footprints once more, with an eye on opacity alone. */
 static void add_depth(snow_picture *p) {
-    snow_render_pass *pass =
-        add_pass(p, &p->job, p->job.placement.slice_axis, 1);
+    snow_render_pass *pass = add_pass(p, &p->job);
     pass->depth = true;
     pass->job.stats = &p->unused;
     pass->job.settings.method = SNOW_METHOD_FOOTPRINT;
@@ -32,10 +29,8 @@ static void add_depth(snow_picture *p) {
 }
 
 static void plan_over(snow_picture *p) {
-    const snow_job *job = &p->job;
-    snow_render_pass *pass = add_pass(p, job, job->placement.slice_axis, 1);
-    pass->method = snow_method_of(job);
-    if (job->settings.depth && !pass->method->depths)
+    const snow_render_pass *pass = add_pass(p, &p->job);
+    if (p->job.settings.depth && !pass->method->depths)
         add_depth(p);
 }
 
@@ -47,19 +42,10 @@ snow_status snow_picture_plan_mode(snow_picture *p) {
         return SNOW_STATUS_OK;
     if (job.settings.mode != SNOW_MODE_ISO)
         status = snow_modes_value_weight(p->frame, &p->job, &job);
-    else if (job.settings.method == SNOW_METHOD_RAYCAST)
-        status = SNOW_STATUS_OK; /* as it is */
-    else if (job.settings.method == SNOW_METHOD_SHEAR_WARP &&
-             !job.settings.depth)
+    else if (job.settings.method == SNOW_METHOD_SHEAR_WARP)
         status = snow_identity_transfer_above(&job, &p->frame->identity);
-    else if (job.settings.method != SNOW_METHOD_ORIGINAL || job.volume->stream)
-        job.settings.method = SNOW_METHOD_FOOTPRINT;
     job.settings.deterministic = false; /* bits do not depend on parts */
-    if (job.volume->stream && job.settings.mode == SNOW_MODE_ISO &&
-        job.settings.method != SNOW_METHOD_SHEAR_WARP)
-        job.settings.depth = true; /* by depths the nearest surface is found */
-    add_pass(p, &job, job.placement.slice_axis, 1)->method =
-        snow_method_of(&job);
+    add_pass(p, &job);
     return status;
 }
 
@@ -68,9 +54,7 @@ const snow_render_method *snow_method_of(const snow_job *job) {
     if (s->method == SNOW_METHOD_RAYCAST)
         return &snow_method_raycast;
     if (s->method == SNOW_METHOD_SHEAR_WARP)
-        return &snow_method_value;
-    if (s->mode == SNOW_MODE_ISO)
-        return &snow_method_iso;
+        return &snow_method_shear_warp;
     if (s->deterministic)
         return &snow_method_groups;
     return job->placement.perspective ? &snow_method_exact_perspective
@@ -131,8 +115,7 @@ snow_status snow_picture_plan(snow_picture *p, const snow_request *asked) {
     snow_status status = plan_job(p, &request);
     /* As in snow_picture_plan_mode. */
     if (status != SNOW_STATUS_OK && !p->pass_count)
-        add_pass(p, &p->job, p->job.placement.slice_axis, 1)->method =
-            snow_method_of(&p->job);
+        add_pass(p, &p->job);
     return found == SNOW_STATUS_OK
                ? status
                : snow_fail(p->frame->context, found, "%s", message);

@@ -7,9 +7,8 @@
  *   method     from a part to its local image: lines 02 to 13
  *   combiner   from local images to the picture: lines 14 to 20
  *
- * Most pictures take one pass.  One of quality high that is blended of several
- * axes takes one for each axis, and depths of mode over are a pass of
- * footprints after the others, unless the method makes them itself. */
+ * Most pictures take one pass.  Depths of mode over are a pass of footprints
+ * after it, unless the method makes them itself. */
 #ifndef SNOW_RENDER_PICTURE_H
 #define SNOW_RENDER_PICTURE_H
 
@@ -29,8 +28,8 @@ typedef struct snow_render_method {
     snow_method_fn *encode;             /* 04 - 06 */
     snow_method_fn *splat_and_composite; /* 07 - 13 */
     snow_method_fn *show;                /* 19 - 20: the image to all of the
-                                            picture, of one process; NULL:
-                                            snow_shear_warp_show */
+                                            picture, of one process, by those
+                                            that warp */
     snow_method_fn *figures;             /* of a job whose image is made; NULL:
                                             snow_job_finish */
     /* Slabs of a file whose encoding is kept from picture to picture are not
@@ -38,8 +37,6 @@ typedef struct snow_render_method {
      * whether it is one.  NULL: none. */
     void (*cut)(snow_picture *picture, snow_job *job, snow_slab_cut *cut);
     void (*keep)(snow_picture *picture, snow_job *job, snow_slabs *slabs);
-    bool slabs;  /* of a volume in its file local images are made slab by slab;
-                    else the encoding is (shear_warp/stream.c) */
     bool warps;  /* the local image is an intermediate one */
     bool ahead;  /* and may be left to be drawn: picture->drawing */
     bool depths; /* those of mode over are made with the local image */
@@ -68,8 +65,6 @@ typedef struct snow_combine_ops {
 typedef struct snow_render_pass {
     const snow_render_method *method;
     snow_job job; /* the picture's, with what is different in this pass */
-    int axis;     /* of the slices */
-    float share;  /* in the picture */
     bool depth;   /* it makes the depths of mode over */
 } snow_render_pass;
 
@@ -82,8 +77,6 @@ typedef struct snow_local_image {
     /* Of methods that warp. */
     snow_placement placement;
     snow_shear_warp_image image;
-    snow_shear_warp *shear_warp;
-    snow_shear_warp_params params;
     bool begun; /* by the value path: it has what all parts share */
 } snow_local_image;
 
@@ -105,11 +98,10 @@ struct snow_picture {
     snow_stats stats, unused; /* of the passes that draw the picture; depths' */
     snow_ranks_stats ranks_stats;
     double start, start_cpu;
-    bool layered; /* passes' pictures are added up */
-    bool ahead;   /* the local image is begun before it is asked for */
+    bool ahead; /* the local image is begun before it is asked for */
     snow_line_batch *drawing; /* of it, until its end; or NULL */
     bool aside;      /* another picture's local image is still needed */
-    double begin_at; /* where drawing begins (snow_shear_warp_params) */
+    double begin_at; /* where drawing begins (snow_value_params) */
 };
 
 /* Begins the monitor with settings.stop; `settings` may be NULL. */
@@ -142,9 +134,8 @@ bool snow_group_rises(const snow_placement *placement, snow_group_node node);
 const snow_render_method *snow_method_of(const snow_job *job);
 
 extern const snow_render_method snow_method_exact,
-    snow_method_exact_perspective, snow_method_groups, snow_method_shear_warp,
-    snow_method_projection, snow_method_iso, snow_method_raycast,
-    snow_method_value;
+    snow_method_exact_perspective, snow_method_groups, snow_method_raycast,
+    snow_method_shear_warp;
 
 /* Of one process. */
 extern const snow_combine_ops snow_combine_alone;

@@ -700,5 +700,4 @@ const snow_render_method snow_method_exact = {
     .encode = encode_slab,
     .splat_and_composite = splat_and_composite,
     .figures = find_figures,
-    .slabs = true,
 };

@@ -248,7 +248,6 @@ const snow_render_method snow_method_exact_perspective = {
     .classify_and_shade = begin,
     .encode = encode,
     .splat_and_composite = splat,
-    .slabs = true,
 };
 
 void snow_exact_eye_free(snow_context *context, snow_exact_eye *eye) {

@@ -131,13 +131,10 @@ typedef struct finish_job {
     const snow_identity_transfer *identity;
     const snow_value_path *value_path; /* of method shear-warp; else NULL */
     const snow_mode_colors *colors;
-    const snow_shear_warp_image
-        *shear_warp; /* that pairs are warped from; or NULL */
-    float *pairs;    /* of all lines; or one for each worker */
+    float *pairs;
     snow_image *image;
     double share; /* of a sum: of the weights in its unit */
     double least; /* weights of a ray that does not miss */
-    bool weigh;   /* pairs are to be weighted with the ray's length */
 } finish_job;
 
 /* Colours of numbers 0 to 1 at equal steps.  Between two of them colours are
@@ -234,22 +231,6 @@ static void value_line(const finish_job *f, const float *pairs, int count,
     }
 }
 
-/* Sums of a line in perspective, of which each ray has its own length from
- * slice to slice. */
-static void weigh_line(const finish_job *f, int y, int count, float *pairs) {
-    const snow_perspective *eye = &f->job->placement.eye;
-    for (int x = 0; x < count; x++, pairs += 2) {
-        double ray[3];
-        snow_perspective_ray(eye, x + 0.5, y + 0.5, ray);
-        double path =
-            snow_perspective_path(eye, eye->at[0] + ray[0] / ray[2],
-                                  eye->at[1] + ray[1] / ray[2], eye->at[2] + 1);
-        float share = (float)(path / f->job->settings.opacity_length);
-        for (int n = 0; n < 2; n++) /* 0 stays 0 beside a slice's plane */
-            pairs[n] = pairs[n] != 0 ? pairs[n] * share : 0;
-    }
-}
-
 /* (number, 1) of method shear-warp to data units. */
 static void number_line(const finish_job *f, const float *pairs, int count,
                         float *pixels) {
@@ -267,15 +248,8 @@ static void finish_line(void *of, int64_t y, int worker) {
     int width = f->image->width;
     size_t at = (size_t)y * (size_t)width;
     float *pixels = f->image->pixels + at * (size_t)f->image->channels;
-    float *pairs = f->pairs + 2 * at;
-    if (f->shear_warp) {
-        pairs = f->pairs + 2 * (size_t)worker * (size_t)width;
-        memset(pairs, 0, 2 * (size_t)width * sizeof *pairs);
-        if (f->shear_warp->width > 0)
-            snow_shear_warp_warp(f->shear_warp, (int)y, 0, width, NULL, pairs);
-    }
-    if (f->weigh)
-        weigh_line(f, (int)y, width, pairs);
+    const float *pairs = f->pairs + 2 * at;
+    (void)worker;
     if (f->image->channels == 1 && f->value_path)
         number_line(f, pairs, width, pixels);
     else if (f->image->channels == 1)
@@ -298,15 +272,12 @@ static snow_value_scale scale_of(const snow_frame *frame, const snow_job *job) {
  * one.  In perspective a sum's pairs hold lengths already, and half a sheet is
  * that of the ray to the target. */
 static snow_status paint_lines(snow_frame *frame, const snow_job *job,
-                               const snow_shear_warp_image *drawn, float *pairs,
-                               snow_image *image) {
+                               float *pairs, snow_image *image) {
     double path = job->placement.path / job->settings.opacity_length;
-    bool shear_warp = job->settings.method == SNOW_METHOD_SHEAR_WARP;
     /* Pairs of raycast hold lengths of rays, however short these are. */
     bool raycast = job->settings.method == SNOW_METHOD_RAYCAST;
-    bool seen = job->placement.perspective;
-    bool weighed = job->settings.mode == SNOW_MODE_SUM && seen;
-    double slices = shear_warp ? (double)job->placement.slices : 1;
+    bool weighed =
+        job->settings.mode == SNOW_MODE_SUM && job->placement.perspective;
     const snow_value_scale scale = scale_of(frame, job);
     bool values = job->settings.method == SNOW_METHOD_SHEAR_WARP;
     if (image->channels > 1)
@@ -315,27 +286,24 @@ static snow_status paint_lines(snow_frame *frame, const snow_job *job,
                     .identity = &frame->identity,
                     .value_path = values ? frame->value_path : NULL,
                     .colors = &frame->mode_colors,
-                    .shear_warp = drawn,
                     .pairs = pairs,
                     .image = image,
-                    .share = raycast ? 1 : (weighed ? 1 : path) * slices,
-                    .least = raycast ? (double)FLT_MIN
-                                     : SNOW_WEIGHT_ENOUGH *
-                                           (weighed ? path : 1) / slices,
-                    .weigh = weighed && shear_warp};
+                    .share = raycast || weighed ? 1 : path,
+                    .least = raycast
+                                 ? (double)FLT_MIN
+                                 : SNOW_WEIGHT_ENOUGH * (weighed ? path : 1)};
     return snow_parallel(job->context, job->settings.threads, image->height,
                          finish_line, &f);
 }
 
 snow_status snow_modes_paint(snow_frame *frame, const snow_job *job,
-                             const snow_shear_warp_image *drawn, float *pairs,
-                             snow_image **out) {
+                             float *pairs, snow_image **out) {
     snow_mode mode = job->settings.mode;
     bool values = mode == SNOW_MODE_MEAN || mode == SNOW_MODE_SUM;
     snow_image *image = NULL;
     SNOW_TRY(snow_image_new(job->context, job->view->width, job->view->height,
                             values ? 1 : job->channels, &image));
-    snow_status status = paint_lines(frame, job, drawn, pairs, image);
+    snow_status status = paint_lines(frame, job, pairs, image);
     if (status == SNOW_STATUS_OK)
         *out = image;
     else

@@ -65,16 +65,12 @@ snow_status snow_identity_transfer_above(struct snow_job *job,
                                          snow_identity_transfer *identity);
 
 /* The job whose local image are the pairs of a picture, when the ramp is
- * measured; where the shear-warp method cannot make it, `job` is changed to
- * footprints too.  It lasts as long as the frame's ramp. */
-struct snow_shear_warp_image;
+ * measured.  It lasts as long as the frame's ramp. */
 snow_status snow_modes_value_weight(snow_frame *frame, struct snow_job *job,
                                     struct snow_job *pairs);
 
-/* A picture of the pairs of all pixels; where they are to be warped from
- * `drawn` (else NULL), `pairs` is room for a line of each thread. */
+/* A picture of the pairs of all pixels. */
 snow_status snow_modes_paint(snow_frame *frame, const struct snow_job *job,
-                             const struct snow_shear_warp_image *drawn,
                              float *pairs, snow_image **out);
 
 #endif

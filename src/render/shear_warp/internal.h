@@ -1,173 +1,216 @@
-/* render/shear_warp/internal.h - what the sheared method keeps from picture to
- * picture, for its parallel (shear_warp.c) and its perspective half
- * (perspective.c). */
+/* render/shear_warp/internal.h - what the value path keeps from picture to
+ * picture.
+ */
 #ifndef SNOW_RENDER_SHEAR_WARP_INTERNAL_H
 #define SNOW_RENDER_SHEAR_WARP_INTERNAL_H
 
-#include "base/line_batch.h"
-#include "classify/sample/sample.h"
-#include "composite/tile.h"
-#include "encode/decode.h"
-#include "render/shear_warp/bands.h"
-#include "render/shear_warp/encoding_cache.h"
+#include "composite/over.h"
 #include "render/shear_warp/shear_warp.h"
 #include "render/shear_warp/warping.h"
 
-/* Rows that cells need: cell i needs rows i * stride to i * stride + reach - 1.
- */
-static inline uint64_t snow_rows_of_cells(uint64_t cells, int stride,
-                                          int reach) {
-    uint64_t rows = 0, needed = ~UINT64_C(0) >> (64 - reach);
-    if (stride == 1) {
-        for (int m = 0; m < reach; m++)
-            rows |= cells << m;
-        return rows;
-    }
-    for (; cells; cells &= cells - 1)
-        rows |= needed << __builtin_ctzll(cells) * stride;
-    return rows;
-}
-
-/* Those of `cells` that need any of the rows. */
-static inline uint64_t snow_cells_of_rows(uint64_t rows, uint64_t cells,
-                                          int stride, int reach) {
-    uint64_t any = 0, some = 0;
-    for (int m = 0; m < reach; m++)
-        any |= rows >> m;
-    if (stride == 1)
-        return cells & any;
-    for (; cells; cells &= cells - 1) {
-        int cell = __builtin_ctzll(cells);
-        some |= (any >> cell * stride & 1) << cell;
-    }
-    return some;
-}
-
-/* An intermediate image, and how it is warped. */
-typedef struct snow_intermediate {
-    float *plane;
-    unsigned char *drawn;                  /* per band and tile */
-    size_t plane_capacity, drawn_capacity; /* bytes */
-    snow_shear_warp_warping warping;
-} snow_intermediate;
-
-/* What the bands in memory were encoded from. */
-typedef struct snow_encoded_key {
-    uint64_t generation; /* of the volume; 0: nothing is encoded */
+/* What the encoding is of. */
+typedef struct snow_value_key {
+    uint64_t generation; /* of the volume; 0: of none */
     int slice_axis;
-    bool shaded, between, with_gradient_opacity;
-    bool numbers; /* of sums and largest values: no voxel more may be there */
+    snow_value_scale14 scale;
+    bool labels, cubic;
     snow_encoding encoding; /* as asked for */
-    double threshold;       /* where opacity depends on gradients, else 0: the
-                               quantizer holds it */
-    snow_slab slab;
-} snow_encoded_key;
+} snow_value_key;
 
-struct snow_shear_warp {
+/* A slab of a file: its record without voxels, and their encoding, which is in
+ * the path while it is drawn. */
+typedef struct snow_value_kept_slab {
+    snow_volume *slab;
+    snow_value_store store;
+    snow_value_key key;
+    int64_t interesting;
+} snow_value_kept_slab;
+
+typedef struct snow_value_kept_slabs {
+    snow_value_kept_slab *slabs;
+    size_t capacity; /* bytes */
+    int count;
+    uint64_t of;    /* the generation of the volume in its file; 0: none */
+    int slice_axis; /* and of the encodings */
+    int64_t slices, ghosts; /* of a slab */
+} snow_value_kept_slabs;
+
+/* How tiles lie in the plane.  As long as that stays, only the tiles that were
+ * drawn have to be cleared. */
+typedef struct snow_value_grid {
+    int cells[2], tiles[2]; /* the latter may be more than a picture has */
+    int channels, layers;
+    bool quincunx, shared;
+} snow_value_grid;
+
+/* A mode: what becomes of the slabs of a ray.  Those that make no colours have
+ * pixels (number, weight), and NULL where over needs nothing. */
+typedef struct snow_value_operator {
+    snow_mode mode;
+    snow_value_reduction reduction;
+    /* Which numbers the pictures do not need, of all data values; NULL: of the
+     * look's those that are invisible. */
+    void (*hides)(snow_value_path *path, const snow_value_look *look,
+                  const snow_settings *settings);
+    /* A row of a phase of a tile as pixels of the picture's channels. */
+    void (*read)(const snow_value_splat *splat, const void *planes, int phase,
+                 int row, float *out);
+    /* Lays pixels of a part behind those of others; NULL: tiles resume. */
+    snow_composite_fn *combine;
+    /* Makes pixels of all parts (number of 0 to 1, 1), or (0, 0). */
+    void (*finish)(const snow_value_path *path, float *pixels, int count);
+} snow_value_operator;
+
+/* The image on the lattice. */
+typedef struct snow_value_image {
+    const snow_value_path *path;
+    snow_value_lattice lattice; /* of its picture */
+    float *plane;               /* layer by layer */
+    size_t stride;              /* floats of a line of it */
+    size_t layer_floats;
+    snow_group_node nodes[SNOW_NODES_MOST]; /* of the layers, deterministic */
+    snow_value_grid grid;            /* of it; no tiles: anything is there */
+    unsigned char *drawn;            /* its tiles */
+    unsigned char *blocks;           /* its blocks, of a quincunx */
+    snow_shear_warp_warping warping; /* of that */
+    /* What means read: the same, or an image halved. */
+    snow_shear_warp_warping shown;
+    float *halved; /* the image made smaller */
+    size_t plane_capacity, drawn_capacity, blocks_capacity,
+        halved_capacity; /* bytes */
+} snow_value_image;
+
+/* A part's image in the making. */
+typedef struct snow_value_drawing {
+    snow_value_path *path;
+    snow_value_params params; /* volume and transfer function may be gone */
+    snow_value_splat splat;   /* but for its sheets */
+    snow_value_tile_fn *tile;
+    size_t scratch_bytes; /* of a worker */
+} snow_value_drawing;
+
+struct snow_value_path {
     snow_context *context;
-    snow_quantizer quantizer,
-        next; /* of the last picture; room for the next one's */
-    snow_bands bands;
-    snow_encoding_cache encoding_cache; /* of the bands */
-    snow_encoded_key key;
-    uint64_t encodings; /* how often the bands were made */
-    /* Bounds of the bands' rows (render/modes/max_bounds.c), and of which. */
-    uint16_t *blocks;       /* [slice][row][column of blocks] */
-    size_t blocks_capacity; /* bytes */
-    uint64_t blocks_of;     /* `encodings`; 0: of none */
-    bool blocks_hull;       /* for cubic B-splines */
-    snow_value_scale blocks_scale;
-    snow_opacity_point *gradient_opacity_key; /* of the bands: the curve of the
-                                     gradient opacity, and with a threshold the
-                                     opacity function behind it */
-    snow_opacity_point *next_gradient_opacity_key;
-    size_t gradient_opacity_points, gradient_opacity_key_capacity,
-        next_gradient_opacity_key_capacity;
-    snow_palette palette;
-    snow_gloss *gloss;               /* an entry of zeros, and SNOW_NORMALS */
-    snow_comb *combs;                /* of all slices, along u and v */
-    snow_intermediate *intermediate; /* that is drawn on: one of these */
-    snow_intermediate intermediates[2];
-    char *scratch;         /* of all workers */
-    void *pass;            /* the picture in the making, of either half */
-    snow_monitor *monitor; /* of the picture, or NULL */
-    snow_line_batch batch; /* its bands */
-    size_t gloss_capacity, combs_capacity, scratch_capacity,
-        pass_capacity; /* bytes */
-    /* In perspective: all slices, how they are resampled along u, and how far
-     * their kernels reach. */
-    struct perspective_slice *seen;
-    char *teeth;
-    double *reach;
-    size_t seen_capacity, teeth_capacity, reach_capacity; /* bytes */
+    const snow_value_operator *op; /* of the picture */
+    snow_value_lattice lattice;    /* of the picture */
+    double reference, longest; /* world lengths: of an opacity, of any ray */
+    snow_data_range range;     /* of the whole */
+    snow_data_range measured; /* of the volume of this generation; 0: of none */
+    uint64_t measured_of;
+    snow_value_coder coder;
+    snow_value_table table;
+    snow_value_labels labels; /* of the volume of this generation */
+    uint64_t labels_of;
+    bool has_labels; /* the picture is of them */
+    snow_value_store store;
+    snow_value_key key; /* of the store */
+    bool wavers; /* pictures of that key have shown more than the store had */
+    int64_t interesting;
+    snow_value_kept_slabs kept;
+    snow_value_light light;
+    snow_value_fade fade;
+    snow_value_surface surface;
+    snow_value_sheet *sheets;
+    snow_value_place *places;
+    snow_value_rays rays; /* perspective: instead of places */
+    snow_value_spread *spreads;
+    snow_value_lanes *lanes[2];
+    double (*clips)[4];               /* clip planes by u, v and slice */
+    snow_transfer curve;              /* its gradient opacity only, ... */
+    snow_opacity_point *curve_points; /* ... which are copied */
+    snow_value_image *image;          /* that is drawn: one of these */
+    snow_value_image images[2];
+    snow_value_drawing drawing; /* of that */
+    snow_line_batch batch;      /* of its tiles */
+    float *lines;               /* of the warp */
+    char *scratch;
+    size_t sheets_capacity, places_capacity, spreads_capacity,
+        lanes_capacity[2], clips_capacity, curve_capacity, lines_capacity,
+        scratch_capacity; /* bytes */
 };
 
-/* Slices that are drawn of an order: with those between, but for the one behind
- * the volume's last. */
-int64_t snow_shear_warp_slices(const snow_shear_warp_params *params);
+/* --- operators.c --- */
 
-/* What encoding works with of one volume, for as long as it works. */
-typedef struct snow_band_tools {
-    snow_placement stored; /* of the voxels that it has */
-    snow_normal_maker maker;
-    snow_gradient_opacity gradient_opacity;
-} snow_band_tools;
+const snow_value_operator *snow_value_operator_of(snow_mode mode);
 
-/* How a volume, which is the order's or has a slab of it, is encoded: with all
- * of the slices that the key names.  Points into the tools. */
-snow_status snow_shear_warp_bands_params(
-    snow_shear_warp *shear_warp, const snow_shear_warp_params *params,
-    const snow_encoded_key *key, const snow_volume *volume,
-    const snow_clip *clip, snow_band_tools *tools, snow_bands_params *out);
+/* In perspective: the rays of the sheets, which are there.  Errors:
+ * SNOW_STATUS_NO_MEMORY, SNOW_STATUS_STOPPED. */
+snow_status snow_value_place_rays(snow_value_path *path,
+                                  const snow_value_params *params);
 
-/* The bands of a volume whose voxels stay in their file (stream.c).
- * Errors: SNOW_STATUS_NO_MEMORY, with how many voxels are interesting; those of
- * snow_slabs_visit. */
-snow_status snow_shear_warp_encode_stream(snow_shear_warp *shear_warp,
-                                          const snow_shear_warp_params *params,
-                                          const snow_encoded_key *key);
+/* --- value.c --- */
 
-/* Lines 02 and 03: the table of shading for a view and light, and the palette
- * of a picture whose rays all run `exponent` reference lengths; in perspective,
- * where they differ, -1.  Errors: SNOW_STATUS_NO_MEMORY. */
-snow_status
-snow_shear_warp_classify_and_shade(snow_shear_warp *shear_warp,
-                                   const snow_shear_warp_params *params,
-                                   double exponent, snow_stats *stats);
+/* Whether the encoding under a key serves a part of a volume. */
+bool snow_value_serves(const snow_value_path *path, const snow_value_key *has,
+                       const snow_value_store *store,
+                       const snow_value_params *params, uint64_t generation);
 
-/* Counts of the encoding. */
-void snow_shear_warp_fill_figures(const snow_shear_warp *shear_warp,
-                                  snow_stats *stats);
+/* --- kept.c --- */
 
-/* Makes room for what the workers need in all, and for an image's layers, of so
- * many bands; its shape is given. */
-snow_status snow_shear_warp_make_room(snow_shear_warp *shear_warp,
-                                      size_t scratch_bytes,
-                                      const snow_grouping *grouping,
-                                      int64_t bands,
-                                      snow_shear_warp_image *image);
+/* The encoding of a slab of a file to its place in the path, if it was kept. */
+void snow_value_take_kept(snow_value_path *path, const snow_volume *slab);
 
-/* How a picture's image of so many channels will be warped, but for its plane
- * (snow_shear_warp_attach) and its shear. */
-snow_shear_warp_warping *
-snow_shear_warp_warping_of(snow_shear_warp *shear_warp,
-                           const snow_shear_warp_params *params, int channels);
+/* Whether memory was too small, and there is more now: kept slabs are gone. */
+bool snow_value_lacks_room(snow_value_path *path, snow_status status);
 
-/* Lets the image be warped. */
-void snow_shear_warp_attach(snow_shear_warp *shear_warp,
-                            snow_shear_warp_image *image);
+/* Tiles of the grid. */
+static inline size_t snow_value_tiles(const snow_value_image *image) {
+    return (size_t)image->grid.tiles[0] * (size_t)image->grid.tiles[1];
+}
 
-/* Begins to draw bands 0 .. bands - 1, more than none, of `sheared->pass` with
- * `draw`.  Errors: SNOW_STATUS_NO_MEMORY. */
-snow_status snow_shear_warp_begin_bands(snow_shear_warp *shear_warp,
-                                        const snow_shear_warp_params *params,
-                                        int64_t bands, snow_work_fn *draw);
+/* --- image.c --- */
 
-/* The same method in perspective: perspective.c. */
-bool snow_shear_warp_perspective_fits(const snow_placement *placement,
-                                      const snow_settings *settings);
-snow_status snow_shear_warp_perspective_begin(
-    snow_shear_warp *shear_warp, const snow_shear_warp_params *params,
-    snow_stats *stats, snow_shear_warp_image *out);
+/* Whether there is anything to see; the same for all parts. */
+bool snow_value_shows(const snow_value_path *path);
+
+/* Room for a picture's image, which is cleared but for what it is known that
+ * the next picture will write.  Errors: SNOW_STATUS_NO_MEMORY,
+ * SNOW_STATUS_BAD_USAGE (slices that are not whole groups). */
+snow_status snow_value_reserve_image(snow_value_path *path,
+                                     const snow_value_params *params);
+
+/* What is to be drawn, and how it is warped.  Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_value_describe_image(snow_value_path *path,
+                                      const snow_value_params *params,
+                                      snow_shear_warp_image *out);
+
+/* When all of it is drawn. */
+void snow_value_end_image(snow_value_image *image);
+
+/* --- parts.c --- */
+
+/* Moves the sheets of the whole to the voxels that a part has. */
+void snow_value_move_sheets(snow_value_path *path,
+                            const snow_value_params *params);
+
+/* The samples of a tile that are a part's, of those in its slab. */
+void snow_value_own(const snow_value_params *params, snow_value_splat *splat);
+
+/* The splat of the slabs between sheets that belong to some slices: of the two
+ * slices beside it a slab is the nearer one's. */
+snow_value_splat snow_value_splat_of(const snow_value_drawing *drawing,
+                                     snow_slab slices);
+
+/* Floats of a tile of a node, and of what its nodes are made of. */
+size_t snow_value_node_floats(const snow_value_drawing *drawing);
+
+/* Tile (x, y) of a node of the tree of groups: pixels [phase][row][column] of
+ * `out`, each of the picture's channels; false: nothing is there, and anything
+ * in `out`.  `room` is as the splat's. */
+bool snow_value_node_tile(const snow_value_drawing *drawing,
+                          snow_group_node node, int x, int y, void *room,
+                          float *out);
+
+/* --- show.c --- */
+
+/* How the image will be warped.  Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_value_place_show(snow_value_path *path,
+                                  const snow_value_params *params,
+                                  const snow_shear_warp_image *image);
+
+/* The image to all of the picture.  Errors: SNOW_STATUS_NO_MEMORY,
+ * SNOW_STATUS_STOPPED. */
+snow_status snow_value_show(snow_value_path *path,
+                            const snow_value_params *params, float *pixels);
 
 #endif

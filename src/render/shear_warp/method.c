@@ -1,37 +1,101 @@
-/* render/shear_warp/method.c - shear-warp as a method of figure 8: the encoding
- * is of data values, so that the tables of look and light (lines 02 and 03) are
- * made after it, for what is drawn of it. */
+/* render/shear_warp/method.c - the value path as a method of figure 8.  A
+ * picture's parts, of which those of a file come one after another, share a
+ * lattice, a table and an image. */
 #include "render/picture.h"
+#include "render/shear_warp/shear_warp.h"
 
-static snow_status encode(snow_picture *p, snow_job *job) {
-    snow_local_image *local = &p->local;
-    bool high = job->settings.quality == SNOW_QUALITY_HIGH && job->all;
-    snow_shear_warp **shear_warp =
-        &p->frame->shear_warp[high ? p->pass->axis : 0];
-    SNOW_TRY(snow_job_shear_warp_params(job, p->pass->axis, &local->placement,
-                                        &local->params));
-    local->params.begin_at = p->begin_at;
-    if (job->settings.deterministic && local->params.clip.cuts)
-        return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
-                         "deterministic pictures of several ranks cannot blend "
-                         "several axes; use quality normal");
-    SNOW_TRY(snow_shear_warp_new(job->context, shear_warp));
-    local->shear_warp = *shear_warp;
-    return snow_shear_warp_encode(*shear_warp, &local->params, job->stats);
+static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
+    bool surface = job->settings.mode == SNOW_MODE_ISO;
+    return (snow_value_params){.volume = job->volume,
+                               .transfer = job->transfer,
+                               .counted = surface ? p->frame->identity.transfer
+                                                  : job->transfer,
+                               .view = job->view,
+                               .settings = &job->settings,
+                               .placement = &job->placement,
+                               .stored = &job->stored,
+                               .clip = &job->clip,
+                               .slab = job->slab,
+                               .channels = job->channels,
+                               .shared = p->combiner != &snow_combine_alone,
+                               .aside = p->aside,
+                               .resumes = p->local.image.layers > 0,
+                               .begin_at = p->begin_at};
 }
 
-/* The bands are left to be drawn. */
-static snow_status begin_bands(snow_picture *p, snow_job *job) {
-    snow_local_image *local = &p->local;
-    SNOW_TRY(snow_shear_warp_begin(local->shear_warp, &local->params, p->aside,
-                                   job->stats, &local->image));
-    p->drawing = snow_shear_warp_batch(local->shear_warp);
-    return SNOW_STATUS_OK;
+/* The image comes first, for the slabs of a file are cut to the memory that it
+ * leaves. */
+static snow_status begin(snow_picture *p, snow_job *job) {
+    if (job->volume->stream && job->settings.encoding == SNOW_ENCODING_AUTO)
+        job->settings.encoding = SNOW_ENCODING_BITMAP; /* one for all slabs */
+    const snow_value_params params = params_of(p, job);
+    SNOW_TRY(snow_value_path_new(job->context, &p->frame->value_path));
+    if (job->volume->stream)
+        snow_value_forget(p->frame->value_path);
+    else
+        snow_value_forget_slabs(p->frame->value_path);
+    p->local.placement = job->placement;
+    p->local.begun = true;
+    return snow_value_begin(p->frame->value_path, &params, job->stats);
+}
+
+static snow_status classify(snow_picture *p, snow_job *job) {
+    return p->local.begun ? SNOW_STATUS_OK : begin(p, job);
+}
+
+static snow_status encode(snow_picture *p, snow_job *job) {
+    const snow_value_params params = params_of(p, job);
+    return snow_value_encode(p->frame->value_path, &params, job->stats);
+}
+
+static snow_status draw(snow_picture *p, snow_job *job) {
+    const snow_value_params params = params_of(p, job);
+    if (p->ahead)
+        return snow_value_draw_ahead(p->frame->value_path, &params, job->stats,
+                                     &p->local.image, &p->drawing);
+    return snow_value_draw(p->frame->value_path, &params, job->stats,
+                           &p->local.image);
+}
+
+static snow_status show(snow_picture *p, snow_job *job) {
+    const snow_value_params params = params_of(p, job);
+    return snow_value_display(p->frame->value_path, &params, &p->local.image,
+                              p->local.pixels, job->stats);
+}
+
+/* --- slabs of a file ------------------------------------------------------
+ */
+
+static const snow_volume *kept(void *user, const snow_extent *part,
+                               int64_t slices) {
+    const snow_picture *p = user;
+    const snow_value_params params = params_of(p, &p->pass->job);
+    return snow_value_kept(p->frame->value_path, &params, part, slices);
+}
+
+static void cut(snow_picture *p, snow_job *job, snow_slab_cut *slabs) {
+    const snow_value_params params = params_of(p, job);
+    snow_value_cut_slabs(p->frame->value_path, &params, slabs);
+    slabs->kept = kept;
+    slabs->user = p;
+}
+
+static void keep(snow_picture *p, snow_job *job, snow_slabs *slabs) {
+    const snow_value_params params = params_of(p, job);
+    if (p->pass_count > 1) /* which reads them in another way */
+        snow_value_forget(p->frame->value_path);
+    else
+        snow_value_keep(p->frame->value_path, &params, slabs);
 }
 
 const snow_render_method snow_method_shear_warp = {
+    .begin = begin,
+    .classify_and_shade = classify,
     .encode = encode,
-    .splat_and_composite = begin_bands,
+    .splat_and_composite = draw,
+    .show = show,
+    .cut = cut,
+    .keep = keep,
     .warps = true,
     .ahead = true,
 };

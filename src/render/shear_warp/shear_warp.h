@@ -1,122 +1,117 @@
-/* render/shear_warp/shear_warp.h - the sheared method: figure 8 of the paper
- * with slices that are moved instead of footprints that are turned. */
+/* render/shear_warp/shear_warp.h - the method shear-warp: figure 8 of the paper
+ * with slices that are moved instead of footprints that are turned.  Sheets of
+ * values are splatted, and slabs between them coloured. */
 #ifndef SNOW_RENDER_SHEAR_WARP_SHEAR_WARP_H
 #define SNOW_RENDER_SHEAR_WARP_SHEAR_WARP_H
 
 #include "base/line_batch.h"
-#include "composite/over.h"
-#include "decompose/deterministic.h"
+#include "render/shear_warp/intermediate.h"
+#include "render/shear_warp/lattice.h"
 #include "transform/clip.h"
-
-#include <snowglass/render.h>
-
-/* Everything that is kept from picture to picture. */
-typedef struct snow_shear_warp snow_shear_warp;
-
-/* Unless *out is there already.  Errors: SNOW_STATUS_NO_MEMORY. */
-snow_status snow_shear_warp_new(snow_context *context, snow_shear_warp **out);
-void snow_shear_warp_free(snow_shear_warp *shear_warp);
+#include "volume/stream.h"
 
 /* Data values as numbers of 0 to 1: (value - from) / step. */
 typedef struct snow_value_scale {
     double from, step; /* step may be negative, not 0 */
 } snow_value_scale;
 
-/* What a picture is made of; settings are resolved. */
-typedef struct snow_shear_warp_params {
-    const snow_volume *volume;
-    const snow_transfer *transfer;
+/* Everything that is kept from picture to picture. */
+typedef struct snow_value_path snow_value_path;
+
+/* Unless *out is there already.  Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_value_path_new(snow_context *context, snow_value_path **out);
+void snow_value_path_free(snow_value_path *path);
+
+/* What a picture, or a part of it, is made of; settings are resolved. */
+typedef struct snow_value_params {
+    const snow_volume *volume;               /* may be a part, with ghosts */
+    const snow_transfer *transfer, *counted; /* the latter: for statistics */
     const snow_view *view;
     const snow_settings *settings;
     const snow_placement *placement; /* of the whole */
-    snow_clip clip;                  /* of the volume's part */
-    snow_slab slab;  /* slices of the whole that are drawn, within the part */
-    int channels;    /* 2 or 4 */
+    const snow_placement *stored;    /* of the voxels that the volume has */
+    const snow_clip *clip; /* what of the whole it has and answers for */
+    snow_slab slab; /* slices of the whole that are drawn, within these */
+    int channels;   /* 2 or 4 */
+    bool shared;    /* with other ranks: the image's size depends on the picture
+                       alone, and a deterministic one has a layer for each node */
+    bool aside;     /* the image of the picture before is still needed */
+    bool resumes;   /* draws behind the parts that were drawn before */
     double begin_at; /* 0 to below 1: the share of the image's lines before the
                         one that is drawn first */
-    snow_composite_fn
-        *composite; /* in perspective, in the place of over; NULL: over */
-    float share;    /* of the image that it makes, so that sums, too, are of
-                       0 to 1 */
-} snow_shear_warp_params;
+} snow_value_params;
 
-/* The intermediate image of a part.  Where a tile was not drawn on, its pixels
- * are anything until snow_shear_warp_clear.  A deterministic one has a layer
- * for each of some nodes of the tree of groups (decompose/deterministic.h). */
-typedef struct snow_shear_warp_image {
-    int width, height, channels; /* 0 x 0: nothing is in view */
-    float *pixels;        /* of the frame's, until it draws there again */
-    size_t stride;        /* floats from line to line */
-    unsigned char *drawn; /* per tile, line of tiles by line of tiles */
-    int tile_width, tile_height, tiles; /* pixels; tiles of a line */
-    int layers;                         /* 1, or as many as nodes */
-    snow_group_node nodes[SNOW_NODES_MOST];
-    size_t layer_floats, layer_tiles; /* from layer to layer */
-    const struct snow_shear_warp_warping *warping;
-} snow_shear_warp_image;
+/* The finite values of a volume, or their logarithms, of which those in a file
+ * are read, or of the part of one that it is; and its labels, if it has some.
+ * Unless they are known.  Errors: as snow_slabs_visit; SNOW_STATUS_BAD_USAGE
+ * (too many labels).  Modes other than over are of data values: `transfer` is
+ * NULL. */
+snow_status snow_value_measure(snow_value_path *path, const snow_volume *volume,
+                               const snow_transfer *transfer, int threads,
+                               snow_data_range *out);
 
-/* Whether the method can make this picture.  Where a kernel, widened for
- * pixels that are many voxels wide, has more than SNOW_TAPS_MOST voxels in
- * reach, it is left to footprint splatting, which has few pixels to fill
- * then. */
-bool snow_shear_warp_fits(const snow_placement *placement,
-                          const snow_settings *settings);
+/* Makes the range of the whole known, which the pictures' numbers are of.
+ * Labels are a part's own, in the same order as the whole's. */
+void snow_value_set_range(snow_value_path *path, const snow_data_range *range);
 
-/* Lines 04 to 06, unless the bands hold that already: colours, light and the
- * camera may change as they like as long as the slice axis stays, and what is
- * shown may become less (encoding_cache.h).  Errors: SNOW_STATUS_BAD_USAGE,
- * SNOW_STATUS_NO_MEMORY. */
-snow_status snow_shear_warp_encode(snow_shear_warp *shear_warp,
-                                   const snow_shear_warp_params *params,
-                                   snow_stats *stats);
+/* Begins a picture, whose parts follow: its lattice, the table of colours, and
+ * room for its image.  Errors: SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY,
+ * SNOW_STATUS_STOPPED. */
+snow_status snow_value_begin(snow_value_path *path,
+                             const snow_value_params *params,
+                             snow_stats *stats);
 
-/* Lines 07 to 13, of what is encoded: begins, and describes the image, whose
- * bands are then drawn as a batch (base/line_batch.h); it is there after its
- * end.  The order stays until then; its volume and transfer function need not.
- * One image of a context at a time is drawn; the one before it stays as it is
- * where `aside` asks for the other place of two.  All parts have images of one
- * size. */
-snow_status snow_shear_warp_begin(snow_shear_warp *shear_warp,
-                                  const snow_shear_warp_params *params,
-                                  bool aside, snow_stats *stats,
-                                  snow_shear_warp_image *out);
-snow_line_batch *snow_shear_warp_batch(snow_shear_warp *shear_warp);
+/* Gives up the encoding, so that a part's has its memory. */
+void snow_value_forget(snow_value_path *path);
 
-/* Clears what was not drawn on of tiles x0 .. x1 - 1 of tile lines y0 .. y1 - 1
- * of a layer. */
-void snow_shear_warp_clear(const snow_shear_warp_image *image, int layer,
-                           int x0, int y0, int x1, int y1);
+/* The encoding of a part, unless it is there.  Errors: as above. */
+snow_status snow_value_encode(snow_value_path *path,
+                              const snow_value_params *params,
+                              snow_stats *stats);
 
-/* Warps the image of a single layer to all of the picture; `pixels` are width *
- * height * channels floats, all of which are written. */
-snow_status snow_shear_warp_show(const snow_shear_warp_image *image,
-                                 const snow_shear_warp_params *params,
-                                 float *pixels, snow_stats *stats);
+/* Slabs of a file whose encodings are kept while memory lasts, so that the next
+ * pictures along the same axis read nothing.  Slabs are cut as these were;
+ * those of other volumes or along another axis are dropped, and others until
+ * there is room for what is read. */
+void snow_value_cut_slabs(snow_value_path *path,
+                          const snow_value_params *params, snow_slab_cut *cut);
+void snow_value_forget_slabs(snow_value_path *path);
 
-/* Makes all of an image's first layer empty, for lines that others made: */
-void snow_shear_warp_empty(const snow_shear_warp_image *image);
+/* What was kept of a part that stores so many slices, of the whole's params, if
+ * that serves; else NULL. */
+const snow_volume *snow_value_kept(snow_value_path *path,
+                                   const snow_value_params *params,
+                                   const snow_extent *part, int64_t slices);
 
-/* puts `count` packed lines from `first` on in their places. */
-void snow_shear_warp_put_lines(const snow_shear_warp_image *image, int first,
-                               int count, const float *pixels);
+/* Keeps the slab that was drawn, if there is room for the next one beside it.
+ */
+void snow_value_keep(snow_value_path *path, const snow_value_params *params,
+                     snow_slabs *slabs);
 
-/* Pixels of a line of the picture whose place in the image is in its lines
- * first .. end - 1: x range[0] .. range[1] - 1.  Of lines that follow one
- * another each pixel is in one range. */
-void snow_shear_warp_pixels_of(const snow_shear_warp_image *image, int y,
-                               int first, int end, int range[2]);
+/* Then the part's image on the lattice of the whole.  A deterministic one has a
+ * layer for each of some nodes of the tree of groups.  Errors: as above. */
+snow_status snow_value_draw(snow_value_path *path,
+                            const snow_value_params *params, snow_stats *stats,
+                            snow_shear_warp_image *out);
 
-/* The same of a kernel of 4 lines (warping.h). */
-#define SNOW_WARP_BEFORE 2
-#define SNOW_WARP_BEHIND 3
+/* What the numbers 0 to 1 of a projection's pixels stand for, when it is
+ * begun. */
+snow_value_scale snow_value_projected(const snow_value_path *path,
+                                      snow_mode mode);
 
-/* Warps the image, or what was put in its place, to pixels `from` to `to` - 1
- * of line y of the picture, whose pixel 0 is the first of `pixels`; or, of the
- * shear-warp method, to all of it.  `spare` has warping->spare_floats. */
-void snow_shear_warp_warp(const snow_shear_warp_image *image, int y, int from,
-                          int to, float *spare, float *pixels);
-snow_status snow_shear_warp_warp_all(snow_context *context,
-                                     const snow_shear_warp_image *image,
-                                     int threads, float *pixels);
+/* The same, left to be drawn: *batch is NULL where nothing is in view.  What
+ * params point to stays until its end, but for volume and transfer function. */
+snow_status snow_value_draw_ahead(snow_value_path *path,
+                                  const snow_value_params *params,
+                                  snow_stats *stats, snow_shear_warp_image *out,
+                                  snow_line_batch **batch);
+
+/* The image of one layer to all of the picture: width * height * channels
+ * floats; of projections (number, 1) or (0, 0), or less where a pixel is not
+ * wholly of one.  Errors: as above. */
+snow_status snow_value_display(snow_value_path *path,
+                               const snow_value_params *params,
+                               const snow_shear_warp_image *image,
+                               float *pixels, snow_stats *stats);
 
 #endif

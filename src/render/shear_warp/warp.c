@@ -1,4 +1,4 @@
-/* render/shear_warp/warp.c - the sheared method's last step: the intermediate
+/* render/shear_warp/warp.c - shear-warp's last step: the intermediate
  * image, or the lines of it that a processor was given by the exchange (section
  * 4 of the paper), to the picture.
  *
@@ -6,14 +6,11 @@
  * intermediate image which the pixel falls on.  Along a line of the picture
  * that line only rises or only falls, so that a processor's pixels are a run.
  */
-#include "base/thread_pool.h"
-#include "render/shear_warp/internal.h"
+#include "render/shear_warp/intermediate.h"
+#include "render/shear_warp/warping.h"
 
 #include <math.h>
 #include <string.h>
-
-/* Lines of the picture that are warped as one item of work. */
-#define SNOW_WARP_LINES 16
 
 void snow_shear_warp_warp(const snow_shear_warp_image *image, int y, int from,
                           int to, float *spare, float *pixels) {
@@ -26,34 +23,6 @@ void snow_shear_warp_warp(const snow_shear_warp_image *image, int y, int from,
     else
         snow_warp_row(&w->plane, &w->shear, w->filter, w->warp, y, from, to,
                       pixels);
-}
-
-/* A picture to be filled. */
-typedef struct warp_job {
-    const snow_shear_warp_image *image;
-    float *pixels;
-} warp_job;
-
-static void warp_lines(void *of, int64_t item, int worker) {
-    const warp_job *job = of;
-    const snow_shear_warp_warping *w = job->image->warping;
-    (void)worker;
-    int first = (int)item * SNOW_WARP_LINES, last = first + SNOW_WARP_LINES;
-    for (int y = first; y < last && y < w->height; y++)
-        snow_shear_warp_warp(job->image, y, 0, w->width, NULL,
-                             job->pixels + (size_t)y * (size_t)w->width *
-                                               (size_t)w->plane.channels);
-}
-
-snow_status snow_shear_warp_warp_all(snow_context *context,
-                                     const snow_shear_warp_image *image,
-                                     int threads, float *pixels) {
-    warp_job job = {image, pixels};
-    int height = image->warping->height;
-    snow_monitor_next(context->monitor, SNOW_STAGE_RENDER, 0.9, 1);
-    return snow_parallel(context, threads,
-                         (height + SNOW_WARP_LINES - 1) / SNOW_WARP_LINES,
-                         warp_lines, &job);
 }
 
 /* --- pieces --------------------------------------------------------------- */

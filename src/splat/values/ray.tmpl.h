@@ -1,6 +1,6 @@
 /* splat/values/ray.tmpl.h - in perspective each sample has its own way to the
  * eye.  Include simd/select.h first. */
-#include "classify/sample/gradient_opacity.tmpl.h"
+#include "classify/opacity_power.tmpl.h"
 
 /* a . (uu vv 11 uv u1 v1) of LANES ways (u, v, 1). */
 TARGET VALUE_INLINE V(vec)

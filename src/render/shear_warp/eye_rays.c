@@ -1,0 +1,110 @@
+/* render/shear_warp/eye_rays.c - the rays of the lattice's samples in
+ * perspective.
+ */
+#include "base/thread_pool.h"
+#include "base/vec3.h"
+#include "classify/classify.h"
+#include "render/shear_warp/internal.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct rays_job {
+    snow_value_path *path;
+    size_t lanes[2]; /* of a sheet, along u and v */
+} rays_job;
+
+static void place_lanes(void *of, int64_t item, int worker) {
+    const rays_job *job = of;
+    snow_value_path *path = job->path;
+    const snow_value_rays *rays = &path->rays;
+    const snow_value_sheet *sheet = &path->sheets[item];
+    (void)worker;
+    path->spreads[item] = snow_value_eye_spread(&path->lattice, sheet);
+    for (int axis = 0; axis < 2; axis++)
+        snow_value_eye_lanes(&path->lattice, sheet, axis, rays->tiles[axis],
+                             rays->stored[axis], path->store.margin,
+                             path->lanes[axis] +
+                                 (size_t)item * job->lanes[axis]);
+}
+
+/* How the rays' lengths follow from their ways. */
+static void measure_ways(const snow_value_path *path, const snow_placement *p,
+                         snow_value_rays *rays) {
+    const int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+    for (int n = 0; n < 6; n++)
+        rays->metric[n] =
+            (float)(p->eye.metric[pairs[n][0]][pairs[n][1]] * (n < 3 ? 1 : 2));
+    rays->usual = (float)(1 / (path->lattice.path * path->lattice.halves));
+}
+
+/* The way's part along a light that is fixed to the camera. */
+static void place_light(const snow_value_params *params,
+                        const snow_value_lattice *l, snow_value_rays *rays) {
+    const snow_volume_info *info = &params->volume->info;
+    const snow_placement *p = params->placement;
+    const int axes[3] = {p->u_axis, p->v_axis, p->slice_axis};
+    const double *spacing = info->spacing;
+    double light[3], half[3], toward = l->nearest_first ? -1 : 1;
+    snow_light_of(p, params->settings, light, half);
+    for (int n = 0; n < 3; n++) {
+        double sum = 0;
+        for (int i = 0; i < 3; i++)
+            sum += info->matrix[i][axes[n]] * light[i];
+        rays->aside[n] = (float)(toward * sum);
+    }
+    rays->head = params->settings->light_azimuth == 0 &&
+                 params->settings->light_elevation == 0;
+    rays->toward =
+        (float)(toward * fmin(spacing[0], fmin(spacing[1], spacing[2])));
+}
+
+static void describe(const snow_value_lattice *l, snow_value_rays *rays) {
+    double height = l->front - l->eye[2];
+    rays->middles = l->quincunx ? 2 : 1;
+    rays->line = rays->middles * l->cells[0];
+    for (int phase = 0; phase < l->phases; phase++) {
+        int middle = phase % rays->middles, cell = phase / rays->middles;
+        const int at[2] = {cell % l->cells[0], cell / l->cells[0]};
+        for (int axis = 0; axis < 2; axis++) {
+            rays->cell[phase][axis] = (uint8_t)at[axis];
+            rays->spot[phase][axis] =
+                (uint8_t)(at[axis] * rays->middles + middle);
+        }
+    }
+    for (int axis = 0; axis < 2; axis++) {
+        int side = axis == 0 ? SNOW_VALUE_COLUMNS : SNOW_VALUE_ROWS;
+        rays->cells[axis] = l->cells[axis];
+        rays->phases[axis] = l->cells[axis] * rays->middles;
+        rays->tiles[axis] = (int)((l->voxels[axis] + side - 1) / side);
+        rays->slope[axis][0] = ((double)l->first[axis] - l->eye[axis]) / height;
+        rays->slope[axis][1] = 1 / (rays->phases[axis] * height);
+    }
+}
+
+snow_status snow_value_place_rays(snow_value_path *path,
+                                  const snow_value_params *params) {
+    const snow_value_lattice *l = &path->lattice;
+    snow_value_rays *rays = &path->rays;
+    rays_job job = {.path = path};
+    size_t sheets = (size_t)l->sheet_count;
+    *rays = (snow_value_rays){0};
+    describe(l, rays);
+    memcpy(rays->stored, params->clip->stored, sizeof rays->stored);
+    measure_ways(path, params->placement, rays);
+    place_light(params, l, rays);
+    SNOW_TRY(snow_reserve(path->context, &path->spreads,
+                          &path->spreads_capacity, 0,
+                          sheets * sizeof *path->spreads));
+    for (int axis = 0; axis < 2; axis++) {
+        job.lanes[axis] =
+            (size_t)rays->phases[axis] * (size_t)rays->tiles[axis];
+        SNOW_TRY(snow_reserve(
+            path->context, &path->lanes[axis], &path->lanes_capacity[axis], 0,
+            sheets * job.lanes[axis] * sizeof *path->lanes[axis]));
+        rays->lanes[axis] = path->lanes[axis];
+    }
+    rays->sheets = path->spreads;
+    return snow_parallel(path->context, params->settings->threads,
+                         l->sheet_count, place_lanes, &job);
+}

@@ -1,0 +1,214 @@
+/* render/shear_warp/image.c - the image on the lattice: its memory, which is
+ * kept from picture to picture, and what others see of it. */
+#include "render/shear_warp/internal.h"
+
+#include <string.h>
+
+/* A side of the blocks of a quincunx, pixels. */
+#define BLOCK 16
+
+bool snow_value_shows(const snow_value_path *path) {
+    return !path->lattice.empty && path->range.low <= path->range.high;
+}
+
+/* Blocks along a side of a quincunx. */
+static int blocks_of(const snow_value_lattice *l) {
+    return l->width / BLOCK + 1;
+}
+
+/* --- memory -----------------------------------------------------------------
+ */
+
+static int wanted_tiles(int64_t cells, int side) {
+    return (int)((cells + side - 1) / side);
+}
+
+/* The grid of a picture: the one before, if its tiles have room there. */
+static bool keep_grid(const snow_value_path *path,
+                      const snow_value_params *params, int layers,
+                      snow_value_grid *grid) {
+    const snow_value_lattice *l = &path->lattice;
+    const snow_value_grid *has = &path->image->grid;
+    const int spare = params->shared || params->volume->stream ? 0 : 2;
+    *grid = (snow_value_grid){
+        .cells = {l->cells[0], l->cells[1]},
+        .tiles = {wanted_tiles(l->voxels[0], SNOW_VALUE_COLUMNS),
+                  wanted_tiles(l->voxels[1], SNOW_VALUE_ROWS)},
+        .channels = params->channels,
+        .layers = layers,
+        .quincunx = l->quincunx,
+        .shared = params->shared};
+    bool keep =
+        !params->shared && /* the exchange has put lines of others there */
+        has->channels == grid->channels && has->quincunx == grid->quincunx &&
+        has->cells[0] == grid->cells[0] && has->cells[1] == grid->cells[1] &&
+        has->layers == grid->layers && !has->shared;
+    for (int axis = 0; axis < 2; axis++)
+        keep = keep && has->tiles[axis] >= grid->tiles[axis] &&
+               has->tiles[axis] <= 2 * grid->tiles[axis] + 4;
+    for (int axis = 0; axis < 2; axis++)
+        grid->tiles[axis] = keep ? has->tiles[axis] : grid->tiles[axis] + spare;
+    return keep;
+}
+
+/* The plane of all tiles; that of a quincunx becomes the image. */
+static void size_plane(snow_value_lattice *l, const snow_value_grid *grid,
+                       snow_value_image *image) {
+    size_t width =
+        (size_t)grid->tiles[0] * SNOW_VALUE_COLUMNS * (size_t)l->cells[0];
+    size_t height =
+        (size_t)grid->tiles[1] * SNOW_VALUE_ROWS * (size_t)l->cells[1];
+    if (l->quincunx) { /* cell (0, 0) is at the left, half way down */
+        snow_value_lattice_move(l, 1, (double)height - l->top);
+        l->top = (int)height;
+        width = height = width + height + 1;
+        l->width = l->height = (int)width;
+    }
+    if (l->quincunx && grid->shared) /* whole blocks are cleared */
+        width = (size_t)blocks_of(l) * BLOCK;
+    image->stride = width * (size_t)grid->channels;
+    image->layer_floats = image->stride * (height + 1);
+    image->lattice = *l;
+}
+
+/* How many layers; -1: these slices are not whole groups. */
+static int count_layers(snow_value_path *path,
+                        const snow_value_params *params) {
+    if (!params->settings->deterministic)
+        return 1;
+    return snow_group_nodes(params->placement->slices, params->slab,
+                            path->image->nodes);
+}
+
+snow_status snow_value_reserve_image(snow_value_path *path,
+                                     const snow_value_params *params) {
+    snow_value_grid grid;
+    if (params->aside)
+        path->image = &path->images[path->image == path->images];
+    snow_value_image *image = path->image;
+    int layers = count_layers(path, params);
+    if (layers < 0)
+        return snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
+                         "parts of a deterministic picture must begin and end "
+                         "at multiples of %d groups of slices",
+                         SNOW_GROUPS);
+    bool keep = keep_grid(path, params, layers, &grid);
+    size_t planes = layers > 1 ? (size_t)layers : 1;
+    uint64_t floats, bytes;
+    size_plane(&path->lattice, &grid, image);
+    image->grid.tiles[0] = 0; /* until it is cleared */
+    if (!snow_mul_u64(image->layer_floats, planes, &floats) ||
+        !snow_mul_u64(floats, sizeof *image->plane, &bytes) || bytes > SIZE_MAX)
+        return snow_fail(path->context, SNOW_STATUS_NO_MEMORY,
+                         "no memory for %zu intermediate images", planes);
+    SNOW_TRY(snow_reserve(path->context, &image->plane, &image->plane_capacity,
+                          0, (size_t)bytes));
+    size_t tiles = (size_t)grid.tiles[0] * (size_t)grid.tiles[1] * planes;
+    SNOW_TRY(snow_reserve(path->context, &image->drawn, &image->drawn_capacity,
+                          keep ? tiles : 0, tiles));
+    if (!keep) {
+        memset(image->plane, 0, (size_t)bytes);
+        memset(image->drawn, 0, tiles);
+    }
+    image->grid = grid;
+    return SNOW_STATUS_OK;
+}
+
+/* --- blocks of a quincunx --------------------------------------------------
+ */
+
+/* The tiles along an axis that have samples low .. high, of `cells` a voxel. */
+static void tiles_of(int64_t low, int64_t high, int cells, int side, int tiles,
+                     int range[2]) {
+    int64_t first = low < 0 ? 0 : low / cells / side;
+    int64_t last = high < 0 ? -1 : high / cells / side;
+    range[0] = (int)(first < tiles ? first : tiles);
+    range[1] = (int)(last < tiles ? last : tiles - 1);
+}
+
+/* Whether the block from pixel (a, b) on has pixels of a tile that a layer has
+ * drawn.  Pixel (a, b) is sample ((a + b - top) / 2, (a - b + top) / 2) of the
+ * lattice. */
+static bool is_drawn(const snow_value_image *image, const unsigned char *drawn,
+                     int64_t a, int64_t b) {
+    const snow_value_lattice *l = &image->lattice;
+    const snow_value_grid *grid = &image->grid;
+    const int64_t sum = a + b - l->top, difference = a - b + l->top;
+    int x[2], y[2];
+    tiles_of((sum - 1) / 2 - 1, (sum + 2 * BLOCK) / 2 + 1, l->cells[0],
+             SNOW_VALUE_COLUMNS, grid->tiles[0], x);
+    tiles_of((difference - BLOCK) / 2 - 1, (difference + BLOCK) / 2 + 1,
+             l->cells[1], SNOW_VALUE_ROWS, grid->tiles[1], y);
+    for (int row = y[0]; row <= y[1]; row++)
+        for (int column = x[0]; column <= x[1]; column++)
+            if (drawn[row * grid->tiles[0] + column])
+                return true;
+    return false;
+}
+
+static size_t count_blocks(const snow_value_image *image) {
+    const size_t blocks = (size_t)blocks_of(&image->lattice);
+    const int layers = image->grid.layers > 1 ? image->grid.layers : 1;
+    return (size_t)layers * blocks * blocks;
+}
+
+/* The blocks of all layers. */
+static void find_blocks(snow_value_image *image) {
+    const int blocks = blocks_of(&image->lattice);
+    const size_t layers =
+        image->grid.layers > 1 ? (size_t)image->grid.layers : 1;
+    unsigned char *block = image->blocks;
+    for (size_t n = 0; n < layers; n++) {
+        const unsigned char *drawn = image->drawn + n * snow_value_tiles(image);
+        for (int b = 0; b < blocks; b++)
+            for (int a = 0; a < blocks; a++)
+                *block++ = is_drawn(image, drawn, (int64_t)a * BLOCK,
+                                    (int64_t)b * BLOCK);
+    }
+}
+
+/* --- the image --------------------------------------------------------------
+ */
+
+/* The image as it is combined with others. */
+static snow_status describe_plane(snow_context *context, snow_value_image *of,
+                                  snow_shear_warp_image *image) {
+    const snow_value_lattice *l = &of->lattice;
+    const int blocks = blocks_of(l);
+    *image =
+        (snow_shear_warp_image){.width = l->width,
+                                .height = l->height,
+                                .channels = of->grid.channels,
+                                .pixels = of->plane,
+                                .stride = of->stride,
+                                .drawn = of->drawn,
+                                .tile_width = SNOW_VALUE_COLUMNS * l->cells[0],
+                                .tile_height = SNOW_VALUE_ROWS * l->cells[1],
+                                .tiles = of->grid.tiles[0],
+                                .layers = of->grid.layers,
+                                .layer_floats = of->layer_floats,
+                                .layer_tiles = snow_value_tiles(of),
+                                .warping = &of->warping};
+    memcpy(image->nodes, of->nodes, sizeof image->nodes);
+    if (!l->quincunx)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_reserve(context, &of->blocks, &of->blocks_capacity, 0,
+                          count_blocks(of)));
+    image->drawn = of->blocks;
+    image->tile_width = image->tile_height = BLOCK;
+    image->tiles = blocks;
+    image->layer_tiles = (size_t)(blocks * blocks);
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_value_describe_image(snow_value_path *path,
+                                      const snow_value_params *params,
+                                      snow_shear_warp_image *out) {
+    SNOW_TRY(describe_plane(path->context, path->image, out));
+    return snow_value_place_show(path, params, out);
+}
+
+void snow_value_end_image(snow_value_image *image) {
+    if (image->lattice.quincunx)
+        find_blocks(image);
+}

@@ -1,0 +1,125 @@
+/* render/shear_warp/kept.c - encodings of the slabs of a file, which are kept
+ * from picture to picture while memory lasts.
+ *
+ *   first picture   read 0, encode, draw | read 1, encode, draw | ...
+ *   the next ones   draw 0 | draw 1 | ...   and read those that had no room
+ *
+ * Slabs are cut as they were before, so that they are the same ones. */
+#include "render/shear_warp/internal.h"
+
+static void drop(snow_value_path *path, snow_value_kept_slab *kept) {
+    snow_value_store_fini(&kept->store);
+    snow_volume_close(kept->slab);
+    *kept = path->kept.slabs[--path->kept.count];
+}
+
+void snow_value_forget_slabs(snow_value_path *path) {
+    while (path->kept.count)
+        drop(path, path->kept.slabs);
+    path->kept.of = 0;
+}
+
+bool snow_value_lacks_room(snow_value_path *path, snow_status status) {
+    if (status != SNOW_STATUS_NO_MEMORY || !path->kept.count)
+        return false;
+    snow_value_forget_slabs(path);
+    return true;
+}
+
+/* Bytes that another slab needs: its encoding may take all that slabs were cut
+ * for. */
+static bool has_room(const snow_volume *volume, const snow_slab_cut *cut) {
+    const snow_context *context = volume->context;
+    uint64_t bytes = snow_slab_bytes(volume, cut) * (uint64_t)(1 + cut->made);
+    return !context->limit || (context->bytes <= context->limit &&
+                               context->limit - context->bytes >= bytes);
+}
+
+void snow_value_cut_slabs(snow_value_path *path,
+                          const snow_value_params *params, snow_slab_cut *cut) {
+    snow_value_kept_slabs *kept = &path->kept;
+    if (kept->of != params->volume->generation ||
+        kept->slice_axis != params->placement->slice_axis)
+        snow_value_forget_slabs(path);
+    if (!kept->count)
+        return;
+    cut->slices = kept->slices;
+    cut->ghosts = kept->ghosts > cut->ghosts ? kept->ghosts : cut->ghosts;
+    while (kept->count && !has_room(params->volume, cut))
+        drop(path, &kept->slabs[kept->count - 1]);
+}
+
+static snow_value_kept_slab *find(const snow_value_path *path,
+                                  const snow_volume *slab) {
+    for (int n = 0; n < path->kept.count; n++)
+        if (path->kept.slabs[n].slab == slab)
+            return &path->kept.slabs[n];
+    return NULL;
+}
+
+const snow_volume *snow_value_kept(snow_value_path *path,
+                                   const snow_value_params *params,
+                                   const snow_extent *part, int64_t slices) {
+    for (int n = 0; n < path->kept.count; n++) {
+        snow_value_kept_slab *kept = &path->kept.slabs[n];
+        if (kept->slab->part.first[2] != part->first[2])
+            continue;
+        if (kept->slab->part.count[2] == part->count[2] &&
+            kept->slab->part.stored[2] == part->stored[2] &&
+            kept->slab->info.dims[2] == slices &&
+            snow_value_serves(path, &kept->key, &kept->store, params,
+                              kept->slab->generation))
+            return kept->slab;
+        drop(path, kept);
+        break;
+    }
+    return NULL;
+}
+
+/* Moves an encoding; what was at the other place is gone. */
+static void move(snow_value_store *to, snow_value_store *from) {
+    snow_context *context = from->context;
+    snow_value_store_fini(to);
+    *to = *from;
+    *from = (snow_value_store){.context = context};
+}
+
+void snow_value_take_kept(snow_value_path *path, const snow_volume *slab) {
+    snow_value_kept_slab *kept = find(path, slab);
+    if (!kept)
+        return;
+    move(&path->store, &kept->store);
+    path->key = kept->key;
+    path->interesting = kept->interesting;
+}
+
+static snow_value_kept_slab *add(snow_value_path *path, snow_slabs *slabs) {
+    snow_value_kept_slabs *kept = &path->kept;
+    size_t used = (size_t)kept->count * sizeof *kept->slabs;
+    if (!has_room(slabs->volume, &slabs->cut) ||
+        snow_reserve(path->context, &kept->slabs, &kept->capacity, used,
+                     used + sizeof *kept->slabs) != SNOW_STATUS_OK)
+        return NULL;
+    kept->of = slabs->volume->generation;
+    kept->slice_axis = path->key.slice_axis;
+    kept->slices = slabs->count;
+    kept->ghosts = slabs->cut.ghosts;
+    kept->slabs[kept->count] = (snow_value_kept_slab){
+        .slab = snow_slabs_keep(slabs), .store = {.context = path->context}};
+    return &kept->slabs[kept->count++];
+}
+
+void snow_value_keep(snow_value_path *path, const snow_value_params *params,
+                     snow_slabs *slabs) {
+    snow_value_kept_slab *kept = find(path, params->volume);
+    if (!path->key.generation)
+        return;
+    if (!kept)
+        kept = add(path, slabs);
+    if (!kept) /* the next one is encoded in its place */
+        return;
+    move(&kept->store, &path->store);
+    kept->key = path->key;
+    kept->interesting = path->interesting;
+    path->key.generation = 0;
+}

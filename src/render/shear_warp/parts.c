@@ -1,0 +1,107 @@
+/* render/shear_warp/parts.c - a part of a volume draws what is its own of the
+ * slabs between sheets, on the lattice of the whole.
+ *
+ *   eye -->   sheets     k-1        k         k+1        k+2
+ *             slabs       |   k-1   |    k    |    k+1   |
+ *             part A  ... *         *         o          o      * own
+ *             part B            o   .    o    *          *      o ghosts
+ *
+ * A sample of a slab is the part's whose voxels the ray meets first: that of
+ * the slice in front, and in its plane where the front sheet has the sample.
+ * So no sample is cut, and those along a ray are as those of the whole; the
+ * other sheet, and gradients, may need ghosts. */
+#include "composite/over.h"
+#include "render/shear_warp/internal.h"
+
+#include "render/picture.h"
+
+#include <math.h>
+
+static int64_t within(int64_t at, int64_t count) {
+    return at < 0 ? 0 : at < count ? at : count - 1;
+}
+
+void snow_value_move_sheets(snow_value_path *path,
+                            const snow_value_params *params) {
+    const snow_value_lattice *l = &path->lattice;
+    const int64_t *stored = params->clip->stored, *size = params->clip->size;
+    for (int n = 0; n < l->sheet_count; n++) {
+        snow_value_sheet *s = &path->sheets[n];
+        s->slice -= stored[2];
+        s->before = within(s->before - stored[2], size[2]);
+        s->after = within(s->after - stored[2], size[2]);
+        for (int phase = 0; phase < l->phases && !l->perspective; phase++)
+            for (int axis = 0; axis < 2; axis++)
+                path->places[n * l->phases + phase].whole[axis] -=
+                    (int32_t)stored[axis];
+    }
+}
+
+void snow_value_own(const snow_value_params *params, snow_value_splat *splat) {
+    const snow_clip *clip = params->clip;
+    splat->parted = clip->cuts;
+    for (int axis = 0; axis < 2; axis++) {
+        splat->own[axis][0] = clip->low[axis];
+        splat->own[axis][1] = clip->high[axis];
+    }
+}
+
+snow_value_splat snow_value_splat_of(const snow_value_drawing *d,
+                                     snow_slab slices) {
+    const snow_value_lattice *l = &d->path->lattice;
+    const snow_placement *p = d->params.placement;
+    snow_value_splat splat = d->splat;
+    int64_t first = slices.first, last = l->sheet_count - 1;
+    if (!l->nearest_first)
+        first = p->slices - first - slices.count;
+    int64_t end = (first + slices.count) * l->halves;
+    splat.slabs[0] = (int)(first * l->halves);
+    splat.slabs[1] = (int)(end < last ? end : last);
+    return splat;
+}
+
+/* --- groups of slices --------------------------------------------------------
+ */
+
+/* Pixels of a tile. */
+static size_t tile_pixels(const snow_value_drawing *d) {
+    return (size_t)d->splat.phases * SNOW_VALUE_ROWS * SNOW_VALUE_COLUMNS;
+}
+
+size_t snow_value_node_floats(const snow_value_drawing *d) {
+    return (SNOW_GROUP_RANKS + 1) * tile_pixels(d) * (size_t)d->splat.channels;
+}
+
+/* The planes of a tile as pixels. */
+static void weave(const snow_value_drawing *d, const void *planes, float *out) {
+    const int floats = SNOW_VALUE_COLUMNS * d->splat.channels;
+    for (int phase = 0; phase < d->splat.phases; phase++)
+        for (int row = 0; row < SNOW_VALUE_ROWS; row++, out += floats)
+            d->path->op->read(&d->splat, planes, phase, row, out);
+}
+
+static bool draw_group(const snow_value_drawing *d, int group, int x, int y,
+                       void *room, float *out) {
+    const int64_t slices = d->params.placement->slices;
+    const snow_value_splat splat =
+        snow_value_splat_of(d, snow_group_slab(slices, group));
+    if (splat.slabs[0] >= splat.slabs[1] || !d->tile(&splat, x, y, room))
+        return false;
+    weave(d, room, out);
+    return true;
+}
+
+bool snow_value_node_tile(const snow_value_drawing *d, snow_group_node node,
+                          int x, int y, void *room, float *out) {
+    if (node.rank == 0)
+        return draw_group(d, node.index, x, y, room, out);
+    bool rises = snow_group_rises(d->params.placement, node);
+    snow_group_node near = {node.rank - 1, 2 * node.index + !rises};
+    snow_group_node far = {node.rank - 1, 2 * node.index + rises};
+    if (!snow_value_node_tile(d, near, x, y, room, out))
+        return snow_value_node_tile(d, far, x, y, room, out);
+    float *back = out + tile_pixels(d) * (size_t)d->splat.channels;
+    if (snow_value_node_tile(d, far, x, y, room, back))
+        snow_over_row(out, back, tile_pixels(d), d->splat.channels);
+    return true;
+}

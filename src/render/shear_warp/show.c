@@ -1,0 +1,240 @@
+/* render/shear_warp/show.c - the image on the lattice to the picture.  Where
+ * pixels are wider than the lattice's, they are means of several places. */
+#include "base/thread_pool.h"
+#include "render/shear_warp/internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Lines of the picture that are warped as one item of work. */
+#define LINES 8
+
+/* Empty pixels around an image that was made smaller. */
+#define BORDER 3
+
+typedef struct show_job {
+    const snow_shear_warp_warping *warping;
+    float *pixels, *lines;
+    size_t line_floats; /* of the lines of one worker */
+} show_job;
+
+/* --- a smaller image -------------------------------------------------------
+ */
+
+/* Adds a line of the image to the sums of one that is `side` times smaller;
+ * *first is the number of its first pixel on the lattice. */
+static void add_line(const snow_intermediate_view *image, int y, int64_t first,
+                     int64_t side, float *sums) {
+    const float *from = image->pixels + (size_t)y * image->stride;
+    const unsigned char *drawn =
+        image->drawn + y / image->block_height * image->blocks;
+    float share = 1.0F / (float)(side * side);
+    int64_t low = first & -side;
+    for (int x = 0; x < image->width; x++) {
+        float *sum =
+            sums + ((first + x - low) / side + BORDER) * image->channels;
+        if (!drawn[x / image->block_width])
+            continue;
+        for (int c = 0; c < image->channels; c++)
+            sum[c] += share * from[x * image->channels + c];
+    }
+}
+
+/* The place of a pixel along an axis, after the image was made `side` times
+ * smaller from `low` pixels before its first on. */
+static void shrink(snow_shear_warp_warping *w, int axis, double low,
+                   double side) {
+    double *start = &w->shear.start[axis], *row = w->scaled.warp[axis];
+    *start = (*start + low + 0.5) / side - 0.5 + BORDER;
+    w->shear.along_x[axis] /= side;
+    w->shear.along_y[axis] /= side;
+    for (int n = 0; n < 3; n++)
+        row[n] = (row[n] + (low + 0.5) * w->scaled.warp[2][n]) / side +
+                 (BORDER - 0.5) * w->scaled.warp[2][n];
+}
+
+/* The first pixel of a block of the halved image, on the lattice. */
+static int64_t first_block(const snow_value_lattice *l, int axis) {
+    return (l->first[axis] * l->cells[axis]) & -(INT64_C(1) << l->halvings);
+}
+
+/* The image halved as often as the lattice says, in blocks that do not depend
+ * on what of it is in view. */
+static void halve(const snow_shear_warp_warping *w) {
+    const snow_value_image *image = w->of;
+    const snow_value_lattice *l = &image->lattice;
+    const snow_intermediate_view *small = &image->shown.plane;
+    const int64_t side = INT64_C(1) << l->halvings;
+    const int64_t first[2] = {l->first[0] * l->cells[0],
+                              l->first[1] * l->cells[1]};
+    memset(image->halved, 0,
+           small->stride * (size_t)small->height * sizeof *image->halved);
+    for (int y = 0; y < w->plane.height; y++)
+        add_line(
+            &w->plane, y, first[0], side,
+            image->halved +
+                (size_t)((first[1] + y - first_block(l, 1)) / side + BORDER) *
+                    small->stride);
+}
+
+/* Pixels of all parts to what is warped, and that made smaller. */
+static void make_shown(const snow_shear_warp_warping *w) {
+    const snow_value_image *image = w->of;
+    const snow_value_operator *op = image->path->op;
+    for (int y = 0; op->finish && y < w->plane.height; y++)
+        op->finish(image->path, image->plane + (size_t)y * image->stride,
+                   w->plane.width);
+    if (image->lattice.halvings)
+        halve(w);
+}
+
+/* Room for it, and its map. */
+static snow_status place_halved(snow_context *context, snow_value_image *of) {
+    static const unsigned char all = 1;
+    const snow_value_lattice *l = &of->lattice;
+    const int64_t side = INT64_C(1) << l->halvings;
+    snow_intermediate_view *image = &of->shown.plane;
+    int *const sizes[2] = {&image->width, &image->height};
+    for (int axis = 0; axis < 2; axis++) {
+        int64_t first = l->first[axis] * l->cells[axis];
+        int64_t low = first_block(l, axis);
+        *sizes[axis] =
+            (int)((first + *sizes[axis] - 1 - low) / side) + 1 + 2 * BORDER;
+        shrink(&of->shown, axis, (double)(first - low), (double)side);
+    }
+    image->stride = (size_t)image->width * (size_t)image->channels;
+    SNOW_TRY(snow_reserve(context, &of->halved, &of->halved_capacity, 0,
+                          image->stride * (size_t)(image->height + 1) *
+                              sizeof *of->halved));
+    image->pixels = of->halved;
+    image->drawn = &all;
+    image->block_width = image->width;
+    image->block_height = image->height;
+    image->blocks = 1;
+    return SNOW_STATUS_OK;
+}
+
+/* --- lines ------------------------------------------------------------------
+ */
+
+/* Pixels of line y of the picture, or of denser places. */
+static void show_row(const snow_shear_warp_warping *w, int y, int from, int to,
+                     float *out) {
+    if (w->perspective)
+        snow_warp_row_perspective(&w->plane, &w->scaled, w->filter, w->places,
+                                  y, from, to, out);
+    else
+        snow_warp_row(&w->plane, &w->shear, w->filter, w->warp, y, from, to,
+                      out);
+}
+
+/* The map of places i / n - 1/2 + 1 / 2n across and `down` lower than a
+ * pixel's middle. */
+static snow_shear_warp_warping denser(const snow_shear_warp_warping *w, int n,
+                                      double down) {
+    snow_shear_warp_warping fine = *w;
+    for (int axis = 0; axis < 2; axis++) {
+        fine.shear.start[axis] += fine.shear.along_x[axis] * (0.5 / n - 0.5) +
+                                  fine.shear.along_y[axis] * down;
+        fine.shear.along_x[axis] /= n;
+    }
+    for (int i = 0; i < 3; i++) {
+        fine.scaled.warp[i][0] += down * fine.scaled.warp[i][2];
+        fine.scaled.warp[i][1] /= n;
+    }
+    return fine;
+}
+
+/* Means of `means` x `means` places a pixel. */
+static void show_means(const snow_shear_warp_warping *w, int y, int from,
+                       int to, float *fine, float *out) {
+    const snow_value_image *image = w->of;
+    int n = image->lattice.means, channels = w->plane.channels;
+    float share = 1.0F / (float)(n * n);
+    memset(out + from * channels, 0,
+           (size_t)((to - from) * channels) * sizeof *out);
+    for (int j = 0; j < n; j++) {
+        const snow_shear_warp_warping places =
+            denser(&image->shown, n, (j + 0.5) / n - 0.5);
+        show_row(&places, y, n * from, n * to, fine);
+        for (int x = n * from; x < n * to; x++)
+            for (int c = 0; c < channels; c++)
+                out[x / n * channels + c] += share * fine[x * channels + c];
+    }
+}
+
+/* Lines that a mean takes before and behind its own: half a pixel's, and what
+ * their samples read; all in perspective, where pixels differ. */
+static int lines_around(const snow_value_lattice *l) {
+    double half = (fabs(l->shear.along_x[1]) + fabs(l->shear.along_y[1])) / 2;
+    if (l->perspective)
+        return l->height;
+    return (int)ceil(half) + (2 << l->halvings) + 3;
+}
+
+snow_status snow_value_place_show(snow_value_path *path,
+                                  const snow_value_params *params,
+                                  const snow_shear_warp_image *image) {
+    snow_value_image *of = path->image;
+    const snow_value_lattice *l = &of->lattice;
+    const snow_isa isa = params->settings->isa;
+    const bool colors = path->op->reduction == SNOW_VALUE_OVER;
+    const snow_filter filter = colors ? l->filter : SNOW_BILINEAR;
+    snow_shear_warp_warping *w = &of->warping;
+    *w = (snow_shear_warp_warping){
+        .plane = {image->pixels, image->stride, image->width, image->height,
+                  image->channels, image->drawn, image->tile_width,
+                  image->tile_height, image->tiles},
+        .perspective = l->perspective,
+        .shear = l->shear,
+        .scaled = l->scaled,
+        .filter = filter,
+        .warp = snow_warp_of(isa, filter, image->channels),
+        .places = snow_warp_places_of(isa, filter, image->channels),
+        .width = params->view->width,
+        .height = params->view->height,
+        .before = SNOW_WARP_BEFORE,
+        .behind = SNOW_WARP_BEHIND,
+        .of = of};
+    of->shown = *w;
+    if (l->means > 1) {
+        w->line = show_means;
+        w->spare_floats = (size_t)(l->means * w->width * image->channels + 64);
+        w->before = w->behind = lines_around(l);
+    }
+    of->path = path;
+    if (l->halvings || path->op->finish)
+        w->made = make_shown;
+    return l->halvings ? place_halved(path->context, of) : SNOW_STATUS_OK;
+}
+
+static void show_lines(void *of, int64_t item, int worker) {
+    const show_job *job = of;
+    const snow_shear_warp_warping *w = job->warping;
+    float *spare = job->lines + (size_t)worker * job->line_floats;
+    int first = (int)item * LINES, end = first + LINES;
+    for (int y = first; y < end && y < w->height; y++) {
+        float *out =
+            job->pixels + (size_t)y * (size_t)(w->width * w->plane.channels);
+        if (w->line)
+            w->line(w, y, 0, w->width, spare, out);
+        else
+            show_row(w, y, 0, w->width, out);
+    }
+}
+
+snow_status snow_value_show(snow_value_path *path,
+                            const snow_value_params *params, float *pixels) {
+    const snow_shear_warp_warping *w = &path->image->warping;
+    show_job job = {
+        .warping = w, .pixels = pixels, .line_floats = w->spare_floats};
+    size_t threads = (size_t)params->settings->threads;
+    if (w->made)
+        w->made(w);
+    SNOW_TRY(snow_reserve(path->context, &path->lines, &path->lines_capacity, 0,
+                          threads * job.line_floats * sizeof *path->lines));
+    job.lines = path->lines;
+    snow_monitor_next(path->context->monitor, SNOW_STAGE_RENDER, 0.9, 1);
+    return snow_parallel(path->context, params->settings->threads,
+                         (w->height + LINES - 1) / LINES, show_lines, &job);
+}
