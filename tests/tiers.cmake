@@ -24,16 +24,16 @@ list(TRANSFORM formats REPLACE ".*/(.*)[.]c$" "\\1")
 set(SNOW_LABEL_surface ${formats} test_base test_compare test_convert test_image
     test_mask test_npy_pfm test_pictures test_png test_recipe test_save
     test_source test_tf test_volume test_writer test_writer_named)
-set(SNOW_LABEL_threads test_affinity test_bands test_combine test_comm test_early
+set(SNOW_LABEL_threads test_affinity test_combine test_comm test_early
     test_pipeline test_frames test_insitu test_insitu_marks test_modes
-    test_raycast test_value test_value_parts test_value_perspective test_simulated test_stop test_progress test_ranks test_ranks_open test_shear_warp_bits test_redistribute
+    test_raycast test_value test_value_parts test_value_perspective test_simulated test_stop test_progress test_ranks test_ranks_open test_redistribute
     test_load_balance)
 set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     test_model_raycast test_model_reference test_model_rules test_model_slabs
     test_value_field test_value_model test_value_truth
     test_value_views
-    test_shear_warp_quality test_phantom test_perspective test_camera_points
-    test_normals cli_documents cli_bench cli_figures cli_frame cli_stream
+    test_phantom test_perspective test_camera_points
+    cli_documents cli_bench cli_figures cli_frame cli_stream
     cli_matrix cli_balance cli_turntable cli_modules cli_memory cli_progress
     cli_large oracle_zarr oracle_tiff oracle_vtk oracle_pictures)
 
@@ -45,18 +45,18 @@ set(SNOW_COSTS
     mpi_stall 300 mpi_insitu 280 simulate 270 mpi_render 260 mpi_modes 250
     mpi_fail 240 mpi_comm 230 mpi_bench 220 cli_progress 200 cli_large 190
     test_model_raycast 37 cli_stream 87 test_ranks 62 test_stream 57
-    cli_figures 52 test_shear_warp 46 oracle_zarr 46 test_modes 44
+    cli_figures 52 oracle_zarr 46 test_modes 44
     cli_turntable 41 oracle_vtk 40 cli_render 39 test_stop 37
     example_installed 37 test_combine 35 cli_bench 34 cli_interrupt 34
     cli_documents 31 test_raycast 31 cli_matrix 31
     oracle_dicom 31 cli_frame 30 test_pipeline 28 cli_measurements 28
-    test_ranks_open 28 test_value 27 test_shear_warp_bits 27 test_insitu 26
-    test_bands 25 test_model_picture 22 test_histogram 22 oracle_tiff 22
+    test_ranks_open 28 test_value 27 test_insitu 26
+    test_model_picture 22 test_histogram 22 oracle_tiff 22
     cli_real 22 cli_balance 21 test_model_encodings 20 test_value_model 20
     oracle_orientation 20 oracle_hdf5 20 oracle_netcdf 18 test_comm 17
     cli_formats 16 cli_config 16 test_gradient_opacity 16 test_value_truth 14
     test_load_balance 13 test_api 13 test_kernels 13 cli_usage 12
-    test_shear_warp_quality 12 test_splat_isa 11 test_shear_warp_perspective 11
+    test_splat_isa 11 
     test_phantom 11 oracle_pictures 11 test_value_views 11 test_early 10)
 
 file(GLOB_RECURSE sources *.c *.sh *.py)
