@@ -195,8 +195,7 @@ void snow_classify_row_block(const snow_classifier *classifier,
         if (classifier->gradient_factors)
             count = apply_gradient_opacity_row(
                 classifier,
-                &(snow_gradient_opacity_row){placement, slice, first + row,
-                                             false},
+                &(snow_gradient_opacity_row){placement, slice, first + row},
                 row_block->count, count, row_block);
         row_block->count += count;
         row_block->row_end[row] = row_block->count;

@@ -20,7 +20,6 @@ typedef struct gradient_opacity_kernels {
     void (*factors)(const snow_opacity_point *points, size_t point_count,
                     size_t count, const double *magnitudes, double *factors);
     void (*correct)(double exponent, size_t count, double *opacities);
-    void (*encode)(const double *factors, size_t count, uint16_t *codes);
 } gradient_opacity_kernels;
 
 #define TEMPLATE "classify/gradient_opacity.tmpl.h"
@@ -52,7 +51,6 @@ snow_status snow_gradient_opacity_init(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* Gradients between two slices are the means of theirs. */
 static void find_gradients(const snow_gradient_opacity *gradient_opacity,
                            const snow_gradient_opacity_row *row,
                            const uint32_t *columns, size_t count,
@@ -60,17 +58,9 @@ static void find_gradients(const snow_gradient_opacity *gradient_opacity,
     const snow_placement *p = row->placement;
     snow_gradient_row from = {.volume = gradient_opacity->volume,
                               .axis = p->u_axis};
-    double behind[3][BLOCK];
     from.at[p->slice_axis] = row->slice;
     from.at[p->v_axis] = row->row;
     snow_gradients_of_row(&from, columns, count, BLOCK, gradients[0]);
-    if (!row->between)
-        return;
-    from.at[p->slice_axis]++;
-    snow_gradients_of_row(&from, columns, count, BLOCK, behind[0]);
-    for (int axis = 0; axis < 3; axis++)
-        for (size_t n = 0; n < count; n++)
-            gradients[axis][n] = gradients[axis][n] / 2 + behind[axis][n] / 2;
 }
 
 void snow_gradient_opacity_factors(
@@ -97,49 +87,4 @@ void snow_gradient_opacity_correct(
     if (exponent != 1) /* it is 1 along an axis of a cubic grid */
         kernels_of(gradient_opacity->isa)
             ->correct(snow_exponent_within(exponent), count, opacities);
-}
-
-/* --- codes ---------------------------------------------------------------- */
-
-/* Value n of an array of native values. */
-static double native_of(snow_type type, const void *natives, size_t n) {
-    switch (type) {
-#define NATIVE(name, ctype, text) \
-    case SNOW_TYPE_##name:        \
-        return (double)((const ctype *)natives)[n];
-        SNOW_TYPE_MAP(NATIVE)
-#undef NATIVE
-    default:
-        return (double)NAN;
-    }
-}
-
-/* Whether a voxel with an interesting value stays interesting. */
-static bool is_kept(const snow_gradient_opacity *gradient_opacity,
-                    const void *natives, uint32_t column, double factor) {
-    const snow_volume_info *info = &gradient_opacity->volume->info;
-    double native = native_of(info->type, natives, column);
-    double opacity = snow_transfer_opacity(
-        gradient_opacity->transfer, info->slope * native + info->intercept);
-    return snow_is_interesting((double)(float)opacity * factor,
-                               gradient_opacity->threshold);
-}
-
-void snow_gradient_opacity_codes(const snow_gradient_opacity *gradient_opacity,
-                                 const snow_gradient_opacity_row *row,
-                                 const void *natives, const uint32_t *columns,
-                                 size_t count, uint16_t *codes) {
-    const gradient_opacity_kernels *kernels = kernels_of(gradient_opacity->isa);
-    for (size_t first = 0; first < count; first += BLOCK) {
-        size_t some = count - first < BLOCK ? count - first : BLOCK;
-        double factors[BLOCK];
-        snow_gradient_opacity_factors(gradient_opacity, row, columns + first,
-                                      some, factors);
-        kernels->encode(factors, some, codes + first);
-        /* Without a threshold any opacity above 0 suffices. */
-        for (size_t n = 0; n < some && gradient_opacity->threshold > 0; n++)
-            if (!is_kept(gradient_opacity, natives, columns[first + n],
-                         factors[n]))
-                codes[first + n] = SNOW_NO_GRADIENT_OPACITY;
-    }
 }

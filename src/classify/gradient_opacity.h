@@ -17,28 +17,6 @@
 #include "transform/transform.h"
 #include "volume/volume.h"
 
-/* IA holds a factor g as a code of 16 bits, finer towards 0 and towards 1:
- *
- *   g = 2 x^2             x = code / 65535 up to 1/2
- *   g = 1 - 2 (1 - x)^2   beyond
- *
- * This is because the relative error of g counts, and that of 1 - g where rays
- * through a slice are short. The error of g is at most sqrt(2 min(g, 1 - g)) /
- * 65535. A stack of voxels of one g and one a is off by less than a quarter of
- * an 8-bit step for g above 7e-5, and below that for up to 5,400 voxels. Code 0
- * is a voxel that is not interesting. */
-#define SNOW_GRADIENT_OPACITY_ONE 65535
-#define SNOW_NO_GRADIENT_OPACITY 0
-
-/* The factor that a code stands for. */
-static inline float snow_gradient_opacity_of(uint32_t code) {
-    uint32_t rest = SNOW_GRADIENT_OPACITY_ONE - code;
-    uint32_t least = code < rest ? code : rest;
-    float x = (float)(int32_t)least * (1.0F / SNOW_GRADIENT_OPACITY_ONE);
-    float square = 2 * x * x;
-    return code < rest ? square : 1 - square;
-}
-
 /* A gradient opacity prepared for one volume. */
 typedef struct snow_gradient_opacity {
     const snow_volume *volume;
@@ -49,12 +27,10 @@ typedef struct snow_gradient_opacity {
     snow_isa isa;        /* resolved; all instruction sets give the same bits */
 } snow_gradient_opacity;
 
-/* A row of voxels of a slice, or half-way between it and the next slice;
- * gradients there are the means of those of the two slices. */
+/* A row of voxels of a slice. */
 typedef struct snow_gradient_opacity_row {
     const snow_placement *placement;
     int64_t slice, row;
-    bool between;
 } snow_gradient_opacity_row;
 
 /* Whether a transfer function has a gradient opacity. */
@@ -83,13 +59,5 @@ void snow_gradient_opacity_factors(
 void snow_gradient_opacity_correct(
     const snow_gradient_opacity *gradient_opacity, double exponent,
     size_t count, double *opacities);
-
-/* Codes of any number of voxels of a row whose native values are contiguous
- * from column 0 on; SNOW_NO_GRADIENT_OPACITY for those that are not
- * interesting. */
-void snow_gradient_opacity_codes(const snow_gradient_opacity *gradient_opacity,
-                                 const snow_gradient_opacity_row *row,
-                                 const void *natives, const uint32_t *columns,
-                                 size_t count, uint16_t *codes);
 
 #endif

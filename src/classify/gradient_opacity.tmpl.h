@@ -5,7 +5,7 @@
  * NAME(magnitudes) takes differences of native values along x, y and z.
  * NAME(factors) looks magnitudes up in the curve, as
  * snow_transfer_evaluate_gradient does. NAME(correct) corrects opacities for
- * another length. NAME(encode) makes the codes that IA holds. */
+ * another length. */
 
 TARGET static void NAME(magnitudes)(const snow_gradient_opacity *f,
                                     double g[3][SNOW_GRADIENT_OPACITY_BLOCK],
@@ -63,18 +63,5 @@ TARGET static void NAME(correct)(double exponent, size_t count,
         opacities[i] = snow_opacity_of(snow_clarity(opacities[i]), exponent);
 }
 
-/* The codes of factors, as defined in classify/gradient_opacity.h. */
-TARGET static void NAME(encode)(const double *restrict factors, size_t count,
-                                uint16_t *restrict codes) {
-    for (size_t i = 0; i < count; i++) {
-        double factor = factors[i], rest = 1 - factor;
-        double least = factor < rest ? factor : rest;
-        int code = (int)(sqrt(least / 2) * SNOW_GRADIENT_OPACITY_ONE + 0.5);
-        code = factor < rest ? code : SNOW_GRADIENT_OPACITY_ONE - code;
-        code = code ? code : 1;
-        codes[i] = (uint16_t)(factor > 0 ? code : SNOW_NO_GRADIENT_OPACITY);
-    }
-}
-
 static const gradient_opacity_kernels NAME(kernels) = {
-    NAME(magnitudes), NAME(factors), NAME(correct), NAME(encode)};
+    NAME(magnitudes), NAME(factors), NAME(correct)};

@@ -1,24 +1,22 @@
-/* classify/opacity_power.tmpl.h - opacity of another length, at splat
- * time, in a loop that the compiler vectorizes, for one instruction set.
- * Include simd/select.h first. No sum is fused or reordered, so all instruction
- * sets give the same bits.
+/* classify/opacity_power.tmpl.h - opacities of another length at splat time, in
+ * a loop that the compiler vectorizes, for one instruction set.  Include
+ * simd/select.h first. No sum is fused or reordered, so all instruction sets
+ * give the same bits.
  *
- * NAME(fade16) takes 16 opacities a of the reference length, codes of factors g
- * (classify/gradient_opacity.h) and exponents e. It replaces each a by
+ * NAME(power16) takes 16 opacities a and exponents e. It replaces each a by
  *
- *   1 - (1 - a g)^e = 1 - 2^(e log2(1 - a g))
+ *   1 - (1 - a)^e = 1 - 2^(e log2(1 - a))
  *
- * The error is less than 4e-7, and less than 1e-6 relative to the result for
- * the product a g as a float. The logarithm is that of base/exp_log.h in single
- * precision. 1 - p is rounded to u; the rounding error is added again as (1 - u
- * - p) log2(e), for u near 1, where it counts. */
-static inline TARGET void NAME(fade16)(const uint32_t *restrict codes,
-                                       const float *restrict exponents,
-                                       float *restrict opacities) {
+ * The error is less than 4e-7, and less than 1e-6 relative to the result. The
+ * logarithm is that of base/exp_log.h in single precision. 1 - a is rounded to
+ * u; the rounding error is added again as (1 - u - a) log2(e), for u near 1,
+ * where it counts. */
+static inline TARGET void NAME(power16)(const float *restrict exponents,
+                                        float *restrict opacities) {
     const float log2_e = 1.44269504F;
     for (int i = 0; i < 16; i++) {
         const uint32_t root = 0x3f3504f3; /* bits of sqrt(1/2) */
-        float p = opacities[i] * snow_gradient_opacity_of(codes[i]);
+        float p = opacities[i];
         float u = 1 - p;
         float lost = p < 0.5F ? (1 - u) - p : 0;
         uint32_t bits;

@@ -60,16 +60,6 @@ static size_t lesser(size_t a, size_t b) {
     return a < b ? a : b;
 }
 
-/* The number of bits set among `count` bits from `first` on. */
-static size_t count_bits(const unsigned char *bits, size_t first,
-                         size_t count) {
-    size_t set = 0;
-    for (size_t n = 0; n < count; n += CHUNK)
-        set += (size_t)__builtin_popcountll(
-            some_bits(bits, first + n, lesser(count - n, CHUNK)));
-    return set;
-}
-
 /* --- whole slices --------------------------------------------------------- */
 
 static size_t bitmap_next_row(snow_walk *walk, snow_span *spans) {
@@ -83,13 +73,7 @@ static size_t bitmap_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-static size_t bitmap_skip(snow_walk *walk, int64_t rows) {
-    size_t columns = (size_t)walk->sparse->columns;
-    return count_bits(walk->slice, (size_t)walk->row * columns,
-                      (size_t)rows * columns);
-}
-
-static const snow_reader whole_reader = {bitmap_next_row, NULL, bitmap_skip};
+static const snow_reader whole_reader = {bitmap_next_row};
 
 /* --- slices of a band ----------------------------------------------------- */
 
@@ -155,23 +139,6 @@ static size_t plain_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-static void plain_next_mask(snow_walk *walk, uint64_t *mask, size_t step) {
-    size_t columns = (size_t)walk->sparse->columns, whole = columns / 64;
-    const unsigned char *row =
-        walk->slice + (size_t)walk->row * row_bytes(walk->sparse);
-    for (size_t word = 0; word < whole; word++)
-        mask[word * step] = snow_load_word(row + 8 * word);
-    if (columns % 64)
-        mask[whole * step] = snow_load_word(row + 8 * whole) &
-                             ((UINT64_C(1) << columns % 64) - 1);
-}
-
-static size_t plain_skip(snow_walk *walk, int64_t rows) {
-    size_t row = row_bytes(walk->sparse);
-    return walk->sparse->loops->count_bits(
-        walk->slice + (size_t)walk->row * row, (size_t)rows * row);
-}
-
 /* walk->ea points to the next stored word. */
 static size_t words_next_row(snow_walk *walk, snow_span *spans) {
     size_t words = snow_mask_words(walk->sparse), count = 0;
@@ -188,36 +155,8 @@ static size_t words_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-static void words_next_mask(snow_walk *walk, uint64_t *mask, size_t step) {
-    size_t words = snow_mask_words(walk->sparse);
-    size_t first = (size_t)walk->row * words;
-    for (size_t w = 0; w < words; w += CHUNK) {
-        size_t some = lesser(words - w, CHUNK);
-        uint64_t summary = some_bits(walk->slice, first + w, some);
-        /* Every word is read, even where none is stored and the next one, or
-         * the margin behind the last, is read instead: a branch would be
-         * mispredicted. */
-        for (size_t n = w; n < w + some; n++, summary >>= 1) {
-            uint64_t full = summary & 1;
-            mask[n * step] = snow_load_word(walk->ea) & (0 - full);
-            walk->ea += 8 * full;
-        }
-    }
-}
-
-static size_t words_skip(snow_walk *walk, int64_t rows) {
-    size_t words = snow_mask_words(walk->sparse);
-    size_t full = count_bits(walk->slice, (size_t)walk->row * words,
-                             (size_t)rows * words);
-    size_t voxels = walk->sparse->loops->count_bits(walk->ea, 8 * full);
-    walk->ea += 8 * full;
-    return voxels;
-}
-
-static const snow_reader plain_reader = {plain_next_row, plain_next_mask,
-                                         plain_skip};
-static const snow_reader words_reader = {words_next_row, words_next_mask,
-                                         words_skip};
+static const snow_reader plain_reader = {plain_next_row};
+static const snow_reader words_reader = {words_next_row};
 
 static void bitmap_begin_walk(snow_walk *walk) {
     const snow_sparse *s = walk->sparse;

@@ -91,13 +91,6 @@ static size_t crs_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-static size_t crs_skip(snow_walk *walk, int64_t rows) {
-    size_t segments = segments_of(walk->sparse);
-    size_t first = (size_t)walk->row * segments;
-    return load_indr(walk->slice, first + (size_t)rows * segments) -
-           load_indr(walk->slice, first);
-}
-
 /* --- slices of a band ----------------------------------------------------- */
 
 #define CELL 256
@@ -163,36 +156,8 @@ static size_t cells_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-static void cells_next_mask(snow_walk *walk, uint64_t *mask, size_t step) {
-    size_t cells = cells_of(walk->sparse);
-    size_t words = snow_mask_words(walk->sparse);
-    const unsigned char *at = walk->ea;
-    for (size_t n = 0; n < cells; n++) {
-        uint64_t bits[CELL_WORDS] = {0};
-        if (cell_is_full(walk, (size_t)walk->row * cells + n))
-            for (size_t left = (size_t)*at++ + 1; left; left--, at++)
-                bits[*at / 64] |= UINT64_C(1) << *at % 64;
-        for (size_t w = 0; w < CELL_WORDS && n * CELL_WORDS + w < words; w++)
-            mask[(n * CELL_WORDS + w) * step] = bits[w];
-    }
-    walk->ea = at;
-}
-
-static size_t cells_skip(snow_walk *walk, int64_t rows) {
-    size_t cells = cells_of(walk->sparse), voxels = 0;
-    size_t first = (size_t)walk->row * cells;
-    for (size_t n = first; n < first + (size_t)rows * cells; n++)
-        if (cell_is_full(walk, n)) {
-            size_t some = (size_t)*walk->ea + 1;
-            voxels += some;
-            walk->ea += 1 + some;
-        }
-    return voxels;
-}
-
-static const snow_reader whole_reader = {crs_next_row, NULL, crs_skip};
-static const snow_reader cells_reader = {cells_next_row, cells_next_mask,
-                                         cells_skip};
+static const snow_reader whole_reader = {crs_next_row};
+static const snow_reader cells_reader = {cells_next_row};
 
 static void crs_begin_walk(snow_walk *walk) {
     walk->reader = &whole_reader;

@@ -142,14 +142,8 @@ static size_t nothing_next_row(snow_walk *walk, snow_span *spans) {
     return 0;
 }
 
-static size_t nothing_skip(snow_walk *walk, int64_t rows) {
-    (void)walk;
-    (void)rows;
-    return 0;
-}
-
 /* The reader of a slice of no bytes. */
-static const snow_reader nothing = {nothing_next_row, NULL, nothing_skip};
+static const snow_reader nothing = {nothing_next_row};
 
 void snow_walk_begin(snow_walk *walk, const snow_sparse *s, int64_t slice) {
     snow_slice_pointer pointer = s->pa[slice];
@@ -162,11 +156,6 @@ void snow_walk_begin(snow_walk *walk, const snow_sparse *s, int64_t slice) {
         return;
     walk->slice = walk->ea = s->ea + pointer.ea;
     s->scheme->begin_walk(walk);
-}
-
-void snow_walk_skip(snow_walk *walk, int64_t rows) {
-    walk->voxel += walk->reader->skip(walk, rows);
-    walk->row += rows;
 }
 
 size_t snow_walk_row(snow_walk *walk, snow_span *spans, size_t *voxel) {

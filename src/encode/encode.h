@@ -88,12 +88,6 @@ struct snow_reader {
      * / 2; returns their number. The caller advances the walk's voxel and row.
      */
     size_t (*next_row)(snow_walk *walk, snow_span *spans);
-    /* The same as snow_mask_words words of bits, `step` apart; NULL if the form
-     * has no faster way than spans. */
-    void (*next_mask)(snow_walk *walk, uint64_t *mask, size_t step);
-    /* Skips rows; returns their number of voxels. Also leaves voxel and row to
-     * the caller. */
-    size_t (*skip)(snow_walk *walk, int64_t rows);
 };
 
 /* A way to write EA (section 3.2). */
@@ -177,9 +171,6 @@ void snow_sparse_fini(snow_sparse *sparse);
 
 /* Sets a walk to the beginning of a slice, in constant time. */
 void snow_walk_begin(snow_walk *walk, const snow_sparse *sparse, int64_t slice);
-
-/* Skips rows without reading their spans. */
-void snow_walk_skip(snow_walk *walk, int64_t rows);
 
 /* Reads the next row: its spans, and the position of its first voxel in IA.
  * Returns the number of spans. */

@@ -34,24 +34,17 @@ static void measure_steps(snow_fetch *f, const snow_fetch_params *params) {
         .columns = (size_t)p->columns,
         .rows = (size_t)params->rows,
         .slices = params->slices,
-        .between = params->between,
         .transposed = p->u_axis != 0,
     };
     f->pitch = (f->columns + TILE - 1) / TILE * TILE * size;
     f->slice_pitch = f->rows * f->pitch + LINE;
-    /* With `between` one more: the partner of the last slice. */
-    f->capacity = LINE / (int64_t)size + params->between;
-}
-
-static size_t mean_bytes(const snow_fetch *f) {
-    return f->between ? f->rows * f->pitch : 0;
+    f->capacity = LINE / (int64_t)size;
 }
 
 size_t snow_fetch_bytes(const snow_fetch_params *params) {
     snow_fetch f;
     measure_steps(&f, params);
-    size_t block = f.transposed ? (size_t)f.capacity * f.slice_pitch : 0;
-    return block + mean_bytes(&f);
+    return f.transposed ? (size_t)f.capacity * f.slice_pitch : 0;
 }
 
 void snow_fetch_begin(snow_fetch *f, const snow_fetch_params *params,
@@ -62,8 +55,7 @@ void snow_fetch_begin(snow_fetch *f, const snow_fetch_params *params,
         snow_row_voxels(params->volume, params->placement, params->first_slice,
                         params->first_row, &stride);
     f->transpose = snow_transpose_of(f->size, params->isa);
-    f->mean = scratch;
-    f->block = f->mean + mean_bytes(f);
+    f->block = scratch;
 }
 
 /* --- slices along x ------------------------------------------------------- */
@@ -130,7 +122,8 @@ static void fill_block(snow_fetch *f, int64_t slice) {
     }
 }
 
-/* --- slices of the volume, and between ------------------------------------ */
+/* --- slices ----------------------------------------------------------------
+ */
 
 static void slice_of_volume(snow_fetch *f, int64_t slice, snow_rows *out) {
     *out = (snow_rows){.columns = f->columns, .rows = f->rows};
@@ -145,58 +138,8 @@ static void slice_of_volume(snow_fetch *f, int64_t slice, snow_rows *out) {
     out->ahead = slice + 1 < f->slices ? f->slice_step : 0;
 }
 
-/* The mean of two values, without overflow. */
-#define MEAN_INTEGER(a, b) ((a >> 1) + (b >> 1) + ((a | b) & 1))
-#define MEAN_FLOAT(a, b) (a / 2 + b / 2)
-
-#define MEAN_ROW(name, type, mean)                                        \
-    static void mean_##name(const void *a, const void *b, size_t columns, \
-                            void *out) {                                  \
-        const type *p = a, *q = b;                                        \
-        type *middle = out;                                               \
-        for (size_t n = 0; n < columns; n++)                              \
-            middle[n] = (type)mean(p[n], q[n]);                           \
-    }
-
-MEAN_ROW(INT8, int8_t, MEAN_INTEGER)
-MEAN_ROW(UINT8, uint8_t, MEAN_INTEGER)
-MEAN_ROW(INT16, int16_t, MEAN_INTEGER)
-MEAN_ROW(UINT16, uint16_t, MEAN_INTEGER)
-MEAN_ROW(INT32, int32_t, MEAN_INTEGER)
-MEAN_ROW(UINT32, uint32_t, MEAN_INTEGER)
-MEAN_ROW(INT64, int64_t, MEAN_INTEGER)
-MEAN_ROW(UINT64, uint64_t, MEAN_INTEGER)
-MEAN_ROW(FLOAT32, float, MEAN_FLOAT)
-MEAN_ROW(FLOAT64, double, MEAN_FLOAT)
-
-typedef void mean_fn(const void *a, const void *b, size_t columns, void *out);
-
-static mean_fn *const means[] = {
-#define MEAN_ENTRY(name, type, text) [SNOW_TYPE_##name] = mean_##name,
-    SNOW_TYPE_MAP(MEAN_ENTRY)};
-
-static void slice_between(snow_fetch *f, int64_t slice, snow_rows *out) {
-    snow_rows a, b;
-    slice_of_volume(f, slice, &a);
-    slice_of_volume(f, slice + 1, &b);
-    for (size_t row = 0; row < f->rows; row++)
-        means[f->type](a.voxels + row * a.stride, b.voxels + row * b.stride,
-                       f->columns, f->mean + row * f->pitch);
-    *out = (snow_rows){.voxels = f->mean,
-                       .stride = f->pitch,
-                       .columns = f->columns,
-                       .rows = f->rows};
-}
-
 void snow_fetch_slice(snow_fetch *f, int64_t slice, snow_rows *out) {
-    int64_t here = f->between ? slice / 2 : slice;
-    bool is_between = f->between && slice % 2;
-    /* The block must hold the next slice too. */
-    int64_t last = here + is_between;
-    if (f->transposed && last >= f->block_first + f->block_count)
-        fill_block(f, here);
-    if (is_between)
-        slice_between(f, here, out);
-    else
-        slice_of_volume(f, here, out);
+    if (f->transposed && slice >= f->block_first + f->block_count)
+        fill_block(f, slice);
+    slice_of_volume(f, slice, out);
 }

@@ -6,9 +6,7 @@
  *                          in small tiles, so that a cache line of the volume,
  *                          which holds a voxel of each of up to 64 slices, is
  *                          read once for all of them
- *
- * It also makes the slice half-way between two, whose voxels are their means
- * (integers: halves rounded up). */
+ */
 #ifndef SNOW_FETCH_H
 #define SNOW_FETCH_H
 
@@ -32,12 +30,12 @@ typedef struct snow_fetch {
     size_t size;          /* of a voxel */
     size_t columns, rows; /* of the band */
     int64_t slices;       /* of the slab */
-    bool between, transposed;
+    bool transposed;
     snow_transpose_fn *transpose;
     /* The block: `capacity` slices, `pitch` bytes from row to row. */
     size_t pitch, slice_pitch;
     int64_t capacity, block_first, block_count;
-    unsigned char *block, *mean;
+    unsigned char *block;
 } snow_fetch;
 
 /* The source of a band. */
@@ -46,8 +44,7 @@ typedef struct snow_fetch_params {
     const snow_placement *placement;
     int64_t first_slice, slices; /* the slab */
     int64_t first_row, rows;     /* the band */
-    bool between;
-    snow_isa isa; /* resolved */
+    snow_isa isa;                /* resolved */
 } snow_fetch_params;
 
 /* Bytes of scratch that a band needs. */
@@ -58,9 +55,8 @@ size_t snow_fetch_bytes(const snow_fetch_params *params);
 void snow_fetch_begin(snow_fetch *fetch, const snow_fetch_params *params,
                       void *scratch);
 
-/* The band's rows of slice `slice` of the slab; with `between`, of the doubled
- * slices. Call it for the slices in order. The rows are valid until the next
- * call. */
+/* The band's rows of slice `slice` of the slab. Call it for the slices in
+ * order. The rows are valid until the next call. */
 void snow_fetch_slice(snow_fetch *fetch, int64_t slice, snow_rows *out);
 
 #endif

@@ -89,19 +89,6 @@ static size_t rle_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-static size_t rle_skip(snow_walk *walk, int64_t rows) {
-    uint64_t left = (uint64_t)rows * (uint64_t)walk->sparse->columns;
-    size_t voxels = 0;
-    while (left) {
-        find_run(walk);
-        uint32_t take = walk->run < left ? walk->run : (uint32_t)left;
-        voxels += walk->run_interesting ? take : 0;
-        walk->run -= take;
-        left -= take;
-    }
-    return voxels;
-}
-
 /* --- slices of a band ----------------------------------------------------- */
 
 static size_t summary_bytes(const snow_sparse *s) {
@@ -225,22 +212,8 @@ static size_t rows_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-static size_t rows_skip(snow_walk *walk, int64_t rows) {
-    size_t columns = (size_t)walk->sparse->columns, voxels = 0;
-    for (int64_t row = walk->row; row < walk->row + rows; row++) {
-        if (!row_is_full(walk, row))
-            continue;
-        bool interesting = false;
-        for (size_t column = 0; column < columns; interesting = !interesting) {
-            voxels += interesting ? *walk->ea : 0;
-            column += *walk->ea++;
-        }
-    }
-    return voxels;
-}
-
-static const snow_reader whole_reader = {rle_next_row, NULL, rle_skip};
-static const snow_reader rows_reader = {rows_next_row, NULL, rows_skip};
+static const snow_reader whole_reader = {rle_next_row};
+static const snow_reader rows_reader = {rows_next_row};
 
 static void rle_begin_walk(snow_walk *walk) {
     walk->reader = &whole_reader;

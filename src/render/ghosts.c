@@ -99,9 +99,7 @@ static double layers_beside(const question *q, ways by, double ratio,
 static double layers_across(const question *q, ways by) {
     if (by.values)
         return 1 + cubic(q) + q->gradients;
-    return q->gradients + finds_surfaces(q) +
-           (q->settings->quality == SNOW_QUALITY_HIGH && !splats_values(q) &&
-            q->settings->method == SNOW_METHOD_SHEAR_WARP);
+    return q->gradients;
 }
 
 /* The widest pixel on any slice of a placement, voxels along u and v. */
@@ -169,18 +167,8 @@ static void ask_placement(const question *q, const snow_placement *p,
 
 static snow_status ask_view(const question *q, int64_t layers[3]) {
     snow_placement p;
-    double shares[3] = {0, 0, 0};
     SNOW_TRY(snow_placement_make(q->context, q->whole, q->view, &p));
-    if (q->settings->quality == SNOW_QUALITY_HIGH && !splats_values(q))
-        snow_placement_shares(q->whole, &p, shares);
-    shares[p.slice_axis] = 1;
-    for (int axis = 0; axis < 3; axis++) {
-        if (shares[axis] == 0)
-            continue;
-        SNOW_TRY(
-            snow_placement_make_along(q->context, q->whole, q->view, axis, &p));
-        ask_placement(q, &p, layers);
-    }
+    ask_placement(q, &p, layers);
     return SNOW_STATUS_OK;
 }
 
@@ -221,12 +209,8 @@ static double least_cosine(double gradients[3][3]) {
 /* How obliquely a slice may be seen: the least |d . n|; 0 where there is no
  * bound.  A ray that meets the volume leaves the line of sight by an angle
  * whose sine is `spread` at most. */
-static double least_slant(const question *q, double gradients[3][3],
-                          double spread) {
+static double least_slant(double gradients[3][3], double spread) {
     double cosine = least_cosine(gradients);
-    if (q->settings->quality == SNOW_QUALITY_HIGH &&
-        !splats_values(q)) /* blends of axes */
-        cosine -= sqrt(2.0) * sin(SNOW_BLEND_DEGREES * 0.017453292519943295769);
     double angle = acos(fmax(cosine, 0)) + asin(spread);
     return angle < 1.57 ? cos(angle) : 0;
 }
@@ -300,7 +284,7 @@ static snow_status ask_all(const question *q, int64_t layers[3]) {
     /* The volume stays within a sphere about the target. */
     double reach = snow_length(camera.middle) + snow_volume_radius(q->whole);
     double spread = camera.distance > 0 ? reach / camera.distance : 0;
-    double slant = least_slant(q, gradients, fmin(spread, 1));
+    double slant = least_slant(gradients, fmin(spread, 1));
     double pitch = camera.pitch * (1 + spread);
     double ratio = largest_ratio(q, &camera, gradients);
     ways by = ways_of(q, true);

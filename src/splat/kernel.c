@@ -109,14 +109,8 @@ static double variance_of(snow_kernel kernel, double support) {
 
 snow_scaled_kernel snow_scaled_kernel_make(snow_kernel kernel, int support,
                                            double rho) {
-    return snow_scaled_kernel_make_level(kernel, support, rho, 1);
-}
-
-snow_scaled_kernel snow_scaled_kernel_make_level(snow_kernel kernel,
-                                                 int support, double rho,
-                                                 double fine) {
     double pixel = (rho * rho - 1) / (12 * variance_of(kernel, support));
-    double wide = sqrt(fmax(1, fine * fine + pixel));
+    double wide = sqrt(1 + fmax(0, pixel));
     return (snow_scaled_kernel){kernel, support, wide * support / 2, wide};
 }
 
@@ -152,15 +146,6 @@ double snow_scaled_kernel_weight(const snow_scaled_kernel *scaled_kernel,
     for (double n = first; t + n < scaled_kernel->half - EDGE; n++)
         sum += value_at(scaled_kernel, t + n);
     return value / sum;
-}
-
-void snow_scaled_kernel_spread(const snow_scaled_kernel *scaled_kernel,
-                               double t, int first, int count, float *weights) {
-    double sum = 0, values[SNOW_PHASE_TAPS_MOST];
-    for (int n = 0; n < count; n++)
-        sum += values[n] = value_at(scaled_kernel, t - (first + n));
-    for (int n = 0; n < count; n++)
-        weights[n] = (float)(values[n] / sum);
 }
 
 float snow_scaled_kernel_box(const snow_scaled_kernel *scaled_kernel,

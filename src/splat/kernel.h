@@ -40,18 +40,10 @@ typedef struct snow_scaled_kernel {
 /* The default support of a kernel. */
 int snow_kernel_default_support(snow_kernel kernel);
 
-/* A kernel for pixels that are `rho` voxels wide along the axis. */
+/* A kernel for pixels that are `rho` voxels wide along the axis: wider by w =
+ * sqrt(1 + max(0, rho^2 - 1) / (12 V)), V being its variance. */
 snow_scaled_kernel snow_scaled_kernel_make(snow_kernel kernel, int support,
                                            double rho);
-
-/* The same for voxels that are means of others (render/mipmap.h), whose step is
- * `fine` of theirs, 1 or less. The variance of a mean and its kernel together
- * equals that of the kernel on the others, if possible:
- *
- *   w = sqrt(max(1, fine^2 + (rho^2 - 1) / (12 V))) */
-snow_scaled_kernel snow_scaled_kernel_make_level(snow_kernel kernel,
-                                                 int support, double rho,
-                                                 double fine);
 
 /* Whether distance t (voxels) is within the half-open support, and a distance
  * beyond which none is. */
@@ -71,12 +63,6 @@ int snow_scaled_kernel_taps(const snow_scaled_kernel *scaled_kernel);
 double snow_scaled_kernel_phase_reach(const snow_scaled_kernel *scaled_kernel);
 void snow_scaled_kernel_phase(const snow_scaled_kernel *scaled_kernel,
                               double phase, double *weights);
-
-/* Weights of the voxels at first, first + 1 ... for a point at `t`, all at
- * once. They equal snow_scaled_kernel_weight up to rounding. No other voxels
- * may be in reach; there are SNOW_PHASE_TAPS_MOST at most. */
-void snow_scaled_kernel_spread(const snow_scaled_kernel *scaled_kernel,
-                               double t, int first, int count, float *weights);
 
 /* The weight as a table: cell c spans the distances from c / scale - shift and
  * holds the weight at its beginning and the rise to its end. Smooth kernels are

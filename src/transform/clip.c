@@ -51,44 +51,6 @@ void snow_clip_placement(const snow_clip *clip, const snow_placement *whole,
 
 /* --- the intermediate image ----------------------------------------------- */
 
-static int within(double pixel, int count) {
-    if (!(pixel > 0))
-        return 0;
-    return pixel < count ? (int)pixel : count;
-}
-
-/* The first pixel at grid position `at` or beyond: P pitch - k slope >= at. */
-static int first_on_lattice(const snow_lattice *lattice, double at,
-                            double slice) {
-    double pitch = (double)lattice->stride / lattice->phases;
-    double pixel = ceil((at + slice * lattice->slope) / pitch);
-    return within(pixel - (double)lattice->first, lattice->count);
-}
-
-void snow_clip_lattice(const snow_clip *clip, int axis,
-                       const snow_lattice *lattice, double slice,
-                       int range[2]) {
-    range[0] = first_on_lattice(lattice, clip->low[axis], slice);
-    range[1] = first_on_lattice(lattice, clip->high[axis], slice);
-}
-
-/* The same in perspective: position `at` of the slice appears at eye + (at -
- * eye) / step of slice k0. */
-static int first_on_scaled(const snow_perspective_shear_axis *axis, double at,
-                           double step) {
-    double seen = axis->eye + (at - axis->eye) / step;
-    return within(ceil(seen / axis->pitch) - (double)axis->first, axis->count);
-}
-
-void snow_clip_perspective_shear(const snow_clip *clip, int axis,
-                                 const snow_perspective_shear *scaled,
-                                 double slice, int range[2]) {
-    const snow_perspective_shear_axis *of = axis == 0 ? &scaled->u : &scaled->v;
-    double step = snow_perspective_shear_step(scaled, slice);
-    range[0] = first_on_scaled(of, clip->low[axis], step);
-    range[1] = first_on_scaled(of, clip->high[axis], step);
-}
-
 /* --- the picture ---------------------------------------------------------- */
 
 /* The shift of a ray along u or v from slice to slice, negated. */

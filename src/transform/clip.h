@@ -36,14 +36,6 @@ void snow_clip_make(const snow_volume *volume, const snow_placement *whole,
 void snow_clip_placement(const snow_clip *clip, const snow_placement *whole,
                          snow_placement *out);
 
-/* The part's pixels range[0] .. range[1] - 1 of the intermediate image on a
- * slice, which may be fractional; for axis 0 (u) or 1 (v). */
-void snow_clip_lattice(const snow_clip *clip, int axis,
-                       const snow_lattice *lattice, double slice, int range[2]);
-void snow_clip_perspective_shear(const snow_clip *clip, int axis,
-                                 const snow_perspective_shear *scaled,
-                                 double slice, int range[2]);
-
 /* Clears those of `count` pixels from (x, y) of the picture for which the part
  * has no sample of the sheet. */
 void snow_clip_pixels(const snow_clip *clip, const snow_placement *whole,

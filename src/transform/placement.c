@@ -136,8 +136,7 @@ static snow_status place_camera(snow_context *context,
                                 const snow_view *view, snow_camera *camera,
                                 snow_placement *p) {
     SNOW_TRY(snow_camera_make(context, info, view, camera));
-    *p = (snow_placement){
-        .width = view->width, .height = view->height, .fine = {1, 1}};
+    *p = (snow_placement){.width = view->width, .height = view->height};
     memcpy(p->right, camera->right, sizeof p->right);
     memcpy(p->up, camera->up, sizeof p->up);
     memcpy(p->back, camera->back, sizeof p->back);
@@ -175,35 +174,4 @@ snow_status snow_placement_make(snow_context *context,
     SNOW_TRY(place_volume(context, info, view, &camera, slice_axis, &p));
     *out = p;
     return SNOW_STATUS_OK;
-}
-
-snow_status snow_placement_make_along(snow_context *context,
-                                      const snow_volume_info *info,
-                                      const snow_view *view, int slice_axis,
-                                      snow_placement *out) {
-    snow_placement p;
-    snow_camera camera;
-    SNOW_TRY(place_camera(context, info, view, &camera, &p));
-    SNOW_TRY(place_volume(context, info, view, &camera, slice_axis, &p));
-    *out = p;
-    return SNOW_STATUS_OK;
-}
-
-/* Axes a and b are equally good where their cosines are equal: on a plane whose
- * angle to the line of sight is asin((cos a - cos b) / sqrt 2), for
- * perpendicular normals. */
-void snow_placement_shares(const snow_volume_info *info,
-                           const snow_placement *placement, double shares[3]) {
-    const double width = sin(SNOW_BLEND_DEGREES * 0.017453292519943295769);
-    double best = axis_cosine(info, placement->slice_axis, placement->back);
-    double sum = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        double behind =
-            (best - axis_cosine(info, axis, placement->back)) / sqrt(2.0);
-        shares[axis] =
-            axis == placement->slice_axis ? 1 : fmax(0, 1 - behind / width);
-        sum += shares[axis];
-    }
-    for (int axis = 0; axis < 3; axis++)
-        shares[axis] /= sum;
 }

@@ -25,20 +25,6 @@ double snow_perspective_shear_ratio(const snow_placement *p) {
     return far / near;
 }
 
-/* The volume's range along an axis, in voxels of slice k0. */
-static void covered_range(const snow_placement *p, double height, int axis,
-                          const double *reach, double range[2]) {
-    double last = (double)((axis == 0 ? p->columns : p->rows) - 1);
-    double eye = p->eye.at[axis];
-    range[0] = INFINITY;
-    range[1] = -INFINITY;
-    for (int64_t k = 0; k < p->slices; k++) {
-        double step = ((double)k - p->eye.at[2]) / height;
-        range[0] = fmin(range[0], eye + (-reach[k] - eye) / step);
-        range[1] = fmax(range[1], eye + (last + reach[k] - eye) / step);
-    }
-}
-
 /* The picture's range along an axis; infinite if it shows the eye's own plane.
  */
 static void visible_range(const snow_placement *p, double height, int axis,
@@ -120,17 +106,4 @@ snow_status snow_perspective_shear_cover(snow_context *context,
     place_warp(p, &scaled);
     *out = scaled;
     return SNOW_STATUS_OK;
-}
-
-snow_status
-snow_perspective_shear_make(snow_context *context, const snow_placement *p,
-                            const snow_perspective_shear_options *options,
-                            snow_perspective_shear *out) {
-    double ends[2], covered[2][2];
-    heights_of(p, ends);
-    double height = fabs(ends[0]) < fabs(ends[1]) ? ends[0] : ends[1];
-    for (int axis = 0; axis < 2; axis++)
-        covered_range(p, height, axis, options->reach[axis], covered[axis]);
-    return snow_perspective_shear_cover(context, p, height, options->pitch,
-                                        covered, out);
 }

@@ -30,44 +30,15 @@ typedef struct snow_perspective_shear {
     double warp[3][3];
 } snow_perspective_shear;
 
-/* Options of an intermediate image, along u and v. */
-typedef struct snow_perspective_shear_options {
-    double pitch[2];
-    /* Per slice of the placement: the reach of the kernel, voxels. */
-    const double *reach[2];
-} snow_perspective_shear_options;
-
 /* The ratio of the farthest to the nearest slice's distance from the eye;
  * infinite if the eye's own plane cuts the slices. */
 double snow_perspective_shear_ratio(const snow_placement *placement);
 
-/* The ratio of slice k's distance from the eye to that of k0: voxels of slice k
- * for one of slice k0. */
-static inline double
-snow_perspective_shear_step(const snow_perspective_shear *scaled,
-                            double slice) {
-    return (slice - scaled->level) / scaled->height;
-}
-
-/* The voxel position of pixel 0 on a slice whose snow_perspective_shear_step is
- * `step`. */
-static inline double
-snow_perspective_shear_start(const snow_perspective_shear_axis *axis,
-                             double step) {
-    double seen = (double)axis->first * axis->pitch;
-    return axis->eye + (seen - axis->eye) * step;
-}
-
 /* The part of the lattice that both holds voxels and is in view, with a border
- * of pixels that are empty or out of view. The eye must be outside of the
- * slices. Errors: SNOW_STATUS_BAD_USAGE (the intermediate image is too large).
- */
-snow_status snow_perspective_shear_make(
-    snow_context *context, const snow_placement *placement,
-    const snow_perspective_shear_options *options, snow_perspective_shear *out);
-
-/* The same for a plane k0 = ek + `height` of the caller's choice, in which the
- * volume covers covered[axis][0] .. covered[axis][1] voxels. */
+ * of pixels that are empty or out of view, in a plane k0 = ek + `height`, in
+ * which the volume covers covered[axis][0] .. covered[axis][1] voxels. The eye
+ * must be outside of the slices. Errors: SNOW_STATUS_BAD_USAGE (the
+ * intermediate image is too large). */
 snow_status snow_perspective_shear_cover(snow_context *context,
                                          const snow_placement *placement,
                                          double height, const double pitch[2],

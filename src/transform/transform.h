@@ -50,8 +50,6 @@ typedef struct snow_placement {
 
     double origin[2], step_u[2], step_v[2], step_slice[2]; /* pixels */
     double inverse[2][2]; /* pixels to (u, v): the inverse of step_u, step_v */
-    double fine[2]; /* along u and v: 1, or for voxels that are means of others
-                       (render/mipmap.h) the step of these in voxels */
 
     double path; /* world length of a ray between two slice planes */
 
@@ -76,20 +74,6 @@ snow_status snow_camera_make(snow_context *context,
 snow_status snow_placement_make(snow_context *context,
                                 const snow_volume_info *info,
                                 const snow_view *view, snow_placement *out);
-
-/* The same with slices along an axis of the caller's choice. */
-snow_status snow_placement_make_along(snow_context *context,
-                                      const snow_volume_info *info,
-                                      const snow_view *view, int slice_axis,
-                                      snow_placement *out);
-
-/* Weights for blending the pictures with slices along the three axes, so that
- * the result does not change abruptly where the slice axis does. They add up to
- * 1; all except the placement's own are 0 unless the line of sight is within
- * SNOW_BLEND_DEGREES of a direction for which another axis is equally good. */
-#define SNOW_BLEND_DEGREES 5
-void snow_placement_shares(const snow_volume_info *info,
-                           const snow_placement *placement, double shares[3]);
 
 /* Turns a frame of unit vectors: azimuth about up, then elevation about the new
  * right, then roll about the line of sight; degrees, like VTK's camera. */

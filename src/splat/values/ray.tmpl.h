@@ -62,16 +62,13 @@ TARGET VALUE_INLINE void NAME(shares)(const snow_value_rays *rays,
 TARGET VALUE_INLINE void NAME(lengthen)(const snow_value_table *table,
                                         const float shares[32],
                                         const int channels, V(row) color[4]) {
-    uint32_t ones[16];
     float alphas[32], factors[32];
     int16_t words[32];
-    for (int i = 0; i < 16; i++)
-        ones[i] = SNOW_GRADIENT_OPACITY_ONE;
     V(row_store)(words, color[3]);
     for (int i = 0; i < 32; i++)
         alphas[i] = (float)words[i] * table->unit;
-    NAME(fade16)(ones, shares, alphas);
-    NAME(fade16)(ones, shares + 16, alphas + 16);
+    NAME(power16)(shares, alphas);
+    NAME(power16)(shares + 16, alphas + 16);
     for (int i = 0; i < 32; i++) {
         float alpha = (float)words[i], longer = alphas[i] / table->unit;
         longer = longer < 32767 ? longer : 32767;
