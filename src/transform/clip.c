@@ -49,8 +49,6 @@ void snow_clip_placement(const snow_clip *clip, const snow_placement *whole,
     *out = p;
 }
 
-/* --- the intermediate image ----------------------------------------------- */
-
 /* --- the picture ---------------------------------------------------------- */
 
 /* The shift of a ray along u or v from slice to slice, negated. */

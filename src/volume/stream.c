@@ -4,7 +4,7 @@
  * all formats, masks and planes are served.  The invariant is that every slab
  * has the type and the scale of values that the volume was inspected with; a
  * file that was replaced in between is noticed by its sizes at the latest. */
-#include "volume/stream.h"
+#include "volume/stream_internal.h"
 
 #include "base/monitor.h"
 #include "base/record.h"
@@ -14,32 +14,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-#define REMARKS_MOST 64
-
-/* What is needed to open a slab; the texts of the options follow behind. */
-struct snow_stream {
-    snow_open_fn *open;
-    snow_volume_options options; /* with texts of its own */
-    uint64_t slab_bytes;         /* of voxels of a slab, ghosts included */
-    double seconds;              /* of reading */
-    bool left;                   /* of the present visit: a slab has voxels
-                                    that no mask or plane leaves out */
-    double mask_range[2];        /* of it: the mask's values, NaN where it is
-                                    not known */
-    bool told_empty;             /* that nothing is left */
-    bool measured;               /* `range` is known */
-    snow_volume_statistics range;
-    char *path;
-    /* Warnings of reading, each of which is given once: a hash of each. */
-    snow_warning_fn *notice;
-    void *notice_user;
-    uint64_t given[REMARKS_MOST];
-    int told_count;
-};
-
-/* Without a wish: small beside any memory, and long enough to be read fast. */
-#define SLAB_BYTES ((uint64_t)64 << 20)
 
 /* --- opening -------------------------------------------------------------- */
 
@@ -101,7 +75,7 @@ static snow_status new_stream(snow_context *context, const char *path,
     stream->options.labels = keep(options->labels, &at);
     stream->path = at;
     keep(path, &at);
-    stream->slab_bytes = slab_bytes ? slab_bytes : SLAB_BYTES;
+    stream->slab_bytes = slab_bytes ? slab_bytes : SNOW_SLAB_BYTES;
     *out = stream;
     return SNOW_STATUS_OK;
 }
@@ -148,73 +122,9 @@ double snow_volume_read_seconds(const snow_volume *volume) {
 
 /* --- slabs ---------------------------------------------------------------- */
 
-void snow_print_limit(const snow_context *context, char text[64]) {
-    *text = 0;
-    if (context->limit)
-        snprintf(text, 64, " under the limit of %.1f MiB",
-                 (double)context->limit / 0x1p20);
-}
-
-/* Bytes of voxels that a slab may have where `made` times as many are made of
- * them: with those half of what a limit leaves, but no more than usual. */
-static uint64_t slab_room(const snow_volume *volume, int64_t made) {
-    const snow_context *context = volume->context;
-    uint64_t usual = volume->stream->slab_bytes;
-    if (made <= 0)
-        return usual;
-    if (!context->limit)
-        return usual / (uint64_t)made;
-    uint64_t left =
-        context->limit > context->bytes ? context->limit - context->bytes : 0;
-    uint64_t most = usual > SLAB_BYTES ? usual : SLAB_BYTES;
-    uint64_t room = left / 2 / (uint64_t)(1 + made);
-    return room < most ? room : most;
-}
-
-/* Slices of a slab, without its ghosts. */
-static int64_t slab_slices(const snow_volume *volume,
-                           const snow_slab_cut *cut) {
-    const int64_t *dims = volume->info.dims;
-    if (cut->slices)
-        return cut->slices;
-    uint64_t slice = (uint64_t)(dims[0] * dims[1]) *
-                     (uint64_t)snow_type_size(volume->info.type);
-    uint64_t room = slab_room(volume, cut->made) / slice;
-    uint64_t around = 2 * (uint64_t)cut->ghosts, step = (uint64_t)cut->step;
-    if (room < around + step)
-        return cut->step;
-    uint64_t slices = (room - around) / step * step;
-    return slices < (uint64_t)dims[2] ? (int64_t)slices : dims[2];
-}
-
-uint64_t snow_slab_bytes(const snow_volume *volume, const snow_slab_cut *cut) {
-    const int64_t *dims = volume->info.dims;
-    int64_t slices = dims[2];
-    if (volume->stream)
-        slices = slab_slices(volume, cut) + 2 * cut->ghosts;
-    if (slices > dims[2])
-        slices = dims[2];
-    return (uint64_t)(dims[0] * dims[1] * slices) *
-           (uint64_t)snow_type_size(volume->info.type);
-}
-
-/* What must be alike for one picture to be made of all slabs. */
-static snow_status compare(const snow_volume *volume, const snow_volume *slab,
-                           const snow_extent *part, int64_t slices) {
-    const snow_volume_info *a = &volume->info, *b = &slab->info;
-    if (a->type == b->type && a->slope == b->slope &&
-        a->intercept == b->intercept && a->dims[0] == b->dims[0] &&
-        a->dims[1] == b->dims[1] && b->dims[2] == slices)
-        return SNOW_STATUS_OK;
-    return snow_fail(volume->context, SNOW_STATUS_BAD_INPUT,
-                     "%s: slices from %lld on differ from the volume in type, "
-                     "scale or size: was the file replaced while it was read?",
-                     volume->stream->path, (long long)part->stored[2]);
-}
-
-static snow_status open_slab(snow_context *context, snow_stream *stream,
-                             const snow_volume_options *options, bool clipped,
-                             snow_volume **out) {
+snow_status snow_stream_open_slab(snow_context *context, snow_stream *stream,
+                                  const snow_volume_options *options,
+                                  bool clipped, snow_volume **out) {
     snow_volume_info info;
     double begin = snow_seconds();
     listen_once(context, stream);
@@ -228,203 +138,4 @@ static snow_status open_slab(snow_context *context, snow_stream *stream,
     listen_again(context, stream);
     stream->seconds += snow_seconds() - begin;
     return status;
-}
-
-/* Slices first .. first + count - 1 of a volume; from its first ghost on. */
-static snow_extent part_of(const snow_volume *volume, int64_t ghosts,
-                           int64_t first, int64_t count) {
-    const int64_t *dims = volume->info.dims;
-    int64_t from = first > ghosts ? first - ghosts : 0;
-    return (snow_extent){.size = sizeof(snow_extent),
-                         .dims = {dims[0], dims[1], dims[2]},
-                         .stored = {0, 0, from},
-                         .first = {0, 0, first},
-                         .count = {dims[0], dims[1], count}};
-}
-
-/* Its slices, with ghosts on both sides. */
-static int64_t stored_slices(const snow_extent *part, int64_t ghosts) {
-    int64_t end = part->first[2] + part->count[2] + ghosts;
-    return (end < part->dims[2] ? end : part->dims[2]) - part->stored[2];
-}
-
-/* A slab with its ghosts, as a part of the volume. */
-static snow_status read_slab(const snow_volume *volume,
-                             const snow_slab_cut *cut, const snow_extent *part,
-                             snow_volume **out) {
-    snow_context *context = volume->context;
-    int64_t slices = stored_slices(part, cut->ghosts);
-    snow_volume_options options = volume->stream->options;
-    options.crop[2][0] += part->stored[2];
-    options.crop[2][1] = options.crop[2][0] + slices;
-    snow_volume *slab;
-    SNOW_TRY(open_slab(context, volume->stream, &options, cut->clipped, &slab));
-    snow_status status = compare(volume, slab, part, slices);
-    if (status == SNOW_STATUS_OK)
-        status = snow_volume_set_extent(slab, part);
-    if (status == SNOW_STATUS_OK)
-        status = snow_volume_set_whole(slab, &volume->info);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(slab);
-        return status;
-    }
-    *out = slab;
-    return SNOW_STATUS_OK;
-}
-
-/* As of a volume in memory: of one that is cropped nothing is said. */
-static void warn_empty(const snow_volume *volume) {
-    static const int64_t none[3][2];
-    snow_stream *stream = volume->stream;
-    const snow_volume_options *options = &stream->options;
-    if (stream->left || stream->told_empty || !snow_mask_asked(options) ||
-        memcmp(options->crop, none, sizeof none) != 0)
-        return;
-    stream->told_empty = true;
-    snow_mask_remark(volume->context, options, stream->mask_range);
-}
-
-void snow_slabs_open(const snow_volume *volume, const snow_slab_cut *cut,
-                     snow_slabs *slabs) {
-    snow_stream *stream = volume->stream;
-    *slabs = (snow_slabs){.volume = volume, .cut = *cut};
-    if (!stream)
-        return;
-    slabs->count = slab_slices(volume, cut);
-    slabs->next = slabs->nearest = cut->from / slabs->count * slabs->count;
-    stream->left = false;
-    stream->mask_range[0] = stream->mask_range[1] = NAN;
-}
-
-/* The room of the slab's voxels is left to the next one. */
-static void drop_present(snow_slabs *slabs) {
-    snow_context *context = slabs->volume->context;
-    snow_volume *slab = slabs->slab;
-    int64_t voxels;
-    uint64_t bytes;
-    if (slabs->number) /* the progress is that of the whole again */
-        snow_monitor_whole(context->monitor, slabs->whole);
-    slabs->slab = NULL;
-    if (!slab)
-        return;
-    snow_volume_count(slab->info.dims, slab->info.type, &voxels, &bytes);
-    snow_release(context, context->spare);
-    context->spare = slab->owned;
-    context->spare_bytes = (size_t)bytes;
-    slab->owned = NULL;
-    slab->voxels = NULL;
-    if (!slabs->keep)
-        snow_volume_close(slab);
-    slabs->keep = false;
-}
-
-snow_volume *snow_slabs_keep(snow_slabs *slabs) {
-    slabs->keep = slabs->slab != NULL;
-    return slabs->slab;
-}
-
-/* Whether a slab of a file is left, from `next` on. */
-static bool any_left(snow_slabs *slabs) {
-    if (!slabs->falls && slabs->next >= slabs->volume->info.dims[2]) {
-        slabs->falls = true;
-        slabs->next = slabs->nearest - slabs->count;
-    }
-    return !slabs->falls || slabs->next >= 0;
-}
-
-static void note_mask(snow_stream *stream, const snow_volume *slab) {
-    stream->left = stream->left || !slab->emptied;
-    stream->mask_range[0] = fmin(stream->mask_range[0], slab->mask_range[0]);
-    stream->mask_range[1] = fmax(stream->mask_range[1], slab->mask_range[1]);
-}
-
-snow_status snow_slabs_next(snow_slabs *slabs, const snow_volume **slab) {
-    const snow_volume *volume = slabs->volume;
-    drop_present(slabs);
-    *slab = NULL;
-    if (!volume->stream) {
-        *slab = slabs->begun ? NULL : volume;
-        slabs->begun = true;
-        return SNOW_STATUS_OK;
-    }
-    if (!any_left(slabs)) {
-        warn_empty(volume);
-        return SNOW_STATUS_OK;
-    }
-    int64_t all = volume->info.dims[2], left = all - slabs->next;
-    slabs->whole =
-        snow_monitor_divide(volume->context->monitor, (double)slabs->number++,
-                            (double)((all + slabs->count - 1) / slabs->count));
-    const snow_extent part = part_of(volume, slabs->cut.ghosts, slabs->next,
-                                     left < slabs->count ? left : slabs->count);
-    if (slabs->cut.kept)
-        *slab = slabs->cut.kept(slabs->cut.user, &part,
-                                stored_slices(&part, slabs->cut.ghosts));
-    if (!*slab) {
-        SNOW_TRY(read_slab(volume, &slabs->cut, &part, &slabs->slab));
-        *slab = slabs->slab;
-    }
-    slabs->next += slabs->falls ? -slabs->count : slabs->count;
-    note_mask(volume->stream, *slab);
-    return SNOW_STATUS_OK;
-}
-
-void snow_slabs_close(snow_slabs *slabs) {
-    snow_context *context = slabs->volume->context;
-    if (!slabs->volume->stream)
-        return;
-    drop_present(slabs);
-    snow_release(context, context->spare);
-    context->spare = NULL;
-}
-
-snow_status snow_slabs_visit(const snow_volume *volume,
-                             const snow_slab_cut *cut, snow_slab_fn *visit,
-                             void *user) {
-    snow_slabs slabs;
-    const snow_volume *slab;
-    snow_slabs_open(volume, cut, &slabs);
-    snow_status status = snow_slabs_next(&slabs, &slab);
-    while (status == SNOW_STATUS_OK && slab) {
-        status = visit(slab, user);
-        if (status == SNOW_STATUS_OK)
-            status = snow_slabs_next(&slabs, &slab);
-    }
-    snow_slabs_close(&slabs);
-    return status;
-}
-
-/* --- the range ------------------------------------------------------------ */
-
-/* `user` is what is known so far; NaN where nothing is. */
-static snow_status measure_slab(const snow_volume *slab, void *user) {
-    snow_volume_statistics *range = user, here = {.size = sizeof here};
-    SNOW_TRY(snow_volume_get_statistics(slab, &here));
-    SNOW_TRY(snow_monitor_status(slab->context->monitor));
-    range->voxels += here.voxels;
-    range->finite += here.finite;
-    range->min = fmin(range->min, here.min);
-    range->max = fmax(range->max, here.max);
-    return SNOW_STATUS_OK;
-}
-
-snow_status snow_volume_range(const snow_volume *volume,
-                              snow_volume_statistics *out) {
-    static const snow_slab_cut cut = {.step = 1};
-    snow_volume_statistics range = {.min = NAN, .max = NAN};
-    if (volume->stream && volume->stream->measured) {
-        *out = volume->stream->range;
-        return SNOW_STATUS_OK;
-    }
-    SNOW_TRY(snow_slabs_visit(volume, &cut, measure_slab, &range));
-    if (volume->stream)
-        snow_stream_note_range(volume, &range);
-    *out = range;
-    return SNOW_STATUS_OK;
-}
-
-void snow_stream_note_range(const snow_volume *volume,
-                            const snow_volume_statistics *range) {
-    volume->stream->range = *range;
-    volume->stream->measured = true;
 }
