@@ -1,0 +1,33 @@
+/* tests/stages/words.tmpl.h - words of simd/select.h on sixteen floats, for one
+ * level: what words do lane by lane, pixel by pixel and entry by entry does not
+ * depend on how many floats a vector holds. */
+
+TARGET static void NAME(words)(const word_input *in, word_output *out) {
+    for (int at = 0; at < 16; at += LANES) {
+        V(vec) a = V(load)(in->a + at), b = V(load)(in->b + at);
+        V(vec) c = V(load)(in->c + at), left, right;
+        V(store)(out->lanes[ADD] + at, V(add)(a, b));
+        V(store)(out->lanes[SUB] + at, V(sub)(a, b));
+        V(store)(out->lanes[MUL] + at, V(mul)(a, b));
+        V(store)(out->lanes[MIN] + at, V(min)(a, b));
+        V(store)(out->lanes[MAX] + at, V(max)(a, b));
+        V(store)(out->lanes[FMA] + at, V(fma)(a, b, c));
+        V(store)(out->lanes[SET1] + at, V(set1)(in->a[3]));
+        V(store)(out->lanes[ALPHA2] + at, V(alpha2)(a));
+        V(store)(out->lanes[ALPHA4] + at, V(alpha4)(a));
+        V(store)
+        (out->lanes[GATHER4] + at, V(gather4)(in->table, in->entries + at / 4));
+        V(store)
+        (out->lanes[GATHER2] + at, V(gather2)(in->table, in->entries + at / 2));
+        snow_scalar_store(out->hadd2[at / LANES], V(hadd2)(a));
+        snow_scalar_store(out->hadd4[at / LANES], V(hadd4)(a));
+        V(load_pairs2)(in->table, in->at + at / 2, &left, &right);
+        V(store)(out->left2 + at, left);
+        V(store)(out->right2 + at, right);
+        V(load_pairs4)(in->table, in->at + at / 4, &left, &right);
+        V(store)(out->left4 + at, left);
+        V(store)(out->right4 + at, right);
+    }
+    out->lane_count = LANES;
+    out->popcount = V(popcount)(in->mask);
+}
