@@ -31,7 +31,8 @@ typedef enum snow_encoding {
 
 /* The reconstruction kernel along one grid axis (docs/model.md, point 7). */
 typedef enum snow_kernel {
-    SNOW_KERNEL_BSPLINE = 0,
+    SNOW_KERNEL_AUTO = 0, /* tent; bspline by original and footprint */
+    SNOW_KERNEL_BSPLINE,
     SNOW_KERNEL_TENT,
     SNOW_KERNEL_GAUSS,
     SNOW_KERNEL_BOX
@@ -72,9 +73,10 @@ typedef struct snow_settings {
     double threshold;       /* opacity 0 to 255; greater is interesting */
     snow_method method;     /* (auto) */
     snow_encoding encoding; /* (auto) */
-    snow_kernel kernel;     /* (bspline) */
+    snow_kernel kernel;     /* (auto) */
     int footprint;          /* voxels, 2 to 9; 0: 2 for tent and box, else 4.
-                               Raycast: tent of 2 (default) or bspline of 4 */
+                               Shear-warp and raycast: tent of 2 or bspline of
+                               4; of others footprint makes the picture */
     double opacity_length;  /* world length of an opacity; 0: least spacing */
     snow_shade shade;       /* (phong) */
     double ambient, diffuse, specular;     /* 0 to 1 (0.2, 0.7, 0.2) */
@@ -102,9 +104,9 @@ typedef struct snow_stats {
     snow_isa isa;
     snow_kernel kernel;
     snow_quality quality;
-    bool encoded;                /* anew, for this picture */
+    bool encoded; /* anew, for this picture */
     int64_t voxels, interesting;
-    double sparse_ratio;         /* share of uninteresting voxels, 0 to 1 */
+    double sparse_ratio; /* share of uninteresting voxels, 0 to 1 */
     uint64_t ea_bytes, ia_bytes, pa_bytes; /* the encoding's arrays; IA is 0
                                               where voxels are read in place */
     double seconds_classify, seconds_shade, seconds_encode; /* stages of */

@@ -156,14 +156,6 @@ static int opacity_length(const options *asked, const snow_volume_info *info,
                       info->unit);
 }
 
-/* A kernel that was asked for has its own size; the default one is the method's
- * to choose. */
-static int find_footprint(const options *asked) {
-    bool cubic = strcmp(asked->kernel, "bspline") == 0 &&
-                 options_given(asked, "kernel");
-    return cubic && !asked->footprint ? 4 : (int)asked->footprint;
-}
-
 /* The option table has checked the words, so the library knows every name. */
 void fill_settings(const options *asked, snow_settings *out) {
     snow_settings_init(out);
@@ -171,7 +163,7 @@ void fill_settings(const options *asked, snow_settings *out) {
     out->method = (snow_method)snow_method_from_name(asked->method);
     out->encoding = (snow_encoding)snow_encoding_from_name(asked->encoding);
     out->kernel = (snow_kernel)snow_kernel_from_name(asked->kernel);
-    out->footprint = find_footprint(asked);
+    out->footprint = (int)asked->footprint;
     out->shade =
         strcmp(asked->shade, "none") == 0 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
     out->ambient = asked->ambient;

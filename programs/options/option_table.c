@@ -89,10 +89,10 @@ const option_row option_table[] = {
      "paper does; original: the same with every voxel (default auto: "
      "shear-warp)"},
 
-    {"kernel", 0, "tent|gauss|bspline|box", TOPIC_KERNEL, RENDER, read_choice,
+    {"kernel", 0, "auto|tent|gauss|bspline|box", TOPIC_KERNEL, RENDER, read_choice,
      FIELD(kernel), 0, 0, "", "reconstruction kernel; shear-warp and raycast take tent and bspline, of "
-     "others footprint makes the picture (default tent; bspline with footprint "
-     "and original)"},
+     "others footprint makes the picture (default auto: tent; bspline with "
+     "footprint and original)"},
     {"footprint", 0, "K", TOPIC_KERNEL, RENDER, read_integer, FIELD(footprint),
      2, 9, "",
      "support of the kernel in voxels, 2 to 9 (default 2 for tent and box, "

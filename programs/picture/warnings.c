@@ -34,8 +34,8 @@ void warn_unused(const options *asked) {
 static void warn_method(const scene *s) {
     bool asked = strcmp(s->asked->method, "shear-warp") == 0 ||
                  (strcmp(s->asked->method, "auto") == 0 &&
-                  (options_given(s->asked, "kernel") ||
-                   options_given(s->asked, "footprint")));
+                  (strcmp(s->asked->kernel, "auto") != 0 ||
+                   s->asked->footprint != 0));
     if (!asked || s->stats.method == SNOW_METHOD_SHEAR_WARP)
         return;
     say("note: method %s is used in place of shear-warp, which takes kernels "

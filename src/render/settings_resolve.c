@@ -109,8 +109,9 @@ snow_status snow_settings_resolve(snow_context *context,
     SNOW_TRY(resolve_machine(context, s));
     if (s->method == SNOW_METHOD_AUTO)
         s->method = SNOW_METHOD_SHEAR_WARP;
-    if (s->footprint == 0 && s->kernel == SNOW_KERNEL_BSPLINE && takes_tent(s))
-        s->kernel = SNOW_KERNEL_TENT;
+    if (s->kernel == SNOW_KERNEL_AUTO)
+        s->kernel = s->footprint == 0 && takes_tent(s) ? SNOW_KERNEL_TENT
+                                                       : SNOW_KERNEL_BSPLINE;
     if (s->footprint == 0)
         s->footprint = snow_kernel_default_support(s->kernel);
     SNOW_TRY(check_raycast(context, s));

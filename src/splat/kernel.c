@@ -71,6 +71,7 @@ static const struct kernel_entry {
     double (*area)(int support);            /* NULL: weights in closed form */
     int default_support;
 } kernels[] = {
+    [SNOW_KERNEL_AUTO] = {"auto", bspline, bspline_area, 4},
     [SNOW_KERNEL_BSPLINE] = {"bspline", bspline, bspline_area, 4},
     [SNOW_KERNEL_TENT] = {"tent", tent, tent_area, 2},
     [SNOW_KERNEL_GAUSS] = {"gauss", gauss, gauss_area, 4},

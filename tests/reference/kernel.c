@@ -35,6 +35,7 @@ double reference_kernel(snow_kernel kernel, int support, double w, double t) {
         return inside(half, t) ? exp(-t * t / (2 * sigma * sigma)) : 0;
     case SNOW_KERNEL_BOX:
         return inside(half, t) ? 1 : 0;
+    case SNOW_KERNEL_AUTO:
     case SNOW_KERNEL_BSPLINE:
         break;
     }
@@ -58,6 +59,7 @@ static double variance(snow_kernel kernel, double support) {
         return support * support / 64;
     case SNOW_KERNEL_BOX:
         return support * support / 12;
+    case SNOW_KERNEL_AUTO:
     case SNOW_KERNEL_BSPLINE:
         break;
     }
