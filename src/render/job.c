@@ -45,30 +45,33 @@ static snow_status check_stream(const snow_job *job, int parts) {
                      "with snow_volume_open");
 }
 
-/* Rays are walked from end to end by one process. */
+/* Rays are walked from end to end by one process; depths of isosurfaces are
+ * theirs. */
 static snow_status check_raycast(const snow_job *job) {
-    if (job->settings.method != SNOW_METHOD_RAYCAST)
+    const snow_settings *s = &job->settings;
+    const bool depth = s->mode == SNOW_MODE_ISO && s->depth;
+    const char *what = depth ? "a depth of mode iso" : "method raycast";
+    if (s->method != SNOW_METHOD_RAYCAST && !depth)
         return SNOW_STATUS_OK;
     if (job->volume->stream)
         return snow_fail(
             job->context, SNOW_STATUS_NO_MEMORY,
-            "%s: method raycast needs all voxels in memory, but they stay in "
-            "the file; allow more memory, give --crop, or use another method",
-            job->volume->path);
+            "%s: %s needs all voxels in memory, but they stay in the file; "
+            "allow more memory, give --crop, or leave it out",
+            job->volume->path, what);
     if (!snow_job_whole(job))
         return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
-                         "method raycast needs the whole volume in one "
-                         "process; render on one rank, or use another method");
+                         "%s needs the whole volume in one process; render on "
+                         "one rank, or leave it out",
+                         what);
     return SNOW_STATUS_OK;
 }
 
 /* What shear-warp cannot draw is left to footprints; isosurfaces, which they
- * have none of, and their depths to rays. */
+ * have none of, to rays. */
 static void choose_method(snow_job *job, const snow_volume_info *whole) {
     snow_settings *s = &job->settings;
     const bool iso = s->mode == SNOW_MODE_ISO;
-    if (iso && s->method != SNOW_METHOD_RAYCAST)
-        s->method = s->depth ? SNOW_METHOD_RAYCAST : SNOW_METHOD_SHEAR_WARP;
     if (s->method == SNOW_METHOD_SHEAR_WARP &&
         !snow_value_fits(whole, &job->placement, s->kernel))
         s->method = iso ? SNOW_METHOD_RAYCAST : SNOW_METHOD_FOOTPRINT;

@@ -16,12 +16,15 @@ static snow_render_pass *add_pass(snow_picture *p, const snow_job *job) {
     return pass;
 }
 
-/* Footprints once more, with an eye on opacity alone. */
+/* Of over footprints once more, with an eye on opacity alone; of isosurfaces
+ * rays. */
 static void add_depth(snow_picture *p) {
+    const bool iso = p->job.settings.mode == SNOW_MODE_ISO;
     snow_render_pass *pass = add_pass(p, &p->job);
     pass->depth = true;
     pass->job.stats = &p->unused;
-    pass->job.settings.method = SNOW_METHOD_FOOTPRINT;
+    pass->job.settings.method =
+        iso ? SNOW_METHOD_RAYCAST : SNOW_METHOD_FOOTPRINT;
     pass->job.settings.shade = SNOW_SHADE_NONE;
     pass->job.settings.deterministic =
         false; /* it has one order of operations */
@@ -45,7 +48,10 @@ snow_status snow_picture_plan_mode(snow_picture *p) {
     else if (job.settings.method == SNOW_METHOD_SHEAR_WARP)
         status = snow_identity_transfer_above(&job, &p->frame->identity);
     job.settings.deterministic = false; /* bits do not depend on parts */
-    add_pass(p, &job);
+    const snow_render_pass *pass = add_pass(p, &job);
+    if (job.settings.mode == SNOW_MODE_ISO && job.settings.depth &&
+        !pass->method->depths)
+        add_depth(p);
     return status;
 }
 

@@ -76,15 +76,17 @@ static bool is_of_values(const snow_settings *s) {
            (s->kernel == SNOW_KERNEL_BSPLINE && s->footprint == 4);
 }
 
-static snow_status check_raycast(snow_context *context,
-                                 const snow_settings *s) {
-    if (s->method != SNOW_METHOD_RAYCAST || is_of_values(s))
+static snow_status check_kernel(snow_context *context, const snow_settings *s) {
+    const bool iso = s->mode == SNOW_MODE_ISO;
+    if ((s->method != SNOW_METHOD_RAYCAST && !iso) || is_of_values(s))
         return SNOW_STATUS_OK;
     return snow_fail(
         context, SNOW_STATUS_BAD_USAGE,
-        "invalid kernel %s of footprint %d for method raycast: it must be tent "
-        "of 2 or bspline of 4; use another kernel, or method footprint",
-        snow_kernel_name(s->kernel), s->footprint);
+        "invalid kernel %s of footprint %d for %s: it must be tent of 2 or "
+        "bspline of 4; use another kernel%s",
+        snow_kernel_name(s->kernel), s->footprint,
+        iso ? "mode iso" : "method raycast",
+        iso ? "" : ", or method footprint");
 }
 
 snow_status snow_settings_resolve(snow_context *context,
@@ -107,14 +109,16 @@ snow_status snow_settings_resolve(snow_context *context,
                          "invalid iso %g: must be a finite data value", s->iso);
     SNOW_TRY(check_numbers(context, s));
     SNOW_TRY(resolve_machine(context, s));
-    if (s->method == SNOW_METHOD_AUTO)
+    /* Footprints have no isosurfaces. */
+    if (s->method == SNOW_METHOD_AUTO ||
+        (s->mode == SNOW_MODE_ISO && s->method != SNOW_METHOD_RAYCAST))
         s->method = SNOW_METHOD_SHEAR_WARP;
     if (s->kernel == SNOW_KERNEL_AUTO)
         s->kernel = s->footprint == 0 && takes_tent(s) ? SNOW_KERNEL_TENT
                                                        : SNOW_KERNEL_BSPLINE;
     if (s->footprint == 0)
         s->footprint = snow_kernel_default_support(s->kernel);
-    SNOW_TRY(check_raycast(context, s));
+    SNOW_TRY(check_kernel(context, s));
     if (s->method == SNOW_METHOD_SHEAR_WARP && !is_of_values(s))
         s->method = SNOW_METHOD_FOOTPRINT;
     const double *spacing = info->spacing;
