@@ -16,7 +16,7 @@ typedef enum snow_method {
     SNOW_METHOD_AUTO = 0,
     SNOW_METHOD_ORIGINAL,   /* every voxel, no sparse matrix: the baseline */
     SNOW_METHOD_TESTED,     /* the same, voxels tested against the threshold */
-    SNOW_METHOD_FOOTPRINT,  /* interesting voxels, each onto the image: exact */
+    SNOW_METHOD_FOOTPRINT,  /* interesting voxels, each onto the image */
     SNOW_METHOD_SHEAR_WARP, /* values of sheared slices, warped once: fast */
     SNOW_METHOD_RAYCAST     /* rays through interpolated values: slow truth */
 } snow_method;
@@ -29,7 +29,7 @@ typedef enum snow_encoding {
     SNOW_ENCODING_RLE
 } snow_encoding;
 
-/* The reconstruction kernel along one grid axis (docs/model.md, point 7). */
+/* The reconstruction kernel along one grid axis (docs/model.md, section 7). */
 typedef enum snow_kernel {
     SNOW_KERNEL_AUTO = 0, /* tent; bspline by original and footprint */
     SNOW_KERNEL_BSPLINE,
