@@ -6,7 +6,7 @@
 #include "decompose/order.h"
 #include "frame.h"
 #include "render/ghosts.h"
-#include "render/shear_warp/shear_warp.h"
+#include "render/job.h"
 #include "transfer/transfer.h"
 #include "volume/volume.h"
 
@@ -141,6 +141,42 @@ static void kernels_and_gradients_need_ghosts(void **state) {
     int64_t layers[3];
     snow_settings_init(&settings);
     assert_int_equal(snow_view_from_name(context, "+z", &view), SNOW_STATUS_OK);
+    /* In the plane the voxel behind a sample, a gradient's and one for rays
+     * that move aside; across slices the other sheet of a slab, and a
+     * gradient's. */
+    ghosts(&view, &settings, false, layers);
+    assert_layers(layers, 3, 3, 2);
+    settings.shade = SNOW_SHADE_NONE;
+    for (int quality = 0; quality < 3; quality++) {
+        settings.quality = (snow_quality)quality;
+        ghosts(&view, &settings, false, layers);
+        assert_layers(layers, 2, 2, 1);
+    }
+    settings.kernel = SNOW_KERNEL_BSPLINE; /* cubic: a voxel more */
+    settings.footprint = 4;
+    ghosts(&view, &settings, false, layers);
+    assert_layers(layers, 3, 3, 2);
+    settings.kernel = SNOW_KERNEL_TENT;
+    settings.footprint = 2;
+    snow_view_from_name(context, "-x", &view);
+    ghosts(&view, &settings, false, layers);
+    assert_layers(layers, 1, 2, 2);
+    /* Half-way between two axes slices are along y. */
+    view.azimuth = 45;
+    ghosts(&view, &settings, false, layers);
+    assert_layers(layers, 2, 1, 2);
+    snow_context_free(context);
+}
+
+static void footprints_need_ghosts_of_their_own(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_settings settings;
+    snow_view view = {.size = sizeof view};
+    int64_t layers[3];
+    snow_settings_init(&settings);
+    settings.method = SNOW_METHOD_FOOTPRINT;
+    assert_int_equal(snow_view_from_name(context, "+z", &view), SNOW_STATUS_OK);
     /* 142 voxels across 512 pixels: no kernel is widened.  The cubic B-spline
      * reaches 2 voxels from a sample half a voxel outside, a gradient one more,
      * slices none. */
@@ -149,19 +185,12 @@ static void kernels_and_gradients_need_ghosts(void **state) {
     settings.shade = SNOW_SHADE_NONE;
     ghosts(&view, &settings, false, layers);
     assert_layers(layers, 2, 2, 0);
-    settings.quality = SNOW_QUALITY_DRAFT; /* the tent kernel */
+    settings.kernel = SNOW_KERNEL_TENT;
     ghosts(&view, &settings, false, layers);
     assert_layers(layers, 1, 1, 0);
-    settings.quality = SNOW_QUALITY_HIGH; /* a slice between each two */
-    ghosts(&view, &settings, false, layers);
-    assert_layers(layers, 2, 2, 1);
     snow_view_from_name(context, "-x", &view);
     ghosts(&view, &settings, false, layers);
-    assert_layers(layers, 1, 2, 2);
-    /* Half-way between two axes both count. */
-    view.azimuth = 45;
-    ghosts(&view, &settings, false, layers);
-    assert_layers(layers, 2, 2, 2);
+    assert_layers(layers, 0, 1, 1);
     snow_context_free(context);
 }
 
@@ -195,6 +224,7 @@ static void a_gradient_opacity_needs_those_of_shading(void **state) {
     snow_context_free(context);
 }
 
+/* Of footprints, which they widen; values are read where rays are. */
 static void wide_pixels_need_more_ghosts(void **state) {
     (void)state;
     snow_context *context = support_context();
@@ -207,6 +237,9 @@ static void wide_pixels_need_more_ghosts(void **state) {
     /* 141.4 voxels across 10 pixels: w = sqrt(1 + (14.14^2 - 1) / 4) = 7.12, a
      * support of 28.5. */
     view.width = view.height = 10;
+    ghosts(&view, &settings, false, layers);
+    assert_layers(layers, 2, 2, 1);
+    settings.method = SNOW_METHOD_FOOTPRINT;
     ghosts(&view, &settings, false, layers);
     assert_layers(layers, 14, 14, 0);
     /* As far as the grid goes. */
@@ -221,14 +254,16 @@ static void every_turn_needs_no_more_than_the_bound(void **state) {
     snow_context *context = support_context();
     static const double turns[] = {-80, -45, -20, 0, 33, 45, 60, 90, 170};
     static const double fovs[] = {0, 0.5, 30, 60};
-    for (int n = 0; n < 24; n++) {
+    for (int n = 0; n < 48; n++) {
         snow_settings settings;
         snow_view view = {.size = sizeof view};
         snow_settings_init(&settings);
         snow_view_from_name(context, "iso", &view);
         settings.quality = (snow_quality)(n % 3);
+        settings.method =
+            n < 24 ? SNOW_METHOD_SHEAR_WARP : SNOW_METHOD_FOOTPRINT;
         view.fov = fovs[n / 3 % 4];
-        view.width = view.height = n < 12 ? 200 : 30;
+        view.width = view.height = n / 12 % 2 ? 30 : 200;
         int64_t bound[3], layers[3];
         ghosts(&view, &settings, true, bound);
         for (size_t a = 0; a < 9; a++)
@@ -248,6 +283,10 @@ static void every_turn_needs_no_more_than_the_bound(void **state) {
     snow_settings_init(&settings);
     snow_view_from_name(context, "iso", &view);
     view.width = view.height = 150;
+    /* Rays move aside by up to sqrt(2) voxels from slice to slice. */
+    ghosts(&view, &settings, true, bound);
+    assert_layers(bound, 4, 4, 4);
+    settings.method = SNOW_METHOD_FOOTPRINT;
     ghosts(&view, &settings, true, bound);
     assert_layers(bound, 3, 3, 3);
     snow_context_free(context);
@@ -421,43 +460,66 @@ typedef struct flat {
     float *pixels;
 } flat;
 
-/* The intermediate image of a volume, packed. */
-static flat splat(const stage *s, const snow_volume *volume) {
-    snow_shear_warp *sheared = NULL;
-    snow_shear_warp_image image;
-    snow_placement p;
-    snow_stats stats = {0};
-    snow_shear_warp_params order = {.volume = volume,
-                                    .transfer = s->transfer,
-                                    .view = &s->scene.view,
-                                    .settings = &s->settings,
-                                    .placement = &p,
-                                    .channels = s->transfer->grey ? 2 : 4};
-    snow_volume_info info = {.size = sizeof info};
-    snow_volume_whole(volume, &info);
-    assert_int_equal(snow_placement_make(s->context, &info, &s->scene.view, &p),
+/* The whole's range of values, which the numbers of all parts are of. */
+static snow_data_range range_of(const stage *s) {
+    snow_value_path *path = NULL;
+    snow_data_range range;
+    assert_int_equal(snow_value_path_new(s->context, &path), SNOW_STATUS_OK);
+    assert_int_equal(snow_value_measure(path, s->whole, s->transfer, 1, &range),
                      SNOW_STATUS_OK);
-    snow_clip_make(volume, &p, &order.clip);
-    order.slab = (snow_slab){order.clip.first[2], order.clip.count[2]};
-    assert_int_equal(snow_shear_warp_new(s->context, &sheared), SNOW_STATUS_OK);
-    snow_status status = snow_shear_warp_encode(sheared, &order, &stats);
-    if (status == SNOW_STATUS_OK)
-        status = snow_shear_warp_begin(sheared, &order, false, &stats, &image);
-    if (status == SNOW_STATUS_OK)
-        snow_line_batch_end(snow_shear_warp_batch(sheared));
-    else
-        fail_msg("%s", snow_context_message(s->context));
-    if (image.width)
-        snow_shear_warp_clear(&image, 0, 0, 0, image.tiles,
-                              (int)image.layer_tiles / image.tiles);
-    flat out = {image.width, image.height, image.channels, NULL};
+    snow_value_path_free(path);
+    return range;
+}
+
+static flat pack(const snow_shear_warp_image *image) {
+    flat out = {image->width, image->height, image->channels, NULL};
     size_t line = (size_t)(out.width * out.channels);
+    if (image->width)
+        snow_shear_warp_clear(image, 0, 0, 0, image->tiles,
+                              (image->height + image->tile_height - 1) /
+                                  image->tile_height);
     out.pixels = calloc((size_t)out.height + 1, line * sizeof(float));
     assert_non_null(out.pixels);
     for (int y = 0; y < out.height; y++)
         memcpy(out.pixels + (size_t)y * line,
-               image.pixels + (size_t)y * image.stride, line * sizeof(float));
-    snow_shear_warp_free(sheared);
+               image->pixels + (size_t)y * image->stride, line * sizeof(float));
+    return out;
+}
+
+/* The intermediate image of a volume, packed. */
+static flat splat(const stage *s, const snow_volume *volume) {
+    snow_value_path *path = NULL;
+    snow_shear_warp_image image;
+    snow_stats stats;
+    snow_job job;
+    const snow_request request = {volume,       s->transfer, &s->scene.view,
+                                  &s->settings, 1,           0};
+    snow_status status = snow_job_begin(s->context, &request, &stats, &job);
+    const snow_value_params params = {.volume = volume,
+                                      .transfer = s->transfer,
+                                      .counted = s->transfer,
+                                      .view = job.view,
+                                      .settings = &job.settings,
+                                      .placement = &job.placement,
+                                      .stored = &job.stored,
+                                      .clip = &job.clip,
+                                      .slab = job.slab,
+                                      .channels = job.channels,
+                                      .shared = true};
+    const snow_data_range range = range_of(s);
+    if (status == SNOW_STATUS_OK)
+        status = snow_value_path_new(s->context, &path);
+    snow_value_set_range(path, &range);
+    if (status == SNOW_STATUS_OK)
+        status = snow_value_begin(path, &params, &stats);
+    if (status == SNOW_STATUS_OK)
+        status = snow_value_encode(path, &params, &stats);
+    if (status == SNOW_STATUS_OK)
+        status = snow_value_draw(path, &params, &stats, &image);
+    if (status != SNOW_STATUS_OK)
+        fail_msg("%s", snow_context_message(s->context));
+    flat out = pack(&image);
+    snow_value_path_free(path);
     return out;
 }
 
@@ -483,13 +545,14 @@ typedef struct tally {
     double clear_most, opaque_most, strongest;
 } part_tally;
 
-/* Rounding of over; and what shines through where a cell is given up, which
- * parts do later than the whole. */
-#define BOUND 2e-6
-#define BOUND_OPAQUE (0.5 / 255 + BOUND)
+/* Rounding of over. */
+#define BOUND_OVER 2e-6
+/* Planes of 15 bits are rounded at each slab, of which there are up to 24, and
+ * for each part once more. */
+#define BOUND_VALUES(parts) ((24 * 0.5 + (parts)) / 32767)
 
 static void compare(const stage *s, const flat *whole, const flat *parts,
-                    part_tally *tally) {
+                    double bound, part_tally *tally) {
     assert_int_equal(whole->width, parts->width);
     size_t count = (size_t)(whole->width * whole->height * whole->channels);
     double most = 0, strongest = 0;
@@ -500,7 +563,8 @@ static void compare(const stage *s, const flat *whole, const flat *parts,
             strongest = fmax(strongest, (double)whole->pixels[n]);
     }
     bool opaque = strongest > 1 - 0.5 / 255 - 1e-5;
-    if (!(most <= (opaque ? BOUND_OPAQUE : BOUND)))
+    /* What shines through where a ray ends, which it does later in parts. */
+    if (!(most <= bound + (opaque ? 0.5 / 255 : 0)))
         fail_msg("%d parts (first %lld %lld %lld) differ by %g, strongest "
                  "opacity %g: quality %d fov "
                  "%g: %s",
@@ -550,22 +614,31 @@ static reference_scene scene_of(int n, double fov) {
     return scene;
 }
 
+/* The same with a kernel of values. */
+static reference_scene valued_scene(int n, double fov) {
+    reference_scene scene = scene_of(n, fov);
+    bool cubic = scene.settings.kernel == SNOW_KERNEL_BSPLINE;
+    scene.settings.kernel = cubic ? SNOW_KERNEL_BSPLINE : SNOW_KERNEL_TENT;
+    scene.settings.footprint = cubic ? 4 : 2;
+    return scene;
+}
+
 static void sweep(const char *title, int scenes, double fov) {
     part_tally tally = {0};
     for (int n = 0; n < scenes; n += (int)support_stride(7)) {
-        stage s = {.scene = scene_of(n, fov)};
+        stage s = {.scene = valued_scene(n, fov)};
         open_whole(&s);
         snow_placement p;
         assert_int_equal(
             snow_placement_make(s.context, &s.whole->info, &s.scene.view, &p),
             SNOW_STATUS_OK);
-        if (snow_shear_warp_fits(&p, &s.settings)) {
+        if (snow_value_fits(&s.whole->info, &p, s.settings.kernel)) {
             flat whole = splat(&s, s.whole);
             for (int how = n % 2; how < CUTS; how += 2) {
                 cut(&s, how);
                 open_parts(&s);
                 flat parts = splat_parts(&s);
-                compare(&s, &whole, &parts, &tally);
+                compare(&s, &whole, &parts, BOUND_VALUES(s.count), &tally);
                 free(parts.pixels);
                 close_parts(&s);
             }
@@ -641,7 +714,7 @@ static void parts_by_exact_methods_make_up_the_picture(void **state) {
             cut(&s, how);
             open_parts(&s);
             flat parts = shoot_parts(&s);
-            compare(&s, &whole, &parts, &tally);
+            compare(&s, &whole, &parts, BOUND_OVER, &tally);
             free(parts.pixels);
             close_parts(&s);
         }
@@ -859,6 +932,7 @@ int main(void) {
         cmocka_unit_test(a_part_knows_its_place_in_the_whole),
         cmocka_unit_test(boxes_that_do_not_lie_in_one_another_are_refused),
         cmocka_unit_test(kernels_and_gradients_need_ghosts),
+        cmocka_unit_test(footprints_need_ghosts_of_their_own),
         cmocka_unit_test(a_gradient_opacity_needs_those_of_shading),
         cmocka_unit_test(wide_pixels_need_more_ghosts),
         cmocka_unit_test(every_turn_needs_no_more_than_the_bound),
