@@ -1,5 +1,5 @@
-/* tests/render/test_value.c - method shear-warp beside the float64 reference of the
- * value model, and what must not change a bit of its pictures. */
+/* tests/render/test_value.c - method shear-warp beside the float64 reference of
+ * the value model, and what must not change a bit of its pictures. */
 #include <math.h>
 
 #include "classify/values/value_range.h"
@@ -171,34 +171,30 @@ static void only_what_shows_more_is_encoded_anew(void **state) {
     model_close(&stage);
 }
 
-/* --- refusals ---------------------------------------------------------------
+/* --- what is left to other methods ------------------------------------------
  */
 
-/* One line that says what is not drawn, and what draws it. */
-static void refused(const reference_scene *s, const char *what) {
-    model_stage stage = model_open();
-    snow_volume *volume = frozen(&stage, s);
-    snow_image *image;
-    assert_int_equal(shoot(&stage, volume, s, &image), SNOW_STATUS_BAD_USAGE);
-    assert_null(image);
-    const char *message = snow_context_message(stage.context);
-    if (!strstr(message, what) || !strstr(message, " yet") ||
-        !strstr(message, "; take method shear-warp") || strchr(message, '\n'))
-        fail_msg("%s: %s", what, message);
-    snow_volume_close(volume);
-    model_close(&stage);
-}
-
-static void volumes_that_it_does_not_draw_are_refused(void **state) {
+/* Slices so far apart that rays move aside by too many voxels: footprints draw
+ * them, and rays their isosurface. */
+static void slices_far_apart_are_left_to_others(void **state) {
     (void)state;
+    model_stage stage = model_open();
     reference_scene s = value_picture_scene(10);
     for (int n = 0; n < 3; n++)
         s.info.matrix[n][2] *= 50;
     s.info.spacing[2] *= 50;
     model_look(&s, (double[]){0, 0, 1}, (double[]){0, 1, 0});
     model_turn(&s, 0, 0, 0, 1);
-    refused(&s, "times as far apart as their voxels");
+    free(model_picture(&stage, &s));
+    assert_int_equal(snow_frame_stats(stage.frame)->method,
+                     SNOW_METHOD_FOOTPRINT);
+    s.settings.mode = SNOW_MODE_ISO;
+    s.settings.iso = 50;
+    free(model_picture(&stage, &s));
+    assert_int_equal(snow_frame_stats(stage.frame)->method,
+                     SNOW_METHOD_RAYCAST);
     value_picture_free(&s);
+    model_close(&stage);
 }
 
 /* Nothing but infinities and one value is a picture too. */
@@ -251,7 +247,7 @@ int main(void) {
         cmocka_unit_test(threads_and_encodings_give_the_same_bits),
         cmocka_unit_test(all_vector_levels_give_the_same_image),
         cmocka_unit_test(only_what_shows_more_is_encoded_anew),
-        cmocka_unit_test(volumes_that_it_does_not_draw_are_refused),
+        cmocka_unit_test(slices_far_apart_are_left_to_others),
         cmocka_unit_test(odd_volumes_are_drawn),
         cmocka_unit_test(far_values_of_a_constant_look_take_no_numbers),
     };
