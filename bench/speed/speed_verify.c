@@ -1,8 +1,8 @@
 /* bench/speed/speed_verify.c - a time of a wrong picture is worth nothing, so
- * each way is held against the exact picture before it is timed: method
- * footprint with the scalar kernels and the way's own kernel, which the tests
- * hold against sums in double precision.  Raycast is held against its own high
- * quality.
+ * each way is held against the exact picture before it is timed: footprints
+ * against method footprint with the scalar kernels and the way's own kernel,
+ * which the tests hold against sums in double precision; what interpolates
+ * values against rays in high quality.
  *
  * Bit for bit alike must be: all encodings of a method; any number of threads;
  * the wide instruction sets; and, at threshold 0, original and tested. */
@@ -17,10 +17,9 @@
 /* A quarter of an 8-bit step: what scalar kernels may differ from wide ones. */
 #define SCALAR_LARGEST (0.25 / 255)
 
-/* Exact pictures: of each kernel, of the volume with slices between, and by
- * raycast. */
-#define KERNELS 4
-enum { BETWEEN = KERNELS, TRUTH, EXACTS };
+/* Exact pictures: of each kernel, and by raycast. */
+#define KERNELS 5
+enum { TRUTH = KERNELS, EXACTS };
 
 typedef struct verification {
     speed_session *session;
@@ -47,111 +46,47 @@ static snow_status wrong(const verification *verifier, int way,
     return SNOW_STATUS_DIFFERENT;
 }
 
-/* The volume with the mean of each two slices between them, for which high is
- * meant, in 16 bits: twice the sum, so that halves are kept.  The slice axis is
- * z in all views here.  *voxels are to be freed after the volume. */
-static snow_status open_between(snow_context *context,
-                                const snow_volume *volume, uint16_t **voxels,
-                                snow_volume **out) {
-    snow_volume_info info = *snow_volume_get_info(volume);
-    const unsigned char *from = snow_volume_voxels(volume);
-    size_t slice = (size_t)(info.dims[0] * info.dims[1]);
-    size_t slices = (size_t)info.dims[2];
-    uint16_t *to = malloc(2 * slices * slice * sizeof *to);
-    if (!to)
-        return SNOW_STATUS_NO_MEMORY;
-    for (size_t n = 0; n < 2 * slices - 1; n++)
-        for (size_t i = 0; i < slice; i++)
-            to[n * slice + i] = (uint16_t)(from[n / 2 * slice + i] +
-                                           from[(n + 1) / 2 * slice + i]);
-    info.dims[2] = (int64_t)(2 * slices - 1);
-    info.type = SNOW_TYPE_UINT16;
-    info.slope = 0.5;
-    for (int i = 0; i < 3; i++)
-        info.matrix[i][2] /= 2;
-    snow_status status = snow_volume_wrap(context, &info, to, out);
-    if (status == SNOW_STATUS_OK)
-        *voxels = to;
-    else
-        free(to);
-    return status;
+/* Methods whose truth are rays. */
+static bool is_of_values(const speed_way *way) {
+    return way->method == SNOW_METHOD_RAYCAST ||
+           way->method == SNOW_METHOD_SHEAR_WARP;
 }
 
-/* Half the diagonal of the voxels' boxes, the view's R; upright grids only. */
-static double radius_of(const snow_volume *volume) {
-    const snow_volume_info *info = snow_volume_get_info(volume);
-    double square = 0;
-    for (int i = 0; i < 3; i++)
-        square += pow((double)info->dims[i] * info->spacing[i], 2);
-    return sqrt(square) / 2;
-}
-
-/* Renders that volume: opacities are for the length that they are for in the
- * volume itself, and the pixels lie where they lie there, though its boxes are
- * half a slice thinner. */
-static snow_status render_between(speed_session *session, snow_frame *frame,
-                                  snow_settings *settings, snow_image **out) {
-    const snow_volume *volume = session->job->volume->volume;
-    const snow_volume_info *info = snow_volume_get_info(volume);
-    snow_view view = *speed_view(session, 0);
-    snow_volume *between;
-    uint16_t *voxels;
-    snow_status status =
-        open_between(session->context, volume, &voxels, &between);
-    if (status != SNOW_STATUS_OK)
-        return status;
-    settings->opacity_length =
-        fmin(info->spacing[0], fmin(info->spacing[1], info->spacing[2]));
-    view.zoom *= radius_of(between) / radius_of(volume);
-    status = snow_frame_render(frame, between, session->job->volume->transfer,
-                               &view, settings, out);
-    snow_volume_close(between);
-    free(voxels);
-    return status;
-}
-
-/* Method footprint, or for raycast itself, with the scalar kernels, on a frame
- * that is thrown away with its encoding, which may be large. */
+/* By the scalar kernels, on a frame that is thrown away with its encoding, which
+ * may be large. */
 static snow_status render_exact(speed_session *session, const speed_way *way,
-                                bool between, snow_image **out) {
+                                snow_image **out) {
     snow_settings settings;
     snow_frame *frame;
     snow_settings_init(&settings);
-    settings.method = way->method == SNOW_METHOD_RAYCAST
-                          ? SNOW_METHOD_RAYCAST
-                          : SNOW_METHOD_FOOTPRINT;
-    if (way->method == SNOW_METHOD_RAYCAST)
+    settings.method =
+        is_of_values(way) ? SNOW_METHOD_RAYCAST : SNOW_METHOD_FOOTPRINT;
+    if (is_of_values(way))
         settings.quality = SNOW_QUALITY_HIGH;
     settings.kernel = way->kernel;
     settings.footprint = way->footprint;
     settings.shade = session->job->shade;
     settings.threshold = session->job->threshold;
     settings.isa = SNOW_ISA_SCALAR;
-    settings.threads = 1;
+    settings.threads = is_of_values(way) ? 0 : 1;
     snow_status status = snow_frame_new(session->context, &frame);
     if (status != SNOW_STATUS_OK)
         return status;
-    if (between)
-        status = render_between(session, frame, &settings, out);
-    else
-        status = snow_frame_render(frame, session->job->volume->volume,
-                                   session->job->volume->transfer,
-                                   speed_view(session, 0), &settings, out);
+    status = snow_frame_render(frame, session->job->volume->volume,
+                               session->job->volume->transfer,
+                               speed_view(session, 0), &settings, out);
     snow_frame_free(frame);
     return status;
 }
 
 /* The exact picture for a way, made once for all ways that share it. */
 static snow_status exact_of(verification *verifier, int way, snow_image **out) {
-    bool between = speed_ways[way].quality == SNOW_QUALITY_HIGH;
-    bool truth = speed_ways[way].method == SNOW_METHOD_RAYCAST;
-    snow_image **kept = &verifier->exact[between ? BETWEEN
-                                         : truth ? TRUTH
-                                                 : (int)speed_ways[way].kernel];
+    const speed_way *of = &speed_ways[way];
+    snow_image **kept =
+        &verifier->exact[is_of_values(of) ? TRUTH : (int)of->kernel];
     snow_status status = SNOW_STATUS_OK;
     if (!*kept)
-        status =
-            render_exact(verifier->session, &speed_ways[way], between, kept);
+        status = render_exact(verifier->session, of, kept);
     *out = *kept;
     return status;
 }

@@ -82,7 +82,7 @@ prints '^machine: .*processors; (gcc|.*[Cc]lang)'
 prints '^flags: .* isa .* load average [0-9.]+$'
 prints '^1 thread: reads [0-9.]+ GB/s, [0-9]+ GFLOP/s'
 prints '^Engine 40x40x32 \(phantom:engine\), translucent rgba unshaded, 64x64, threshold 10: sparse'
-prints '^shear-warp normal  *bspline 4   1 '
+prints '^shear-warp normal  *tent 2   1 '
 check "only what was asked for" \
     [ -z "$(grep -E 'original|tested|footprint|draft|opaque|phong' "$OUT" |
         grep -v '^times faster\|^rates;\|^way ')" ]
