@@ -776,6 +776,7 @@ static void a_part_with_too_few_ghosts_is_refused(void **state) {
     (void)state;
     stage s = {.scene = scene_of(0, 0)};
     s.scene.settings.shade = SNOW_SHADE_PHONG;
+    s.scene.settings.kernel = SNOW_KERNEL_TENT;
     open_whole(&s);
     cut_grid(&s, 2, 1, 1);
     open_part(&s, 0, (const int64_t[]){2, 0, 0});
