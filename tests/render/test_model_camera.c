@@ -351,7 +351,7 @@ static void settings_and_views_out_of_range_are_refused(void **state) {
     bad[4].footprint = 10, bad[5].ambient = 1.5, bad[6].diffuse = -0.1;
     bad[7].specular = (double)INFINITY, bad[8].shininess = -1;
     bad[9].opacity_length = -1, bad[10].light_azimuth = (double)NAN;
-    bad[11].method = (snow_method)9, bad[12].kernel = (snow_kernel)4;
+    bad[11].method = (snow_method)9, bad[12].kernel = (snow_kernel)5;
     bad[13].encoding = (snow_encoding)4;
     blind[0].width = 0, blind[1].height = 32769, blind[2].zoom = 0;
     blind[3].zoom = (double)NAN, blind[4].roll = (double)INFINITY;
