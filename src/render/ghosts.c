@@ -9,10 +9,10 @@
  *          o       o       o   |  *      *        h = 2: layers a - 1, a - 2,
  *         grad   <------ h --->                   and a - 3 with shading
  *
- * Along the slice axis kernels do not reach; a slice half-way to the next one
- * (quality high) does, and mode iso looks at the slice that the ray met before,
- * where it was as many voxels aside as it is slanted.  A pixel wider than a
- * voxel widens the kernel, and how wide it is depends on the view.
+ * Along the slice axis footprints do not reach.  A pixel wider than a voxel
+ * widens the kernel, and how wide it is depends on the view.  What values need
+ * is said with layers_beside and layers_across, rays of surfaces with
+ * layers_of_rays.
  *
  * A level's part needs as many of the level's voxels, and is made of twice as
  * many of the volume's, and of those across its border. */
@@ -68,36 +68,43 @@ static bool finds_surfaces(const question *q) {
 }
 
 /* How a picture is made: values are splatted where encodings provide for the
- * view; else, and for depths, footprints are. */
+ * view; else, and for depths, footprints are, or rays of surfaces walked. */
 typedef struct ways {
-    bool values, footprints;
+    bool values, footprints, rays;
 } ways;
 
 static ways ways_of(const question *q, bool fits) {
-    bool values = splats_values(q) && fits;
-    return (ways){values, !values || q->settings->depth};
+    bool values = splats_values(q) && fits, iso = finds_surfaces(q);
+    bool others = !values || q->settings->depth;
+    return (ways){values, others && !iso, others && iso};
+}
+
+/* Rays look from one end of a step to the one before, half a voxel away at
+ * most. */
+static double layers_of_rays(const question *q) {
+    return 1 + cubic(q) + q->gradients;
 }
 
 /* Layers along an axis that lies in the slices, whose pixels are `width` voxels
  * wide; from slice to slice rays go `slope` voxels aside. */
 static double layers_beside(const question *q, ways by, double ratio,
                             double width, double slope) {
-    double values = 0, footprints = 0;
+    double values = 0, footprints = 0, rays = by.rays ? layers_of_rays(q) : 0;
     if (by.values)
         values = 1 + cubic(q) + values_beside(q, ratio) +
                  fmin(ceil(slope), SNOW_VALUE_REACH_MOST);
     if (by.footprints) {
         snow_scaled_kernel kernel = snow_scaled_kernel_make(
             q->settings->kernel, q->settings->footprint, width);
-        footprints = floor(snow_scaled_kernel_reach(&kernel) + 0.5) +
-                     q->gradients + (finds_surfaces(q) ? ceil(slope) : 0);
+        footprints =
+            floor(snow_scaled_kernel_reach(&kernel) + 0.5) + q->gradients;
     }
-    return fmax(values, footprints);
+    return fmax(fmax(values, footprints), rays);
 }
 
 /* Those across slices: of values, the other sheet of a slab. */
 static double layers_across(const question *q, ways by) {
-    if (by.values)
+    if (by.values || by.rays)
         return 1 + cubic(q) + q->gradients;
     return q->gradients;
 }
@@ -131,19 +138,6 @@ static void widest_slope(const question *q, const snow_placement *p,
                           : fmax(fabs(p->inverse[axis][0] * p->step_slice[0] +
                                       p->inverse[axis][1] * p->step_slice[1]),
                                  spacing[p->slice_axis] / spacing[axes[axis]]);
-    if (!p->perspective || splats_values(q))
-        return;
-    slope[0] = slope[1] = 0;
-    for (int corner = 0; corner < 4; corner++) {
-        double first[3], ray[3];
-        snow_perspective_ray(&p->eye, 0, 0, first);
-        snow_perspective_ray(&p->eye, corner % 2 ? p->width : 0,
-                             corner / 2 ? p->height : 0, ray);
-        for (int axis = 0; axis < 2; axis++)
-            slope[axis] = ray[2] * first[2] > 0
-                              ? fmax(slope[axis], fabs(ray[axis] / ray[2]))
-                              : INFINITY;
-    }
 }
 
 /* The view's own needs, with slices along one axis. */

@@ -45,25 +45,23 @@ static snow_status check_stream(const snow_job *job, int parts) {
                      "with snow_volume_open");
 }
 
-/* Rays are walked from end to end by one process; depths of isosurfaces are
- * theirs. */
+/* Rays are walked from end to end by one process; only surfaces are met by
+ * parts, too. */
 static snow_status check_raycast(const snow_job *job) {
     const snow_settings *s = &job->settings;
-    const bool depth = s->mode == SNOW_MODE_ISO && s->depth;
-    const char *what = depth ? "a depth of mode iso" : "method raycast";
-    if (s->method != SNOW_METHOD_RAYCAST && !depth)
+    if (s->method != SNOW_METHOD_RAYCAST || s->mode == SNOW_MODE_ISO)
         return SNOW_STATUS_OK;
     if (job->volume->stream)
         return snow_fail(
             job->context, SNOW_STATUS_NO_MEMORY,
-            "%s: %s needs all voxels in memory, but they stay in the file; "
-            "allow more memory, give --crop, or leave it out",
-            job->volume->path, what);
+            "%s: method raycast needs all voxels in memory, but they stay in "
+            "the file; allow more memory, give --crop, or take another method",
+            job->volume->path);
     if (!snow_job_whole(job))
-        return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
-                         "%s needs the whole volume in one process; render on "
-                         "one rank, or leave it out",
-                         what);
+        return snow_fail(
+            job->context, SNOW_STATUS_BAD_USAGE,
+            "method raycast needs the whole volume in one process; render on "
+            "one rank, or take another method");
     return SNOW_STATUS_OK;
 }
 

@@ -56,12 +56,13 @@ static snow_status open_slabs(snow_parts *parts) {
     SNOW_TRY(snow_ghosts_needed(
         job->context, &job->volume->info, job->view, &job->settings,
         snow_transfer_has_gradient_opacity(job->transfer), false, layers));
-    parts->cut = (snow_slab_cut){.step = 1,
-                                 .ghosts = layers[2],
-                                 .made = made_of(job),
-                                 .clipped = job->settings.method ==
-                                            SNOW_METHOD_SHEAR_WARP,
-                                 .from = nearest_slice(job)};
+    parts->cut = (snow_slab_cut){
+        .step = 1,
+        .ghosts = layers[2],
+        .made = made_of(job),
+        .clipped = job->settings.method == SNOW_METHOD_SHEAR_WARP ||
+                   job->settings.method == SNOW_METHOD_RAYCAST,
+        .from = nearest_slice(job)};
     if (parts->picture->pass->method->cut)
         parts->picture->pass->method->cut(parts->picture, parts->whole,
                                           &parts->cut);

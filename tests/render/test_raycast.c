@@ -722,7 +722,7 @@ static void parts_and_slabs_are_refused(void **state) {
     assert_non_null(strstr(refusal(&stage, volume, &scene, 3),
                            "needs the whole volume in one process"));
     assert_int_equal(snow_volume_set_extent(volume, &half), SNOW_STATUS_OK);
-    for (int mode = SNOW_MODE_OVER; mode <= SNOW_MODE_ISO; mode++) {
+    for (int mode = SNOW_MODE_OVER; mode < SNOW_MODE_ISO; mode++) {
         scene.settings.mode = (snow_mode)mode;
         assert_non_null(strstr(refusal(&stage, volume, &scene, 1),
                                "method raycast needs the whole volume in one"));
@@ -796,7 +796,7 @@ static void ranks_are_refused(void **state) {
     (void)state;
     model_stage stage = model_open();
     reference_scene scene = scene_of(SNOW_TYPE_UINT8, false, MODEL_PLAIN);
-    for (int mode = SNOW_MODE_OVER; mode <= SNOW_MODE_ISO; mode++) {
+    for (int mode = SNOW_MODE_OVER; mode < SNOW_MODE_ISO; mode++) {
         scene.settings.mode = (snow_mode)mode;
         assert_int_equal(
             snow_comm_run_threads(stage.context, 2, render_half, &scene),

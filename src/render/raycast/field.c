@@ -53,6 +53,7 @@ snow_status snow_field_make(const snow_volume *volume,
                             snow_field *out) {
     const int64_t *dims = volume->info.dims;
     snow_volume_statistics figures;
+    snow_volume_info whole;
     snow_field field = {
         .volume = volume,
         .load = loads[volume->info.type],
@@ -61,14 +62,18 @@ snow_status snow_field_make(const snow_volume *volume,
         .log = transfer->log && !modes,
         .infinite_is_hole = modes,
     };
+    snow_volume_whole(volume, &whole);
+    if (volume->is_part)
+        memcpy(field.stored, volume->part.stored, sizeof field.stored);
     snow_volume_statistics_init(&figures);
     if (!modes && volume->info.type >= SNOW_TYPE_FLOAT32)
         SNOW_TRY(snow_volume_get_statistics(volume, &figures));
     field.least = figures.min;
     field.most = figures.max;
     for (int axis = 0; axis < 3; axis++) {
-        field.low[axis] = dims[axis] > 1 ? 0 : -0.5;
-        field.high[axis] = dims[axis] > 1 ? (double)(dims[axis] - 1) : 0.5;
+        int64_t side = field.dims[axis] = whole.dims[axis];
+        field.low[axis] = side > 1 ? 0 : -0.5;
+        field.high[axis] = side > 1 ? (double)(side - 1) : 0.5;
     }
     *out = field;
     return SNOW_STATUS_OK;
@@ -94,8 +99,10 @@ static double field_value_of(const snow_field *field, double native) {
 static void fill(const snow_field *field, snow_field_window *w) {
     const snow_clip_planes *clip = field->volume->clip;
     double *value = w->values;
-    int64_t at[3];
-    field->load(field, w->first, w->count, w->values);
+    int64_t at[3], first[3];
+    for (int axis = 0; axis < 3; axis++)
+        first[axis] = w->first[axis] - field->stored[axis];
+    field->load(field, first, w->count, w->values);
     w->holes = false;
     w->least = INFINITY;
     w->most = -INFINITY;
@@ -104,9 +111,9 @@ static void fill(const snow_field *field, snow_field_window *w) {
             for (at[0] = 0; at[0] < w->count[0]; at[0]++, value++) {
                 if (clip && isnan(*value))
                     *value = snow_clip_planes_value(
-                        clip, (w->first[0] + at[0]) * field->steps[0] +
-                                  (w->first[1] + at[1]) * field->steps[1] +
-                                  (w->first[2] + at[2]) * field->steps[2]);
+                        clip, (first[0] + at[0]) * field->steps[0] +
+                                  (first[1] + at[1]) * field->steps[1] +
+                                  (first[2] + at[2]) * field->steps[2]);
                 *value = field_value_of(field, *value);
                 w->holes |= isnan(*value);
                 w->least = fmin(w->least, *value);
@@ -142,14 +149,19 @@ static void add_weight(int64_t voxel, double weight, int64_t last,
     weights[voxel - first] += weight;
 }
 
-/* Voxels and weights along one axis. */
-static void place_axis(int taps, int64_t dims, double at, int64_t *first,
-                       int *count, double weights[SNOW_FIELD_TAPS]) {
+/* Voxels and weights along one axis, of those that are in memory. */
+static void place_axis(const snow_field *field, int axis, double at,
+                       int64_t *first, int *count,
+                       double weights[SNOW_FIELD_TAPS]) {
+    const int taps = field->taps;
+    const int64_t dims = field->dims[axis], stored = field->stored[axis];
+    const int64_t here = field->volume->info.dims[axis];
     double whole = floor(at), kernel[SNOW_FIELD_TAPS];
-    int64_t begin = (int64_t)whole - taps / 2 + 1, least = dims - taps;
-    *count = dims < taps ? (int)dims : taps;
+    int64_t begin = (int64_t)whole - taps / 2 + 1;
+    int64_t least = stored + here - taps;
+    *count = here < taps ? (int)here : taps;
     *first = begin < least ? begin : least;
-    *first = *first > 0 ? *first : 0;
+    *first = *first > stored ? *first : stored;
     memset(weights, 0, SNOW_FIELD_TAPS * sizeof *weights);
     if (dims == 1) {
         weights[0] = 1;
@@ -166,8 +178,8 @@ void snow_field_place(const snow_field *field, const double at[3],
     int64_t first[3];
     w->beyond = false;
     for (int axis = 0; axis < 3; axis++) {
-        place_axis(field->taps, field->volume->info.dims[axis], at[axis],
-                   &first[axis], &w->count[axis], w->weights[axis]);
+        place_axis(field, axis, at[axis], &first[axis], &w->count[axis],
+                   w->weights[axis]);
         w->beyond |= at[axis] < field->low[axis] - 1e-9 ||
                      at[axis] > field->high[axis] + 1e-9;
     }

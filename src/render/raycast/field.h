@@ -33,6 +33,8 @@ typedef void snow_field_load_fn(const snow_field *field, const int64_t first[3],
 struct snow_field {
     const snow_volume *volume;
     snow_field_load_fn *load;
+    int64_t dims[3];        /* of the whole, which positions are those of */
+    int64_t stored[3];      /* the first voxel that is in memory */
     int64_t steps[3];       /* from voxel to voxel */
     int taps;               /* 2: the tent, 4: the cubic B-spline */
     bool log;               /* values are binary logarithms */
@@ -53,8 +55,9 @@ typedef struct snow_field_window {
     double least, most; /* of the values; least > most: all are holes */
 } snow_field_window;
 
-/* The field of a volume in memory.  `modes`: of data values that are finite,
- * for modes other than over. */
+/* The field of a volume in memory, or of a part of one: positions are then
+ * those that its voxels, and their neighbours, are enough for.  `modes`: of
+ * data values that are finite, for modes other than over. */
 snow_status snow_field_make(const snow_volume *volume,
                             const snow_transfer *transfer,
                             const snow_settings *settings, bool modes,

@@ -5,14 +5,20 @@
 #include <math.h>
 #include <string.h>
 
-/* The value where step i begins; i is `steps` at the ray's end. */
-static double value_at(const snow_raycast_pass *pass, const snow_ray *ray,
-                       double i, snow_raycast_eye *eye, double at[3]) {
+/* Where step i begins; i is `steps` at the ray's end. */
+static void end_of(const snow_raycast_pass *pass, const snow_ray *ray, double i,
+                   double at[3]) {
     snow_ray_at(ray, ray->enter + i * ray->step, at);
     /* Rounding must not carry a ray's ends beyond those of the field. */
     for (int axis = 0; axis < 3; axis++)
         at[axis] =
             fmin(fmax(at[axis], pass->field.low[axis]), pass->field.high[axis]);
+}
+
+/* The value there. */
+static double value_at(const snow_raycast_pass *pass, const snow_ray *ray,
+                       double i, snow_raycast_eye *eye, double at[3]) {
+    end_of(pass, ray, i, at);
     snow_field_place(&pass->field, at, &eye->near);
     return snow_field_value(&eye->near);
 }
@@ -111,11 +117,26 @@ static void shade_surface(const snow_raycast_pass *pass, const snow_ray *ray,
                          channels, pixel);
 }
 
+/* Whether a position is next to a voxel of the part. */
+static bool is_own(const snow_raycast_pass *pass, const double at[3]) {
+    for (int axis = 0; pass->cut && axis < 3; axis++) {
+        double last = (double)(pass->field.dims[axis] - 1);
+        int64_t voxel = (int64_t)fmin(floor(at[axis] + 0.5), last);
+        if (voxel < pass->own[axis][0] || voxel > pass->own[axis][1])
+            return false;
+    }
+    return true;
+}
+
 void snow_raycast_iso(const snow_raycast_pass *pass, const snow_ray *ray,
                       snow_raycast_eye *eye, float *pixel, float *depth) {
-    int64_t skip = 1;
+    int64_t skip;
     double at[3];
-    for (int64_t i = 0; i <= ray->steps; i += skip) {
+    for (int64_t i = ray->first; i <= ray->last; i += skip) {
+        end_of(pass, ray, (double)i, at);
+        skip = 1;
+        if (!is_own(pass, at))
+            continue;
         double value = value_at(pass, ray, (double)i, eye, at);
         skip = eye->near.most >= pass->level ? 1 : snow_ray_skip(ray, at);
         if (!is_above(pass, value))

@@ -28,6 +28,9 @@ static void cut_ray(snow_ray *ray, double at, double slope, double most) {
 static void cut_to_field(const snow_raycast_pass *pass, snow_ray *ray) {
     const snow_field *field = &pass->field;
     const snow_clip_planes *clip = field->volume->clip;
+    const double stored[3] = {(double)field->stored[0],
+                              (double)field->stored[1],
+                              (double)field->stored[2]};
     for (int axis = 0; axis < 3; axis++) {
         double at = ray->start[axis], slope = ray->along[axis];
         cut_ray(ray, at, slope, field->high[axis]);
@@ -35,7 +38,8 @@ static void cut_to_field(const snow_raycast_pass *pass, snow_ray *ray) {
     }
     for (size_t n = 0; clip && n < clip->plane_count; n++)
         cut_ray(ray, snow_dot(clip->planes[n], ray->start),
-                snow_dot(clip->planes[n], ray->along), clip->planes[n][3]);
+                snow_dot(clip->planes[n], ray->along),
+                clip->planes[n][3] + snow_dot(clip->planes[n], stored));
 }
 
 /* From (u, v, slice) of a placement to (x, y, z). */
@@ -90,6 +94,26 @@ static void aim(const snow_raycast_pass *pass, double x, double y,
     to_axes(p, start, ray->start);
 }
 
+/* The steps that end next to a part's voxels, and perhaps some more. */
+static void cut_to_part(const snow_raycast_pass *pass, snow_ray *ray) {
+    snow_ray own = *ray;
+    for (int axis = 0; pass->cut && axis < 3; axis++) {
+        double at = ray->start[axis], slope = ray->along[axis];
+        cut_ray(&own, at, slope, (double)pass->own[axis][1] + 0.5);
+        cut_ray(&own, -at, -slope, 0.5 - (double)pass->own[axis][0]);
+    }
+    ray->first = 0;
+    ray->last = ray->steps;
+    if (!(own.enter <= own.leave + ray->step))
+        ray->last = -1;
+    else if (pass->cut) {
+        double first = (own.enter - ray->enter) / ray->step;
+        double last = (own.leave - ray->enter) / ray->step;
+        ray->first = (int64_t)fmax(0, floor(first) - 1);
+        ray->last = (int64_t)fmin(ceil(last) + 1, (double)ray->steps);
+    }
+}
+
 static bool make_ray(const snow_raycast_pass *pass, double x, double y,
                      snow_ray *ray, double viewer[3]) {
     aim(pass, x, y, ray, viewer);
@@ -100,7 +124,8 @@ static bool make_ray(const snow_raycast_pass *pass, double x, double y,
     ray->steps = (int64_t)ceil(length / pass->step - 1e-9);
     ray->steps = ray->steps > 0 ? ray->steps : 1;
     ray->step = length / (double)ray->steps;
-    return true;
+    cut_to_part(pass, ray);
+    return ray->first <= ray->last;
 }
 
 int64_t snow_ray_skip(const snow_ray *ray, const double at[3]) {
@@ -138,9 +163,8 @@ static void cast_line(void *of, int64_t y, int worker) {
         double viewer[3];
         if (snow_monitor_look(job->context->monitor, worker))
             return;
-        memset(pixel, 0, channels * sizeof *pixel);
-        if (depth)
-            *depth = NAN;
+        if (pass->cut && pixel[channels - 1] > 0) /* met by a part in front */
+            continue;
         if (!make_ray(pass, (double)x + 0.5, (double)y + 0.5, &ray, viewer))
             continue;
         if (job->placement.perspective)
@@ -181,6 +205,16 @@ static void choose_cast(const snow_picture *p, snow_raycast_pass *pass) {
     }
 }
 
+static void set_part(snow_raycast_pass *pass) {
+    const snow_volume *volume = pass->job->volume;
+    const snow_extent *part = &volume->part;
+    pass->cut = volume->is_part;
+    for (int axis = 0; pass->cut && axis < 3; axis++) {
+        pass->own[axis][0] = part->first[axis];
+        pass->own[axis][1] = part->first[axis] + part->count[axis] - 1;
+    }
+}
+
 static void set_colors(snow_raycast_pass *pass) {
     double rgb[3];
     pass->level = pass->job->settings.iso;
@@ -217,6 +251,7 @@ static snow_status prepare(const snow_picture *p, const snow_job *job,
                               &pass->shader));
     memcpy(pass->inverse, pass->shader.inverse, sizeof pass->inverse);
     set_colors(pass);
+    set_part(pass);
     set_depth(pass);
     choose_cast(p, pass);
     return SNOW_STATUS_OK;

@@ -10,9 +10,12 @@
  *                samples in the middle of steps (over), or at their ends
  *
  * A step is at most 1/2, 1/4 or 1/16 of the smallest spacing in quality draft,
- * normal and high.  There is no encoding, no level of the mipmap and no
- * approximation for the sake of speed; what cannot be seen is skipped only
- * where that changes nothing. */
+ * normal and high.  There is no encoding and no approximation for the sake of
+ * speed; what cannot be seen is skipped only where that changes nothing.
+ *
+ * In mode iso a ray may be walked by parts, from front to back: each looks at
+ * the ends of steps next to its own voxels, which are the same ends for all,
+ * and what the parts before have met stays. */
 #ifndef SNOW_RENDER_RAYCAST_H
 #define SNOW_RENDER_RAYCAST_H
 
@@ -29,6 +32,7 @@ typedef struct snow_ray {
     double enter, leave; /* of the field; enter < leave */
     double step;
     int64_t steps;
+    int64_t first, last; /* ends of steps that may be of the part at hand */
 } snow_ray;
 
 /* What a thread keeps from sample to sample. */
@@ -52,6 +56,8 @@ struct snow_raycast_pass {
     bool shaded, gradient_factors;
     bool labels, nearest; /* numbers that name things (field.h) */
     double step;          /* the longest, in world units */
+    bool cut;             /* the volume is a part of one: */
+    int64_t own[3][2];    /* its first and last voxels */
     double inverse[3][3]; /* world to index */
     double depth[4];      /* of index position (x, y, z), and a constant */
     /* Values that a window must reach to be seen, in the field's units. */

@@ -99,7 +99,7 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
 --threshold nan x|from 0 to 255
 --encoding zip x|choose from: auto, crs, bitmap, rle
 --encoding '' x|choose from
---kernel cube x|choose from: tent, gauss, bspline, box
+--kernel cube x|choose from: auto, tent, gauss, bspline, box
 --footprint 1 x|from 2 to 9
 --footprint 10 x|from 2 to 9
 --footprint 3.5 x|from 2 to 9
