@@ -1,5 +1,5 @@
 /* composite/projection.h - the projections that replace over in other modes
- * (model, point 8): a sheet changes the image, and the order of sheets has no
+ * (docs/model.md): a sheet changes the image, and the order of sheets has no
  * effect.
  *
  * A sheet's pixel is (n, w): the sum of its voxels' weighted values, and that

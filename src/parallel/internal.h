@@ -190,7 +190,7 @@ snow_status snow_flight_check_mode(const snow_flight *flight);
 /* Collective.  The range of all parts into the frame's ramp. */
 snow_status snow_flight_agree_range(snow_flight *flight);
 
-/* Collective.  The range of all parts, for the value path. */
+/* Collective.  The range of all parts, for shear-warp. */
 snow_status snow_flight_agree_values(snow_flight *flight);
 
 /* Whether it is known already: the same on all ranks, unless only some have a

@@ -23,7 +23,7 @@ static int64_t nearest_slice(const snow_job *job) {
     return level > 0 ? (int64_t)fmin(floor(level + 0.5), (double)last) : 0;
 }
 
-/* Bytes that the value path encodes a voxel in at most, but for margins:
+/* Bytes that shear-warp encodes a voxel in at most, but for margins:
  * numbers of 2 bytes, packed and as rows, with places and masks; what grows is
  * copied.
  */

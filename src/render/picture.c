@@ -1,5 +1,5 @@
-/* render/picture.c - the plan of a picture: its level of detail, its job and
- * the passes that it is made in. */
+/* render/picture.c - the plan of a picture: its job and the passes that it
+ * is made in. */
 #include "render/picture.h"
 
 #include "base/record.h"

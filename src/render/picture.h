@@ -77,7 +77,7 @@ typedef struct snow_local_image {
     /* Of methods that warp. */
     snow_placement placement;
     snow_shear_warp_image image;
-    bool begun; /* by the value path: it has what all parts share */
+    bool begun; /* by shear-warp: it has what all parts share */
 } snow_local_image;
 
 #define SNOW_PASSES_MOST 4
@@ -107,7 +107,7 @@ struct snow_picture {
 /* Begins the monitor with settings.stop; `settings` may be NULL. */
 void snow_picture_watch(snow_picture *picture, const snow_settings *settings);
 
-/* The plan: the level of detail, the job and, in mode over, the passes. */
+/* The plan: the job and, in mode over, the passes. */
 snow_status snow_picture_plan(snow_picture *picture,
                               const snow_request *request);
 

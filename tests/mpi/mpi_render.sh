@@ -53,7 +53,7 @@ run 0 "a deterministic picture" "$TOOL" $head --deterministic -y -o one.npy
 TOLERANCE=0 render 3 "a deterministic picture" --deterministic
 check "it has the same bits" cmp -s one.npy many.npy
 
-# The value path: ranks agree on the range of values, and share a lattice.
+# Shear-warp: ranks agree on the range of values, and share a lattice.
 value="--method shear-warp --azimuth 33 --elevation 21"
 for way in "" "--perspective" "--quality high"; do
     # shellcheck disable=SC2086

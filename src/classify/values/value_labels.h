@@ -1,4 +1,4 @@
-/* classify/values/value_labels.h - volumes of labels for the value path:
+/* classify/values/value_labels.h - volumes of labels for shear-warp:
  * numbers that name things and are never interpolated. */
 #ifndef SNOW_CLASSIFY_VALUE_LABELS_H
 #define SNOW_CLASSIFY_VALUE_LABELS_H

@@ -1,5 +1,5 @@
 /* classify/values/value_range.h - data values as numbers of 14 bits, which the
- * value path interpolates before it colours them. */
+ * shear-warp interpolates before it colours them. */
 #ifndef SNOW_CLASSIFY_VALUE_RANGE_H
 #define SNOW_CLASSIFY_VALUE_RANGE_H
 

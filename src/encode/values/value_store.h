@@ -1,4 +1,4 @@
-/* encode/values/value_store.h - the encoding of the value path: the shell of
+/* encode/values/value_store.h - the encoding of shear-warp: the shell of
  * what a look shows, for one slice axis, whatever the view.
  *
  *   volume --> cells   of 2x2 voxels of a slice, a bit each: not wholly within

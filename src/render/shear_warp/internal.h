@@ -1,5 +1,4 @@
-/* render/shear_warp/internal.h - what the value path keeps from picture to
- * picture.
+/* render/shear_warp/internal.h - what shear-warp keeps from picture to picture.
  */
 #ifndef SNOW_RENDER_SHEAR_WARP_INTERNAL_H
 #define SNOW_RENDER_SHEAR_WARP_INTERNAL_H

@@ -1,4 +1,4 @@
-/* render/shear_warp/lattice.h - where the value path takes its samples: sheets,
+/* render/shear_warp/lattice.h - where shear-warp takes its samples: sheets,
  * lattice, and how the lattice is warped. */
 #ifndef SNOW_RENDER_SHEAR_WARP_LATTICE_H
 #define SNOW_RENDER_SHEAR_WARP_LATTICE_H

@@ -1,4 +1,4 @@
-/* render/shear_warp/method.c - the value path as a method of figure 8.  A
+/* render/shear_warp/method.c - shear-warp as a method of figure 8.  A
  * picture's parts, of which those of a file come one after another, share a
  * lattice, a table and an image. */
 #include "render/picture.h"

@@ -1,4 +1,4 @@
-/* render/shear_warp/shear_warp.c - lines 02 to 06 of the value path: the table
+/* render/shear_warp/shear_warp.c - lines 02 to 06 of shear-warp: the table
  * of colours and the encoding, and when they serve another picture. */
 #include "render/shear_warp/shear_warp.h"
 

@@ -1,4 +1,4 @@
-/* splat/values/value_splat.h - the value path's inner loops: sheets of values
+/* splat/values/value_splat.h - shear-warp's inner loops: sheets of values
  * are splatted tile by tile, coloured slab by slab, and composited.
  *
  * A tile is 30 x 32 cells of the lattice, one voxel wide each, over the whole
