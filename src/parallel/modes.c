@@ -91,9 +91,8 @@ snow_status snow_flight_agree_values(snow_flight *f) {
     if (words[LOST] > 0)
         return snow_fail(
             f->ranks->context, SNOW_STATUS_BAD_USAGE,
-            "method shear-warp cannot draw clip planes of voxels that "
-            "are shared by count or as bricks yet; use --cut "
-            "equal, or take method shear-warp");
+            "method shear-warp needs the clip planes on every rank, and some "
+            "have none; clip all parts of the volume");
     f->ranks->values = range;
     f->ranks->values_of = f->generation;
     snow_value_set_range(f->picture.frame->value_path, &range);

@@ -3,6 +3,8 @@
 
 #include "base/record.h"
 #include "classify/gradient_opacity.h"
+#include "volume/clip_planes.h"
+#include "volume/mask.h"
 #include "volume/volume.h"
 
 #include <string.h>
@@ -72,23 +74,54 @@ static snow_brick brick_of(const snow_volume *volume) {
     return brick;
 }
 
+/* Collective.  Whether all ranks hold clip planes; *lost: some do, and others
+ * do not. */
+static snow_status agree_planes(snow_comm *comm, const snow_volume *held,
+                                bool *all, bool *lost) {
+    double words[2] = {held->clip != NULL, -(held->clip != NULL)};
+    SNOW_TRY(snow_comm_reduce_doubles(comm, words, 2, SNOW_MAX));
+    *all = words[1] < 0;
+    *lost = held->lost_clip || (words[0] > 0 && !*all);
+    return SNOW_STATUS_OK;
+}
+
+/* The planes cut what has come as they have cut what was held. */
+static snow_status cut_again(const snow_volume *held, snow_volume *volume) {
+    snow_extent from, to;
+    int64_t by[3];
+    snow_volume_find_extent(held, &from);
+    snow_volume_find_extent(volume, &to);
+    for (int axis = 0; axis < 3; axis++)
+        by[axis] = to.stored[axis] - from.stored[axis];
+    SNOW_TRY(snow_clip_planes_move(held->clip, by, &volume->clip));
+    return snow_mask_cut_again(volume);
+}
+
 /* Collective.  Fills the part `to` from the parts that all ranks hold. */
 static snow_status move_voxels(snow_comm *comm, const snow_volume *from,
                                const snow_part_place *p, snow_volume *to) {
     static const snow_box nothing;
     snow_voxels *voxels = NULL;
     const snow_brick held = brick_of(from);
-    bool any = snow_box_voxels(&p->owned) > 0;
+    bool any = snow_box_voxels(&p->owned) > 0, all, lost;
+    SNOW_TRY(agree_planes(comm, from, &all, &lost));
     snow_status status =
         snow_comm_agree_status(comm, snow_voxels_new(comm, &voxels));
     if (status == SNOW_STATUS_OK)
         status =
             snow_voxels_plan(voxels, &held.box, 1, any ? &p->stored : &nothing);
+    if (all)
+        snow_clip_planes_show(from->clip, from->info.type, true, from->owned);
     if (status == SNOW_STATUS_OK)
         status = snow_voxels_move(voxels, &held,
                                   snow_type_size(from->info.type), to->owned);
+    if (all)
+        snow_clip_planes_show(from->clip, from->info.type, false, from->owned);
     snow_voxels_free(voxels);
-    return status;
+    to->lost_clip = lost;
+    if (status == SNOW_STATUS_OK && all)
+        status = cut_again(from, to);
+    return all ? snow_comm_agree_status(comm, status) : status;
 }
 
 /* Collective.  Voxels that all ranks hold go where the boxes say. */
@@ -103,8 +136,6 @@ static snow_status send_share(snow_comm *comm, const snow_volume_info *whole,
         comm, snow_part_new(snow_comm_context(comm), whole, &p, &volume));
     if (status == SNOW_STATUS_OK)
         status = move_voxels(comm, held, &p, volume);
-    if (status == SNOW_STATUS_OK)
-        volume->lost_clip = held->clip || held->lost_clip;
     if (status == SNOW_STATUS_OK)
         *out = volume;
     else

@@ -82,6 +82,42 @@ void snow_clip_planes_free(snow_clip_planes *clip) {
     snow_release(clip->context, clip);
 }
 
+snow_status snow_clip_planes_move(const snow_clip_planes *clip,
+                                  const int64_t by[3], snow_clip_planes **out) {
+    snow_clip_planes *moved = snow_allocate_clear(clip->context, sizeof *moved);
+    *out = NULL;
+    if (!moved)
+        return SNOW_STATUS_NO_MEMORY;
+    moved->context = clip->context;
+    memcpy(moved->reach, clip->reach, sizeof moved->reach);
+    moved->planes = snow_allocate_array(clip->context, clip->plane_count,
+                                        sizeof *moved->planes);
+    if (!moved->planes) {
+        snow_clip_planes_free(moved);
+        return SNOW_STATUS_NO_MEMORY;
+    }
+    moved->plane_count = clip->plane_count;
+    for (size_t n = 0; n < clip->plane_count; n++) {
+        memcpy(moved->planes[n], clip->planes[n], sizeof *moved->planes);
+        for (int axis = 0; axis < 3; axis++)
+            moved->planes[n][3] -= moved->planes[n][axis] * (double)by[axis];
+    }
+    *out = moved;
+    return SNOW_STATUS_OK;
+}
+
+void snow_clip_planes_show(const snow_clip_planes *clip, snow_type type,
+                           bool shown, void *voxels) {
+    for (size_t n = 0; n < clip->voxel_count; n++) {
+        const snow_clipped_voxel *voxel = &clip->voxels[n];
+        double value = shown ? voxel->native : NAN;
+        if (type == SNOW_TYPE_FLOAT32)
+            ((float *)voxels)[voxel->at] = (float)value;
+        else
+            ((double *)voxels)[voxel->at] = value;
+    }
+}
+
 /* Whether a voxel is beyond a plane; *reached: it is in reach of all planes
  * that it is beyond. */
 static bool is_beyond(const snow_clip_planes *clip, const int64_t at[3],

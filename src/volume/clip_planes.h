@@ -47,6 +47,16 @@ snow_status snow_clip_planes_new(snow_context *context,
                                  snow_clip_planes **out);
 void snow_clip_planes_free(snow_clip_planes *clip);
 
+/* The same planes over the voxels of another part, whose first voxel is that at
+ * `by` of theirs.  No value is kept yet. */
+snow_status snow_clip_planes_move(const snow_clip_planes *clip,
+                                  const int64_t by[3], snow_clip_planes **out);
+
+/* Writes the values that are kept (`shown`), or NaN again, to voxels of a
+ * floating-point type. */
+void snow_clip_planes_show(const snow_clip_planes *clip, snow_type type,
+                           bool shown, void *voxels);
+
 /* Makes NaN of values beyond the planes, of voxels from linear index `first`
  * on; `keep`: those in reach are kept.  Called with rising indices. */
 snow_status snow_clip_planes_apply(snow_clip_planes *clip,

@@ -270,6 +270,12 @@ snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
     return status;
 }
 
+snow_status snow_mask_cut_again(snow_volume *volume) {
+    const snow_cuts by = {.keeps_clipped = true};
+    bool any;
+    return leave_out(volume, &by, NULL, volume, &any);
+}
+
 snow_status snow_volume_mask(const snow_volume *volume, const snow_volume *mask,
                              const snow_label_range *labels, size_t count,
                              snow_volume **out) {

@@ -30,6 +30,10 @@ snow_status snow_mask_check_grid(snow_context *context,
 snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
                             bool *any, snow_volume **out);
 
+/* Cuts a volume of its own clip planes, whose type is a floating-point one,
+ * once more: its voxels have come from elsewhere. */
+snow_status snow_mask_cut_again(snow_volume *volume);
+
 /* Whether the options name a mask, labels of one, or planes; options may be
  * NULL. */
 bool snow_mask_asked(const snow_volume_options *options);
