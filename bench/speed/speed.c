@@ -300,7 +300,7 @@ static snow_status sweep_size(speed_run *run) {
 
 /* The sweep, and its chart when one was asked for. */
 static snow_status do_sweep(speed_run *run, chart_plot *chart) {
-    char how[160], where[512];
+    char how[192], where[512];
     int threads = run->options->threads.values[0];
     run->chart = chart;
     chart->y_label = "milliseconds per frame (median)";
@@ -311,8 +311,8 @@ static snow_status do_sweep(speed_run *run, chart_plot *chart) {
                              ? sweep_size(run)
                              : sweep_sparse(run);
     snprintf(how, sizeof how,
-             "translucent, RGBA, unshaded, %dx%d pixels, cubic B-spline 4x4; "
-             "original and tested on 1 thread, others on %d",
+             "translucent, RGBA, unshaded, %dx%d pixels, cubic B-spline 4x4, "
+             "shear-warp tent; original and tested on 1 thread, others on %d",
              run->options->sides.values[0], run->options->sides.values[0],
              threads);
     snprintf(where, sizeof where, "%s; isa %s; %s; load average %.2f",
