@@ -77,10 +77,11 @@ for mode in mip minip mean sum iso; do
     done
 done
 run 0 "bytes of a surface, whole" "$TOOL" render a.nrrd -s 96x96 -q -m iso \
-    --iso 120 -o whole.npy -y
+    --iso 120 -o whole.npy -y --depth whole.depth.npy
 run 0 "bytes of a surface in slabs" "$TOOL" render a.nrrd -s 96x96 -q -m iso \
-    --iso 120 -o slabs.npy -y --memory 11M
+    --iso 120 -o slabs.npy -y --memory 11M --depth slabs.depth.npy
 same "bytes of a surface" whole.npy slabs.npy
+same "its depths" whole.depth.npy slabs.depth.npy
 mv slabs.npy slabs_iso.npy
 run 0 "depths, whole" "$TOOL" render a.nrrd "${look[@]}" --view -z -q \
     -o whole.npy -y --depth whole.depth.npy
@@ -143,10 +144,6 @@ rm none.png
 refused 5 "the smallest slab" \
     'a.nrrd: one slab, tables and the picture need 17.2 MiB, over the --memory of 3.0 MiB; raise it' \
     "$TOOL" render a.nrrd -s 1024x1024 -o none.png --memory 3M
-refused 5 "a depth of a surface" \
-    'a depth of mode iso needs all voxels in memory' \
-    "$TOOL" render a.nrrd "${small[@]}" -q -m iso --iso 120 --depth none.npy \
-    --memory 11M
 refused 5 "a deterministic picture by shear-warp" \
     'a deterministic picture by method shear-warp needs all voxels' \
     "$TOOL" render a.nrrd "${small[@]}" --deterministic --memory 11M -q
