@@ -74,7 +74,7 @@ static void visit(const reference_cast *cast, const double position[3],
     for (int n = 0; n < 3; n++) {
         double last = (double)(cast->scene->info.dims[n] - 1);
         double here = position[n];
-        if (cast->boxes || last == 0)
+        if (last == 0)
             here = fmin(fmax(here, 0), last);
         from[n] = (int64_t)floor(here) - 1;
         for (int i = 0; i < 4; i++)
@@ -252,8 +252,7 @@ static bool begin(walk *w) {
     w->enter = scene->view.fov > 0 ? 0 : -INFINITY;
     w->leave = INFINITY;
     for (int n = 0; n < 3; n++) {
-        bool half = w->cast->boxes || scene->info.dims[n] == 1;
-        double low = half ? -0.5 : 0;
+        double low = scene->info.dims[n] == 1 ? -0.5 : 0;
         double high = (double)(scene->info.dims[n] - 1) - low;
         cut(w, w->ray.start[n], w->ray.step[n], high);
         cut(w, -w->ray.start[n], -w->ray.step[n], -low);
@@ -483,7 +482,7 @@ double *reference_cast_rays(const reference_cast *cast, double *depth) {
 
 double *reference_raycast(const reference_scene *scene) {
     reference_scene linear = *scene;
-    const reference_cast cast = {.scene = &linear, .boxes = true};
+    const reference_cast cast = {.scene = &linear};
     linear.settings.kernel = SNOW_KERNEL_TENT;
     return reference_cast_rays(&cast, NULL);
 }

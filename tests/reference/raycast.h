@@ -16,9 +16,6 @@ typedef struct reference_cast {
     const double (
         *planes)[4]; /* of the world: a x + b y + c z > d is cut off */
     int plane_count;
-    /* The field fills the voxels' boxes, as the slices of footprints do, and is
-     * constant in their outer halves. */
-    bool boxes;
 } reference_cast;
 
 /* Values are those of the field at an index position, up to one voxel beyond

@@ -122,7 +122,7 @@ double *reference_mode(const reference_scene *scene);
  * where there is none. */
 double *reference_depth(const reference_scene *scene);
 
-/* The picture of raycast.h of trilinear values that fill the voxels' boxes. */
+/* The picture of raycast.h of trilinear values. */
 double *reference_raycast(const reference_scene *scene);
 
 #endif
