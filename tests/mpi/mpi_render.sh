@@ -164,7 +164,7 @@ for way in "step0.nrrd step1.nrrd" "step0.nrrd step1.nrrd --crop :,3:30,5:31" \
     look=$(grep -o 'grey .*histogram)' "$ERR")
     [ "${way%%0*}" = large ] && way+=" --memory 13M"
     # shellcheck disable=SC2086
-    run 0 "by 8" launch 8 "$MPI_TOOL" movie $way -s 64x64 -y \
+    run 0 "by 12" launch 12 "$MPI_TOOL" movie $way -s 64x64 -y \
         -o steps_%d.npy
     check "one look: $look" grep -qF "${look:-none}" "$ERR"
     for frame in 0 1; do
