@@ -113,6 +113,8 @@ typedef struct snow_stats {
     double seconds_splat, seconds_composite, seconds_warp;  /*   figure 7 */
     double seconds_frame; /* the whole picture */
     double cpu_frame;     /* the same in processor time of the process */
+    uint64_t kept_bytes, kept_most; /* encodings along other slice axes, which
+                                       are kept for pictures that follow */
 } snow_stats;
 SNOW_RECORD(snow_stats);
 

@@ -131,6 +131,10 @@ void log_stats(const render_report *report) {
         ", peak %" PRIu64,
         volume_bytes(report->volume), stats->ea_bytes, stats->ia_bytes,
         stats->pa_bytes, report->peak);
+    if (stats->kept_bytes > 0)
+        say("encodings along other axes: %" PRIu64 " bytes, at most %" PRIu64
+            ", are kept for the next pictures",
+            stats->kept_bytes, stats->kept_most);
     say("interesting voxels: %" PRId64 " of %" PRId64 ", sparse ratio %.1f %%",
         stats->interesting, stats->voxels, 100 * stats->sparse_ratio);
     if (launch_ranks() > 1)

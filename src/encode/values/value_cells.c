@@ -93,7 +93,7 @@ static void take_row(marker *m, int64_t row, const unsigned char *natives) {
     if (s->turned)
         memcpy(s->copy + (size_t)place * size, natives,
                (size_t)s->columns * size);
-    if (m->params->seen_count)
+    if (m->store->counted_ranges)
         s->seen[m->band] +=
             snow_value_count_natives(s, m->params, natives, m->natives);
 }

@@ -1,4 +1,4 @@
-/* encode/values/value_encode.h - the steps of encoding that value_store.c
+/* encode/values/value_encode.h - the steps of encoding that value_steps.c
  * calls; each is an item of work for one thread. */
 #ifndef SNOW_ENCODE_VALUE_ENCODE_H
 #define SNOW_ENCODE_VALUE_ENCODE_H
@@ -44,6 +44,9 @@ void snow_value_mark_natives(const snow_value_store *store,
 int64_t snow_value_count_natives(const snow_value_store *store,
                                  const snow_value_store_params *params,
                                  const unsigned char *natives, uint64_t *room);
+
+/* The bytes of an encoding that is whole. */
+void snow_value_store_add_up(snow_value_store *store);
 
 size_t snow_value_cells_bytes(const snow_value_store *store,
                               const snow_value_store_params *params);

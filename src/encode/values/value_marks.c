@@ -132,10 +132,10 @@ int64_t snow_value_count_natives(const snow_value_store *s,
                                  const snow_value_store_params *params,
                                  const unsigned char *natives, uint64_t *room) {
     int64_t outside = 0;
-    for (int n = 0; n < params->seen_count; n++) {
-        find_outside(s, params, &params->seen[n], natives, room);
+    for (int n = 0; n < s->counted_ranges; n++) {
+        find_outside(s, params, &s->counted[n], natives, room);
         for (int64_t word = 0; word < (s->columns + 63) / 64; word++)
             outside += __builtin_popcountll(room[word]);
     }
-    return params->seen_count * s->columns - outside;
+    return s->counted_ranges * s->columns - outside;
 }

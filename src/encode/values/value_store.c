@@ -1,77 +1,20 @@
 /* encode/values/value_store.c - see value_store.h. */
 #include "encode/values/value_store.h"
 
-#include "base/thread_pool.h"
 #include "encode/values/value_encode.h"
 
-#include <stdatomic.h>
 #include <string.h>
-
-typedef struct store_job {
-    snow_value_store *store;
-    const snow_value_store_params *params;
-    size_t scratch_bytes; /* of a thread */
-    atomic_int failed;    /* the last failure's snow_status */
-} store_job;
-
-static void *scratch_of(const store_job *job, int worker) {
-    return job->store->scratch + (size_t)worker * job->scratch_bytes;
-}
-
-static void keep_status(store_job *job, snow_status status) {
-    if (status != SNOW_STATUS_OK)
-        atomic_store(&job->failed, (int)status);
-}
-
-static void cells_item(void *of, int64_t band, int worker) {
-    store_job *job = of;
-    keep_status(job, snow_value_cells_band(job->store, job->params, band,
-                                           worker, scratch_of(job, worker)));
-}
-
-static void coarse_item(void *of, int64_t eight, int worker) {
-    const store_job *job = of;
-    (void)worker;
-    snow_value_cells_coarse(job->store, eight);
-}
-
-static void shell_item(void *of, int64_t band, int worker) {
-    store_job *job = of;
-    keep_status(job, snow_value_shell_band(job->store, job->params, band,
-                                           worker, scratch_of(job, worker)));
-}
-
-static void measure_item(void *of, int64_t band, int worker) {
-    const store_job *job = of;
-    snow_value_rows_measure(job->store, band, scratch_of(job, worker));
-}
-
-static void fill_item(void *of, int64_t band, int worker) {
-    const store_job *job = of;
-    snow_value_rows_fill(job->store, band, scratch_of(job, worker));
-}
-
-static void border_item(void *of, int64_t slice, int worker) {
-    const store_job *job = of;
-    (void)worker;
-    snow_value_rows_border(job->store, slice);
-}
 
 /* --- sizes ------------------------------------------------------------------
  */
 
 static snow_status reserve_masks(snow_value_store *s) {
-    s->mask_words = snow_value_words(s) + 2;
-    s->mask_rows =
-        (size_t)s->rows + 2 * (size_t)s->margin + 2 * SNOW_VALUE_ROWS;
-    s->coarse_words = s->mask_rows / ((size_t)SNOW_VALUE_COARSE * 64) + 2;
     size_t slices = (size_t)snow_value_planes(s) * (size_t)s->slices;
     size_t masks = slices * s->mask_words * s->mask_rows;
     SNOW_TRY(snow_reserve(s->context, &s->masks, &s->masks_capacity, 0,
                           (masks + SNOW_VALUE_ROWS) * sizeof *s->masks));
     memset(s->masks, 0, (masks + SNOW_VALUE_ROWS) * sizeof *s->masks);
     size_t coarse = s->mask_words * s->coarse_words * sizeof *s->coarse;
-    s->eight_count = (s->slices + SNOW_VALUE_EIGHT - 1) / SNOW_VALUE_EIGHT;
     SNOW_TRY(snow_reserve(s->context, &s->eights, &s->eights_capacity, 0,
                           (size_t)snow_value_planes(s) *
                               (size_t)s->eight_count * coarse));
@@ -159,29 +102,10 @@ static snow_status reserve_turned(snow_value_store *s) {
     return SNOW_STATUS_OK;
 }
 
-/* Scratch for whichever step takes most. */
-static snow_status reserve_scratch(store_job *job) {
-    snow_value_store *s = job->store;
-    size_t most = ((size_t)s->columns / 2 + 2) * sizeof(snow_span);
-    size_t cells = snow_value_cells_bytes(s, job->params);
-    size_t shell = s->in_place ? 0 : snow_value_shell_bytes(s, job->params);
-    most = cells > most ? cells : most;
-    most = shell > most ? shell : most;
-    job->scratch_bytes = (most + 63) / 64 * 64;
-    return snow_reserve(s->context, &s->scratch, &s->scratch_capacity, 0,
-                        job->scratch_bytes * (size_t)job->params->threads);
-}
-
-static snow_status begin(store_job *job) {
-    snow_value_store *s = job->store;
-    const snow_value_store_params *params = job->params;
+/* Sizes, and how rows are kept. */
+static void describe(snow_value_store *s,
+                     const snow_value_store_params *params) {
     const snow_placement *p = params->placement;
-    if (p->columns * p->rows > (int64_t)UINT32_MAX)
-        return snow_fail(
-            s->context, SNOW_STATUS_BAD_USAGE,
-            "slices of %lldx%lld voxels are too large to encode: the limit is "
-            "4294967295 voxels; render a part of the volume",
-            (long long)p->columns, (long long)p->rows);
     s->columns = p->columns;
     s->rows = p->rows;
     s->slices = p->slices;
@@ -190,12 +114,34 @@ static snow_status begin(store_job *job) {
     s->run_count = params->run_count;
     memcpy(s->runs, params->runs,
            (size_t)params->run_count * sizeof *params->runs);
+    s->counted_ranges = params->seen_count;
+    for (int n = 0; n < params->seen_count; n++)
+        s->counted[n] = params->seen[n];
     s->holes = params->holes;
     s->cubic = params->cubic;
     s->labels = params->coder->names != NULL;
     if (s->holes && !s->run_count) /* nothing is invisible but holes */
         s->runs[s->run_count++] = SNOW_VALUE_NO_RUN;
     place_natives(s, params);
+    s->mask_words = snow_value_words(s) + 2;
+    s->mask_rows =
+        (size_t)s->rows + 2 * (size_t)s->margin + 2 * SNOW_VALUE_ROWS;
+    s->coarse_words = s->mask_rows / ((size_t)SNOW_VALUE_COARSE * 64) + 2;
+    s->eight_count = (s->slices + SNOW_VALUE_EIGHT - 1) / SNOW_VALUE_EIGHT;
+}
+
+snow_status snow_value_store_begin(snow_value_store *s,
+                                   const snow_value_store_params *params) {
+    const snow_placement *p = params->placement;
+    if (p->columns * p->rows > (int64_t)UINT32_MAX)
+        return snow_fail(
+            s->context, SNOW_STATUS_BAD_USAGE,
+            "slices of %lldx%lld voxels are too large to encode: the limit is "
+            "4294967295 voxels; render a part of the volume",
+            (long long)p->columns, (long long)p->rows);
+    s->step = 0;
+    s->made = 0;
+    describe(s, params);
     SNOW_TRY(reserve_masks(s));
     if (s->in_place)
         forget_rows(s);
@@ -204,34 +150,14 @@ static snow_status begin(store_job *job) {
     SNOW_TRY(reserve_bands(s));
     if (s->turned)
         SNOW_TRY(reserve_turned(s));
-    if (!s->in_place)
-        SNOW_TRY(reserve_rows(s));
-    return reserve_scratch(job);
+    return s->in_place ? SNOW_STATUS_OK : reserve_rows(s);
 }
 
-/* --- the encoding -----------------------------------------------------------
+/* --- what it takes ----------------------------------------------------------
  */
 
-/* By the cells of every eighth slice that no run hides, and how many runs of
- * them there are. */
-static snow_encoding choose(const snow_value_store *s) {
-    uint64_t cells = 0, runs = 0, slices = 0;
-    const size_t size = s->mask_words * s->mask_rows;
-    for (int64_t slice = s->slices / 2 % 8; slice < s->slices;
-         slice += 8, slices++)
-        for (size_t n = 0; n < size; n++) {
-            uint32_t mask = ~UINT32_C(0);
-            for (int run = 0; run < s->run_count; run++)
-                mask &= s->masks[snow_value_mask_at(s, run, slice) + n];
-            cells += (uint64_t)__builtin_popcount(mask);
-            runs += (uint64_t)__builtin_popcount(mask & ~(mask << 1));
-        }
-    return snow_encoding_choose((uint64_t)(s->columns * s->rows) * slices,
-                                cells, runs);
-}
-
 /* Of natives there are masks and at most a copy, which counts as IA. */
-static void add_up(snow_value_store *s) {
+void snow_value_store_add_up(snow_value_store *s) {
     s->voxels = s->ea_bytes = 0;
     if (s->in_place) {
         s->encoding = SNOW_ENCODING_BITMAP;
@@ -265,36 +191,23 @@ void snow_value_store_count(const snow_value_store *s, int64_t first,
           sizeof(snow_slice_pointer);
 }
 
-static snow_status each(store_job *job, int64_t items, snow_work_fn *work) {
-    int threads = job->params->threads;
-    SNOW_TRY(snow_parallel(job->store->context,
-                           threads < items ? threads : (int)items, items, work,
-                           job));
-    return (snow_status)atomic_load(&job->failed);
+/* Without a rule IA and rows may have all voxels. */
+uint64_t snow_value_store_expect(const snow_value_store_params *params) {
+    snow_value_store s = {.context = params->volume->context};
+    describe(&s, params);
+    uint64_t masks = (uint64_t)snow_value_planes(&s) * (uint64_t)s.slices *
+                     s.mask_words * s.mask_rows * sizeof *s.masks;
+    uint64_t voxels = (uint64_t)(s.columns * s.rows * s.slices);
+    uint64_t size = s.kind == SNOW_VALUE_BYTES ? 1 : sizeof(int16_t);
+    return masks + (s.in_place ? s.turned * size : 2 * size) * voxels;
 }
 
-snow_status snow_value_store_encode(snow_value_store *s,
-                                    const snow_value_store_params *params) {
-    store_job job = {.store = s, .params = params};
-    atomic_init(&job.failed, SNOW_STATUS_OK);
-    SNOW_TRY(begin(&job));
-    snow_monitor_next(s->context->monitor, SNOW_STAGE_ENCODE, 0, 0.5);
-    SNOW_TRY(each(&job, s->band_count, cells_item));
-    SNOW_TRY(each(&job, s->eight_count, coarse_item));
-    if (s->in_place) {
-        add_up(s);
-        return SNOW_STATUS_OK;
-    }
-    s->encoding =
-        params->encoding == SNOW_ENCODING_AUTO ? choose(s) : params->encoding;
-    snow_monitor_next(s->context->monitor, SNOW_STAGE_ENCODE, 0.5, 1);
-    SNOW_TRY(each(&job, s->band_count, shell_item));
-    SNOW_TRY(each(&job, s->band_count, measure_item));
-    SNOW_TRY(snow_value_rows_place(s));
-    SNOW_TRY(each(&job, s->band_count, fill_item));
-    SNOW_TRY(each(&job, s->slices, border_item));
-    add_up(s);
-    return SNOW_STATUS_OK;
+uint64_t snow_value_store_bytes(const snow_value_store *s) {
+    uint64_t bytes = s->masks_capacity + s->coarse_capacity +
+                     s->eights_capacity + s->bands_capacity +
+                     s->values_capacity + s->copy_capacity + s->at_capacity +
+                     s->ends_capacity + s->seen_capacity + s->scratch_capacity;
+    return s->in_place ? bytes : bytes + s->ea_bytes + s->ia_bytes;
 }
 
 void snow_value_store_fini(snow_value_store *s) {

@@ -45,6 +45,16 @@ typedef enum snow_value_kind {
     SNOW_VALUE_WORDS,   /* native values of 16 bits */
 } snow_value_kind;
 
+/* Natives first .. first + width, which may go round beyond the largest of
+ * their type; none: there are no such. */
+typedef struct snow_value_natives {
+    uint16_t first, width;
+    bool none;
+} snow_value_natives;
+
+/* Ranges of natives that are counted, at most. */
+#define SNOW_VALUE_SEEN 4
+
 typedef struct snow_value_store {
     snow_context *context;
     int64_t columns, rows, slices;
@@ -68,7 +78,9 @@ typedef struct snow_value_store {
     snow_sparse *bands;
     int64_t band_count;
     snow_encoding encoding;
-    int64_t *seen; /* natives that were counted, by bands */
+    snow_value_natives counted[SNOW_VALUE_SEEN]; /* natives that are counted, */
+    int counted_ranges;                          /* ... 0: none */
+    int64_t *seen;                               /* and how many, by bands */
     uint64_t voxels, ea_bytes, ia_bytes, pa_bytes;
     snow_value_kind kind;
     bool in_place;        /* rows are natives at regular steps */
@@ -85,17 +97,12 @@ typedef struct snow_value_store {
     int64_t *at;            /* [slice][row + margin] */
     int32_t (*ends)[2];     /* of the rows: first column, and behind the last */
     unsigned char *scratch; /* of the threads, while encoding */
+    int step;               /* that is under way, of those in value_store.c */
+    int64_t made;           /* items of it */
     size_t masks_capacity, coarse_capacity, eights_capacity, bands_capacity,
         values_capacity, copy_capacity, at_capacity, ends_capacity,
         seen_capacity, scratch_capacity;
 } snow_value_store;
-
-/* Natives first .. first + width, which may go round beyond the largest of
- * their type; none: there are no such. */
-typedef struct snow_value_natives {
-    uint16_t first, width;
-    bool none;
-} snow_value_natives;
 
 /* What is encoded. */
 typedef struct snow_value_store_params {
@@ -112,7 +119,7 @@ typedef struct snow_value_store_params {
     int threads;
     bool copied; /* the volume may go before the picture is drawn */
     const snow_value_natives *seen; /* ranges of natives that are counted: */
-    int seen_count;                 /* 0: none are */
+    int seen_count;                 /* 0: none are; up to SNOW_VALUE_SEEN */
 } snow_value_store_params;
 
 /* Columns and rows beyond each side: those that rays and gradients reach.  A
@@ -138,6 +145,21 @@ snow_value_store_by_natives(const snow_value_store_params *params) {
 snow_status snow_value_store_encode(snow_value_store *store,
                                     const snow_value_store_params *params);
 void snow_value_store_fini(snow_value_store *store);
+
+/* The same in parts: begins; makes so many bands more, of those that are left.
+ * It is whole when none are.  `params` are those of the beginning, but runs and
+ * natives to count are needed no more.  After an error it is to be begun anew.
+ * Errors: as above. */
+snow_status snow_value_store_begin(snow_value_store *store,
+                                   const snow_value_store_params *params);
+snow_status snow_value_store_go_on(snow_value_store *store,
+                                   const snow_value_store_params *params,
+                                   int64_t bands);
+int64_t snow_value_store_left(const snow_value_store *store);
+
+/* Bytes that it takes; that one would take at most. */
+uint64_t snow_value_store_bytes(const snow_value_store *store);
+uint64_t snow_value_store_expect(const snow_value_store_params *params);
 
 /* Bytes of EA, IA and PA of `count` slices from `first` on; not in place. */
 void snow_value_store_count(const snow_value_store *store, int64_t first,

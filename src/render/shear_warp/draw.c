@@ -365,6 +365,11 @@ snow_status snow_value_draw(snow_value_path *path,
                            work_of(params), &path->drawing));
     snow_value_end_image(path->image);
     stats->seconds_splat += snow_seconds() - mark;
+    mark = snow_seconds();
+    snow_value_prepare_axis(path, params);
+    stats->kept_bytes = snow_value_axes_bytes(path);
+    stats->kept_most = snow_value_axes_most(params->volume);
+    stats->seconds_encode += snow_seconds() - mark;
     return SNOW_STATUS_OK;
 }
 

@@ -16,14 +16,28 @@ typedef struct snow_value_key {
     snow_encoding encoding; /* as asked for */
 } snow_value_key;
 
+/* An encoding that is kept, and what it is of. */
+typedef struct snow_value_encoding {
+    snow_value_store store;
+    snow_value_key key;
+    int64_t interesting; /* voxels; below 0: to be counted */
+} snow_value_encoding;
+
 /* A slab of a file: its record without voxels, and their encoding, which is in
  * the path while it is drawn. */
 typedef struct snow_value_kept_slab {
     snow_volume *slab;
-    snow_value_store store;
-    snow_value_key key;
-    int64_t interesting;
+    snow_value_encoding kept;
 } snow_value_kept_slab;
+
+/* Encodings along other slice axes than that in the path (axes.c). */
+typedef struct snow_value_axes {
+    snow_value_encoding kept[3];
+    /* Right, up and back of the picture before, and the generation of its
+     * volume; 0: there was none. */
+    double camera[3][3];
+    uint64_t camera_of;
+} snow_value_axes;
 
 typedef struct snow_value_kept_slabs {
     snow_value_kept_slab *slabs;
@@ -105,6 +119,7 @@ struct snow_value_path {
     snow_value_key key; /* of the store */
     bool wavers; /* pictures of that key have shown more than the store had */
     int64_t interesting;
+    snow_value_axes axes;
     snow_value_kept_slabs kept;
     snow_value_light light;
     snow_value_fade fade;
@@ -137,19 +152,65 @@ const snow_value_operator *snow_value_operator_of(snow_mode mode);
 snow_status snow_value_place_rays(snow_value_path *path,
                                   const snow_value_params *params);
 
-/* --- value.c --- */
+/* --- shear_warp.c --- */
+
+/* What an encoding for params is of. */
+snow_value_key snow_value_key_of(const snow_value_path *path,
+                                 const snow_value_params *params,
+                                 uint64_t generation);
+
+/* An order to encode, and what it points to.  `spare` leaves out fewer numbers,
+ * so that it serves views whose rays have another length.  Errors:
+ * SNOW_STATUS_NO_MEMORY. */
+typedef struct snow_value_order {
+    snow_value_store_params params;
+    snow_value_run runs[SNOW_VALUE_RUNS];
+    snow_value_natives seen[SNOW_VALUE_SEEN];
+} snow_value_order;
+snow_status snow_value_order_make(snow_value_path *path,
+                                  const snow_value_params *params, bool spare,
+                                  snow_value_order *out);
+
+/* Whether an encoding under a key serves a part of a volume when it is whole.
+ */
+bool snow_value_fits_key(const snow_value_path *path, const snow_value_key *has,
+                         const snow_value_store *store,
+                         const snow_value_params *params, uint64_t generation);
 
 /* Whether the encoding under a key serves a part of a volume. */
 bool snow_value_serves(const snow_value_path *path, const snow_value_key *has,
                        const snow_value_store *store,
                        const snow_value_params *params, uint64_t generation);
 
+/* --- axes.c --- */
+
+/* The kept encoding along the axis of a picture to its place in the path; that
+ * of another axis is kept instead.  Those of other volumes are given up, and
+ * such as leave no room. */
+void snow_value_change_axis(snow_value_path *path,
+                            const snow_value_params *params);
+
+/* After a picture: the encoding along the next axis, by so many bands that it
+ * is whole when the view, which goes on to turn, gets there. */
+void snow_value_prepare_axis(snow_value_path *path,
+                             const snow_value_params *params);
+
+/* What is kept; false: nothing was. */
+bool snow_value_forget_axes(snow_value_path *path);
+uint64_t snow_value_axes_bytes(const snow_value_path *path);
+uint64_t snow_value_axes_most(const snow_volume *volume);
+
 /* --- kept.c --- */
+
+/* Moves an encoding out of the path, which has none then, and back. */
+void snow_value_put_away(snow_value_path *path, snow_value_encoding *to);
+void snow_value_take_out(snow_value_path *path, snow_value_encoding *from);
 
 /* The encoding of a slab of a file to its place in the path, if it was kept. */
 void snow_value_take_kept(snow_value_path *path, const snow_volume *slab);
 
-/* Whether memory was too small, and there is more now: kept slabs are gone. */
+/* Whether memory was too small, and there is more now: what was kept is gone.
+ */
 bool snow_value_lacks_room(snow_value_path *path, snow_status status);
 
 /* Tiles of the grid. */

@@ -8,7 +8,7 @@
 #include "render/shear_warp/internal.h"
 
 static void drop(snow_value_path *path, snow_value_kept_slab *kept) {
-    snow_value_store_fini(&kept->store);
+    snow_value_store_fini(&kept->kept.store);
     snow_volume_close(kept->slab);
     *kept = path->kept.slabs[--path->kept.count];
 }
@@ -20,10 +20,11 @@ void snow_value_forget_slabs(snow_value_path *path) {
 }
 
 bool snow_value_lacks_room(snow_value_path *path, snow_status status) {
-    if (status != SNOW_STATUS_NO_MEMORY || !path->kept.count)
+    if (status != SNOW_STATUS_NO_MEMORY)
         return false;
+    bool kept = path->kept.count > 0;
     snow_value_forget_slabs(path);
-    return true;
+    return snow_value_forget_axes(path) || kept;
 }
 
 /* Bytes that another slab needs: its encoding may take all that slabs were cut
@@ -67,7 +68,7 @@ const snow_volume *snow_value_kept(snow_value_path *path,
         if (kept->slab->part.count[2] == part->count[2] &&
             kept->slab->part.stored[2] == part->stored[2] &&
             kept->slab->info.dims[2] == slices &&
-            snow_value_serves(path, &kept->key, &kept->store, params,
+            snow_value_serves(path, &kept->kept.key, &kept->kept.store, params,
                               kept->slab->generation))
             return kept->slab;
         drop(path, kept);
@@ -84,13 +85,24 @@ static void move(snow_value_store *to, snow_value_store *from) {
     *from = (snow_value_store){.context = context};
 }
 
+void snow_value_put_away(snow_value_path *path, snow_value_encoding *to) {
+    move(&to->store, &path->store);
+    to->key = path->key;
+    to->interesting = path->interesting;
+    path->key.generation = 0;
+}
+
+void snow_value_take_out(snow_value_path *path, snow_value_encoding *from) {
+    move(&path->store, &from->store);
+    path->key = from->key;
+    path->interesting = from->interesting;
+    from->key.generation = 0;
+}
+
 void snow_value_take_kept(snow_value_path *path, const snow_volume *slab) {
     snow_value_kept_slab *kept = find(path, slab);
-    if (!kept)
-        return;
-    move(&path->store, &kept->store);
-    path->key = kept->key;
-    path->interesting = kept->interesting;
+    if (kept)
+        snow_value_take_out(path, &kept->kept);
 }
 
 static snow_value_kept_slab *add(snow_value_path *path, snow_slabs *slabs) {
@@ -104,8 +116,9 @@ static snow_value_kept_slab *add(snow_value_path *path, snow_slabs *slabs) {
     kept->slice_axis = path->key.slice_axis;
     kept->slices = slabs->count;
     kept->ghosts = slabs->cut.ghosts;
-    kept->slabs[kept->count] = (snow_value_kept_slab){
-        .slab = snow_slabs_keep(slabs), .store = {.context = path->context}};
+    kept->slabs[kept->count] =
+        (snow_value_kept_slab){.slab = snow_slabs_keep(slabs),
+                               .kept.store = {.context = path->context}};
     return &kept->slabs[kept->count++];
 }
 
@@ -118,8 +131,5 @@ void snow_value_keep(snow_value_path *path, const snow_value_params *params,
         kept = add(path, slabs);
     if (!kept) /* the next one is encoded in its place */
         return;
-    move(&kept->store, &path->store);
-    kept->key = path->key;
-    kept->interesting = path->interesting;
-    path->key.generation = 0;
+    snow_value_put_away(path, &kept->kept);
 }

@@ -1,0 +1,245 @@
+/* render/shear_warp/encoding.c - line 06 of shear-warp: what the encoding is
+ * of, and when it serves another picture. */
+#include "render/shear_warp/internal.h"
+
+#include "classify/count_interesting.h"
+#include "classify/gradient_opacity.h"
+
+#include <math.h>
+
+/* Whether the runs that were left out are invisible still. */
+static bool shows_no_more(const snow_value_table *table,
+                          const snow_value_store *store) {
+    for (int n = 0; n < store->run_count; n++) {
+        bool hidden = store->runs[n].first > store->runs[n].last;
+        for (int m = 0; m < table->run_count; m++)
+            hidden |= table->runs[m].first <= store->runs[n].first &&
+                      table->runs[m].last >= store->runs[n].last;
+        if (!hidden)
+            return false;
+    }
+    return true;
+}
+
+/* Labels have no means. */
+static bool is_cubic(const snow_value_path *path,
+                     const snow_value_params *params) {
+    return params->settings->kernel == SNOW_KERNEL_BSPLINE && !path->has_labels;
+}
+
+/* The most numbers from one node of a table to the next (docs/model.md, The
+ * value model, point 5), and those by which ends of runs seldom move. */
+#define NODE_MOST 256
+#define NODE_OFTEN 32
+
+/* Nodes that are placed by a look move with the length of rays, and with them
+ * the ends of invisible runs: shorter ones serve all views. */
+static int store_runs(const snow_value_path *path, bool spare,
+                      snow_value_run runs[SNOW_VALUE_RUNS]) {
+    const snow_value_table *table = &path->table;
+    const int by = !table->nodes ? 0 : spare ? NODE_MOST : NODE_OFTEN;
+    for (int n = 0; n < table->run_count; n++) {
+        runs[n] = table->runs[n];
+        if (runs[n].first > 0)
+            runs[n].first = (int16_t)(runs[n].first + by);
+        if (runs[n].last < SNOW_VALUE_MOST)
+            runs[n].last = (int16_t)(runs[n].last - by);
+        if (runs[n].first > runs[n].last)
+            runs[n] = SNOW_VALUE_NO_RUN;
+    }
+    return table->run_count;
+}
+
+/* In perspective it changes from view to view: steps of it let an encoding
+ * serve many. */
+static int eye_reach(const snow_value_path *path,
+                     const snow_value_params *params) {
+    static const int steps[] = {
+        1, 2, 3, 4, 6, 8, 12, 16, SNOW_VALUE_REACH_MOST};
+    double most = snow_value_eye_reach(&path->lattice, params->placement);
+    size_t n = 0;
+    while (n + 1 < sizeof steps / sizeof *steps && most > steps[n])
+        n++;
+    return steps[n]; /* snow_value_eye_fits: there are no more */
+}
+
+static int find_reach(const snow_value_path *path,
+                      const snow_value_params *params) {
+    if (path->lattice.perspective)
+        return eye_reach(path, params) + is_cubic(path, params);
+    double most = snow_value_lattice_reach(
+        &params->volume->info, params->placement, path->lattice.halves);
+    /* snow_value_fits: not too much; of a cubic kernel voxels are one farther
+     * away */
+    return (int)ceil(most * (1 - 1e-5)) + is_cubic(path, params);
+}
+
+static bool same_key(const snow_value_key *a, const snow_value_key *b) {
+    return a->generation && a->generation == b->generation &&
+           a->slice_axis == b->slice_axis &&
+           snow_value_same_scale(&a->scale, &b->scale) &&
+           a->labels == b->labels && a->cubic == b->cubic &&
+           a->encoding == b->encoding;
+}
+
+snow_value_key snow_value_key_of(const snow_value_path *path,
+                                 const snow_value_params *params,
+                                 uint64_t generation) {
+    return (snow_value_key){.generation = generation,
+                            .slice_axis = params->placement->slice_axis,
+                            .scale = path->table.made.scale,
+                            .labels = path->has_labels,
+                            .cubic = is_cubic(path, params),
+                            .encoding = params->settings->encoding};
+}
+
+bool snow_value_fits_key(const snow_value_path *path, const snow_value_key *has,
+                         const snow_value_store *store,
+                         const snow_value_params *params, uint64_t generation) {
+    const snow_value_key key = snow_value_key_of(path, params, generation);
+    return same_key(has, &key) && !(params->shared && store->in_place) &&
+           store->reach >= find_reach(path, params) &&
+           shows_no_more(&path->table, store);
+}
+
+bool snow_value_serves(const snow_value_path *path, const snow_value_key *has,
+                       const snow_value_store *store,
+                       const snow_value_params *params, uint64_t generation) {
+    return snow_value_fits_key(path, has, store, params, generation) &&
+           !snow_value_store_left(store);
+}
+
+/* The ranges of interesting natives; 0: voxels cannot be counted by them. */
+static int find_seen(const snow_value_path *path,
+                     const snow_value_params *params,
+                     snow_value_natives out[SNOW_VALUE_SEEN]) {
+    const snow_value_rule *rule = &path->coder.scale.rule;
+    snow_native_range ranges[SNOW_VALUE_SEEN];
+    if (!path->coder.ruled || path->coder.scale.clamps ||
+        params->volume->is_part ||
+        snow_transfer_has_gradient_opacity(params->counted))
+        return 0;
+    int count = snow_interesting_ranges(
+        &params->volume->info, params->counted, params->settings->threshold,
+        rule->bottom, rule->top, ranges, SNOW_VALUE_SEEN);
+    for (int n = 0; n < count; n++)
+        out[n] = (snow_value_natives){
+            .first = (uint16_t)ranges[n].first,
+            .width = (uint16_t)(ranges[n].last - ranges[n].first)};
+    return count > 0 ? count : 0;
+}
+
+snow_status snow_value_order_make(snow_value_path *path,
+                                  const snow_value_params *params, bool spare,
+                                  snow_value_order *out) {
+    const snow_settings *s = params->settings;
+    path->coder.names = path->has_labels ? path->labels.names : NULL;
+    path->coder.name_count = path->labels.count;
+    SNOW_TRY(snow_value_coder_make(params->volume, &path->table.made.scale,
+                                   &path->coder));
+    out->params = (snow_value_store_params){
+        .volume = params->volume,
+        .placement = params->stored,
+        .coder = &path->coder,
+        .runs = out->runs,
+        .run_count = store_runs(path, spare, out->runs),
+        .holes = path->range.holes,
+        .reach = find_reach(path, params),
+        .cubic = is_cubic(path, params),
+        .encoding = s->encoding,
+        .isa = s->isa,
+        .threads = s->threads,
+        .copied = params->shared,
+        .seen = out->seen};
+    if (snow_value_store_by_natives(&out->params))
+        out->params.seen_count = find_seen(path, params, out->seen);
+    return SNOW_STATUS_OK;
+}
+
+/* The interesting voxels of the encoding, of the look that it was made for. */
+static snow_status count_interesting(snow_value_path *path,
+                                     const snow_value_params *params) {
+    const snow_settings *s = params->settings;
+    const snow_value_store *store = &path->store;
+    path->interesting = 0;
+    for (int64_t n = 0; store->counted_ranges && n < store->band_count; n++)
+        path->interesting += store->seen[n];
+    if (store->counted_ranges)
+        return SNOW_STATUS_OK;
+    return snow_count_interesting(params->volume, params->counted, s->threshold,
+                                  s->isa, &path->interesting);
+}
+
+/* What is left of an encoding that serves; else all of it. */
+static snow_status encode_anew(snow_value_path *path,
+                               const snow_value_params *params,
+                               const snow_value_key *key) {
+    snow_value_order order;
+    SNOW_TRY(snow_value_order_make(path, params, path->wavers, &order));
+    bool begun = snow_value_fits_key(path, &path->key, &path->store, params,
+                                     key->generation);
+    path->key.generation = 0;
+    SNOW_TRY(begun ? snow_value_store_go_on(&path->store, &order.params,
+                                            snow_value_store_left(&path->store))
+                   : snow_value_store_encode(&path->store, &order.params));
+    SNOW_TRY(count_interesting(path, params));
+    path->key = *key;
+    return SNOW_STATUS_OK;
+}
+
+/* Another axis, another volume, or a look that shows more. */
+static snow_status encode_part(snow_value_path *path,
+                               const snow_value_params *params,
+                               const snow_value_key *key) {
+    path->wavers =
+        same_key(&path->key, key) ||
+        (path->wavers && snow_value_same_scale(&path->key.scale, &key->scale));
+    snow_status status = encode_anew(path, params, key);
+    return snow_value_lacks_room(path, status) ? encode_anew(path, params, key)
+                                               : status;
+}
+
+void snow_value_forget(snow_value_path *path) {
+    path->key.generation = 0;
+    snow_value_store_fini(&path->store);
+    snow_value_forget_axes(path);
+}
+
+/* Among ranks, of a part's own slices: neighbours count theirs. */
+static void count_bytes(const snow_value_path *path,
+                        const snow_value_params *params, snow_stats *stats) {
+    uint64_t ea = path->store.ea_bytes, ia = path->store.ia_bytes;
+    uint64_t pa = path->store.pa_bytes;
+    if (params->shared && params->slab.count)
+        snow_value_store_count(&path->store,
+                               params->slab.first - params->clip->stored[2],
+                               params->slab.count, &ea, &ia, &pa);
+    stats->ea_bytes += ea;
+    stats->ia_bytes += ia;
+    stats->pa_bytes += pa;
+}
+
+snow_status snow_value_encode(snow_value_path *path,
+                              const snow_value_params *params,
+                              snow_stats *stats) {
+    const uint64_t generation = params->volume->generation;
+    double mark = snow_seconds();
+    if (path->range.low > path->range.high)
+        return SNOW_STATUS_OK;
+    snow_value_take_kept(path, params->volume);
+    if (!snow_value_serves(path, &path->key, &path->store, params, generation))
+        snow_value_change_axis(path, params);
+    if (!snow_value_serves(path, &path->key, &path->store, params,
+                           generation)) {
+        const snow_value_key key = snow_value_key_of(path, params, generation);
+        SNOW_TRY(encode_part(path, params, &key));
+        stats->encoded = 1;
+    }
+    if (path->interesting < 0)
+        SNOW_TRY(count_interesting(path, params));
+    stats->seconds_encode += snow_seconds() - mark;
+    stats->encoding = path->store.encoding;
+    stats->interesting = path->interesting;
+    count_bytes(path, params, stats);
+    return SNOW_STATUS_OK;
+}
