@@ -112,6 +112,7 @@ static void set_up(char **argv) {
     snow_settings_init(settings);
     settings->threads = atoi(argv[6]);
     settings->shade = atoi(argv[7]) ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
+    settings->light = SNOW_LIGHT_HEAD; /* as that of the other programs */
     settings->method = (snow_method)method;
     settings->quality = (snow_quality)quality;
     settings->kernel = (snow_kernel)kernel;

@@ -56,6 +56,15 @@ typedef enum snow_isa {
 
 typedef enum snow_shade { SNOW_SHADE_PHONG = 0, SNOW_SHADE_NONE } snow_shade;
 
+/* Where the light comes from (docs/model.md, section 4). */
+typedef enum snow_light {
+    SNOW_LIGHT_AUTO = 0, /* key; a direction where angles are not 0 */
+    SNOW_LIGHT_KEY,      /* 0.65 from 25 degrees to the left and 35 up, and a
+                            head light of 0.35 */
+    SNOW_LIGHT_HEAD,     /* from the viewer */
+    SNOW_LIGHT_DIRECTION /* from light_azimuth and light_elevation */
+} snow_light;
+
 /* How the sheets that a ray meets make a pixel (docs/modes.md). All but over
  * use every finite voxel, whatever its opacity and the threshold. */
 typedef enum snow_mode {
@@ -82,7 +91,7 @@ typedef struct snow_settings {
     double ambient, diffuse, specular;     /* 0 to 1 (0.2, 0.7, 0.2) */
     double shininess;                      /* exponent, at least 0 (20) */
     double light_azimuth, light_elevation; /* degrees to the camera's right and
-                                              up; 0: head light */
+                                              up */
     snow_quality quality;                  /* (normal) */
     snow_isa isa;                          /* (auto) */
     int threads; /* 1 to 4096, of no effect on the picture; 0: all there are */
@@ -92,6 +101,7 @@ typedef struct snow_settings {
     bool depth;         /* with snow_frame_depth; over and iso (false) */
     snow_stop_fn *stop; /* whether the picture is to end early (NULL) */
     void *stop_user;    /* its argument (NULL) */
+    snow_light light;   /* (auto) */
 } snow_settings;
 SNOW_RECORD(snow_settings);
 

@@ -170,8 +170,9 @@ void fill_settings(const options *asked, snow_settings *out) {
     out->diffuse = asked->diffuse;
     out->specular = asked->specular;
     out->shininess = asked->shininess;
-    out->light_azimuth = asked->light[0];
-    out->light_elevation = asked->light[1];
+    out->light = asked->light.light;
+    out->light_azimuth = asked->light.azimuth;
+    out->light_elevation = asked->light.elevation;
     out->quality = (snow_quality)snow_quality_from_name(asked->quality);
     out->isa = (snow_isa)snow_isa_from_name(asked->isa);
     out->threads = (int)asked->threads;

@@ -126,10 +126,11 @@ const option_row option_table[] = {
      "millimetre (default voxel)"},
     {"shade", 0, "phong|none", TOPIC_LOOK, RENDER, read_choice, FIELD(shade), 0,
      0, "", "shading of the voxels (default phong)"},
-    {"light", 0, "AZ,EL", TOPIC_LOOK, RENDER, read_directions, FIELD(light), 0,
-     0, "",
-     "direction of the light: degrees to the right of the camera and up "
-     "(default 0,0)"},
+    {"light", 0, "key|head|AZ,EL", TOPIC_LOOK, RENDER, read_light, FIELD(light),
+     0, 0, "",
+     "key: most of the light from the upper left of the camera, the rest from "
+     "the camera; head: all from the camera; or a direction: degrees to the "
+     "right of the camera and up (default key)"},
     {"ambient", 0, "A", TOPIC_LOOK, RENDER, read_real, FIELD(ambient), 0, 1, "",
      "strength of the ambient light (default 0.2)"},
     {"diffuse", 0, "D", TOPIC_LOOK, RENDER, read_real, FIELD(diffuse), 0, 1, "",

@@ -29,6 +29,12 @@ typedef struct place_value {
     double at[3];
 } place_value;
 
+/* Where the light comes from; the angles are of a direction. */
+typedef struct light_value {
+    snow_light light;
+    double azimuth, elevation;
+} light_value;
+
 typedef struct color_value {
     bool given; /* false: transparent */
     double rgb[3];

@@ -76,7 +76,7 @@ typedef struct options {
     double window, level; /* NaN: not given */
     range_value range;
     const char *opacity_unit, *shade;
-    double light[2]; /* azimuth, elevation */
+    light_value light;
     double ambient, diffuse, specular, shininess;
 
     const char *view; /* NULL: the volume's own */

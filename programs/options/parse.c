@@ -347,14 +347,21 @@ bool read_gradient_points(const option_row *row, const char *text, void *field,
 }
 
 /* Any angle is valid: full turns do not matter. */
-bool read_directions(const option_row *row, const char *text, void *field,
-                     char wrong[WRONG_BYTES]) {
+bool read_light(const option_row *row, const char *text, void *field,
+                char wrong[WRONG_BYTES]) {
     (void)row;
-    double pair[2];
-    if (!value_reals(text, ',', 2, pair))
-        return refuse(wrong, "is not a direction; give AZIMUTH,ELEVATION in "
-                             "degrees, such as 30,45");
-    memcpy(field, pair, sizeof pair);
+    double pair[2] = {0};
+    light_value light = {.light = SNOW_LIGHT_DIRECTION};
+    if (strcmp(text, "key") == 0)
+        light.light = SNOW_LIGHT_KEY;
+    else if (strcmp(text, "head") == 0)
+        light.light = SNOW_LIGHT_HEAD;
+    else if (!value_reals(text, ',', 2, pair))
+        return refuse(wrong, "is not a light; give key, head, or "
+                             "AZIMUTH,ELEVATION in degrees, such as 30,45");
+    light.azimuth = pair[0];
+    light.elevation = pair[1];
+    *(light_value *)field = light;
     return true;
 }
 

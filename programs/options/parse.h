@@ -30,7 +30,7 @@ option_read read_color;           /* color_value */
 option_read read_range;           /* range_value */
 option_read read_points;          /* point_list */
 option_read read_gradient_points; /* point_list */
-option_read read_directions;      /* double[2] */
+option_read read_light;           /* light_value */
 option_read read_place;           /* place_value */
 
 #endif

@@ -137,6 +137,16 @@ void snow_gradients_of_row(const snow_gradient_row *row,
  * ---------------------------------------------
  */
 
+/* The lights of a picture: a distant one, that is fixed to the camera, then a
+ * head light, whose direction is that of the viewer; or one of the two. */
+#define SNOW_LIGHTS_MOST 2
+typedef struct snow_lights {
+    int count;
+    double share[SNOW_LIGHTS_MOST]; /* of the light; the sum is 1 */
+    double to[SNOW_LIGHTS_MOST][3]; /* unit vectors of the world */
+    bool head[SNOW_LIGHTS_MOST];    /* it goes with the viewer */
+} snow_lights;
+
 /* Phong's model prepared for one view. Its vectors are transformed to index
  * space, so that gradients need not be transformed to world space. */
 typedef struct snow_shader {
@@ -145,18 +155,19 @@ typedef struct snow_shader {
     double ambient, diffuse, specular, shininess;
     snow_isa isa; /* resolved; all instruction sets give the same bits */
     int whole;    /* shininess if it is a whole number up to 1024, else -1 */
-    double light[3], half[3], viewer[3]; /* W^T times the world vector */
-    double metric[3][3];                 /* W^T W: |W g|^2 = g . metric g */
-    double inverse[3][3];                /* W^T */
-    double to_light[3];                  /* in the world */
-    bool head;                           /* the light is at the viewer */
+    snow_lights lights;             /* in the world */
+    double to[SNOW_LIGHTS_MOST][3]; /* W^T times the world vector */
+    double half[SNOW_LIGHTS_MOST][3], viewer[3];
+    double metric[3][3];  /* W^T W: |W g|^2 = g . metric g */
+    double inverse[3][3]; /* W^T */
 } snow_shader;
 
-/* The unit vectors to the light and half-way between light and viewer. Returns
- * false when the light is straight behind the volume, where no half-way vector
- * exists. */
-bool snow_light_of(const snow_placement *placement,
-                   const snow_settings *settings, double light[3],
+/* Settings as resolved. */
+snow_lights snow_lights_of(const snow_placement *placement,
+                           const snow_settings *settings);
+
+/* The unit vector half-way between two, or zeros if they are opposite. */
+void snow_half_way(const double light[3], const double viewer[3],
                    double half[3]);
 
 /* A shininess as a whole number if it is one up to 1024, else -1. */

@@ -114,7 +114,7 @@ const recipe_key recipe_keys[] = {
     MADE("range", range, range, 0, 0, 0),
     MADE("opacity-unit", unit, opacity_per_mm, 0, 0, 0),
     NAME("shade", settings.shade, shade_name, shade_named),
-    MADE("light", reals, settings.light_azimuth, 0, 0, 2),
+    MADE("light", light, settings, 0, 0, 2),
     REAL("ambient", settings.ambient, 0, 1),
     REAL("diffuse", settings.diffuse, 0, 1),
     REAL("specular", settings.specular, 0, 1),

@@ -217,9 +217,42 @@ static bool read_bits(const recipe_key *key, const json_t *value, void *field,
     return true;
 }
 
+/* A name, or two angles. */
+static bool read_light(const recipe_key *key, const json_t *value, void *field,
+                       char wrong[WRONG_BYTES]) {
+    snow_settings *settings = field;
+    const char *text = json_string_value(value);
+    double angles[2] = {0};
+    if (text && strcmp(text, "key") == 0)
+        settings->light = SNOW_LIGHT_KEY;
+    else if (text && strcmp(text, "head") == 0)
+        settings->light = SNOW_LIGHT_HEAD;
+    else if (recipe_read_reals(key, value, angles, wrong))
+        settings->light = SNOW_LIGHT_DIRECTION;
+    else
+        return recipe_refuse(
+            wrong, "\"key\", \"head\" or [azimuth, elevation] in degrees");
+    settings->light_azimuth = angles[0];
+    settings->light_elevation = angles[1];
+    return true;
+}
+
+static json_t *write_light(const recipe_key *key, const void *field) {
+    const snow_settings *s = field;
+    const double angles[2] = {s->light_azimuth, s->light_elevation};
+    if (s->light == SNOW_LIGHT_KEY)
+        return json_string("key");
+    if (s->light == SNOW_LIGHT_HEAD)
+        return json_string("head");
+    if (s->light == SNOW_LIGHT_AUTO && angles[0] == 0 && angles[1] == 0)
+        return NULL;
+    return recipe_write_reals(key, angles);
+}
+
 const recipe_kind recipe_unit = {read_unit, write_unit};
 const recipe_kind recipe_iso = {read_iso, write_iso};
 const recipe_kind recipe_range = {read_range, write_range};
 const recipe_kind recipe_points = {read_points, write_points};
 const recipe_kind recipe_color = {read_color, write_color};
+const recipe_kind recipe_light = {read_light, write_light};
 const recipe_kind recipe_bits = {read_bits, recipe_write_given_int};

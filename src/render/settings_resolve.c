@@ -100,6 +100,8 @@ snow_status snow_settings_resolve(snow_context *context,
         check_choice(context, "kernel", (int)s->kernel, SNOW_KERNEL_BOX + 1));
     SNOW_TRY(
         check_choice(context, "shade", (int)s->shade, SNOW_SHADE_NONE + 1));
+    SNOW_TRY(check_choice(context, "light", (int)s->light,
+                          SNOW_LIGHT_DIRECTION + 1));
     SNOW_TRY(check_choice(context, "quality", (int)s->quality,
                           SNOW_QUALITY_HIGH + 1));
     SNOW_TRY(check_choice(context, "isa", (int)s->isa, SNOW_ISA_NEON + 1));
@@ -109,6 +111,10 @@ snow_status snow_settings_resolve(snow_context *context,
                          "invalid iso %g: must be a finite data value", s->iso);
     SNOW_TRY(check_numbers(context, s));
     SNOW_TRY(resolve_machine(context, s));
+    if (s->light == SNOW_LIGHT_AUTO)
+        s->light = s->light_azimuth != 0 || s->light_elevation != 0
+                       ? SNOW_LIGHT_DIRECTION
+                       : SNOW_LIGHT_KEY;
     /* Footprints have no isosurfaces. */
     if (s->method == SNOW_METHOD_AUTO ||
         (s->mode == SNOW_MODE_ISO && s->method != SNOW_METHOD_RAYCAST))

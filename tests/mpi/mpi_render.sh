@@ -112,8 +112,9 @@ for file in v.nrrd v.nii.gz; do
         --tolerance 1/255
 done
 
-# Movies.
-turn="turntable v.nrrd --frames 4 -s 64x64 -q"
+# Movies.  On a background, since a transparent pixel is rounded twice: its
+# colour, and its alpha.
+turn="turntable v.nrrd --frames 4 -s 64x64 -q --background black"
 # shellcheck disable=SC2086
 run 0 "a turntable alone" "$TOOL" $turn -o one_%02d.png
 # shellcheck disable=SC2086

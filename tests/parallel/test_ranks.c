@@ -524,6 +524,11 @@ static void other_view(play *p, snow_volume *volume) {
     p->view.azimuth += 1;
 }
 
+static void other_light(play *p, snow_volume *volume) {
+    (void)volume;
+    p->settings.light = SNOW_LIGHT_KEY;
+}
+
 static void bad_threshold(play *p, snow_volume *volume) {
     (void)volume;
     p->settings.threshold = 300;
@@ -562,6 +567,7 @@ static void what_one_rank_finds_wrong_all_are_told(void **state) {
         bool draft; /* of few pixels */
     } cases[] = {
         {other_view, "differ between ranks", false, true, 0, BRICKS, false},
+        {other_light, "differ between ranks", false, true, 0, BRICKS, false},
         {bad_threshold, "rank 2: invalid threshold 300", false, true, 0, ACROSS,
          false},
         {modest, "every voxel must belong to", false, false, 0, BESIDE, false},

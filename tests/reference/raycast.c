@@ -296,24 +296,11 @@ static void normalise(double a[3]) {
         a[n] /= length;
 }
 
-/* Where the light is: at the viewer's, or fixed to the camera. */
-static void light_of(const walk *w, const double viewer[3], double light[3]) {
-    const snow_settings *s = &w->cast->scene->settings;
-    double turn = s->light_azimuth * acos(-1.0) / 180;
-    double lift = s->light_elevation * acos(-1.0) / 180;
-    for (int n = 0; n < 3; n++)
-        light[n] = turn == 0 && lift == 0
-                       ? viewer[n]
-                       : cos(lift) * (cos(turn) * w->camera->back[n] +
-                                      sin(turn) * w->camera->right[n]) +
-                             sin(lift) * w->camera->up[n];
-}
-
 /* Phong's model, seen along the ray. */
 static void shade(const walk *w, const double gradient[3], double rgb[3]) {
     const snow_settings *s = &w->cast->scene->settings;
     const double(*m)[4] = w->cast->scene->info.matrix;
-    double inverse[3][3], normal[3], viewer[3], light[3], half[3];
+    double inverse[3][3], normal[3], viewer[3], lit[2];
     reference_inverse(m, inverse);
     for (int c = 0; c < 3; c++) {
         normal[c] = inverse[0][c] * gradient[0] + inverse[1][c] * gradient[1] +
@@ -321,20 +308,10 @@ static void shade(const walk *w, const double gradient[3], double rgb[3]) {
         viewer[c] = -m[c][0] * w->ray.step[0] - m[c][1] * w->ray.step[1] -
                     m[c][2] * w->ray.step[2];
     }
-    normalise(normal);
     normalise(viewer);
-    light_of(w, viewer, light);
-    double side = dot(normal, viewer) < 0 ? -1 : 1;
-    for (int c = 0; c < 3; c++) {
-        half[c] = light[c] + viewer[c];
-    }
-    normalise(half);
-    double lit = side * dot(normal, light);
-    double shine = fmax(side * dot(normal, half), 0);
+    reference_light(s, w->camera, normal, viewer, lit);
     for (int c = 0; c < 3; c++)
-        rgb[c] = lit > 0 ? fmin(1, rgb[c] * (s->ambient + s->diffuse * lit) +
-                                       s->specular * pow(shine, s->shininess))
-                         : rgb[c] * s->ambient;
+        rgb[c] = fmin(1, rgb[c] * lit[0] + lit[1]);
 }
 
 /* --- mode over ------------------------------------------------------------ */

@@ -97,6 +97,12 @@ void reference_gradient(const reference_scene *scene, const int64_t at[3],
                         double gradient[3]);
 double reference_fade(const reference_scene *scene, const double gradient[3]);
 
+/* Phong's model of a normal of any length, zeros if there is none, and a unit
+ * vector to the eye: ambient and diffuse light, and specular light. */
+void reference_light(const snow_settings *settings,
+                     const reference_camera *camera, const double normal[3],
+                     const double eye[3], double lit[2]);
+
 /* Phong's model at a point whose gradient in index space is `gradient`. */
 void reference_shade(const reference_scene *scene,
                      const reference_camera *camera, const double gradient[3],

@@ -101,13 +101,6 @@ void reference_gradient(const reference_scene *scene, const int64_t at[3],
                              reference_native(scene, i, j, k + 1));
 }
 
-static double normalise(double a[3]) {
-    double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-    for (int n = 0; n < 3; n++)
-        a[n] /= length;
-    return length;
-}
-
 static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -131,40 +124,14 @@ double reference_fade(const reference_scene *scene, const double gradient[3]) {
                       fabs(scene->info.slope) * sqrt(dot(world, world)));
 }
 
-/* The direction to the light: from the camera's back to its right, then up. */
-static void light_of(const snow_settings *settings,
-                     const reference_camera *camera, double light[3]) {
-    double azimuth = settings->light_azimuth * acos(-1.0) / 180;
-    double elevation = settings->light_elevation * acos(-1.0) / 180;
-    for (int n = 0; n < 3; n++) {
-        double level =
-            cos(azimuth) * camera->back[n] + sin(azimuth) * camera->right[n];
-        light[n] = cos(elevation) * level + sin(elevation) * camera->up[n];
-    }
-}
-
 void reference_shade(const reference_scene *scene,
                      const reference_camera *camera, const double gradient[3],
                      double rgb[3]) {
-    const snow_settings *s = &scene->settings;
-    double n[3], light[3], half[3];
-    to_world(scene, gradient, n);
-    double length = normalise(n);
-    bool flat = !(length > 0);
-    double turned = dot(n, camera->back) < 0 ? -1 : 1;
-    light_of(s, camera, light);
+    double normal[3], lit[2];
+    to_world(scene, gradient, normal);
+    reference_light(&scene->settings, camera, normal, camera->back, lit);
     for (int c = 0; c < 3; c++)
-        half[c] = light[c] + camera->back[c];
-    normalise(half);
-    double lit = flat ? 0 : turned * dot(n, light);
-    double diffuse = 0, specular = 0;
-    if (lit > 0) {
-        diffuse = s->diffuse * lit;
-        specular =
-            s->specular * pow(fmax(0, turned * dot(n, half)), s->shininess);
-    }
-    for (int c = 0; c < 3; c++)
-        rgb[c] = fmin(1, rgb[c] * (s->ambient + diffuse) + specular);
+        rgb[c] = fmin(1, rgb[c] * lit[0] + lit[1]);
 }
 
 static bool interesting(double opacity, double threshold) {

@@ -340,9 +340,9 @@ static void settings_and_views_out_of_range_are_refused(void **state) {
     reference_scene scene = model_blank((int64_t[]){2, 2, 2}, 0.5);
     const snow_settings fine = scene.settings;
     const snow_view view = scene.view;
-    snow_settings bad[14];
+    snow_settings bad[15];
     snow_view blind[8];
-    for (int i = 0; i < 14; i++)
+    for (int i = 0; i < 15; i++)
         bad[i] = fine;
     for (int i = 0; i < 8; i++)
         blind[i] = view;
@@ -353,11 +353,12 @@ static void settings_and_views_out_of_range_are_refused(void **state) {
     bad[9].opacity_length = -1, bad[10].light_azimuth = (double)NAN;
     bad[11].method = (snow_method)9, bad[12].kernel = (snow_kernel)5;
     bad[13].encoding = (snow_encoding)4;
+    bad[14].light = (snow_light)4;
     blind[0].width = 0, blind[1].height = 32769, blind[2].zoom = 0;
     blind[3].zoom = (double)NAN, blind[4].roll = (double)INFINITY;
     blind[5].back[0] = (double)NAN, blind[6].up[1] = 2;
     memcpy(blind[7].up, blind[7].back, sizeof blind[7].up);
-    for (int i = 0; i < 14 + 8; i++) {
+    for (int i = 0; i < 15 + 8; i++) {
         snow_volume *volume = NULL;
         snow_transfer *transfer = NULL;
         snow_image *image = NULL;
@@ -367,8 +368,8 @@ static void settings_and_views_out_of_range_are_refused(void **state) {
         assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
                          SNOW_STATUS_OK);
         assert_int_equal(snow_frame_render(stage.frame, volume, transfer,
-                                           i < 14 ? &view : &blind[i - 14],
-                                           i < 14 ? &bad[i] : &fine, &image),
+                                           i < 15 ? &view : &blind[i - 15],
+                                           i < 15 ? &bad[i] : &fine, &image),
                          SNOW_STATUS_BAD_USAGE);
         assert_null(image);
         snow_transfer_free(transfer);

@@ -309,6 +309,7 @@ static void lights_from_all_sides_and_every_coefficient(void **state) {
         scene.view.width = 24;
         scene.view.height = 18;
         stand_at(&scene, n, 1);
+        settings->light = (snow_light)(n % (SNOW_LIGHT_DIRECTION + 1));
         settings->light_azimuth = 360 * support_uniform(&random) - 180;
         settings->light_elevation = 180 * support_uniform(&random) - 90;
         settings->ambient = support_uniform(&random);

@@ -189,8 +189,9 @@ static void every_light(void **state) {
         reference_scene scene =
             scene_of(SNOW_TYPE_UINT16, n & 1, MODEL_SHEARED);
         scene.settings.shade = n == 0 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
-        scene.settings.light_azimuth = n > 1 ? -60 : 0;
-        scene.settings.light_elevation = n > 2 ? 35 : 0;
+        scene.settings.light = n == 1 ? SNOW_LIGHT_HEAD : SNOW_LIGHT_AUTO;
+        scene.settings.light_azimuth = n > 3 ? -60 : 0;
+        scene.settings.light_elevation = n > 4 ? 35 : 0;
         scene.settings.specular = 0.6;
         scene.settings.shininess = n > 4 ? 7.5 : 20;
         scene.view.fov = n & 2 ? 50 : 0;
@@ -703,8 +704,8 @@ static void other_kernels_are_refused(void **state) {
     for (size_t n = 0; n < sizeof wrong / sizeof *wrong; n++) {
         scene.settings.kernel = wrong[n].kernel;
         scene.settings.footprint = wrong[n].footprint;
-        assert_non_null(strstr(refusal(&stage, volume, &scene, 1),
-                               "for method raycast"));
+        assert_non_null(
+            strstr(refusal(&stage, volume, &scene, 1), "for method raycast"));
     }
     snow_volume_close(volume);
     model_free(&scene);

@@ -154,6 +154,7 @@ static void only_what_shows_more_is_encoded_anew(void **state) {
     assert_true(encodes(&stage, volume, &s));
     model_turn(&s, -20, 12, 5, 0.9);
     assert_false(encodes(&stage, volume, &s));
+    s.settings.light = SNOW_LIGHT_DIRECTION;
     s.settings.light_azimuth = 70;
     assert_false(encodes(&stage, volume, &s));
     s.settings.shade = SNOW_SHADE_NONE;

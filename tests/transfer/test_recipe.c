@@ -78,6 +78,7 @@ static void every_key_reaches_its_field(void **state) {
     assert_true(r.low == 1 && r.high == 99.5);
     assert_true(r.opacity_per_mm);
     assert_int_equal(r.settings.shade, SNOW_SHADE_NONE);
+    assert_int_equal(r.settings.light, SNOW_LIGHT_DIRECTION);
     assert_true(r.settings.light_azimuth == 30 &&
                 r.settings.light_elevation == -40.5);
     assert_true(r.settings.ambient == 0.1 && r.settings.diffuse == 0.3 &&
@@ -113,6 +114,9 @@ static void what_is_written_reads_as_it_was(void **state) {
                                         "{\"range\": \"full\"}",
                                         "{\"range\": [-1e-3, 0.1]}",
                                         "{\"window\": 0.2, \"level\": 7}",
+                                        "{\"light\": \"key\"}",
+                                        "{\"light\": \"head\"}",
+                                        "{\"light\": [0, 0]}",
                                         "{\"background\": \"#ff8000\"}"};
     snow_context *context = support_context();
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
@@ -191,6 +195,8 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"labels\": 3}", "\"labels\" must be"},
         {"{\"clip\": [[0, 0, 0, 1]]}", "\"clip\" must be [[a, b, c, d], ...]"},
         {"{\"clip\": [1, 0, 0, 1]}", "\"clip\" must be"},
+        {"{\"light\": \"sun\"}", "\"light\" must be \"key\", \"head\" or"},
+        {"{\"light\": [1, 2, 3]}", "\"light\" must be"},
         {"{\"depth\": true}", "\"depth\" must be a text"},
         {"{\"mask\": 3}", "\"mask\" must be"},
         {"{\"crop\": [[1, 5], [3, 2], [0, 0]]}", "\"crop\" must be"},

@@ -210,6 +210,7 @@ bool value_case_open(const value_case *what, snow_context *context,
     scene->opacity_count = what->opacity_count;
     snow_settings_init(&scene->settings);
     scene->settings.shade = what->shaded ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
+    scene->settings.light = SNOW_LIGHT_HEAD;
     aim(what, &scene->view);
     return true;
 }

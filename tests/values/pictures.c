@@ -58,10 +58,14 @@ reference_scene value_picture_scene(int n) {
     s.settings.threads = 2;
     s.settings.quality = qualities[n % 3];
     s.settings.shade = n / 3 % 4 == 3 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
+    s.settings.light = SNOW_LIGHT_KEY;
     if (n / 4 % 3 == 1) {
+        s.settings.light = SNOW_LIGHT_DIRECTION;
         s.settings.light_azimuth = 50;
         s.settings.light_elevation = -25;
         s.settings.shininess = 7.5;
+    } else if (n / 4 % 3 == 2) {
+        s.settings.light = SNOW_LIGHT_HEAD;
     }
     if (n / 6 % 5 == 2)
         s.settings.ambient = s.settings.diffuse = 0.9;
@@ -286,7 +290,8 @@ float *value_picture_render(const model_stage *stage,
     if (snow_frame_render(stage->frame, volume, transfer, &s->view,
                           &s->settings, &image) != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(stage->context));
-    assert_int_equal(snow_frame_stats(stage->frame)->method, SNOW_METHOD_SHEAR_WARP);
+    assert_int_equal(snow_frame_stats(stage->frame)->method,
+                     SNOW_METHOD_SHEAR_WARP);
     float *picture =
         is_of_values(s) ? spread_values(image) : model_spread(image);
     snow_transfer_free(transfer);

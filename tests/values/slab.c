@@ -185,63 +185,6 @@ bool value_cut(const value_plan *plan, const value_ray *ray, int slab,
 
 /* --- light ---------------------------------------------------------------- */
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double normalise(double a[3]) {
-    double length = sqrt(dot(a, a));
-    if (length > 0)
-        for (int n = 0; n < 3; n++)
-            a[n] /= length;
-    return length;
-}
-
-/* A direction in the frame of the camera. */
-static void from_camera(const value_plan *plan, double azimuth,
-                        double elevation, double light[3]) {
-    const reference_camera *c = &plan->camera;
-    double a = azimuth * acos(-1.0) / 180, e = elevation * acos(-1.0) / 180;
-    for (int n = 0; n < 3; n++)
-        light[n] = cos(e) * (cos(a) * c->back[n] + sin(a) * c->right[n]) +
-                   sin(e) * c->up[n];
-}
-
-/* Adds what one light gives; `n` is turned to the viewer. */
-static void add_light(const value_plan *plan, const double n[3],
-                      const double eye[3], const double light[3], double share,
-                      double lit[2]) {
-    const snow_settings *s = &plan->scene->base.settings;
-    double half[3], diffuse = dot(n, light);
-    if (!(diffuse > 0))
-        return;
-    for (int c = 0; c < 3; c++)
-        half[c] = light[c] + eye[c];
-    normalise(half);
-    lit[0] += share * s->diffuse * fmin(1, diffuse);
-    lit[1] +=
-        share * s->specular * pow(fmin(1, fmax(0, dot(n, half))), s->shininess);
-}
-
-/* Ambient and diffuse light, and the specular one, of a normal. */
-static void light_on(const value_plan *plan, const double n[3],
-                     const double eye[3], double lit[2]) {
-    const snow_settings *s = &plan->scene->base.settings;
-    double light[3];
-    lit[0] = s->ambient;
-    lit[1] = 0;
-    if (plan->scene->key_light) {
-        from_camera(plan, -25, 35, light);
-        add_light(plan, n, eye, light, 0.65, lit);
-        add_light(plan, n, eye, eye, 0.35, lit);
-    } else if (s->light_azimuth == 0 && s->light_elevation == 0) {
-        add_light(plan, n, eye, eye, 1, lit);
-    } else {
-        from_camera(plan, s->light_azimuth, s->light_elevation, light);
-        add_light(plan, n, eye, light, 1, lit);
-    }
-}
-
 void value_shade(const value_plan *plan, const value_ray *ray,
                  const double gradient[3], double rgba[4]) {
     const reference_scene *scene = &plan->scene->base;
@@ -252,14 +195,7 @@ void value_shade(const value_plan *plan, const value_ray *ray,
             n[r] += inverse[plan->axis[c]][r] * gradient[c];
             eye[r] += scene->info.matrix[r][plan->axis[c]] * ray->eye[c];
         }
-    lit[0] = scene->settings.ambient;
-    lit[1] = 0;
-    if (normalise(n) > 0) {
-        double side = dot(n, eye) < 0 ? -1 : 1;
-        for (int c = 0; c < 3; c++)
-            n[c] *= side;
-        light_on(plan, n, eye, lit);
-    }
+    reference_light(&scene->settings, &plan->camera, n, eye, lit);
     for (int c = 0; c < 3; c++)
         rgba[c] = fmin(rgba[3], rgba[c] * lit[0] + rgba[3] * lit[1]);
 }

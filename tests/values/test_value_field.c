@@ -189,6 +189,7 @@ static void labels_are_lit_by_their_membership(void **state) {
     scene.labels = true;
     scene.base.settings.shade = SNOW_SHADE_PHONG;
     scene.base.settings.quality = SNOW_QUALITY_HIGH;
+    scene.base.settings.light = SNOW_LIGHT_HEAD;
     value_scene_look(&scene, 0, 180, 0, 0); /* from -x on to the step */
     value_plan plan = value_scene_plan(&scene);
     double sample[4];

@@ -55,9 +55,12 @@ static void every_axis_and_projection_is_near_the_truth(void **state) {
         scene.base.color_count = 2;
         scene.base.settings.shade = SNOW_SHADE_PHONG;
         scene.base.settings.quality = value_qualities[n % 3];
-        scene.key_light = n / 9 % 2;
-        if (n % 4 == 1)
+        scene.base.settings.light =
+            n / 9 % 2 ? SNOW_LIGHT_KEY : SNOW_LIGHT_HEAD;
+        if (n % 4 == 1) {
+            scene.base.settings.light = SNOW_LIGHT_DIRECTION;
             scene.base.settings.light_azimuth = 40;
+        }
         value_scene_look(&scene, n / 3 % 3, n / 9 * 97 + 20, 25,
                          n / 18 ? 30 : 0);
         scene.base.view.zoom = 1.7;
@@ -103,6 +106,7 @@ static void two_ray_casters_agree(void **state) {
         scene.base.settings.shade = SNOW_SHADE_PHONG;
         scene.base.settings.quality = SNOW_QUALITY_HIGH;
         scene.base.settings.kernel = SNOW_KERNEL_TENT;
+        scene.base.settings.light = n % 2 ? SNOW_LIGHT_KEY : SNOW_LIGHT_AUTO;
         scene.base.settings.light_azimuth = n == 4 ? 40 : 0;
         scene.base.view.width = scene.base.view.height = 16;
         value_scene_look(&scene, n % 3, 20, 25, n < 3 ? 0 : 30);

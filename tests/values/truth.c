@@ -108,49 +108,16 @@ static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void normalise(double a[3]) {
-    double length = sqrt(dot(a, a));
-    for (int n = 0; n < 3 && length > 0; n++)
-        a[n] /= length;
-}
-
 static void shade(const value_truth *truth, const double eye[3],
                   const double gradient[3], double rgb[3]) {
     const snow_settings *s = &truth->scene->base.settings;
-    const reference_camera *c = &truth->camera;
-    double normal[3] = {0}, lights[2][3], shares[2] = {1, 0}, turn, light = 0,
-           gloss = 0;
-    bool key = truth->scene->key_light;
-    double a = (key ? -25 : s->light_azimuth) * acos(-1.0) / 180;
-    double e = (key ? 35 : s->light_elevation) * acos(-1.0) / 180;
-    for (int r = 0; r < 3; r++) {
+    double normal[3] = {0}, lit[2];
+    for (int r = 0; r < 3; r++)
         for (int k = 0; k < 3; k++)
             normal[r] += truth->inverse[k][r] * gradient[k];
-        lights[0][r] = cos(e) * cos(a) * c->back[r] +
-                       cos(e) * sin(a) * c->right[r] + sin(e) * c->up[r];
-        lights[1][r] = eye[r];
-        if (!key && a == 0 && e == 0)
-            lights[0][r] = eye[r];
-    }
-    if (key) {
-        shares[0] = 0.65;
-        shares[1] = 0.35;
-    }
-    normalise(normal);
-    turn = dot(normal, eye) < 0 ? -1 : 1;
-    for (int n = 0; n < 2; n++) {
-        double lit = turn * dot(normal, lights[n]), half[3];
-        for (int k = 0; k < 3; k++)
-            half[k] = lights[n][k] + eye[k];
-        normalise(half);
-        if (!(lit > 0))
-            continue;
-        light += shares[n] * s->diffuse * lit;
-        gloss += shares[n] * s->specular *
-                 pow(fmax(0, turn * dot(normal, half)), s->shininess);
-    }
+    reference_light(s, &truth->camera, normal, eye, lit);
     for (int k = 0; k < 3; k++)
-        rgb[k] = fmin(1, rgb[k] * (s->ambient + light) + gloss);
+        rgb[k] = fmin(1, rgb[k] * lit[0] + lit[1]);
 }
 
 /* --- rays ----------------------------------------------------------------- */

@@ -20,7 +20,6 @@
 typedef struct value_scene {
     reference_scene base; /* method, encoding, kernel, threads do not matter */
     bool cubic;           /* --kernel bspline */
-    bool key_light;       /* --light key; else the light of the settings */
     bool labels;          /* voxels are labels */
     bool cropped;         /* the field is seen within `keep` only, which are */
     double keep[3][2];    /* index positions along x, y, z */

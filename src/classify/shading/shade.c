@@ -3,6 +3,8 @@
  *
  *   colour = min(1, c (ambient + diffuse n.l) + specular (n.h)^shininess)
  *
+ * with the mean of the lights' terms where there are several.
+ *
  * The normal n is W g / |W g| for an index gradient g, so n.l is g.(W^T l) / |W
  * g|: only scalars leave index space. */
 #include "base/exp_log.h"
@@ -19,21 +21,53 @@ static void to_index(double inverse[3][3], const double v[3], double out[3]) {
         out[i] = snow_dot(inverse[i], v);
 }
 
-bool snow_light_of(const snow_placement *placement,
-                   const snow_settings *settings, double light[3],
-                   double half[3]) {
-    double right[3], up[3];
+/* The key light, and its part of the light; the rest is a head light. */
+#define KEY_AZIMUTH (-25)
+#define KEY_ELEVATION 35
+#define KEY_SHARE 0.65
+
+/* Adds a light of so many degrees to the camera's right and up. */
+static void add_distant(const snow_placement *placement, double azimuth,
+                        double elevation, double share, snow_lights *lights) {
+    double right[3], up[3], *to = lights->to[lights->count];
     memcpy(right, placement->right, sizeof right);
     memcpy(up, placement->up, sizeof up);
-    memcpy(light, placement->back, 3 * sizeof *light);
-    snow_frame_turn(right, up, light, settings->light_azimuth,
-                    settings->light_elevation, 0);
+    memcpy(to, placement->back, sizeof lights->to[0]);
+    snow_frame_turn(right, up, to, azimuth, elevation, 0);
+    lights->share[lights->count++] = share;
+}
+
+static void add_head(const snow_placement *placement, double share,
+                     snow_lights *lights) {
+    memcpy(lights->to[lights->count], placement->back, sizeof lights->to[0]);
+    lights->head[lights->count] = true;
+    lights->share[lights->count++] = share;
+}
+
+snow_lights snow_lights_of(const snow_placement *placement,
+                           const snow_settings *settings) {
+    snow_lights lights = {0};
+    bool ahead = settings->light_azimuth == 0 && settings->light_elevation == 0;
+    if (settings->light == SNOW_LIGHT_KEY) {
+        add_distant(placement, KEY_AZIMUTH, KEY_ELEVATION, KEY_SHARE, &lights);
+        add_head(placement, 1 - KEY_SHARE, &lights);
+    } else if (settings->light == SNOW_LIGHT_HEAD || ahead) {
+        add_head(placement, 1, &lights);
+    } else {
+        add_distant(placement, settings->light_azimuth,
+                    settings->light_elevation, 1, &lights);
+    }
+    return lights;
+}
+
+void snow_half_way(const double light[3], const double viewer[3],
+                   double half[3]) {
     for (int i = 0; i < 3; i++)
-        half[i] = light[i] + placement->back[i];
-    if (!(snow_length(half) > 1e-9))
-        return false;
-    snow_normalize(half);
-    return true;
+        half[i] = light[i] + viewer[i];
+    if (snow_length(half) > 1e-9)
+        snow_normalize(half);
+    else
+        memset(half, 0, 3 * sizeof *half);
 }
 
 int snow_whole_shininess(double shininess) {
@@ -53,19 +87,15 @@ snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
         .shininess = settings->shininess,
         .whole = snow_whole_shininess(settings->shininess),
         .isa = snow_isa_resolve(settings->isa),
-        .head = settings->light_azimuth == 0 && settings->light_elevation == 0,
+        .lights = snow_lights_of(placement, settings),
     };
-    double(*inverse)[3] = shader.inverse, *light = shader.to_light, half[3];
+    double(*inverse)[3] = shader.inverse;
     if (!snow_matrix_invert3(volume->info.matrix, inverse))
         return snow_fail(
             context, SNOW_STATUS_BAD_USAGE,
             "the volume's matrix is singular: it must be invertible for "
             "shading; correct the volume's orientation and spacing");
-    if (!snow_light_of(placement, settings, light, half))
-        shader.specular = 0;
-    to_index(inverse, light, shader.light);
-    to_index(inverse, half, shader.half);
-    to_index(inverse, placement->back, shader.viewer);
+    snow_shader_turn(&shader, placement->back);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             shader.metric[i][j] = snow_dot(inverse[i], inverse[j]);
@@ -74,14 +104,14 @@ snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
 }
 
 void snow_shader_turn(snow_shader *shader, const double viewer[3]) {
-    const double *light = shader->head ? viewer : shader->to_light;
-    double half[3];
-    for (int i = 0; i < 3; i++)
-        half[i] = light[i] + viewer[i];
-    if (snow_length(half) > 1e-9)
-        snow_normalize(half);
-    to_index(shader->inverse, light, shader->light);
-    to_index(shader->inverse, half, shader->half);
+    const snow_lights *lights = &shader->lights;
+    for (int n = 0; n < lights->count; n++) {
+        const double *to = lights->head[n] ? viewer : lights->to[n];
+        double half[3];
+        snow_half_way(to, viewer, half);
+        to_index(shader->inverse, to, shader->to[n]);
+        to_index(shader->inverse, half, shader->half[n]);
+    }
     to_index(shader->inverse, viewer, shader->viewer);
 }
 

@@ -48,22 +48,28 @@ static void place_light(const snow_value_params *params,
     const snow_settings *s = params->settings;
     const snow_volume_info *info = &params->volume->info;
     const double *spacing = info->spacing;
-    double inverse[3][3], to[3], half[3];
+    const snow_placement *p = params->placement;
+    const snow_lights lights = snow_lights_of(p, s);
+    double inverse[3][3], half[3];
     double scale = fmin(spacing[0], fmin(spacing[1], spacing[2]));
     snow_matrix_invert3(info->matrix, inverse);
-    bool seen = snow_light_of(params->placement, s, to, half);
-    project(inverse, params->placement, to, scale, light->light);
-    project(inverse, params->placement, half, scale, light->half);
-    project(inverse, params->placement, params->placement->back, scale,
-            light->eye);
-    measure(inverse, params->placement, scale, light->metric);
-    light->head = memcmp(light->light, light->eye, sizeof light->eye) == 0 &&
-                  memcmp(light->half, light->eye, sizeof light->eye) == 0;
+    *light = (snow_value_light){.ambient = (float)s->ambient};
+    for (int n = 0; n < lights.count; n++) {
+        const int at = lights.head[n];
+        light->diffuse[at] = (float)(s->diffuse * lights.share[n]);
+        light->specular[at] = (float)(s->specular * lights.share[n]);
+        light->head |= lights.head[n];
+        light->distant |= !lights.head[n];
+        if (lights.head[n])
+            continue;
+        snow_half_way(lights.to[n], p->back, half);
+        project(inverse, p, lights.to[n], scale, light->light);
+        project(inverse, p, half, scale, light->half);
+    }
+    project(inverse, p, p->back, scale, light->eye);
+    measure(inverse, p, scale, light->metric);
     light->square =
         light->metric[3] == 0 && light->metric[4] == 0 && light->metric[5] == 0;
-    light->ambient = (float)s->ambient;
-    light->diffuse = (float)s->diffuse;
-    light->specular = seen ? (float)s->specular : 0;
     light->bright = s->ambient + s->diffuse > 1;
     light->power = (uint32_t)(s->shininess * (1 << SNOW_VALUE_ROOTS) + 0.5);
     light->least = s->shininess > 0 ? (float)pow(1e-30, 1 / s->shininess) : 0;

@@ -38,23 +38,22 @@ static void measure_ways(const snow_value_path *path, const snow_placement *p,
     rays->usual = (float)(1 / (path->lattice.path * path->lattice.halves));
 }
 
-/* The way's part along a light that is fixed to the camera. */
+/* The way's part along the light that is fixed to the camera. */
 static void place_light(const snow_value_params *params,
                         const snow_value_lattice *l, snow_value_rays *rays) {
     const snow_volume_info *info = &params->volume->info;
     const snow_placement *p = params->placement;
     const int axes[3] = {p->u_axis, p->v_axis, p->slice_axis};
     const double *spacing = info->spacing;
-    double light[3], half[3], toward = l->nearest_first ? -1 : 1;
-    snow_light_of(p, params->settings, light, half);
+    const snow_lights lights = snow_lights_of(p, params->settings);
+    const double *light = lights.to[0]; /* of no use if it is a head light */
+    double toward = l->nearest_first ? -1 : 1;
     for (int n = 0; n < 3; n++) {
         double sum = 0;
         for (int i = 0; i < 3; i++)
             sum += info->matrix[i][axes[n]] * light[i];
         rays->aside[n] = (float)(toward * sum);
     }
-    rays->head = params->settings->light_azimuth == 0 &&
-                 params->settings->light_elevation == 0;
     rays->toward =
         (float)(toward * fmin(spacing[0], fmin(spacing[1], spacing[2])));
 }

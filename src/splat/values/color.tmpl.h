@@ -33,11 +33,24 @@ TARGET VALUE_INLINE V(vec) NAME(power_of)(V(vec) base, uint32_t power) {
 /* n . eye, light and half for LANES gradients, times their length. */
 TARGET VALUE_INLINE void NAME(face)(const snow_value_light *l, V(vec) u,
                                     V(vec) v, V(vec) p, V(vec) out[3]) {
-    out[0] = out[1] = out[2] = NAME(dot)(l->eye, u, v, p);
-    if (l->head)
+    out[0] = NAME(dot)(l->eye, u, v, p);
+    if (!l->distant)
         return;
     out[1] = NAME(dot)(l->light, u, v, p);
     out[2] = NAME(dot)(l->half, u, v, p);
+}
+
+/* Adds light `n`; `light` and `half` are n . l and n . h, turned to the eye. */
+TARGET VALUE_INLINE void NAME(add_light)(const snow_value_light *l, int n,
+                                         V(vec) light, V(vec) half, float unit,
+                                         V(vec) * color, V(vec) * white) {
+    const V(vec) zero = V(set1)(0), one = V(set1)(1);
+    light = V(min)(V(max)(light, zero), one);
+    half = V(min)(V(max)(half, V(set1)(l->least)), one);
+    V(vec)
+    shine = V(mul)(NAME(power_of)(half, l->power), V(row_positive)(light));
+    *color = V(add)(*color, V(mul)(light, V(set1)(l->diffuse[n] * unit)));
+    *white = V(add)(*white, V(mul)(shine, V(set1)(l->specular[n] * 32767)));
 }
 
 /* LANES gradients to factors of the colour and of white, of 15 bits; samples
@@ -47,7 +60,7 @@ NAME(light)(const snow_value_splat *s, float slope[2][2], const value_queue *q,
             int n, const int16_t *gu, const int16_t *gv, const int16_t *gp,
             int16_t *color, int16_t *white, const bool eye) {
     const snow_value_light *l = s->light;
-    const V(vec) zero = V(set1)(0), one = V(set1)(1);
+    const float unit = l->bright ? 16383.5F : 32767.0F;
     V(vec) u = V(row_floats)(gu), v = V(row_floats)(gv), p = V(row_floats)(gp);
     V(vec)
     length = NAME(dot)(l->metric, V(mul)(u, u), V(mul)(v, v), V(mul)(p, p));
@@ -61,17 +74,17 @@ NAME(light)(const snow_value_splat *s, float slope[2][2], const value_queue *q,
     (l, s->rays, NAME(ways_of)(slope[0], q->ray[0] + n),
      NAME(ways_of)(slope[1], q->ray[1] + n), u, v, p, to);
     else NAME(face)(l, u, v, p, to);
-    V(vec) light = V(mul)(V(row_turn)(to[1], to[0]), inverse);
-    V(vec) half = V(mul)(V(row_turn)(to[2], to[0]), inverse);
-    light = V(min)(V(max)(light, zero), one);
-    half = V(min)(V(max)(half, V(set1)(l->least)), one);
-    V(vec)
-    shine = V(mul)(NAME(power_of)(half, l->power), V(row_positive)(light));
-    float unit = l->bright ? 16383.5F : 32767.0F;
-    V(row_round)
-    (color, V(add)(V(mul)(light, V(set1)(l->diffuse * unit)),
-                   V(set1)(l->ambient * unit)));
-    V(row_round)(white, V(mul)(shine, V(set1)(l->specular * 32767)));
+    V(vec) light = V(set1)(l->ambient * unit), shine = V(set1)(0);
+    if (l->distant)
+        NAME(add_light)
+    (l, 0, V(mul)(V(row_turn)(to[1], to[0]), inverse),
+     V(mul)(V(row_turn)(to[2], to[0]), inverse), unit, &light, &shine);
+    if (l->head) {
+        V(vec) facing = V(mul)(V(row_turn)(to[0], to[0]), inverse);
+        NAME(add_light)(l, 1, facing, facing, unit, &light, &shine);
+    }
+    V(row_round)(color, light);
+    V(row_round)(white, shine);
 }
 
 /* --- colours ----------------------------------------------------------------

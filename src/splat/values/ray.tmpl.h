@@ -28,8 +28,8 @@ TARGET VALUE_INLINE void NAME(face_eye)(const snow_value_light *l,
     inverse = V(row_rsqrt)(NAME(square_of)(rays->metric, across, down));
     V(vec) eye = V(add)(V(add)(V(mul)(across, u), V(mul)(down, v)), p);
     eye = V(mul)(V(mul)(eye, V(set1)(rays->toward)), inverse);
-    out[0] = out[1] = out[2] = eye;
-    if (rays->head)
+    out[0] = eye;
+    if (!l->distant)
         return;
     V(vec)
     aside = V(mul)(NAME(dot)(rays->aside, across, down, V(set1)(1)), inverse);

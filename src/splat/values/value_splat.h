@@ -78,20 +78,20 @@ typedef struct snow_value_rays {
     float metric[6];    /* squared length of a ray's way: as snow_value_light */
     float usual;        /* 1 / the length that the table is for */
     float toward;       /* 1 where slices fall away from the eye, else -1 */
-    float aside[3];     /* the way's part along the light */
-    bool head;          /* the light is at the eye */
+    float aside[3];     /* the way's part along the distant light */
 } snow_value_rays;
 
-/* Light from gradients (gu, gv, gp) in index space, of any length. */
+/* Light from gradients (gu, gv, gp) in index space, of any length: of a distant
+ * light and of a head light, one of which may have no share. */
 typedef struct snow_value_light {
     float light[3], eye[3], half[3]; /* n . l times |g| */
     float metric[6];                 /* |g|^2: uu vv pp uv up vp */
-    bool head;                       /* light, eye and half are the same */
+    bool distant, head;              /* which of them there are */
     bool square;                     /* the last three of metric are 0 */
-    float ambient, diffuse, specular;
-    bool bright;    /* ambient + diffuse are more than 1 */
-    uint32_t power; /* shininess * 2^SNOW_VALUE_ROOTS */
-    float least;    /* n . h below it does not shine */
+    bool bright;                     /* ambient + diffuse are more than 1 */
+    float ambient, diffuse[2], specular[2]; /* of the distant, of the head */
+    uint32_t power;                         /* shininess * 2^SNOW_VALUE_ROOTS */
+    float least;                            /* n . h below it does not shine */
 } snow_value_light;
 #define SNOW_VALUE_ROOTS 8
 

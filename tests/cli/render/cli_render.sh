@@ -96,6 +96,8 @@ changes --window 1 --level 0.5
 changes --opacity-unit mm --spacing 2x2x2
 changes --shade none
 changes --light 60,30
+changes --light head
+same --light key
 changes --ambient 0.6
 changes --diffuse 0.1
 changes --specular 0.9

@@ -128,7 +128,7 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
 --range p1,p101 x|is not a range
 --window 0 x|out of range
 --shade flat x|choose from: phong, none
---light 30 x|is not a direction
+--light 30 x|give key, head, or AZIMUTH,ELEVATION
 --ambient 2 x|from 0 to 1
 --shininess -1 x|out of range
 --dims 8x8 x|are not dimensions
