@@ -394,6 +394,7 @@ settings_of_an_older_version_are_read_as_far_as_they_reach(void **state) {
     model_stage stage = model_open();
     reference_scene scene = model_scene((int64_t[]){9, 8, 7}, SNOW_TYPE_UINT8,
                                         true, MODEL_PLAIN, 1);
+    scene.settings.light = SNOW_LIGHT_AUTO; /* the initialiser's */
     float *plain = model_picture(&stage, &scene);
     older.method = SNOW_METHOD_FOOTPRINT;
     memcpy(&scene.settings, &older, sizeof scene.settings);
