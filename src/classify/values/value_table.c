@@ -165,23 +165,43 @@ static int64_t look_of(const snow_value_table *table,
 
 typedef float four_floats __attribute__((vector_size(16)));
 
-/* Colours, alpha and place of an entry, whose steps' looks begin at `first` and
- * are `way` / (2 steps) apart; *place: 0 to 1. */
-static four_floats collect(const snow_value_table *table, int64_t first,
-                           int64_t way, int steps, float *place) {
-    float through = 1, places = 0;
-    four_floats sum = {0, 0, 0, 0};
-    int64_t apart = way * 65536 / steps, at = first * 65536 + apart / 2;
-    for (int n = 0; n < steps; n++, at += apart) {
-        four_floats here;
-        memcpy(&here, table->looks + 4 * (at >> 16), sizeof here);
-        here *= (four_floats){through, through, through, through};
-        sum += here;
-        places += here[3] * ((float)n + 0.5F);
-        through -= here[3];
+/* Entries that are made at once, so that their steps need not wait. */
+#define LANES 4
+
+/* The way through an entry: its first look and the way from step to step, both
+ * times 65536; then colours and alpha, and the place, 0 to 1. */
+typedef struct entry_way {
+    int64_t at, apart;
+    four_floats sum;
+    float place;
+} entry_way;
+
+static four_floats all_of(float x) {
+    return (four_floats){x, x, x, x};
+}
+
+static void collect(const snow_value_table *table, int steps,
+                    entry_way ways[LANES]) {
+    four_floats through[LANES], places[LANES], sum[LANES];
+    for (int w = 0; w < LANES; w++) {
+        through[w] = all_of(1);
+        sum[w] = places[w] = all_of(0);
     }
-    *place = sum[3] > 0 ? places / ((float)steps * sum[3]) : 0.5F;
-    return sum;
+    for (int n = 0; n < steps; n++)
+        for (int w = 0; w < LANES; w++) {
+            four_floats here;
+            memcpy(&here, table->looks + 4 * (ways[w].at >> 16), sizeof here);
+            ways[w].at += ways[w].apart;
+            here *= through[w];
+            sum[w] += here;
+            places[w] += here * all_of((float)n + 0.5F);
+            through[w] -= all_of(here[3]);
+        }
+    for (int w = 0; w < LANES; w++) {
+        ways[w].sum = sum[w];
+        ways[w].place =
+            sum[w][3] > 0 ? places[w][3] / ((float)steps * sum[w][3]) : 0.5F;
+    }
 }
 
 static uint64_t pack(four_floats rgba, float place, float full, bool placed) {
@@ -204,25 +224,61 @@ typedef struct table_job {
     float most[SNOW_VALUE_PITCH]; /* alpha, of each row */
 } table_job;
 
+/* The looks next to one, down and up, that show something. */
+static void find_seen(const snow_value_table *table, int64_t from,
+                      int64_t seen[2]) {
+    seen[0] = seen[1] = from;
+    while (seen[0] >= 0 && !(table->looks[4 * seen[0] + 3] > 0))
+        seen[0]--;
+    while (seen[1] < (int64_t)table->look_count &&
+           !(table->looks[4 * seen[1] + 3] > 0))
+        seen[1]++;
+}
+
+/* Up to LANES entries of a row. */
+static void fill_some(const table_job *job, int64_t first, const int *backs,
+                      int count, uint64_t *row, float *most) {
+    const snow_value_look *look = job->look;
+    entry_way ways[LANES];
+    for (int w = 0; w < LANES; w++) {
+        int64_t way =
+            look_of(job->table, look, backs[w < count ? w : 0]) - first;
+        int64_t apart = way * 65536 / look->steps;
+        ways[w] = (entry_way){.at = first * 65536 + apart / 2, .apart = apart};
+    }
+    collect(job->table, look->steps, ways);
+    for (int w = 0; w < count; w++) {
+        uint64_t entry = ways[w].sum[3] > 0 ? pack(ways[w].sum, ways[w].place,
+                                                   job->full, look->placed)
+                                            : 0;
+        *most = ways[w].sum[3] > *most ? ways[w].sum[3] : *most;
+        row[backs[w]] = (entry >> 48 & 0x7fff) == 0 ? 0 : entry;
+    }
+}
+
 static void fill_row(void *of, int64_t front, int worker) {
     table_job *job = of;
     const snow_value_look *look = job->look;
     const snow_value_table *table = job->table;
-    float most = 0;
     uint64_t *row = table->entries + front * SNOW_VALUE_PITCH;
-    int64_t first = look_of(table, look, (int)front);
+    int64_t first = look_of(table, look, (int)front), seen[2];
+    int backs[LANES], count = 0;
+    float most = 0;
     (void)worker;
+    find_seen(table, first, seen);
     for (int back = 0; back < look->nodes; back++) {
-        float place;
-        four_floats rgba =
-            collect(table, first, look_of(table, look, back) - first,
-                    look->steps, &place);
-        most = rgba[3] > most ? rgba[3] : most;
-        row[back] =
-            rgba[3] > 0 ? pack(rgba, place, job->full, look->placed) : 0;
-        if ((row[back] >> 48 & 0x7fff) == 0)
-            row[back] = 0;
+        int64_t last = look_of(table, look, back);
+        row[back] = 0;
+        if (last > seen[0] && last < seen[1]) /* and so is all between */
+            continue;
+        backs[count++] = back;
+        if (count == LANES) {
+            fill_some(job, first, backs, count, row, &most);
+            count = 0;
+        }
     }
+    if (count)
+        fill_some(job, first, backs, count, row, &most);
     job->most[front] = most;
 }
 
@@ -362,7 +418,7 @@ snow_status snow_value_table_make(snow_context *context,
 }
 
 void snow_value_table_begin(const snow_value_look *look,
-                                   snow_value_table *table) {
+                            snow_value_table *table) {
     table->made = *look;
     table->made.nodes = 0;
     table->run_count = 0;
