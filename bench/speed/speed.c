@@ -67,6 +67,7 @@ snow_status speed_measure(snow_context *context, const bench_options *options,
     out->others = machine_others(&mark);
     for (int way = 0; way < SPEED_WAYS_MOST; way++)
         snow_frame_free(session.frames[way]);
+    speed_table_free(context, session.table);
     snow_volume_close(session.changing);
     return status;
 }

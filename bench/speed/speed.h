@@ -1,12 +1,13 @@
 /* bench/speed/speed.h - how fast pictures are made today: every method against
- * `original` (each voxel) and `tested` (each voxel asked for its opacity).
+ * `original` (each voxel), `original-table` (the same by a footprint table) and
+ * `tested` (each voxel asked for its opacity).
  *
  *   speed.c          what was asked, which cases, the sweeps
  *   speed_ways.c     the methods that are compared, and the words of --only
- *   speed_volumes.c  volumes and their looks
- *   speed_verify.c   no time of a wrong picture
- *   speed_time.c     times, taken in turns
- *   speed_print.c    text and JSON
+ *   speed_table.c    original splatting by a footprint table, which is here
+ * only speed_volumes.c  volumes and their looks speed_verify.c   no time of a
+ * wrong picture speed_time.c     times, taken in turns speed_print.c    text
+ * and JSON
  */
 #ifndef SNOW_BENCH_SPEED_H
 #define SNOW_BENCH_SPEED_H
@@ -15,7 +16,7 @@
 #include "machine.h"
 
 #define SPEED_ROWS_MOST 128
-#define SPEED_WAYS_MOST 16
+#define SPEED_WAYS_MOST 20
 #define SPEED_POWERS_MOST (BENCH_LIST_MOST + 1)
 
 typedef enum speed_look { SPEED_TRANSLUCENT, SPEED_OPAQUE } speed_look;
@@ -24,6 +25,7 @@ typedef enum speed_look { SPEED_TRANSLUCENT, SPEED_OPAQUE } speed_look;
 typedef struct speed_way {
     const char *name;
     snow_method method;
+    bool tabled;            /* original by a footprint table */
     snow_encoding encoding; /* AUTO where there is none, too */
     snow_quality quality;   /* of sheared */
     snow_kernel kernel;
@@ -38,7 +40,8 @@ typedef struct speed_way {
 extern const speed_way speed_ways[];
 extern const int speed_way_count; /* at most SPEED_WAYS_MOST */
 
-/* `original` and `tested`: what the others are compared with; one thread. */
+/* `original`, `original-table` and `tested`: what the others are compared with;
+ * one thread. */
 bool speed_is_baseline(const speed_way *way);
 
 /* The kinds of words that --only knows.  Words of one kind add up, kinds
@@ -102,6 +105,19 @@ typedef struct speed_result {
     speed_row rows[SPEED_ROWS_MOST];
 } speed_result;
 
+/* What original-table keeps from picture to picture; one thread. */
+typedef struct speed_table speed_table;
+
+/* A picture; *table begins as NULL.  Errors: SNOW_STATUS_BAD_USAGE (the view or
+ * a setting), SNOW_STATUS_NO_MEMORY. */
+snow_status speed_table_render(snow_context *context, speed_table **table,
+                               const snow_volume *volume,
+                               const snow_transfer *transfer,
+                               const snow_view *view,
+                               const snow_settings *settings, snow_stats *stats,
+                               snow_image **image);
+void speed_table_free(snow_context *context, speed_table *table);
+
 /* All that verifying and timing of one case share. */
 typedef struct speed_session {
     snow_context *context;
@@ -113,6 +129,8 @@ typedef struct speed_session {
     const snow_volume *volume;
     snow_volume *changing;
     snow_frame *frames[SPEED_WAYS_MOST]; /* each way keeps its encoding */
+    speed_table *table;                  /* of original-table; NULL: none yet */
+    snow_stats table_stats;
 } speed_session;
 
 /* The view at the n-th step of the turn; owned by the session. */
@@ -123,6 +141,9 @@ const snow_view *speed_view(speed_session *session, int step);
 snow_status speed_render(speed_session *session, int way, snow_isa isa,
                          int threads, double threshold, int step,
                          snow_image **image);
+
+/* Of the last picture of a way. */
+const snow_stats *speed_stats(const speed_session *session, int way);
 
 /* Verifies the ways of the result's rows, fills in psnr and largest, and takes
  * out the rows that this library draws by another method.  Errors: of the

@@ -80,16 +80,17 @@ static double bytes_of(const speed_row *row) {
 typedef struct figures {
     double per_second, read_share, flop_share, bytes_per_voxel;
     double encode_rate; /* bytes of the volume in a second */
-    double against_original, against_tested;
+    double against_original, against_table, against_tested;
     double cpu_against_original; /* in processor time, of all threads */
 } figures;
 
 /* The row of a baseline with the same kernel; NULL when not measured. */
 static const speed_row *baseline(const speed_result *result,
-                                 const speed_row *row, snow_method method) {
+                                 const speed_row *row, snow_method method,
+                                 bool tabled) {
     for (int i = 0; i < result->count; i++) {
         const speed_row *other = &result->rows[i];
-        if (other->way->method == method &&
+        if (other->way->method == method && other->way->tabled == tabled &&
             other->way->kernel == row->way->kernel)
             return other;
     }
@@ -108,11 +109,13 @@ static figures figures_of(const speed_machine *machine, const speed_case *job,
                    .flop_share = NAN,
                    .bytes_per_voxel = NAN,
                    .encode_rate = NAN,
-                   .against_original =
-                       ratio(baseline(result, row, SNOW_METHOD_ORIGINAL), row),
-                   .against_tested =
-                       ratio(baseline(result, row, SNOW_METHOD_TESTED), row)};
-    const speed_row *original = baseline(result, row, SNOW_METHOD_ORIGINAL);
+                   .against_table = ratio(
+                       baseline(result, row, SNOW_METHOD_ORIGINAL, true), row),
+                   .against_tested = ratio(
+                       baseline(result, row, SNOW_METHOD_TESTED, false), row)};
+    const speed_row *original =
+        baseline(result, row, SNOW_METHOD_ORIGINAL, false);
+    out.against_original = ratio(original, row);
     out.cpu_against_original = original ? original->cpu / row->cpu : NAN;
     for (int i = 0; i < machine->count; i++) {
         const machine_power *power = &machine->power[i];
@@ -152,8 +155,9 @@ void speed_print_machine(const speed_machine *machine) {
                1e-9 * machine->power[i].flops, machine_vectors());
     printf("\nmilliseconds of a frame while the view turns; read, flop: share "
            "of this machine's\nrates; enc: classification and encoding for a "
-           "new threshold; orig, tested: how many\ntimes faster than original "
-           "and tested splatting with the same kernel on one thread\n");
+           "new threshold; orig, table,\ntested: how many times faster than "
+           "original, original-table and tested splatting with\nthe same "
+           "kernel on one thread\n");
     fflush(stdout);
 }
 
@@ -174,6 +178,7 @@ static void print_row(const speed_machine *machine, const speed_case *job,
     print_cell(7, 2, row->encode);
     print_cell(5, 2, 1e-9 * f.encode_rate);
     print_cell(6, 1, f.against_original);
+    print_cell(6, 1, f.against_table);
     print_cell(6, 1, f.against_tested);
     if (row->psnr < 0)
         printf(" %6s", "equal");
@@ -199,7 +204,8 @@ static void print_text(const speed_machine *machine, const speed_case *job,
            job->side, job->threshold, 100 * result->sparse_ratio,
            1e-6 * (double)result->interesting, result->load, result->others);
     printf("way                      kernel  K thr   median      min      cpu  "
-           "fr/s Mvox/s read%% flop%% B/vox  enc ms  GB/s   orig tested   PSNR "
+           "fr/s Mvox/s read%% flop%% B/vox  enc ms  GB/s   orig  table tested "
+           "  PSNR "
            " largest  n\n");
     for (int i = 0; i < result->count; i++)
         print_row(machine, job, result, &result->rows[i]);
@@ -290,6 +296,7 @@ static json_t *row_json(const speed_machine *machine, const speed_case *job,
         {"encode_gb_per_s", 1e-9 * f.encode_rate},
         {"new_threshold_ms", row->new_threshold},
         {"times_original", f.against_original},
+        {"times_original_table", f.against_table},
         {"times_tested", f.against_tested},
         {"cpu_times_original", f.cpu_against_original},
         {"psnr", row->psnr},

@@ -37,6 +37,14 @@ const snow_view *speed_view(speed_session *session, int step) {
     return &session->view;
 }
 
+static snow_status hand_over(snow_image *made, snow_image **image) {
+    if (image)
+        *image = made;
+    else
+        snow_image_free(made);
+    return SNOW_STATUS_OK;
+}
+
 snow_status speed_render(speed_session *session, int index, snow_isa isa,
                          int threads, double threshold, int step,
                          snow_image **image) {
@@ -53,6 +61,14 @@ snow_status speed_render(speed_session *session, int index, snow_isa isa,
     settings.isa = isa;
     settings.threads = threads ? threads : 1;
     settings.threshold = threshold;
+    settings.light = SNOW_LIGHT_HEAD; /* as peers have */
+    if (way->tabled) {
+        snow_status status = speed_table_render(
+            session->context, &session->table, session->volume,
+            session->job->volume->transfer, speed_view(session, step),
+            &settings, &session->table_stats, &made);
+        return status == SNOW_STATUS_OK ? hand_over(made, image) : status;
+    }
     if (!session->frames[index]) {
         snow_status status =
             snow_frame_new(session->context, &session->frames[index]);
@@ -62,13 +78,12 @@ snow_status speed_render(speed_session *session, int index, snow_isa isa,
     snow_status status = snow_frame_render(
         session->frames[index], session->volume, session->job->volume->transfer,
         speed_view(session, step), &settings, &made);
-    if (status != SNOW_STATUS_OK)
-        return status;
-    if (image)
-        *image = made;
-    else
-        snow_image_free(made);
-    return SNOW_STATUS_OK;
+    return status == SNOW_STATUS_OK ? hand_over(made, image) : status;
+}
+
+const snow_stats *speed_stats(const speed_session *session, int way) {
+    return speed_ways[way].tabled ? &session->table_stats
+                                  : snow_frame_stats(session->frames[way]);
 }
 
 static int way_of(const speed_row *row) {
@@ -96,7 +111,7 @@ static snow_status draw(speed_session *session, speed_row *row,
                      session->job->threshold, step, NULL);
     if (status != SNOW_STATUS_OK)
         return status;
-    const snow_stats *stats = snow_frame_stats(session->frames[way_of(row)]);
+    const snow_stats *stats = speed_stats(session, way_of(row));
     row->stats = *stats;
     samples->spent += stats->seconds_frame;
     if (warming)
@@ -147,7 +162,7 @@ static snow_status draw_anew(speed_session *session, speed_row *row,
     session->volume = session->job->volume->volume;
     if (status != SNOW_STATUS_OK)
         return status;
-    const snow_stats *stats = snow_frame_stats(session->frames[way_of(row)]);
+    const snow_stats *stats = speed_stats(session, way_of(row));
     if (!has_encoded(stats) || samples->encodes == RUNS_MOST)
         return SNOW_STATUS_OK;
     samples->encode[samples->encodes] = 1e3 * encode_seconds(stats);

@@ -52,8 +52,8 @@ static bool is_of_values(const speed_way *way) {
            way->method == SNOW_METHOD_SHEAR_WARP;
 }
 
-/* By the scalar kernels, on a frame that is thrown away with its encoding, which
- * may be large. */
+/* By the scalar kernels, on a frame that is thrown away with its encoding,
+ * which may be large. */
 static snow_status render_exact(speed_session *session, const speed_way *way,
                                 snow_image **out) {
     snow_settings settings;
@@ -67,6 +67,7 @@ static snow_status render_exact(speed_session *session, const speed_way *way,
     settings.footprint = way->footprint;
     settings.shade = session->job->shade;
     settings.threshold = session->job->threshold;
+    settings.light = SNOW_LIGHT_HEAD;
     settings.isa = SNOW_ISA_SCALAR;
     settings.threads = is_of_values(way) ? 0 : 1;
     snow_status status = snow_frame_new(session->context, &frame);
@@ -103,41 +104,15 @@ static snow_status sum_of(verification *verifier, int way, snow_isa isa,
     return status;
 }
 
-/* Original splatting knows no threshold, so that it can only be held against
- * tested splatting at threshold 0, where every voxel that is not transparent
- * counts. */
-static snow_status verify_original(verification *verifier, int way,
-                                   speed_row *row) {
-    uint64_t sum, expected = 0;
-    int tested = 0;
-    row->largest = 0;
-    row->psnr = -1;
-    if (verifier->session->job->original_known)
-        return SNOW_STATUS_OK;
-    while (speed_ways[tested].method != SNOW_METHOD_TESTED ||
-           speed_ways[tested].kernel != speed_ways[way].kernel)
-        tested++;
-    snow_status status = sum_of(verifier, way, SNOW_ISA_AUTO, 1, 0, &sum);
-    if (status == SNOW_STATUS_OK)
-        status = sum_of(verifier, tested, SNOW_ISA_AUTO, 1, 0, &expected);
-    if (status != SNOW_STATUS_OK)
-        return status;
-    if (sum != expected)
-        return wrong(verifier, way, "another picture than tested at 0");
-    return SNOW_STATUS_OK;
-}
-
-/* Against the exact picture, within the way's bounds. */
-static snow_status verify_bounds(verification *verifier, int way,
-                                 const snow_image *image, speed_row *row) {
+/* Within the way's bounds of a picture. */
+static snow_status verify_near(const verification *verifier, int way,
+                               const snow_image *exact, const snow_image *image,
+                               speed_row *row) {
     const speed_way *bounds = &speed_ways[way];
     const speed_case *job = verifier->session->job;
     double least = bounds->psnr[job->shade == SNOW_SHADE_PHONG][job->look];
-    snow_image *exact;
     snow_image_difference difference = {.size = sizeof difference};
-    snow_status status = exact_of(verifier, way, &exact);
-    if (status == SNOW_STATUS_OK)
-        status = snow_image_compare(exact, image, &difference);
+    snow_status status = snow_image_compare(exact, image, &difference);
     if (status != SNOW_STATUS_OK)
         return status;
     /* Written so that a NaN is beyond every bound. */
@@ -149,6 +124,63 @@ static snow_status verify_bounds(verification *verifier, int way,
                      bounds->largest);
     row->largest = difference.largest;
     row->psnr = difference.largest > 0 ? difference.psnr : -1;
+    return SNOW_STATUS_OK;
+}
+
+/* Against the exact picture. */
+static snow_status verify_bounds(verification *verifier, int way,
+                                 const snow_image *image, speed_row *row) {
+    snow_image *exact;
+    snow_status status = exact_of(verifier, way, &exact);
+    return status == SNOW_STATUS_OK
+               ? verify_near(verifier, way, exact, image, row)
+               : status;
+}
+
+/* The `tested` way with the kernel of a way. */
+static int tested_like(int way) {
+    int tested = 0;
+    while (speed_ways[tested].method != SNOW_METHOD_TESTED ||
+           speed_ways[tested].kernel != speed_ways[way].kernel)
+        tested++;
+    return tested;
+}
+
+/* By a table weights are those of the nearest of 16 x 16 places. */
+static snow_status verify_table(verification *verifier, int way,
+                                speed_row *row) {
+    speed_session *session = verifier->session;
+    snow_image *image = NULL, *exact = NULL;
+    snow_status status =
+        speed_render(session, way, SNOW_ISA_AUTO, 1, 0, 0, &image);
+    if (status == SNOW_STATUS_OK)
+        status = speed_render(session, tested_like(way), SNOW_ISA_AUTO, 1, 0, 0,
+                              &exact);
+    if (status == SNOW_STATUS_OK)
+        status = verify_near(verifier, way, exact, image, row);
+    snow_image_free(image);
+    snow_image_free(exact);
+    return status;
+}
+
+/* Original splatting knows no threshold, so that it can only be held against
+ * tested splatting at threshold 0, where every voxel that is not transparent
+ * counts. */
+static snow_status verify_original(verification *verifier, int way,
+                                   speed_row *row) {
+    uint64_t sum, expected = 0;
+    int tested = tested_like(way);
+    row->largest = 0;
+    row->psnr = -1;
+    if (verifier->session->job->original_known)
+        return SNOW_STATUS_OK;
+    snow_status status = sum_of(verifier, way, SNOW_ISA_AUTO, 1, 0, &sum);
+    if (status == SNOW_STATUS_OK)
+        status = sum_of(verifier, tested, SNOW_ISA_AUTO, 1, 0, &expected);
+    if (status != SNOW_STATUS_OK)
+        return status;
+    if (sum != expected)
+        return wrong(verifier, way, "another picture than tested at 0");
     return SNOW_STATUS_OK;
 }
 
@@ -227,13 +259,15 @@ static snow_status verify_way(verification *verifier, int way, speed_row *rows,
     speed_session *session = verifier->session;
     snow_image *image;
     *done = true;
+    if (speed_ways[way].tabled)
+        return verify_table(verifier, way, rows);
     if (speed_ways[way].method == SNOW_METHOD_ORIGINAL)
         return verify_original(verifier, way, rows);
     snow_status status = speed_render(session, way, SNOW_ISA_AUTO, 1,
                                       session->job->threshold, 0, &image);
     if (status != SNOW_STATUS_OK)
         return status;
-    const snow_stats *stats = snow_frame_stats(session->frames[way]);
+    const snow_stats *stats = speed_stats(session, way);
     *done = stats->method == speed_ways[way].method;
     if (*done)
         status = verify_bounds(verifier, way, image, rows);
@@ -246,7 +280,7 @@ static snow_status verify_way(verification *verifier, int way, speed_row *rows,
 static void remove_rows(const verification *verifier, speed_result *result,
                         int first, int count) {
     int way = (int)(result->rows[first].way - speed_ways);
-    const snow_stats *stats = snow_frame_stats(verifier->session->frames[way]);
+    const snow_stats *stats = speed_stats(verifier->session, way);
     fprintf(stderr, "snowglass: bench: %s %dx%d: %s is drawn by %s; left out\n",
             verifier->session->job->volume->name, verifier->session->job->side,
             verifier->session->job->side, result->rows[first].way->name,

@@ -6,23 +6,28 @@
 #include <string.h>
 
 /* Bounds: what scatters the exact sum may differ from it by rounding only.
- * Shear-warp and raycast are held against rays in high quality: nearer where the
- * look is translucent, and the finer the lattice or the step. */
+ * Shear-warp and raycast are held against rays in high quality: nearer where
+ * the look is translucent, and the finer the lattice or the step. */
 #define EXACT {{60, 60}, {60, 60}}, 1e-3
 #define DRAFT {{24, 20}, {24, 20}}, 1
 #define NORMAL {{26, 22}, {26, 22}}, 1
 #define HIGH {{32, 28}, {32, 28}}, 1
+#define TABLE {{48, 48}, {48, 48}}, 0.05
 #define COARSE {{45, 40}, {36, 34}}, 1
 #define FINE {{50, 45}, {40, 38}}, 1
 
 #define CUBIC SNOW_KERNEL_BSPLINE, 4
 #define TENT SNOW_KERNEL_TENT, 2
-#define WAY(method, encoding, quality) \
-    SNOW_METHOD_##method, SNOW_ENCODING_##encoding, SNOW_QUALITY_##quality
+#define WAY(method, encoding, quality)                     \
+    SNOW_METHOD_##method, false, SNOW_ENCODING_##encoding, \
+        SNOW_QUALITY_##quality
+#define BY_TABLE \
+    SNOW_METHOD_ORIGINAL, true, SNOW_ENCODING_AUTO, SNOW_QUALITY_NORMAL
 
 /* clang-format off */
 const speed_way speed_ways[] = {
     {"original", WAY(ORIGINAL, AUTO, NORMAL), CUBIC, EXACT, "original"},
+    {"original-table", BY_TABLE, CUBIC, TABLE, "original, by a table"},
     {"tested", WAY(TESTED, AUTO, NORMAL), CUBIC, EXACT, "tested"},
     {"footprint crs", WAY(FOOTPRINT, CRS, NORMAL), CUBIC, EXACT,
      "footprint, CRS"},
@@ -38,6 +43,7 @@ const speed_way speed_ways[] = {
     {"shear-warp normal rle", WAY(SHEAR_WARP, RLE, NORMAL), TENT, NORMAL, NULL},
     {"shear-warp high", WAY(SHEAR_WARP, AUTO, HIGH), TENT, HIGH, NULL},
     {"original", WAY(ORIGINAL, AUTO, NORMAL), TENT, EXACT, NULL},
+    {"original-table", BY_TABLE, TENT, TABLE, NULL},
     {"tested", WAY(TESTED, AUTO, NORMAL), TENT, EXACT, NULL},
     {"shear-warp draft", WAY(SHEAR_WARP, AUTO, DRAFT), TENT, DRAFT,
      "shear-warp, draft"},
@@ -57,6 +63,13 @@ bool speed_is_baseline(const speed_way *way) {
            way->method == SNOW_METHOD_TESTED;
 }
 
+/* No method of the library. */
+#define ORIGINAL_TABLE 31
+
+static int method_of(const speed_way *way) {
+    return way->tabled ? ORIGINAL_TABLE : (int)way->method;
+}
+
 /* --- the words of --only -------------------------------------------------- */
 
 static const struct {
@@ -71,6 +84,7 @@ static const struct {
     {"unshaded", SPEED_SHADE, SNOW_SHADE_NONE},
     {"phong", SPEED_SHADE, SNOW_SHADE_PHONG},
     {"original", SPEED_METHOD, SNOW_METHOD_ORIGINAL},
+    {"original-table", SPEED_METHOD, ORIGINAL_TABLE},
     {"tested", SPEED_METHOD, SNOW_METHOD_TESTED},
     {"footprint", SPEED_METHOD, SNOW_METHOD_FOOTPRINT},
     {"shear-warp", SPEED_METHOD, SNOW_METHOD_SHEAR_WARP},
@@ -136,7 +150,7 @@ static bool passes(const speed_filter *filter, bool sweep,
         return false;
     if (way->method == SNOW_METHOD_RAYCAST && !is_named(filter, way->method))
         return false;
-    return speed_filter_takes(filter, SPEED_METHOD, (int)way->method) &&
+    return speed_filter_takes(filter, SPEED_METHOD, method_of(way)) &&
            speed_filter_takes(filter, SPEED_KERNEL, (int)way->kernel) &&
            (speed_is_baseline(way) ||
             speed_filter_takes(filter, SPEED_ENCODING, (int)way->encoding)) &&
