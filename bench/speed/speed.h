@@ -4,10 +4,11 @@
  *
  *   speed.c          what was asked, which cases, the sweeps
  *   speed_ways.c     the methods that are compared, and the words of --only
- *   speed_table.c    original splatting by a footprint table, which is here
- * only speed_volumes.c  volumes and their looks speed_verify.c   no time of a
- * wrong picture speed_time.c     times, taken in turns speed_print.c    text
- * and JSON
+ *   speed_table.c    original splatting by a footprint table, only here
+ *   speed_volumes.c  volumes and their looks
+ *   speed_verify.c   no time of a wrong picture
+ *   speed_time.c     times, taken in turns
+ *   speed_print.c    text and JSON
  */
 #ifndef SNOW_BENCH_SPEED_H
 #define SNOW_BENCH_SPEED_H

@@ -146,9 +146,11 @@ run 0 "its frame is the same" "$TOOL" compare one_02.png many_02.png \
 for seed in 0 1 2; do
     "$TOOL" phantom head --dims 32x32x32 --seed $seed -q -o step$seed.nrrd
 done
-run 0 "a movie alone" "$TOOL" movie step%d.nrrd -s 64x64 -q -o step_%d.png
-run 0 "a movie by 2" launch 2 "$MPI_TOOL" movie step%d.nrrd -s 64x64 -q \
-    -o steps_%d.png
+movie="movie step%d.nrrd -s 64x64 -q --background black"
+# shellcheck disable=SC2086
+run 0 "a movie alone" "$TOOL" $movie -o step_%d.png
+# shellcheck disable=SC2086
+run 0 "a movie by 2" launch 2 "$MPI_TOOL" $movie -o steps_%d.png
 for frame in 0 1 2; do
     run 0 "step $frame" "$TOOL" compare step_$frame.png steps_$frame.png \
         --tolerance 1.001/255
