@@ -1,5 +1,6 @@
 /* tests/volume/test_box.c - a box of a volume: equal to that of the whole for
- * every format, and little more than it is read. */
+ * every format that crops (DEN's boxes are in tests/formats/test_den.c), and
+ * little more than it is read. */
 #include "support/files.h"
 
 #include "volume/volume.h"

@@ -51,7 +51,7 @@ static snow_status read_den(snow_source *source,
     if (!probe_den(bytes, size))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "the first 62 bytes are not a DEN header; get the "
-                         "file again, or rename it and give --dims and --type");
+                         "file again, or give --dims and --type");
     *info = snow_volume_info_default("den");
     info->type = SNOW_TYPE_UINT8;
     for (int i = 0; i < 3; i++)
