@@ -3,7 +3,7 @@
  * What is timed is what a user of the library would write: through the public
  * headers, from the voxels in memory to a picture in memory.
  *
- *   ours_worker RAW X Y Z SIZE THREADS SHADED METHOD QUALITY KERNEL */
+ *   ours_worker RAW X Y Z SIZE THREADS SHADED METHOD QUALITY */
 #include "pipe.h"
 
 #include <snowglass/snowglass.h>
@@ -98,9 +98,8 @@ static void set_up(char **argv) {
     snow_settings *settings = &worker.settings;
     int method = snow_method_from_name(argv[8]);
     int quality = snow_quality_from_name(argv[9]);
-    int kernel = snow_kernel_from_name(argv[10]);
-    if (method < 0 || quality < 0 || kernel < 0)
-        pipe_fail(&face, "no such method, quality or kernel");
+    if (method < 0 || quality < 0)
+        pipe_fail(&face, "no such method or quality");
     if (snow_context_new(NULL, &worker.context) != SNOW_STATUS_OK)
         pipe_fail(&face, "no memory");
     worker.raw = argv[1];
@@ -115,13 +114,11 @@ static void set_up(char **argv) {
     settings->light = SNOW_LIGHT_HEAD; /* as that of the other programs */
     settings->method = (snow_method)method;
     settings->quality = (snow_quality)quality;
-    settings->kernel = (snow_kernel)kernel;
 }
 
 int main(int argc, char **argv) {
-    if (argc != 11)
-        pipe_fail(&face,
-                  "wants RAW X Y Z SIZE THREADS SHADED METHOD QUALITY KERNEL");
+    if (argc != 10)
+        pipe_fail(&face, "wants RAW X Y Z SIZE THREADS SHADED METHOD QUALITY");
     set_up(argv);
     pipe_serve(&face);
     snow_image_free(worker.image);

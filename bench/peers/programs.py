@@ -213,18 +213,15 @@ def missing(build, display):
     return why
 
 
-# Our rows: name, quality, kernel.
-OURS = {"snowglass-draft": ("draft", "bspline"),
-        "snowglass-tent": ("normal", "tent"),
-        "snowglass": ("normal", "bspline"),
-        "snowglass-high": ("high", "bspline")}
+# Our rows: name and quality.
+OURS = {"snowglass-draft": "draft", "snowglass": "normal",
+        "snowglass-high": "high"}
 
 # In the order of the tables; for each the numbers of threads it can use.
 # VolPack's octree is a second worker: see README.md.
-THREADS = {"snowglass-draft": (1, 2), "snowglass-tent": (1, 2),
-           "snowglass": (1, 2), "snowglass-high": (1, 2), "volpack": (1,),
-           "volpack-octree": (1,), "vtk-cpu": (1, 2), "vtk-gl": (1, 2),
-           "teem": (1, 2)}
+THREADS = {"snowglass-draft": (1, 2), "snowglass": (1, 2),
+           "snowglass-high": (1, 2), "volpack": (1,), "volpack-octree": (1,),
+           "vtk-cpu": (1, 2), "vtk-gl": (1, 2), "teem": (1, 2)}
 
 
 def start(name, threads, case, options, display):
@@ -233,7 +230,7 @@ def start(name, threads, case, options, display):
     shape = [case.raw, *case.dims, case.size, threads, int(case.shaded)]
     if name in OURS:
         return Worker(name, threads, [build / "peers" / "ours_worker", *shape,
-                                      options.method, *OURS[name]])
+                                      options.method, OURS[name]])
     if name.startswith("volpack"):
         how = "octree" if name.endswith("octree") else "classified"
         return Worker(name, threads, [build / "peers" / "volpack_worker",

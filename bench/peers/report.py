@@ -2,7 +2,7 @@
 import os
 
 LABELS = {"snowglass-draft": "Snowglass, draft",
-          "snowglass-tent": "Snowglass, tent kernel", "snowglass": "Snowglass",
+          "snowglass": "Snowglass",
           "snowglass-high": "Snowglass, high",
           "volpack": "VolPack", "vtk-cpu": "VTK, fixed-point ray caster",
           "vtk-gl": "VTK, GPU mapper on llvmpipe", "teem": "Teem, miter"}

@@ -34,6 +34,9 @@
  *   V(row_floats)(p)              LANES numbers at p as floats
  *   V(row_round)(p, v)            LANES floats to the nearest numbers, which
  *                                 saturate; below 2^22
+ *   V(row_widen)(a, out)          a row as 32 / LANES vectors of floats, in an
+ *                                 order of their own, and back, rounded as by
+ *   V(row_narrow)(v)              row_round
  *   V(row_rsqrt)(v)               1 / sqrt(v) within 5e-6, without approximate
  *                                 instructions
  *   V(row_turn)(v, by)            -v where `by` is below 0, else v

@@ -266,6 +266,25 @@ SNOW_AVX2_INLINE void snow_avx2_row_round(int16_t *p, snow_avx2_vec v) {
                                      _mm256_extracti128_si256(whole, 1)));
 }
 
+SNOW_AVX2_INLINE void snow_avx2_half_widen(__m256i a, snow_avx2_vec out[2]) {
+    out[0] =
+        _mm256_cvtepi32_ps(_mm256_srai_epi32(_mm256_unpacklo_epi16(a, a), 16));
+    out[1] =
+        _mm256_cvtepi32_ps(_mm256_srai_epi32(_mm256_unpackhi_epi16(a, a), 16));
+}
+
+SNOW_AVX2_INLINE void snow_avx2_row_widen(snow_avx2_row a,
+                                          snow_avx2_vec out[4]) {
+    snow_avx2_half_widen(a.low, out);
+    snow_avx2_half_widen(a.high, out + 2);
+}
+
+SNOW_AVX2_INLINE snow_avx2_row snow_avx2_row_narrow(const snow_avx2_vec v[4]) {
+    return (snow_avx2_row){
+        _mm256_packs_epi32(_mm256_cvtps_epi32(v[0]), _mm256_cvtps_epi32(v[1])),
+        _mm256_packs_epi32(_mm256_cvtps_epi32(v[2]), _mm256_cvtps_epi32(v[3]))};
+}
+
 SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_row_rsqrt(snow_avx2_vec v) {
     const __m256 more = _mm256_set1_ps(1.5F);
     __m256 half = _mm256_mul_ps(v, _mm256_set1_ps(0.5F));

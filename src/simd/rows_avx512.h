@@ -187,6 +187,20 @@ SNOW_AVX512_INLINE void snow_avx512_row_round(int16_t *p, snow_avx512_vec v) {
                         _mm512_cvtsepi32_epi16(_mm512_cvtps_epi32(v)));
 }
 
+SNOW_AVX512_INLINE void snow_avx512_row_widen(snow_avx512_row a,
+                                              snow_avx512_vec out[2]) {
+    out[0] =
+        _mm512_cvtepi32_ps(_mm512_srai_epi32(_mm512_unpacklo_epi16(a, a), 16));
+    out[1] =
+        _mm512_cvtepi32_ps(_mm512_srai_epi32(_mm512_unpackhi_epi16(a, a), 16));
+}
+
+SNOW_AVX512_INLINE snow_avx512_row
+snow_avx512_row_narrow(const snow_avx512_vec v[2]) {
+    return _mm512_packs_epi32(_mm512_cvtps_epi32(v[0]),
+                              _mm512_cvtps_epi32(v[1]));
+}
+
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_row_rsqrt(snow_avx512_vec v) {
     const __m512 more = _mm512_set1_ps(1.5F);
     __m512 half = _mm512_mul_ps(v, _mm512_set1_ps(0.5F));

@@ -187,6 +187,23 @@ static inline void snow_scalar_row_round(int16_t *p, snow_scalar_vec v) {
     }
 }
 
+/* The same of whole rows. */
+static inline void snow_scalar_row_widen(snow_scalar_row a,
+                                         snow_scalar_vec out[8]) {
+    int16_t numbers[32];
+    snow_scalar_row_store(numbers, a);
+    for (int n = 0; n < 8; n++)
+        out[n] = snow_scalar_row_floats(numbers + 4 * n);
+}
+
+static inline snow_scalar_row
+snow_scalar_row_narrow(const snow_scalar_vec v[8]) {
+    int16_t numbers[32];
+    for (int n = 0; n < 8; n++)
+        snow_scalar_row_round(numbers + 4 * n, v[n]);
+    return snow_scalar_row_load(numbers);
+}
+
 /* 1 / sqrt(v) from an integer's guess and two of Newton's steps. */
 static inline snow_scalar_vec snow_scalar_row_rsqrt(snow_scalar_vec v) {
     snow_scalar_vec half = v * 0.5F, y;

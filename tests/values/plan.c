@@ -278,19 +278,22 @@ static void take_integers(value_plan *plan) {
                                  ((double)rule.factor * (double)rule.weight);
 }
 
-/* The steepest part of the look, in nodes of a table that are evenly placed:
- * the shortest way between two points of different opacity, steps left out. */
+/* The nodes, evenly placed, in which the look's steepest ramp would go from 0
+ * to the largest opacity, steps left out. */
 static double steepest(const value_plan *plan) {
     const reference_scene *scene = &plan->scene->base;
-    double shortest = INFINITY;
+    double least = INFINITY, most = 0;
+    for (size_t n = 0; n < scene->opacity_count; n++)
+        most = fmax(most, scene->opacities[n].opacity);
     for (size_t n = 0; n + 1 < scene->opacity_count; n++) {
         const snow_opacity_point *p = &scene->opacities[n];
         double length = scene->log ? log10(p[1].value) - log10(p[0].value)
                                    : p[1].value - p[0].value;
-        if (p[1].opacity != p[0].opacity && length > 0)
-            shortest = fmin(shortest, length);
+        double rise = fabs(p[1].opacity - p[0].opacity);
+        if (rise > 0 && length > 0)
+            least = fmin(least, length * most / rise);
     }
-    return shortest / (plan->high - plan->low) * (plan->nodes - 1);
+    return least / (plan->high - plan->low) * (plan->nodes - 1);
 }
 
 static void choose_table(value_plan *plan) {

@@ -28,10 +28,11 @@ static snow_status add_name(snow_context *context, snow_value_labels *labels,
     if (at < labels->count && labels->names[at] == value)
         return SNOW_STATUS_OK;
     if (labels->count == SNOW_VALUE_LABELS_MOST)
-        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "the volume has too many labels for method shear-warp: the "
-                         "limit is %d; take method footprint",
-                         SNOW_VALUE_LABELS_MOST);
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            "the volume has too many labels for method shear-warp: the "
+            "limit is %d; take method footprint",
+            SNOW_VALUE_LABELS_MOST);
     size_t size = sizeof *labels->names, used = (size_t)labels->count * size;
     SNOW_TRY(snow_reserve(context, &labels->names, &labels->names_capacity,
                           used, used + size));

@@ -64,7 +64,8 @@ static inline bool snow_value_same_scale(const snow_value_scale14 *a,
 
 /* The scale of a look: all of the data, or, where the look shows less than 1/64
  * of that, what it shows, widened by four times its length on each side; NULL:
- * all.  Of integers it ends at one, and `high` is where the rule has SNOW_VALUE_MOST. */
+ * all.  Of integers it ends at one, and `high` is where the rule has
+ * SNOW_VALUE_MOST. */
 snow_value_scale14 snow_value_scale_of(const snow_data_range *data,
                                        const snow_transfer *transfer,
                                        const snow_volume_info *info);

@@ -1,8 +1,4 @@
-/* classify/values/value_table.c - see value_table.h.
- *
- * An entry's steps are at values (i + 1/2) / N of the way.  Where nodes are
- * evenly placed all of these lie on one fine raster, 2 N points from node to
- * node, so that the look is evaluated there once and entries only composite. */
+/* classify/values/value_table.c - see value_table.h. */
 #include "classify/values/value_table.h"
 
 #include "base/thread_pool.h"
@@ -10,155 +6,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Numbers between two looks where nodes are placed by measure. */
-#define MEASURED_STEP 0.25
-
 /* The largest alpha of tables whose words count smaller parts, and how often
  * these are halved at most. */
 #define FAINTEST 0.004F
 #define HALVINGS_MOST 96
-
-/* A look whose steepest ramp spans fewer nodes has them placed by measure. */
-#define STEEP_NODES 4
-
-/* --- looks ------------------------------------------------------------------
- */
-
-/* Colour and opacity of the reference length at number V. */
-static void look_at(const snow_value_look *look, double v,
-                    snow_transfer_hint *hint, double rgba[4]) {
-    snow_transfer_near(look->transfer, snow_value_of(&look->scale, v), hint,
-                       rgba);
-    if (!snow_is_interesting(rgba[3], look->threshold))
-        rgba[3] = 0;
-}
-
-static double alpha_of(double opacity, double exponent) {
-    return opacity >= 1 ? 1 : 1 - pow(1 - opacity, exponent);
-}
-
-/* Looks of a step, `step` numbers apart. */
-static snow_status fill_looks(snow_context *context,
-                              const snow_value_look *look,
-                              snow_value_table *table) {
-    snow_transfer_hint hint = {0};
-    double exponent = look->exponent / look->steps;
-    SNOW_TRY(snow_reserve(context, &table->looks, &table->looks_capacity, 0,
-                          4 * table->look_count * sizeof *table->looks));
-    double last = -1, alpha = 0;
-    for (size_t n = 0; n < table->look_count; n++) {
-        double rgba[4];
-        float *out = table->looks + 4 * n;
-        look_at(look, (double)n * table->step, &hint, rgba);
-        if (rgba[3] != last)
-            alpha = alpha_of(last = rgba[3], exponent);
-        for (int c = 0; c < 3; c++)
-            out[c] = (float)(alpha * rgba[c]);
-        out[3] = (float)alpha;
-    }
-    return SNOW_STATUS_OK;
-}
-
-/* --- nodes ------------------------------------------------------------------
- */
-
-/* The shortest way between two points of different opacity, steps left out, in
- * nodes that are evenly placed. */
-static bool is_steep(const snow_value_look *look) {
-    const snow_transfer *t = look->transfer;
-    double shortest = INFINITY;
-    for (size_t n = 0; n + 1 < t->opacity_count; n++) {
-        const snow_opacity_point *p = &t->opacities[n];
-        double length = look->scale.log ? log10(p[1].value) - log10(p[0].value)
-                                        : p[1].value - p[0].value;
-        if (p[1].opacity != p[0].opacity && length > 0)
-            shortest = fmin(shortest, length);
-    }
-    return shortest * (look->nodes - 1) <
-           STEEP_NODES * (look->scale.high - look->scale.low);
-}
-
-/* How much the look of a slab of one value changes from one to the other. */
-static double change(const double a[4], const double b[4]) {
-    double sum = 0;
-    for (int c = 0; c < 4; c++)
-        sum += (c == 3 ? 3 : 1) * fabs(b[c] - a[c]);
-    return sum;
-}
-
-/* Half of the nodes evenly, half where the look changes; no number has more of
- * this than one node. */
-static void measure_nodes(const snow_value_look *look, double *until,
-                          double *at) {
-    snow_transfer_hint hint = {0};
-    double before[4], total = 0;
-    for (int v = 0; v <= SNOW_VALUE_MOST; v++) {
-        double here[4];
-        look_at(look, v, &hint, here);
-        here[3] = alpha_of(here[3], look->exponent);
-        for (int c = 0; c < 3; c++)
-            here[c] *= here[3];
-        total += until[v] = v ? change(before, here) : 0;
-        memcpy(before, here, sizeof before);
-    }
-    for (int v = 1; v <= SNOW_VALUE_MOST; v++) {
-        double part = total > 0 ? until[v] / total : 1.0 / SNOW_VALUE_MOST;
-        part =
-            fmin(0.5 / SNOW_VALUE_MOST + 0.5 * part, 1.0 / (look->nodes - 1));
-        until[v] = until[v - 1] + part;
-    }
-    for (int node = 0, v = 0; node < look->nodes; node++) {
-        while (v < SNOW_VALUE_MOST &&
-               until[v] < until[SNOW_VALUE_MOST] * node / (look->nodes - 1))
-            v++;
-        at[node] = v;
-    }
-}
-
-static void find_nodes(const snow_value_look *look, snow_value_table *table) {
-    for (int v = 0, node = 0; v <= SNOW_VALUE_MOST; v++) {
-        while (node + 1 < look->nodes &&
-               table->at[node + 1] - v <= v - table->at[node])
-            node++;
-        table->node_of[v] = table->nodes
-                                ? (uint8_t)node
-                                : (uint8_t)((v * table->scale + 0x4000) >> 15);
-    }
-}
-
-static snow_status place_nodes(snow_context *context,
-                               const snow_value_look *look,
-                               snow_value_table *table) {
-    bool measured = is_steep(look);
-    size_t values = SNOW_VALUE_MOST + 1;
-    SNOW_TRY(snow_reserve(context, &table->at, &table->at_capacity, 0,
-                          (SNOW_VALUE_PITCH + values) * sizeof *table->at));
-    SNOW_TRY(snow_reserve(context, &table->node_of, &table->node_of_capacity, 0,
-                          values));
-    double apart =
-        look->nodes == 129 ? 128 : (double)SNOW_VALUE_MOST / (look->nodes - 1);
-    for (int node = 0; node < look->nodes; node++)
-        table->at[node] = look->nodes == 129 ? 128 * node
-                                             : (double)SNOW_VALUE_MOST * node /
-                                                   (look->nodes - 1);
-    table->scale = look->nodes == 129 ? 256 : 510;
-    table->nodes = measured ? table->node_of : NULL;
-    table->step = measured ? MEASURED_STEP : apart / (2 * look->steps);
-    table->look_count = measured
-                            ? (size_t)(SNOW_VALUE_MOST / MEASURED_STEP) + 2
-                            : (size_t)(2 * look->steps * (look->nodes - 1)) + 1;
-    if (measured)
-        measure_nodes(look, table->at + SNOW_VALUE_PITCH, table->at);
-    find_nodes(look, table);
-    return SNOW_STATUS_OK;
-}
-
-/* The place of a node among the looks. */
-static int64_t look_of(const snow_value_table *table,
-                       const snow_value_look *look, int node) {
-    return table->nodes ? (int64_t)(table->at[node] / MEASURED_STEP + 0.5)
-                        : (int64_t)(2 * look->steps) * node;
-}
 
 /* --- entries ----------------------------------------------------------------
  */
@@ -241,8 +92,7 @@ static void fill_some(const table_job *job, int64_t first, const int *backs,
     const snow_value_look *look = job->look;
     entry_way ways[LANES];
     for (int w = 0; w < LANES; w++) {
-        int64_t way =
-            look_of(job->table, look, backs[w < count ? w : 0]) - first;
+        int64_t way = job->table->look_of[backs[w < count ? w : 0]] - first;
         int64_t apart = way * 65536 / look->steps;
         ways[w] = (entry_way){.at = first * 65536 + apart / 2, .apart = apart};
     }
@@ -261,13 +111,13 @@ static void fill_row(void *of, int64_t front, int worker) {
     const snow_value_look *look = job->look;
     const snow_value_table *table = job->table;
     uint64_t *row = table->entries + front * SNOW_VALUE_PITCH;
-    int64_t first = look_of(table, look, (int)front), seen[2];
+    int64_t first = table->look_of[front], seen[2];
     int backs[LANES], count = 0;
     float most = 0;
     (void)worker;
     find_seen(table, first, seen);
     for (int back = 0; back < look->nodes; back++) {
-        int64_t last = look_of(table, look, back);
+        int64_t last = table->look_of[back];
         row[back] = 0;
         if (last > seen[0] && last < seen[1]) /* and so is all between */
             continue;
@@ -330,12 +180,12 @@ void snow_value_table_hide(snow_value_table *table, snow_value_run run) {
  * where not even its own is. */
 static int blind_until(const snow_value_table *table,
                        const snow_value_look *look, int node) {
-    int64_t n = look_of(table, look, node);
+    int64_t n = table->look_of[node];
     int64_t end = (int64_t)table->look_count;
     while (n < end && !(table->looks[4 * n + 3] > 0))
         n++;
     int last = node - 1;
-    while (last + 1 < look->nodes && look_of(table, look, last + 1) < n)
+    while (last + 1 < look->nodes && table->look_of[last + 1] < n)
         last++;
     return last;
 }
@@ -387,10 +237,10 @@ static snow_status take_key(snow_context *context, const snow_transfer *t,
     return SNOW_STATUS_OK;
 }
 
-static bool same_look(const snow_value_look *a, const snow_value_look *b) {
+/* But for the length of rays, and what entries keep. */
+static bool same_looks(const snow_value_look *a, const snow_value_look *b) {
     return a->nodes == b->nodes && a->steps == b->steps &&
-           a->placed == b->placed && a->threshold == b->threshold &&
-           a->exponent == b->exponent &&
+           a->threshold == b->threshold &&
            snow_value_same_scale(&a->scale, &b->scale);
 }
 
@@ -401,7 +251,10 @@ snow_status snow_value_table_make(snow_context *context,
         SNOW_VALUE_PITCH * SNOW_VALUE_PITCH * sizeof *table->entries;
     bool same;
     SNOW_TRY(take_key(context, look->transfer, table, &same));
-    if (same && same_look(look, &table->made))
+    const snow_value_look *made = &table->made;
+    const bool known = same && same_looks(look, made);
+    if (known && look->exponent == made->exponent &&
+        look->placed == made->placed)
         return SNOW_STATUS_OK;
     bool anew = !table->entries;
     table->made.nodes = 0; /* until it is whole */
@@ -409,8 +262,7 @@ snow_status snow_value_table_make(snow_context *context,
                           bytes));
     if (anew)
         memset(table->entries, 0, bytes);
-    SNOW_TRY(place_nodes(context, look, table));
-    SNOW_TRY(fill_looks(context, look, table));
+    SNOW_TRY(snow_value_looks_make(context, look, known, table));
     SNOW_TRY(fill_entries(context, look, table));
     find_runs(look, table);
     table->made = *look;
@@ -430,6 +282,8 @@ void snow_value_table_fini(snow_context *context, snow_value_table *table) {
     snow_release(context, table->entries);
     snow_release(context, table->node_of);
     snow_release(context, table->at);
+    snow_release(context, table->logs);
+    snow_release(context, table->plain);
     snow_release(context, table->looks);
     snow_release(context, table->key);
     snow_release(context, table->next_key);

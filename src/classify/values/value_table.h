@@ -39,10 +39,14 @@ typedef struct snow_value_table {
     uint8_t *nodes;    /* by V; NULL: evenly placed */
     uint8_t *node_of;  /* by V, always */
     double *at;        /* V of each node */
-    float *looks;      /* premultiplied RGBA of a step, by V */
-    double step;       /* numbers between two of these looks */
+    double *logs;      /* of 1 - opacity, and colours, by V */
+    float *plain;
+    float *looks; /* premultiplied RGBA of a step, by V */
+    double step;  /* numbers between two of these looks */
     size_t look_count;
+    int look_of[SNOW_VALUE_PITCH]; /* the place of each node among them */
     size_t entries_capacity, node_of_capacity, at_capacity, looks_capacity;
+    size_t logs_capacity, plain_capacity;
     snow_value_run runs[SNOW_VALUE_RUNS]; /* the longest ones, rising */
     int run_count;
     bool faint; /* the words count parts of 2^-15 / 2^n, for slabs show little:
@@ -62,8 +66,14 @@ snow_status snow_value_table_make(snow_context *context,
 /* A table without entries, of labels and of values that have no colours yet: no
  * number is invisible until it is hidden.  Runs rise. */
 void snow_value_table_begin(const snow_value_look *look,
-                                   snow_value_table *table);
+                            snow_value_table *table);
 void snow_value_table_hide(snow_value_table *table, snow_value_run run);
+
+/* Looks of a step and nodes; where they are `known`, those of other rays need
+ * only new alphas, and nodes placed by them. */
+snow_status snow_value_looks_make(snow_context *context,
+                                  const snow_value_look *look, bool known,
+                                  snow_value_table *table);
 
 void snow_value_table_fini(snow_context *context, snow_value_table *table);
 

@@ -1,6 +1,9 @@
 /* splat/values/color.tmpl.h - packed samples to colours.  Include simd/select.h
  * first. */
 
+/* Vectors of 32 floats. */
+#define GROUPS (32 / LANES)
+
 /* --- light ------------------------------------------------------------------
  */
 
@@ -13,21 +16,27 @@ TARGET VALUE_INLINE V(vec)
 
 #include "splat/values/ray.tmpl.h"
 
-/* base^(power / 2^SNOW_VALUE_ROOTS) for a base above 0. */
-TARGET VALUE_INLINE V(vec) NAME(power_of)(V(vec) base, uint32_t power) {
-    V(vec) result = V(set1)(1), square = base, root = base;
-    for (uint32_t whole = power >> SNOW_VALUE_ROOTS; whole; whole >>= 1) {
-        if (whole & 1)
-            result = V(mul)(result, square);
-        square = V(mul)(square, square);
+/* base^(power / 2^SNOW_VALUE_ROOTS) for 32 bases above 0. */
+TARGET VALUE_INLINE void NAME(power_of)(const V(vec) base[GROUPS],
+                                        uint32_t power, V(vec) result[GROUPS]) {
+    V(vec) square[GROUPS], root[GROUPS];
+    for (int k = 0; k < GROUPS; k++) {
+        result[k] = V(set1)(1);
+        square[k] = root[k] = base[k];
     }
+    for (uint32_t whole = power >> SNOW_VALUE_ROOTS; whole; whole >>= 1)
+        for (int k = 0; k < GROUPS; k++) {
+            if (whole & 1)
+                result[k] = V(mul)(result[k], square[k]);
+            square[k] = V(mul)(square[k], square[k]);
+        }
     uint32_t part = power & ((1U << SNOW_VALUE_ROOTS) - 1);
-    for (int n = SNOW_VALUE_ROOTS - 1; part && n >= 0; n--) {
-        root = V(sqrt)(root);
-        if (part >> n & 1)
-            result = V(mul)(result, root);
-    }
-    return result;
+    for (int n = SNOW_VALUE_ROOTS - 1; part && n >= 0; n--)
+        for (int k = 0; k < GROUPS; k++) {
+            root[k] = V(sqrt)(root[k]);
+            if (part >> n & 1)
+                result[k] = V(mul)(result[k], root[k]);
+        }
 }
 
 /* n . eye, light and half for LANES gradients, times their length. */
@@ -42,49 +51,76 @@ TARGET VALUE_INLINE void NAME(face)(const snow_value_light *l, V(vec) u,
 
 /* Adds light `n`; `light` and `half` are n . l and n . h, turned to the eye. */
 TARGET VALUE_INLINE void NAME(add_light)(const snow_value_light *l, int n,
-                                         V(vec) light, V(vec) half, float unit,
-                                         V(vec) * color, V(vec) * white) {
+                                         V(vec) light[GROUPS],
+                                         V(vec) half[GROUPS], float unit,
+                                         V(vec) color[GROUPS],
+                                         V(vec) white[GROUPS]) {
     const V(vec) zero = V(set1)(0), one = V(set1)(1);
-    light = V(min)(V(max)(light, zero), one);
-    half = V(min)(V(max)(half, V(set1)(l->least)), one);
-    V(vec)
-    shine = V(mul)(NAME(power_of)(half, l->power), V(row_positive)(light));
-    *color = V(add)(*color, V(mul)(light, V(set1)(l->diffuse[n] * unit)));
-    *white = V(add)(*white, V(mul)(shine, V(set1)(l->specular[n] * 32767)));
+    V(vec) shine[GROUPS];
+    for (int k = 0; k < GROUPS; k++) {
+        light[k] = V(min)(V(max)(light[k], zero), one);
+        half[k] = V(min)(V(max)(half[k], V(set1)(l->least)), one);
+    }
+    NAME(power_of)(half, l->power, shine);
+    for (int k = 0; k < GROUPS; k++) {
+        shine[k] = V(mul)(shine[k], V(row_positive)(light[k]));
+        color[k] =
+            V(add)(color[k], V(mul)(light[k], V(set1)(l->diffuse[n] * unit)));
+        white[k] =
+            V(add)(white[k], V(mul)(shine[k], V(set1)(l->specular[n] * 32767)));
+    }
 }
 
-/* LANES gradients to factors of the colour and of white, of 15 bits; samples
- * from `n` of the queue on. */
-TARGET VALUE_INLINE void
-NAME(light)(const snow_value_splat *s, float slope[2][2], const value_queue *q,
-            int n, const int16_t *gu, const int16_t *gv, const int16_t *gp,
-            int16_t *color, int16_t *white, const bool eye) {
-    const snow_value_light *l = s->light;
-    const float unit = l->bright ? 16383.5F : 32767.0F;
-    V(vec) u = V(row_floats)(gu), v = V(row_floats)(gv), p = V(row_floats)(gp);
+/* The squares of the lengths of LANES gradients. */
+TARGET VALUE_INLINE V(vec) NAME(square_length)(const snow_value_light *l,
+                                               V(vec) u, V(vec) v, V(vec) p) {
     V(vec)
     length = NAME(dot)(l->metric, V(mul)(u, u), V(mul)(v, v), V(mul)(p, p));
     if (!l->square)
         length = V(add)(length, NAME(dot)(l->metric + 3, V(mul)(u, v),
                                           V(mul)(u, p), V(mul)(v, p)));
-    V(vec) inverse = V(row_rsqrt)(V(add)(length, V(set1)(1e-9F)));
-    V(vec) to[3];
-    if (eye)
-        NAME(face_eye)
-    (l, s->rays, NAME(ways_of)(slope[0], q->ray[0] + n),
-     NAME(ways_of)(slope[1], q->ray[1] + n), u, v, p, to);
-    else NAME(face)(l, u, v, p, to);
-    V(vec) light = V(set1)(l->ambient * unit), shine = V(set1)(0);
-    if (l->distant)
-        NAME(add_light)
-    (l, 0, V(mul)(V(row_turn)(to[1], to[0]), inverse),
-     V(mul)(V(row_turn)(to[2], to[0]), inverse), unit, &light, &shine);
-    if (l->head) {
-        V(vec) facing = V(mul)(V(row_turn)(to[0], to[0]), inverse);
-        NAME(add_light)(l, 1, facing, facing, unit, &light, &shine);
+    return V(add)(length, V(set1)(1e-9F));
+}
+
+/* 32 gradients to factors of the colour and of white, of 15 bits; samples from
+ * `n` of the queue on. */
+TARGET VALUE_INLINE void NAME(light)(const snow_value_splat *s,
+                                     float slope[2][2], const value_queue *q,
+                                     int n, const V(row) slopes[3],
+                                     V(row) * color, V(row) * white,
+                                     const bool eye) {
+    const snow_value_light *l = s->light;
+    const float unit = l->bright ? 16383.5F : 32767.0F;
+    V(vec) g[3][GROUPS], ray[2][GROUPS], to[3][GROUPS], inverse[GROUPS];
+    V(vec) light[GROUPS], shine[GROUPS];
+    for (int axis = 0; axis < 3; axis++)
+        V(row_widen)(slopes[axis], g[axis]);
+    for (int axis = 0; eye && axis < 2; axis++)
+        V(row_widen)(V(row_load)(q->ray[axis] + n), ray[axis]);
+    for (int k = 0; k < GROUPS; k++) {
+        V(vec) u = g[0][k], v = g[1][k], p = g[2][k], face[3];
+        inverse[k] = V(row_rsqrt)(NAME(square_length)(l, u, v, p));
+        if (eye)
+            NAME(face_eye)
+        (l, s->rays, NAME(ways_of)(slope[0], ray[0][k]),
+         NAME(ways_of)(slope[1], ray[1][k]), u, v, p, face);
+        else NAME(face)(l, u, v, p, face);
+        if (l->distant) {
+            to[1][k] = V(mul)(V(row_turn)(face[1], face[0]), inverse[k]);
+            to[2][k] = V(mul)(V(row_turn)(face[2], face[0]), inverse[k]);
+        }
+        to[0][k] = V(mul)(V(row_turn)(face[0], face[0]), inverse[k]);
+        light[k] = V(set1)(l->ambient * unit);
+        shine[k] = V(set1)(0);
     }
-    V(row_round)(color, light);
-    V(row_round)(white, shine);
+    if (l->distant)
+        NAME(add_light)(l, 0, to[1], to[2], unit, light, shine);
+    if (l->head) {
+        memcpy(to[1], to[0], sizeof to[1]);
+        NAME(add_light)(l, 1, to[0], to[1], unit, light, shine);
+    }
+    *color = V(row_narrow)(light);
+    *white = V(row_narrow)(shine);
 }
 
 /* --- colours ----------------------------------------------------------------
@@ -131,24 +167,25 @@ TARGET VALUE_INLINE V(row) NAME(slope_of)(const value_queue *q, int n, int side,
 
 /* Gradients of 32 samples from `n` on. */
 TARGET VALUE_INLINE void NAME(slopes)(const value_queue *q, int n, V(row) place,
-                                      int16_t slopes[3][32], const bool eye) {
+                                      V(row) slopes[3], const bool eye) {
     for (int axis = 0; axis < 3; axis++)
-        V(row_store)
-    (slopes[axis], NAME(mix)(NAME(slope_of)(q, n, 0, axis, eye),
-                             NAME(slope_of)(q, n, 1, axis, eye), place));
+        slopes[axis] = NAME(mix)(NAME(slope_of)(q, n, 0, axis, eye),
+                                 NAME(slope_of)(q, n, 1, axis, eye), place);
 }
 
 /* Gradient opacity of 32 samples from `n` on; `within` is the place in what is
  * left of a slab. */
 TARGET static void NAME(fade)(const snow_value_splat *p, const value_queue *q,
-                              int n, V(row) within, int16_t slopes[3][32],
+                              int n, V(row) within, const V(row) slopes[3],
                               V(row) color[4]) {
-    int16_t places[32], colors[4][32];
+    int16_t places[32], gradients[3][32], colors[4][32];
     V(row_store)(places, within);
+    for (int axis = 0; axis < 3; axis++)
+        V(row_store)(gradients[axis], slopes[axis]);
     for (int c = 0; c < 4; c++)
         V(row_store)(colors[c], color[c]);
-    snow_value_fade_colors(p->fade, p->table, slopes, q->front + n, q->back + n,
-                           places, colors);
+    snow_value_fade_colors(p->fade, p->table, gradients, q->front + n,
+                           q->back + n, places, colors);
     for (int c = 0; c < 4; c++)
         color[c] = V(row_load)(colors[c]);
 }
@@ -156,16 +193,12 @@ TARGET static void NAME(fade)(const snow_value_splat *p, const value_queue *q,
 /* Lights 32 samples from `n` on. */
 TARGET VALUE_INLINE void NAME(shade)(const snow_value_splat *p,
                                      float slope[2][2], const value_queue *q,
-                                     int n, int16_t slopes[3][32],
+                                     int n, const V(row) slopes[3],
                                      const int channels, V(row) color[4],
                                      const bool eye) {
-    int16_t diffuse[32], white[32];
-    for (int at = 0; at < 32; at += LANES)
-        NAME(light)
-    (p, slope, q, n + at, slopes[0] + at, slopes[1] + at, slopes[2] + at,
-     diffuse + at, white + at, eye);
-    V(row) light = V(row_load)(diffuse), alpha = color[3];
-    V(row) shine = V(row_mulhrs)(V(row_load)(white), alpha);
+    V(row) light, white, alpha = color[3];
+    NAME(light)(p, slope, q, n, slopes, &light, &white, eye);
+    V(row) shine = V(row_mulhrs)(white, alpha);
     for (int c = 0; c < channels - 1; c++) {
         V(row) lit = V(row_mulhrs)(color[c], light);
         if (p->light->bright)
@@ -195,7 +228,8 @@ TARGET VALUE_INLINE void NAME(color)(const snow_value_splat *p,
         if (sloped) {
             V(row) within = p->surface ? V(row_set1)(0) : NAME(split)(color);
             V(row) place = within;
-            int16_t slopes[3][32], places[32];
+            V(row) slopes[3];
+            int16_t places[32];
             if (p->surface) {
                 snow_value_meet(p->surface, q, n, cuts, places);
                 place = V(row_load)(places);
@@ -205,8 +239,7 @@ TARGET VALUE_INLINE void NAME(color)(const snow_value_splat *p,
                                V(row_mulhrs)(place, V(row_load)(q->part + n)));
             if (p->labels)
                 for (int axis = 0; axis < 3; axis++)
-                    memcpy(slopes[axis], q->slopes[axis] + n,
-                           sizeof slopes[axis]);
+                    slopes[axis] = V(row_load)(q->slopes[axis] + n);
             else
                 NAME(slopes)(q, n, place, slopes, eye);
             if (p->fade)
@@ -226,3 +259,4 @@ TARGET VALUE_INLINE void NAME(color)(const snow_value_splat *p,
     if (cuts && !eye && !p->labels && !p->surface)
         snow_value_shorten(p->table, q, count, channels);
 }
+#undef GROUPS

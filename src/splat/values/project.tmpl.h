@@ -235,8 +235,9 @@ TARGET static void NAME(lengthen_sums)(const snow_value_splat *p,
             V(vec)
             way = V(sqrt)(NAME(square_of)(
                 p->rays->metric,
-                NAME(ways_of)(room->slope[0], state->columns + n),
-                NAME(ways_of)(room->slope[1], lines + n)));
+                NAME(ways_of)(room->slope[0],
+                              V(row_floats)(state->columns + n)),
+                NAME(ways_of)(room->slope[1], V(row_floats)(lines + n))));
             way = V(mul)(way, V(set1)(p->rays->usual));
             for (int c = 0; c < 4; c += 3) {
                 float *at = (*plane)[c][row] + n;

@@ -13,10 +13,8 @@ TARGET VALUE_INLINE V(vec)
 }
 
 /* Ways of LANES samples along u (`axis` 0) or v. */
-TARGET VALUE_INLINE V(vec)
-    NAME(ways_of)(const float slope[2], const int16_t *phases) {
-    return V(add)(V(set1)(slope[0]),
-                  V(mul)(V(set1)(slope[1]), V(row_floats)(phases)));
+TARGET VALUE_INLINE V(vec) NAME(ways_of)(const float slope[2], V(vec) phases) {
+    return V(add)(V(set1)(slope[0]), V(mul)(V(set1)(slope[1]), phases));
 }
 
 /* n . eye, light and half for LANES gradients, times their length. */
@@ -48,8 +46,9 @@ TARGET VALUE_INLINE void NAME(shares)(const snow_value_rays *rays,
     for (int at = 0; at < 32; at += LANES) {
         V(vec)
         way = V(sqrt)(NAME(square_of)(
-            rays->metric, NAME(ways_of)(slope[0], q->ray[0] + n + at),
-            NAME(ways_of)(slope[1], q->ray[1] + n + at)));
+            rays->metric,
+            NAME(ways_of)(slope[0], V(row_floats)(q->ray[0] + n + at)),
+            NAME(ways_of)(slope[1], V(row_floats)(q->ray[1] + n + at))));
         V(store)(out + at, V(mul)(way, V(set1)(rays->usual)));
     }
     for (int i = 0; cuts && i < 32; i++)

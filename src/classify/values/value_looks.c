@@ -1,0 +1,212 @@
+/* classify/values/value_looks.c - the looks that the entries of a table are
+ * made of, and where its nodes are; see value_table.h.
+ *
+ * An entry's steps are at values (i + 1/2) / N of the way.  Where nodes are
+ * evenly placed all of these lie on one fine raster, 2 N points from node to
+ * node, so that the look is evaluated there once and entries only composite. */
+#include "classify/values/value_table.h"
+
+#include "base/exp_log.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Numbers between two looks where nodes are placed by measure. */
+#define MEASURED_STEP 0.25
+
+/* A look whose steepest ramp spans fewer nodes has them placed by measure. */
+#define STEEP_NODES 4
+
+/* --- looks ------------------------------------------------------------------
+ */
+
+/* Colour and opacity of the reference length at number V. */
+static void look_at(const snow_value_look *look, double v,
+                    snow_transfer_hint *hint, double rgba[4]) {
+    snow_transfer_near(look->transfer, snow_value_of(&look->scale, v), hint,
+                       rgba);
+    if (!snow_is_interesting(rgba[3], look->threshold))
+        rgba[3] = 0;
+}
+
+/* Straight colours, and the logarithms of what shines through the reference
+ * length: all that a look has before the length of its rays is known. */
+static snow_status find_plain(snow_context *context,
+                              const snow_value_look *look,
+                              snow_value_table *table) {
+    snow_transfer_hint hint = {0};
+    SNOW_TRY(snow_reserve(context, &table->plain, &table->plain_capacity, 0,
+                          3 * table->look_count * sizeof *table->plain));
+    SNOW_TRY(snow_reserve(context, &table->logs, &table->logs_capacity, 0,
+                          table->look_count * sizeof *table->logs));
+    double last = -1, clear = 0;
+    for (size_t n = 0; n < table->look_count; n++) {
+        double rgba[4];
+        look_at(look, (double)n * table->step, &hint, rgba);
+        if (rgba[3] != last)
+            clear = rgba[3] < 1 ? snow_log(1 - rgba[3]) : -INFINITY;
+        last = rgba[3];
+        table->logs[n] = clear;
+        for (int c = 0; c < 3; c++)
+            table->plain[3 * n + (size_t)c] = (float)rgba[c];
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Alphas that are made at once, by vectors. */
+#define ALPHAS 64
+
+/* Those of every `step`-th look from `first` on, of so many reference lengths;
+ * the last look stands for all behind it. */
+static void find_alphas(const snow_value_table *table, size_t first,
+                        size_t step, double exponent, double out[ALPHAS]) {
+    for (size_t n = 0; n < ALPHAS; n++) {
+        size_t at = first + n * step;
+        out[n] =
+            table->logs[at < table->look_count ? at : table->look_count - 1];
+    }
+    for (size_t n = 0; n < ALPHAS; n++)
+        out[n] = -snow_exp_less_1(exponent * out[n]);
+}
+
+/* Looks of a step, `step` numbers apart. */
+static snow_status fill_looks(snow_context *context,
+                              const snow_value_look *look,
+                              snow_value_table *table) {
+    SNOW_TRY(snow_reserve(context, &table->looks, &table->looks_capacity, 0,
+                          4 * table->look_count * sizeof *table->looks));
+    for (size_t first = 0; first < table->look_count; first += ALPHAS) {
+        double alphas[ALPHAS];
+        size_t left = table->look_count - first;
+        find_alphas(table, first, 1, look->exponent / look->steps, alphas);
+        for (size_t n = 0; n < ALPHAS && n < left; n++) {
+            float *out = table->looks + 4 * (first + n);
+            const float *plain = table->plain + 3 * (first + n);
+            for (int c = 0; c < 3; c++)
+                out[c] = (float)alphas[n] * plain[c];
+            out[3] = (float)alphas[n];
+        }
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* --- nodes ------------------------------------------------------------------
+ */
+
+/* Whether opacity would rise from 0 to its largest within so few nodes that are
+ * evenly placed, as it does along its steepest ramp, steps left out. */
+static bool is_steep(const snow_value_look *look) {
+    const snow_transfer *t = look->transfer;
+    double steepest = 0, most = 0;
+    for (size_t n = 0; n < t->opacity_count; n++) {
+        const snow_opacity_point *p = &t->opacities[n];
+        most = fmax(most, p->opacity);
+        if (n + 1 == t->opacity_count)
+            break;
+        double length = look->scale.log ? log10(p[1].value) - log10(p[0].value)
+                                        : p[1].value - p[0].value;
+        if (length > 0)
+            steepest =
+                fmax(steepest, fabs(p[1].opacity - p[0].opacity) / length);
+    }
+    return most * (look->nodes - 1) <
+           steepest * STEEP_NODES * (look->scale.high - look->scale.low);
+}
+
+/* How much the look of a slab of one value changes from one to the other. */
+static double change(const double a[4], const double b[4]) {
+    double sum = 0;
+    for (int c = 0; c < 4; c++)
+        sum += (c == 3 ? 3 : 1) * fabs(b[c] - a[c]);
+    return sum;
+}
+
+/* The same from each V to the next; `until` is that up to V. */
+static double measure_changes(const snow_value_look *look,
+                              const snow_value_table *table, double *until) {
+    const size_t step = (size_t)(1 / MEASURED_STEP);
+    double before[4] = {0}, alphas[ALPHAS], total = 0;
+    for (size_t v = 0; v <= SNOW_VALUE_MOST; v++) {
+        if (v % ALPHAS == 0)
+            find_alphas(table, v * step, step, look->exponent, alphas);
+        double here[4] = {0, 0, 0, alphas[v % ALPHAS]};
+        for (int c = 0; c < 3; c++)
+            here[c] = (double)table->plain[3 * v * step + (size_t)c] * here[3];
+        total += until[v] = v ? change(before, here) : 0;
+        memcpy(before, here, sizeof before);
+    }
+    return total;
+}
+
+/* Half of the nodes evenly, half where the look changes; no number has more of
+ * this than one node. */
+static void measure_nodes(const snow_value_look *look,
+                          snow_value_table *table) {
+    double *until = table->at + SNOW_VALUE_PITCH;
+    const double total = measure_changes(look, table, until);
+    for (int v = 1; v <= SNOW_VALUE_MOST; v++) {
+        double part = total > 0 ? until[v] / total : 1.0 / SNOW_VALUE_MOST;
+        part =
+            fmin(0.5 / SNOW_VALUE_MOST + 0.5 * part, 1.0 / (look->nodes - 1));
+        until[v] = until[v - 1] + part;
+    }
+    for (int node = 0, v = 0; node < look->nodes; node++) {
+        while (v < SNOW_VALUE_MOST &&
+               until[v] < until[SNOW_VALUE_MOST] * node / (look->nodes - 1))
+            v++;
+        table->at[node] = v;
+    }
+}
+
+static void find_nodes(const snow_value_look *look, snow_value_table *table) {
+    for (int v = 0, node = 0; v <= SNOW_VALUE_MOST; v++) {
+        while (node + 1 < look->nodes &&
+               table->at[node + 1] - v <= v - table->at[node])
+            node++;
+        table->node_of[v] = table->nodes
+                                ? (uint8_t)node
+                                : (uint8_t)((v * table->scale + 0x4000) >> 15);
+    }
+}
+
+/* Evenly placed nodes, and the looks that steps from one to another meet. */
+static snow_status place_evenly(snow_context *context,
+                                const snow_value_look *look,
+                                snow_value_table *table) {
+    size_t values = SNOW_VALUE_MOST + 1;
+    SNOW_TRY(snow_reserve(context, &table->at, &table->at_capacity, 0,
+                          (SNOW_VALUE_PITCH + values) * sizeof *table->at));
+    SNOW_TRY(snow_reserve(context, &table->node_of, &table->node_of_capacity, 0,
+                          values));
+    double apart =
+        look->nodes == 129 ? 128 : (double)SNOW_VALUE_MOST / (look->nodes - 1);
+    for (int node = 0; node < look->nodes; node++)
+        table->at[node] = look->nodes == 129 ? 128 * node
+                                             : (double)SNOW_VALUE_MOST * node /
+                                                   (look->nodes - 1);
+    table->scale = look->nodes == 129 ? 256 : 510;
+    table->nodes = is_steep(look) ? table->node_of : NULL;
+    table->step = table->nodes ? MEASURED_STEP : apart / (2 * look->steps);
+    table->look_count = table->nodes
+                            ? (size_t)(SNOW_VALUE_MOST / MEASURED_STEP) + 2
+                            : (size_t)(2 * look->steps * (look->nodes - 1)) + 1;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_value_looks_make(snow_context *context,
+                                  const snow_value_look *look, bool known,
+                                  snow_value_table *table) {
+    if (!known) {
+        SNOW_TRY(place_evenly(context, look, table));
+        SNOW_TRY(find_plain(context, look, table));
+    }
+    if (table->nodes)
+        measure_nodes(look, table);
+    if (table->nodes || !known)
+        find_nodes(look, table);
+    for (int node = 0; node < look->nodes; node++)
+        table->look_of[node] =
+            table->nodes ? (int)(table->at[node] / MEASURED_STEP + 0.5)
+                         : 2 * look->steps * node;
+    return fill_looks(context, look, table);
+}
