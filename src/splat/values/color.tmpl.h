@@ -28,7 +28,8 @@ TARGET VALUE_INLINE void NAME(power_of)(const V(vec) base[GROUPS],
         for (int k = 0; k < GROUPS; k++) {
             if (whole & 1)
                 result[k] = V(mul)(result[k], square[k]);
-            square[k] = V(mul)(square[k], square[k]);
+            if (whole > 1) /* smaller ones may be denormal, which is slow */
+                square[k] = V(mul)(square[k], square[k]);
         }
     uint32_t part = power & ((1U << SNOW_VALUE_ROOTS) - 1);
     for (int n = SNOW_VALUE_ROOTS - 1; part && n >= 0; n--)

@@ -94,25 +94,36 @@ TARGET VALUE_INLINE uint32_t NAME(ends)(const value_rows *f,
     return mask;
 }
 
-/* Packs the visible samples of a phase, from number `count` on. */
+/* Packs the visible samples of a phase, from number `count` on.  Of a `plain`
+ * one all samples of the slab have values, and are whole; they are invisible up
+ * to a number. */
 TARGET VALUE_INLINE int
-NAME(collect)(const snow_value_splat *p, const value_rows *f,
-              const value_rows *b, const value_beside beside[2],
-              const value_phase *state, value_slab *slab, value_queue *q,
-              int count, const bool sloped, bool cuts, const bool eye) {
+NAME(collect_by)(const snow_value_splat *p, const value_rows *f,
+                 const value_rows *b, const value_beside beside[2],
+                 const value_phase *state, value_slab *slab, value_queue *q,
+                 int count, const bool sloped, bool cuts, const bool eye,
+                 const bool plain) {
     const V(row) zero = V(row_set1)(0);
+    const V(row) last = V(row_set1)(p->table->runs[0].last);
     for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
         int row = __builtin_ctz(rows);
         const int16_t *front = f->values[row + 1], *back = b->values[row + 1];
         V(row) x, y, from = zero, part = zero;
-        uint32_t mask = NAME(ends)(f, b, slab, row, cuts, &x, &y, &from, &part);
-        mask &= NAME(see)(p->table, x, y);
+        uint32_t mask = slab->active[row];
+        if (plain) {
+            x = V(row_load)(front);
+            y = V(row_load)(back);
+            mask &= V(row_gt)(V(row_max)(x, y), last);
+        } else {
+            mask = NAME(ends)(f, b, slab, row, cuts, &x, &y, &from, &part);
+            mask &= NAME(see)(p->table, x, y);
+        }
         slab->active[row] = mask;
         if (!mask)
             continue;
         V(row_compress)(q->front + count, x, mask);
         V(row_compress)(q->back + count, y, mask);
-        if (cuts) {
+        if (cuts && !plain) {
             V(row_compress)(q->from + count, from, mask);
             V(row_compress)(q->part + count, part, mask);
         }
@@ -127,7 +138,7 @@ NAME(collect)(const snow_value_splat *p, const value_rows *f,
             const int16_t *at = side ? back : front;
             int16_t(*slopes)[QUEUE] = q->slopes + 3 * side;
             const value_beside own = {{at + 1, at - 1, at + 32, at - 32},
-                                      (side ? b : f)->holes};
+                                      !plain && (side ? b : f)->holes};
             const value_beside *by = eye ? &beside[side] : &own;
             const int on = eye ? 32 * row : 0;
             for (int axis = 0; axis < 2; axis++)
@@ -142,6 +153,19 @@ NAME(collect)(const snow_value_splat *p, const value_rows *f,
         count += __builtin_popcount(mask);
     }
     return count;
+}
+
+TARGET VALUE_INLINE int
+NAME(collect)(const snow_value_splat *p, const value_rows *f,
+              const value_rows *b, const value_beside beside[2],
+              const value_phase *state, value_slab *slab, value_queue *q,
+              int count, const bool sloped, bool cuts, const bool eye) {
+    if (!eye && !cuts && !f->holes && !b->holes && p->table->run_count == 1 &&
+        p->table->runs[0].first == 0)
+        return NAME(collect_by)(p, f, b, beside, state, slab, q, count, sloped,
+                                false, false, true);
+    return NAME(collect_by)(p, f, b, beside, state, slab, q, count, sloped,
+                            cuts, eye, false);
 }
 
 /* Behind what is in the planes; closes the pixels that nothing shines through.
