@@ -6,7 +6,7 @@
 #include "encode/values/value_lines.h"
 
 /* Voxel rows of a band. */
-#define SNOW_VALUE_BAND 32
+#define SNOW_VALUE_BAND 8
 
 /* Loops of an instruction set (value_rows.tmpl.h). */
 typedef struct snow_value_loops {

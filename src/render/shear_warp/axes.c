@@ -134,12 +134,9 @@ static int find_next(const snow_value_params *params, double from[3][3],
     return 0;
 }
 
-/* Begins the encoding along an axis, unless it is there. */
+/* Begins the encoding along an axis. */
 static bool begin(snow_value_path *path, const snow_value_params *params,
                   const snow_value_order *order, snow_value_encoding *kept) {
-    const uint64_t generation = params->volume->generation;
-    if (snow_value_fits_key(path, &kept->key, &kept->store, params, generation))
-        return true;
     forget(kept);
     kept->store.context = path->context;
     kept->interesting = -1;
@@ -147,8 +144,17 @@ static bool begin(snow_value_path *path, const snow_value_params *params,
                   snow_value_store_expect(&order->params)) ||
         snow_value_store_begin(&kept->store, &order->params) != SNOW_STATUS_OK)
         return false;
-    kept->key = snow_value_key_of(path, params, generation);
+    kept->key = snow_value_key_of(path, params, params->volume->generation);
     return true;
+}
+
+/* Makes some bands more of it, so that it is whole when it is needed. */
+static bool go_on(const snow_value_order *order, int pictures,
+                  snow_value_encoding *kept) {
+    int64_t left = snow_value_store_left(&kept->store);
+    return !left || snow_value_store_go_on(&kept->store, &order->params,
+                                           (left + pictures - 1) / pictures) ==
+                        SNOW_STATUS_OK;
 }
 
 void snow_value_prepare_axis(snow_value_path *path,
@@ -175,12 +181,10 @@ void snow_value_prepare_axis(snow_value_path *path,
         snow_value_order_make(path, &ahead, true, &order) != SNOW_STATUS_OK)
         return;
     snow_value_encoding *kept = &axes->kept[next.slice_axis];
-    if (begin(path, &ahead, &order, kept)) {
-        int64_t left = snow_value_store_left(&kept->store);
-        int64_t bands = (left + pictures - 1) / pictures;
-        if (!left || snow_value_store_go_on(&kept->store, &order.params,
-                                            bands) == SNOW_STATUS_OK)
-            return;
-    }
-    forget(kept);
+    /* The first time it asks for memory, which takes long enough. */
+    const bool first = !snow_value_fits_key(path, &kept->key, &kept->store,
+                                            &ahead, generation);
+    if ((first && !begin(path, &ahead, &order, kept)) ||
+        ((!first || pictures == 1) && !go_on(&order, pictures, kept)))
+        forget(kept);
 }

@@ -238,6 +238,8 @@ TARGET VALUE_INLINE void NAME(sample_all)(const snow_value_splat *p, int n,
         out->has = out->has_across = 0;
         out->holes = NAME(near_holes)(s, sheet, column, first);
     }
+    if (!(rows & ~out->has) && !(across & ~out->has_across))
+        return;
     NAME(source) from;
     NAME(begin)(s, sheet, &rows, &across, out, &from);
     from.column = column;
