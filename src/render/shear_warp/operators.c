@@ -11,13 +11,20 @@
 
 static void read_over(const snow_value_splat *splat, const void *planes,
                       int phase, int row, float *out) {
-    const int step = splat->channels == 4 ? 1 : 3;
+    const int channels = splat->channels, step = channels == 4 ? 1 : 3;
     const snow_value_plane *words = (const snow_value_plane *)planes + phase;
     const snow_value_faint_plane *floats =
         (const snow_value_faint_plane *)planes + phase;
+    if (channels == 4 && !splat->table->faint) {
+        for (int n = 0; n < SNOW_VALUE_COLUMNS; n++)
+            for (int c = 0; c < 4; c++)
+                out[4 * n + c] =
+                    (float)(*words)[c][row][n + 1] * (1.0F / 32767);
+        return;
+    }
     for (int c = 0; c < 4; c += step, out++)
         for (int n = 0; n < SNOW_VALUE_COLUMNS; n++)
-            out[n * splat->channels] =
+            out[n * channels] =
                 splat->table->faint
                     ? (*floats)[c][row][n + 1]
                     : (float)(*words)[c][row][n + 1] * (1.0F / 32767);

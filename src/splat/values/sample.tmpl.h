@@ -86,6 +86,18 @@ TARGET VALUE_INLINE V(row) NAME(mix)(V(row) a, V(row) b, V(row) weight) {
 
 #include "splat/values/rows.tmpl.h"
 
+/* The difference between two rows of bytes, from `n` columns on. */
+TARGET VALUE_INLINE V(row)
+    NAME(byte_difference)(const NAME(source) * s, int64_t row, int n) {
+    V(row) ends[2];
+    for (int end = 0; end < 2; end++)
+        ends[end] = NAME(load_natives)(
+            s->natives, NAME(place_of)(s, end, 0, row) + s->column + n,
+            SNOW_VALUE_BYTES);
+    return V(row_mul)(V(row_subs)(ends[1], ends[0]),
+                      V(row_set1)((int16_t)s->rule.factor));
+}
+
 /* One row of voxels, mixed along u: of a slice or half way to the next one; or
  * the difference of two of them. */
 TARGET VALUE_INLINE V(row)
@@ -93,7 +105,9 @@ TARGET VALUE_INLINE V(row)
                 const bool half, const bool difference, const int kind,
                 const bool sided) {
     V(row) ends[2][2], next[2];
-    for (int end = 0; end <= difference; end++) {
+    const bool bytes =
+        difference && !half && !sided && kind == SNOW_VALUE_BYTES;
+    for (int end = 0; end <= difference && !bytes; end++) {
         NAME(pair)(s, end, 0, row, s->column, kind, sided, ends[end]);
         if (!half)
             continue;
@@ -102,7 +116,10 @@ TARGET VALUE_INLINE V(row)
             ends[end][n] = V(row_avg)(ends[end][n], next[n]);
     }
     for (int n = 0; n < 2 && difference; n++) {
-        ends[0][n] = V(row_subs)(ends[1][n], ends[0][n]);
+        if (bytes) /* the same, with one multiplication */
+            ends[0][n] = NAME(byte_difference)(s, row, n);
+        else
+            ends[0][n] = V(row_subs)(ends[1][n], ends[0][n]);
         if (s->twice)
             ends[0][n] = V(row_adds)(ends[0][n], ends[0][n]);
     }
