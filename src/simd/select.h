@@ -14,65 +14,21 @@
  *   V(load)(p), V(store)(p, v)     any alignment
  *   V(set1)(x), V(add)(a, b), V(sub)(a, b), V(mul)(a, b)
  *   V(min)(a, b), V(max)(a, b)     b if one is NaN
- *   V(fma)(a, b, c), V(fnma)(a, b, c)  a b + c and c - a b; one rounding, two
- *                                  for scalar
+ *   V(fma)(a, b, c)                a b + c; one rounding, two for scalar
  *   V(alpha2)(v), V(alpha4)(v)     the last channel of each pixel of 2 or 4
  *                                  floats, in all of its lanes
- *   V(any_less)(a, b)              whether a < b in any lane
- *   V(least4)(v)                   the smallest of each four lanes, rounded to
- *                                  integers, 65535 at most, as parts of 16
- *                                  bits, lowest first; lanes are 0 to 1e6
- *   V(above32)(a, b)               of 32 16-bit numbers at a and at b, a bit
- *                                  for each four, set if one is larger at a
- *   V(transpose64)(bytes, out)     bit n of 64 bytes, to out[n]
  *   V(gather4)(p, n), V(gather2)   entries n[0], n[1] ... of a table of 4 or 2
  *                                  floats each, as many as a vector holds
- *   V(pairs16)(p, n, low, high)    the lower and the upper halves of 16 entries
- *                                  of a table of uint32_t, as floats
- *   V(with_alpha2)(a, b), V(with_alpha4)  a with the last channels of b
- *   V(expand8)(p, bits, out), V(expand16)
- *                                  16 places: the next of the numbers at p,
- *                                  and 1 more, where a bit is set, else 0;
- *                                  may read 16 numbers beyond the last
- *   V(numbers8)(p, bits, scale, start, out), V(numbers16)
- *                                  the same as floats: start + scale * number,
- *                                  or 0
- *   V(window8)(p, bits, scale, start, low, high), V(window16)
- *                                  the same of 32 places as two vectors; may
- *                                  read 64 bytes; only avx512
- *   V(slide)(a, b, n)              lanes n .. of a and then those of b, for a
- *                                  constant n below LANES; only avx512
- *   V(widen8)(p, out), V(widen16)  16 numbers at p
- *   V(spread2)(p, bits, count, out), V(spread4)
- *                                  `count` places of 2 or 4 floats: the next
- *                                  of those at p where a bit is set, else
- *                                  zeros; may read and write 16 floats beyond
- *                                  the last
- *   V(windows)(low, high, shift, within, out)
- *                                  of eight pairs of words, `low` the lower
- *                                  one, the 64 bits from bit `shift` (0 to 63)
- *                                  on, masked by `within`; returns a bit for
- *                                  each that is not 0
  *   V(load_pairs2)(p, at, left, right), V(load_pairs4)
  *                                  pixels of 2 or 4 floats at p + at[0], p +
  *                                  at[1] ..., as many as a vector holds, and
  *                                  those behind each of them
  *   V(popcount)(x)                 bits that are set in a uint64_t
- *   V(interleave2)(a, b, p), V(interleave4)
- *                                  stores the pixels (of 2 or 4 floats) of a
- *                                  and b alternately: a0 b0 a1 b1 ...
- *   V(deinterleave2)(a, b), V(deinterleave4)
- *                                  pixels 0, 2, 4 ... of a and b
  *   V(hadd2)(v), V(hadd4)(v)       the sum of the vector's pixels, by halves,
  *                                  in the first 2 or 4 floats of a scalar
  *                                  vector
  *   V(sqrt)(v)                     the square root, rounded correctly
- *   V(power2)(v)                   2^k, where v is 1.5 * 2^23 + k for an
- *                                  integer k of -126 to 127
  *   V(places)                      a type: LANES numbers below LANES
- *   V(places2)(first), V(places4)  of voxels of 2 or 4 floats: the lanes of
- *                                  voxels first[0], first[1] ..., counted from
- *                                  first[0]
  *   V(repeat2)(), V(repeat4)       0, 1 ..., each 2 or 4 times
  *   V(pick)(p, n)                  p[n0], p[n1] ...; all LANES floats at p
  *                                  may be read

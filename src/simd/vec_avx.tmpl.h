@@ -42,10 +42,6 @@ INLINE V(vec) V(fma)(V(vec) a, V(vec) b, V(vec) c) {
     return M(fmadd_ps)(a, b, c);
 }
 
-INLINE V(vec) V(fnma)(V(vec) a, V(vec) b, V(vec) c) {
-    return M(fnmadd_ps)(a, b, c);
-}
-
 INLINE V(vec) V(sqrt)(V(vec) v) {
     return M(sqrt_ps)(v);
 }
