@@ -14,48 +14,21 @@
 /* --- entries ----------------------------------------------------------------
  */
 
-typedef float four_floats __attribute__((vector_size(16)));
+/* Entries that are made at once. */
+#define ENTRIES 16
 
-/* Entries that are made at once, so that their steps need not wait. */
-#define LANES 4
+/* The ways through some entries: the first look and the way from step to step,
+ * both times 65536; then sums of colours and alpha, and of them by steps. */
+typedef struct entry_ways {
+    int64_t at[ENTRIES], apart[ENTRIES];
+    float sum[ENTRIES][4], places[ENTRIES][4];
+} entry_ways;
 
-/* The way through an entry: its first look and the way from step to step, both
- * times 65536; then colours and alpha, and the place, 0 to 1. */
-typedef struct entry_way {
-    int64_t at, apart;
-    four_floats sum;
-    float place;
-} entry_way;
+#define TEMPLATE "classify/values/entries.tmpl.h"
+#include "simd/each_isa.h"
 
-static four_floats all_of(float x) {
-    return (four_floats){x, x, x, x};
-}
-
-static void collect(const snow_value_table *table, int steps,
-                    entry_way ways[LANES]) {
-    four_floats through[LANES], places[LANES], sum[LANES];
-    for (int w = 0; w < LANES; w++) {
-        through[w] = all_of(1);
-        sum[w] = places[w] = all_of(0);
-    }
-    for (int n = 0; n < steps; n++)
-        for (int w = 0; w < LANES; w++) {
-            four_floats here;
-            memcpy(&here, table->looks + 4 * (ways[w].at >> 16), sizeof here);
-            ways[w].at += ways[w].apart;
-            here *= through[w];
-            sum[w] += here;
-            places[w] += here * all_of((float)n + 0.5F);
-            through[w] -= all_of(here[3]);
-        }
-    for (int w = 0; w < LANES; w++) {
-        ways[w].sum = sum[w];
-        ways[w].place =
-            sum[w][3] > 0 ? places[w][3] / ((float)steps * sum[w][3]) : 0.5F;
-    }
-}
-
-static uint64_t pack(four_floats rgba, float place, float full, bool placed) {
+static uint64_t pack(const float rgba[4], float place, float full,
+                     bool placed) {
     uint64_t entry = 0;
     int sixteenths = place * 16 < 15 ? (int)(place * 16) : 15;
     for (int c = 0; c < 4; c++) {
@@ -86,22 +59,23 @@ static void find_seen(const snow_value_table *table, int64_t from,
         seen[1]++;
 }
 
-/* Up to LANES entries of a row. */
+/* Up to ENTRIES entries of a row. */
 static void fill_some(const table_job *job, int64_t first, const int *backs,
                       int count, uint64_t *row, float *most) {
     const snow_value_look *look = job->look;
-    entry_way ways[LANES];
-    for (int w = 0; w < LANES; w++) {
+    entry_ways ways;
+    for (int w = 0; w < ENTRIES; w++) {
         int64_t way = job->table->look_of[backs[w < count ? w : 0]] - first;
-        int64_t apart = way * 65536 / look->steps;
-        ways[w] = (entry_way){.at = first * 65536 + apart / 2, .apart = apart};
+        ways.apart[w] = way * (65536 / look->steps);
+        ways.at[w] = first * 65536 + ways.apart[w] / 2;
     }
-    collect(job->table, look->steps, ways);
+    SNOW_OF_ISA(look->isa, collect_all)(job->table, look->steps, &ways);
     for (int w = 0; w < count; w++) {
-        uint64_t entry = ways[w].sum[3] > 0 ? pack(ways[w].sum, ways[w].place,
-                                                   job->full, look->placed)
-                                            : 0;
-        *most = ways[w].sum[3] > *most ? ways[w].sum[3] : *most;
+        const float *sum = ways.sum[w], alpha = sum[3];
+        float place = ways.places[w][3] / ((float)look->steps * alpha);
+        uint64_t entry =
+            alpha > 0 ? pack(sum, place, job->full, look->placed) : 0;
+        *most = alpha > *most ? alpha : *most;
         row[backs[w]] = (entry >> 48 & 0x7fff) == 0 ? 0 : entry;
     }
 }
@@ -112,7 +86,7 @@ static void fill_row(void *of, int64_t front, int worker) {
     const snow_value_table *table = job->table;
     uint64_t *row = table->entries + front * SNOW_VALUE_PITCH;
     int64_t first = table->look_of[front], seen[2];
-    int backs[LANES], count = 0;
+    int backs[ENTRIES], count = 0;
     float most = 0;
     (void)worker;
     find_seen(table, first, seen);
@@ -122,7 +96,7 @@ static void fill_row(void *of, int64_t front, int worker) {
         if (last > seen[0] && last < seen[1]) /* and so is all between */
             continue;
         backs[count++] = back;
-        if (count == LANES) {
+        if (count == ENTRIES) {
             fill_some(job, first, backs, count, row, &most);
             count = 0;
         }

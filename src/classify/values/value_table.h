@@ -8,6 +8,7 @@
 #define SNOW_CLASSIFY_VALUE_TABLE_H
 
 #include "classify/values/value_range.h"
+#include "simd/isa.h"
 
 /* Entries of one row of the table, of which `nodes` are used. */
 #define SNOW_VALUE_PITCH 256
@@ -28,6 +29,7 @@ typedef struct snow_value_look {
     int nodes, steps; /* 129 or 256; of an entry */
     bool placed;      /* with the place of the opacity, for gradients */
     int threads;
+    snow_isa isa; /* resolved; of no effect on the table */
 } snow_value_look;
 
 typedef struct snow_value_table {

@@ -146,7 +146,8 @@ static snow_status make_table(snow_value_path *path,
         .steps = high ? 64 : 16,
         .placed = s->shade == SNOW_SHADE_PHONG ||
                   snow_transfer_has_gradient_opacity(params->transfer),
-        .threads = s->threads};
+        .threads = s->threads,
+        .isa = s->isa};
     path->has_labels = s->mode == SNOW_MODE_OVER && has_labels(params);
     if (path->op->hides) {
         path->op->hides(path, &look, s);
