@@ -8,11 +8,7 @@ typedef struct NAME(source) {
     const int16_t *values;
     const int64_t *slice, *after; /* places of rows; of the difference's end */
     int64_t next;                 /* places to the next slice */
-    /* The same in place: of row 0 of both, to the next row, and slice. */
-    int64_t begin[2], step, slices;
-    bool in_place;
-    const unsigned char *natives;
-    snow_value_rule rule;
+    int64_t begin[2];             /* in place: of row 0 of both */
     int64_t column;
     bool twice; /* of a difference */
 } NAME(source);
@@ -34,12 +30,7 @@ static inline NAME(source)
     NAME(source)
     s = {.store = store,
          .values = store->values,
-         .next = store->rows + 2 * store->margin,
-         .step = store->row_step,
-         .slices = store->slice_step,
-         .in_place = store->in_place,
-         .natives = store->natives,
-         .rule = store->rule};
+         .next = store->rows + 2 * store->margin};
     NAME(set_slices)(&s, slice, slice);
     return s;
 }
@@ -48,8 +39,9 @@ static inline NAME(source)
  * or of the next one of either where `half` is 1. */
 TARGET VALUE_INLINE int64_t NAME(place_of)(const NAME(source) * s, int end,
                                            int half, int64_t row) {
-    if (s->in_place)
-        return s->begin[end] + half * s->slices + row * s->step;
+    const snow_value_store *store = s->store;
+    if (store->in_place)
+        return s->begin[end] + half * store->slice_step + row * store->row_step;
     return (end ? s->after : s->slice)[row + half * s->next];
 }
 
@@ -177,9 +169,9 @@ TARGET VALUE_INLINE void NAME(pair)(const NAME(source) * s, int end, int half,
     } else {
         int64_t place = NAME(place_of)(s, end, half, row) + column;
         for (int n = 0; n < 2; n++)
-            out[n] =
-                NAME(by_rule)(NAME(load_natives)(s->natives, place + n, kind),
-                              &s->rule, kind);
+            out[n] = NAME(by_rule)(
+                NAME(load_natives)(s->store->natives, place + n, kind),
+                &s->store->rule, kind);
     }
 }
 

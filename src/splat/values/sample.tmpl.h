@@ -86,18 +86,6 @@ TARGET VALUE_INLINE V(row) NAME(mix)(V(row) a, V(row) b, V(row) weight) {
 
 #include "splat/values/rows.tmpl.h"
 
-/* The difference between two rows of bytes, from `n` columns on. */
-TARGET VALUE_INLINE V(row)
-    NAME(byte_difference)(const NAME(source) * s, int64_t row, int n) {
-    V(row) ends[2];
-    for (int end = 0; end < 2; end++)
-        ends[end] = NAME(load_natives)(
-            s->natives, NAME(place_of)(s, end, 0, row) + s->column + n,
-            SNOW_VALUE_BYTES);
-    return V(row_mul)(V(row_subs)(ends[1], ends[0]),
-                      V(row_set1)((int16_t)s->rule.factor));
-}
-
 /* One row of voxels, mixed along u: of a slice or half way to the next one; or
  * the difference of two of them. */
 TARGET VALUE_INLINE V(row)
@@ -105,9 +93,7 @@ TARGET VALUE_INLINE V(row)
                 const bool half, const bool difference, const int kind,
                 const bool sided) {
     V(row) ends[2][2], next[2];
-    const bool bytes =
-        difference && !half && !sided && kind == SNOW_VALUE_BYTES;
-    for (int end = 0; end <= difference && !bytes; end++) {
+    for (int end = 0; end <= difference; end++) {
         NAME(pair)(s, end, 0, row, s->column, kind, sided, ends[end]);
         if (!half)
             continue;
@@ -116,10 +102,7 @@ TARGET VALUE_INLINE V(row)
             ends[end][n] = V(row_avg)(ends[end][n], next[n]);
     }
     for (int n = 0; n < 2 && difference; n++) {
-        if (bytes) /* the same, with one multiplication */
-            ends[0][n] = NAME(byte_difference)(s, row, n);
-        else
-            ends[0][n] = V(row_subs)(ends[1][n], ends[0][n]);
+        ends[0][n] = V(row_subs)(ends[1][n], ends[0][n]);
         if (s->twice)
             ends[0][n] = V(row_adds)(ends[0][n], ends[0][n]);
     }
@@ -150,6 +133,63 @@ TARGET VALUE_INLINE void NAME(fill_rows)(const NAME(source) * from,
     }
 }
 
+/* A row of bytes mixed along u, or the difference to that which is `apart`
+ * behind: numbers are sums and products, and so are differences of them. */
+TARGET VALUE_INLINE V(row)
+    NAME(along_bytes)(const unsigned char *at, ptrdiff_t apart, V(row) factor,
+                      V(row) offset, V(row) weight, const bool difference) {
+    V(row) a = V(row_bytes)(at), b = V(row_bytes)(at + 1);
+    if (difference) {
+        a = V(row_subs)(V(row_bytes)(at + apart), a);
+        b = V(row_subs)(V(row_bytes)(at + apart + 1), b);
+    }
+    V(row) number = V(row_mul)(a, factor);
+    if (!difference)
+        number = V(row_add)(number, offset);
+    V(row) step = V(row_mul)(V(row_subs)(b, a), factor);
+    return V(row_add)(number, V(row_mulhrs)(step, weight));
+}
+
+/* Rows of bytes in place, none beyond a side. */
+TARGET VALUE_INLINE void NAME(fill_bytes_by)(const NAME(source) * s,
+                                             int64_t first, uint64_t rows,
+                                             const snow_value_place *place,
+                                             int16_t (*out)[32],
+                                             const bool difference) {
+    const snow_value_store *store = s->store;
+    const V(row) factor = V(row_set1)((int16_t)store->rule.factor);
+    const V(row) offset = V(row_set1)((int16_t)store->rule.offset);
+    const V(row) u = V(row_set1)(place->weight[0]);
+    const V(row) v = V(row_set1)(place->weight[1]);
+    const ptrdiff_t step = store->row_step, apart = s->begin[1] - s->begin[0];
+    const unsigned char *natives =
+        store->natives + s->begin[0] + first * step + s->column;
+    while (rows) {
+        int row = __builtin_ctzll(rows);
+        const unsigned char *at = natives + row * step;
+        V(row)
+        above = NAME(along_bytes)(at, apart, factor, offset, u, difference);
+        for (; rows >> row & 1; row++) {
+            at += step;
+            V(row)
+            below = NAME(along_bytes)(at, apart, factor, offset, u, difference);
+            V(row_store)(out[row], NAME(mix)(above, below, v));
+            above = below;
+            rows &= rows - 1;
+        }
+    }
+}
+
+TARGET static void NAME(fill_bytes)(const NAME(source) * s, int64_t first,
+                                    uint64_t rows,
+                                    const snow_value_place *place,
+                                    int16_t (*out)[32], bool difference) {
+    if (difference)
+        NAME(fill_bytes_by)(s, first, rows, place, out, true);
+    else
+        NAME(fill_bytes_by)(s, first, rows, place, out, false);
+}
+
 /* Of each kind of rows. */
 #define VALUE_FILL(word, kind, sides)                                        \
     TARGET static void NAME(fill_##word)(                                    \
@@ -167,7 +207,7 @@ TARGET VALUE_INLINE void NAME(fill_rows)(const NAME(source) * from,
                              sides);                                         \
     }
 VALUE_FILL(numbers, SNOW_VALUE_NUMBERS, false)
-VALUE_FILL(bytes, SNOW_VALUE_BYTES, false)
+VALUE_FILL(any_bytes, SNOW_VALUE_BYTES, false)
 VALUE_FILL(sided_bytes, SNOW_VALUE_BYTES, true)
 VALUE_FILL(words, SNOW_VALUE_WORDS, false)
 VALUE_FILL(sided_words, SNOW_VALUE_WORDS, true)
@@ -197,9 +237,11 @@ TARGET static void NAME(fill)(const NAME(source) * s, int64_t first,
     uint64_t inside = 0;
     if (s->column >= 0 && s->column + 33 <= store->columns)
         inside = rows & NAME(rows_inside)(store, first);
-    if (inside)
-        (bytes ? NAME(fill_bytes) : NAME(fill_words))(s, first, inside, place,
-                                                      out, half, difference);
+    if (inside && bytes && store->in_place && !half && !s->twice)
+        NAME(fill_bytes)(s, first, inside, place, out, difference);
+    else if (inside)
+        (bytes ? NAME(fill_any_bytes) : NAME(fill_words))(
+            s, first, inside, place, out, half, difference);
     if (rows != inside)
         (bytes ? NAME(fill_sided_bytes) : NAME(fill_sided_words))(
             s, first, rows & ~inside, place, out, half, difference);
