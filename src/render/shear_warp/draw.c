@@ -222,22 +222,31 @@ static float *find_row(const snow_value_drawing *job, int layer, int phase,
  * what is there. */
 static void store_row(const snow_value_drawing *job, const float *pixels,
                       ptrdiff_t step, bool behind, float *out) {
-    const size_t channels = (size_t)job->splat.channels;
+    const int channels = job->splat.channels;
+    if (!behind && step == channels) {
+        memcpy(out, pixels,
+               (size_t)(SNOW_VALUE_COLUMNS * channels) * sizeof *out);
+        return;
+    }
     for (int n = 0; n < SNOW_VALUE_COLUMNS;
          n++, out += step, pixels += channels)
         if (behind)
             job->path->op->combine(out, pixels, 1);
+        else if (channels == 4)
+            memcpy(out, pixels, 4 * sizeof *out);
         else
-            memcpy(out, pixels, channels * sizeof *out);
+            memcpy(out, pixels, 2 * sizeof *out);
 }
 
 /* The same of a phase of a tile; nothing where there are no planes. */
 static void store_phase(const snow_value_drawing *job, const void *planes,
                         int phase, int64_t column, int64_t row, bool behind) {
+    float pixels[SNOW_VALUE_COLUMNS * 4];
+    if (!planes)
+        memset(pixels, 0, sizeof pixels);
     for (int r = 0; r < SNOW_VALUE_ROWS; r++) {
         ptrdiff_t step;
         float *out = find_row(job, 0, phase, column, row + r, &step);
-        float pixels[SNOW_VALUE_COLUMNS * 4] = {0};
         if (planes)
             job->path->op->read(&job->splat, planes, phase, r, pixels);
         store_row(job, pixels, step, behind, out);
