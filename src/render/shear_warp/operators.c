@@ -9,25 +9,29 @@
 /* --- over -------------------------------------------------------------------
  */
 
+/* Words of some planes to pixels, for a constant number of channels. */
+static inline void read_words(const snow_value_plane *words, int row,
+                              const int channels, float *out) {
+    for (int n = 0; n < SNOW_VALUE_COLUMNS; n++)
+        for (int c = 0; c < channels; c++)
+            out[n * channels + c] =
+                (float)(*words)[channels == 4 ? c : 3 * c][row][n + 1] *
+                (1.0F / 32767);
+}
+
 static void read_over(const snow_value_splat *splat, const void *planes,
                       int phase, int row, float *out) {
     const int channels = splat->channels, step = channels == 4 ? 1 : 3;
     const snow_value_plane *words = (const snow_value_plane *)planes + phase;
     const snow_value_faint_plane *floats =
         (const snow_value_faint_plane *)planes + phase;
-    if (channels == 4 && !splat->table->faint) {
+    if (!splat->table->faint && channels == 4)
+        read_words(words, row, 4, out);
+    else if (!splat->table->faint)
+        read_words(words, row, 2, out);
+    for (int c = 0; splat->table->faint && c < 4; c += step, out++)
         for (int n = 0; n < SNOW_VALUE_COLUMNS; n++)
-            for (int c = 0; c < 4; c++)
-                out[4 * n + c] =
-                    (float)(*words)[c][row][n + 1] * (1.0F / 32767);
-        return;
-    }
-    for (int c = 0; c < 4; c += step, out++)
-        for (int n = 0; n < SNOW_VALUE_COLUMNS; n++)
-            out[n * channels] =
-                splat->table->faint
-                    ? (*floats)[c][row][n + 1]
-                    : (float)(*words)[c][row][n + 1] * (1.0F / 32767);
+            out[n * channels] = (*floats)[c][row][n + 1];
 }
 
 /* --- extremes ---------------------------------------------------------------

@@ -1,6 +1,14 @@
 /* splat/values/ahead.tmpl.h - slabs before their turn: which samples can be
  * seen, and what the cache is asked for.  Included by tile.tmpl.h. */
 
+/* Whether some lanes have active samples. */
+TARGET static inline bool NAME(any_of)(const value_slab *slab, uint32_t lanes) {
+    uint32_t any = 0;
+    for (int row = 0; row < SNOW_VALUE_ROWS; row++)
+        any |= slab->active[row];
+    return (any & lanes) != 0;
+}
+
 /* Leaves of the active samples of a phase of slab `n` those that are inside and
  * open. */
 TARGET VALUE_INLINE void NAME(trim)(const snow_value_splat *p, int n, int phase,
@@ -24,6 +32,9 @@ TARGET VALUE_INLINE void NAME(trim)(const snow_value_splat *p, int n, int phase,
         NAME(clip_all)(p, n, phase, tile, &slab->clip);
     if (slab->clip.cuts)
         rows &= V(rows_and)(slab->active, slab->clip.some, ~UINT32_C(0));
+    if (slab->cut[0].cuts && !NAME(any_of)(slab, slab->cut[0].parts))
+        slab->cut[0].cuts = false; /* what it cuts cannot be seen */
+    slab->cut[1].cuts &= (rows & slab->cut[1].parts) != 0;
     slab->rows = rows;
 }
 

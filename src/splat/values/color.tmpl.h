@@ -174,6 +174,17 @@ TARGET VALUE_INLINE void NAME(slopes)(const value_queue *q, int n, V(row) place,
                                  NAME(slope_of)(q, n, 1, axis, eye), place);
 }
 
+/* The places of the opacity in a slab, of which these are the places in what is
+ * left of it; a whole one keeps its own. */
+TARGET VALUE_INLINE V(row)
+    NAME(place_within)(const value_queue *q, int n, V(row) place) {
+    V(row) part = V(row_load)(q->part + n);
+    V(row)
+    within = V(row_add)(V(row_load)(q->from + n), V(row_mulhrs)(place, part));
+    return V(row_choose)(V(row_gt)(part, V(row_set1)(INT16_MAX - 1)), place,
+                         within);
+}
+
 /* Gradient opacity of 32 samples from `n` on; `within` is the place in what is
  * left of a slab. */
 TARGET static void NAME(fade)(const snow_value_splat *p, const value_queue *q,
@@ -235,9 +246,7 @@ TARGET VALUE_INLINE void NAME(color)(const snow_value_splat *p,
                 snow_value_meet(p->surface, q, n, cuts, places);
                 place = V(row_load)(places);
             } else if (cuts && !p->labels)
-                place =
-                    V(row_add)(V(row_load)(q->from + n),
-                               V(row_mulhrs)(place, V(row_load)(q->part + n)));
+                place = NAME(place_within)(q, n, place);
             if (p->labels)
                 for (int axis = 0; axis < 3; axis++)
                     slopes[axis] = V(row_load)(q->slopes[axis] + n);

@@ -72,6 +72,7 @@ void snow_value_cut(const double front[2], const double back[2], double low,
         !(front[0] >= low && back[0] >= low &&
           front[0] + 31 * front[1] <= high && back[0] + 31 * back[1] <= high);
     out->some = ~UINT32_C(0);
+    out->parts = 0;
     if (!out->cuts)
         return;
     int first[2] = {first_lane(front, low), first_lane(back, low)};
@@ -86,7 +87,7 @@ void snow_value_cut(const double front[2], const double back[2], double low,
         out->to[n] = whole >> n & 1 ? INT16_MAX : 0;
     }
     out->some = whole;
-    for (; parts; parts &= parts - 1) {
+    for (out->parts = parts; parts; parts &= parts - 1) {
         int n = __builtin_ctz(parts);
         double t[2] = {0, 1};
         double from = front[0] + n * front[1], to = back[0] + n * back[1];

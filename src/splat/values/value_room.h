@@ -57,7 +57,8 @@ typedef struct value_queue {
 /* The part of a slab that is inside, for each lane or row, of 32767. */
 typedef struct value_cut {
     int16_t from[32], to[32];
-    uint32_t some; /* lanes or rows that have any */
+    uint32_t some;  /* lanes or rows that have any */
+    uint32_t parts; /* and those of them that are not whole */
     bool cuts;
 } value_cut;
 
