@@ -1,8 +1,8 @@
 /* formats/format.h - a volume format, and what readers share.
  *
- * To add a format: write formats/NAME/NAME.c with one snow_format record, declare
- * the record below, and name it in the table of formats/table.c.  CONTRIBUTING.md
- * lists the tests and pages that a format has. */
+ * To add a format: write formats/NAME/NAME.c with one snow_format record,
+ * declare the record below, and name it in the table of formats/table.c.
+ * CONTRIBUTING.md lists the tests and pages that a format has. */
 #ifndef SNOW_FORMATS_FORMAT_H
 #define SNOW_FORMATS_FORMAT_H
 

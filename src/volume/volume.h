@@ -30,7 +30,7 @@ struct snow_volume {
     bool knows_origin;
     double origin[3];  /* the last column of the whole's matrix, where known */
     char patient[256]; /* "" when unknown */
-    bool emptied;         /* a mask or planes have left no voxel: */
+    bool emptied;      /* a mask or planes have left no voxel: */
     double mask_range[2]; /* the mask's values, NaN where there is none */
 };
 
