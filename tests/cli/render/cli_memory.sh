@@ -23,7 +23,7 @@ refused 5 "voxels over the limit" \
 refused 5 "a picture over the limit" 'need 17.1 MiB' \
     "$TOOL" render a.nrrd -s 1024x1024 -o c.png --memory 6M
 refused 5 "encodings over the limit" 'their encoding do not fit under the limit' \
-    "$TOOL" render a.nrrd "${small[@]}" -q -o c.png --memory 4200K
+    "$TOOL" render a.nrrd "${small[@]}" -q -o c.png --memory 3500K
 refused 5 "standard input" 'under a limit' bash -c \
     "'$TOOL' render - -o c.png --memory 3000K <a.nrrd"
 refused 5 "a turntable" 'do not fit' "$TOOL" turntable a.nrrd \
