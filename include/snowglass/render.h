@@ -102,6 +102,8 @@ typedef struct snow_settings {
     snow_stop_fn *stop; /* whether the picture is to end early (NULL) */
     void *stop_user;    /* its argument (NULL) */
     snow_light light;   /* (auto) */
+    double depth_darkening; /* 0 to 1: darkens what lies behind that beside it;
+                               makes depths; over and iso (0) */
 } snow_settings;
 SNOW_RECORD(snow_settings);
 
@@ -145,8 +147,8 @@ SNOW_API snow_status snow_frame_render(snow_frame *frame,
 SNOW_API snow_status snow_render_file(snow_context *context, const char *path,
     const snow_view *view, const snow_settings *settings, snow_image **image);
 
-/* Owned by the frame, until its next picture. Depths (settings.depth, else
- * NULL): world distance behind the target's plane, along the line of sight, of
+/* Owned by the frame, until its next picture. Depths (settings.depth or
+ * depth_darkening, else NULL): world distance behind the target's plane, along the line of sight, of
  * where opacity passes 1/2 or of the isosurface; NaN where there is nothing. */
 SNOW_API const snow_image *snow_frame_depth(const snow_frame *frame);
 SNOW_API const snow_stats *snow_frame_stats(const snow_frame *frame);

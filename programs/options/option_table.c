@@ -139,6 +139,10 @@ const option_row option_table[] = {
      "", "strength of the specular light (default 0.2)"},
     {"shininess", 0, "N", TOPIC_LOOK, RENDER, read_real, FIELD(shininess), 0,
      1000, "", "exponent of the specular light (default 20)"},
+    {"depth-darkening", 0, "[S]", TOPIC_LOOK, RENDER, read_strength,
+     FIELD(depth_darkening), 0, 1, "",
+     "darken what lies behind that beside it, in modes over and iso, with "
+     "strength S, 0 to 1 (default 0; 1 without S)"},
     {"tf", 0, "FILE", TOPIC_LOOK, LOOKED, read_text, FIELD(tf), 0, 0, "",
      "transfer function from a file, in place of a preset: Snowglass .json or "
      ".csv, 3D Slicer .vp or .xml, ParaView or niivue .json, Amrvis .pal; "

@@ -77,7 +77,7 @@ typedef struct options {
     range_value range;
     const char *opacity_unit, *shade;
     light_value light;
-    double ambient, diffuse, specular, shininess;
+    double ambient, diffuse, specular, shininess, depth_darkening;
 
     const char *view; /* NULL: the volume's own */
     double azimuth, elevation, roll, zoom;

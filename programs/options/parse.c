@@ -119,6 +119,11 @@ bool read_fov(const option_row *row, const char *text, void *field,
     return true;
 }
 
+bool read_strength(const option_row *row, const char *text, void *field,
+                   char wrong[WRONG_BYTES]) {
+    return read_real(row, *text ? text : "1", field, wrong);
+}
+
 /* Differences are of values from 0 to 1, but people often think in steps of
  * 1/255. */
 bool read_tolerance(const option_row *row, const char *text, void *field,

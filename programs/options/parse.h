@@ -12,6 +12,7 @@ option_read read_choice;          /* const char *: one of the row's choices */
 option_read read_method;          /* const char *: one of them, or an alias */
 option_read read_real;            /* double within low..high */
 option_read read_fov;             /* double; the default for an empty text */
+option_read read_strength;        /* double; 1 for an empty text */
 option_read read_tolerance;       /* double; quotients are allowed */
 option_read read_integer;         /* int64_t within low..high */
 option_read read_count;           /* uint64_t */

@@ -19,8 +19,9 @@ static void warn_option(const options *asked, const char *name) {
 
 void warn_unused(const options *asked) {
     static const char *const of_opacity[] = {"opacity", "gradient-opacity"};
-    static const char *const of_light[] = {"light",   "shade",    "ambient",
-                                           "diffuse", "specular", "shininess"};
+    static const char *const of_light[] = {
+        "light",    "shade",     "ambient",        "diffuse",
+        "specular", "shininess", "depth-darkening"};
     bool lit = strcmp(asked->mode, "iso") == 0;
     if (strcmp(asked->mode, "over") == 0 || !is_heard(asked))
         return;
@@ -32,10 +33,10 @@ void warn_unused(const options *asked) {
 
 /* Reports a method that was requested by name, or a kernel's, but not used. */
 static void warn_method(const scene *s) {
-    bool asked = strcmp(s->asked->method, "shear-warp") == 0 ||
-                 (strcmp(s->asked->method, "auto") == 0 &&
-                  (strcmp(s->asked->kernel, "auto") != 0 ||
-                   s->asked->footprint != 0));
+    bool asked =
+        strcmp(s->asked->method, "shear-warp") == 0 ||
+        (strcmp(s->asked->method, "auto") == 0 &&
+         (strcmp(s->asked->kernel, "auto") != 0 || s->asked->footprint != 0));
     if (!asked || s->stats.method == SNOW_METHOD_SHEAR_WARP)
         return;
     say("note: method %s is used in place of shear-warp, which takes kernels "

@@ -106,14 +106,14 @@ static int64_t terms_of(const snow_flight *p) {
         p->how.radix,       p->how.pixel_bits, place->slice_axis,
         place->perspective, p->how.scattered,  (int)s->light};
     const double reals[] = {
-        place->back[0],   place->back[1],    place->back[2],
-        place->up[0],     place->up[1],      place->up[2],
-        place->path,      s->threshold,      s->opacity_length,
-        s->iso,           job->view->zoom,   job->view->fov,
-        place->origin[0], place->origin[1],  place->eye.at[0],
-        place->eye.at[1], place->eye.at[2],  s->ambient,
-        s->diffuse,       s->specular,       s->shininess,
-        s->light_azimuth, s->light_elevation};
+        place->back[0],   place->back[1],     place->back[2],
+        place->up[0],     place->up[1],       place->up[2],
+        place->path,      s->threshold,       s->opacity_length,
+        s->iso,           job->view->zoom,    job->view->fov,
+        place->origin[0], place->origin[1],   place->eye.at[0],
+        place->eye.at[1], place->eye.at[2],   s->ambient,
+        s->diffuse,       s->specular,        s->shininess,
+        s->light_azimuth, s->light_elevation, s->depth_darkening};
     uint64_t hash = UINT64_C(14695981039346656037);
     mix(&hash, numbers, sizeof numbers);
     mix(&hash, reals, sizeof reals);

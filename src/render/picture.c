@@ -4,6 +4,7 @@
 
 #include "base/record.h"
 #include "image/image.h"
+#include "render/modes/darken.h"
 #include "render/settings_resolve.h"
 
 #include <string.h>
@@ -143,6 +144,12 @@ snow_status snow_picture_end(snow_picture *p, snow_status status,
         return status;
     }
     frame->depth = p->depth;
+    if (p->image && p->depth && p->job.settings.depth_darkening > 0)
+        status = snow_depth_darken(&p->job, p->depth, p->image);
+    if (status != SNOW_STATUS_OK) {
+        snow_image_free(p->image);
+        return status;
+    }
     *image = p->image;
     return SNOW_STATUS_OK;
 }

@@ -54,6 +54,10 @@ depths "iso" 0 -m iso --iso 60 $oblique
 depths "iso in perspective" 0 -m iso --iso 60 $oblique --perspective
 # shellcheck disable=SC2086
 depths "over" 1/255 --opacity 0.3:0,0.31:1 $oblique
+# shellcheck disable=SC2086
+depths "darkened" 1/255 --opacity 0.3:0,0.31:1 --depth-darkening $oblique
+# shellcheck disable=SC2086
+depths "an iso darkened" 1/255 -m iso --iso 60 --depth-darkening $oblique
 
 # shellcheck disable=SC2086
 run 0 "sums as colours" launch 3 "$MPI_TOOL" $head -m sum -o sum.png

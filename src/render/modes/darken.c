@@ -1,0 +1,124 @@
+/* render/modes/darken.c - an unsharp mask of the depths (Luft, Colditz and
+ * Deussen 2006, Image Enhancement by Unsharp Masking the Depth Buffer), at two
+ * radii. */
+#include "render/modes/darken.h"
+
+#include "image/image.h"
+#include "volume/volume.h"
+
+#include <math.h>
+
+/* Of the picture's short side: deviations of the two blurs, and the distance
+ * behind what is beside that counts 1. */
+static const double deviations[] = {1.0 / 128, 1.0 / 43};
+#define UNIT (1.0 / 21)
+#define MOST 3.0     /* more does not count */
+#define SHARE 0.9    /* of the light that a count of 1 takes away */
+#define DARKEST 0.35 /* of the light that remains */
+
+typedef struct blur {
+    int width, height;
+    float *mean, *line, *dark; /* planes */
+} blur;
+
+/* World length of a pixel's side, at the target. */
+static double pitch_of(const snow_job *job) {
+    const snow_placement *p = &job->placement;
+    const double *steps[3] = {p->step_u, p->step_v, p->step_slice};
+    const int axes[3] = {p->u_axis, p->v_axis, p->slice_axis};
+    double world = 0, pixels = 0;
+    snow_volume_info info;
+    snow_volume_whole(job->volume, &info);
+    for (int n = 0; n < 3; n++) {
+        double x = 0, y = 0;
+        for (int r = 0; r < 3; r++) {
+            x += info.matrix[r][axes[n]] * p->right[r];
+            y += info.matrix[r][axes[n]] * p->up[r];
+        }
+        world += x * x + y * y;
+        pixels += steps[n][0] * steps[n][0] + steps[n][1] * steps[n][1];
+    }
+    return sqrt(world / pixels);
+}
+
+static float at_line(const float *in, int n, int count, size_t step) {
+    return in[(size_t)(n < 0 ? 0 : n < count ? n : count - 1) * step];
+}
+
+/* Means of 2 reach + 1 numbers; those at the ends go on beyond them. */
+static void mean_line(const float *in, float *out, int count, size_t step,
+                      int reach) {
+    double sum = 0;
+    for (int n = -reach; n < reach; n++)
+        sum += (double)at_line(in, n, count, step);
+    for (int n = 0; n < count; n++) {
+        sum += (double)at_line(in, n + reach, count, step);
+        out[(size_t)n * step] = (float)(sum / (2 * reach + 1));
+        sum -= (double)at_line(in, n - reach, count, step);
+    }
+}
+
+/* Three boxes are close to a Gaussian of their deviation. */
+static void blur_plane(const blur *b, float *plane, int reach) {
+    const size_t width = (size_t)b->width;
+    for (int pass = 0; pass < 3; pass++) {
+        for (int y = 0; y < b->height; y++)
+            mean_line(plane + (size_t)y * width, b->line + (size_t)y * width,
+                      b->width, 1, reach);
+        for (int x = 0; x < b->width; x++)
+            mean_line(b->line + x, plane + x, b->height, width, reach);
+    }
+}
+
+/* Where nothing is, it is as far as the farthest that is there: outlines stay
+ * as they are. */
+static void fill_behind(size_t count, const float *depth, float *filled) {
+    float far = -INFINITY;
+    for (size_t n = 0; n < count; n++)
+        far = fmaxf(far, depth[n]);
+    for (size_t n = 0; n < count; n++)
+        filled[n] = isnan(depth[n]) ? far : depth[n];
+}
+
+/* Adds how far each pixel lies behind the mean of what is beside it. */
+static void add_behind(const blur *b, const float *depth, double deviation,
+                       double unit) {
+    size_t count = (size_t)b->width * (size_t)b->height;
+    int reach = (int)lround((sqrt(4 * deviation * deviation + 1) - 1) / 2);
+    fill_behind(count, depth, b->mean);
+    blur_plane(b, b->mean, reach);
+    for (size_t n = 0; n < count; n++)
+        if (!isnan(depth[n])) {
+            double behind = ((double)depth[n] - (double)b->mean[n]) / unit;
+            b->dark[n] += (float)fmin(fmax(behind, 0), MOST);
+        }
+}
+
+static void darken(const blur *b, double strength, snow_image *image) {
+    size_t count = (size_t)b->width * (size_t)b->height;
+    int channels = image->channels;
+    for (size_t n = 0; n < count; n++) {
+        double left = fmax(1 - SHARE * (double)b->dark[n], DARKEST);
+        float factor = (float)(1 - strength * (1 - left));
+        for (int c = 0; c + 1 < channels; c++)
+            image->pixels[n * (size_t)channels + (size_t)c] *= factor;
+    }
+}
+
+snow_status snow_depth_darken(const snow_job *job, const snow_image *depth,
+                              snow_image *image) {
+    blur b = {.width = depth->width, .height = depth->height};
+    size_t count = (size_t)b.width * (size_t)b.height;
+    int side = b.width < b.height ? b.width : b.height;
+    b.mean = snow_allocate_clear(job->context, 3 * count * sizeof *b.mean);
+    if (!b.mean)
+        return SNOW_STATUS_NO_MEMORY;
+    b.line = b.mean + count;
+    b.dark = b.line + count;
+    for (int n = 0; n < 2; n++)
+        add_behind(&b, depth->pixels, deviations[n] * side,
+                   UNIT * side * pitch_of(job));
+    darken(&b, job->settings.depth_darkening, image);
+    snow_release(job->context, b.mean);
+    return SNOW_STATUS_OK;
+}
