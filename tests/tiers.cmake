@@ -14,7 +14,7 @@
 #   plain    not run under sanitizers: it compares numbers with a reference in
 #            double, or looks at timing and memory of processes
 # The sanitized builds of the long tier run all but `long` and `plain`.
-set(SNOW_LABEL_long cli_large simulate mpi_bench mpi_combine mpi_fail mpi_hosts
+set(SNOW_LABEL_long cli_large isa_neon isa_wasm simulate mpi_bench mpi_combine mpi_fail mpi_hosts
     mpi_insitu mpi_kill mpi_modes mpi_other mpi_stall)
 set(SNOW_LABEL_late catalyst cli_balance cli_bench cli_figures cli_measurements
     mpi_comm oracle_vtk test_model_raycast test_value_model test_value_truth
@@ -65,7 +65,7 @@ foreach(label long late surface threads plain)
   foreach(test ${SNOW_LABEL_${label}})
     if(test IN_LIST tests)
       set_property(TEST ${test} APPEND PROPERTY LABELS ${label})
-    elseif(NOT test MATCHES "^(simulate|test_writer_named)$" AND
+    elseif(NOT test MATCHES "^(simulate|isa_neon|isa_wasm|test_writer_named)$" AND
            NOT sources MATCHES "/${test}[.](c|sh|py)(;|$)")
       message(FATAL_ERROR "tests/tiers.cmake: there is no test '${test}'")
     endif()

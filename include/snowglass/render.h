@@ -51,7 +51,8 @@ typedef enum snow_isa {
     SNOW_ISA_SCALAR,
     SNOW_ISA_AVX2,
     SNOW_ISA_AVX512,
-    SNOW_ISA_NEON
+    SNOW_ISA_NEON,
+    SNOW_ISA_WASM
 } snow_isa;
 
 typedef enum snow_shade { SNOW_SHADE_PHONG = 0, SNOW_SHADE_NONE } snow_shade;

@@ -246,7 +246,7 @@ const option_row option_table[] = {
      FIELD(deterministic), 0, 0, "",
      "compute with scalar code, which gives the same bits on every machine "
      "(the number of threads never changes the bits)"},
-    {"isa", 0, "auto|scalar|avx2|avx512|neon", TOPIC_RUN, RENDER, read_choice,
+    {"isa", 0, "auto|scalar|avx2|avx512|neon|wasm", TOPIC_RUN, RENDER, read_choice,
      FIELD(isa), 0, 0, "",
      "instruction set to use (default auto: the best of this machine)"},
     {"progress", 0, "auto|always|never", TOPIC_RUN, RENDER, read_choice,

@@ -1,20 +1,12 @@
-/* encode/transpose.tmpl.h - transposes a tile of 64 lines of 64 bytes, for one
- * instruction set. Define before including, beside NAME and TARGET of
- * simd/select.h:
+/* encode/transpose.tmpl.h - transposes a tile of 64 lines of 64 bytes by AVX2.
+ * Define before including, beside TARGET of simd/select.h:
  *
  *   TILE_SIZE   bytes of a value: 1 or 2
  *   TILE(word)  word with size and instruction set appended
  *   TILE_LOW(a, b), TILE_HIGH(a, b)  interleave the values of the lower, the
  *               upper halves of each 16 bytes of two vectors
  *
- * and for the instruction set
- *
- *   NAME(wide), WIDE_BYTES           a vector of 32 or 64 bytes
- *   NAME(wide_load)(p)
- *   NAME(wide_spread)(v, out, step)  16 bytes to out, the next to out + step,
- *   ..
- *
- * All except those for the instruction set are undefined at the end.
+ * All are undefined at the end.
  *
  * N = 16 / TILE_SIZE lines are processed at once. Within each 16 bytes of them
  * they are a matrix of N x N values. One round interleaves line i with line i +
@@ -24,20 +16,20 @@
 #define TILE_LINES (16 / TILE_SIZE)
 
 static inline __attribute__((always_inline)) TARGET void
-TILE(round)(const NAME(wide) * in, NAME(wide) * out) {
+TILE(round)(const __m256i *in, __m256i *out) {
     for (int n = 0; n < TILE_LINES / 2; n++) {
         out[2 * n] = TILE_LOW(in[n], in[n + TILE_LINES / 2]);
         out[2 * n + 1] = TILE_HIGH(in[n], in[n + TILE_LINES / 2]);
     }
 }
 
-/* TILE_LINES lines, WIDE_BYTES bytes of each. */
+/* TILE_LINES lines, 32 bytes of each. */
 static inline __attribute__((always_inline)) TARGET void
 TILE(part)(const unsigned char *in, size_t stride, unsigned char *out,
            size_t pitch) {
-    NAME(wide) a[TILE_LINES], b[TILE_LINES];
+    __m256i a[TILE_LINES], b[TILE_LINES];
     for (int n = 0; n < TILE_LINES; n++)
-        a[n] = NAME(wide_load)(in + (size_t)n * stride);
+        a[n] = _mm256_loadu_si256((const void *)(in + (size_t)n * stride));
     TILE(round)(a, b);
     TILE(round)(b, a);
     TILE(round)(a, b);
@@ -45,8 +37,8 @@ TILE(part)(const unsigned char *in, size_t stride, unsigned char *out,
     TILE(round)(b, a);
 #endif
     for (int n = 0; n < TILE_LINES; n++)
-        NAME(wide_spread)
-    (TILE_SIZE == 1 ? a[n] : b[n], out + (size_t)n * pitch, TILE_LINES * pitch);
+        wide_spread(TILE_SIZE == 1 ? a[n] : b[n], out + (size_t)n * pitch,
+                    TILE_LINES * pitch);
 }
 
 TARGET static void TILE(transpose)(const unsigned char *in, size_t stride,
@@ -55,7 +47,7 @@ TARGET static void TILE(transpose)(const unsigned char *in, size_t stride,
     for (size_t line = 0; line < SNOW_TILE_LINES; line += TILE_LINES) {
         for (size_t n = line; n < line + TILE_LINES; n++)
             __builtin_prefetch(next + n * stride, 0, 2);
-        for (size_t at = 0; at < SNOW_TILE_BYTES; at += WIDE_BYTES)
+        for (size_t at = 0; at < SNOW_TILE_BYTES; at += 32)
             TILE(part)
         (in + line * stride + at, stride,
          out + at / TILE_SIZE * pitch + line * TILE_SIZE, pitch);

@@ -138,18 +138,15 @@ snow_status snow_picture_end(snow_picture *p, snow_status status,
     snow_image_free(p->near);
     snow_image_free(frame->depth);
     frame->depth = NULL;
+    if (status == SNOW_STATUS_OK && p->image && p->depth &&
+        p->job.settings.depth_darkening > 0)
+        status = snow_depth_darken(&p->job, p->depth, p->image);
     if (status != SNOW_STATUS_OK) {
         snow_image_free(p->image);
         snow_image_free(p->depth);
         return status;
     }
     frame->depth = p->depth;
-    if (p->image && p->depth && p->job.settings.depth_darkening > 0)
-        status = snow_depth_darken(&p->job, p->depth, p->image);
-    if (status != SNOW_STATUS_OK) {
-        snow_image_free(p->image);
-        return status;
-    }
     *image = p->image;
     return SNOW_STATUS_OK;
 }

@@ -105,7 +105,7 @@ snow_status snow_settings_resolve(snow_context *context,
                           SNOW_LIGHT_DIRECTION + 1));
     SNOW_TRY(check_choice(context, "quality", (int)s->quality,
                           SNOW_QUALITY_HIGH + 1));
-    SNOW_TRY(check_choice(context, "isa", (int)s->isa, SNOW_ISA_NEON + 1));
+    SNOW_TRY(check_choice(context, "isa", (int)s->isa, SNOW_ISA_WASM + 1));
     SNOW_TRY(check_choice(context, "mode", (int)s->mode, SNOW_MODE_ISO + 1));
     if (!isfinite(s->iso))
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,

@@ -8,7 +8,7 @@
 static const char *const names[] = {
     [SNOW_ISA_AUTO] = "auto", [SNOW_ISA_SCALAR] = "scalar",
     [SNOW_ISA_AVX2] = "avx2", [SNOW_ISA_AVX512] = "avx512",
-    [SNOW_ISA_NEON] = "neon",
+    [SNOW_ISA_NEON] = "neon", [SNOW_ISA_WASM] = "wasm",
 };
 
 #define LEVELS (int)(sizeof names / sizeof names[0])
@@ -53,14 +53,14 @@ static bool has_avx512(void) {
 }
 #endif
 
-/* NEON is part of every 64-bit ARM; the scalar code compiles to it there. */
-static bool has_neon(void) {
-#if defined(__aarch64__)
-    return true;
+/* The level that a machine always has beside scalar, or scalar. */
+#if !SNOW_HAS_V128
+#define V128 SNOW_ISA_SCALAR
+#elif defined(__aarch64__)
+#define V128 SNOW_ISA_NEON
 #else
-    return false;
+#define V128 SNOW_ISA_WASM
 #endif
-}
 
 bool snow_isa_runs(snow_isa isa) {
     switch (isa) {
@@ -69,7 +69,8 @@ bool snow_isa_runs(snow_isa isa) {
     case SNOW_ISA_AVX512:
         return has_avx512();
     case SNOW_ISA_NEON:
-        return has_neon();
+    case SNOW_ISA_WASM:
+        return isa == V128;
     default:
         return true;
     }
@@ -82,7 +83,7 @@ snow_isa snow_isa_resolve(snow_isa isa) {
         return SNOW_ISA_AVX512;
     if (has_avx2())
         return SNOW_ISA_AVX2;
-    return has_neon() ? SNOW_ISA_NEON : SNOW_ISA_SCALAR;
+    return V128;
 }
 
 const char *snow_isa_found(void) {
@@ -90,7 +91,9 @@ const char *snow_isa_found(void) {
         return "scalar avx2 avx512";
     if (has_avx2())
         return "scalar avx2";
-    return has_neon() ? "scalar neon" : "scalar";
+    return V128 == SNOW_ISA_NEON   ? "scalar neon"
+           : V128 == SNOW_ISA_WASM ? "scalar wasm"
+                                   : "scalar";
 }
 
 const char *snow_isa_used(void) {

@@ -6,11 +6,13 @@
  *
  *   scalar   plain C in vectors of 4 floats, which the compiler translates to
  *            SSE2 or NEON; runs on any machine
+ *   neon     the same, but shear-warp's tiles by NEON (64-bit ARM)
+ *   wasm     the same by WebAssembly's vectors (-msimd128)
  *   avx2     AVX2 and FMA, 8 floats (2013 and later)
  *   avx512   AVX-512 F, BW, VL, DQ, VBMI and VBMI2, 16 floats (2019 and later)
  *
- * avx2 and avx512 round alike, so their pictures have the same bits; scalar
- * rounds after both multiplication and addition. */
+ * avx2 and avx512 round alike, so their pictures have the same bits; the others
+ * round after both multiplication and addition. */
 #ifndef SNOW_ISA_H
 #define SNOW_ISA_H
 
@@ -22,6 +24,13 @@
 #define SNOW_HAS_AVX 1
 #else
 #define SNOW_HAS_AVX 0
+#endif
+
+/* The shear-warp's tiles alone: compilers translate the rest well. */
+#if defined(__aarch64__) || defined(__wasm_simd128__)
+#define SNOW_HAS_V128 1
+#else
+#define SNOW_HAS_V128 0
 #endif
 
 /* `name` with the suffix of an instruction set, which was resolved. */

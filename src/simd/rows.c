@@ -1,9 +1,9 @@
 /* simd/rows.c - byte shuffles that compress and expand 8 numbers of 16 bits by
- * a mask (simd/rows_avx2.h). */
+ * a mask (simd/rows_avx2.h, simd/rows_v128.h). */
 #include "simd/isa.h"
 
-#if SNOW_HAS_AVX
-#include "simd/rows_avx2.h"
+#if SNOW_HAS_AVX || SNOW_HAS_V128
+#include "simd/rows.h"
 
 /* The place in a mask of its n-th set bit, as a byte of a number; 0x80: none.
  */

@@ -7,7 +7,8 @@
  *   V(row_bytes)(p)               32 unsigned bytes at p
  *   V(row_add)(a, b), V(row_adds), V(row_subs)   the latter two saturate
  *   V(row_mul)(a, b)              the lower 16 bits
- *   V(row_mulhrs)(a, b)           (a b + 2^14) / 2^15, rounded down
+ *   V(row_mulhrs)(a, b)           (a b + 2^14) / 2^15, rounded down; not of
+ *                                 -2^15 twice
  *   V(row_min)(a, b), V(row_max)  signed
  *   V(row_avg)(a, b)              (a + b + 1) / 2, rounded down
  *   V(row_and)(a, b), V(row_or)
@@ -18,7 +19,8 @@
  *                                 that is not first .. first + width, which may
  *                                 go round beyond 255
  *   V(row_compress)(p, a, mask)   numbers whose bits are set, to p; may write
- * 32 V(row_expand)(p, mask)        the next of the numbers at p where a bit is
+ *                                 32
+ *   V(row_expand)(p, mask)        the next of the numbers at p where a bit is
  *                                 set, else 0; may read 32
  *   V(row_gather)(table, index, out)  the four words of 32 entries of 64 bits,
  *                                 lowest first; indices are unsigned
@@ -50,6 +52,9 @@
 #if SNOW_HAS_AVX
 #include "simd/rows_avx2.h"
 #include "simd/rows_avx512.h"
+#endif
+#if SNOW_HAS_V128
+#include "simd/rows_v128.h"
 #endif
 
 #endif

@@ -89,10 +89,6 @@ SNOW_AVX2_INLINE uint32_t snow_avx2_row_gt(snow_avx2_row a, snow_avx2_row b) {
     return (uint32_t)_mm256_movemask_epi8(_mm256_permute4x64_epi64(both, 0xD8));
 }
 
-/* Of each byte of a mask: the bytes of the numbers that it keeps, and where
- * kept ones come from. */
-extern const uint8_t snow_rows_compress[256][16], snow_rows_expand[256][16];
-
 /* All ones in each of 16 numbers whose bit is set. */
 SNOW_AVX2_INLINE __m256i snow_avx2_lanes(uint32_t mask) {
     const __m256i bits =

@@ -5,6 +5,10 @@
 
 #include "simd/vec_scalar.h"
 
+/* Of each byte of a mask: the bytes of the numbers that it keeps, and where
+ * kept ones come from. */
+extern const uint8_t snow_rows_compress[256][16], snow_rows_expand[256][16];
+
 typedef int16_t snow_scalar_eighth __attribute__((vector_size(16)));
 typedef struct snow_scalar_row {
     snow_scalar_eighth part[4];
@@ -56,35 +60,36 @@ static inline int snow_scalar_saturate(int x) {
     return x < INT16_MIN ? INT16_MIN : x > INT16_MAX ? INT16_MAX : x;
 }
 
-SNOW_SCALAR_ROW_OF(add, x[n] + y[n])
 SNOW_SCALAR_ROW_OF(adds, snow_scalar_saturate(x[n] + y[n]))
 SNOW_SCALAR_ROW_OF(subs, snow_scalar_saturate(x[n] - y[n]))
-SNOW_SCALAR_ROW_OF(mul, x[n] * y[n])
 SNOW_SCALAR_ROW_OF(mulhrs, (x[n] * y[n] + 0x4000) >> 15)
-SNOW_SCALAR_ROW_OF(min, x[n] < y[n] ? x[n] : y[n])
-SNOW_SCALAR_ROW_OF(max, x[n] > y[n] ? x[n] : y[n])
 SNOW_SCALAR_ROW_OF(avg, (x[n] + y[n] + 1) >> 1)
-SNOW_SCALAR_ROW_OF(and, x[n] & y[n])
-SNOW_SCALAR_ROW_OF(or, x[n] | y[n])
 
-/* Shifts of unsigned numbers. */
-static inline snow_scalar_row snow_scalar_row_srl(snow_scalar_row a, int bits) {
-    uint16_t x[32];
-    memcpy(x, &a, sizeof x);
-    for (int n = 0; n < 32; n++)
-        x[n] = (uint16_t)(x[n] >> bits);
-    memcpy(&a, x, sizeof a);
-    return a;
-}
-
-static inline snow_scalar_row snow_scalar_row_sll(snow_scalar_row a, int bits) {
-    uint16_t x[32];
-    memcpy(x, &a, sizeof x);
-    for (int n = 0; n < 32; n++)
-        x[n] = (uint16_t)(x[n] << bits);
-    memcpy(&a, x, sizeof a);
-    return a;
-}
+/* The same on parts x and y of eight, unsigned. */
+typedef uint16_t snow_scalar_words __attribute__((vector_size(16)));
+#define SNOW_SCALAR_PARTS_OF(name, type, by, each)                          \
+    static inline snow_scalar_row snow_scalar_row_##name(snow_scalar_row a, \
+                                                         type by) {         \
+        for (int n = 0; n < 4; n++) {                                       \
+            snow_scalar_words x = (snow_scalar_words)a.part[n];             \
+            a.part[n] = (snow_scalar_eighth)(each);                         \
+        }                                                                   \
+        return a;                                                           \
+    }
+#define Y ((snow_scalar_words)b.part[n])
+#define WHERE(condition) ((snow_scalar_words)(condition))
+#define OF(name, each) SNOW_SCALAR_PARTS_OF(name, snow_scalar_row, b, each)
+OF(add, x + Y)
+OF(mul, x *Y)
+OF(and, x &Y)
+OF(or, x | Y)
+OF(min, Y ^ ((x ^ Y) & WHERE(a.part[n] < b.part[n])))
+OF(max, Y ^ ((x ^ Y) & WHERE(a.part[n] > b.part[n])))
+SNOW_SCALAR_PARTS_OF(srl, int, bits, x >> bits)
+SNOW_SCALAR_PARTS_OF(sll, int, bits, x << bits)
+#undef OF
+#undef WHERE
+#undef Y
 
 static inline uint32_t snow_scalar_row_gt(snow_scalar_row a,
                                           snow_scalar_row b) {

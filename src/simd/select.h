@@ -2,7 +2,7 @@
 /* simd/select.h - gives a template the vector operations of one instruction
  * set. Define one of these before including; it is undefined again:
  *
- *   SELECT_SCALAR, SELECT_AVX2, SELECT_AVX512
+ *   SELECT_SCALAR, SELECT_AVX2, SELECT_AVX512, SELECT_V128
  *
  * A template then uses
  *
@@ -85,4 +85,10 @@
 #define TARGET SNOW_AVX512_TARGET
 #define NAME(word) word##_avx512
 #define V(word) snow_avx512_##word
+#elif defined(SELECT_V128)
+#undef SELECT_V128
+#define LANES SNOW_V128_LANES
+#define TARGET SNOW_V128_TARGET
+#define NAME(word) word##_v128
+#define V(word) snow_v128_##word
 #endif

@@ -148,8 +148,8 @@ void snow_gather_rows(const snow_gatherer *g, const snow_dense *d,
         double v = corner & 2 ? (double)d->r1 - 1 + g->shape.taps_v
                               : (double)d->r0 - g->shape.taps_v;
         double y = origin[1] + u * p->step_u[1] + v * p->step_v[1];
-        low = fmin(low, y);
-        high = fmax(high, y);
+        low = y < low ? y : low; /* fmin() here is more than GCC 12 can take */
+        high = y > high ? y : high; /* on ARM: it ends in an internal error */
     }
     *top = (int)fmin(fmax(low - 1, 0), p->height);
     *bottom = (int)fmax(fmin(high + 1, p->height), 0);

@@ -98,6 +98,7 @@ static void to_pixels(const snow_placement *p, const double step[3],
 static void place_slices(const snow_volume_info *info,
                          const snow_camera *camera, snow_placement *p) {
     double pitch = camera->pitch;
+    p->pitch = pitch;
     double *steps[3];
     steps[p->u_axis] = p->step_u;
     steps[p->v_axis] = p->step_v;

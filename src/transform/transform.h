@@ -51,7 +51,8 @@ typedef struct snow_placement {
     double origin[2], step_u[2], step_v[2], step_slice[2]; /* pixels */
     double inverse[2][2]; /* pixels to (u, v): the inverse of step_u, step_v */
 
-    double path; /* world length of a ray between two slice planes */
+    double pitch; /* world length of a pixel's side, at the target */
+    double path;  /* world length of a ray between two slice planes */
 
     /* In perspective the maps above are those of a parallel camera with the
      * same view of the target, and path is that of the ray to the target; the

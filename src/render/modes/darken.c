@@ -4,7 +4,6 @@
 #include "render/modes/darken.h"
 
 #include "image/image.h"
-#include "volume/volume.h"
 
 #include <math.h>
 
@@ -20,26 +19,6 @@ typedef struct blur {
     int width, height;
     float *mean, *line, *dark; /* planes */
 } blur;
-
-/* World length of a pixel's side, at the target. */
-static double pitch_of(const snow_job *job) {
-    const snow_placement *p = &job->placement;
-    const double *steps[3] = {p->step_u, p->step_v, p->step_slice};
-    const int axes[3] = {p->u_axis, p->v_axis, p->slice_axis};
-    double world = 0, pixels = 0;
-    snow_volume_info info;
-    snow_volume_whole(job->volume, &info);
-    for (int n = 0; n < 3; n++) {
-        double x = 0, y = 0;
-        for (int r = 0; r < 3; r++) {
-            x += info.matrix[r][axes[n]] * p->right[r];
-            y += info.matrix[r][axes[n]] * p->up[r];
-        }
-        world += x * x + y * y;
-        pixels += steps[n][0] * steps[n][0] + steps[n][1] * steps[n][1];
-    }
-    return sqrt(world / pixels);
-}
 
 static float at_line(const float *in, int n, int count, size_t step) {
     return in[(size_t)(n < 0 ? 0 : n < count ? n : count - 1) * step];
@@ -117,7 +96,7 @@ snow_status snow_depth_darken(const snow_job *job, const snow_image *depth,
     b.dark = b.line + count;
     for (int n = 0; n < 2; n++)
         add_behind(&b, depth->pixels, deviations[n] * side,
-                   UNIT * side * pitch_of(job));
+                   UNIT * side * job->placement.pitch);
     darken(&b, job->settings.depth_darkening, image);
     snow_release(job->context, b.mean);
     return SNOW_STATUS_OK;

@@ -319,9 +319,11 @@ void snow_value_shorten(const snow_value_table *table, value_queue *queue,
 extern snow_value_tile_fn *const snow_value_tiles_scalar[2][2][2];
 extern snow_value_tile_fn *const snow_value_tiles_avx2[2][2][2];
 extern snow_value_tile_fn *const snow_value_tiles_avx512[2][2][2];
+extern snow_value_tile_fn *const snow_value_tiles_v128[2][2][2];
 /* By [reduction - SNOW_VALUE_LARGEST][perspective]. */
 extern snow_value_tile_fn *const snow_value_projections_scalar[3][2];
 extern snow_value_tile_fn *const snow_value_projections_avx2[3][2];
 extern snow_value_tile_fn *const snow_value_projections_avx512[3][2];
+extern snow_value_tile_fn *const snow_value_projections_v128[3][2];
 
 #endif

@@ -1,9 +1,16 @@
 /* splat/values/value_splat.c - which tiles draw a picture; see value_splat.h.
  * Those of each instruction set take a while to compile, and have files of
- * their own: value_splat_scalar.c, _avx2.c and _avx512.c. */
+ * their own: value_splat_scalar.c, _avx2.c, _avx512.c and _v128.c. */
 #include "splat/values/value_splat.h"
 
 #include "splat/values/value_room.h"
+
+#if SNOW_HAS_V128
+#define OF_ISA(isa, name) \
+    ((isa) == SNOW_ISA_SCALAR ? name##_scalar : name##_v128)
+#else
+#define OF_ISA SNOW_OF_ISA
+#endif
 
 size_t snow_value_splat_bytes(const snow_value_splat *splat) {
     size_t bytes = snow_value_planes_bytes(splat) + sizeof(value_room) +
@@ -15,26 +22,12 @@ size_t snow_value_splat_bytes(const snow_value_splat *splat) {
 snow_value_tile_fn *snow_value_tile_of(snow_isa isa, int channels, bool sloped,
                                        bool perspective) {
     int colors = channels == 4;
-#if SNOW_HAS_AVX
-    if (isa == SNOW_ISA_AVX512)
-        return snow_value_tiles_avx512[colors][sloped][perspective];
-    if (isa == SNOW_ISA_AVX2)
-        return snow_value_tiles_avx2[colors][sloped][perspective];
-#endif
-    (void)isa;
-    return snow_value_tiles_scalar[colors][sloped][perspective];
+    return OF_ISA(isa, snow_value_tiles)[colors][sloped][perspective];
 }
 
 snow_value_tile_fn *snow_value_projection_of(snow_isa isa,
                                              snow_value_reduction reduction,
                                              bool perspective) {
     const unsigned of = reduction - SNOW_VALUE_LARGEST;
-#if SNOW_HAS_AVX
-    if (isa == SNOW_ISA_AVX512)
-        return snow_value_projections_avx512[of][perspective];
-    if (isa == SNOW_ISA_AVX2)
-        return snow_value_projections_avx2[of][perspective];
-#endif
-    (void)isa;
-    return snow_value_projections_scalar[of][perspective];
+    return OF_ISA(isa, snow_value_projections)[of][perspective];
 }

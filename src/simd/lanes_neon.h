@@ -1,0 +1,39 @@
+/* simd/lanes_neon.h - eight numbers of 16 bits by NEON, which every 64-bit ARM
+ * has; simd/rows_v128.h makes rows of them. */
+#ifndef SNOW_LANES_NEON_H
+#define SNOW_LANES_NEON_H
+
+#include "simd/rows_scalar.h"
+
+#include <arm_neon.h>
+
+#define snow_lanes_adds(a, b) (snow_scalar_eighth) vqaddq_s16(a, b)
+#define snow_lanes_subs(a, b) (snow_scalar_eighth) vqsubq_s16(a, b)
+#define snow_lanes_mulhrs(a, b) (snow_scalar_eighth) vqrdmulhq_s16(a, b)
+#define snow_lanes_avg(a, b) (snow_scalar_eighth) vrhaddq_s16(a, b)
+
+/* A bit for each number that is not 0, whose bits are all set. */
+static inline uint32_t snow_lanes_bits(snow_scalar_eighth a) {
+    const uint16x8_t bits = {1, 2, 4, 8, 16, 32, 64, 128};
+    return vaddvq_u16(vandq_u16((uint16x8_t)a, bits));
+}
+
+/* Bytes `from` of a; 0 where there is none. */
+static inline snow_scalar_eighth snow_lanes_shuffle(snow_scalar_eighth a,
+                                                    const uint8_t *from) {
+    return (snow_scalar_eighth)vqtbl1q_u8((uint8x16_t)a, vld1q_u8(from));
+}
+
+static inline void snow_lanes_widen(snow_scalar_eighth a,
+                                    snow_scalar_vec out[2]) {
+    out[0] = vcvtq_f32_s32(vmovl_s16(vget_low_s16(a)));
+    out[1] = vcvtq_f32_s32(vmovl_high_s16(a));
+}
+
+static inline snow_scalar_eighth snow_lanes_narrow(snow_scalar_vec low,
+                                                   snow_scalar_vec high) {
+    return vcombine_s16(vqmovn_s32(vcvtnq_s32_f32(low)),
+                        vqmovn_s32(vcvtnq_s32_f32(high)));
+}
+
+#endif
