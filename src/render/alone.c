@@ -158,9 +158,8 @@ static snow_status show(snow_picture *p) {
 
 static snow_status display(snow_picture *p, snow_status status) {
     SNOW_TRY(status);
-    if (p->pass->depth)
-        return SNOW_STATUS_OK;
-    SNOW_TRY(show(p));
+    if (!p->pass->depth)
+        SNOW_TRY(show(p));
     p->stats.seconds_frame = snow_seconds() - p->start;
     p->stats.cpu_frame = snow_cpu_seconds() - p->start_cpu;
     return SNOW_STATUS_OK;

@@ -140,7 +140,7 @@ snow_status snow_picture_end(snow_picture *p, snow_status status,
     frame->depth = NULL;
     if (status == SNOW_STATUS_OK && p->image && p->depth &&
         p->job.settings.depth_darkening > 0)
-        status = snow_depth_darken(&p->job, p->depth, p->image);
+        status = snow_depth_darken(&p->job, p->depth, p->image, &frame->stats);
     if (status != SNOW_STATUS_OK) {
         snow_image_free(p->image);
         snow_image_free(p->depth);

@@ -85,7 +85,8 @@ static void darken(const blur *b, double strength, snow_image *image) {
 }
 
 snow_status snow_depth_darken(const snow_job *job, const snow_image *depth,
-                              snow_image *image) {
+                              snow_image *image, snow_stats *stats) {
+    const double mark = snow_seconds(), mark_cpu = snow_cpu_seconds();
     blur b = {.width = depth->width, .height = depth->height};
     size_t count = (size_t)b.width * (size_t)b.height;
     int side = b.width < b.height ? b.width : b.height;
@@ -99,5 +100,7 @@ snow_status snow_depth_darken(const snow_job *job, const snow_image *depth,
                    UNIT * side * job->placement.pitch);
     darken(&b, job->settings.depth_darkening, image);
     snow_release(job->context, b.mean);
+    stats->seconds_frame += snow_seconds() - mark;
+    stats->cpu_frame += snow_cpu_seconds() - mark_cpu;
     return SNOW_STATUS_OK;
 }

@@ -6,9 +6,9 @@
 #include "render/job.h"
 
 /* Darkens the colours of `image` by settings.depth_darkening; `depth` is of its
- * size, NaN where there is nothing. Errors: no memory; then `image` is as
- * before. */
+ * size, NaN where there is nothing; the time is added to `stats`. Errors: no
+ * memory; then `image` is as before. */
 snow_status snow_depth_darken(const snow_job *job, const snow_image *depth,
-                              snow_image *image);
+                              snow_image *image, snow_stats *stats);
 
 #endif

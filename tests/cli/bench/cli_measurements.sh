@@ -34,6 +34,7 @@ json.dump({"cases": [
 END
 printf 'said before\n| ranks | 1 |\n| --- | ---: |\n| engine | 0 |\nafter\n' \
     >ranks.md
+grep -A2 '^| volume | quality' docs/measurements/speed.md >light.md
 
 write() {
     local name=$1 file=$2
@@ -48,6 +49,7 @@ write accuracy speed.json
 write balance balance.json
 write ranks ranks.md
 write files ranks.md
+write light light.md
 
 has() {
     local text=$1 page=$2
