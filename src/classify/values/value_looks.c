@@ -90,6 +90,25 @@ static snow_status fill_looks(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
+/* The looks where those of neighbouring entries are beside each other. */
+static snow_status fill_planes(snow_context *context,
+                               const snow_value_look *look,
+                               snow_value_table *table) {
+    const size_t rows = 2 * (size_t)look->steps;
+    const size_t pitch = (size_t)look->nodes + 2 * SNOW_VALUE_BESIDE;
+    const size_t bytes = 4 * rows * pitch * sizeof *table->planes;
+    SNOW_TRY(snow_reserve(context, &table->planes, &table->planes_capacity, 0,
+                          bytes));
+    memset(table->planes, 0, bytes);
+    table->plane_pitch = (int)pitch;
+    for (size_t n = 0; n < table->look_count; n++) {
+        float *at = table->planes + n % rows * pitch + n / rows;
+        for (size_t c = 0; c < 4; c++)
+            at[c * rows * pitch + SNOW_VALUE_BESIDE] = table->looks[4 * n + c];
+    }
+    return SNOW_STATUS_OK;
+}
+
 /* --- nodes ------------------------------------------------------------------
  */
 
@@ -208,5 +227,6 @@ snow_status snow_value_looks_make(snow_context *context,
         table->look_of[node] =
             table->nodes ? (int)(table->at[node] / MEASURED_STEP + 0.5)
                          : 2 * look->steps * node;
-    return fill_looks(context, look, table);
+    SNOW_TRY(fill_looks(context, look, table));
+    return table->nodes ? SNOW_STATUS_OK : fill_planes(context, look, table);
 }

@@ -14,8 +14,7 @@
 /* --- entries ----------------------------------------------------------------
  */
 
-/* Entries that are made at once. */
-#define ENTRIES 16
+#define ENTRIES SNOW_VALUE_BESIDE
 
 /* The ways through some entries: the first look and the way from step to step,
  * both times 65536; then sums of colours and alpha, and of them by steps. */
@@ -106,15 +105,44 @@ static void fill_row(void *of, int64_t front, int worker) {
     job->most[front] = most;
 }
 
+/* ENTRIES rows of a table whose nodes are evenly placed, diagonal by diagonal.
+ */
+static void fill_rows(void *of, int64_t item, int worker) {
+    table_job *job = of;
+    const snow_value_look *look = job->look;
+    const int front = (int)item * ENTRIES, nodes = look->nodes;
+    const int count = nodes - front < ENTRIES ? nodes - front : ENTRIES;
+    uint64_t *row = job->table->entries + (size_t)front * SNOW_VALUE_PITCH;
+    float most = 0;
+    (void)worker;
+    for (int apart = 1 - count - front; apart < nodes - front; apart++) {
+        float sums[5][ENTRIES];
+        uint64_t entries[ENTRIES];
+        const int first = front + apart; /* the back of entry 0 */
+        SNOW_OF_ISA(look->isa, collect_diagonal)
+        (job->table, look->steps, front, apart, sums);
+        SNOW_OF_ISA(look->isa, pack_all)
+        (sums, (float)look->steps, job->full, look->placed, entries);
+        for (int w = first < 0 ? -first : 0; w < count && first + w < nodes;
+             w++) {
+            row[w * SNOW_VALUE_PITCH + first + w] = entries[w];
+            most = sums[3][w] > most ? sums[3][w] : most;
+        }
+    }
+    job->most[front] = most;
+}
+
 /* All entries; again in smaller parts where all are faint, of which there may
  * be eight times as many: rays of other pixels are longer in perspective. */
 static snow_status fill_entries(snow_context *context,
                                 const snow_value_look *look,
                                 snow_value_table *table) {
     table_job job = {.look = look, .table = table, .full = 32767};
+    snow_work_fn *work = table->nodes ? fill_row : fill_rows;
+    int items =
+        table->nodes ? look->nodes : (look->nodes + ENTRIES - 1) / ENTRIES;
     float most = 0;
-    SNOW_TRY(
-        snow_parallel(context, look->threads, look->nodes, fill_row, &job));
+    SNOW_TRY(snow_parallel(context, look->threads, items, work, &job));
     for (int n = 0; n < look->nodes; n++)
         most = job.most[n] > most ? job.most[n] : most;
     table->faint = most > 0 && most < FAINTEST;
@@ -123,9 +151,9 @@ static snow_status fill_entries(snow_context *context,
         job.full *= 2;
     }
     table->unit = 1 / job.full;
-    return table->faint ? snow_parallel(context, look->threads, look->nodes,
-                                        fill_row, &job)
-                        : SNOW_STATUS_OK;
+    return table->faint
+               ? snow_parallel(context, look->threads, items, work, &job)
+               : SNOW_STATUS_OK;
 }
 
 /* --- invisible runs --------------------------------------------------------
@@ -259,6 +287,7 @@ void snow_value_table_fini(snow_context *context, snow_value_table *table) {
     snow_release(context, table->logs);
     snow_release(context, table->plain);
     snow_release(context, table->looks);
+    snow_release(context, table->planes);
     snow_release(context, table->key);
     snow_release(context, table->next_key);
     *table = (snow_value_table){0};

@@ -12,6 +12,8 @@
 
 /* Entries of one row of the table, of which `nodes` are used. */
 #define SNOW_VALUE_PITCH 256
+/* Entries that are made at once. */
+#define SNOW_VALUE_BESIDE 16
 
 /* Numbers of values whose slabs are all invisible. */
 typedef struct snow_value_run {
@@ -44,11 +46,15 @@ typedef struct snow_value_table {
     double *logs;      /* of 1 - opacity, and colours, by V */
     float *plain;
     float *looks; /* premultiplied RGBA of a step, by V */
+    /* The same where nodes are evenly placed: [channel][look % (2 steps)][node
+     * + SNOW_VALUE_BESIDE], with zeros beside the nodes. */
+    float *planes;
+    int plane_pitch;
     double step;  /* numbers between two of these looks */
     size_t look_count;
     int look_of[SNOW_VALUE_PITCH]; /* the place of each node among them */
     size_t entries_capacity, node_of_capacity, at_capacity, looks_capacity;
-    size_t logs_capacity, plain_capacity;
+    size_t logs_capacity, plain_capacity, planes_capacity;
     snow_value_run runs[SNOW_VALUE_RUNS]; /* the longest ones, rising */
     int run_count;
     bool faint; /* the words count parts of 2^-15 / 2^n, for slabs show little:
