@@ -133,46 +133,97 @@ TARGET VALUE_INLINE void NAME(fill_rows)(const NAME(source) * from,
     }
 }
 
+/* Rows of bytes in place, and which lanes are beyond their ends: of the 32
+ * voxels from the column on, and from the next one on. */
+typedef struct NAME(bytes) {
+    snow_value_rule rule;
+    ptrdiff_t apart;       /* of a difference: to the other row */
+    ptrdiff_t ends[2];     /* from the column to the first voxel, to the last */
+    ptrdiff_t inside;      /* from the first to the second */
+    uint32_t beyond[2][2]; /* lanes: [end][voxel or next] */
+} NAME(bytes);
+
+static inline NAME(bytes) NAME(bytes_of)(const NAME(source) * s) {
+    const int64_t columns = s->store->columns;
+    NAME(bytes)
+    r = {.rule = s->store->rule,
+         .apart = s->begin[1] - s->begin[0],
+         .ends = {-s->column, columns - 1 - s->column},
+         .inside = columns > 1};
+    for (int n = 0; n < 2; n++) {
+        r.beyond[0][n] = NAME(first_lanes)(-s->column - n);
+        r.beyond[1][n] = ~NAME(first_lanes)(columns - s->column - n);
+    }
+    return r;
+}
+
+/* The number beyond an end of a row, from the two voxels there. */
+static inline int NAME(byte_beyond)(const NAME(bytes) * r,
+                                    const unsigned char *end,
+                                    ptrdiff_t inside) {
+    return snow_value_beyond(snow_value_by_rule(&r->rule, end[0]),
+                             snow_value_by_rule(&r->rule, end[inside]), false);
+}
+
+/* Numbers from `at` on, and from the next voxel on, or differences to those
+ * `apart` behind, where lanes are beyond the row's ends. */
+TARGET VALUE_INLINE void NAME(end_bytes)(const NAME(bytes) * r,
+                                         const unsigned char *at,
+                                         V(row) numbers[2],
+                                         const bool difference) {
+    for (int end = 0; end < 2; end++) {
+        const unsigned char *voxel = at + r->ends[end];
+        const ptrdiff_t inside = end ? -r->inside : r->inside;
+        if (!(r->beyond[end][0] | r->beyond[end][1]))
+            continue;
+        int number = NAME(byte_beyond)(r, voxel, inside);
+        if (difference)
+            number = value_saturate(
+                NAME(byte_beyond)(r, voxel + r->apart, inside) - number);
+        for (int n = 0; n < 2; n++)
+            numbers[n] = V(row_choose)(
+                r->beyond[end][n], V(row_set1)((int16_t)number), numbers[n]);
+    }
+}
+
 /* A row of bytes mixed along u, or the difference to that which is `apart`
  * behind: numbers are sums and products, and so are differences of them. */
 TARGET VALUE_INLINE V(row)
-    NAME(along_bytes)(const unsigned char *at, ptrdiff_t apart, V(row) factor,
-                      V(row) offset, V(row) weight, const bool difference) {
-    V(row) a = V(row_bytes)(at), b = V(row_bytes)(at + 1);
-    if (difference) {
-        a = V(row_subs)(V(row_bytes)(at + apart), a);
-        b = V(row_subs)(V(row_bytes)(at + apart + 1), b);
+    NAME(along_bytes)(const NAME(bytes) * r, const unsigned char *at,
+                      V(row) weight, const bool difference, const bool sided) {
+    const V(row) factor = V(row_set1)((int16_t)r->rule.factor);
+    V(row) n[2];
+    for (int k = 0; k < 2; k++) {
+        n[k] = V(row_bytes)(at + k);
+        if (difference)
+            n[k] = V(row_subs)(V(row_bytes)(at + r->apart + k), n[k]);
+        n[k] = V(row_mul)(n[k], factor);
     }
-    V(row) number = V(row_mul)(a, factor);
-    if (!difference)
-        number = V(row_add)(number, offset);
-    V(row) step = V(row_mul)(V(row_subs)(b, a), factor);
-    return V(row_add)(number, V(row_mulhrs)(step, weight));
+    for (int k = 0; k < 2 && !difference; k++)
+        n[k] = V(row_add)(n[k], V(row_set1)((int16_t)r->rule.offset));
+    if (sided)
+        NAME(end_bytes)(r, at, n, difference);
+    return NAME(mix)(n[0], n[1], weight);
 }
 
-/* Rows of bytes in place, none beyond a side. */
-TARGET VALUE_INLINE void NAME(fill_bytes_by)(const NAME(source) * s,
-                                             int64_t first, uint64_t rows,
-                                             const snow_value_place *place,
-                                             int16_t (*out)[32],
-                                             const bool difference) {
-    const snow_value_store *store = s->store;
-    const V(row) factor = V(row_set1)((int16_t)store->rule.factor);
-    const V(row) offset = V(row_set1)((int16_t)store->rule.offset);
+/* Rows of bytes in place, none beyond the first or last. */
+TARGET VALUE_INLINE void
+NAME(fill_bytes_by)(const NAME(source) * s, int64_t first, uint64_t rows,
+                    const snow_value_place *place, int16_t (*out)[32],
+                    const bool difference, const bool sided) {
+    const NAME(bytes) r = NAME(bytes_of)(s);
     const V(row) u = V(row_set1)(place->weight[0]);
     const V(row) v = V(row_set1)(place->weight[1]);
-    const ptrdiff_t step = store->row_step, apart = s->begin[1] - s->begin[0];
+    const ptrdiff_t step = s->store->row_step;
     const unsigned char *natives =
-        store->natives + s->begin[0] + first * step + s->column;
+        s->store->natives + s->begin[0] + first * step + s->column;
     while (rows) {
         int row = __builtin_ctzll(rows);
         const unsigned char *at = natives + row * step;
-        V(row)
-        above = NAME(along_bytes)(at, apart, factor, offset, u, difference);
+        V(row) above = NAME(along_bytes)(&r, at, u, difference, sided);
         for (; rows >> row & 1; row++) {
             at += step;
-            V(row)
-            below = NAME(along_bytes)(at, apart, factor, offset, u, difference);
+            V(row) below = NAME(along_bytes)(&r, at, u, difference, sided);
             V(row_store)(out[row], NAME(mix)(above, below, v));
             above = below;
             rows &= rows - 1;
@@ -180,14 +231,29 @@ TARGET VALUE_INLINE void NAME(fill_bytes_by)(const NAME(source) * s,
     }
 }
 
-TARGET static void NAME(fill_bytes)(const NAME(source) * s, int64_t first,
-                                    uint64_t rows,
-                                    const snow_value_place *place,
-                                    int16_t (*out)[32], bool difference) {
-    if (difference)
-        NAME(fill_bytes_by)(s, first, rows, place, out, true);
-    else
-        NAME(fill_bytes_by)(s, first, rows, place, out, false);
+#define VALUE_FILL_BYTES(word, difference, sided)                           \
+    TARGET static void NAME(fill_##word)(                                   \
+        const NAME(source) * s, int64_t first, uint64_t rows,               \
+        const snow_value_place *place, int16_t(*out)[32]) {                 \
+        NAME(fill_bytes_by)(s, first, rows, place, out, difference, sided); \
+    }
+VALUE_FILL_BYTES(bytes, false, false)
+VALUE_FILL_BYTES(difference, true, false)
+VALUE_FILL_BYTES(bytes_sided, false, true)
+VALUE_FILL_BYTES(difference_sided, true, true)
+#undef VALUE_FILL_BYTES
+
+/* Whether 33 bytes from the column on may be read in all rows from `first` on
+ * that are set, and in the one behind. */
+static inline bool NAME(readable)(const NAME(source) * s, int64_t first,
+                                  uint64_t rows) {
+    const snow_value_store *store = s->store;
+    const int64_t low = first + __builtin_ctzll(rows);
+    const int64_t high = first + 64 - __builtin_clzll(rows);
+    const bool falls = s->begin[1] < s->begin[0];
+    return s->begin[falls] + low * store->row_step + s->column >= 0 &&
+           s->begin[!falls] + high * store->row_step + s->column + 33 <=
+               store->native_count;
 }
 
 /* Of each kind of rows. */
@@ -234,14 +300,19 @@ TARGET static void NAME(fill)(const NAME(source) * s, int64_t first,
         NAME(fill_numbers)(s, first, rows, place, out, half, difference);
         return;
     }
-    uint64_t inside = 0;
-    if (s->column >= 0 && s->column + 33 <= store->columns)
-        inside = rows & NAME(rows_inside)(store, first);
-    if (inside && bytes && store->in_place && !half && !s->twice)
-        NAME(fill_bytes)(s, first, inside, place, out, difference);
-    else if (inside)
+    const bool within = s->column >= 0 && s->column + 33 <= store->columns;
+    uint64_t inside = rows & NAME(rows_inside)(store, first);
+    if (inside && bytes && store->in_place && !half && !s->twice &&
+        (within || NAME(readable)(s, first, inside)))
+        (within ? (difference ? NAME(fill_difference) : NAME(fill_bytes))
+                : (difference ? NAME(fill_difference_sided)
+                              : NAME(fill_bytes_sided)))(s, first, inside,
+                                                         place, out);
+    else if (within && inside)
         (bytes ? NAME(fill_any_bytes) : NAME(fill_words))(
             s, first, inside, place, out, half, difference);
+    else
+        inside = 0;
     if (rows != inside)
         (bytes ? NAME(fill_sided_bytes) : NAME(fill_sided_words))(
             s, first, rows & ~inside, place, out, half, difference);
