@@ -70,18 +70,8 @@ static inline void NAME(ask)(const snow_value_splat *p, int n, int phase,
         *asked = (value_asked){.sheet = n};
     rows &= ~asked->rows;
     asked->rows |= rows;
-    for (; rows; rows &= rows - 1) {
-        int bit = __builtin_ctzll(rows);
-        if (first + bit < -s->margin || first + bit >= s->rows + s->margin)
-            continue;
-        for (int half = 0; half <= sheet->half; half++) {
-            int next;
-            const unsigned char *voxels = value_address(
-                s, sheet->slice + half, first + bit, column, &next);
-            __builtin_prefetch(voxels);
-            __builtin_prefetch(voxels + next);
-        }
-    }
+    for (int half = 0; half <= sheet->half; half++)
+        value_ask_rows(s, sheet->slice + half, first, column, rows);
 }
 
 /* Asks for the masks of the second sheet of slab `n`. */

@@ -474,13 +474,9 @@ static inline void NAME(ask_eye)(const snow_value_splat *p, int n, int phase,
     asked->rows |= rows;
     for (; rows; rows &= rows - 1) {
         int64_t row = NAME(voxel_row)(s, v, __builtin_ctzll(rows));
-        for (int of = 0; of < 2 + 2 * sheet->half; of++) {
-            int next;
-            const unsigned char *voxels = value_address(
-                s, sheet->slice + of / 2, row + of % 2, u->first, &next);
-            for (int at = 0; at < u->at[31] + 32; at += 32, voxels += next)
-                __builtin_prefetch(voxels);
-        }
+        for (int half = 0; half <= sheet->half; half++)
+            for (int at = 0; at < u->at[31] + 32; at += 64)
+                value_ask_rows(s, sheet->slice + half, row, u->first + at, 3);
     }
 }
 

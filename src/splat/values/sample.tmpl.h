@@ -279,17 +279,6 @@ VALUE_FILL(words, SNOW_VALUE_WORDS, false)
 VALUE_FILL(sided_words, SNOW_VALUE_WORDS, true)
 #undef VALUE_FILL
 
-/* Of rows first .. those that need none beyond the volume's, nor does the one
- * below. */
-static inline uint64_t NAME(rows_inside)(const snow_value_store *s,
-                                         int64_t first) {
-    int64_t low = first < 0 ? -first : 0, end = s->rows - 1 - first;
-    if (low > 63 || end <= low)
-        return 0;
-    return (end > 63 ? ~UINT64_C(0) : (UINT64_C(1) << end) - 1) & ~UINT64_C(0)
-                                                                      << low;
-}
-
 /* Rows of a sheet, a bit each from row `first` on, into `out`. */
 TARGET static void NAME(fill)(const NAME(source) * s, int64_t first,
                               uint64_t rows, const snow_value_place *place,
@@ -301,7 +290,7 @@ TARGET static void NAME(fill)(const NAME(source) * s, int64_t first,
         return;
     }
     const bool within = s->column >= 0 && s->column + 33 <= store->columns;
-    uint64_t inside = rows & NAME(rows_inside)(store, first);
+    uint64_t inside = rows & value_rows_within(first, store->rows - 1);
     if (inside && bytes && store->in_place && !half && !s->twice &&
         (within || NAME(readable)(s, first, inside)))
         (within ? (difference ? NAME(fill_difference) : NAME(fill_bytes))

@@ -163,18 +163,39 @@ static inline bool value_meets(const snow_value_store *s, int64_t column,
            row > -32 - s->margin && row < s->rows + s->margin;
 }
 
-/* Where a voxel is, for what the cache is asked for; *next is how many bytes it
- * is from there to 32 voxels on. */
-static inline const unsigned char *value_address(const snow_value_store *s,
-                                                 int64_t slice, int64_t row,
-                                                 int64_t column, int *next) {
-    *next = s->kind == SNOW_VALUE_BYTES ? 32 : 64;
-    if (s->kind == SNOW_VALUE_NUMBERS)
-        return (const unsigned char *)(s->values +
-                                       snow_value_at(s, slice)[row] + column);
-    row = row < 0 ? 0 : row < s->rows ? row : s->rows - 1;
-    return s->natives +
-           (snow_value_native_row(s, slice, row) + column) * (*next / 32);
+/* A bit for each of 64 rows from `first` on that is one of 0 .. count - 1. */
+static inline uint64_t value_rows_within(int64_t first, int64_t count) {
+    const int64_t low = first < 0 ? -first : 0, end = count - first;
+    if (low > 63 || end <= low)
+        return 0;
+    return (end > 63 ? ~UINT64_C(0) : (UINT64_C(1) << end) - 1) & ~UINT64_C(0)
+                                                                      << low;
+}
+
+/* Asks the cache for 33 voxels from a column on of the rows of a slice that are
+ * set, from row `first` on. */
+static inline void value_ask_rows(const snow_value_store *s, int64_t slice,
+                                  int64_t first, int64_t column,
+                                  uint64_t rows) {
+    const bool numbers = s->kind == SNOW_VALUE_NUMBERS;
+    const int64_t margin = numbers ? s->margin : 0;
+    const int64_t *at = s->in_place ? NULL : snow_value_at(s, slice) + first;
+    const size_t size = s->kind == SNOW_VALUE_BYTES ? 1 : 2;
+    const unsigned char *voxels =
+        (numbers ? (const unsigned char *)s->values : s->natives) +
+        column * (int64_t)size;
+    const size_t step = s->in_place ? (size_t)s->row_step * size : 0;
+    if (s->in_place)
+        voxels += (slice * s->slice_step + first * s->row_step) * (int64_t)size;
+    rows &= value_rows_within(first + margin, s->rows + 2 * margin);
+    for (; rows; rows &= rows - 1) {
+        int bit = __builtin_ctzll(rows);
+        const unsigned char *row =
+            voxels + (at ? (size_t)at[bit] * size : (size_t)bit * step);
+        __builtin_prefetch(row);
+        if (((uintptr_t)row & 63) + 33 * size > 64)
+            __builtin_prefetch(row + 32 * size);
+    }
 }
 
 /* Words and shift of a window of 32 columns from `column` on. */
