@@ -50,26 +50,55 @@ TARGET VALUE_INLINE void NAME(face)(const snow_value_light *l, V(vec) u,
     out[2] = NAME(dot)(l->half, u, v, p);
 }
 
-/* Adds light `n`; `light` and `half` are n . l and n . h, turned to the eye. */
+/* The largest shininess whose powers are taken of numbers of 15 bits. */
+#define POWER_MOST 64
+
+/* base^power of 32 bases of 15 bits; `power` is a whole number above 0. */
+TARGET VALUE_INLINE V(row) NAME(row_power)(V(row) base, uint32_t power) {
+    for (; !(power & 1); power >>= 1)
+        base = V(row_mulhrs)(base, base);
+    V(row) result = base;
+    while (power >>= 1) {
+        base = V(row_mulhrs)(base, base);
+        if (power & 1)
+            result = V(row_mulhrs)(result, base);
+    }
+    return result;
+}
+
+/* The shine of 32 samples, of 15 bits; `half` is n . h, times 32767. */
+TARGET VALUE_INLINE V(row)
+    NAME(shine)(const snow_value_light *l, const V(vec) half[GROUPS]) {
+    const uint32_t power = l->power >> SNOW_VALUE_ROOTS;
+    V(vec) base[GROUPS], result[GROUPS];
+    if (power && power <= POWER_MOST && power << SNOW_VALUE_ROOTS == l->power)
+        return NAME(row_power)(V(row_max)(V(row_narrow)(half), V(row_set1)(0)),
+                               power);
+    for (int k = 0; k < GROUPS; k++)
+        base[k] = V(min)(
+            V(max)(V(mul)(half[k], V(set1)(1 / 32767.0F)), V(set1)(l->least)),
+            V(set1)(1));
+    NAME(power_of)(base, l->power, result);
+    for (int k = 0; k < GROUPS; k++)
+        result[k] = V(mul)(result[k], V(set1)(32767));
+    return V(row_narrow)(result);
+}
+
+/* Adds light `n`; `light` and `half` are n . l and n . h, turned to the eye,
+ * times 32767. */
 TARGET VALUE_INLINE void NAME(add_light)(const snow_value_light *l, int n,
-                                         V(vec) light[GROUPS],
-                                         V(vec) half[GROUPS], float unit,
-                                         V(vec) color[GROUPS],
-                                         V(vec) white[GROUPS]) {
-    const V(vec) zero = V(set1)(0), one = V(set1)(1);
-    V(vec) shine[GROUPS];
-    for (int k = 0; k < GROUPS; k++) {
-        light[k] = V(min)(V(max)(light[k], zero), one);
-        half[k] = V(min)(V(max)(half[k], V(set1)(l->least)), one);
-    }
-    NAME(power_of)(half, l->power, shine);
-    for (int k = 0; k < GROUPS; k++) {
-        shine[k] = V(mul)(shine[k], V(row_positive)(light[k]));
-        color[k] =
-            V(add)(color[k], V(mul)(light[k], V(set1)(l->diffuse[n] * unit)));
-        white[k] =
-            V(add)(white[k], V(mul)(shine[k], V(set1)(l->specular[n] * 32767)));
-    }
+                                         const V(vec) light[GROUPS],
+                                         const V(vec) half[GROUPS], float unit,
+                                         V(row) * color, V(row) * white) {
+    const V(row) zero = V(row_set1)(0);
+    const int16_t diffuse = (int16_t)(l->diffuse[n] * unit + 0.5F);
+    const int16_t specular = (int16_t)(l->specular[n] * 32767 + 0.5F);
+    V(row) to_light = V(row_max)(V(row_narrow)(light), zero);
+    V(row)
+    shine =
+        V(row_choose)(V(row_gt)(to_light, zero), NAME(shine)(l, half), zero);
+    *color = V(row_adds)(*color, V(row_mulhrs)(to_light, V(row_set1)(diffuse)));
+    *white = V(row_adds)(*white, V(row_mulhrs)(shine, V(row_set1)(specular)));
 }
 
 /* The squares of the lengths of LANES gradients. */
@@ -85,43 +114,37 @@ TARGET VALUE_INLINE V(vec) NAME(square_length)(const snow_value_light *l,
 
 /* 32 gradients to factors of the colour and of white, of 15 bits; samples from
  * `n` of the queue on. */
-TARGET VALUE_INLINE void NAME(light)(const snow_value_splat *s,
+TARGET VALUE_INLINE void NAME(light)(const snow_value_light *l,
+                                     const snow_value_rays *rays,
                                      float slope[2][2], const value_queue *q,
                                      int n, const V(row) slopes[3],
                                      V(row) * color, V(row) * white,
                                      const bool eye) {
-    const snow_value_light *l = s->light;
     const float unit = l->bright ? 16383.5F : 32767.0F;
-    V(vec) g[3][GROUPS], ray[2][GROUPS], to[3][GROUPS], inverse[GROUPS];
-    V(vec) light[GROUPS], shine[GROUPS];
+    V(vec) g[3][GROUPS], ray[2][GROUPS], to[3][GROUPS];
     for (int axis = 0; axis < 3; axis++)
         V(row_widen)(slopes[axis], g[axis]);
     for (int axis = 0; eye && axis < 2; axis++)
         V(row_widen)(V(row_load)(q->ray[axis] + n), ray[axis]);
     for (int k = 0; k < GROUPS; k++) {
         V(vec) u = g[0][k], v = g[1][k], p = g[2][k], face[3];
-        inverse[k] = V(row_rsqrt)(NAME(square_length)(l, u, v, p));
+        V(vec)
+        inverse = V(mul)(V(row_rsqrt)(NAME(square_length)(l, u, v, p)),
+                         V(set1)(32767));
         if (eye)
             NAME(face_eye)
-        (l, s->rays, NAME(ways_of)(slope[0], ray[0][k]),
+        (l, rays, NAME(ways_of)(slope[0], ray[0][k]),
          NAME(ways_of)(slope[1], ray[1][k]), u, v, p, face);
         else NAME(face)(l, u, v, p, face);
-        if (l->distant) {
-            to[1][k] = V(mul)(V(row_turn)(face[1], face[0]), inverse[k]);
-            to[2][k] = V(mul)(V(row_turn)(face[2], face[0]), inverse[k]);
-        }
-        to[0][k] = V(mul)(V(row_turn)(face[0], face[0]), inverse[k]);
-        light[k] = V(set1)(l->ambient * unit);
-        shine[k] = V(set1)(0);
+        for (int way = 0; way < (l->distant ? 3 : 1); way++)
+            to[way][k] = V(mul)(V(row_turn)(face[way], face[0]), inverse);
     }
+    *color = V(row_set1)((int16_t)(l->ambient * unit + 0.5F));
+    *white = V(row_set1)(0);
     if (l->distant)
-        NAME(add_light)(l, 0, to[1], to[2], unit, light, shine);
-    if (l->head) {
-        memcpy(to[1], to[0], sizeof to[1]);
-        NAME(add_light)(l, 1, to[0], to[1], unit, light, shine);
-    }
-    *color = V(row_narrow)(light);
-    *white = V(row_narrow)(shine);
+        NAME(add_light)(l, 0, to[1], to[2], unit, color, white);
+    if (l->head)
+        NAME(add_light)(l, 1, to[0], to[0], unit, color, white);
 }
 
 /* --- colours ----------------------------------------------------------------
@@ -187,46 +210,35 @@ TARGET VALUE_INLINE V(row)
 
 /* Gradient opacity of 32 samples from `n` on; `within` is the place in what is
  * left of a slab. */
-TARGET static void NAME(fade)(const snow_value_splat *p, const value_queue *q,
-                              int n, V(row) within, const V(row) slopes[3],
-                              V(row) color[4]) {
-    int16_t places[32], gradients[3][32], colors[4][32];
+TARGET static void NAME(fade)(const snow_value_splat *p, value_queue *q, int n,
+                              V(row) within, const V(row) slopes[3],
+                              int channels) {
+    int16_t places[32], gradients[3][32], colors[4][32] = {{0}};
     V(row_store)(places, within);
     for (int axis = 0; axis < 3; axis++)
         V(row_store)(gradients[axis], slopes[axis]);
     for (int c = 0; c < 4; c++)
-        V(row_store)(colors[c], color[c]);
+        if (c < channels - 1 || c == 3)
+            memcpy(colors[c], q->color[c] + n, sizeof colors[c]);
     snow_value_fade_colors(p->fade, p->table, gradients, q->front + n,
                            q->back + n, places, colors);
     for (int c = 0; c < 4; c++)
-        color[c] = V(row_load)(colors[c]);
+        if (c < channels - 1 || c == 3)
+            memcpy(q->color[c] + n, colors[c], sizeof colors[c]);
 }
 
-/* Lights 32 samples from `n` on. */
-TARGET VALUE_INLINE void NAME(shade)(const snow_value_splat *p,
-                                     float slope[2][2], const value_queue *q,
-                                     int n, const V(row) slopes[3],
-                                     const int channels, V(row) color[4],
-                                     const bool eye) {
-    V(row) light, white, alpha = color[3];
-    NAME(light)(p, slope, q, n, slopes, &light, &white, eye);
-    V(row) shine = V(row_mulhrs)(white, alpha);
-    for (int c = 0; c < channels - 1; c++) {
-        V(row) lit = V(row_mulhrs)(color[c], light);
-        if (p->light->bright)
-            lit = V(row_adds)(lit, lit);
-        color[c] = V(row_min)(V(row_adds)(lit, shine), alpha);
-    }
-}
+/* --- stages -----------------------------------------------------------------
+ *
+ * Each goes over the whole queue, so that what one sample waits for is short.
+ */
 
-/* All samples of a queue, whose last 32 numbers and more are 0. */
-TARGET VALUE_INLINE void NAME(color)(const snow_value_splat *p,
-                                     float slope[2][2], value_queue *q,
-                                     int count, const int channels,
-                                     const bool sloped, bool cuts,
-                                     const bool eye) {
+/* Colours, and the places of the opacity in a slab, or in what is left of it.
+ */
+TARGET VALUE_INLINE void NAME(look_up)(const snow_value_splat *p,
+                                       value_queue *q, int count,
+                                       const int channels, const bool sloped) {
     for (int n = 0; n < count; n += 32) {
-        V(row) color[4];
+        V(row) color[4], place = V(row_set1)(0);
         if (p->surface)
             for (int c = 0; c < 4; c++)
                 color[c] = V(row_set1)(p->surface->color[c]);
@@ -237,36 +249,98 @@ TARGET VALUE_INLINE void NAME(color)(const snow_value_splat *p,
             V(row_gather)
         (p->table->entries, NAME(entries)(p->table, q->front + n, q->back + n),
          color);
-        if (sloped) {
-            V(row) within = p->surface ? V(row_set1)(0) : NAME(split)(color);
-            V(row) place = within;
-            V(row) slopes[3];
-            int16_t places[32];
-            if (p->surface) {
-                snow_value_meet(p->surface, q, n, cuts, places);
-                place = V(row_load)(places);
-            } else if (cuts && !p->labels)
-                place = NAME(place_within)(q, n, place);
-            if (p->labels)
-                for (int axis = 0; axis < 3; axis++)
-                    slopes[axis] = V(row_load)(q->slopes[axis] + n);
-            else
-                NAME(slopes)(q, n, place, slopes, eye);
-            if (p->fade)
-                NAME(fade)(p, q, n, within, slopes, color);
-            if (p->light)
-                NAME(shade)(p, slope, q, n, slopes, channels, color, eye);
-        }
-        if (eye && !p->labels && !p->surface) {
-            float shares[32];
-            NAME(shares)(p->rays, slope, q, n, cuts, shares);
-            NAME(lengthen)(p->table, shares, channels, color);
-        }
+        if (sloped && !p->surface)
+            place = NAME(split)(color);
+        if (sloped)
+            V(row_store)(q->place + n, place);
         for (int c = 0; c < channels - 1; c++)
             V(row_store)(q->color[c] + n, color[c]);
         V(row_store)(q->color[3] + n, color[3]);
     }
-    if (cuts && !eye && !p->labels && !p->surface)
+}
+
+/* Factors of light, of the colour and of white; gradient opacity. */
+TARGET VALUE_INLINE void NAME(light_all)(const snow_value_splat *p,
+                                         float slope[2][2], value_queue *q,
+                                         int count, const int channels,
+                                         bool cuts, const bool eye) {
+    const snow_value_light none = {0}; /* copied: stores do not change it */
+    const snow_value_light light = p->light ? *p->light : none;
+    for (int n = 0; n < count; n += 32) {
+        V(row) within = V(row_load)(q->place + n), place = within, slopes[3];
+        if (p->surface) {
+            int16_t places[32];
+            snow_value_meet(p->surface, q, n, cuts, places);
+            place = V(row_load)(places);
+        } else if (cuts && !p->labels)
+            place = NAME(place_within)(q, n, place);
+        if (p->labels)
+            for (int axis = 0; axis < 3; axis++)
+                slopes[axis] = V(row_load)(q->slopes[axis] + n);
+        else
+            NAME(slopes)(q, n, place, slopes, eye);
+        if (p->fade)
+            NAME(fade)(p, q, n, within, slopes, channels);
+        if (p->light) {
+            V(row) color, white;
+            NAME(light)
+            (&light, p->rays, slope, q, n, slopes, &color, &white, eye);
+            V(row_store)(q->light + n, color);
+            V(row_store)(q->white + n, white);
+        }
+    }
+}
+
+/* Colours by these factors. */
+TARGET VALUE_INLINE void NAME(shade)(const snow_value_light *l, value_queue *q,
+                                     int count, const int channels) {
+    for (int n = 0; n < count; n += 32) {
+        V(row) light = V(row_load)(q->light + n);
+        V(row) alpha = V(row_load)(q->color[3] + n);
+        V(row) shine = V(row_mulhrs)(V(row_load)(q->white + n), alpha);
+        for (int c = 0; c < channels - 1; c++) {
+            V(row) lit = V(row_mulhrs)(V(row_load)(q->color[c] + n), light);
+            if (l->bright)
+                lit = V(row_adds)(lit, lit);
+            V(row_store)
+            (q->color[c] + n, V(row_min)(V(row_adds)(lit, shine), alpha));
+        }
+    }
+}
+
+/* Colours of rays that are not as long as those of the table. */
+TARGET static void NAME(lengthen_all)(const snow_value_splat *p,
+                                      float slope[2][2], value_queue *q,
+                                      int count, int channels, bool cuts) {
+    for (int n = 0; n < count; n += 32) {
+        V(row) color[4];
+        float shares[32];
+        for (int c = 0; c < 4; c++)
+            color[c] = c < channels - 1 || c == 3 ? V(row_load)(q->color[c] + n)
+                                                  : V(row_set1)(0);
+        NAME(shares)(p->rays, slope, q, n, cuts, shares);
+        NAME(lengthen)(p->table, shares, channels, color);
+        for (int c = 0; c < channels - 1; c++)
+            V(row_store)(q->color[c] + n, color[c]);
+        V(row_store)(q->color[3] + n, color[3]);
+    }
+}
+
+/* All samples of a queue, whose last 32 numbers and more are 0. */
+TARGET VALUE_INLINE void NAME(color)(const snow_value_splat *p,
+                                     float slope[2][2], value_queue *q,
+                                     int count, const int channels,
+                                     const bool sloped, bool cuts,
+                                     const bool eye) {
+    const bool by_table = !p->labels && !p->surface;
+    NAME(look_up)(p, q, count, channels, sloped);
+    if (sloped)
+        NAME(light_all)(p, slope, q, count, channels, cuts, eye);
+    if (sloped && p->light)
+        NAME(shade)(p->light, q, count, channels);
+    if (eye && by_table)
+        NAME(lengthen_all)(p, slope, q, count, channels, cuts);
+    else if (cuts && by_table)
         snow_value_shorten(p->table, q, count, channels);
 }
 #undef GROUPS
