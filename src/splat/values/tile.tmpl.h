@@ -94,9 +94,33 @@ TARGET VALUE_INLINE uint32_t NAME(ends)(const value_rows *f,
     return mask;
 }
 
-/* Packs the visible samples of a phase, from number `count` on.  Of a `plain`
- * one all samples of the slab have values, and are whole; they are invisible up
- * to a number. */
+/* Whether all samples of a phase of a slab have values and are whole, and are
+ * invisible up to a number. */
+static inline bool NAME(is_plain)(const snow_value_splat *p,
+                                  const value_rows *f, const value_rows *b,
+                                  bool cuts, const bool eye) {
+    return !eye && !cuts && !f->holes && !b->holes &&
+           p->table->run_count == 1 && p->table->runs[0].first == 0;
+}
+
+/* Leaves of the active samples of such a phase those that are visible. */
+TARGET VALUE_INLINE void NAME(see_plain)(const snow_value_splat *p,
+                                         const value_rows *f,
+                                         const value_rows *b,
+                                         value_slab *slab) {
+    const V(row) last = V(row_set1)(p->table->runs[0].last);
+    for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
+        int row = __builtin_ctz(rows);
+        slab->active[row] &=
+            V(row_gt)(V(row_max)(V(row_load)(f->values[row + 1]),
+                                 V(row_load)(b->values[row + 1])),
+                      last);
+        slab->rows ^= (uint32_t)(slab->active[row] == 0) << row;
+    }
+}
+
+/* Packs the visible samples of a phase, from number `count` on; of a `plain`
+ * one (is_plain) those that are active. */
 TARGET VALUE_INLINE int
 NAME(collect_by)(const snow_value_splat *p, const value_rows *f,
                  const value_rows *b, const value_beside beside[2],
@@ -104,7 +128,6 @@ NAME(collect_by)(const snow_value_splat *p, const value_rows *f,
                  int count, const bool sloped, bool cuts, const bool eye,
                  const bool plain) {
     const V(row) zero = V(row_set1)(0);
-    const V(row) last = V(row_set1)(p->table->runs[0].last);
     for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
         int row = __builtin_ctz(rows);
         const int16_t *front = f->values[row + 1], *back = b->values[row + 1];
@@ -113,12 +136,11 @@ NAME(collect_by)(const snow_value_splat *p, const value_rows *f,
         if (plain) {
             x = V(row_load)(front);
             y = V(row_load)(back);
-            mask &= V(row_gt)(V(row_max)(x, y), last);
         } else {
             mask = NAME(ends)(f, b, slab, row, cuts, &x, &y, &from, &part);
             mask &= NAME(see)(p->table, x, y);
+            slab->active[row] = mask;
         }
-        slab->active[row] = mask;
         if (!mask)
             continue;
         V(row_compress)(q->front + count, x, mask);
@@ -155,13 +177,14 @@ NAME(collect_by)(const snow_value_splat *p, const value_rows *f,
     return count;
 }
 
-TARGET VALUE_INLINE int
-NAME(collect)(const snow_value_splat *p, const value_rows *f,
-              const value_rows *b, const value_beside beside[2],
-              const value_phase *state, value_slab *slab, value_queue *q,
-              int count, const bool sloped, bool cuts, const bool eye) {
-    if (!eye && !cuts && !f->holes && !b->holes && p->table->run_count == 1 &&
-        p->table->runs[0].first == 0)
+TARGET VALUE_INLINE int NAME(collect)(const snow_value_splat *p,
+                                      const value_rows *f, const value_rows *b,
+                                      const value_beside beside[2],
+                                      const value_phase *state,
+                                      value_slab *slab, value_queue *q,
+                                      int count, const bool sloped, bool cuts,
+                                      const bool eye, bool plain) {
+    if (plain)
         return NAME(collect_by)(p, f, b, beside, state, slab, q, count, sloped,
                                 false, false, true);
     return NAME(collect_by)(p, f, b, beside, state, slab, q, count, sloped,
@@ -234,7 +257,6 @@ TARGET VALUE_INLINE int NAME(gather)(const snow_value_splat *p, int n,
         if (slab->rows)
             slab->rows &= V(rows_and)(slab->active, state->open, ~UINT32_C(0));
         uint64_t here = (uint64_t)slab->rows << 1;
-        uint32_t across = sloped ? slab->rows : 0;
         if (!here)
             continue;
         if (p->labels) {
@@ -245,13 +267,20 @@ TARGET VALUE_INLINE int NAME(gather)(const snow_value_splat *p, int n,
         }
         if (sloped && !eye)
             here |= here << 1 | here >> 1;
-        NAME(sample)(p, n, phase, tile, here, across, f, eye);
-        NAME(sample)(p, n + 1, phase, tile, here, across, b, eye);
+        NAME(sample)(p, n, phase, tile, here, 0, f, eye);
+        NAME(sample)(p, n + 1, phase, tile, here, 0, b, eye);
+        const bool plain = NAME(is_plain)(p, f, b, cuts, eye);
+        if (plain)
+            NAME(see_plain)(p, f, b, slab);
+        if (sloped && slab->rows) {
+            NAME(sample)(p, n, phase, tile, 0, slab->rows, f, eye);
+            NAME(sample)(p, n + 1, phase, tile, 0, slab->rows, b, eye);
+        }
         for (int side = 0; sloped && eye && side < 2; side++)
             NAME(sample_beside)
         (p, n + side, phase, tile, slab->rows, room->rows, &beside[side]);
         count = NAME(collect)(p, f, b, beside, state, slab, &room->queue, count,
-                              sloped, cuts, eye);
+                              sloped, cuts, eye, plain);
     }
     return count;
 }
