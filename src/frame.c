@@ -1,6 +1,5 @@
-/* frame.c - one picture: figure 8 of the paper, whose line numbers stand in the
- * margin.  Its records are those of render/picture.h; how a stage works is said
- * in its folder (README.md). */
+/* frame.c - one picture: figure 8 of the paper, with its line numbers in the
+ * margin.  render/picture.h has its records, README.md the folder of each. */
 #include "frame.h"
 
 #include "parallel/internal.h"

@@ -66,7 +66,7 @@ static snow_status open_pattern(const rank_state *state, int slab, int *spans,
 static snow_status agree_size(rank_state *state) {
     const combine_pattern *own = &state->pattern;
     int64_t sizes[4] = {own->width, -own->width, own->height, -own->height};
-    SNOW_TRY(snow_comm_reduce_ints(state->comm, sizes, 4, SNOW_MAX));
+    SNOW_TRY(snow_comm_reduce_ints(state->comm, sizes, 4, SNOW_REDUCE_MAX));
     if (sizes[0] != -sizes[1] || sizes[2] != -sizes[3])
         return snow_fail(state->comm->context, SNOW_STATUS_BAD_INPUT,
                          "%s: local images are of different sizes, %d to %d "
@@ -129,7 +129,7 @@ static void finish(rank_state *state) {
 /* All ranks go on together. */
 static snow_status line_up(snow_comm *comm) {
     double now = snow_comm_seconds(comm);
-    SNOW_TRY(snow_comm_reduce_doubles(comm, &now, 1, SNOW_MAX));
+    SNOW_TRY(snow_comm_reduce_doubles(comm, &now, 1, SNOW_REDUCE_MAX));
     /* The last rank has the news well within a second. */
     if (comm->ops.work)
         snow_comm_work(comm, now + 1 - snow_comm_seconds(comm));
@@ -277,7 +277,7 @@ static void list_figures(const combine_figures *f, double list[FIGURES]) {
 }
 
 static snow_status reduce_by(snow_comm *comm, const combine_figures *mine,
-                             snow_reduction by, combine_figures *out) {
+                             snow_reduce by, combine_figures *out) {
     double f[FIGURES];
     list_figures(mine, f);
     SNOW_TRY(snow_comm_reduce_doubles(comm, f, FIGURES, by));
@@ -316,8 +316,8 @@ static snow_status measure(rank_state *state, combine_result *out) {
                                .height = options->height};
         SNOW_TRY(run_once(state, true, &mine));
         this.given = *snow_exchange_get_figures(state->combiner);
-        SNOW_TRY(reduce_by(comm, &mine, SNOW_MAX, &this.most));
-        SNOW_TRY(reduce_by(comm, &mine, SNOW_SUM, &this.sum));
+        SNOW_TRY(reduce_by(comm, &mine, SNOW_REDUCE_MAX, &this.most));
+        SNOW_TRY(reduce_by(comm, &mine, SNOW_REDUCE_SUM, &this.sum));
         if (best.most.total < 0 || this.most.total < best.most.total)
             best = this;
     }

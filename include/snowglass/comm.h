@@ -3,9 +3,8 @@
  * A communicator is a fixed group of processors, numbered from 0 (its ranks):
  * one process, threads, MPI (snowglass/mpi.h), or a transport of your own
  * (extend.h). Rank 0 is the paper's display processor. Collective calls are
- * made by all ranks in the same order. What fails on one rank fails on all:
- * they agree on the status, and every rank's context has the message, which
- * names the rank. */
+ * made by all ranks in the same order. What fails on one rank fails on all,
+ * with the same status and a message that names the rank. */
 #ifndef SNOWGLASS_COMM_H
 #define SNOWGLASS_COMM_H
 
@@ -30,27 +29,23 @@ SNOW_API int snow_comm_rank(const snow_comm *comm); /* from 0 */
 SNOW_API int snow_comm_size(const snow_comm *comm); /* how many */
 SNOW_API snow_context *snow_comm_context(const snow_comm *comm);
 
-/* Collective. OK if all give it; else the status of the lowest rank that
- * failed, with its message in every context, after "rank N: " where there are
- * several. */
+/* Collective. OK if all ranks give it; else the status of the lowest rank that
+ * failed, with its message in every context, after "rank N: ". */
 SNOW_API snow_status snow_comm_agree_status(
     snow_comm *comm, snow_status status);
 
-/* Collective. `count` bytes of rank `root` to all; of every rank to all, in
- * order of rank. */
+/* Collective. `count` bytes of rank `root` to all; of each rank, in order. */
 SNOW_API snow_status snow_comm_broadcast(
     snow_comm *comm, void *bytes, size_t count, int root);
 SNOW_API snow_status snow_comm_allgather(
     snow_comm *comm, const void *mine, size_t count, void *all);
 
-/* Whether the transport has failed on this rank. All further calls fail; the
- * other ranks may not know: a program of several processes ends them all, and
- * before that frees no frame and no movie. */
+/* Whether the transport has failed on this rank. All further calls fail. Other
+ * ranks may not know: end all processes, and free no frame or movie before. */
 SNOW_API bool snow_comm_broken(const snow_comm *comm);
 
-/* Alike on all ranks: seconds to wait for a rank that neither sends nor waits;
- * 0, the default: for ever. Beyond it the communicator is broken. Be generous:
- * a rank that works or reads for longer counts as hung. Not for threads. */
+/* Alike on all ranks: seconds to wait for a rank that neither sends nor waits
+ * (docs/scaling.md); then the communicator is broken. 0: for ever. */
 SNOW_API void snow_comm_set_timeout(snow_comm *comm, double seconds);
 
 /* Wall time, unless simulated; messages and bytes sent by this rank so far. */

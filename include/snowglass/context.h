@@ -14,12 +14,10 @@
 #include <stdint.h>
 
 /* Records that a call reads or fills begin with `size` and may grow at their
- * end. Call snow_x_init(&x) before the first use, whoever fills it: it sets
- * `size` and every default. Where these are zeros (all but snow_view,
- * snow_settings, snow_recipe), {.size = sizeof(snow_x), ...} will do. Fields
- * beyond the caller's `size` have their defaults and are not written. A size of
- * 0 is BAD_USAGE, and so is a field unknown to this library, unless 0. Points,
- * ranges and boxes never grow. */
+ * end. Call snow_x_init(&x) first, which sets `size` and all defaults. Where
+ * these are zeros (all but snow_view, snow_settings, snow_recipe), {.size =
+ * sizeof(snow_x), ...} will do. Fields beyond `size` get their defaults and are
+ * not written. BAD_USAGE: a size of 0, an unknown field that is not 0. */
 #define SNOW_RECORD(record)                                       \
     SNOW_API void record##_init_sized(record *made, size_t size); \
     static inline void record##_init(record *made) {              \
@@ -37,8 +35,7 @@ typedef struct snow_allocator {
     void *user;
 } snow_allocator;
 
-/* `allocator` is copied; NULL: malloc and free. Free it after all objects made
- * with it. */
+/* `allocator` is copied; NULL: malloc and free. Free a context last. */
 SNOW_API snow_status snow_context_new(
     const snow_allocator *allocator, snow_context **out);
 SNOW_API void snow_context_free(snow_context *context);

@@ -45,9 +45,9 @@ typedef struct snow_message {
 
 typedef bool snow_idle_fn(void *user); /* a piece of work; false: none left */
 
-/* What a transport does, called by the communicator's thread. Those that return
- * a status leave a message with snow_context_fail; after a failure only `end`
- * is called. The first five and `end` are needed, others may be NULL. */
+/* A transport, called by the communicator's thread. Those that return a status
+ * leave a message by snow_context_fail; after a failure only `end` is called.
+ * The first five and `end` are needed, others may be NULL. */
 typedef struct snow_comm_ops {
     size_t size;
     /* Start a message, whose bytes stay until it is done, and get ready for one
@@ -72,19 +72,22 @@ typedef struct snow_comm_ops {
 } snow_comm_ops;
 SNOW_RECORD(snow_comm_ops);
 
-/* A communicator over a transport; `ops` is copied, `self` ends with it.
- * Errors, where self is not ended: BAD_USAGE (functions that lack, a rank out
- * of 0 to ranks - 1). */
+/* A communicator over a transport; `ops` is copied. It ends `self`, unless it
+ * fails. Errors: BAD_USAGE (missing functions, rank not in 0 to ranks - 1). */
 SNOW_API snow_status snow_comm_new(snow_context *context,
     const snow_comm_ops *ops, void *self, int rank, int ranks, snow_comm **out);
 
 /* Collective. Element by element over all ranks; the result replaces `values`,
  * with the same bits on every rank. */
-typedef enum snow_reduction { SNOW_SUM, SNOW_MIN, SNOW_MAX } snow_reduction;
+typedef enum snow_reduce {
+    SNOW_REDUCE_SUM,
+    SNOW_REDUCE_MIN,
+    SNOW_REDUCE_MAX
+} snow_reduce;
 SNOW_API snow_status snow_comm_reduce_ints(
-    snow_comm *comm, int64_t *values, size_t count, snow_reduction by);
+    snow_comm *comm, int64_t *values, size_t count, snow_reduce by);
 SNOW_API snow_status snow_comm_reduce_doubles(
-    snow_comm *comm, double *values, size_t count, snow_reduction by);
+    snow_comm *comm, double *values, size_t count, snow_reduce by);
 
 static inline int64_t snow_box_voxels(const snow_box *box) {
     return box->count[0] * box->count[1] * box->count[2];
@@ -106,7 +109,7 @@ typedef struct snow_brick {
 SNOW_API void snow_brick_copy(const snow_brick *brick, size_t value,
     const snow_box *box, const snow_box *whole, void *dense);
 
-/* A plan, with its buffers; `clear` forgets both. */
+/* A plan of moves, with its buffers; `clear` drops both. */
 typedef struct snow_voxels snow_voxels;
 SNOW_API snow_status snow_voxels_new(snow_comm *comm, snow_voxels **out);
 SNOW_API void snow_voxels_free(snow_voxels *voxels);
@@ -114,9 +117,8 @@ SNOW_API void snow_voxels_clear(snow_voxels *voxels);
 
 /* Collective. Plans what goes where when this rank holds `count` boxes and
  * wants one; any may be empty. Moves voxels of `value` bytes from bricks[n] in
- * held[n] to the wanted box; only the first move, or a larger value, takes
- * memory. Errors, alike on all ranks: BAD_USAGE (boxes that overlap, wanted
- * voxels that nobody holds), those of the transport. */
+ * held[n] to the wanted box. Errors, alike on all ranks: BAD_USAGE (boxes that
+ * overlap, wanted voxels that nobody holds), those of the transport. */
 SNOW_API snow_status snow_voxels_plan(snow_voxels *voxels, const snow_box *held,
     int count, const snow_box *wanted);
 SNOW_API snow_status snow_voxels_move(
@@ -141,8 +143,7 @@ SNOW_API snow_status snow_ranks_find_needs(snow_context *context,
     const snow_settings *settings, const snow_look *look,
     snow_ranks_needs *out);
 
-/* Whether disjoint boxes have an order from front to back (bars in a ring have
- * none). Errors: as above. */
+/* Whether disjoint boxes have an order from front to back. Errors: as above. */
 SNOW_API snow_status snow_ranks_have_order(snow_context *context,
     const snow_volume_info *whole, const snow_view *view, const snow_box *boxes,
     int count, bool *out);

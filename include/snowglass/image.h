@@ -39,9 +39,8 @@ SNOW_RECORD(snow_image_options);
 
 /* Writes .png, .webp (levels), .npy, .pfm, .exr, .tif, .tiff (floats), or "-",
  * a PNG to standard output (docs/output.md), whole or not at all. `options` may
- * be NULL. Errors: BAD_OUTPUT (also an existing file, unless
- * options->overwrite), BAD_USAGE (unknown suffix, or one that this build lacks;
- * values as levels; options that the format cannot hold). */
+ * be NULL. Errors: BAD_OUTPUT (an existing file, unless options->overwrite),
+ * BAD_USAGE (unknown suffix, options that the format cannot hold). */
 SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
     const snow_image_options *options);
 

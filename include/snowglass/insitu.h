@@ -1,9 +1,8 @@
 /* snowglass/insitu.h - pictures of a simulation while it runs (docs/insitu.md).
  *
- * Setters are local and hold until they are called again. One that fails says
- * so, and the next collective call fails on all ranks with its message: a
- * caller may look at those alone. Collective calls return one status on all
- * ranks and alone read voxels. After an error the next step may be tried,
+ * Setters are local and hold until called again. If one fails, so does the next
+ * collective call, on all ranks. Collective calls return one status on all
+ * ranks; only they read voxels. After an error the next step may be tried,
  * unless the communicator is broken. */
 #ifndef SNOWGLASS_INSITU_H
 #define SNOWGLASS_INSITU_H
@@ -17,7 +16,7 @@ typedef struct snow_insitu snow_insitu;
 SNOW_API snow_status snow_insitu_new(snow_comm *comm, snow_insitu **out);
 SNOW_API void snow_insitu_free(snow_insitu *insitu);
 
-/* Its communicator; hands that (and its context) over, to be freed with it. */
+/* Its communicator; makes it free that, and its context, when it is freed. */
 SNOW_API snow_comm *snow_insitu_comm(const snow_insitu *insitu);
 SNOW_API void snow_insitu_own_comm(snow_insitu *insitu, bool with_context);
 
@@ -47,8 +46,8 @@ typedef struct snow_halo {
 SNOW_API snow_status snow_insitu_set_brick(snow_insitu *insitu, int id,
     const int64_t first[3], const int64_t count[3], const snow_halo *halo);
 
-/* `voxels` is the address of the brick's first voxel, behind the halo; strides
- * in values, NULL: x fastest, halo included. One type for all bricks. */
+/* `voxels` points at the first one behind the halo; strides in values, NULL: x
+ * fastest, halo included. One type for all bricks. */
 SNOW_API snow_status snow_insitu_set_voxels(snow_insitu *insitu, int id,
     snow_type type, const void *voxels, const int64_t stride[3]);
 
@@ -131,9 +130,8 @@ typedef enum snow_degradation {
 /* Figures of the last picture, and of all so far. */
 typedef struct snow_insitu_stats {
     size_t size;
-    snow_spread seconds_update, seconds_look; /* voxels; transfer function */
-    snow_spread seconds_render,
-        seconds_encode;       /* local image, encoding of it */
+    snow_spread seconds_update, seconds_look;   /* voxels; transfer function */
+    snow_spread seconds_render, seconds_encode; /* local image; encoding */
     snow_spread seconds_draw; /* until the picture lies on rank 0 */
     snow_spread seconds_write, seconds_step; /* the latter all of a step */
     snow_spread bytes_sent;                  /* in that step */

@@ -28,10 +28,10 @@ SNOW_API void snow_look_file_free(snow_look_file *file);
 SNOW_API const snow_look *snow_look_file_look(const snow_look_file *file);
 SNOW_API const char *snow_look_file_format(const snow_look_file *file);
 
-/* Writes a look's points as our JSON, exact to the last bit, or as CSV (no
- * gradient opacity, logarithm, name) into `room` bytes with a final zero;
- * *length is the text's. One that does not fit is "": call again with *length +
- * 1. Errors: BAD_USAGE (CSV without colours or opacities). */
+/* Writes a look's points as our JSON, exact to the last bit, or as CSV (without
+ * gradient opacity, logarithm, name), zero-terminated. *length is the text's; a
+ * text that does not fit in `room` is "": call again with *length + 1. Errors:
+ * BAD_USAGE (CSV without colours or opacities). */
 SNOW_API snow_status snow_look_write_json(snow_context *context,
     const snow_look *look, char *text, size_t room, size_t *length);
 SNOW_API snow_status snow_look_write_csv(snow_context *context,

@@ -12,9 +12,8 @@
 
 /* Collective over `group`, an intracommunicator: the same ranks over a
  * duplicate of it. All ranks succeed, or none. Free it (collective) before
- * MPI_Finalize. Errors: BAD_USAGE (MPI is not running, no such group),
- * NO_MEMORY, FAILED (of MPI). `_fortran` takes a handle of Fortran:
- * comm%MPI_VAL, or the integer of the module mpi. */
+ * MPI_Finalize. Errors: BAD_USAGE (MPI is not running, no such group), FAILED
+ * (of MPI). `_fortran` takes comm%MPI_VAL, or the integer of the module mpi. */
 SNOW_API snow_status snow_comm_new_mpi(
     snow_context *context, MPI_Comm group, snow_comm **out);
 SNOW_API snow_status snow_comm_new_mpi_fortran(

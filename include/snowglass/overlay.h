@@ -23,7 +23,7 @@ SNOW_API snow_status snow_overlay_text(snow_overlay *overlay, double x,
 
 /* The patient's side (R L A P S I) nearest to the left, right, top and bottom
  * edge; two letters where it is over 25 degrees off; "" unless info->medical.
- * The other draws them, on pictures with sides of at least 64 pixels. */
+ * Draws them, on pictures with sides of at least 64 pixels. */
 SNOW_API snow_status snow_view_orientation(snow_context *context,
     const snow_volume_info *info, const snow_view *view, char letters[4][4]);
 SNOW_API snow_status snow_overlay_orientation(

@@ -77,21 +77,19 @@ SNOW_API snow_status snow_ranks_partition(const snow_volume *volume,
 
 /* The picture, on rank 0; NULL on the others, unless it is scattered. Parts are
  * boxes with an order from front to back and the ghosts that the view needs; a
- * rank may own none. It is the picture of snow_frame_render but for rounding
- * (1/255 where opaque), or to the bit with settings->deterministic, with parts
- * as snow_ranks_open makes them. The frame is freed before the communicator.
- * Errors: of snow_frame_render; BAD_USAGE (parts that overlap, leave voxels
- * out, have too few ghosts or no order). */
+ * rank may own none. The picture is that of snow_frame_render within 1/255; to
+ * the bit with settings->deterministic and parts of snow_ranks_open. Free the
+ * frame before the communicator. Errors: of snow_frame_render; BAD_USAGE (parts
+ * that overlap, leave voxels out, have too few ghosts or no order). */
 SNOW_API snow_status snow_ranks_render(snow_frame *frame, snow_comm *comm,
     const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings,
     const snow_ranks_options *how, snow_image **image);
 
-/* The same in two halves, to the same bits: begin 0; begin 1, finish 0; begin
- * 2, finish 1; and so on. While a picture is combined, the next is splatted. At
- * most two are in flight. All but frame and communicator may change after
- * begin, which leaves failures of the picture to finish. Errors: BAD_USAGE (two
- * in flight, or none), of snow_ranks_render. */
+/* The same bits in two halves: begin 0; begin 1, finish 0; begin 2, finish 1;
+ * and so on. A picture is combined while the next is splatted; at most two are
+ * in flight. All but frame and communicator may change after begin, which
+ * leaves failures of the picture to finish. Errors: of snow_ranks_render. */
 SNOW_API snow_status snow_ranks_begin(snow_frame *frame, snow_comm *comm,
     const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings,

@@ -1,14 +1,13 @@
 /* snowglass/recipe.h - a whole render as a text: the same for the command line,
  * for programs, and for pictures of a running simulation.
  *
- * A recipe is one JSON object. Its keys are the long options of the tool, its
- * values what they take; what is left out has its default, and an unknown key
- * is refused:
+ * A recipe is one JSON object. Its keys are the long options of the tool:
  *
  *   {"input": "head.nii.gz", "output": "head_%04d.png", "size": [640, 480],
- *    "colormap": "viridis", "range": [10, 200], "view": "anterior",
- *    "azimuth": 30, "quality": "high", "background": [1, 1, 1]}
- * In libsnowglass-recipe, which needs jansson. */
+ *    "colormap": "viridis", "range": [10, 200], "background": [1, 1, 1]}
+ *
+ * A key that is absent has its default, an unknown one is an error. In
+ * libsnowglass-recipe, which needs jansson. */
 #ifndef SNOWGLASS_RECIPE_H
 #define SNOWGLASS_RECIPE_H
 

@@ -60,8 +60,7 @@ typedef enum snow_shade { SNOW_SHADE_PHONG = 0, SNOW_SHADE_NONE } snow_shade;
 /* Where the light comes from (docs/model.md, section 4). */
 typedef enum snow_light {
     SNOW_LIGHT_AUTO = 0, /* key; a direction where angles are not 0 */
-    SNOW_LIGHT_KEY,      /* 0.65 from 25 degrees to the left and 35 up, and a
-                            head light of 0.35 */
+    SNOW_LIGHT_KEY,      /* most from the upper left, the rest head light */
     SNOW_LIGHT_HEAD,     /* from the viewer */
     SNOW_LIGHT_DIRECTION /* from light_azimuth and light_elevation */
 } snow_light;
@@ -84,27 +83,24 @@ typedef struct snow_settings {
     snow_method method;     /* (auto) */
     snow_encoding encoding; /* (auto) */
     snow_kernel kernel;     /* (auto) */
-    int footprint;          /* voxels, 2 to 9; 0: 2 for tent and box, else 4.
-                               Shear-warp and raycast: tent of 2 or bspline of
-                               4; of others footprint makes the picture */
+    int footprint;          /* voxels, 2 to 9; 0: 2 for tent and box, else 4 */
     double opacity_length;  /* world length of an opacity; 0: least spacing */
     snow_shade shade;       /* (phong) */
     double ambient, diffuse, specular;     /* 0 to 1 (0.2, 0.7, 0.2) */
     double shininess;                      /* exponent, at least 0 (20) */
-    double light_azimuth, light_elevation; /* degrees to the camera's right and
-                                              up */
+    double light_azimuth, light_elevation; /* degrees: camera's right, up */
     snow_quality quality;                  /* (normal) */
     snow_isa isa;                          /* (auto) */
     int threads; /* 1 to 4096, of no effect on the picture; 0: all there are */
-    bool deterministic; /* the same bits on every machine (false) */
-    snow_mode mode;     /* (over) */
-    double iso;         /* data value of mode iso, finite */
-    bool depth;         /* with snow_frame_depth; over and iso (false) */
-    snow_stop_fn *stop; /* whether the picture is to end early (NULL) */
-    void *stop_user;    /* its argument (NULL) */
-    snow_light light;   /* (auto) */
-    double depth_darkening; /* 0 to 1: darkens what lies behind that beside it;
-                               makes depths; over and iso (0) */
+    bool deterministic;     /* the same bits on every machine (false) */
+    snow_mode mode;         /* (over) */
+    double iso;             /* data value of mode iso, finite */
+    bool depth;             /* with snow_frame_depth; over and iso (false) */
+    snow_stop_fn *stop;     /* whether the picture is to end early (NULL) */
+    void *stop_user;        /* its argument (NULL) */
+    snow_light light;       /* (auto) */
+    double depth_darkening; /* 0 to 1: darkens what lies behind its neighbours;
+                               over and iso (0) */
 } snow_settings;
 SNOW_RECORD(snow_settings);
 
@@ -120,14 +116,12 @@ typedef struct snow_stats {
     bool encoded; /* anew, for this picture */
     int64_t voxels, interesting;
     double sparse_ratio; /* share of uninteresting voxels, 0 to 1 */
-    uint64_t ea_bytes, ia_bytes, pa_bytes; /* the encoding's arrays; IA is 0
-                                              where voxels are read in place */
+    uint64_t ea_bytes, ia_bytes, pa_bytes; /* IA 0: voxels read in place */
     double seconds_classify, seconds_shade, seconds_encode; /* stages of */
     double seconds_splat, seconds_composite, seconds_warp;  /*   figure 7 */
     double seconds_frame; /* the whole picture */
     double cpu_frame;     /* the same in processor time of the process */
-    uint64_t kept_bytes, kept_most; /* encodings along other slice axes, which
-                                       are kept for pictures that follow */
+    uint64_t kept_bytes, kept_most; /* encodings along other slice axes */
 } snow_stats;
 SNOW_RECORD(snow_stats);
 
@@ -135,22 +129,21 @@ SNOW_API snow_status snow_frame_new(snow_context *context, snow_frame **out);
 SNOW_API void snow_frame_free(snow_frame *frame);
 
 /* Renders one picture: figure 8 of the paper on one processor. All objects are
- * of one context; `settings` may be NULL. Errors: BAD_USAGE (a setting, with
- * its name), BAD_INPUT (a geometry that no float can hold), STOPPED; then the
- * frame is as before. */
+ * of one context; `settings` may be NULL. Errors, which leave the frame as it
+ * was: BAD_USAGE, BAD_INPUT (a geometry that no float can hold), STOPPED. */
 SNOW_API snow_status snow_frame_render(snow_frame *frame,
     const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings, snow_image **image);
 
-/* Renders a file (or phantom:NAME) with the default look. `view` NULL: that of
- * snow_view_default; `settings` may be NULL. Errors: of snow_volume_open,
- * snow_frame_render. */
+/* Renders a file (or phantom:NAME) with the default look. `view` and `settings`
+ * may be NULL. Errors: of snow_volume_open, snow_frame_render. */
 SNOW_API snow_status snow_render_file(snow_context *context, const char *path,
     const snow_view *view, const snow_settings *settings, snow_image **image);
 
-/* Owned by the frame, until its next picture. Depths (settings.depth or
- * depth_darkening, else NULL): world distance behind the target's plane, along the line of sight, of
- * where opacity passes 1/2 or of the isosurface; NaN where there is nothing. */
+/* Owned by the frame, until its next picture. Depths (of settings.depth or
+ * depth_darkening, else NULL): world distance along the line of sight, from the
+ * target's plane to where opacity passes 1/2 or to the isosurface; NaN where
+ * there is neither. */
 SNOW_API const snow_image *snow_frame_depth(const snow_frame *frame);
 SNOW_API const snow_stats *snow_frame_stats(const snow_frame *frame);
 

@@ -3,9 +3,8 @@
  *
  * Colour (straight, linear as stored) and opacity, of one reference length
  * (snow_settings), are piecewise linear between control points in data units,
- * constant beyond the ends; where a value repeats there is a step, and the
- * value belongs to the later point. A gradient opacity may multiply the
- * opacity. */
+ * constant beyond the ends. A value that repeats is a step, and belongs to the
+ * later point. A gradient opacity can multiply the opacity. */
 #ifndef SNOWGLASS_TRANSFER_H
 #define SNOWGLASS_TRANSFER_H
 
@@ -22,16 +21,14 @@ typedef struct snow_opacity_point {
     double value, opacity; /* data value or gradient magnitude; 0 to 1 */
 } snow_opacity_point;
 
-/* From control points, which are copied: finite, values not falling, at least
- * one of each kind. */
+/* From copied control points, of each kind one or more, values not falling. */
 SNOW_API snow_status snow_transfer_new(snow_context *context,
     const snow_color_point *colors, size_t color_count,
     const snow_opacity_point *opacities, size_t opacity_count,
     snow_transfer **out);
 SNOW_API void snow_transfer_free(snow_transfer *transfer);
 
-/* Joins points by the logarithm of values, all above 0; 0 and below is
- * transparent. */
+/* Joins points, all above 0, by logarithms; 0 and below is transparent. */
 SNOW_API snow_status snow_transfer_set_log(snow_transfer *transfer);
 SNOW_API bool snow_transfer_is_log(const snow_transfer *transfer);
 
@@ -60,9 +57,8 @@ typedef enum snow_domain {
 
 /* What a transfer function is made of, before there is a volume; by default all
  * is chosen from the histogram. Arrays and texts stay the caller's. Colours
- * come from `colors`, else `base`, else `preset`. A look with colours, or a
- * domain other than data, stands for a preset itself; one with opacities alone
- * replaces those of its base or preset, at data values. */
+ * come from `colors`, else `base`, else `preset`. Opacities without colours, in
+ * the domain of data, replace those of the base or preset. */
 typedef struct snow_look {
     size_t size;
     const char *name;             /* for people; NULL: none */
@@ -92,8 +88,7 @@ SNOW_API snow_status snow_transfer_new_for_volume(
     const snow_volume *volume, const snow_look *look, snow_transfer **out);
 
 /* "grey 72..213; opacity 0 at 72, 0.4 at 213 (from the histogram)"; straight
- * colour and opacity at a data value, without the gradient opacity, zeros for
- * NaN; the data values of the first and the last colour. */
+ * colour and opacity of a data value, zeros for NaN; values of both ends. */
 SNOW_API const char *snow_transfer_description(const snow_transfer *transfer);
 SNOW_API void snow_transfer_evaluate(
     const snow_transfer *transfer, double value, double rgba[4]);

@@ -38,7 +38,7 @@ SNOW_RECORD(snow_view);
 
 /* By name, of any case: anterior (+y) posterior left (-x) right superior (+z)
  * inferior iso +x -x +y -y +z -z. The camera is on that side (iso: at (1, 1,
- * 1)); +z is up, for z sides +y. All else is as by default. */
+ * 1)); +z is up, for z sides +y. Other fields have their defaults. */
 SNOW_API snow_status snow_view_from_name(
     snow_context *context, const char *name, snow_view *out);
 

@@ -98,8 +98,7 @@ SNOW_API void snow_volume_close(snow_volume *volume);
 
 /* Out of core (docs/larger.md): voxels stay in the file, which must not change,
  * and are read in slabs of up to `slab_bytes` (0: 64 MiB). Looks and pictures
- * are those of snow_volume_open; what else needs voxels is BAD_USAGE, as is a
- * pipe. The other: seconds spent in reading slabs. */
+ * are the same; all else that needs voxels is BAD_USAGE. Seconds of reading. */
 SNOW_API snow_status snow_volume_open_streamed(snow_context *context,
     const char *path, const snow_volume_options *options, uint64_t slab_bytes,
     snow_volume **out);
@@ -149,8 +148,8 @@ SNOW_API snow_status snow_volume_set_extent(
 SNOW_API snow_status snow_volume_get_extent(
     const snow_volume *volume, snow_extent *out);
 
-/* What is known of it; the patient's name in UTF-8, or "", which is in nothing
- * else that is written; the voxels, NULL where they stay in a file. */
+/* The patient's name is UTF-8, or "", and never written. The voxels are NULL
+ * where they stay in a file. */
 SNOW_API const snow_volume_info *snow_volume_get_info(const snow_volume *);
 SNOW_API const char *snow_volume_patient(const snow_volume *volume);
 SNOW_API const void *snow_volume_voxels(const snow_volume *volume);
@@ -170,16 +169,16 @@ SNOW_API snow_status snow_volume_get_statistics(
 SNOW_API snow_status snow_volume_histogram(const snow_volume *volume, double lo,
     double hi, size_t bins, uint64_t *counts);
 
-/* New volumes, which need the given ones no more. Data values in another type
- * (NONE: the least that holds them): as they are, rounded for integers, or with
- * `range` spread from it over an integer type of up to 32 bits. Errors:
- * BAD_USAGE (a value that does not fit). */
+/* New volumes, independent of the given ones. Data values in another type
+ * (NONE: the smallest that holds them), rounded for integers, or with `range`
+ * spread over an integer type of up to 32 bits. Errors: BAD_USAGE (a value that
+ * does not fit). */
 SNOW_API snow_status snow_volume_convert(const snow_volume *volume,
     snow_type type, const double range[2], snow_volume **out);
 
-/* NaN, which nothing shows, where the mask's value is none of the labels (of no
- * labels: is 0 or NaN). The type is float32, or float64 for integers of 32 and
- * 64 bits and float64. Errors: BAD_INPUT (another grid or place). */
+/* NaN, which is invisible, where the mask has none of the labels (without
+ * labels: 0 or NaN). The type is float32, or float64 for integers of 32 and 64
+ * bits and float64. Errors: BAD_INPUT (another grid or place). */
 SNOW_API snow_status snow_volume_mask(const snow_volume *volume,
     const snow_volume *mask, const snow_label_range *labels, size_t count,
     snow_volume **out);
@@ -199,8 +198,8 @@ SNOW_API bool snow_labels_parse(
 SNOW_API snow_status snow_volume_save(
     const snow_volume *volume, const char *path, bool overwrite);
 
-/* Entry `index` (from 0) of a list, NULL past the end. Of optional libraries:
- * *version NULL where it, or its module, is missing; *formats that need it. */
+/* Entry `index` (from 0) of a list, NULL past the end. *version of an optional
+ * library is NULL where it is missing; *formats need it. */
 SNOW_API const char *snow_volume_format_suffix(size_t index);
 SNOW_API const char *snow_phantom_name(size_t index);
 SNOW_API const char *snow_phantom_description(size_t index);

@@ -40,7 +40,8 @@ snow_status snow_counts_divide(snow_combiner *combiner) {
         memcpy(counts, order->counts, bins * sizeof *counts);
     } else {
         count_lines(combiner, order, counts);
-        SNOW_TRY(snow_comm_reduce_ints(combiner->comm, counts, bins, SNOW_SUM));
+        SNOW_TRY(snow_comm_reduce_ints(combiner->comm, counts, bins,
+                                       SNOW_REDUCE_SUM));
     }
     snow_borders_count(borders, counts);
     memset(combiner->counts, 0, sizeof combiner->counts);

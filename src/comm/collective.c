@@ -47,11 +47,11 @@ static void reduce_ints(void *values, const void *others, size_t count,
                         const void *how) {
     int64_t *a = values;
     const int64_t *b = others;
-    const snow_reduction by = *(const snow_reduction *)how;
+    const snow_reduce by = *(const snow_reduce *)how;
     for (size_t i = 0; i < count; i++) {
-        if (by == SNOW_SUM)
+        if (by == SNOW_REDUCE_SUM)
             a[i] = (int64_t)((uint64_t)a[i] + (uint64_t)b[i]);
-        else if (by == SNOW_MIN ? b[i] < a[i] : b[i] > a[i])
+        else if (by == SNOW_REDUCE_MIN ? b[i] < a[i] : b[i] > a[i])
             a[i] = b[i];
     }
 }
@@ -60,20 +60,20 @@ static void reduce_ints(void *values, const void *others, size_t count,
 static void reduce_both(void *values, const void *others, size_t count,
                         const void *how) {
     const size_t maxima = *(const size_t *)how;
-    reduce_ints(values, others, maxima, &(snow_reduction){SNOW_MAX});
+    reduce_ints(values, others, maxima, &(snow_reduce){SNOW_REDUCE_MAX});
     reduce_ints((int64_t *)values + maxima, (const int64_t *)others + maxima,
-                count - maxima, &(snow_reduction){SNOW_SUM});
+                count - maxima, &(snow_reduce){SNOW_REDUCE_SUM});
 }
 
 static void reduce_doubles(void *values, const void *others, size_t count,
                            const void *how) {
     double *a = values;
     const double *b = others;
-    const snow_reduction by = *(const snow_reduction *)how;
+    const snow_reduce by = *(const snow_reduce *)how;
     for (size_t i = 0; i < count; i++) {
-        if (by == SNOW_SUM)
+        if (by == SNOW_REDUCE_SUM)
             a[i] += b[i];
-        else if (by == SNOW_MIN ? b[i] < a[i] : b[i] > a[i])
+        else if (by == SNOW_REDUCE_MIN ? b[i] < a[i] : b[i] > a[i])
             a[i] = b[i];
     }
 }
@@ -113,7 +113,7 @@ static snow_status reduce_some(snow_comm *comm, void *values, size_t count,
 
 /* In chunks of the scratch memory's size. */
 static snow_status reduce_all(snow_comm *comm, void *values, size_t count,
-                              snow_reduction by, reduce_fn *reduce) {
+                              snow_reduce by, reduce_fn *reduce) {
     unsigned char *bytes = values;
     while (count && comm->ranks > 1) {
         size_t some = count < SNOW_COMM_SCRATCH ? count : SNOW_COMM_SCRATCH;
@@ -125,7 +125,7 @@ static snow_status reduce_all(snow_comm *comm, void *values, size_t count,
 }
 
 snow_status snow_comm_reduce_ints(snow_comm *comm, int64_t *values,
-                                  size_t count, snow_reduction by) {
+                                  size_t count, snow_reduce by) {
     return reduce_all(comm, values, count, by, reduce_ints);
 }
 
@@ -138,7 +138,7 @@ snow_status snow_comm_reduce_both(snow_comm *comm, int64_t *values,
 }
 
 snow_status snow_comm_reduce_doubles(snow_comm *comm, double *values,
-                                     size_t count, snow_reduction by) {
+                                     size_t count, snow_reduce by) {
     return reduce_all(comm, values, count, by, reduce_doubles);
 }
 
@@ -245,7 +245,7 @@ snow_status snow_comm_agree_status(snow_comm *comm, snow_status status) {
     if (comm->ranks == 1)
         return status;
     int64_t first = status == SNOW_STATUS_OK ? comm->ranks : comm->rank;
-    SNOW_TRY(snow_comm_reduce_ints(comm, &first, 1, SNOW_MIN));
+    SNOW_TRY(snow_comm_reduce_ints(comm, &first, 1, SNOW_REDUCE_MIN));
     comm->agreed = false;
     if (first == comm->ranks)
         return SNOW_STATUS_OK;

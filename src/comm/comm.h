@@ -63,8 +63,9 @@ void snow_comm_occupy(snow_comm *comm, snow_idle_fn *work, void *user);
 /* Lets messages progress, between pieces of work while they are in flight. */
 void snow_comm_progress(snow_comm *comm);
 
-/* Reduces the first values with SNOW_MAX and those after them with SNOW_SUM, at
- * the cost of one reduction; together at most SNOW_COMM_SCRATCH. */
+/* Reduces the first values with SNOW_REDUCE_MAX and those after them with
+ * SNOW_REDUCE_SUM, at the cost of one reduction; together at most
+ * SNOW_COMM_SCRATCH. */
 snow_status snow_comm_reduce_both(snow_comm *comm, int64_t *values,
                                   size_t maxima, size_t sums);
 

@@ -136,7 +136,7 @@ static snow_status take_box_table(snow_comm *comm, const snow_box *held,
                                   box_table *c) {
     snow_context *context = snow_comm_context(comm);
     int64_t most = count;
-    SNOW_TRY(snow_comm_reduce_ints(comm, &most, 1, SNOW_MAX));
+    SNOW_TRY(snow_comm_reduce_ints(comm, &most, 1, SNOW_REDUCE_MAX));
     c->ranks = snow_comm_size(comm);
     c->most = most > 0 ? (int)most : 1;
     size_t bytes = (size_t)c->most * sizeof *held;

@@ -67,7 +67,7 @@ static snow_status check_prints(snow_insitu *insitu, int64_t least,
 snow_status snow_insitu_check(snow_insitu *insitu) {
     snow_view view = snow_insitu_view(insitu);
     int64_t print = print_of(insitu, &view), prints[2] = {print, -print};
-    INSITU_TRY(snow_comm_reduce_ints(insitu->comm, prints, 2, SNOW_MIN));
+    INSITU_TRY(snow_comm_reduce_ints(insitu->comm, prints, 2, SNOW_REDUCE_MIN));
     return check_prints(insitu, prints[0], -prints[1]);
 }
 
@@ -121,7 +121,7 @@ snow_status snow_insitu_share_facts(snow_insitu *insitu, const snow_view *view,
     facts[SNOW_FACT_HALOS] = snow_insitu_halos_suffice(insitu, layers);
     facts[SNOW_FACT_BOXES] = insitu->boxes_known;
     INSITU_TRY(snow_comm_reduce_ints(insitu->comm, facts, SNOW_INSITU_FACTS,
-                                     SNOW_MIN));
+                                     SNOW_REDUCE_MIN));
     INSITU_TRY(check_facts(insitu, facts));
     insitu->type = (snow_type)facts[SNOW_FACT_TYPE];
     return SNOW_STATUS_OK;

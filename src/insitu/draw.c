@@ -74,7 +74,8 @@ static void note_stages(snow_insitu *insitu) {
 /* Collective.  What the picture took on the slowest rank steers the next. */
 static snow_status agree_seconds(snow_insitu *insitu) {
     double seconds = insitu->seconds.draw + insitu->seconds.update;
-    INSITU_TRY(snow_comm_reduce_doubles(insitu->comm, &seconds, 1, SNOW_MAX));
+    INSITU_TRY(
+        snow_comm_reduce_doubles(insitu->comm, &seconds, 1, SNOW_REDUCE_MAX));
     snow_insitu_steer(insitu, seconds);
     return SNOW_STATUS_OK;
 }
@@ -203,10 +204,10 @@ snow_status snow_insitu_get_stats(snow_insitu *insitu, snow_insitu_stats *out) {
     fill_figures(insitu, least);
     memcpy(mean, least, sizeof mean);
     memcpy(most, least, sizeof most);
-    INSITU_TRY(snow_comm_reduce_doubles(comm, least, FIGURES, SNOW_MIN));
-    INSITU_TRY(snow_comm_reduce_doubles(comm, mean, FIGURES, SNOW_SUM));
-    INSITU_TRY(snow_comm_reduce_doubles(comm, most, FIGURES, SNOW_MAX));
-    INSITU_TRY(snow_comm_reduce_ints(comm, &copied, 1, SNOW_SUM));
+    INSITU_TRY(snow_comm_reduce_doubles(comm, least, FIGURES, SNOW_REDUCE_MIN));
+    INSITU_TRY(snow_comm_reduce_doubles(comm, mean, FIGURES, SNOW_REDUCE_SUM));
+    INSITU_TRY(snow_comm_reduce_doubles(comm, most, FIGURES, SNOW_REDUCE_MAX));
+    INSITU_TRY(snow_comm_reduce_ints(comm, &copied, 1, SNOW_REDUCE_SUM));
     snow_insitu_stats f = {.pictures = insitu->pictures,
                            .skipped = insitu->skipped,
                            .ranks_copied = (int)copied,

@@ -130,7 +130,7 @@ static snow_status check_whole(const snow_insitu *insitu) {
     int64_t held = 0, all = dims[0] * dims[1] * dims[2];
     for (int n = 0; n < insitu->held_count; n++)
         held += snow_box_voxels(&insitu->held[n]);
-    INSITU_TRY(snow_comm_reduce_ints(insitu->comm, &held, 1, SNOW_SUM));
+    INSITU_TRY(snow_comm_reduce_ints(insitu->comm, &held, 1, SNOW_REDUCE_SUM));
     if (held == all)
         return SNOW_STATUS_OK;
     return snow_context_fail(insitu->context, SNOW_STATUS_BAD_USAGE,

@@ -109,7 +109,7 @@ static snow_status share_borders(snow_insitu *insitu, const int64_t dims[3],
     int64_t held = 0;
     for (int n = 0; n < count; n++)
         held += snow_box_voxels(&bricks[n].box);
-    INSITU_TRY(snow_comm_reduce_ints(insitu->comm, &held, 1, SNOW_SUM));
+    INSITU_TRY(snow_comm_reduce_ints(insitu->comm, &held, 1, SNOW_REDUCE_SUM));
     double all = (double)dims[0] * (double)dims[1] * (double)dims[2];
     for (int n = 0; n < count && (double)held > all; n++)
         if (snow_box_voxels(&bricks[n].box))
@@ -159,8 +159,8 @@ static snow_status place_all(snow_insitu *insitu,
     double bounds[BOUNDS];
     int64_t dims[3];
     find_bounds(bricks, count, spacing, bounds);
-    INSITU_TRY(
-        snow_comm_reduce_doubles(insitu->comm, bounds, BOUNDS, SNOW_MIN));
+    INSITU_TRY(snow_comm_reduce_doubles(insitu->comm, bounds, BOUNDS,
+                                        SNOW_REDUCE_MIN));
     INSITU_TRY(check_bounds(insitu, bounds));
     for (int i = 0; i < 3; i++)
         dims[i] = (int64_t)floor(

@@ -47,7 +47,7 @@ snow_status snow_flight_agree_range(snow_flight *f) {
         words[HIGH] = identity->high;
     }
     words[HOLES] = !identity->whole;
-    SNOW_TRY(snow_comm_reduce_doubles(comm, words, COUNT, SNOW_MAX));
+    SNOW_TRY(snow_comm_reduce_doubles(comm, words, COUNT, SNOW_REDUCE_MAX));
     if (!(-words[MINUS_LOW] <= words[HIGH]))
         words[MINUS_LOW] = words[HIGH] = 0;
     snow_identity_transfer_widen(identity, -words[MINUS_LOW], words[HIGH],
@@ -84,7 +84,7 @@ snow_status snow_flight_agree_values(snow_flight *f) {
     SNOW_TRY(snow_comm_agree_status(comm, measure_values(f, &range)));
     double words[COUNT] = {-range.low, range.high, range.holes,
                            f->picture.job.volume->lost_clip};
-    SNOW_TRY(snow_comm_reduce_doubles(comm, words, COUNT, SNOW_MAX));
+    SNOW_TRY(snow_comm_reduce_doubles(comm, words, COUNT, SNOW_REDUCE_MAX));
     range.low = -words[MINUS_LOW];
     range.high = words[HIGH];
     range.holes = words[HOLES] > 0;

@@ -87,7 +87,7 @@ static snow_status compare_files(const opening *o) {
         ends[i] = facts[i];
         ends[5 + i] = -facts[i];
     }
-    SNOW_TRY(snow_comm_reduce_ints(o->comm, ends, 10, SNOW_MIN));
+    SNOW_TRY(snow_comm_reduce_ints(o->comm, ends, 10, SNOW_REDUCE_MIN));
     for (int i = 0; i < 5; i++)
         if (ends[i] != -ends[5 + i])
             return snow_fail(o->context, SNOW_STATUS_BAD_INPUT,
@@ -175,7 +175,7 @@ static snow_status warn_empty(const opening *o, const snow_volume *read) {
         ends[MOST] = fmax(ends[MOST], read->mask_range[1]);
     } else
         ends[LEFT] = part.count[0] && part.count[1] && part.count[2];
-    SNOW_TRY(snow_comm_reduce_doubles(o->comm, ends, COUNT, SNOW_MAX));
+    SNOW_TRY(snow_comm_reduce_doubles(o->comm, ends, COUNT, SNOW_REDUCE_MAX));
     const bool known = ends[MOST] >= -ends[MINUS_LEAST];
     const double range[2] = {known ? -ends[MINUS_LEAST] : NAN,
                              known ? ends[MOST] : NAN};

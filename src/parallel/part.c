@@ -79,7 +79,7 @@ static snow_brick brick_of(const snow_volume *volume) {
 static snow_status agree_planes(snow_comm *comm, const snow_volume *held,
                                 bool *all, bool *lost) {
     double words[2] = {held->clip != NULL, -(held->clip != NULL)};
-    SNOW_TRY(snow_comm_reduce_doubles(comm, words, 2, SNOW_MAX));
+    SNOW_TRY(snow_comm_reduce_doubles(comm, words, 2, SNOW_REDUCE_MAX));
     *all = words[1] < 0;
     *lost = held->lost_clip || (words[0] > 0 && !*all);
     return SNOW_STATUS_OK;
@@ -217,7 +217,7 @@ snow_ranks_repartition(snow_comm *comm, const snow_transfer *transfer,
     /* One round: 0, all serve; 1, some do not; 2, some failed. */
     int64_t worst =
         status != SNOW_STATUS_OK ? 2 : !snow_part_serves(*volume, &order);
-    SNOW_TRY(snow_comm_reduce_ints(comm, &worst, 1, SNOW_MAX));
+    SNOW_TRY(snow_comm_reduce_ints(comm, &worst, 1, SNOW_REDUCE_MAX));
     if (worst == 0)
         return SNOW_STATUS_OK;
     if (worst == 2)

@@ -100,7 +100,7 @@ static snow_status count_all(snow_comm *comm,
     if (!comm)
         return status;
     SNOW_TRY(snow_comm_agree_status(comm, status));
-    return snow_comm_reduce_ints(comm, counts->counts, blocks, SNOW_SUM);
+    return snow_comm_reduce_ints(comm, counts->counts, blocks, SNOW_REDUCE_SUM);
 }
 
 static snow_status count_for_partition(snow_context *context,

@@ -99,7 +99,8 @@ static snow_status join_measures(snow_histogram *histogram) {
         ends[0] = histogram->min;
         ends[1] = -histogram->max;
     }
-    SNOW_TRY(snow_comm_reduce_doubles(histogram->comm, ends, 2, SNOW_MIN));
+    SNOW_TRY(
+        snow_comm_reduce_doubles(histogram->comm, ends, 2, SNOW_REDUCE_MIN));
     uint64_t counts[2] = {histogram->finite, 0};
     if (histogram->finite && histogram->min == ends[0])
         counts[1] = histogram->at_min;

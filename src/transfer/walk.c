@@ -80,7 +80,7 @@ snow_status snow_histogram_sum(const snow_histogram *histogram,
     if (!histogram->comm)
         return SNOW_STATUS_OK;
     return snow_comm_reduce_ints(histogram->comm, (int64_t *)counts, count,
-                                 SNOW_SUM);
+                                 SNOW_REDUCE_SUM);
 }
 
 snow_status snow_histogram_sum_table(const snow_histogram *histogram,
@@ -92,7 +92,7 @@ snow_status snow_histogram_sum_table(const snow_histogram *histogram,
         ends[0]++;
     while (ends[1] < 0 && !counts[-ends[1]])
         ends[1]++;
-    SNOW_TRY(snow_comm_reduce_ints(histogram->comm, ends, 2, SNOW_MIN));
+    SNOW_TRY(snow_comm_reduce_ints(histogram->comm, ends, 2, SNOW_REDUCE_MIN));
     if (ends[0] == SNOW_DIGITS)
         return SNOW_STATUS_OK;
     return snow_histogram_sum(histogram, counts + ends[0],

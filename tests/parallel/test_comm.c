@@ -173,7 +173,8 @@ static snow_status leave_early(snow_comm *comm, void *user) {
             int64_t number = 0;
             CHECK(snow_comm_agree_status(comm, SNOW_STATUS_OK) == status);
             CHECK(send_number(comm, 1, rank, 1) == status);
-            CHECK(snow_comm_reduce_ints(comm, &number, 1, SNOW_SUM) == status);
+            CHECK(snow_comm_reduce_ints(comm, &number, 1, SNOW_REDUCE_SUM) ==
+                  status);
             CHECK(snow_comm_broadcast(comm, &number, 8, 0) == status);
             return status;
         }

@@ -248,7 +248,7 @@ static snow_status check_early(snow_comm *comm, const way *w, int64_t early) {
                  w->regions == SNOW_IMAGE_PARTITION_INTERLACED ||
                  (w->whole && w->regions == SNOW_IMAGE_PARTITION_COUNTED &&
                   comm->ranks > 2);
-    SNOW_TRY(snow_comm_reduce_ints(comm, &early, 1, SNOW_SUM));
+    SNOW_TRY(snow_comm_reduce_ints(comm, &early, 1, SNOW_REDUCE_SUM));
     CHECK(never ? early == 0 : early > 0);
     return SNOW_STATUS_OK;
 }

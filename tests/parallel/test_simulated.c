@@ -78,7 +78,7 @@ static snow_status work_alone(snow_comm *comm, void *user) {
     snow_comm_work(comm, 100);
     CHECK(near(snow_comm_seconds(comm) - start, 100));
     int64_t sum = 1;
-    SNOW_TRY(snow_comm_reduce_ints(comm, &sum, 1, SNOW_SUM));
+    SNOW_TRY(snow_comm_reduce_ints(comm, &sum, 1, SNOW_REDUCE_SUM));
     CHECK(sum == snow_comm_size(comm));
     return SNOW_STATUS_OK;
 }

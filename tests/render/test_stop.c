@@ -338,7 +338,7 @@ static snow_status stop_one(place *seat, int who, int at, snow_image **whole) {
     snow_status status = finish(seat, whole);
     int64_t words[2] = {status == SNOW_STATUS_STOPPED,
                         status == SNOW_STATUS_OK};
-    SNOW_TRY(snow_comm_reduce_ints(seat->comm, words, 2, SNOW_SUM));
+    SNOW_TRY(snow_comm_reduce_ints(seat->comm, words, 2, SNOW_REDUCE_SUM));
     int ranks = snow_comm_size(seat->comm);
     REQUIRE(seat->comm, words[0] == ranks || words[1] == ranks);
     REQUIRE(seat->comm, !seat->q.foreign);
@@ -360,7 +360,7 @@ static snow_status stop_many(place *seat) {
         status = finish(seat, &whole);
     asked = seat->q.asked;
     if (status == SNOW_STATUS_OK)
-        status = snow_comm_reduce_ints(seat->comm, &asked, 1, SNOW_MAX);
+        status = snow_comm_reduce_ints(seat->comm, &asked, 1, SNOW_REDUCE_MAX);
     for (int n = 0; n < 4 && status == SNOW_STATUS_OK; n++) {
         snow_frame_free(seat->frame); /* to be encoded anew, now and then */
         seat->frame = NULL;

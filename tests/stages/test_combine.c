@@ -554,8 +554,8 @@ static snow_status lay_band(snow_comm *comm, void *user) {
     snow_combiner_free(combiner);
     SNOW_TRY(status);
     laid[1] = laid[0];
-    SNOW_TRY(snow_comm_reduce_ints(comm, laid, 1, SNOW_SUM));
-    SNOW_TRY(snow_comm_reduce_ints(comm, laid + 1, 1, SNOW_MAX));
+    SNOW_TRY(snow_comm_reduce_ints(comm, laid, 1, SNOW_REDUCE_SUM));
+    SNOW_TRY(snow_comm_reduce_ints(comm, laid + 1, 1, SNOW_REDUCE_MAX));
     double ratio = (double)laid[1] * comm->ranks / (double)laid[0];
     CHECK(order.regions == SNOW_IMAGE_PARTITION_EVEN ? ratio > 5
                                                      : ratio < 1.45);

@@ -194,7 +194,8 @@ enum { MANY = SNOW_COMM_SCRATCH * 2 + 3 };
 
 snow_status reduce_ints(snow_comm *comm, void *user) {
     (void)user;
-    static const snow_reduction kinds[] = {SNOW_SUM, SNOW_MIN, SNOW_MAX};
+    static const snow_reduce kinds[] = {SNOW_REDUCE_SUM, SNOW_REDUCE_MIN,
+                                        SNOW_REDUCE_MAX};
     const int64_t ranks = snow_comm_size(comm), rank = snow_comm_rank(comm);
     int64_t values[MANY];
     for (int kind = 0; kind < 3; kind++) {
@@ -224,9 +225,9 @@ snow_status reduce_doubles(snow_comm *comm, void *user) {
     rank_sums *rounding = user;
     const int rank = snow_comm_rank(comm);
     double values[3] = {1.0 / (rank + 1), 1.0 / (rank + 1), 1.0 / (rank + 1)};
-    SNOW_TRY(snow_comm_reduce_doubles(comm, values, 1, SNOW_SUM));
-    SNOW_TRY(snow_comm_reduce_doubles(comm, values + 1, 1, SNOW_MIN));
-    SNOW_TRY(snow_comm_reduce_doubles(comm, values + 2, 1, SNOW_MAX));
+    SNOW_TRY(snow_comm_reduce_doubles(comm, values, 1, SNOW_REDUCE_SUM));
+    SNOW_TRY(snow_comm_reduce_doubles(comm, values + 1, 1, SNOW_REDUCE_MIN));
+    SNOW_TRY(snow_comm_reduce_doubles(comm, values + 2, 1, SNOW_REDUCE_MAX));
     CHECK(values[1] == 1.0 / snow_comm_size(comm) && values[2] == 1);
     rounding->sums[rank] = values[0];
     return SNOW_STATUS_OK;
@@ -275,7 +276,7 @@ snow_status one_after_another(snow_comm *comm, void *user) {
         SNOW_TRY(
             snow_comm_broadcast(comm, &value, sizeof value, round % ranks));
         CHECK(value == round % ranks + round);
-        SNOW_TRY(snow_comm_reduce_ints(comm, &value, 1, SNOW_SUM));
+        SNOW_TRY(snow_comm_reduce_ints(comm, &value, 1, SNOW_REDUCE_SUM));
         CHECK(value == (round % ranks + round) * ranks);
         SNOW_TRY(snow_comm_agree_status(comm, SNOW_STATUS_OK));
     }
