@@ -82,17 +82,16 @@ const option_row option_table[] = {
      "how the positions of interesting voxels are stored (default auto)"},
     {"method", 0, "auto|original|footprint|shear-warp|raycast", TOPIC_SPARSE, RENDER,
      read_method, FIELD(method), 0, 0, "",
-     "rendering method. shear-warp: interpolates values slice by slice and "
-     "colours them after, the fastest; sheared is its old name; raycast: the "
-     "same along each ray, slow, the truth that the others are held against; "
-     "footprint: splats interesting voxels straight onto the picture, as the "
-     "paper does; original: the same with every voxel (default auto: "
-     "shear-warp)"},
+     "rendering method. shear-warp: interpolates values slice by slice, then "
+     "colours them; the fastest; sheared is its old name; raycast: the same "
+     "along each ray; slow, the reference for the others; footprint: splats "
+     "interesting voxels straight onto the picture, as the paper does; "
+     "original: the same with every voxel (default auto: shear-warp)"},
 
     {"kernel", 0, "auto|tent|gauss|bspline|box", TOPIC_KERNEL, RENDER, read_choice,
-     FIELD(kernel), 0, 0, "", "reconstruction kernel; shear-warp and raycast take tent and bspline, of "
-     "others footprint makes the picture (default auto: tent; bspline with "
-     "footprint and original)"},
+     FIELD(kernel), 0, 0, "", "reconstruction kernel. shear-warp and raycast support tent and bspline; "
+     "with gauss and box, footprint makes the picture (default auto: tent; "
+     "bspline with footprint and original)"},
     {"footprint", 0, "K", TOPIC_KERNEL, RENDER, read_integer, FIELD(footprint),
      2, 9, "",
      "support of the kernel in voxels, 2 to 9 (default 2 for tent and box, "
@@ -141,8 +140,8 @@ const option_row option_table[] = {
      1000, "", "exponent of the specular light (default 20)"},
     {"depth-darkening", 0, "[S]", TOPIC_LOOK, RENDER, read_strength,
      FIELD(depth_darkening), 0, 1, "",
-     "darken what lies behind that beside it, in modes over and iso, with "
-     "strength S, 0 to 1 (default 0; 1 without S)"},
+     "darken what lies deeper than its surroundings, in modes over and iso, "
+     "with strength S, 0 to 1 (default 0; 1 without S)"},
     {"tf", 0, "FILE", TOPIC_LOOK, LOOKED, read_text, FIELD(tf), 0, 0, "",
      "transfer function from a file, in place of a preset: Snowglass .json or "
      ".csv, 3D Slicer .vp or .xml, ParaView or niivue .json, Amrvis .pal; "

@@ -43,7 +43,7 @@ static snow_status check_options(opening *o,
     if (options->labels && !snow_labels_parse(options->labels, o->labels,
                                               SNOW_LABELS_MAX, &o->count))
         return snow_fail(o->context, SNOW_STATUS_BAD_USAGE,
-                         "--labels %.64s: is no list of labels; give up to %d "
+                         "--labels %.64s: not a list of labels; give up to %d "
                          "whole numbers and ranges, such as 1,4-7",
                          options->labels, SNOW_LABELS_MAX);
     o->mask_path = options->mask;

@@ -2,7 +2,7 @@
  * memory, and the choice of a time step. */
 #include "formats/format.h"
 
-/* The bytes are held against the source before the voxels get their memory: a
+/* The bytes are compared with the source before the voxels get their memory: a
  * header of 400 bytes must not cost gigabytes. */
 snow_status snow_volume_read(snow_source *source,
                              const snow_volume_options *options,

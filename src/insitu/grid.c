@@ -76,8 +76,8 @@ static snow_status check_brick(snow_insitu *insitu, int id,
                                   "there is no grid to put a brick into; call "
                                   "snow_insitu_set_grid first");
     if (id < 0 || id >= BRICKS_MOST)
-        return snow_insitu_refuse(
-            insitu, "%d is no number of a brick; count from 0", id);
+        return snow_insitu_refuse(insitu, "invalid brick %d: must be 0 to %d",
+                                  id, BRICKS_MOST - 1);
     for (int i = 0; i < 3; i++) {
         if (count[i] < 0 || first[i] < 0 || count[i] > dims[i] ||
             first[i] > dims[i] - count[i])

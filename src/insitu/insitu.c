@@ -198,7 +198,7 @@ snow_status snow_insitu_set_limits(snow_insitu *insitu, double seconds,
                                    uint64_t bytes) {
     if (!(seconds >= 0))
         return snow_insitu_refuse(
-            insitu, "%g seconds are no limit; give 0 for none", seconds);
+            insitu, "invalid limit %g s: must not be negative", seconds);
     insitu->limit_seconds = seconds;
     insitu->limit_bytes = bytes;
     insitu->lowering = SNOW_DEGRADATION_NONE;

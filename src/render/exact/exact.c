@@ -1,10 +1,10 @@
 /* render/exact/exact.c - the exact methods, from voxels to the local image:
  * lines 02 to 13 of figure 8 of the paper, whose numbers stand in the comments.
  *
- *   original, tested   a voxel row is classified and thrown, slice by slice
- *   footprint          the slab is encoded, and its interesting voxels thrown;
- *                      or, where the instruction set has loops for it,
- *                      gathered: the same sums pixel by pixel (splat/gather.h)
+ *   original, tested   a voxel row is classified and splatted, slice by slice
+ *   footprint          the slab is encoded, and its interesting voxels scatter;
+ *                      or, where the instruction set has loops for it, pixels
+ *                      gather: the same sums (splat/gather.h)
  *
  * Threads take groups of slices to encode, and bands of image rows to splat
  * and composite: each walks all slices front to back for its band, so that no
@@ -23,7 +23,7 @@
 #define GROUP_SLICES 8     /* of one sparse matrix */
 #define GATHER_ROWS 8      /* image rows of a band where pixels gather */
 #define CLOSE_SLICES 4     /* after so many, opaque pixels are looked for */
-#define BANDS_PER_THREAD 4 /* where footprints are thrown */
+#define BANDS_PER_THREAD 4 /* where voxels scatter */
 /* That slices spread out at once may take; and the part of a limit. */
 #define SPREAD_BYTES ((uint64_t)32 << 20)
 #define SPREAD_PART 8
@@ -35,12 +35,12 @@ typedef struct worker {
     snow_row_block row_block;
     snow_span *spans; /* of one row */
     size_t spans_capacity;
-    snow_sheet sheet; /* throwing: a band; gathering: only its memory is used */
+    snow_sheet sheet; /* scatter: a band; gather: only its memory is used */
     snow_splatter splatter;
     snow_run *runs; /* gathering: of GATHER_ROWS rows */
     size_t runs_capacity;
     snow_places places;
-    int64_t kept; /* voxels thrown out of strips */
+    int64_t kept; /* voxels splatted of row blocks */
     snow_status status;
     double seconds[STAGES];
 } worker;
@@ -402,7 +402,7 @@ static const float *walk_row(const pass *work, snow_walk *walk, worker *w,
     return walk->sparse->ia + voxel * (size_t)work->job->channels;
 }
 
-/* --- throwing footprints -------------------------------------------------- */
+/* --- scattering footprints ------------------------------------------------ */
 
 /* Lines 08 to 12: the interesting voxels of one slice, out of EA and IA. */
 static void scatter_encoded(const pass *work, worker *w, int64_t slice,

@@ -1,4 +1,4 @@
-/* render/exact/exact.h - the methods that throw footprints onto the image
+/* render/exact/exact.h - the methods that splat footprints onto the image
  * itself: original, tested and footprint; figure 8 of the paper, lines 03
  * to 13. */
 #ifndef SNOW_RENDER_EXACT_EXACT_H

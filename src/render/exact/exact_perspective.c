@@ -1,6 +1,6 @@
 /* render/exact/exact_perspective.c - the exact picture in perspective: figure 8
  * of the paper with footprints that differ from voxel to voxel
- * (splat/perspective.h).  It is what the sheared method is held against, and a
+ * (splat/perspective.h).  Shear-warp is compared with it, and it is a
  * plain loop. */
 #include "render/exact/exact_perspective.h"
 #include "base/monitor.h"

@@ -1,5 +1,5 @@
 /* render/exact/exact_perspective.h - figure 8 of the paper in perspective, by
- * the methods that throw footprints onto the picture itself. */
+ * the methods that splat footprints onto the picture itself. */
 #ifndef SNOW_RENDER_EXACT_EXACT_PERSPECTIVE_H
 #define SNOW_RENDER_EXACT_EXACT_PERSPECTIVE_H
 

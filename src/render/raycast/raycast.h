@@ -1,5 +1,5 @@
 /* render/raycast/raycast.h - method raycast: the truth that the other methods
- * are held against.
+ * are compared with.
  *
  * Values are interpolated (field.h), and what they look like comes after: each
  * ray is walked in small equal steps from where it enters the field to where it
