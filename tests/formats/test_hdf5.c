@@ -6,6 +6,7 @@
 #if SNOW_HAVE_HDF5
 
 #include <formats/hdf5/hdf5.h>
+#include <unistd.h>
 
 /* The most memory that a refusal may ask for at once, of the context. */
 #define MOST ((size_t)200 * 1024)
@@ -104,8 +105,44 @@ static void nothing_is_left_behind(void **state) {
     support_files_end(&files);
 }
 
+/* A second link to the root, of which its count of links knows nothing: so
+ * libhdf5 takes the root for another group each time it comes to it. */
+static const char *write_loop(support_files *files) {
+    static const char *const names[] = {"/a", NULL};
+    static const unsigned char one[4] = {1, 0, 0, 0};
+    unsigned char root[8] = {0}; /* its place, in the superblock at byte 64 */
+    const char *path = write_sets(files, names);
+    hid_t id = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    hid_t group = H5Gcreate2(id, "g", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Lcreate_hard(id, "/", id, "loop", H5P_DEFAULT, H5P_DEFAULT);
+    H5Lcreate_hard(id, "/", group, "up", H5P_DEFAULT, H5P_DEFAULT);
+    H5Gclose(group);
+    H5Fclose(id);
+    FILE *file = fopen(path, "r+b");
+    assert_true(fseek(file, 64, SEEK_SET) == 0 && fread(root, 8, 1, file) == 1);
+    assert_true(fseek(file, root[0] + 256L * root[1] + 4, SEEK_SET) == 0);
+    assert_int_equal(fwrite(one, 4, 1, file), 1);
+    fclose(file);
+    return path;
+}
+
+static void a_link_to_the_root_is_not_followed_for_ever(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    const snow_volume_options named = {.size = sizeof named, .dataset = "a"};
+    const char *path = write_loop(&files);
+    alarm(20); /* ends the test */
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT, "more than 64",
+                    MOST);
+    expect_counting(support_opened(&files, path, &named));
+    alarm(0);
+    support_files_end(&files);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_link_to_the_root_is_not_followed_for_ever),
         cmocka_unit_test(the_only_data_set_needs_no_name),
         cmocka_unit_test(several_are_listed),
         cmocka_unit_test(nothing_is_left_behind),

@@ -12,8 +12,7 @@
 
 /* The results of a search through the file. */
 typedef struct survey {
-    int axes;     /* the fewest axes wanted */
-    long objects; /* objects visited */
+    int axes; /* the fewest axes wanted */
     long found;
     char first[HDF5_NAME_BYTES]; /* path of the first match */
     char list[800];              /* all matches, as far as they fit */
@@ -102,13 +101,10 @@ static void note(survey *s, const char *name, const hdf5_set *set) {
         memcpy(s->list + used, " ...", 5);
 }
 
-/* A positive result ends the visit. */
 static herr_t look(hid_t file, const char *name, const H5O_info_t *info,
                    void *user) {
     survey *s = user;
     hdf5_set set;
-    if (++s->objects > HDF5_MOST_OBJECTS)
-        return 1;
     if (info->type != H5O_TYPE_DATASET || strlen(name) + 2 > HDF5_NAME_BYTES)
         return 0;
     hid_t id = H5Dopen2(file, name, H5P_DEFAULT);
@@ -120,14 +116,45 @@ static herr_t look(hid_t file, const char *name, const H5O_info_t *info,
     return 0;
 }
 
+/* A walk through all groups of a file. */
+typedef struct visit {
+    H5O_iterate_t look;
+    void *user;
+    long objects; /* visited */
+    bool deep;    /* one of them lies too deep */
+} visit;
+
+/* A positive result ends the visit. */
+static herr_t visit_object(hid_t file, const char *name, const H5O_info_t *info,
+                           void *user) {
+    visit *v = user;
+    int depth = 0;
+    for (const char *at = strchr(name, '/'); at; at = strchr(at + 1, '/'))
+        depth++;
+    v->deep = depth > HDF5_MOST_DEPTH;
+    if (v->deep || ++v->objects > HDF5_MOST_OBJECTS)
+        return 1;
+    return v->look(file, name, info, v->user);
+}
+
+snow_status snow_hdf5_visit(snow_context *context, hid_t file,
+                            H5O_iterate_t look, void *user) {
+    visit v = {.look = look, .user = user};
+    if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, visit_object, &v,
+                  H5O_INFO_BASIC) < 0)
+        return snow_hdf5_fail(context, "its groups cannot be listed");
+    if (v.deep)
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "has groups more than %d deep: it is damaged, or a "
+                         "link leads back to its root; write it again",
+                         HDF5_MOST_DEPTH);
+    return SNOW_STATUS_OK;
+}
+
 /* Finds all volumes of the file; if there are none, images with two axes. */
 static snow_status find_only(snow_context *context, hid_t file, survey *s) {
-    for (s->axes = 3; s->axes >= 2 && !s->found; s->axes--) {
-        s->objects = 0;
-        if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, look, s,
-                      H5O_INFO_BASIC) < 0)
-            return snow_hdf5_fail(context, "its groups cannot be listed");
-    }
+    for (s->axes = 3; s->axes >= 2 && !s->found; s->axes--)
+        SNOW_TRY(snow_hdf5_visit(context, file, look, s));
     if (s->found == 1)
         return SNOW_STATUS_OK;
     if (!s->found)

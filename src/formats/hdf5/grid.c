@@ -180,7 +180,6 @@ typedef struct scales {
     snow_context *context;
     const hdf5_set *set;
     haddr_t address;    /* address of the data set */
-    long objects;       /* objects visited */
     snow_status status; /* the walk ends if memory does */
     cf_axis axes[3];
 } scales;
@@ -252,8 +251,6 @@ static herr_t look_at_scale(hid_t file, const char *name,
                             const H5O_info_t *info, void *user) {
     scales *s = user;
     char kind[32];
-    if (++s->objects > HDF5_MOST_OBJECTS)
-        return 1;
     if (info->type != H5O_TYPE_DATASET)
         return 0;
     hid_t id = H5Dopen2(file, name, H5P_DEFAULT);
@@ -278,9 +275,7 @@ static snow_status place_by_scales(snow_context *context, hid_t file,
         H5Oget_info2(set->id, &about, H5O_INFO_BASIC) < 0)
         return SNOW_STATUS_OK;
     s.address = about.addr;
-    if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, look_at_scale, &s,
-                  H5O_INFO_BASIC) < 0)
-        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_hdf5_visit(context, file, look_at_scale, &s));
     SNOW_TRY(s.status);
     if (s.axes[0].given || s.axes[1].given || s.axes[2].given)
         snow_cf_place(context, s.axes, info);

@@ -16,8 +16,11 @@
 #define HDF5_MOST_AXES 5
 #define HDF5_NAME_BYTES 512
 
-/* The most objects of a file that a search visits. */
+/* The most objects of a file that a search visits, and groups within groups.
+ * libhdf5 tells a group that it has seen by a count in the file; if that is
+ * wrong, a link back to the root leads on without end. */
 #define HDF5_MOST_OBJECTS 100000
+#define HDF5_MOST_DEPTH 64
 
 typedef struct hdf5_file hdf5_file;
 
@@ -41,6 +44,12 @@ uint64_t snow_hdf5_size(const hdf5_file *file); /* bytes */
 
 /* "what (libhdf5: why); the file is damaged ..." */
 snow_status snow_hdf5_fail(snow_context *context, const char *what);
+
+/* Visits the objects of a file, at most as many and as deep as above, until
+ * `look` returns another value than 0.  Errors: SNOW_STATUS_BAD_INPUT (groups
+ * that cannot be listed, or that are nested more deeply). */
+snow_status snow_hdf5_visit(snow_context *context, hid_t file,
+                            H5O_iterate_t look, void *user);
 
 /* Opens the requested data set, or the only volume of the file.  The caller
  * closes the set's id.  Errors: SNOW_STATUS_BAD_INPUT, SNOW_STATUS_BAD_USAGE
