@@ -21,6 +21,7 @@ typedef struct stack {
     snow_volume_options options; /* options for a slice */
     snow_volume_info first;      /* the first slice, uncropped */
     snow_volume_info slice;      /* of each slice */
+    bool cropped;                /* slices are read in part */
 } stack;
 
 /* The format whose names the file has, if files of it are slices. */
@@ -116,13 +117,30 @@ static snow_status refuse_unlike(const stack *s, size_t index,
         snow_type_name(first->type));
 }
 
-/* If a slice cannot be cropped like the first it has another size; the message
- * reports that, not the box. */
-static snow_status explain(stack *s, size_t index) {
+static bool is_like(const snow_volume_info *info,
+                    const snow_volume_info *other) {
+    return info->type == other->type &&
+           memcmp(info->dims, other->dims, sizeof info->dims) == 0;
+}
+
+/* Compares a whole slice with the first one: a box may lie in both although
+ * they have different sizes. */
+static snow_status compare_whole(const stack *s, size_t index) {
     snow_volume_info info;
-    memset(s->options.crop, 0, sizeof s->options.crop);
-    SNOW_TRY(read_file(s, index, &info, NULL));
-    return refuse_unlike(s, index, &info);
+    stack whole = *s;
+    memset(whole.options.crop, 0, sizeof whole.options.crop);
+    SNOW_TRY(read_file(&whole, index, &info, NULL));
+    return is_like(&info, &s->first) ? SNOW_STATUS_OK
+                                     : refuse_unlike(s, index, &info);
+}
+
+static snow_status read_slice(const stack *s, size_t index, snow_volume **out) {
+    snow_volume_info info;
+    if (s->cropped)
+        SNOW_TRY(compare_whole(s, index));
+    SNOW_TRY(read_file(s, index, &info, out));
+    return is_like(&info, &s->slice) ? SNOW_STATUS_OK
+                                     : refuse_unlike(s, index, &info);
 }
 
 /* A file with several slices would be a volume of its own, perhaps a time
@@ -152,17 +170,11 @@ static snow_status read_slices(stack *s, int64_t first, snow_volume *volume) {
     s->context->notice = NULL;
     for (int64_t z = 0; z < volume->info.dims[2] && status == SNOW_STATUS_OK;
          z++) {
-        snow_volume_info info;
         snow_volume *slice = NULL;
         snow_monitor_part whole = snow_monitor_divide(
             s->context->monitor, (double)z, (double)volume->info.dims[2]);
-        status = read_file(s, (size_t)(first + z), &info, &slice);
+        status = read_slice(s, (size_t)(first + z), &slice);
         snow_monitor_whole(s->context->monitor, whole);
-        if (status == SNOW_STATUS_BAD_USAGE ||
-            (status == SNOW_STATUS_OK &&
-             (info.type != s->slice.type ||
-              memcmp(info.dims, s->slice.dims, sizeof info.dims) != 0)))
-            status = explain(s, (size_t)(first + z));
         if (status == SNOW_STATUS_OK)
             memcpy((unsigned char *)volume->owned + (size_t)z * bytes,
                    slice->voxels, bytes);
@@ -191,7 +203,9 @@ static snow_status read_stack(stack *s, const snow_volume_options *options,
     SNOW_TRY(snow_region_lay_out(s->context, options, info, &window));
     if (!out)
         return SNOW_STATUS_OK;
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 2; i++)
+        s->cropped |= window.count[i] != s->first.dims[i];
+    for (int i = 0; i < 2 && s->cropped; i++) {
         s->options.crop[i][0] = window.first[i];
         s->options.crop[i][1] = window.first[i] + window.count[i];
         s->slice.dims[i] = window.count[i];

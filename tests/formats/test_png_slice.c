@@ -113,12 +113,35 @@ static void a_damaged_slice_is_named(void **state) {
     support_files_end(&files);
 }
 
+/* A box of the smaller size lies in the larger slice too. */
+static void a_slice_of_another_size_is_named(void **state) {
+    (void)state;
+    static const int sizes[][2] = {{50, 30}, {40, 31}, {30, 20}};
+    const snow_volume_options part = {.size = sizeof part,
+                                      .crop = {{1, 9}, {2, 9}, {0, 0}}};
+    support_files files;
+    support_files_begin(&files);
+    for (int i = 0; i < 3; i++) {
+        write_png(&files, "z0.png", 40, 30, 8, 1, 0);
+        write_png(&files, "z1.png", sizes[i][0], sizes[i][1], 8, 1, 0);
+        write_png(&files, "z2.png", 40, 30, 8, 1, 0);
+        support_refused(&files, files.folder, NULL, SNOW_STATUS_BAD_INPUT,
+                        "z1.png: has ", MOST);
+        support_refused(&files, files.folder, &part, SNOW_STATUS_BAD_INPUT,
+                        "z1.png: has ", MOST);
+    }
+    write_png(&files, "z1.png", 40, 30, 8, 1, 0);
+    snow_volume_close(support_opened(&files, files.folder, &part));
+    support_files_end(&files);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(samples_stay_as_they_are),
         cmocka_unit_test(colours_are_channels),
         cmocka_unit_test(a_folder_tells_of_its_channels_once),
         cmocka_unit_test(a_damaged_slice_is_named),
+        cmocka_unit_test(a_slice_of_another_size_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
