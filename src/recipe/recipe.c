@@ -10,6 +10,8 @@
 
 #include <math.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 void snow_recipe_init_sized(snow_recipe *recipe, size_t size) {
     snow_recipe defaults = {.width = 512, .height = 512, .zoom = 1};
@@ -125,11 +127,12 @@ snow_status snow_recipe_parse(snow_context *context, const char *name,
 snow_status snow_recipe_load(snow_context *context, const char *path,
                              snow_recipe *out) {
     json_error_t error;
-    json_t *tree = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
-    if (!tree && json_error_code(&error) == json_error_cannot_open_file)
+    struct stat about; /* to open a pipe could take for ever */
+    if (stat(path, &about) || !S_ISREG(about.st_mode) || access(path, R_OK))
         return snow_context_fail(context, SNOW_STATUS_BAD_INPUT,
                                  "%s: cannot be opened; name a readable recipe",
                                  path);
+    json_t *tree = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
     return finish_recipe(context, path, tree, &error, out);
 }
 

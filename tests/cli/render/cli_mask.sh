@@ -160,6 +160,14 @@ refused 3 "no mask" 'none.nrrd: cannot be opened' \
     "$TOOL" info v.npy --mask none.nrrd
 refused 2 "a raw mask" 'm.raw: .* snowglass convert makes' \
     "$TOOL" info v.npy --mask m.raw
+mkfifo pipe
+refused 2 "a pipe as a mask" '^snowglass: pipe: a mask is read from a file' \
+    timeout 10 "$TOOL" info v.npy --mask pipe
+refused 3 "a device as a mask" '/dev/zero: is a device' \
+    "$TOOL" info v.npy --mask /dev/zero
+mkdir empty
+refused 3 "a folder without slices as a mask" 'empty: names no slices' \
+    "$TOOL" info v.npy --mask empty
 refused 2 "a mask from standard input" '^snowglass: -: a mask is read from' \
     "$TOOL" info v.npy --mask -
 refused 2 "a box of standard input" 'with a mask both must be files' bash -c \

@@ -134,6 +134,11 @@ check "with target and up" cmp -s pc.png pd.png
 # --- refused ------------------------------------------------------------------
 refused 3 "a file that is not there" 'none.json: cannot be opened' \
     "$TOOL" render --config none.json phantom:cube -o x.png
+mkfifo pipe
+for file in pipe . /dev/zero; do
+    refused 3 "--config $file" "^snowglass: $file: cannot be opened" \
+        timeout 10 "$TOOL" render --config $file phantom:cube -o x.png
+done
 echo '{"colour": "red"}' >bad.json
 refused 3 "an unknown key" '"colour" is not a key of a recipe' \
     "$TOOL" render --config bad.json phantom:cube -o x.png
