@@ -49,6 +49,15 @@ static void hear_error(exr_const_context_t exr, exr_result_t code,
         snprintf(file->complaint, sizeof file->complaint, "%s", text);
 }
 
+/* While a file is written, OpenEXR reports errors with its lock held, for which
+ * every question about the file waits for ever.  The code says enough. */
+static void ignore_error(exr_const_context_t exr, exr_result_t code,
+                         const char *text) {
+    (void)exr;
+    (void)code;
+    (void)text;
+}
+
 static int64_t write_bytes(exr_const_context_t exr, void *user,
                            const void *bytes, uint64_t size, uint64_t at,
                            exr_stream_error_func_ptr_t fail) {
@@ -183,6 +192,7 @@ static exr_result_t write_lines(exr_file *file, const exr_content *content,
 
 static snow_status make_file(exr_file *file, const exr_content *content) {
     exr_context_initializer_t hooks = hooks_of(file);
+    hooks.error_handler_fn = ignore_error;
     int at_once = 0;
     float *lines = NULL;
     exr_result_t code = exr_start_write(&file->exr, "picture.exr",
@@ -204,10 +214,11 @@ static snow_status make_file(exr_file *file, const exr_content *content) {
     if (file->status != SNOW_STATUS_OK)
         return file->status;
     return snow_fail(
-        file->context, SNOW_STATUS_FAILED,
+        file->context,
+        code == EXR_ERR_OUT_OF_MEMORY ? SNOW_STATUS_NO_MEMORY
+                                      : SNOW_STATUS_FAILED,
         "the EXR file cannot be written (OpenEXR: %s); write a .npy instead",
-        *file->complaint ? file->complaint
-                         : exr_get_default_error_message(code));
+        exr_get_default_error_message(code));
 }
 
 static snow_status write_exr(const snow_image *image,

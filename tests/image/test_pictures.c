@@ -6,6 +6,12 @@
 #include <math.h>
 #include <string.h>
 
+#if SNOW_HAVE_EXR
+#include <openexr.h>
+#include <stdlib.h>
+#include <unistd.h>
+#endif
+
 /* Asserts that saving fails with words of the message, and leaves no file. */
 static void refuse_save(image_fixture *f, const snow_image *image,
                         const char *name, const snow_image_options *options,
@@ -280,6 +286,38 @@ static void they_fail_cleanly_without_memory(void **state) {
     }
 }
 
+#if SNOW_HAVE_EXR
+
+/* Allocations of OpenEXR, and the one that fails. */
+static long made, failing;
+
+static void *allocate_but_one(size_t bytes) {
+    return ++made == failing ? NULL : malloc(bytes);
+}
+
+/* OpenEXR has memory of its own, which no context can refuse.  Whichever of its
+ * allocations fails, writing ends. */
+static void exr_ends_when_openexr_has_no_memory(void **state) {
+    image_fixture *f = *state;
+    snow_image *image = support_picture(f->context, 33, 20, 4, 1);
+    snow_status status = SNOW_STATUS_FAILED;
+    const char *path = support_image_path(f, "a.exr");
+    exr_set_default_memory_routines(allocate_but_one, free);
+    alarm(20); /* ends the test */
+    for (failing = 1; status != SNOW_STATUS_OK; failing++) {
+        made = 0;
+        status = snow_image_save(image, path, NULL);
+        assert_int_equal(support_image_files(f), status == SNOW_STATUS_OK);
+    }
+    alarm(0);
+    exr_set_default_memory_routines(NULL, NULL);
+    assert_true(failing > 10);
+    remove(path);
+    snow_image_free(image);
+}
+
+#endif
+
 #define HERE(test)                                             \
     cmocka_unit_test_setup_teardown(test, support_image_setup, \
                                     support_image_teardown)
@@ -289,6 +327,9 @@ int main(void) {
         HERE(a_build_without_a_library_says_so),
         HERE(floats_come_back_bit_for_bit),
         HERE(a_depth_lies_beside_an_exr_picture_only),
+#if SNOW_HAVE_EXR
+        HERE(exr_ends_when_openexr_has_no_memory),
+#endif
         HERE(webp_holds_what_png_holds),
         HERE(what_a_format_cannot_hold_is_refused),
         HERE(damaged_files_are_refused_or_read),
