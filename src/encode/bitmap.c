@@ -105,16 +105,37 @@ static void write_plain(const snow_sparse *s, const uint64_t *masks,
             snow_store_word(at + 8 * w, *masks++);
 }
 
+static size_t count_full(const uint64_t *masks, size_t words) {
+    size_t full = 0;
+    for (size_t w = 0; w < words; w++)
+        full += masks[w] != 0;
+    return full;
+}
+
+/* The form of words; returns its end, 8 bytes beyond which are overwritten.
+ * There is no branch for each word, for it would be mispredicted. */
+static unsigned char *write_words(const uint64_t *masks, size_t words,
+                                  unsigned char *summary, unsigned char *out) {
+    for (size_t w = 0; w < words; w++) {
+        unsigned full = masks[w] != 0;
+        unsigned bits = w % 8 ? summary[w / 8] : 0;
+        summary[w / 8] = (unsigned char)(bits | full << w % 8);
+        snow_store_word(out, masks[w]);
+        out += 8 * full;
+    }
+    return out;
+}
+
 static snow_status bitmap_add_masks(snow_sparse *s, const uint64_t *masks,
                                     size_t voxels) {
     (void)voxels;
     size_t count = snow_mask_words(s) * (size_t)s->rows;
     size_t summary = summary_bytes(s), plain = plain_bytes(s);
-    size_t full = s->loops->count_words(masks, count);
+    size_t full = count_full(masks, count);
     unsigned char *at;
     SNOW_TRY(snow_sparse_open_ea(s, plain, &at));
     if (summary + 8 * full < plain) {
-        at = s->loops->pack_words(masks, count, at, at + summary);
+        at = write_words(masks, count, at, at + summary);
     } else {
         write_plain(s, masks, at);
         at += plain;
@@ -160,7 +181,7 @@ static const snow_reader words_reader = {words_next_row};
 
 static void bitmap_begin_walk(snow_walk *walk) {
     const snow_sparse *s = walk->sparse;
-    if (!s->code_bytes) {
+    if (!s->band) {
         walk->reader = &whole_reader;
     } else if (walk->slice_bytes == plain_bytes(s)) {
         walk->reader = &plain_reader;

@@ -114,7 +114,7 @@ static unsigned char *write_row(const snow_sparse *s, const uint64_t *masks,
         size_t some = words - w < CELL_WORDS ? words - w : CELL_WORDS;
         if (!snow_any_set(masks + w, some))
             continue;
-        unsigned char *end = s->loops->places(masks + w, some, 0, at + 1);
+        unsigned char *end = snow_write_places(masks + w, some, 0, at + 1);
         *at = (unsigned char)(end - at - 2);
         summary[cell / 8] |= (unsigned char)(1u << cell % 8);
         at = end;
@@ -161,7 +161,7 @@ static const snow_reader cells_reader = {cells_next_row};
 
 static void crs_begin_walk(snow_walk *walk) {
     walk->reader = &whole_reader;
-    if (walk->sparse->code_bytes) {
+    if (walk->sparse->band) {
         walk->reader = &cells_reader;
         walk->ea = walk->slice + summary_bytes(walk->sparse);
     }

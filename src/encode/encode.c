@@ -39,7 +39,7 @@ snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
         snow_reserve(s->context, &s->pa, &s->pa_capacity, 0, (size_t)pointers));
     s->scheme = scheme;
     s->channels = channels;
-    s->code_bytes = 0;
+    s->band = false;
     s->columns = placement->columns;
     s->rows = placement->rows;
     s->filled = 0;
@@ -101,14 +101,12 @@ snow_status snow_sparse_end_slice(snow_sparse *s) {
 
 snow_status snow_sparse_begin_band(snow_sparse *s, const snow_scheme *scheme,
                                    int64_t columns, int64_t rows,
-                                   int64_t slices, int code_bytes,
-                                   snow_isa isa) {
+                                   int64_t slices) {
     SNOW_TRY(snow_reserve(s->context, &s->pa, &s->pa_capacity, 0,
                           ((size_t)slices + 1) * sizeof *s->pa));
     s->scheme = scheme;
     s->channels = 0;
-    s->code_bytes = code_bytes;
-    s->loops = snow_mask_loops_of(isa);
+    s->band = true;
     s->columns = columns;
     s->rows = rows;
     s->filled = 0;
@@ -129,9 +127,7 @@ snow_status snow_sparse_add_masks(snow_sparse *s, const uint64_t *masks,
 void snow_sparse_fini(snow_sparse *s) {
     snow_release(s->context, s->ea);
     snow_release(s->context, s->ia);
-    snow_release(s->context, s->codes);
-    snow_release(s->context, s->normals);
-    snow_release(s->context, s->gradient_factors);
+    snow_release(s->context, s->numbers);
     snow_release(s->context, s->pa);
     *s = (snow_sparse){.context = s->context};
 }

@@ -15,7 +15,6 @@
 #define SNOW_ENCODE_H
 
 #include "classify/classify.h"
-#include "encode/masks.h"
 
 #include <string.h>
 
@@ -33,8 +32,8 @@ typedef struct snow_scheme snow_scheme;
 typedef struct snow_reader snow_reader;
 
 /* A volume's interesting voxels, or those of a band of rows
- * (encode/bands/bands.h). Slices are appended in order; beginning again reuses
- * the buffers.
+ * (encode/values/value_shell.c). Slices are appended in order; beginning again
+ * reuses the buffers.
  *
  * Slices of a whole volume are written as in the paper's figures 4 to 6. Those
  * of a band have forms that cost next to nothing where there are no voxels;
@@ -49,17 +48,12 @@ typedef struct snow_sparse {
     int64_t filled;    /* slices ended so far */
     unsigned char *ea; /* readable beyond its end */
     size_t ea_bytes, ea_capacity;
-    /* IA holds samples (exact method), or codes, normals and factors
-     * (encode/bands/bands.h). */
+    /* IA holds samples (exact method), or the numbers of a band. */
     float *ia;
-    size_t ia_voxels, ia_capacity; /* capacity in bytes */
-    unsigned char *codes;
-    uint16_t *normals, *gradient_factors;
-    size_t codes_capacity, normals_capacity,
-        gradient_factors_capacity; /* bytes */
-    int code_bytes; /* 1 or 2: this is a band; 0: a whole volume */
-    const snow_mask_loops *loops; /* bands, while encoding */
-    snow_slice_pointer *pa;       /* one more than slices */
+    int16_t *numbers;
+    size_t ia_voxels, ia_capacity, numbers_capacity; /* capacities in bytes */
+    bool band;              /* of a band, not of a whole volume */
+    snow_slice_pointer *pa; /* one more than slices */
     size_t pa_capacity;
     int64_t row; /* next row of the slice being encoded */
     /* RLE, while encoding: the current run, which may still grow. */
@@ -145,8 +139,7 @@ snow_status snow_sparse_end_slice(snow_sparse *sparse);
  * ia_voxels, which the caller counts. Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_sparse_begin_band(snow_sparse *sparse,
                                    const snow_scheme *scheme, int64_t columns,
-                                   int64_t rows, int64_t slices, int code_bytes,
-                                   snow_isa isa);
+                                   int64_t rows, int64_t slices);
 
 /* 64-bit words of a row's mask. */
 static inline size_t snow_mask_words(const snow_sparse *sparse) {
@@ -159,6 +152,17 @@ static inline bool snow_any_set(const uint64_t *masks, size_t words) {
     for (size_t w = 0; w < words; w++)
         set |= masks[w];
     return set != 0;
+}
+
+/* Writes the place of each bit that is set in `words` words, counted from
+ * `base` on, modulo 256, to `out`; returns their end. */
+static inline unsigned char *snow_write_places(const uint64_t *masks,
+                                               size_t words, unsigned base,
+                                               unsigned char *out) {
+    for (size_t w = 0; w < words; w++, base += 64)
+        for (uint64_t mask = masks[w]; mask; mask &= mask - 1)
+            *out++ = (unsigned char)(base + (unsigned)__builtin_ctzll(mask));
+    return out;
 }
 
 /* Appends a slice of a band; `voxels` of it are interesting, and already
@@ -212,6 +216,23 @@ static inline size_t snow_span_append_mask(snow_span *spans, size_t count,
         mask &= mask + (UINT64_C(1) << skip);
     }
     return count;
+}
+
+/* A 64-bit word as bytes, lowest first on every machine. */
+static inline uint64_t snow_load_word(const unsigned char *at) {
+    uint64_t word;
+    memcpy(&word, at, sizeof word);
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+    word = __builtin_bswap64(word);
+#endif
+    return word;
+}
+
+static inline void snow_store_word(unsigned char *at, uint64_t word) {
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+    word = __builtin_bswap64(word);
+#endif
+    memcpy(at, &word, sizeof word);
 }
 
 /* The spans of a row whose kept columns are known. */

@@ -133,7 +133,7 @@ static void put_changes(const snow_sparse *s, const uint64_t *changes,
             w++;
         split_run(p, column + 64 * w + (size_t)__builtin_ctzll(changes[w]));
     }
-    p->at = s->loops->places(changes, STEP, (unsigned)origin % 256, p->at);
+    p->at = snow_write_places(changes, STEP, (unsigned)origin % 256, p->at);
     p->given = column + (unsigned char)(p->at[-1] - origin);
 }
 
@@ -217,7 +217,7 @@ static const snow_reader rows_reader = {rows_next_row};
 
 static void rle_begin_walk(snow_walk *walk) {
     walk->reader = &whole_reader;
-    if (walk->sparse->code_bytes) {
+    if (walk->sparse->band) {
         walk->reader = &rows_reader;
         walk->ea = walk->slice + summary_bytes(walk->sparse);
     }

@@ -100,7 +100,7 @@ static void continue_row(const snow_value_store *s, const int32_t ends[2],
 void snow_value_rows_fill(snow_value_store *s, int64_t number,
                           snow_span *spans) {
     const snow_sparse *band = &s->bands[number];
-    const int16_t *codes = (const int16_t *)(const void *)band->codes;
+    const int16_t *codes = band->numbers;
     int64_t first = number * SNOW_VALUE_BAND;
     for (int64_t slice = 0; slice < s->slices; slice++) {
         snow_walk walk;

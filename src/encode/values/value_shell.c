@@ -148,10 +148,10 @@ static snow_status encode_slice(snow_value_store *s, snow_sparse *band,
                                 shell_room *room) {
     size_t line = snow_value_words(s) + 2, own = ((size_t)s->columns + 31) / 32;
     size_t begin = band->ia_voxels, wide = words64(s);
-    SNOW_TRY(
-        snow_reserve(s->context, &band->codes, &band->codes_capacity, 2 * begin,
-                     2 * (begin + (size_t)(s->columns * lines->rows)) + 64));
-    int16_t *first = (int16_t *)(void *)band->codes + begin, *to = first;
+    SNOW_TRY(snow_reserve(
+        s->context, &band->numbers, &band->numbers_capacity, 2 * begin,
+        2 * (begin + (size_t)(s->columns * lines->rows)) + 64));
+    int16_t *first = band->numbers + begin, *to = first;
     find_shell(s, slice, lines->first, lines->rows, room);
     for (int64_t row = 0; row < lines->rows; row++) {
         const uint32_t *shell = room->shell + (size_t)row * line;
@@ -180,8 +180,7 @@ snow_status snow_value_shell_band(snow_value_store *s,
     rows = rows < SNOW_VALUE_BAND ? rows : SNOW_VALUE_BAND;
     memset(room.line, 0, line_bytes(s));
     SNOW_TRY(snow_sparse_begin_band(band, snow_scheme_of(s->encoding),
-                                    s->columns, rows, s->slices, 2,
-                                    params->isa));
+                                    s->columns, rows, s->slices));
     snow_value_lines_begin(&lines, params, first, rows, room.lines);
     for (int64_t slice = 0; slice < s->slices; slice++) {
         if (snow_monitor_look(s->context->monitor, worker))
