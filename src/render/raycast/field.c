@@ -10,43 +10,6 @@
 /* So that rounding does not decide where half of the weights is just there. */
 #define ENOUGH (0.5 - 1e-9)
 
-#define FIELD_TYPE int8_t
-#define FIELD_NAME load_INT8
-#include "render/raycast/field.tmpl.h"
-#define FIELD_TYPE uint8_t
-#define FIELD_NAME load_UINT8
-#include "render/raycast/field.tmpl.h"
-#define FIELD_TYPE int16_t
-#define FIELD_NAME load_INT16
-#include "render/raycast/field.tmpl.h"
-#define FIELD_TYPE uint16_t
-#define FIELD_NAME load_UINT16
-#include "render/raycast/field.tmpl.h"
-#define FIELD_TYPE int32_t
-#define FIELD_NAME load_INT32
-#include "render/raycast/field.tmpl.h"
-#define FIELD_TYPE uint32_t
-#define FIELD_NAME load_UINT32
-#include "render/raycast/field.tmpl.h"
-#define FIELD_TYPE int64_t
-#define FIELD_NAME load_INT64
-#include "render/raycast/field.tmpl.h"
-#define FIELD_TYPE uint64_t
-#define FIELD_NAME load_UINT64
-#include "render/raycast/field.tmpl.h"
-#define FIELD_TYPE float
-#define FIELD_NAME load_FLOAT32
-#include "render/raycast/field.tmpl.h"
-#define FIELD_TYPE double
-#define FIELD_NAME load_FLOAT64
-#include "render/raycast/field.tmpl.h"
-
-static snow_field_load_fn *const loads[] = {
-#define LOAD(name, type, text) [SNOW_TYPE_##name] = load_##name,
-    SNOW_TYPE_MAP(LOAD)
-#undef LOAD
-};
-
 snow_status snow_field_make(const snow_volume *volume,
                             const snow_transfer *transfer,
                             const snow_settings *settings, bool modes,
@@ -56,7 +19,6 @@ snow_status snow_field_make(const snow_volume *volume,
     snow_volume_info whole;
     snow_field field = {
         .volume = volume,
-        .load = loads[volume->info.type],
         .steps = {1, dims[0], dims[0] * dims[1]},
         .taps = settings->kernel == SNOW_KERNEL_BSPLINE ? 4 : 2,
         .log = transfer->log && !modes,
@@ -99,26 +61,25 @@ static double field_value_of(const snow_field *field, double native) {
 static void fill(const snow_field *field, snow_field_window *w) {
     const snow_clip_planes *clip = field->volume->clip;
     double *value = w->values;
-    int64_t at[3], first[3];
-    for (int axis = 0; axis < 3; axis++)
-        first[axis] = w->first[axis] - field->stored[axis];
-    field->load(field, first, w->count, w->values);
     w->holes = false;
     w->least = INFINITY;
     w->most = -INFINITY;
-    for (at[2] = 0; at[2] < w->count[2]; at[2]++)
-        for (at[1] = 0; at[1] < w->count[1]; at[1]++)
-            for (at[0] = 0; at[0] < w->count[0]; at[0]++, value++) {
+    for (int z = 0; z < w->count[2]; z++)
+        for (int y = 0; y < w->count[1]; y++) {
+            int64_t row =
+                (w->first[0] - field->stored[0]) * field->steps[0] +
+                (w->first[1] - field->stored[1] + y) * field->steps[1] +
+                (w->first[2] - field->stored[2] + z) * field->steps[2];
+            snow_volume_natives(field->volume, row, (size_t)w->count[0], value);
+            for (int x = 0; x < w->count[0]; x++, value++) {
                 if (clip && isnan(*value))
-                    *value = snow_clip_planes_value(
-                        clip, (first[0] + at[0]) * field->steps[0] +
-                                  (first[1] + at[1]) * field->steps[1] +
-                                  (first[2] + at[2]) * field->steps[2]);
+                    *value = snow_clip_planes_value(clip, row + x);
                 *value = field_value_of(field, *value);
                 w->holes |= isnan(*value);
                 w->least = fmin(w->least, *value);
                 w->most = fmax(w->most, *value);
             }
+        }
     w->filled = true;
 }
 

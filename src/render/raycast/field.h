@@ -24,15 +24,8 @@
 /* Voxels along an axis that a value is made of, at most. */
 #define SNOW_FIELD_TAPS 4
 
-typedef struct snow_field snow_field;
-
-/* Native values of a box of voxels, x fastest. */
-typedef void snow_field_load_fn(const snow_field *field, const int64_t first[3],
-                                const int count[3], double *values);
-
-struct snow_field {
+typedef struct snow_field {
     const snow_volume *volume;
-    snow_field_load_fn *load;
     int64_t dims[3];        /* of the whole, which positions are those of */
     int64_t stored[3];      /* the first voxel that is in memory */
     int64_t steps[3];       /* from voxel to voxel */
@@ -41,7 +34,7 @@ struct snow_field {
     bool infinite_is_hole;  /* else infinities are the finite ends: */
     double least, most;     /* data values */
     double low[3], high[3]; /* where it is defined */
-};
+} snow_field;
 
 /* The voxels around a position, kept for the next one. */
 typedef struct snow_field_window {
