@@ -50,16 +50,10 @@ static snow_status make_transfer(snow_context *context,
     double from = identity->kind.steps
                       ? fmin(fmax(identity->kind.level, low), beyond)
                       : low;
-    if (identity->kind.sparse && inverted > 0)
-        beyond = high;
-    else if (identity->kind.sparse)
-        from = nextafter(low, INFINITY);
     const snow_opacity_point finite[] = {
         {from, 0}, {from, 1}, {beyond, 1}, {beyond, 0}};
-    const snow_opacity_point above[] = {{low, inverted}, {high, 1 - inverted}};
-    bool grows = identity->kind.sparse && !identity->kind.solid;
-    return snow_transfer_new(context, colors, 2, grows ? above : finite,
-                             grows ? 2 : 4, &identity->transfer);
+    return snow_transfer_new(context, colors, 2, finite, 4,
+                             &identity->transfer);
 }
 
 snow_status snow_identity_transfer_measure(snow_job *job,
@@ -94,8 +88,7 @@ prepare_identity_transfer(const snow_job *job,
     const struct snow_identity_kind *kind = &identity->kind;
     snow_identity_transfer made = *identity;
     if (identity->transfer && identity->generation &&
-        kind->inverted == wanted->inverted && kind->sparse == wanted->sparse &&
-        kind->solid == wanted->solid && kind->steps == wanted->steps &&
+        kind->inverted == wanted->inverted && kind->steps == wanted->steps &&
         kind->level == wanted->level)
         return SNOW_STATUS_OK;
     made.kind = *wanted;
@@ -118,9 +111,8 @@ snow_status snow_identity_transfer_above(snow_job *job,
 /* The ramp of a picture of pairs. */
 static snow_status choose_identity_transfer(snow_job *job,
                                             snow_identity_transfer *identity) {
-    const struct snow_identity_kind wanted = {
-        .inverted = job->settings.mode == SNOW_MODE_MINIP,
-        .solid = job->placement.perspective};
+    const struct snow_identity_kind wanted = {.inverted = job->settings.mode ==
+                                                          SNOW_MODE_MINIP};
     return prepare_identity_transfer(job, &wanted, identity);
 }
 

@@ -3,18 +3,11 @@
  *
  * They are over's pictures of another look.  A ramp is a transfer function
  * whose grey is the data value itself, carried from the volume's own range to 0
- * to 1, and whose opacity says which voxels there are:
- *
- *   every finite one  opacity 1: for the exact methods, whose sheets add up
- *                     weights beside weighted values
- *   those above 0     for the sheared method, which knows what the weights of
- *                     a whole grid add up to: a voxel of value 0 adds nothing.
- *                     In perspective their opacity is 1, too, elsewhere grey
- *
- * so that classification, the three encodings and splatting serve as they are,
- * and a sheet's pixel is (weighted values, weights).  composite/projection.h
- * has how sheets become a local image of such pairs; here they become
- * colours, or values in data units. */
+ * to 1, and whose opacity is 1 for every finite voxel, so that classification,
+ * the three encodings and splatting serve as they are, and a sheet's pixel is
+ * (weighted values, weights).  composite/projection.h has how sheets become a
+ * local image of such pairs; here they become colours, or values in data units.
+ */
 #ifndef SNOW_RENDER_MODES_MODES_H
 #define SNOW_RENDER_MODES_MODES_H
 
@@ -28,9 +21,7 @@ typedef struct snow_identity_transfer {
     uint64_t generation; /* of the volume; 0: of none */
     struct snow_identity_kind {
         bool inverted; /* 1 is the smallest value: of minip */
-        bool sparse;   /* voxels of 0 are left out */
-        bool solid;    /* and those that are not are opaque all the same */
-        bool steps;    /* and those below `level`: of iso */
+        bool steps;    /* voxels below `level` are left out: of iso */
         double level;
     } kind;
     bool whole; /* every voxel is finite */
