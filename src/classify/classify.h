@@ -114,12 +114,6 @@ const void *snow_row_voxels(const snow_volume *volume,
  * ----------------------------------------
  */
 
-/* The gradient of native values at a voxel, in index space. */
-typedef void snow_gradient_fn(const void *voxels, const int64_t dims[3],
-                              const int64_t at[3], double gradient[3]);
-
-snow_gradient_fn *snow_gradient_of(snow_type type);
-
 /* A row of voxels along an axis; at[axis] is ignored. */
 typedef struct snow_gradient_row {
     const snow_volume *volume;
@@ -127,8 +121,9 @@ typedef struct snow_gradient_row {
     int64_t at[3];
 } snow_gradient_row;
 
-/* The same for voxels of a row: x goes to gradients[0 .. count - 1], y and z
- * begin `capacity` and 2 `capacity` later. */
+/* The gradients of native values at voxels of a row, in index space: x goes to
+ * gradients[0 .. count - 1], y and z begin `capacity` and 2 `capacity` later.
+ */
 void snow_gradients_of_row(const snow_gradient_row *row,
                            const uint32_t *columns, size_t count,
                            size_t capacity, double *gradients);

@@ -19,21 +19,19 @@ static double difference(double here, double below, double above) {
 #define TEMPLATE "classify/shading/gradient.tmpl.h"
 #include "volume/each_type.h"
 
+typedef void gradient_fn(const void *voxels, const int64_t dims[3],
+                         const int64_t at[3], double gradient[3]);
 typedef void gradient_row_fn(const snow_gradient_row *row,
                              const uint32_t *columns, size_t count,
                              size_t capacity, double *gradients);
 
 static const struct type_gradients {
-    snow_gradient_fn *one;
+    gradient_fn *one;
     gradient_row_fn *row;
 } types[] = {
 #define ENTRY(name, type, text) \
     [SNOW_TYPE_##name] = {gradient_##name, row_##name},
     SNOW_TYPE_MAP(ENTRY)};
-
-snow_gradient_fn *snow_gradient_of(snow_type type) {
-    return types[type].one;
-}
 
 /* Voxels first .. end - 1 of the columns, one by one. */
 static void one_by_one(const snow_gradient_row *row, const uint32_t *columns,
