@@ -4,7 +4,6 @@
 #include "base/record.h"
 #include "image/image.h"
 #include "render/exact/exact.h"
-#include "render/exact/exact_perspective.h"
 
 snow_status snow_buffers_new(snow_context *context, snow_frame **out) {
     snow_frame *frame = snow_allocate_clear(context, sizeof *frame);
@@ -21,7 +20,6 @@ snow_status snow_buffers_new(snow_context *context, snow_frame **out) {
 
 void snow_buffers_free(snow_frame *frame) {
     snow_exact_free(frame->exact);
-    snow_exact_eye_free(frame->context, frame->exact_eye);
     for (int n = 0; n < SNOW_GROUP_RANKS; n++)
         snow_release(frame->context, frame->spare[n]);
     snow_release(frame->context, frame->layer);

@@ -12,10 +12,7 @@
  * Along the slice axis footprints do not reach.  A pixel wider than a voxel
  * widens the kernel, and how wide it is depends on the view.  What values need
  * is said with layers_beside and layers_across, rays of surfaces with
- * layers_of_rays.
- *
- * A level's part needs as many of the level's voxels, and is made of twice as
- * many of the volume's, and of those across its border. */
+ * layers_of_rays. */
 #include "render/ghosts.h"
 
 #include "base/vec3.h"

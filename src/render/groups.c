@@ -7,14 +7,11 @@
 
 /* Lines 02 to 13. */
 static snow_status draw(snow_picture *p, snow_job *job) {
-    const snow_render_method *exact = job->placement.perspective
-                                          ? &snow_method_exact_perspective
-                                          : &snow_method_exact;
+    const snow_render_method *exact = &snow_method_exact;
     SNOW_TRY(exact->classify_and_shade(p, job));
     SNOW_TRY(exact->encode(p, job));
     SNOW_TRY(exact->splat_and_composite(p, job));
-    return job->placement.perspective ? SNOW_STATUS_OK
-                                      : snow_exact_count(p->frame->exact, job);
+    return snow_exact_count(p->frame->exact, job);
 }
 
 /* One group, as a slab: what is counted of it is added to what was. */

@@ -16,9 +16,8 @@
 #include <snowglass/ranks.h>
 #include <snowglass/render.h>
 
-typedef struct snow_exact snow_exact;         /* render/exact/exact.h */
-typedef struct snow_exact_eye snow_exact_eye; /* exact_perspective.h */
-typedef struct snow_ranks snow_ranks;         /* parallel/internal.h */
+typedef struct snow_exact snow_exact; /* render/exact/exact.h */
+typedef struct snow_ranks snow_ranks; /* parallel/internal.h */
 typedef struct snow_load_balance
     snow_load_balance; /* parallel/load_balance.h */
 
@@ -28,8 +27,7 @@ struct snow_frame {
     snow_stats stats;
     snow_ranks_stats ranks_stats;
     snow_exact *exact;
-    snow_exact_eye *exact_eye; /* in perspective; NULL until needed */
-    float *layer;              /* local pixels that are not the picture's */
+    float *layer; /* local pixels that are not the picture's */
     size_t layer_capacity;
     float *spare[SNOW_GROUP_RANKS]; /* pictures of groups, to be combined */
     size_t spare_capacity[SNOW_GROUP_RANKS];

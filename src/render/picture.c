@@ -62,10 +62,7 @@ const snow_render_method *snow_method_of(const snow_job *job) {
         return &snow_method_raycast;
     if (s->method == SNOW_METHOD_SHEAR_WARP)
         return &snow_method_shear_warp;
-    if (s->deterministic)
-        return &snow_method_groups;
-    return job->placement.perspective ? &snow_method_exact_perspective
-                                      : &snow_method_exact;
+    return s->deterministic ? &snow_method_groups : &snow_method_exact;
 }
 
 /* --- the plan ------------------------------------------------------------- */

@@ -133,9 +133,8 @@ bool snow_group_rises(const snow_placement *placement, snow_group_node node);
 /* The method that a pass by such a job takes. */
 const snow_render_method *snow_method_of(const snow_job *job);
 
-extern const snow_render_method snow_method_exact,
-    snow_method_exact_perspective, snow_method_groups, snow_method_raycast,
-    snow_method_shear_warp;
+extern const snow_render_method snow_method_exact, snow_method_groups,
+    snow_method_raycast, snow_method_shear_warp;
 
 /* Of one process. */
 extern const snow_combine_ops snow_combine_alone;

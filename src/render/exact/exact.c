@@ -6,6 +6,9 @@
  *                      or, where the instruction set has loops for it, pixels
  *                      gather: the same sums (splat/gather.h)
  *
+ * In perspective footprints differ from voxel to voxel (splat/perspective.h),
+ * and are thrown by one thread.
+ *
  * Threads take groups of slices to encode, and bands of image rows to splat
  * and composite: each walks all slices front to back for its band, so that no
  * two write one pixel.  Every pixel is made by the same operations in the same
@@ -16,6 +19,7 @@
 #include "composite/over.h"
 #include "render/modes/depth.h"
 #include "splat/gather.h"
+#include "splat/perspective.h"
 #include "splat/splat.h"
 
 #include <string.h>
@@ -37,7 +41,8 @@ typedef struct worker {
     size_t spans_capacity;
     snow_sheet sheet; /* scatter: a band; gather: only its memory is used */
     snow_splatter splatter;
-    snow_run *runs; /* gathering: of GATHER_ROWS rows */
+    snow_perspective_splatter eye; /* in perspective: instead */
+    snow_run *runs;                /* gathering: of GATHER_ROWS rows */
     size_t runs_capacity;
     snow_places places;
     int64_t kept; /* voxels splatted of row blocks */
@@ -98,6 +103,7 @@ void snow_exact_free(snow_exact *exact) {
         snow_release(context, w->runs);
         snow_release(context, w->places.window);
         snow_splatter_fini(context, &w->splatter);
+        snow_perspective_splatter_fini(context, &w->eye);
     }
     snow_release(context, exact->groups);
     snow_release(context, exact->dense);
@@ -141,7 +147,7 @@ static uint64_t spread_bytes(const snow_context *context) {
 /* How the picture is cut for threads. */
 static void cut(snow_exact *exact, const snow_job *job) {
     const snow_placement *p = &job->stored;
-    int64_t threads = job->settings.threads;
+    int64_t threads = p->perspective ? 1 : job->settings.threads;
     exact->groups_used = parts_of(job->stored_slab.count, GROUP_SLICES);
     exact->bands = 1;
     exact->dense_used = 0;
@@ -161,6 +167,18 @@ static void cut(snow_exact *exact, const snow_job *job) {
     exact->threads = (int)smaller(threads, most);
 }
 
+static snow_status prepare_splatter(snow_context *context, const snow_job *job,
+                                    worker *w) {
+    const snow_placement *p = &job->stored;
+    const snow_settings *s = &job->settings;
+    if (!p->perspective)
+        return snow_splatter_make(context, p, s->kernel, s->footprint,
+                                  job->channels, &w->splatter);
+    snow_perspective_splatter_fini(context, &w->eye);
+    return snow_perspective_splatter_init(context, p, s->kernel, s->footprint,
+                                          job->channels, &w->eye);
+}
+
 static snow_status prepare_worker(snow_exact *exact, const snow_job *job,
                                   worker *w) {
     snow_context *context = exact->context;
@@ -178,9 +196,7 @@ static snow_status prepare_worker(snow_exact *exact, const snow_job *job,
         size_t rows = (size_t)parts_of(p->height, exact->bands);
         SNOW_TRY(snow_reserve(context, &w->sheet.pixels, &w->sheet.capacity, 0,
                               rows * row * sizeof *w->sheet.pixels));
-        return snow_splatter_make(context, p, job->settings.kernel,
-                                  job->settings.footprint, job->channels,
-                                  &w->splatter);
+        return prepare_splatter(context, job, w);
     }
     size_t runs = (size_t)p->width / 2 + 1;
     SNOW_TRY(snow_places_make(context, p->width, &w->places));
@@ -211,7 +227,7 @@ static snow_status choose_loops(snow_exact *exact, const snow_job *job) {
     exact->gathers = false;
     exact->over = job->composite ? job->composite
                                  : snow_over_pick(settings->isa, job->channels);
-    if (settings->method != SNOW_METHOD_FOOTPRINT)
+    if (settings->method != SNOW_METHOD_FOOTPRINT || job->stored.perspective)
         return SNOW_STATUS_OK;
     return snow_gatherer_make(exact->context, &job->stored, settings->kernel,
                               settings->footprint, job->channels, settings->isa,
@@ -225,7 +241,9 @@ static snow_status prepare(snow_exact *exact, const snow_job *job) {
     const snow_placement *p = &job->stored;
     snow_classify_options options = {
         .threshold = settings->threshold,
-        .opacity_exponent = p->path / settings->opacity_length,
+        /* In perspective each voxel's own length comes after. */
+        .opacity_exponent =
+            p->perspective ? 1 : p->path / settings->opacity_length,
         .keep_all = settings->method == SNOW_METHOD_ORIGINAL,
         .premultiply = settings->shade == SNOW_SHADE_NONE,
         .isa = settings->method == SNOW_METHOD_FOOTPRINT ? settings->isa
@@ -302,7 +320,21 @@ static bool stops(const pass *work, const worker *w) {
 /* The slab's n-th slice from the viewer. */
 static int64_t nth_slice(const snow_job *job, int64_t n) {
     snow_slab slab = job->stored_slab;
+    if (job->stored.perspective)
+        return snow_perspective_nth_slice(&job->stored.eye, slab.first,
+                                          slab.count, n);
     return slab.first + (job->stored.nearest_first ? n : slab.count - 1 - n);
+}
+
+/* In perspective: for the length of each voxel's own ray. */
+static void correct_lengths(const snow_job *job, snow_row_block *row_block) {
+    const snow_settings *s = &job->settings;
+    if (s->mode == SNOW_MODE_OVER)
+        snow_scale_path_length(&job->stored, s->opacity_length, job->channels,
+                               row_block);
+    else if (s->mode == SNOW_MODE_SUM)
+        snow_correct_opacity(&job->stored, s->opacity_length, job->channels,
+                             row_block);
 }
 
 /* Classifies and shades `rows` rows of a slice, or as many as a strip holds,
@@ -319,13 +351,18 @@ static void classify_and_shade(const pass *work, worker *w, int64_t slice,
         snow_shade_row_block(&exact->shader, work->job->channels,
                              &w->row_block);
     snow_lap(&mark, &w->seconds[SHADE]);
+    if (work->job->stored.perspective)
+        correct_lengths(work->job, &w->row_block);
+    snow_lap(&mark, &w->seconds[CLASSIFY]);
 }
 
 /* --- encoding ------------------------------------------------------------- */
 
-snow_encoding snow_exact_measure(const snow_classifier *classifier,
-                                 const snow_placement *p,
-                                 snow_row_block *row_block, snow_span *spans) {
+/* The encoding that takes least, by density and runs on every 8th row of every
+ * 8th slice. */
+static snow_encoding measure(const snow_classifier *classifier,
+                             const snow_placement *p, snow_row_block *row_block,
+                             snow_span *spans) {
     uint64_t voxels = 0, interesting = 0, runs = 0;
     for (int64_t slice = 0;
          slice < p->slices &&
@@ -404,6 +441,25 @@ static const float *walk_row(const pass *work, snow_walk *walk, worker *w,
 
 /* --- scattering footprints ------------------------------------------------ */
 
+static snow_status begin_slice(const pass *work, worker *w, int64_t slice,
+                               bool *seen) {
+    *seen = true;
+    if (work->job->stored.perspective)
+        return snow_perspective_splatter_begin_slice(work->exact->context,
+                                                     &w->eye, slice, seen);
+    snow_splatter_begin_slice(&w->splatter, slice);
+    return SNOW_STATUS_OK;
+}
+
+static void splat_row(const pass *work, worker *w, int64_t row, size_t spans,
+                      const float *samples) {
+    if (work->job->stored.perspective)
+        snow_perspective_splat_row(&w->eye, &w->sheet, row, w->spans, spans,
+                                   samples);
+    else
+        snow_splat_row(&w->splatter, &w->sheet, row, w->spans, spans, samples);
+}
+
 /* Lines 08 to 12: the interesting voxels of one slice, out of EA and IA. */
 static void scatter_encoded(const pass *work, worker *w, int64_t slice,
                             int64_t first, int64_t end) {
@@ -414,8 +470,7 @@ static void scatter_encoded(const pass *work, worker *w, int64_t slice,
         size_t spans;
         const float *samples = walk_row(work, &walk, w, &spans);
         if (row >= first)
-            snow_splat_row(&w->splatter, &w->sheet, row, w->spans, spans,
-                           samples);
+            splat_row(work, w, row, spans, samples);
     }
     snow_lap(&mark, &w->seconds[SPLAT]);
 }
@@ -435,9 +490,8 @@ static void scatter_classified(const pass *work, worker *w, int64_t slice,
             size_t stop = row_block->row_end[n];
             size_t spans = snow_spans_of_columns(row_block->columns + begin,
                                                  stop - begin, w->spans);
-            snow_splat_row(&w->splatter, &w->sheet, row + n, w->spans, spans,
-                           row_block->samples +
-                               begin * (size_t)work->job->channels);
+            splat_row(work, w, row + n, spans,
+                      row_block->samples + begin * (size_t)work->job->channels);
             begin = stop;
         }
         snow_lap(&mark, &w->seconds[SPLAT]);
@@ -458,13 +512,16 @@ static snow_status scatter_band(const pass *work, int64_t band, worker *w) {
     snow_lap(&mark, &w->seconds[COMPOSITE]);
     for (int64_t n = 0; n < job->stored_slab.count; n++) {
         int64_t slice = nth_slice(job, n), first = 0, end = p->rows;
+        bool seen;
         if (stops(work, w))
             break;
         if (bands == 1)
             snow_monitor_report(work->exact->context->monitor,
                                 SNOW_STAGE_RENDER, (double)n,
                                 (double)job->stored_slab.count);
-        snow_splatter_begin_slice(&w->splatter, slice);
+        SNOW_TRY(begin_slice(work, w, slice, &seen));
+        if (!seen)
+            continue;
         if (bands > 1) /* one band takes every row, as the paper does */
             snow_splatter_rows(&w->splatter, &w->sheet, &first, &end);
         if (job->settings.method == SNOW_METHOD_FOOTPRINT)
@@ -607,9 +664,9 @@ static snow_status encode_slab(snow_picture *p, snow_job *job) {
     if (job->settings.method != SNOW_METHOD_FOOTPRINT)
         return SNOW_STATUS_OK;
     if (exact->encoding == SNOW_ENCODING_AUTO)
-        exact->encoding = snow_exact_measure(&exact->classifier, &job->stored,
-                                             &exact->workers[0].row_block,
-                                             exact->workers[0].spans);
+        exact->encoding =
+            measure(&exact->classifier, &job->stored,
+                    &exact->workers[0].row_block, exact->workers[0].spans);
     job->stats->encoding = exact->encoding;
     snow_monitor_next(exact->context->monitor, SNOW_STAGE_ENCODE, 0, 1);
     pass work = {exact, job, exact->encoding, 0, 0};

@@ -19,12 +19,6 @@ void snow_exact_free(snow_exact *exact);
 /* snow_method_exact fills the local image of a job, and the seconds of its
  * stages.  Errors: SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY. */
 
-/* The encoding that takes least, by density and runs on every 8th row of every
- * 8th slice. */
-snow_encoding snow_exact_measure(const snow_classifier *classifier,
-                                 const snow_placement *placement,
-                                 snow_row_block *row_block, snow_span *spans);
-
 /* Counts of voxels and bytes, once the picture is made.  Errors:
  * SNOW_STATUS_NO_MEMORY. */
 snow_status snow_exact_count(snow_exact *exact, const snow_job *job);
