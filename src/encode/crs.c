@@ -114,10 +114,12 @@ static unsigned char *write_row(const snow_sparse *s, const uint64_t *masks,
         size_t some = words - w < CELL_WORDS ? words - w : CELL_WORDS;
         if (!snow_any_set(masks + w, some))
             continue;
-        unsigned char *end = snow_write_places(masks + w, some, 0, at + 1);
-        *at = (unsigned char)(end - at - 2);
+        unsigned char *count = at++;
+        for (size_t n = 0; n < some; n++)
+            for (uint64_t mask = masks[w + n]; mask; mask &= mask - 1)
+                *at++ = (unsigned char)(64 * n + (size_t)__builtin_ctzll(mask));
+        *count = (unsigned char)(at - count - 2);
         summary[cell / 8] |= (unsigned char)(1u << cell % 8);
-        at = end;
     }
     return at;
 }

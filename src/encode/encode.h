@@ -154,17 +154,6 @@ static inline bool snow_any_set(const uint64_t *masks, size_t words) {
     return set != 0;
 }
 
-/* Writes the place of each bit that is set in `words` words, counted from
- * `base` on, modulo 256, to `out`; returns their end. */
-static inline unsigned char *snow_write_places(const uint64_t *masks,
-                                               size_t words, unsigned base,
-                                               unsigned char *out) {
-    for (size_t w = 0; w < words; w++, base += 64)
-        for (uint64_t mask = masks[w]; mask; mask &= mask - 1)
-            *out++ = (unsigned char)(base + (unsigned)__builtin_ctzll(mask));
-    return out;
-}
-
 /* Appends a slice of a band; `voxels` of it are interesting, and already
  * counted in ia_voxels. Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_sparse_add_masks(snow_sparse *sparse, const uint64_t *masks,

@@ -102,87 +102,48 @@ static size_t most_bytes(const snow_sparse *s, size_t voxels) {
     return 2 * voxels + (size_t)s->rows * splits;
 }
 
-/* The encoder first writes the ends of runs, as positions counted through all
- * rows that hold voxels, modulo 256. Within 256 columns no run is too long for
- * a byte, so the differences of these positions are the runs. */
-typedef struct places {
-    unsigned char *at; /* the next one goes here */
-    size_t origin;     /* position of the row's first column */
-    size_t given;      /* columns of the row up to the last position */
-} places;
-
-/* Writes splits until a run that ends at `column` fits a byte. */
-static void split_run(places *p, size_t column) {
-    for (; column - p->given > LONGEST; p->given += LONGEST) {
-        p->at[0] = (unsigned char)(p->origin + p->given + LONGEST);
-        p->at[1] = p->at[0];
-        p->at += 2;
+static unsigned char *put_run(unsigned char *at, size_t length) {
+    for (; length > LONGEST; length -= LONGEST) {
+        *at++ = LONGEST;
+        *at++ = 0;
     }
-}
-
-#define STEP 4 /* words of 256 columns */
-
-/* Writes the positions of the set bits of STEP words; the first is `column`. */
-static void put_changes(const snow_sparse *s, const uint64_t *changes,
-                        size_t column, places *p) {
-    size_t w = 0, origin = p->origin + column;
-    if (!(changes[0] | changes[1] | changes[2] | changes[3]))
-        return;
-    if (column) { /* otherwise the run so far is short */
-        while (!changes[w])
-            w++;
-        split_run(p, column + 64 * w + (size_t)__builtin_ctzll(changes[w]));
-    }
-    p->at = snow_write_places(changes, STEP, (unsigned)origin % 256, p->at);
-    p->given = column + (unsigned char)(p->at[-1] - origin);
+    *at++ = (unsigned char)length;
+    return at;
 }
 
 /* Writes a row. A run ends with each bit that differs from the one before, and
  * with the row. */
-static void put_row(const snow_sparse *s, const uint64_t *masks, places *p) {
-    size_t words = snow_mask_words(s), columns = (size_t)s->columns;
+static unsigned char *put_row(const snow_sparse *s, const uint64_t *masks,
+                              unsigned char *at) {
+    size_t columns = (size_t)s->columns, begun = 0;
     uint64_t before = 0;
-    p->given = 0;
-    for (size_t w = 0; w < words; w += STEP) {
-        uint64_t changes[STEP] = {0};
-        for (size_t n = 0; n < STEP && w + n < words; n++) {
-            uint64_t mask = masks[w + n];
-            changes[n] = mask ^ (mask << 1 | before);
-            before = mask >> 63;
+    for (size_t w = 0; w < snow_mask_words(s); w++) {
+        uint64_t changes = masks[w] ^ (masks[w] << 1 | before);
+        before = masks[w] >> 63;
+        for (; changes; changes &= changes - 1) {
+            size_t column = 64 * w + (size_t)__builtin_ctzll(changes);
+            if (column == columns)
+                break;
+            at = put_run(at, column - begun);
+            begun = column;
         }
-        if (columns % 64 && w + STEP >= words)
-            changes[words - 1 - w] &= (UINT64_C(1) << columns % 64) - 1;
-        put_changes(s, changes, 64 * w, p);
     }
-    split_run(p, columns);
-    p->origin += columns;
-    *p->at++ = (unsigned char)p->origin;
-}
-
-static void subtract(const unsigned char *restrict from, size_t count,
-                     unsigned char *restrict out) {
-    for (size_t n = 0; n < count; n++)
-        out[n] = (unsigned char)(from[n + 1] - from[n]);
+    return put_run(at, columns - begun);
 }
 
 static snow_status rle_add_masks(snow_sparse *s, const uint64_t *masks,
                                  size_t voxels) {
-    size_t words = snow_mask_words(s), most = most_bytes(s, voxels);
+    size_t words = snow_mask_words(s), summary = summary_bytes(s);
     unsigned char *at;
-    /* Summary and runs; behind them, temporarily, the positions, after a 0. */
-    SNOW_TRY(snow_sparse_open_ea(s, summary_bytes(s) + 2 * most + 1, &at));
-    unsigned char *runs = at + summary_bytes(s), *from = runs + most;
-    places p = {.at = from + 1};
-    *from = 0;
-    memset(at, 0, summary_bytes(s));
+    SNOW_TRY(snow_sparse_open_ea(s, summary + most_bytes(s, voxels), &at));
+    unsigned char *end = at + summary;
+    memset(at, 0, summary);
     for (int64_t row = 0; row < s->rows; row++, masks += words)
         if (snow_any_set(masks, words)) {
             at[row / 8] |= (unsigned char)(1u << row % 8);
-            put_row(s, masks, &p);
+            end = put_row(s, masks, end);
         }
-    size_t count = (size_t)(p.at - from) - 1;
-    subtract(from, count, runs);
-    snow_sparse_close_ea(s, runs + count);
+    snow_sparse_close_ea(s, end);
     return SNOW_STATUS_OK;
 }
 
