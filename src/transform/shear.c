@@ -19,7 +19,7 @@ static void range_over(double c, double a, double b, double width,
  * slice 0). */
 static bool make_lattice(const snow_placement *p, int64_t voxels, double reach,
                          const double seen[2], snow_lattice *out) {
-    double pitch = (double)out->stride / out->phases;
+    double pitch = 1.0 / out->phases;
     double shift = (double)(p->slices - 1) * out->slope;
     double low = fmin(0, shift) - reach;
     double high = fmax(0, shift) + (double)voxels - 1 + reach;
@@ -40,11 +40,9 @@ static bool make_lattice(const snow_placement *p, int64_t voxels, double reach,
     return true;
 }
 
-snow_status snow_shear_make(snow_context *context,
-                            const snow_placement *placement,
-                            const snow_shear_options *options,
+snow_status snow_shear_make(snow_context *context, const snow_placement *p,
+                            const int phases[2], double reach,
                             snow_shear *out) {
-    const snow_placement *p = placement;
     const int64_t voxels[2] = {p->columns, p->rows};
     snow_shear shear = {0};
     snow_lattice *lattices[2] = {&shear.u, &shear.v};
@@ -52,16 +50,13 @@ snow_status snow_shear_make(snow_context *context,
     for (int axis = 0; axis < 2; axis++) {
         const double *row = p->inverse[axis];
         snow_lattice *lattice = lattices[axis];
-        lattice->phases = options->phases[axis];
-        lattice->stride = options->stride[axis];
+        lattice->phases = phases[axis];
         lattice->slope = row[0] * p->step_slice[0] + row[1] * p->step_slice[1];
         double zero = -row[0] * p->origin[0] - row[1] * p->origin[1];
         double seen[2];
         range_over(zero, row[0], row[1], p->width, p->height, seen);
-        fits = make_lattice(p, voxels[axis], options->reach[axis], seen,
-                            lattice) &&
-               fits;
-        double scale = (double)lattice->phases / lattice->stride;
+        fits = make_lattice(p, voxels[axis], reach, seen, lattice) && fits;
+        double scale = lattice->phases;
         shear.along_x[axis] = scale * row[0];
         shear.along_y[axis] = scale * row[1];
         shear.start[axis] =

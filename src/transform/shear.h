@@ -17,11 +17,10 @@
 /* The intermediate image along one axis of the slices.  Lattice pixel P, which
  * is pixel P - first of the image, samples slice k at
  *
- *   P * stride / phases - k * slope     voxels
+ *   P / phases - k * slope     voxels
  */
 typedef struct snow_lattice {
-    int phases; /* pixels a voxel, 1 or 2 */
-    int stride; /* voxels a pixel; 2 only if phases is 1 */
+    int phases; /* pixels a voxel */
     double slope;
     int64_t first; /* a multiple of phases */
     int count;     /* pixels; 0 if nothing is in view */
@@ -35,19 +34,14 @@ typedef struct snow_shear {
     double start[2], along_x[2], along_y[2];
 } snow_shear;
 
-/* Options of an intermediate image, along u and v. */
-typedef struct snow_shear_options {
-    int phases[2], stride[2];
-    double reach[2]; /* of the kernel, voxels */
-} snow_shear_options;
-
-/* The part of the lattice that both holds voxels and is in view, with a border
- * of SNOW_SHEAR_BORDER pixels that are empty or out of view: two that a warp
- * reads beyond its place, and its distance from the ends. Errors:
- * SNOW_STATUS_BAD_USAGE (the intermediate image is too large). */
+/* The part of the lattice that both is within `reach` of voxels and in view,
+ * with a border of SNOW_SHEAR_BORDER pixels that are empty or out of view: two
+ * that a warp reads beyond its place, and its distance from the ends. Phases
+ * are along u and v. Errors: SNOW_STATUS_BAD_USAGE (the intermediate image is
+ * too large). */
 #define SNOW_SHEAR_BORDER 5
 snow_status snow_shear_make(snow_context *context,
                             const snow_placement *placement,
-                            const snow_shear_options *options, snow_shear *out);
+                            const int phases[2], double reach, snow_shear *out);
 
 #endif

@@ -93,10 +93,8 @@ snow_status snow_perspective_shear_cover(snow_context *context,
                                          const double pitch[2],
                                          double covered[2][2],
                                          snow_perspective_shear *out) {
-    snow_perspective_shear scaled = {.u = {.pitch = pitch[0]},
-                                     .v = {.pitch = pitch[1]},
-                                     .height = height,
-                                     .level = p->eye.at[2]};
+    snow_perspective_shear scaled = {
+        .u = {.pitch = pitch[0]}, .v = {.pitch = pitch[1]}, .height = height};
     if (!make_axis(p, &scaled, 0, covered[0], &scaled.u) ||
         !make_axis(p, &scaled, 1, covered[1], &scaled.v))
         return snow_fail(

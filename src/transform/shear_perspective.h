@@ -23,7 +23,6 @@ typedef struct snow_perspective_shear_axis {
 typedef struct snow_perspective_shear {
     snow_perspective_shear_axis u, v;
     double height; /* k0 - ek */
-    double level;  /* ek */
     /* Pixel position (x, y) of the picture maps to (warp[0], warp[1]) / warp[2]
      * in pixels of the intermediate image, with warp[i] = warp[i][0] + x
      * warp[i][1] + y warp[i][2]; the volume is visible where warp[2] > 0. */

@@ -208,11 +208,8 @@ static snow_status place_image(snow_context *context,
                                const snow_placement *p, snow_value_lattice *l) {
     int dense = l->quincunx ? 2 : 1;
     double aside = 1 + snow_value_lattice_reach(info, p, 1);
-    const snow_shear_options options = {
-        .phases = {dense * l->cells[0], dense * l->cells[1]},
-        .stride = {1, 1},
-        .reach = {aside, aside}};
-    SNOW_TRY(snow_shear_make(context, p, &options, &l->shear));
+    const int phases[2] = {dense * l->cells[0], dense * l->cells[1]};
+    SNOW_TRY(snow_shear_make(context, p, phases, aside, &l->shear));
     const snow_lattice *axes[2] = {&l->shear.u, &l->shear.v};
     l->empty = axes[0]->count == 0 || axes[1]->count == 0;
     for (int axis = 0; axis < 2; axis++) {
