@@ -57,7 +57,6 @@ static snow_status open_slabs(snow_parts *parts) {
         job->context, &job->volume->info, job->view, &job->settings,
         snow_transfer_has_gradient_opacity(job->transfer), false, layers));
     parts->cut = (snow_slab_cut){
-        .step = 1,
         .ghosts = layers[2],
         .made = made_of(job),
         .clipped = job->settings.method == SNOW_METHOD_SHEAR_WARP ||

@@ -69,7 +69,7 @@ size_t snow_voxel_walk_next_block(snow_voxel_walk *w,
 snow_status snow_histogram_visit(const snow_histogram *histogram,
                                  snow_histogram_mode histogram_mode,
                                  snow_slab_fn *visit, void *user) {
-    static const snow_slab_cut cut = {.step = 1};
+    static const snow_slab_cut cut = {0};
     if (histogram_mode == SNOW_HISTOGRAM_SAMPLED && histogram->sample)
         return visit(histogram->sample, user);
     return snow_slabs_visit(histogram->volume, &cut, visit, user);

@@ -35,8 +35,6 @@ snow_slab_kept_fn(void *user, const snow_extent *part, int64_t slices);
 
 /* How a volume is to be cut. */
 typedef struct snow_slab_cut {
-    int64_t step;   /* slices of a slab are a multiple of it, but for the last
-                       ones; at least 1 */
     int64_t ghosts; /* layers on either side, but beyond the grid */
     int64_t made;   /* so many times a slab's bytes are taken by what is made of
                        it; 0: few */

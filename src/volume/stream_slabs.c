@@ -42,10 +42,8 @@ static int64_t slab_slices(const snow_volume *volume,
     uint64_t slice = (uint64_t)(dims[0] * dims[1]) *
                      (uint64_t)snow_type_size(volume->info.type);
     uint64_t room = slab_room(volume, cut->made) / slice;
-    uint64_t around = 2 * (uint64_t)cut->ghosts, step = (uint64_t)cut->step;
-    if (room < around + step)
-        return cut->step;
-    uint64_t slices = (room - around) / step * step;
+    uint64_t around = 2 * (uint64_t)cut->ghosts;
+    uint64_t slices = room > around ? room - around : 1;
     return slices < (uint64_t)dims[2] ? (int64_t)slices : dims[2];
 }
 
@@ -255,7 +253,7 @@ static snow_status measure_slab(const snow_volume *slab, void *user) {
 
 snow_status snow_volume_range(const snow_volume *volume,
                               snow_volume_statistics *out) {
-    static const snow_slab_cut cut = {.step = 1};
+    static const snow_slab_cut cut = {0};
     snow_volume_statistics range = {.min = NAN, .max = NAN};
     if (volume->stream && volume->stream->measured) {
         *out = volume->stream->range;

@@ -54,7 +54,7 @@ void snow_value_path_free(snow_value_path *path) {
 /* --- values -----------------------------------------------------------------
  */
 
-static const snow_slab_cut every_slab = {.step = 1, .clipped = true};
+static const snow_slab_cut every_slab = {.clipped = true};
 
 /* What the slabs of a file have together. */
 typedef struct measuring {
