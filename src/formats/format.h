@@ -72,6 +72,14 @@ snow_status snow_volume_pick_time(snow_context *context, const char *what,
                                   const snow_volume_options *options,
                                   snow_volume_info *info);
 
+/* For readers of images, whose row 0 is the top: turns an unturned matrix half
+ * around x, so that seen from +z slice 0 is in front and rows go down. */
+static inline void snow_image_turn(double matrix[4][4]) {
+    for (int row = 1; row < 3; row++)
+        for (int i = 0; i < 4; i++)
+            matrix[row][i] = 0 - matrix[row][i]; /* never -0 */
+}
+
 /* Whether a file name ends as those of the format do. */
 bool snow_format_has_name(const snow_format *format, const char *name);
 

@@ -149,7 +149,7 @@ static snow_status look_at_first(stack *s) {
     SNOW_TRY(read_file(s, 0, &s->first, NULL));
     s->slice = s->first;
     if (s->first.dims[2] == 1 && s->first.times == 1) {
-        if (s->first.matrix[0][0] != 1 && s->first.matrix[2][2] == 1)
+        if (s->first.matrix[0][0] != 1 && s->first.matrix[2][2] == -1)
             snow_notify(s->context, "the distance of the slices is unknown; 1 "
                                     "is used, --spacing sets another");
         return SNOW_STATUS_OK;

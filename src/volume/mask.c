@@ -76,14 +76,16 @@ bool snow_labels_parse(const char *text, snow_label_range *ranges, size_t room,
 /* --- the grid ------------------------------------------------------------- */
 
 /* Whether the file gives a position or directions.  A file without them is at 0
- * along the world's axes. */
+ * along the world's axes, or turned so that an image's rows go down. */
 static bool has_place(const snow_volume_info *info) {
     bool given = info->medical;
+    bool image = info->matrix[1][1] < 0 && info->matrix[2][2] < 0;
     for (int row = 0; row < 3; row++) {
         given |= info->matrix[row][3] != 0;
         for (int axis = 0; axis < 3; axis++)
-            given |= row == axis ? info->matrix[row][axis] < 0
-                                 : info->matrix[row][axis] != 0;
+            given |= row == axis
+                         ? info->matrix[row][axis] < 0 && !(image && row)
+                         : info->matrix[row][axis] != 0;
     }
     return given;
 }

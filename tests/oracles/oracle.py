@@ -14,6 +14,7 @@ import numpy as np
 
 TOOL, DATA = os.path.abspath(sys.argv[1]), sys.argv[2]
 checked = wrong = 0
+usual = np.eye(4)  # the matrix of a file that says nothing of it
 SHORT = os.environ.get("SNOW_TIER", "short") == "short" # docs/testing.md
 
 
@@ -75,7 +76,7 @@ def expect(path, voxels, matrix=None, options=(), dtype=None, unit=None,
     global checked
     checked += 1
     before = wrong
-    matrix = np.eye(4) if matrix is None else np.asarray(matrix, float)
+    matrix = usual if matrix is None else np.asarray(matrix, float)
     if "--crop" not in options:
         expect(path, voxels, matrix, [*options, "--crop", ":,:,:"], dtype,
                unit, name)
@@ -131,6 +132,11 @@ def affine(step, origin=(0, 0, 0), direction=None):
     matrix[:3, :3] = turn @ np.diag(step)
     matrix[:3, 3] = origin
     return matrix
+
+
+def image(step=(1, 1, 1), origin=(0, 0, 0)):
+    """The place of an image, whose row 0 is the top and slice 0 in front."""
+    return np.diag([1, -1, -1, 1]) @ affine(step, origin)
 
 
 def sample(dtype, shape=(7, 6, 5), seed=1):

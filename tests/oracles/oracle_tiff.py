@@ -18,6 +18,7 @@ import oracle
 oracle.need_modules()
 
 place = oracle.folder()
+oracle.usual = oracle.image()
 TYPES = ["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8", "f4", "f8", "f2"]
 tiffcp = shutil.which("tiffcp")
 
@@ -75,7 +76,7 @@ for contiguous in (None, True):
     for t in range(2):
         for c in range(3):
             oracle.expect("f.tif", h[t, :, c],
-                          oracle.affine((0.25, 0.5, 1.5)),
+                          oracle.image((0.25, 0.5, 1.5)),
                           ["--time", t, "--channel", c], unit="um")
 # Slices that were called times or channels.
 many = oracle.sample("u2", (9, 6, 5))
@@ -107,7 +108,7 @@ for axes in ("TZCYX", "TCZYX", "CTZYX", "ZTCYX", "CZTYX", "ZCTYX"):
     for t in range(2):
         for c in oracle.few(range(3), 2, t):
             oracle.expect("h.ome.tif", h[t, :, c],
-                          oracle.affine((0.5, 0.5, 2)),
+                          oracle.image((0.5, 0.5, 2)),
                           ["--time", t, "--channel", c], unit="um",
                           name=f"OME {axes} {t} {c}")
 
@@ -180,7 +181,7 @@ for relative, step, unit in (
          "um")):
     path = oracle.data(relative)
     if path:
-        oracle.expect(path, tifffile.imread(path), oracle.affine(step),
+        oracle.expect(path, tifffile.imread(path), oracle.image(step),
                       unit=unit)
 for relative in ("microscopy/hemisphere_l_211tif.tar.gz",
                  "classic/cthead-8bit_99tif.tar.gz"):
@@ -198,6 +199,6 @@ for relative in ("microscopy/hemisphere_l_211tif.tar.gz",
             for i, tag in enumerate(("XResolution", "YResolution")):
                 if file.is_imagej and tag in tags:
                     step[i] = tags[tag].value[1] / tags[tag].value[0]
-        oracle.expect(f"real/{name}", voxels, oracle.affine(step))
+        oracle.expect(f"real/{name}", voxels, oracle.image(step))
         shutil.rmtree("real")
 oracle.finish()

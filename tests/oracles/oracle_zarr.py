@@ -189,8 +189,8 @@ image("i.zarr", AXES, [
     (t, [scale(1, 1, 500, 0.25, 0.25)]),
     (half, [scale(1, 1, 500, 0.5, 0.5), shift(0, 0, 0, 0.125, 0.125)])],
       coordinateTransformations=[scale(5, 1, 2, 1, 1)])
-fine = oracle.affine((0.25, 0.25, 1))
-coarse = oracle.affine((0.5, 0.5, 1), (0.125, 0.125, 0))
+fine = oracle.image((0.25, 0.25, 1))
+coarse = oracle.image((0.5, 0.5, 1), (0.125, 0.125, 0))
 oracle.expect("i.zarr", t[1, 1], fine, ["--time", 1, "--channel", 1],
               unit="um")
 for name in ("s1", "1", "/s1"):
@@ -214,13 +214,13 @@ oracle.refuse("i.zarr", "none of the 2 levels")
 # Axes in another order, and with names of their own.
 image("j.zarr", [{"name": n, "type": "space"} for n in "xyz"],
       [(a, [scale(1, 2, 3), shift(4, 5, 6), scale(2, 2, 2)])])
-oracle.expect("j.zarr", a.T, oracle.affine((2, 4, 6), (8, 10, 12)), unit="")
+oracle.expect("j.zarr", a.T, oracle.image((2, 4, 6), (8, 10, 12)), unit="")
 image("j.zarr", [{"name": n, "type": "space"} for n in ("down", "in", "out")],
       [(a, [scale(1, 2, 3)])])
-oracle.expect("j.zarr", a, oracle.affine((3, 2, 1)))
+oracle.expect("j.zarr", a, oracle.image((3, 2, 1)))
 image("j.zarr", [{"name": "y", "type": "space"}, {"name": "x"}],
       [(a[0], [scale(0.5, 0.25)])])
-oracle.expect("j.zarr", a[:1], oracle.affine((0.25, 0.5, 0.25)))
+oracle.expect("j.zarr", a[:1], oracle.image((0.25, 0.5, 0.25)))
 
 # Older versions: no transformations, axes as texts or none.
 for axes in (list("tczyx"), None):
@@ -229,19 +229,20 @@ for axes in (list("tczyx"), None):
         attrs = json.load(open("k.zarr/.zattrs"))
         del attrs["multiscales"][0]["axes"]
         attributes("k.zarr", attrs)
-    oracle.expect("k.zarr", t[2, 1], options=["--time", 2, "--channel", 1])
+    oracle.expect("k.zarr", t[2, 1], oracle.image(),
+                  ["--time", 2, "--channel", 1])
     oracle.expect("k.zarr", half[0, 0],
-                  oracle.affine((7 / 4, 2, 1), (3 / 8, 0.5, 0)),
+                  oracle.image((7 / 4, 2, 1), (3 / 8, 0.5, 0)),
                   options=["--dataset", "1"])
 
 # Images in a group, as converters put them, and labels below an image.
 group = begin("l.zarr")
 image("l.zarr/0", AXES[2:], [(a, [scale(1, 2, 3)])])
 group.create_group("OME")
-oracle.expect("l.zarr", a, oracle.affine((3, 2, 0.001)), unit="um",
+oracle.expect("l.zarr", a, oracle.image((3, 2, 0.001)), unit="um",
               name="converted image")
 image("l.zarr/0/labels/cells", AXES[2:], [(a, [scale(4, 4, 4)])])
-oracle.expect("l.zarr", a, oracle.affine((4, 4, 0.004)), name="labels",
+oracle.expect("l.zarr", a, oracle.image((4, 4, 0.004)), name="labels",
               options=["--dataset", "0/labels/cells"])
 image("l.zarr/1", AXES[2:], [(a, [scale(1, 1, 1)])])
 oracle.refuse("l.zarr", "0, 1", status=2)
@@ -405,8 +406,8 @@ json.dump({"zarr_format": 3, "node_type": "group", "attributes": {"ome": {
     "version": "0.5", "multiscales": [{"axes": AXES[2:], "datasets": [
         {"path": str(i), "coordinateTransformations": [scale(1000, k, k)]}
         for i, k in enumerate((1, 2))]}]}}}, open("o.zarr/zarr.json", "w"))
-oracle.expect("o.zarr", a, oracle.affine((1, 1, 1)), unit="um")
-oracle.expect("o.zarr/1", a[:, ::2, ::2], oracle.affine((2, 2, 1)))
+oracle.expect("o.zarr", a, oracle.image((1, 1, 1)), unit="um")
+oracle.expect("o.zarr/1", a[:, ::2, ::2], oracle.image((2, 2, 1)))
 
 # Refused.
 save3("p.zarr", a, SIZE, codecs("gzip", "zstd"))
@@ -498,7 +499,7 @@ for name in ("mni152.ome.zarr", "mni152_axial.ome.zarr"):
              if os.path.exists(f"{path}/{level['path']}/.zarray")]
     for i, level in enumerate(there):
         steps = level["coordinateTransformations"]
-        matrix = oracle.affine(steps[0]["scale"], steps[1]["translation"])
+        matrix = oracle.image(steps[0]["scale"], steps[1]["translation"])
         values = zarr.open(f"{path}/{level['path']}", "r")[()].T
         oracle.expect(path, values, matrix, ["--dataset", level["path"]])
         oracle.expect(f"{path}/{level['path']}", values, matrix)

@@ -217,6 +217,7 @@ static snow_status read_png(snow_source *source,
     snow_region region;
     int64_t channel;
     *info = snow_volume_info_default("png");
+    snow_image_turn(info->matrix);
     SNOW_TRY(read_shape(source, &shape));
     info->dims[0] = shape.width;
     info->dims[1] = shape.height;

@@ -1,9 +1,10 @@
 /* formats/tiff/tiff.c - TIFF files whose pages are slices: .tif.
  *
- * Pages are slices from z = 0 on.  Descriptions by ImageJ and OME give the
- * order of channels, slices and times, and the size of a voxel.  Values are
- * read as stored: neither palettes nor "white is zero" change them.  Bits
- * become uint8 of 0 and 1, half floats float32, 24-bit integers 32-bit ones. */
+ * Pages are slices from z = 0 on, the first in front, with row 0 at the top.
+ * Descriptions by ImageJ and OME give the order of channels, slices and times,
+ * and the size of a voxel.  Values are read as stored: neither palettes nor
+ * "white is zero" change them.  Bits become uint8 of 0 and 1, half floats
+ * float32, 24-bit integers 32-bit ones. */
 #include "formats/tiff/tiff.h"
 #include "formats/array.h"
 #include "formats/features.h"
@@ -150,6 +151,7 @@ static void set_spacing(snow_tiff *file, tiff_plan *plan,
     for (int i = 0; i < 3; i++)
         if (shape->spacing[i] > 0 && isfinite(shape->spacing[i]))
             info->matrix[i][i] = shape->spacing[i];
+    snow_image_turn(info->matrix);
     memcpy(info->unit, shape->unit, sizeof info->unit);
 }
 

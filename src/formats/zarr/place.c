@@ -289,5 +289,6 @@ snow_status snow_zarr_place(const zarr_store *store, const zarr_found *found,
         info->matrix[role][3] =
             axis >= 0 ? place.shift[axis] * factor[role] : 0;
     }
+    snow_image_turn(info->matrix);
     return SNOW_STATUS_OK;
 }
