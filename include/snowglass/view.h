@@ -42,9 +42,12 @@ SNOW_RECORD(snow_view);
 SNOW_API snow_status snow_view_from_name(
     snow_context *context, const char *name, snow_view *out);
 
-/* Anterior when the volume's file gives a medical orientation, else +z. */
+/* Anterior when the volume's file gives a medical orientation, else +z; of a
+ * volume thinner than a quarter of its shorter side, its face: left, anterior
+ * or inferior, else +x, -y or +z. Its name. */
 SNOW_API snow_status snow_view_default(
     const snow_volume *volume, snow_view *out);
+SNOW_API const char *snow_view_default_name(const snow_volume_info *info);
 
 /* Name of view `index` (from 0); NULL past the end. */
 SNOW_API const char *snow_view_name(size_t index);

@@ -203,10 +203,9 @@ static void place_camera(const options *asked, snow_view *out) {
 /* A named view also sets size and angles, so it comes before them. */
 int make_view(snow_context *context, const options *asked,
               const snow_volume_info *info, snow_view *out) {
-    const char *usual = info->medical ? "anterior" : "+z";
     snow_view_init(out);
-    snow_status status =
-        snow_view_from_name(context, asked->view ? asked->view : usual, out);
+    snow_status status = snow_view_from_name(
+        context, asked->view ? asked->view : snow_view_default_name(info), out);
     if (status != SNOW_STATUS_OK)
         return fail_status(context, status);
     out->width = (int)asked->size[0];

@@ -391,9 +391,8 @@ render_report scene_report(const scene *s) {
 
 void scene_choices(const scene *s, char *out, size_t size) {
     const double *from = s->asked->position.at;
-    const char *view = s->asked->view           ? s->asked->view
-                       : s->drawn.whole.medical ? "anterior"
-                                                : "+z";
+    const char *view = s->asked->view ? s->asked->view
+                                      : snow_view_default_name(&s->drawn.whole);
     char place[96];
     if (s->asked->position.given) {
         snprintf(place, sizeof place, "from %g,%g,%g", from[0], from[1],

@@ -3,7 +3,6 @@
 #include "run/log.h"
 #include "run/start.h"
 
-#include <math.h>
 #include <string.h>
 
 static bool is_heard(const options *asked) {
@@ -45,57 +44,6 @@ static void warn_method(const scene *s) {
         snow_method_name(s->stats.method));
 }
 
-/* The only axis with a single voxel; -1 if there is none, or several. */
-static int axis_of_slice(const snow_volume_info *info) {
-    int axis = -1, count = 0;
-    for (int i = 0; i < 3; i++)
-        if (info->dims[i] == 1) {
-            axis = i;
-            count++;
-        }
-    return count == 1 ? axis : -1;
-}
-
-/* The components of the normal of a slice along the world's axes, 0 to 1: the
- * cross product of the other two axes of the grid. */
-static void find_normal(const snow_volume_info *info, int axis,
-                        double normal[3]) {
-    int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    double length = 0;
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        normal[i] = info->matrix[j][u] * info->matrix[k][v] -
-                    info->matrix[k][u] * info->matrix[j][v];
-        length += normal[i] * normal[i];
-    }
-    for (int i = 0; i < 3; i++)
-        normal[i] = fabs(normal[i]) / sqrt(length);
-}
-
-/* Sine of the angle below which a slice appears as hardly more than a line. */
-#define EDGE_ON 0.1
-
-/* Only for a view that was chosen automatically. */
-static void warn_edge(const scene *s) {
-    static const char *const views[2][3] = {{"+x", "+y", "+z"},
-                                            {"left", "anterior", "inferior"}};
-    const options *asked = s->asked;
-    const snow_volume_info *info = &s->drawn.whole;
-    int axis = axis_of_slice(info), along = info->medical ? 1 : 2, most = 0;
-    double normal[3];
-    if (axis < 0 || asked->view || asked->position.given ||
-        asked->azimuth != 0 || asked->elevation != 0)
-        return;
-    find_normal(info, axis, normal);
-    for (int i = 1; i < 3; i++)
-        if (normal[i] > normal[most])
-            most = i;
-    if (normal[along] < EDGE_ON)
-        say("note: the volume is a single slice, seen from its edge; use "
-            "--view %s to see its face",
-            views[info->medical][most]);
-}
-
 static bool is_empty(snow_image *image) {
     int64_t count = (int64_t)snow_image_width(image) * snow_image_height(image);
     const float *pixels = snow_image_pixels(image);
@@ -128,6 +76,5 @@ void warn_picture(const scene *s, snow_image *image) {
     if (!is_heard(s->asked))
         return;
     warn_method(s);
-    warn_edge(s);
     warn_empty(s, image);
 }

@@ -9,8 +9,7 @@
 void warn_unused(const options *asked);
 
 /* Reports about the last picture, before anything is drawn on it: another
- * method than requested, a slice seen from its edge, and an empty picture,
- * unless `image` is NULL. */
+ * method than requested, and an empty picture, unless `image` is NULL. */
 void warn_picture(const scene *s, snow_image *image);
 
 #endif

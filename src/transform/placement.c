@@ -34,9 +34,8 @@ double snow_volume_radius(const snow_volume_info *info) {
     return farthest;
 }
 
-/* The unit normal of the slices along `axis`. */
-static void slice_normal(const snow_volume_info *info, int axis,
-                         double normal[3]) {
+void snow_slice_normal(const snow_volume_info *info, int axis,
+                       double normal[3]) {
     double a[3], b[3];
     step_of(info, (axis + 1) % 3, a);
     step_of(info, (axis + 2) % 3, b);
@@ -49,7 +48,7 @@ static void slice_normal(const snow_volume_info *info, int axis,
 static double axis_cosine(const snow_volume_info *info, int axis,
                           const double back[3]) {
     double normal[3];
-    slice_normal(info, axis, normal);
+    snow_slice_normal(info, axis, normal);
     return fabs(snow_dot(normal, back));
 }
 
@@ -80,7 +79,7 @@ static void cut_along(const snow_volume_info *info, int slice_axis,
 /* Sets the ray's length between two slice planes, and which side is near. */
 static void measure_path(const snow_volume_info *info, snow_placement *p) {
     double normal[3], step[3];
-    slice_normal(info, p->slice_axis, normal);
+    snow_slice_normal(info, p->slice_axis, normal);
     step_of(info, p->slice_axis, step);
     double distance = snow_dot(normal, step);
     double cosine = snow_dot(normal, p->back);

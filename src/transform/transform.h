@@ -81,6 +81,10 @@ snow_status snow_placement_make(snow_context *context,
 void snow_frame_turn(double right[3], double up[3], double back[3],
                      double azimuth, double elevation, double roll);
 
+/* The unit normal of the slices along `axis`. */
+void snow_slice_normal(const snow_volume_info *info, int axis,
+                       double normal[3]);
+
 /* World distance from the middle of the voxel boxes to their farthest corner.
  */
 double snow_volume_radius(const snow_volume_info *info);

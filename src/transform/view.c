@@ -65,9 +65,37 @@ snow_status snow_view_from_name(snow_context *context, const char *name,
                      name);
 }
 
+/* The axis along which the volume is thinner than a quarter of the next wider
+ * side; -1: none. */
+static int find_thin(const snow_volume_info *info) {
+    double side[3];
+    for (int axis = 0; axis < 3; axis++)
+        side[axis] = (double)info->dims[axis] * info->spacing[axis];
+    for (int axis = 0; axis < 3; axis++)
+        if (side[axis] <
+            0.25 * fmin(side[(axis + 1) % 3], side[(axis + 2) % 3]))
+            return axis;
+    return -1;
+}
+
+/* Of patients axial slices are seen from the feet, as radiologists do. */
+const char *snow_view_default_name(const snow_volume_info *info) {
+    static const char *const faces[2][3] = {{"+x", "-y", "+z"},
+                                            {"left", "anterior", "inferior"}};
+    int thin = find_thin(info), along = 0;
+    double normal[3];
+    if (thin < 0)
+        return info->medical ? "anterior" : "+z";
+    snow_slice_normal(info, thin, normal);
+    for (int i = 1; i < 3; i++)
+        if (fabs(normal[i]) > fabs(normal[along]))
+            along = i;
+    return faces[info->medical][along];
+}
+
 snow_status snow_view_default(const snow_volume *volume, snow_view *out) {
-    bool medical = snow_volume_get_info(volume)->medical;
-    return snow_view_from_name(volume->context, medical ? "anterior" : "+z",
+    const snow_volume_info *info = snow_volume_get_info(volume);
+    return snow_view_from_name(volume->context, snow_view_default_name(info),
                                out);
 }
 

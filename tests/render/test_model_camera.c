@@ -91,6 +91,41 @@ static void medical_volumes_are_seen_from_the_front(void **state) {
     snow_context_free(context);
 }
 
+/* Sides and directions of a volume, and its default view. */
+static const struct {
+    int64_t dims[3];
+    double spacing[3];
+    int shift; /* index axis i runs along the world's axis (i + shift) % 3 */
+    bool medical;
+    const char *view;
+} faces[] = {
+    {{40, 40, 10}, {1, 1, 1}, 0, true, "anterior"}, /* a quarter is not thin */
+    {{40, 40, 9}, {1, 1, 1}, 0, true, "inferior"},
+    {{40, 40, 9}, {1, 1, 2}, 0, true, "anterior"},
+    {{40, 9, 90}, {1, 1, 1}, 0, true, "anterior"},
+    {{9, 40, 40}, {1, 1, 1}, 0, true, "left"},
+    {{9, 40, 40}, {1, 1, 1}, 2, true, "inferior"},
+    {{40, 40, 9}, {1, 1, 1}, 0, false, "+z"},
+    {{40, 9, 40}, {1, 1, 1}, 0, false, "-y"},
+    {{9, 40, 40}, {1, 1, 1}, 0, false, "+x"},
+    {{40, 40, 9}, {1, 1, 1}, 1, false, "+x"},
+    {{40, 9, 9}, {1, 1, 1}, 0, false, "+z"}, /* a rod has no face */
+};
+
+static void a_thin_volume_is_shown_from_its_face(void **state) {
+    (void)state;
+    for (size_t n = 0; n < sizeof faces / sizeof *faces; n++) {
+        snow_volume_info info = {.size = sizeof info,
+                                 .medical = faces[n].medical};
+        for (int i = 0; i < 3; i++) {
+            info.dims[i] = faces[n].dims[i];
+            info.spacing[i] = faces[n].spacing[i];
+            info.matrix[(i + faces[n].shift) % 3][i] = -info.spacing[i];
+        }
+        assert_string_equal(snow_view_default_name(&info), faces[n].view);
+    }
+}
+
 /* The middle of what a picture shows, in pixels; false when it is empty. */
 static bool middle_of(const reference_scene *scene, const float *picture,
                       double middle[2]) {
@@ -444,6 +479,7 @@ int main(void) {
         cmocka_unit_test(every_view_has_its_name_listed),
         cmocka_unit_test(an_unknown_view_is_refused),
         cmocka_unit_test(medical_volumes_are_seen_from_the_front),
+        cmocka_unit_test(a_thin_volume_is_shown_from_its_face),
         cmocka_unit_test(what_is_up_is_at_the_top_and_nothing_is_mirrored),
         cmocka_unit_test(azimuth_moves_the_camera_to_its_right),
         cmocka_unit_test(elevation_moves_the_camera_up),

@@ -37,11 +37,11 @@ says '^snowglass: note: the picture is empty: no surface of value 900 '
 run 0 "quietly" render -q -y -o void.png --opacity 900:0,901:1
 check "nothing is said" [ ! -s "$ERR" ]
 run 0 "a slice" "$TOOL" phantom cube --dims 1x9x9 -q -o slice.nrrd
-run 0 "from its edge" "$TOOL" render slice.nrrd -s 20x20 -y -o void.png
-says '^snowglass: note: the volume is a single slice, seen from its edge; use --view \+x to see its face$'
-run 0 "not where the view is chosen" "$TOOL" render slice.nrrd -s 20x20 -y \
+run 0 "from its face" "$TOOL" render slice.nrrd -s 20x20 -y -o void.png
+says '^snowglass: .*view \+x; '
+run 0 "or where the view is chosen" "$TOOL" render slice.nrrd -s 20x20 -y \
     -o void.png --view +z
-check "no remark" bash -c "! grep -q edge '$ERR'"
+says '^snowglass: .*view \+z; '
 run 0 "-v tells more" render -v -o more.png
 says "^snowglass: seconds: read"
 says "^snowglass: bytes: volume"
