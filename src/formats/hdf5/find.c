@@ -138,8 +138,8 @@ static herr_t visit_object(hid_t file, const char *name, const H5O_info_t *info,
 }
 
 snow_status snow_hdf5_visit(snow_context *context, hid_t file,
-                            H5O_iterate_t look, void *user) {
-    visit v = {.look = look, .user = user};
+                            H5O_iterate_t visitor, void *user) {
+    visit v = {.look = visitor, .user = user};
     if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, visit_object, &v,
                   H5O_INFO_BASIC) < 0)
         return snow_hdf5_fail(context, "its groups cannot be listed");

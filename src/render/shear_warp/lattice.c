@@ -213,11 +213,11 @@ static snow_status place_image(snow_context *context,
     const snow_lattice *axes[2] = {&l->shear.u, &l->shear.v};
     l->empty = axes[0]->count == 0 || axes[1]->count == 0;
     for (int axis = 0; axis < 2; axis++) {
-        int phases = axes[axis]->phases;
+        int cells = axes[axis]->phases;
         l->slope[axis] = axes[axis]->slope;
-        l->first[axis] = axes[axis]->first / phases;
-        l->voxels[axis] = (axes[axis]->count + phases - 1) / phases;
-        anchor(l, axis, phases);
+        l->first[axis] = axes[axis]->first / cells;
+        l->voxels[axis] = (axes[axis]->count + cells - 1) / cells;
+        anchor(l, axis, cells);
     }
     return SNOW_STATUS_OK;
 }
