@@ -32,7 +32,7 @@ struct snow_frame {
     float *spare[SNOW_GROUP_RANKS]; /* pictures of groups, to be combined */
     size_t spare_capacity[SNOW_GROUP_RANKS];
     int64_t own_interesting;         /* of the part that was encoded last */
-    snow_identity_transfer identity; /* of modes other than over */
+    snow_identity_transfer identity; /* of the pass; of modes but over */
     snow_mode_colors mode_colors;
     snow_image *depth;           /* of the last picture; NULL: not asked for */
     snow_value_path *value_path; /* of method shear-warp; NULL until needed */
