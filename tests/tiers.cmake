@@ -42,7 +42,8 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
 # tier, and what waits.  ctest begins with the longest, so that no core is idle
 # at the end.
 set(SNOW_COSTS
-    mpi_stall 300 mpi_insitu 280 simulate 270 mpi_render 260 mpi_modes 250
+    isa_wasm 320 isa_neon 310 mpi_stall 300 mpi_insitu 280 simulate 270
+    mpi_render 260 mpi_modes 250
     mpi_fail 240 mpi_comm 230 mpi_bench 220 cli_progress 200 cli_large 190
     test_model_raycast 37 cli_stream 87 test_ranks 62 test_stream 57
     cli_figures 52 oracle_zarr 46 test_modes 44
@@ -97,7 +98,7 @@ foreach(n RANGE ${last})
   list(GET SNOW_COSTS ${next} cost)
   if(test IN_LIST tests)
     set_tests_properties(${test} PROPERTIES COST ${cost})
-  elseif(NOT test MATCHES "^(simulate|example_installed)$" AND
+  elseif(NOT test MATCHES "^(simulate|isa_neon|isa_wasm|example_installed)$" AND
          NOT sources MATCHES "/${test}[.](c|sh|py)(;|$)")
     message(FATAL_ERROR "tests/tiers.cmake: there is no test '${test}'")
   endif()

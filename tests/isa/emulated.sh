@@ -32,6 +32,11 @@ for tool in "${compiler[0]}" "$archiver" "${run[0]}"; do
     command -v "$tool" >/dev/null || skip "$tool"
 done
 
+# What was compiled before need not be compiled again.
+if [ "$level" = neon ] && command -v ccache >/dev/null; then
+    compiler=(ccache "${compiler[@]}")
+fi
+
 rm -rf "$out"
 mkdir -p "$out"
 cd "$root"

@@ -691,7 +691,7 @@ static snow_status draw_once(support_place *place, const char *path,
     settings.iso = 90;
     settings.depth = depth;
     snow_status status = snow_volume_open_streamed(
-        place->context, path, NULL, slices_of(SNOW_TYPE_UINT8, 40), &stream);
+        place->context, path, NULL, slices_of(SNOW_TYPE_UINT8, 115), &stream);
     if (status == SNOW_STATUS_OK)
         status = snow_transfer_new_for_volume(stream, NULL, &transfer);
     if (status == SNOW_STATUS_OK)
