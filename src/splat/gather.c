@@ -1,6 +1,6 @@
 /* splat/gather.c - splatting in gather form; see splat/gather.h. */
 #include "splat/gather.h"
-#include "splat/words.h"
+#include "splat/gather_vec.h"
 
 #include <math.h>
 

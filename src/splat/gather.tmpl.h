@@ -3,8 +3,8 @@
  *
  *   GATHER_CHANNELS  floats of a sample and of a pixel: 2 or 4
  *   LOCAL(word)      the name of a function; LOCAL(row) is the public one
- *   B(word)          the block of voxels (splat/words.h) that is gathered at
- *                    once: 4 voxels, or 2 of four channels
+ *   B(word)          the block of voxels (splat/gather_vec.h) that is gathered
+ *                    at once: 4 voxels, or 2 of four channels
  *   BLOCK_VOXELS     those 4 or 2
  *
  * GATHER_CHANNELS, LOCAL, B and BLOCK_VOXELS are undefined at the end.

@@ -2,7 +2,7 @@
  * serial one, whatever the number of ranks, the cut, the view and the method.
  */
 #include "reference/model.h"
-#include "support/play.h"
+#include "support/scenario.h"
 
 #include "frame.h"
 #include "image/image.h"
@@ -26,10 +26,10 @@ typedef struct sweep_tally {
     double clear_most, opaque_most, strongest;
 } sweep_tally;
 
-static void check(snow_context *context, play *p, const float *serial,
+static void check(snow_context *context, scenario *p, const float *serial,
                   double strongest, int ranks, sweep_tally *tally) {
-    play_by_ranks(context, p, ranks);
-    double gap = play_gap(p, serial);
+    scenario_by_ranks(context, p, ranks);
+    double gap = scenario_gap(p, serial);
     bool values = p->stats.method == SNOW_METHOD_SHEAR_WARP;
     bool opaque = strongest > 1 - 0.5 / 255 - 1e-5;
     double bound = opaque ? BOUND_OPAQUE : values ? BOUND_VALUES : BOUND;
@@ -42,7 +42,7 @@ static void check(snow_context *context, play *p, const float *serial,
                  (int)p->settings.quality, p->view.fov, (int)p->how.combining,
                  strongest);
     assert_int_equal(p->ranks, ranks);
-    play_check_counts(p, ranks);
+    scenario_check_counts(p, ranks);
     if (p->how.pixel_bits != 8) {
         double *most = opaque ? &tally->opaque_most : &tally->clear_most;
         *most = fmax(*most, gap);
@@ -79,8 +79,8 @@ static const double turns[][3] = {
 };
 #define TURNS (int)(sizeof turns / sizeof *turns)
 
-/* A play of a scene, of which everything varies with `n`. */
-static play play_of(int n, int64_t depth, reference_scene *scene) {
+/* A scenario of a scene, of which everything varies with `n`. */
+static scenario scenario_of(int n, int64_t depth, reference_scene *scene) {
     static const double zooms[] = {1, 0.3, 2, 0.6, 6};
     const double *turn = turns[n % TURNS];
     *scene = model_scene((int64_t[]){21, 18, depth},
@@ -95,13 +95,13 @@ static play play_of(int n, int64_t depth, reference_scene *scene) {
     scene->settings.threads = 1 + n % 2;
     if (n % 2)
         scene->settings.opacity_length = 15;
-    return (play){.info = scene->info,
-                  .voxels = scene->voxels,
-                  .view = scene->view,
-                  .settings = scene->settings,
-                  .how = {.size = sizeof(snow_ranks_options),
-                          .combining = (snow_combine)(n % 5)},
-                  .pictures = 1 + n % 2};
+    return (scenario){.info = scene->info,
+                      .voxels = scene->voxels,
+                      .view = scene->view,
+                      .settings = scene->settings,
+                      .how = {.size = sizeof(snow_ranks_options),
+                              .combining = (snow_combine)(n % 5)},
+                      .pictures = 1 + n % 2};
 }
 
 static void sweep(const char *title, int scenes, double fov,
@@ -112,14 +112,14 @@ static void sweep(const char *title, int scenes, double fov,
         reference_scene scene;
         snow_transfer *transfer = NULL;
         double strongest;
-        play p = play_of(n, 24, &scene);
+        scenario p = scenario_of(n, 24, &scene);
         p.view.fov = fov;
         p.settings.method = methods[n % method_count];
         transfer = model_transfer(context, &scene);
         p.transfer = transfer;
-        float *serial = play_alone(context, &p, &strongest);
+        float *serial = scenario_alone(context, &p, &strongest);
         for (int i = first_count(n); i < COUNTS; i += COUNT_STRIDE) {
-            p.cut = (cutting)((n + i) % CUTTINGS);
+            p.cut = (partitioning)((n + i) % PARTITIONINGS);
             p.how.pixel_bits = (n + i) % 7 == 0 ? 8 : 0;
             check(context, &p, serial, strongest, rank_counts[i], &tally);
         }
@@ -171,28 +171,28 @@ static double gap_of(const float *a, const float *b, size_t count) {
     return most > 0 ? gap / most : gap;
 }
 
-static bool shows_something(const play *p, const float *serial) {
+static bool shows_something(const scenario *p, const float *serial) {
     int steps = 0;
-    for (size_t n = 1; n < play_floats(p); n++)
+    for (size_t n = 1; n < scenario_floats(p); n++)
         steps += serial[n] != serial[n - 1] && !isnan(serial[n]);
     return steps > 20;
 }
 
 /* Serially, and by every number of ranks. */
-static int compare_modes(snow_context *context, play *p, int n, double bound,
-                         double depth_bound, double *most) {
+static int compare_modes(snow_context *context, scenario *p, int n,
+                         double bound, double depth_bound, double *most) {
     size_t pixels = (size_t)p->view.width * (size_t)p->view.height;
     float *depths = calloc(pixels, sizeof(float));
     double unused;
     p->depths = p->settings.depth ? depths : NULL;
-    float *serial = play_alone(context, p, &unused);
+    float *serial = scenario_alone(context, p, &unused);
     bool shows = shows_something(p, serial);
     float *others = calloc(pixels, sizeof(float));
     p->depths = p->settings.depth ? others : NULL;
     for (int i = first_count(n); i < COUNTS; i += COUNT_STRIDE) {
-        p->cut = (cutting)(i % CUTTINGS);
-        play_by_ranks(context, p, rank_counts[i]);
-        double gap = gap_of(p->picture, serial, play_floats(p));
+        p->cut = (partitioning)(i % PARTITIONINGS);
+        scenario_by_ranks(context, p, rank_counts[i]);
+        double gap = gap_of(p->picture, serial, scenario_floats(p));
         double depth = p->depths ? gap_of(others, depths, pixels) : 0;
         if (!(gap <= bound) || !(depth <= depth_bound))
             fail_msg("%s by %d ranks differs by %g, depth by %g; cut %d, "
@@ -200,7 +200,7 @@ static int compare_modes(snow_context *context, play *p, int n, double bound,
                      snow_mode_name(p->settings.mode), rank_counts[i], gap,
                      depth, (int)p->cut, (int)p->settings.method, p->view.fov);
         *most = fmax(*most, fmax(gap, depth));
-        play_check_counts(p, rank_counts[i]);
+        scenario_check_counts(p, rank_counts[i]);
         free(p->picture);
     }
     free(serial);
@@ -218,7 +218,7 @@ static void mode_pictures(snow_mode mode, double bound, double depth_bound) {
     int shown = 0, all = 0;
     for (int n = 0; n < 2 * TURNS; n++, all++) {
         reference_scene scene;
-        play p = play_of(n, 24, &scene);
+        scenario p = scenario_of(n, 24, &scene);
         p.settings.mode = mode;
         p.settings.method = methods[n % 4];
         p.settings.depth = mode == SNOW_MODE_ISO || mode == SNOW_MODE_OVER;
@@ -276,12 +276,12 @@ static void look_around(const char *name, const snow_volume *volume,
                      SNOW_STATUS_OK);
     for (int n = 0; n < 8; n += stride) {
         double strongest;
-        play p = {.info = *snow_volume_get_info(volume),
-                  .voxels = snow_volume_voxels(volume),
-                  .transfer = transfer,
-                  .how = {.size = sizeof(snow_ranks_options),
-                          .combining = (snow_combine)(n % 5)},
-                  .pictures = 1};
+        scenario p = {.info = *snow_volume_get_info(volume),
+                      .voxels = snow_volume_voxels(volume),
+                      .transfer = transfer,
+                      .how = {.size = sizeof(snow_ranks_options),
+                              .combining = (snow_combine)(n % 5)},
+                      .pictures = 1};
         snow_view_init(&p.view);
         assert_int_equal(snow_view_from_name(context, names[n], &p.view),
                          SNOW_STATUS_OK);
@@ -294,10 +294,10 @@ static void look_around(const char *name, const snow_volume *volume,
         p.settings.quality = (snow_quality)(n % 3);
         if (n / 2 % 2) /* thin */
             p.settings.opacity_length = 100;
-        float *serial = play_alone(context, &p, &strongest);
+        float *serial = scenario_alone(context, &p, &strongest);
         for (int i = first_count(n) + n % 2; i < COUNTS;
              i += 2 * COUNT_STRIDE) {
-            p.cut = (cutting)((n + i / 2) % CUTTINGS);
+            p.cut = (partitioning)((n + i / 2) % PARTITIONINGS);
             check(context, &p, serial, strongest, rank_counts[i], &tally);
         }
         free(serial);
@@ -336,11 +336,11 @@ static void drafts_of(const char *name, const snow_volume *volume, int side) {
                      SNOW_STATUS_OK);
     for (int n = 0; n < 6; n++) {
         double strongest;
-        play p = {.info = *snow_volume_get_info(volume),
-                  .voxels = snow_volume_voxels(volume),
-                  .transfer = transfer,
-                  .how = {.size = sizeof(snow_ranks_options)},
-                  .pictures = 1};
+        scenario p = {.info = *snow_volume_get_info(volume),
+                      .voxels = snow_volume_voxels(volume),
+                      .transfer = transfer,
+                      .how = {.size = sizeof(snow_ranks_options)},
+                      .pictures = 1};
         snow_view_init(&p.view);
         assert_int_equal(snow_view_from_name(context, names[n], &p.view),
                          SNOW_STATUS_OK);
@@ -352,9 +352,9 @@ static void drafts_of(const char *name, const snow_volume *volume, int side) {
         p.settings.shade = n % 3 ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
         if (n / 2 % 2) /* thin */
             p.settings.opacity_length = 100;
-        float *serial = play_alone(context, &p, &strongest);
+        float *serial = scenario_alone(context, &p, &strongest);
         for (int i = first_count(n); i < COUNTS; i += COUNT_STRIDE) {
-            p.cut = (cutting)((n + i) % CUTTINGS);
+            p.cut = (partitioning)((n + i) % PARTITIONINGS);
             check(context, &p, serial, strongest, rank_counts[i], &tally);
         }
         free(serial);
@@ -438,24 +438,25 @@ static void deterministic_pictures_are_the_same_bit_for_bit(void **state) {
         reference_scene scene;
         snow_transfer *transfer = NULL;
         double strongest;
-        play p = play_of(n, n % 2 ? 24 : 70, &scene);
+        scenario p = scenario_of(n, n % 2 ? 24 : 70, &scene);
         if (n % TURNS == 8) /* a blend of two axes */
             p.settings.quality = SNOW_QUALITY_NORMAL;
         p.view.fov = n % 3 == 2 ? 40 : 0;
         p.settings.method = methods[n % 5];
         transfer = model_transfer(context, &scene);
         p.transfer = transfer;
-        float *usual = play_alone(context, &p, &strongest);
+        float *usual = scenario_alone(context, &p, &strongest);
         p.settings.deterministic = 1;
-        float *serial = play_alone(context, &p, &strongest);
-        for (size_t i = 0; i < play_floats(&p); i++)
+        float *serial = scenario_alone(context, &p, &strongest);
+        for (size_t i = 0; i < scenario_floats(&p); i++)
             moved = fmax(moved, fabs((double)usual[i] - (double)serial[i]));
         p.cut = GROUPED;
         for (int i = first_count(n); i < COUNTS; i += COUNT_STRIDE) {
-            play_by_ranks(context, &p, rank_counts[i]);
-            if (memcmp(p.picture, serial, play_floats(&p) * sizeof(float)) != 0)
+            scenario_by_ranks(context, &p, rank_counts[i]);
+            if (memcmp(p.picture, serial,
+                       scenario_floats(&p) * sizeof(float)) != 0)
                 fail_msg("%d ranks: scene %d, %g", rank_counts[i], n,
-                         play_gap(&p, serial));
+                         scenario_gap(&p, serial));
             free(p.picture);
             pictures++;
         }
@@ -475,16 +476,16 @@ static void deterministic_pictures_are_the_same_bit_for_bit(void **state) {
 
 /* A mistake that one rank makes, or all. */
 typedef struct mishap {
-    play play;
+    scenario scenario;
     const char *expected; /* part of the message */
-    int wrong;            /* rank; -1: none but what the play has */
-    void (*spoil)(play *p, snow_volume *volume);
+    int wrong;            /* rank; -1: none but what the scenario has */
+    void (*spoil)(scenario *p, snow_volume *volume);
     bool again; /* a second picture, without the mistake, is made */
 } mishap;
 
 static snow_status stumble(snow_comm *comm, void *user) {
     const mishap *m = user;
-    play p = m->play;
+    scenario p = m->scenario;
     snow_context *context = snow_comm_context(comm);
     int rank = snow_comm_rank(comm);
     void *voxels = NULL;
@@ -492,8 +493,8 @@ static snow_status stumble(snow_comm *comm, void *user) {
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
     snow_image *image = NULL;
-    SNOW_TRY(play_open_part(context, &p, &p.boxes[rank], &voxels, &volume));
-    SNOW_TRY(play_copy_transfer(context, p.transfer, &transfer));
+    SNOW_TRY(scenario_open_part(context, &p, &p.boxes[rank], &voxels, &volume));
+    SNOW_TRY(scenario_copy_transfer(context, p.transfer, &transfer));
     SNOW_TRY(snow_frame_new(context, &frame));
     if (rank == m->wrong)
         m->spoil(&p, volume);
@@ -508,8 +509,9 @@ static snow_status stumble(snow_comm *comm, void *user) {
     else
         status = SNOW_STATUS_OK;
     if (status == SNOW_STATUS_OK && m->again) {
-        status = snow_ranks_render(frame, comm, volume, transfer, &m->play.view,
-                                   &m->play.settings, &p.how, &image);
+        status =
+            snow_ranks_render(frame, comm, volume, transfer, &m->scenario.view,
+                              &m->scenario.settings, &p.how, &image);
         snow_image_free(image);
     }
     snow_frame_free(frame);
@@ -519,23 +521,23 @@ static snow_status stumble(snow_comm *comm, void *user) {
     return status;
 }
 
-static void other_view(play *p, snow_volume *volume) {
+static void other_view(scenario *p, snow_volume *volume) {
     (void)volume;
     p->view.azimuth += 1;
 }
 
-static void other_light(play *p, snow_volume *volume) {
+static void other_light(scenario *p, snow_volume *volume) {
     (void)volume;
     p->settings.light = SNOW_LIGHT_KEY;
 }
 
-static void bad_threshold(play *p, snow_volume *volume) {
+static void bad_threshold(scenario *p, snow_volume *volume) {
     (void)volume;
     p->settings.threshold = 300;
 }
 
 /* Leaves some of its voxels to nobody. */
-static void modest(play *p, snow_volume *volume) {
+static void modest(scenario *p, snow_volume *volume) {
     snow_extent part = {.size = sizeof part};
     (void)p;
     snow_volume_get_extent(volume, &part);
@@ -545,7 +547,7 @@ static void modest(play *p, snow_volume *volume) {
 }
 
 /* The part without its ghosts: refused by that rank alone. */
-static void ghostless(play *p, snow_volume *volume) {
+static void ghostless(scenario *p, snow_volume *volume) {
     snow_extent part = {.size = sizeof part};
     (void)p;
     snow_volume_get_extent(volume, &part);
@@ -559,45 +561,48 @@ static void ghostless(play *p, snow_volume *volume) {
 static void what_one_rank_finds_wrong_all_are_told(void **state) {
     (void)state;
     static const struct {
-        void (*spoil)(play *p, snow_volume *volume);
+        void (*spoil)(scenario *p, snow_volume *volume);
         const char *expected;
         bool deterministic, again;
         int bits;
-        cutting cut;
+        partitioning cut;
         bool draft; /* of few pixels */
     } cases[] = {
         {other_view, "differ between ranks", false, true, 0, BRICKS, false},
         {other_light, "differ between ranks", false, true, 0, BRICKS, false},
-        {bad_threshold, "rank 2: invalid threshold 300", false, true, 0, ACROSS,
+        {bad_threshold, "rank 2: invalid threshold 300", false, true, 0,
+         ALONG_SLICES, false},
+        {modest, "every voxel must belong to", false, false, 0, ALONG_OTHER,
          false},
-        {modest, "every voxel must belong to", false, false, 0, BESIDE, false},
-        {ghostless, "rank 2: this view needs", false, false, 0, BESIDE, false},
-        {ghostless, "rank 2: this view needs", false, false, 0, ACROSS, true},
-        {NULL, "deterministic pictures need slabs", true, false, 0, BESIDE,
+        {ghostless, "rank 2: this view needs", false, false, 0, ALONG_OTHER,
          false},
-        {NULL, "must begin and end at multiples of", true, false, 0, ACROSS,
+        {ghostless, "rank 2: this view needs", false, false, 0, ALONG_SLICES,
+         true},
+        {NULL, "deterministic pictures need slabs", true, false, 0, ALONG_OTHER,
          false},
-        {NULL, "invalid pixel_bits 7", false, false, 7, ACROSS, false},
+        {NULL, "must begin and end at multiples of", true, false, 0,
+         ALONG_SLICES, false},
+        {NULL, "invalid pixel_bits 7", false, false, 7, ALONG_SLICES, false},
     };
     snow_context *context = support_context();
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         reference_scene scene;
         snow_transfer *transfer = NULL;
-        mishap m = {.play = play_of(0, 70, &scene),
+        mishap m = {.scenario = scenario_of(0, 70, &scene),
                     .expected = cases[n].expected,
                     .spoil = cases[n].spoil,
                     .wrong = cases[n].spoil ? 2 : -1,
                     .again = cases[n].again};
         transfer = model_transfer(context, &scene);
-        m.play.transfer = transfer;
-        m.play.cut = cases[n].cut;
-        m.play.settings.deterministic = cases[n].deterministic;
-        m.play.how.pixel_bits = cases[n].bits;
+        m.scenario.transfer = transfer;
+        m.scenario.cut = cases[n].cut;
+        m.scenario.settings.deterministic = cases[n].deterministic;
+        m.scenario.how.pixel_bits = cases[n].bits;
         if (cases[n].draft) {
-            m.play.settings.quality = SNOW_QUALITY_DRAFT;
-            m.play.view.width = m.play.view.height = 6;
+            m.scenario.settings.quality = SNOW_QUALITY_DRAFT;
+            m.scenario.view.width = m.scenario.view.height = 6;
         }
-        play_cut(context, &m.play, 5);
+        scenario_partition(context, &m.scenario, 5);
         if (snow_comm_run_threads(context, 5, stumble, &m) != SNOW_STATUS_OK)
             fail_msg("case %zu: %s", n, snow_context_message(context));
         snow_transfer_free(transfer);
@@ -639,7 +644,7 @@ static void ranks_without_memory_fail_together(void **state) {
         reference_scene scene;
         snow_context *maker = support_context();
         snow_transfer *transfer = NULL;
-        play p = play_of(2 + n, 70, &scene);
+        scenario p = scenario_of(2 + n, 70, &scene);
         p.settings.method =
             n == 2 || n == 5 ? SNOW_METHOD_FOOTPRINT : SNOW_METHOD_SHEAR_WARP;
         p.settings.mode = modes[n];
@@ -658,8 +663,8 @@ static void ranks_without_memory_fail_together(void **state) {
         p.channels = transfer->grey ? 2 : 4;
         if (n == 5)
             p.channels = 1;
-        play_cut(maker, &p, 3);
-        p.picture = malloc(play_floats(&p) * sizeof(float));
+        scenario_partition(maker, &p, 3);
+        p.picture = malloc(scenario_floats(&p) * sizeof(float));
         assert_non_null(p.picture);
         long last = 1;
         /* Each of the first ones, then some. */
@@ -671,7 +676,7 @@ static void ranks_without_memory_fail_together(void **state) {
             if (snow_context_new(&allocator, &context) != SNOW_STATUS_OK)
                 continue;
             snow_status status =
-                snow_comm_run_threads(context, 3, play_perform, &p);
+                snow_comm_run_threads(context, 3, scenario_perform, &p);
             assert_int_equal(status, failing < 0 ? SNOW_STATUS_OK : status);
             assert_true(status == SNOW_STATUS_OK ||
                         status == SNOW_STATUS_NO_MEMORY);

@@ -1,8 +1,8 @@
-/* tests/parallel/test_value_parts.c - method shear-warp by parts: slabs of a file
- * and many ranks make the picture of one process, which test_value.c holds
+/* tests/parallel/test_value_parts.c - method shear-warp by parts: slabs of a
+ * file and many ranks make the picture of one process, which test_value.c holds
  * against the reference. */
 #include "reference/model.h"
-#include "support/play.h"
+#include "support/scenario.h"
 #include "support/volumes.h"
 #include "values/value_model.h"
 
@@ -216,16 +216,16 @@ static void slabs_of_a_file_are_projected_alike(void **state) {
 /* --- many ranks -------------------------------------------------------------
  */
 
-static play play_of(const reference_scene *s, int n,
-                    const snow_transfer *transfer) {
-    return (play){.info = s->info,
-                  .voxels = s->voxels,
-                  .transfer = transfer,
-                  .view = s->view,
-                  .settings = s->settings,
-                  .how = {.size = sizeof(snow_ranks_options),
-                          .combining = (snow_combine)(n % 5)},
-                  .pictures = 1 + n % 2};
+static scenario scenario_of(const reference_scene *s, int n,
+                            const snow_transfer *transfer) {
+    return (scenario){.info = s->info,
+                      .voxels = s->voxels,
+                      .transfer = transfer,
+                      .view = s->view,
+                      .settings = s->settings,
+                      .how = {.size = sizeof(snow_ranks_options),
+                              .combining = (snow_combine)(n % 5)},
+                      .pictures = 1 + n % 2};
 }
 
 static const int rank_counts[] = {2, 3, 5, 8, 16, 33};
@@ -252,17 +252,17 @@ static void check_ranks(scene_fn *scene) {
     for (int n = 0; n < 72; n += (int)support_stride(13), scenes++) {
         reference_scene s = scene(n, 24);
         snow_transfer *transfer = model_transfer(context, &s);
-        play p = play_of(&s, n, transfer);
+        scenario p = scenario_of(&s, n, transfer);
         double strongest;
-        float *alone = play_alone(context, &p, &strongest);
+        float *alone = scenario_alone(context, &p, &strongest);
         int ranks = rank_counts[(size_t)(n + n / 6) % COUNT(rank_counts)];
-        p.cut = (cutting)(n / 2 % CUTTINGS);
-        play_by_ranks(context, &p, ranks);
-        double gap = play_gap(&p, alone);
+        p.cut = (partitioning)(n / 2 % PARTITIONINGS);
+        scenario_by_ranks(context, &p, ranks);
+        double gap = scenario_gap(&p, alone);
         if (!(gap <= bound_of(&s, ranks)))
             fail_msg("%d ranks, cut %d: %g; %s", ranks, (int)p.cut, gap * 255,
                      model_words(&s));
-        play_check_counts(&p, ranks);
+        scenario_check_counts(&p, ranks);
         most = fmax(most, gap);
         seen += strongest;
         free(p.picture);
@@ -292,18 +292,18 @@ static void deterministic_pictures_have_the_same_bytes(void **state) {
     for (int n = 0; n < 36; n += (int)support_stride(11)) {
         reference_scene s = numbered(n, n % 2 ? 24 : 47);
         snow_transfer *transfer = model_transfer(context, &s);
-        play p = play_of(&s, n, transfer);
+        scenario p = scenario_of(&s, n, transfer);
         double strongest;
-        float *usual = play_alone(context, &p, &strongest);
+        float *usual = scenario_alone(context, &p, &strongest);
         p.settings.deterministic = 1;
-        float *alone = play_alone(context, &p, &strongest);
+        float *alone = scenario_alone(context, &p, &strongest);
         int ranks = rank_counts[(size_t)(n + n / 6) % COUNT(rank_counts)];
         p.cut = GROUPED;
         p.picture = usual;
-        assert_true(play_gap(&p, alone) <= BOUND_PARTS(32));
-        play_by_ranks(context, &p, ranks);
-        if (memcmp(p.picture, alone, play_floats(&p) * sizeof(float)) != 0)
-            fail_msg("%d ranks: %g; %s", ranks, play_gap(&p, alone),
+        assert_true(scenario_gap(&p, alone) <= BOUND_PARTS(32));
+        scenario_by_ranks(context, &p, ranks);
+        if (memcmp(p.picture, alone, scenario_floats(&p) * sizeof(float)) != 0)
+            fail_msg("%d ranks: %g; %s", ranks, scenario_gap(&p, alone),
                      model_words(&s));
         free(p.picture);
         free(usual);

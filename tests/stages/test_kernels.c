@@ -280,7 +280,7 @@ typedef struct word_output {
     float left2[16], right2[16], left4[16], right4[16];
 } word_output;
 
-#define TEMPLATE "stages/words.tmpl.h"
+#define TEMPLATE "stages/vec.tmpl.h"
 #include "simd/each_isa.h"
 
 typedef void words_fn(const word_input *in, word_output *out);

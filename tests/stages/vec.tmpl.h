@@ -1,6 +1,6 @@
-/* tests/stages/words.tmpl.h - words of simd/select.h on sixteen floats, for one
- * level: what words do lane by lane, pixel by pixel and entry by entry does not
- * depend on how many floats a vector holds. */
+/* tests/stages/vec.tmpl.h - operations of simd/select.h on sixteen floats, for
+ * one instruction set: what they do lane by lane, pixel by pixel and entry by
+ * entry does not depend on how many floats a vector holds. */
 
 TARGET static void NAME(words)(const word_input *in, word_output *out) {
     for (int at = 0; at < 16; at += LANES) {

@@ -1,5 +1,5 @@
-/* splat/words.h - the vector operations that splatting in gather form needs
- * beyond simd/select.h: integers, and blocks of voxels.
+/* splat/gather_vec.h - the vector operations that the gather form of splatting
+ * needs beyond simd/select.h: integers, and blocks of voxels.
  *
  *   V(ints)          as many 32-bit integers as a vector has floats
  *   V(lanes)()       0, 1, 2 ...
@@ -23,8 +23,8 @@
  *   B(fours)(p)            the weights of 2 or 4 voxels, each 4 times
  *   B(fold)(b)             the four floats that remain when halves are added
  *   B(fold_four)(b, p)     the same of b[0] to b[3], stored */
-#ifndef SNOW_SPLAT_WORDS_H
-#define SNOW_SPLAT_WORDS_H
+#ifndef SNOW_SPLAT_GATHER_VEC_H
+#define SNOW_SPLAT_GATHER_VEC_H
 
 #include "simd/isa.h"
 
@@ -38,7 +38,7 @@ typedef __m256i snow_avx2_ints;
 #define INLINE SNOW_AVX2_INLINE
 #define PAIRS __m256d
 #define B(word) snow_b8_##word
-#include "splat/words.tmpl.h"
+#include "splat/gather_vec.tmpl.h"
 
 SNOW_AVX2_INLINE __m256 snow_avx2_lanes(void) {
     return _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
@@ -79,7 +79,7 @@ typedef __m512i snow_avx512_ints;
 #define INLINE SNOW_AVX512_INLINE
 #define PAIRS __m512d
 #define B(word) snow_b16_##word
-#include "splat/words.tmpl.h"
+#include "splat/gather_vec.tmpl.h"
 
 SNOW_AVX512_INLINE __m512 snow_avx512_lanes(void) {
     return _mm512_setr_ps(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);

@@ -1,5 +1,5 @@
-/* tests/support/play.c - see play.h. */
-#include "support/play.h"
+/* tests/support/scenario.c - see scenario.h. */
+#include "support/scenario.h"
 
 #include "decompose/deterministic.h"
 #include "frame.h"
@@ -8,11 +8,11 @@
 
 #include <math.h>
 
-size_t play_floats(const play *p) {
+size_t scenario_floats(const scenario *p) {
     return (size_t)p->view.width * (size_t)p->view.height * (size_t)p->channels;
 }
 
-static int slice_axis(snow_context *context, const play *p) {
+static int slice_axis(snow_context *context, const scenario *p) {
     snow_placement placement;
     if (snow_placement_make(context, &p->info, &p->view, &placement) !=
         SNOW_STATUS_OK)
@@ -37,10 +37,10 @@ static void halve(snow_box box, int first, int count, snow_box *boxes) {
     halve(high, first + count / 2, count - count / 2, boxes);
 }
 
-void play_cut(snow_context *context, play *p, int ranks) {
+void scenario_partition(snow_context *context, scenario *p, int ranks) {
     const int64_t *dims = p->info.dims;
     int axis = slice_axis(context, p);
-    if (p->cut == BESIDE)
+    if (p->cut == ALONG_OTHER)
         axis = (axis + 1) % 3;
     snow_box all = {{0, 0, 0}, {dims[0], dims[1], dims[2]}};
     if (p->cut == BRICKS) {
@@ -57,9 +57,9 @@ void play_cut(snow_context *context, play *p, int ranks) {
     }
 }
 
-snow_status play_open_part(snow_context *context, const play *p,
-                           const snow_box *box, void **voxels,
-                           snow_volume **volume) {
+snow_status scenario_open_part(snow_context *context, const scenario *p,
+                               const snow_box *box, void **voxels,
+                               snow_volume **volume) {
     snow_volume_info info = p->info;
     size_t size = snow_type_size(info.type);
     int64_t layers[3];
@@ -98,16 +98,17 @@ snow_status play_open_part(snow_context *context, const play *p,
     return snow_volume_set_extent(*volume, &part);
 }
 
-snow_status play_copy_transfer(snow_context *context, const snow_transfer *t,
-                               snow_transfer **out) {
+snow_status scenario_copy_transfer(snow_context *context,
+                                   const snow_transfer *t,
+                                   snow_transfer **out) {
     SNOW_TRY(snow_transfer_new(context, t->colors, t->color_count, t->opacities,
                                t->opacity_count, out));
     return snow_transfer_set_gradient_opacity(*out, t->gradients,
                                               t->gradient_count);
 }
 
-snow_status play_perform(snow_comm *comm, void *user) {
-    play *p = user;
+snow_status scenario_perform(snow_comm *comm, void *user) {
+    scenario *p = user;
     snow_context *context = snow_comm_context(comm);
     int rank = snow_comm_rank(comm);
     void *voxels = NULL;
@@ -115,9 +116,9 @@ snow_status play_perform(snow_comm *comm, void *user) {
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
     snow_status status =
-        play_open_part(context, p, &p->boxes[rank], &voxels, &volume);
+        scenario_open_part(context, p, &p->boxes[rank], &voxels, &volume);
     if (status == SNOW_STATUS_OK)
-        status = play_copy_transfer(context, p->transfer, &transfer);
+        status = scenario_copy_transfer(context, p->transfer, &transfer);
     if (status == SNOW_STATUS_OK)
         status = snow_frame_new(context, &frame);
     for (int n = 0; n < p->pictures && status == SNOW_STATUS_OK; n++) {
@@ -129,12 +130,13 @@ snow_status play_perform(snow_comm *comm, void *user) {
                                "a picture too many");
         if (status == SNOW_STATUS_OK && rank == 0) {
             memcpy(p->picture, snow_image_pixels(image),
-                   play_floats(p) * sizeof(float));
+                   scenario_floats(p) * sizeof(float));
             p->stats = *snow_frame_stats(frame);
             p->ranks = snow_frame_ranks_stats(frame)->ranks;
             if (p->depths)
                 memcpy(p->depths, snow_frame_depth(frame)->pixels,
-                       play_floats(p) / (size_t)p->channels * sizeof(float));
+                       scenario_floats(p) / (size_t)p->channels *
+                           sizeof(float));
         }
         snow_image_free(image);
     }
@@ -147,14 +149,14 @@ snow_status play_perform(snow_comm *comm, void *user) {
     return status;
 }
 
-float *play_alone(snow_context *context, play *p, double *strongest) {
+float *scenario_alone(snow_context *context, scenario *p, double *strongest) {
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
     snow_image *image = NULL;
     assert_int_equal(snow_volume_wrap(context, &p->info, p->voxels, &volume),
                      SNOW_STATUS_OK);
-    assert_int_equal(play_copy_transfer(context, p->transfer, &transfer),
+    assert_int_equal(scenario_copy_transfer(context, p->transfer, &transfer),
                      SNOW_STATUS_OK);
     assert_int_equal(snow_frame_new(context, &frame), SNOW_STATUS_OK);
     if (snow_frame_render(frame, volume, transfer, &p->view, &p->settings,
@@ -163,15 +165,16 @@ float *play_alone(snow_context *context, play *p, double *strongest) {
     p->interesting = snow_frame_stats(frame)->interesting;
     p->voxels_drawn = snow_frame_stats(frame)->voxels;
     p->channels = snow_image_channels(image);
-    float *pixels = malloc(play_floats(p) * sizeof(float));
+    float *pixels = malloc(scenario_floats(p) * sizeof(float));
     assert_non_null(pixels);
-    memcpy(pixels, snow_image_pixels(image), play_floats(p) * sizeof(float));
+    memcpy(pixels, snow_image_pixels(image),
+           scenario_floats(p) * sizeof(float));
     if (p->depths)
         memcpy(p->depths, snow_frame_depth(frame)->pixels,
-               play_floats(p) / (size_t)p->channels * sizeof(float));
+               scenario_floats(p) / (size_t)p->channels * sizeof(float));
     size_t channels = (size_t)p->channels;
     *strongest = 0;
-    for (size_t n = channels - 1; n < play_floats(p); n += channels)
+    for (size_t n = channels - 1; n < scenario_floats(p); n += channels)
         *strongest = fmax(*strongest, (double)pixels[n]);
     snow_image_free(image);
     snow_frame_free(frame);
@@ -180,18 +183,18 @@ float *play_alone(snow_context *context, play *p, double *strongest) {
     return pixels;
 }
 
-void play_by_ranks(snow_context *context, play *p, int ranks) {
-    p->picture = calloc(play_floats(p), sizeof(float));
+void scenario_by_ranks(snow_context *context, scenario *p, int ranks) {
+    p->picture = calloc(scenario_floats(p), sizeof(float));
     assert_non_null(p->picture);
-    play_cut(context, p, ranks);
-    if (snow_comm_run_threads(context, ranks, play_perform, p) !=
+    scenario_partition(context, p, ranks);
+    if (snow_comm_run_threads(context, ranks, scenario_perform, p) !=
         SNOW_STATUS_OK)
         fail_msg("%d ranks: %s", ranks, snow_context_message(context));
 }
 
-double play_gap(const play *p, const float *serial) {
+double scenario_gap(const scenario *p, const float *serial) {
     double most = 0;
-    for (size_t n = 0; n < play_floats(p); n++) {
+    for (size_t n = 0; n < scenario_floats(p); n++) {
         double gap = fabs((double)p->picture[n] - (double)serial[n]);
         if (isnan(p->picture[n]) && isnan(serial[n])) /* no value */
             continue;
@@ -200,7 +203,7 @@ double play_gap(const play *p, const float *serial) {
     return most;
 }
 
-void play_check_counts(const play *p, int ranks) {
+void scenario_check_counts(const scenario *p, int ranks) {
     int64_t interesting = 0, voxels = 0, all = p->voxels_drawn;
     for (int rank = 0; rank < ranks; rank++) {
         interesting += p->each[rank].interesting;

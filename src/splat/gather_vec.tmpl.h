@@ -1,6 +1,6 @@
-/* splat/words.tmpl.h - the operations of splat/words.h that AVX2 and AVX-512
- * have alike.  Include simd/select.h first, and define; all are undefined at
- * the end:
+/* splat/gather_vec.tmpl.h - the operations of splat/gather_vec.h that AVX2 and
+ * AVX-512 have alike.  Include simd/select.h first, and define; all are
+ * undefined at the end:
  *
  *   M(word)     the compiler's operation: _mm256_word or _mm512_word
  *   INLINE      what begins a function
