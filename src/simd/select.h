@@ -24,14 +24,16 @@
  *                                  at[1] ..., as many as a vector holds, and
  *                                  those behind each of them
  *   V(popcount)(x)                 bits that are set in a uint64_t
- *   V(hadd2)(v), V(hadd4)(v)       the sum of the vector's pixels, by halves,
- *                                  in the first 2 or 4 floats of a scalar
- *                                  vector
+ *   V(sums4)(v), V(sums2)(v)       the sum of the pixels of each of LANES / 4
+ *                                  or / 2 vectors, by halves; avx512 has no
+ *                                  sums2
  *   V(sqrt)(v)                     the square root, rounded correctly
- *   V(places)                      a type: LANES numbers below LANES
- *   V(repeat2)(), V(repeat4)       0, 1 ..., each 2 or 4 times
- *   V(pick)(p, n)                  p[n0], p[n1] ...; all LANES floats at p
- *                                  may be read
+ *   V(wide)                        a type: LANES / 2 numbers of 64 bits
+ *   V(low_times)(a, b)             products of their lower 32 bits
+ *   V(fractions4)(p), V(fractions2), V(fractions1)
+ *                                  the lower 32 bits of numbers of 64 bits at p
+ *                                  as fractions of 24 bits, each 4, 2 times or
+ *                                  once, as many as a vector holds
  *   V(scatter4)(p, n, v), V(scatter2)
  *                                  stores the pixels of v, of 4 or 2 floats,
  *                                  as entries n[0], n[1] ... of a table;

@@ -54,6 +54,16 @@ INLINE V(vec) V(alpha4)(V(vec) v) {
     return M(permute_ps)(v, 0xFF);
 }
 
+INLINE V(wide) V(low_times)(V(wide) a, V(wide) b) {
+    return (V(wide))M(mul_epu32)((V(int))a, (V(int))b);
+}
+
+/* The upper 24 of the 32 bits of each lane, as a fraction. */
+INLINE V(vec) V(fraction)(V(int) v) {
+    return M(mul_ps)(M(cvtepi32_ps)(M(srli_epi32)(v, 8)),
+                     M(set1_ps)(0x1p-24f));
+}
+
 INLINE int V(popcount)(uint64_t x) {
     return __builtin_popcountll(x);
 }

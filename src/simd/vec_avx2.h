@@ -14,20 +14,30 @@
         __attribute__((always_inline, target("avx2,fma,popcnt,bmi,bmi2")))
 
 typedef __m256 snow_avx2_vec;
+typedef __m256i snow_avx2_int;
+typedef uint64_t snow_avx2_wide __attribute__((vector_size(32)));
 
 #define V(word) snow_avx2_##word
 #define M(word) _mm256_##word
 #define INLINE SNOW_AVX2_INLINE
 #include "simd/vec_avx.tmpl.h"
 
-SNOW_AVX2_INLINE snow_scalar_vec snow_avx2_hadd4(snow_avx2_vec v) {
-    return (snow_scalar_vec)_mm_add_ps(_mm256_castps256_ps128(v),
-                                       _mm256_extractf128_ps(v, 1));
+/* The lower halves of two vectors added to their upper ones. */
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_fold(snow_avx2_vec a,
+                                              snow_avx2_vec b) {
+    return _mm256_add_ps(_mm256_permute2f128_ps(a, b, 0x20),
+                         _mm256_permute2f128_ps(a, b, 0x31));
 }
 
-SNOW_AVX2_INLINE snow_scalar_vec snow_avx2_hadd2(snow_avx2_vec v) {
-    __m128 sum = (__m128)snow_avx2_hadd4(v);
-    return (snow_scalar_vec)_mm_add_ps(sum, _mm_movehl_ps(sum, sum));
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_sums4(const snow_avx2_vec *v) {
+    return snow_avx2_fold(v[0], v[1]);
+}
+
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_sums2(const snow_avx2_vec *v) {
+    __m256d even = _mm256_castps_pd(snow_avx2_fold(v[0], v[2]));
+    __m256d odd = _mm256_castps_pd(snow_avx2_fold(v[1], v[3]));
+    return _mm256_add_ps(_mm256_castpd_ps(_mm256_unpacklo_pd(even, odd)),
+                         _mm256_castpd_ps(_mm256_unpackhi_pd(even, odd)));
 }
 
 SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_gather4(const float *p,
@@ -76,19 +86,23 @@ SNOW_AVX2_INLINE void snow_avx2_load_pairs4(const float *p, const int64_t *at,
     *right = snow_avx2_halves(p + at[0] + 4, p + at[1] + 4);
 }
 
-typedef __m256i snow_avx2_places;
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_pick(const float *p,
-                                              snow_avx2_places n) {
-    return _mm256_permutevar8x32_ps(_mm256_loadu_ps(p), n);
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_fractions1(const uint64_t *p) {
+    const float *halves = (const float *)(const void *)p;
+    __m256i v = _mm256_castps_si256(_mm256_shuffle_ps(
+        _mm256_loadu_ps(halves), _mm256_loadu_ps(halves + 8), 0x88));
+    return snow_avx2_fraction(_mm256_permute4x64_epi64(v, 0xD8));
 }
 
-SNOW_AVX2_INLINE snow_avx2_places snow_avx2_repeat2(void) {
-    return _mm256_setr_epi32(0, 0, 1, 1, 2, 2, 3, 3);
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_fractions2(const uint64_t *p) {
+    __m256i v = _mm256_loadu_si256((const __m256i *)(const void *)p);
+    return snow_avx2_fraction(_mm256_shuffle_epi32(v, 0xA0));
 }
 
-SNOW_AVX2_INLINE snow_avx2_places snow_avx2_repeat4(void) {
-    return _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1);
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_fractions4(const uint64_t *p) {
+    __m256i v = _mm256_castsi128_si256(
+        _mm_loadu_si128((const __m128i *)(const void *)p));
+    return snow_avx2_fraction(
+        _mm256_shuffle_epi32(_mm256_permute4x64_epi64(v, 0x50), 0xA0));
 }
 
 SNOW_AVX2_INLINE void snow_avx2_scatter4(float *p, const uint32_t *n,

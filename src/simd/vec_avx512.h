@@ -17,22 +17,23 @@
                               "avx512vl,avx512dq,avx512vbmi,avx512vbmi2")))
 
 typedef __m512 snow_avx512_vec;
+typedef __m512i snow_avx512_int;
+typedef uint64_t snow_avx512_wide __attribute__((vector_size(64)));
 
 #define V(word) snow_avx512_##word
 #define M(word) _mm512_##word
 #define INLINE SNOW_AVX512_INLINE
 #include "simd/vec_avx.tmpl.h"
 
-SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_hadd4(snow_avx512_vec v) {
-    __m256 half =
-        _mm256_add_ps(_mm512_castps512_ps256(v), _mm512_extractf32x8_ps(v, 1));
-    return (snow_scalar_vec)_mm_add_ps(_mm256_castps256_ps128(half),
-                                       _mm256_extractf128_ps(half, 1));
-}
+/* Of each of two vectors the quarters i and j, added to those behind them. */
+#define SNOW_AVX512_FOLD(a, b, first, second)            \
+    _mm512_add_ps(_mm512_shuffle_f32x4(a, b, first), \
+                  _mm512_shuffle_f32x4(a, b, second))
 
-SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_hadd2(snow_avx512_vec v) {
-    __m128 sum = (__m128)snow_avx512_hadd4(v);
-    return (snow_scalar_vec)_mm_add_ps(sum, _mm_movehl_ps(sum, sum));
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_sums4(const snow_avx512_vec *v) {
+    __m512 a = SNOW_AVX512_FOLD(v[0], v[1], 0x44, 0xEE);
+    __m512 b = SNOW_AVX512_FOLD(v[2], v[3], 0x44, 0xEE);
+    return SNOW_AVX512_FOLD(a, b, 0x88, 0xDD);
 }
 
 /* Inserts the 16 bytes of an entry at a position. */
@@ -82,19 +83,24 @@ SNOW_AVX512_INLINE void snow_avx512_load_pairs4(const float *p,
     *right = snow_avx512_runs(p + 4, at);
 }
 
-typedef __m512i snow_avx512_places;
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_pick(const float *p,
-                                                    snow_avx512_places n) {
-    return _mm512_permutexvar_ps(n, _mm512_loadu_ps(p));
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fractions1(const uint64_t *p) {
+    const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18,
+                                           20, 22, 24, 26, 28, 30);
+    return snow_avx512_fraction(_mm512_permutex2var_epi32(
+        _mm512_loadu_si512(p), even, _mm512_loadu_si512(p + 8)));
 }
 
-SNOW_AVX512_INLINE snow_avx512_places snow_avx512_repeat2(void) {
-    return _mm512_setr_epi32(0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7);
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fractions2(const uint64_t *p) {
+    return snow_avx512_fraction(
+        _mm512_shuffle_epi32(_mm512_loadu_si512(p), 0xA0));
 }
 
-SNOW_AVX512_INLINE snow_avx512_places snow_avx512_repeat4(void) {
-    return _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fractions4(const uint64_t *p) {
+    const __m512i twice = _mm512_setr_epi64(0, 0, 1, 1, 2, 2, 3, 3);
+    __m512i v = _mm512_castsi256_si512(
+        _mm256_loadu_si256((const __m256i *)(const void *)p));
+    return snow_avx512_fraction(
+        _mm512_shuffle_epi32(_mm512_permutexvar_epi64(twice, v), 0xA0));
 }
 
 SNOW_AVX512_INLINE void snow_avx512_scatter4(float *p, const uint32_t *n,

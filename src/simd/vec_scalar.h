@@ -12,6 +12,7 @@
 
 typedef float snow_scalar_vec __attribute__((vector_size(16)));
 typedef int snow_scalar_mask __attribute__((vector_size(16)));
+typedef uint64_t snow_scalar_wide __attribute__((vector_size(16)));
 
 static inline snow_scalar_vec snow_scalar_load(const float *p) {
     snow_scalar_vec v;
@@ -73,12 +74,13 @@ static inline snow_scalar_vec snow_scalar_alpha4(snow_scalar_vec v) {
     return (snow_scalar_vec){v[3], v[3], v[3], v[3]};
 }
 
-static inline snow_scalar_vec snow_scalar_hadd2(snow_scalar_vec v) {
-    return (snow_scalar_vec){v[0] + v[2], v[1] + v[3], 0, 0};
+static inline snow_scalar_vec snow_scalar_sums2(const snow_scalar_vec *v) {
+    return (snow_scalar_vec){v[0][0] + v[0][2], v[0][1] + v[0][3],
+                             v[1][0] + v[1][2], v[1][1] + v[1][3]};
 }
 
-static inline snow_scalar_vec snow_scalar_hadd4(snow_scalar_vec v) {
-    return v;
+static inline snow_scalar_vec snow_scalar_sums4(const snow_scalar_vec *v) {
+    return *v;
 }
 
 static inline snow_scalar_vec snow_scalar_gather4(const float *p,
@@ -122,22 +124,29 @@ static inline snow_scalar_vec snow_scalar_sqrt(snow_scalar_vec v) {
                              __builtin_sqrtf(v[2]), __builtin_sqrtf(v[3])};
 }
 
-typedef struct snow_scalar_places {
-    int32_t n[4];
-} snow_scalar_places;
-
-static inline snow_scalar_vec snow_scalar_pick(const float *p,
-                                               snow_scalar_places lanes) {
-    const int32_t *n = lanes.n;
-    return (snow_scalar_vec){p[n[0]], p[n[1]], p[n[2]], p[n[3]]};
+static inline snow_scalar_wide snow_scalar_low_times(snow_scalar_wide a,
+                                                     snow_scalar_wide b) {
+    return (a & 0xFFFFFFFF) * (b & 0xFFFFFFFF);
 }
 
-static inline snow_scalar_places snow_scalar_repeat2(void) {
-    return (snow_scalar_places){{0, 0, 1, 1}};
+static inline float snow_scalar_fraction(uint64_t place) {
+    return (float)(int32_t)((uint32_t)place >> 8) * 0x1p-24f;
 }
 
-static inline snow_scalar_places snow_scalar_repeat4(void) {
-    return (snow_scalar_places){{0, 0, 0, 0}};
+static inline snow_scalar_vec snow_scalar_fractions1(const uint64_t *p) {
+    return (snow_scalar_vec){snow_scalar_fraction(p[0]),
+                             snow_scalar_fraction(p[1]),
+                             snow_scalar_fraction(p[2]),
+                             snow_scalar_fraction(p[3])};
+}
+
+static inline snow_scalar_vec snow_scalar_fractions2(const uint64_t *p) {
+    float a = snow_scalar_fraction(p[0]), b = snow_scalar_fraction(p[1]);
+    return (snow_scalar_vec){a, a, b, b};
+}
+
+static inline snow_scalar_vec snow_scalar_fractions4(const uint64_t *p) {
+    return snow_scalar_set1(snow_scalar_fraction(*p));
 }
 
 static inline void snow_scalar_scatter4(float *p, const uint32_t *n,

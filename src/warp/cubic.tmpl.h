@@ -9,60 +9,64 @@
  * run with theirs along x. Sums are computed by halves, so that they do not
  * depend on LANES. */
 
-#define WARP_VECTORS (4 * WARP_CHANNELS / LANES)
+#define WARP_VECTORS (4 * WARP_CHANNELS / LANES) /* of a run */
+#define WARP_PIXELS (LANES / WARP_CHANNELS)      /* of a vector */
 
-TARGET static inline __attribute__((always_inline)) snow_scalar_vec
-WARP_NAME(_pixel)(const float *run, size_t stride, const float *along_y,
-                  V(vec) part[WARP_VECTORS]) {
+/* Weights along x in the lanes of a part of a run, as cubic polynomials. */
+TARGET static inline __attribute__((always_inline)) V(vec)
+    WARP_NAME(_along_x)(int part, V(vec) f) {
+    float lanes[4][LANES];
+    for (int i = 0; i < LANES; i++)
+        for (int power = 0; power < 4; power++)
+            lanes[power][i] =
+                catmull_rom[power][(part * LANES + i) / WARP_CHANNELS];
+    V(vec) w = V(load)(lanes[3]);
+    for (int power = 2; power >= 0; power--)
+        w = V(fma)(w, f, V(load)(lanes[power]));
+    return w;
+}
+
+/* A pixel's weighted run, added up to one vector. */
+TARGET static inline __attribute__((always_inline)) V(vec)
+    WARP_NAME(_run)(const float *run, size_t stride, const float *along_y,
+                    V(vec) across) {
+    V(vec) part[WARP_VECTORS];
     for (int n = 0; n < WARP_VECTORS; n++) {
         V(vec) sum = V(mul)(V(set1)(along_y[0]), V(load)(run + n * LANES));
         for (int m = 1; m < 4; m++)
             sum = V(fma)(V(set1)(along_y[m * GROUP]),
                          V(load)(run + (size_t)m * stride + n * LANES), sum);
-        part[n] = V(mul)(part[n], sum);
+        part[n] = V(mul)(WARP_NAME(_along_x)(n, across), sum);
     }
     for (int half = WARP_VECTORS / 2; half; half /= 2)
         for (int n = 0; n < half; n++)
             part[n] = V(add)(part[n], part[n + half]);
-    return VC(hadd, WARP_CHANNELS)(part[0]);
-}
-
-/* Weights along x in all lanes, as cubic polynomials of the fraction. */
-TARGET static inline __attribute__((always_inline)) void
-WARP_NAME(_along_x)(float fraction, V(vec) part[WARP_VECTORS]) {
-    V(vec) f = V(set1)(fraction);
-    for (int n = 0; n < WARP_VECTORS; n++) {
-        float lanes[4][LANES];
-        for (int i = 0; i < LANES; i++)
-            for (int power = 0; power < 4; power++)
-                lanes[power][i] =
-                    catmull_rom[power][(n * LANES + i) / WARP_CHANNELS];
-        V(vec) w = V(load)(lanes[3]);
-        for (int power = 2; power >= 0; power--)
-            w = V(fma)(w, f, V(load)(lanes[power]));
-        part[n] = w;
-    }
+    return part[0];
 }
 
 TARGET static inline __attribute__((always_inline)) void
 WARP_NAME(_mix)(const snow_intermediate_view *plane, const warp_group *group,
                 float *pixels) {
-    float along_y[4][GROUP];
-    for (int m = 0; m < 4; m++)
-        for (int n = 0; n < GROUP; n++) {
-            float f = group->down[n], w = catmull_rom[3][m];
+    float along_y[4][GROUP], across[GROUP];
+    for (int n = 0; n < GROUP; n += LANES) {
+        V(vec) f = V(fractions1)(group->y + n);
+        V(store)(across + n, V(fractions1)(group->x + n));
+        for (int m = 0; m < 4; m++) {
+            V(vec) w = V(set1)(catmull_rom[3][m]);
             for (int power = 2; power >= 0; power--)
-                w = w * f + catmull_rom[power][m];
-            along_y[m][n] = w;
+                w = V(add)(V(mul)(w, f), V(set1)(catmull_rom[power][m]));
+            V(store)(along_y[m] + n, w);
         }
-    for (int n = 0; n < GROUP; n++) {
-        V(vec) part[WARP_VECTORS];
-        WARP_NAME(_along_x)(group->across[n], part);
-        snow_scalar_vec pixel = WARP_NAME(_pixel)(
-            plane->pixels + group->at[n], plane->stride, &along_y[0][n], part);
-        memcpy(pixels + n * WARP_CHANNELS, &pixel,
-               WARP_CHANNELS * sizeof *pixels);
+    }
+    for (int n = 0; n < GROUP; n += WARP_PIXELS) {
+        V(vec) runs[WARP_PIXELS];
+        for (int i = 0; i < WARP_PIXELS; i++)
+            runs[i] = WARP_NAME(_run)(plane->pixels + group->at[n + i],
+                                      plane->stride, &along_y[0][n + i],
+                                      V(set1)(across[n + i]));
+        V(store)(pixels + n * WARP_CHANNELS, VC(sums, WARP_CHANNELS)(runs));
     }
 }
 
 #undef WARP_VECTORS
+#undef WARP_PIXELS

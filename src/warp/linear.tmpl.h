@@ -16,11 +16,10 @@ TARGET static inline __attribute__((always_inline)) V(vec)
 TARGET static inline __attribute__((always_inline)) void
 WARP_NAME(_mix)(const snow_intermediate_view *plane, const warp_group *group,
                 float *pixels) {
-    const V(places) repeat = VC(repeat, WARP_CHANNELS)();
     for (int n = 0; n < GROUP; n += LANES / WARP_CHANNELS) {
         V(vec) left, right, above, below;
-        V(vec) across = V(pick)(group->across + n, repeat);
-        V(vec) down = V(pick)(group->down + n, repeat);
+        V(vec) across = VC(fractions, WARP_CHANNELS)(group->x + n);
+        V(vec) down = VC(fractions, WARP_CHANNELS)(group->y + n);
         VC(load_pairs, WARP_CHANNELS)
         (plane->pixels, group->at + n, &left, &right);
         above = WARP_NAME(_mixed)(left, right, across);

@@ -19,23 +19,13 @@ static const float catmull_rom[4][4] = {
 
 #include "simd/vec_scalar.h"
 
-/* The fraction of a place in 24 bits, the precision of a float. */
-static inline float fraction_of(int64_t place) {
-    return (float)(int32_t)((uint32_t)place >> 8) * 0x1p-24f;
-}
-
 #define GROUP 16
 
-/* The hardware does not prefetch a line of the picture that crosses more lines
- * of the intermediate image than this per pixel (1/4). */
-#define ACROSS (INT64_C(1) << 30)
-
-/* The places of the pixels of a group. */
+/* The pixels of a group. */
 typedef struct warp_group {
-    int64_t at[GROUP];       /* offset of the first float read */
-    float across[2 * GROUP]; /* fractions of GROUP pixels; a vector of them */
-    float down[2 * GROUP];   /* may be read from any index */
-} warp_group;
+    uint64_t x[GROUP], y[GROUP]; /* places in 2^-32 pixels */
+    int64_t at[GROUP];           /* offset of the first float read */
+} __attribute__((aligned(64))) warp_group;
 
 #define TEMPLATE "warp/warp_isa.h"
 #include "simd/each_isa.h"

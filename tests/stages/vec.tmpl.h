@@ -19,8 +19,12 @@ TARGET static void NAME(words)(const word_input *in, word_output *out) {
         (out->lanes[GATHER4] + at, V(gather4)(in->table, in->entries + at / 4));
         V(store)
         (out->lanes[GATHER2] + at, V(gather2)(in->table, in->entries + at / 2));
-        snow_scalar_store(out->hadd2[at / LANES], V(hadd2)(a));
-        snow_scalar_store(out->hadd4[at / LANES], V(hadd4)(a));
+        V(store)
+        (out->lanes[FRACTIONS1] + at, V(fractions1)(in->places + at));
+        V(store)
+        (out->lanes[FRACTIONS2] + at, V(fractions2)(in->places + at / 2));
+        V(store)
+        (out->lanes[FRACTIONS4] + at, V(fractions4)(in->places + at / 4));
         V(load_pairs2)(in->table, in->at + at / 2, &left, &right);
         V(store)(out->left2 + at, left);
         V(store)(out->right2 + at, right);
@@ -28,6 +32,13 @@ TARGET static void NAME(words)(const word_input *in, word_output *out) {
         V(store)(out->left4 + at, left);
         V(store)(out->right4 + at, right);
     }
+    V(vec) all[4];
+    for (int n = 0; n < 4; n++)
+        all[n] = V(load)(in->table + 1 + n * LANES);
+    V(store)(out->sums4, V(sums4)(all));
+#if LANES <= 8
+    V(store)(out->sums2, V(sums2)(all));
+#endif
     out->lane_count = LANES;
     out->popcount = V(popcount)(in->mask);
 }

@@ -128,38 +128,34 @@ static void show_row(const snow_shear_warp_warping *w, int y, int from, int to,
                       out);
 }
 
-/* The map of places i / n - 1/2 + 1 / 2n across and `down` lower than a
- * pixel's middle. */
-static snow_shear_warp_warping denser(const snow_shear_warp_warping *w, int n,
-                                      double down) {
-    snow_shear_warp_warping fine = *w;
-    for (int axis = 0; axis < 2; axis++) {
-        fine.shear.start[axis] += fine.shear.along_x[axis] * (0.5 / n - 0.5) +
-                                  fine.shear.along_y[axis] * down;
-        fine.shear.along_x[axis] /= n;
-    }
-    for (int i = 0; i < 3; i++) {
-        fine.scaled.warp[i][0] += down * fine.scaled.warp[i][2];
-        fine.scaled.warp[i][1] /= n;
-    }
-    return fine;
+/* The map of places `across` to the right of a pixel's middle and `down` below
+ * it. */
+static snow_shear_warp_warping aside(const snow_shear_warp_warping *w,
+                                     double across, double down) {
+    snow_shear_warp_warping to = *w;
+    for (int axis = 0; axis < 2; axis++)
+        to.shear.start[axis] +=
+            to.shear.along_x[axis] * across + to.shear.along_y[axis] * down;
+    for (int i = 0; i < 3; i++)
+        to.scaled.warp[i][0] +=
+            to.scaled.warp[i][1] * across + to.scaled.warp[i][2] * down;
+    return to;
 }
 
 /* Means of `means` x `means` places a pixel. */
 static void show_means(const snow_shear_warp_warping *w, int y, int from,
-                       int to, float *fine, float *out) {
+                       int to, float *restrict one, float *restrict out) {
     const snow_value_image *image = w->of;
-    int n = image->lattice.means, channels = w->plane.channels;
-    float share = 1.0F / (float)(n * n);
+    const int n = image->lattice.means, channels = w->plane.channels;
+    const float share = 1.0F / (float)(n * n);
     memset(out + from * channels, 0,
            (size_t)((to - from) * channels) * sizeof *out);
-    for (int j = 0; j < n; j++) {
-        const snow_shear_warp_warping places =
-            denser(&image->shown, n, (j + 0.5) / n - 0.5);
-        show_row(&places, y, n * from, n * to, fine);
-        for (int x = n * from; x < n * to; x++)
-            for (int c = 0; c < channels; c++)
-                out[x / n * channels + c] += share * fine[x * channels + c];
+    for (int i = 0; i < n * n; i++) {
+        const snow_shear_warp_warping places = aside(
+            &image->shown, (i % n + 0.5) / n - 0.5, (i / n + 0.5) / n - 0.5);
+        show_row(&places, y, from, to, one);
+        for (int k = from * channels; k < to * channels; k++)
+            out[k] += share * one[k];
     }
 }
 
@@ -199,7 +195,7 @@ snow_status snow_value_place_show(snow_value_path *path,
     of->shown = *w;
     if (l->means > 1) {
         w->line = show_means;
-        w->spare_floats = (size_t)(l->means * w->width * image->channels + 64);
+        w->spare_floats = (size_t)(w->width * image->channels + 64);
         w->before = w->behind = lines_around(l);
     }
     of->path = path;
