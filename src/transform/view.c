@@ -70,7 +70,9 @@ snow_status snow_view_from_name(snow_context *context, const char *name,
 static int find_thin(const snow_volume_info *info) {
     double side[3];
     for (int axis = 0; axis < 3; axis++)
-        side[axis] = (double)info->dims[axis] * info->spacing[axis];
+        side[axis] = info->dims[axis] > 1
+                         ? (double)info->dims[axis] * info->spacing[axis]
+                         : 0; /* a slice has no thickness to be seen */
     for (int axis = 0; axis < 3; axis++)
         if (side[axis] <
             0.25 * fmin(side[(axis + 1) % 3], side[(axis + 2) % 3]))

@@ -109,7 +109,9 @@ static const struct {
     {{40, 9, 40}, {1, 1, 1}, 0, false, "-y"},
     {{9, 40, 40}, {1, 1, 1}, 0, false, "+x"},
     {{40, 40, 9}, {1, 1, 1}, 1, false, "+x"},
-    {{40, 9, 9}, {1, 1, 1}, 0, false, "+z"}, /* a rod has no face */
+    {{40, 9, 9}, {1, 1, 1}, 0, false, "+z"},   /* a rod has no face */
+    {{1, 40, 40}, {90, 1, 1}, 0, false, "+x"}, /* a slice, however thick */
+    {{1, 1, 40}, {1, 1, 1}, 0, false, "+z"},
 };
 
 static void a_thin_volume_is_shown_from_its_face(void **state) {

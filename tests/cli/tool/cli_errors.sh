@@ -28,7 +28,7 @@ raw="--dims 8x8x8 --type uint8"
 # shellcheck disable=SC2086
 refused 3 "voxels that no picture can show" \
     "^snowglass: eight.raw: voxels of .* cannot be shown at zoom" "$TOOL" \
-    eight.raw $raw --spacing 1e-30x1e30x1e30 -o z.png
+    eight.raw $raw --spacing 1e-30x1e30x1e30 --view +z -o z.png
 given() {
     local file=$1
     shift
@@ -37,7 +37,7 @@ given() {
 # shellcheck disable=SC2086
 refused 3 "the same from standard input" \
     "^snowglass: standard input: voxels of" given eight.raw \
-    - $raw --spacing 1e-30x1e30x1e30 -o z.png
+    - $raw --spacing 1e-30x1e30x1e30 --view +z -o z.png
 printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw
 data file: eight.raw\n\n' >eight.nhdr
 run 0 "a header and its data" "$TOOL" info eight.nhdr
