@@ -69,6 +69,13 @@ SNOW_API snow_status snow_ranks_rebalance(snow_frame *frame, snow_comm *comm,
 SNOW_API snow_status snow_ranks_new_transfer(snow_comm *comm,
     const snow_volume *volume, const snow_look *look, snow_transfer **out);
 
+/* Moves a view's target and multiplies its zoom so that what a look shows from
+ * each azimuth (NULL: the view's) fills the picture but for 4 % at the edges
+ * (docs/model.md, point 2). Collective, unless `comm` is NULL. */
+SNOW_API snow_status snow_view_fit(snow_comm *comm, const snow_volume *volume,
+    const snow_transfer *transfer, const snow_settings *settings,
+    const double *azimuths, size_t count, snow_view *view);
+
 /* Not collective: the boxes of `ranks` ranks along `slice_axis` (0 to 2),
  * without ghosts, and their interesting voxels; either may be NULL. */
 SNOW_API snow_status snow_ranks_partition(const snow_volume *volume,

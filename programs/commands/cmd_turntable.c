@@ -1,7 +1,7 @@
 /* cmd_turntable.c - the verb turntable: a movie around a volume.  The camera
- * turns once about the up axis to its right, from the requested azimuth.  Frame
- * i of N equals `render --azimuth A+360i/N` bit for bit.  Frame N would equal
- * frame 0, so the movie plays in a loop. */
+ * turns once about the up axis to its right, from the requested azimuth.  With
+ * --fit volume frame i of N equals `render --azimuth A+360i/N` bit for bit.
+ * Frame N would equal frame 0, so the movie plays in a loop. */
 #include "commands/commands.h"
 #include "movie/movie_render.h"
 #include "run/log.h"

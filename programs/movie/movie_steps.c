@@ -210,6 +210,7 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
     movie_shot first = {files->paths[0], asked->time, asked->azimuth, 0};
     out->count = files->count;
     const bool given = options_given(asked, "time");
+    shots->scene.steps = true;
     shots->scene.each_time = files->count == 1 && !given;
     shots->whole_files = files->count > 1 && !given;
     if (shots->scene.each_time) {

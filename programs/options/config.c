@@ -237,6 +237,7 @@ static void fill_view(const options *asked, snow_recipe *out) {
     out->roll = asked->roll;
     out->zoom = asked->zoom;
     out->fov = asked->fov;
+    out->fit = strcmp(asked->fit, "volume") ? 1 : 2;
     fill_place(&asked->position, out->position);
     fill_place(&asked->target, out->target);
     fill_place(&asked->up, out->up);

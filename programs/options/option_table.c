@@ -167,7 +167,13 @@ const option_row option_table[] = {
     {"roll", 0, "DEGREES", TOPIC_CAMERA, RENDER, read_real, FIELD(roll), 0, 0,
      "", "then turn the camera clockwise (default 0)"},
     {"zoom", 0, "Z", TOPIC_CAMERA, RENDER, read_real, FIELD(zoom), 1e-6, 1e6,
-     "", "magnification, 1e-6 to 1e6; 1 shows the whole volume (default 1)"},
+     "", "magnification of what --fit frames, 1e-6 to 1e6 (default 1)"},
+    {"fit", 0, "visible|volume", TOPIC_CAMERA, RENDER, read_choice, FIELD(fit),
+     0, 0, "",
+     "visible: frame what the look shows, once for all frames of a turntable; "
+     "projections and movies of time steps show the whole box; volume: frame "
+     "the sphere around the box, at one scale from every side. With --position "
+     "or --target as volume (default visible)"},
     {"perspective", 0, "[FOV]", TOPIC_CAMERA, RENDER, read_fov, FIELD(fov),
      SNOW_FOV_MIN, SNOW_FOV_MAX, "",
      "perspective projection with a field of view over the shorter side, in "

@@ -42,6 +42,7 @@ void options_init(options *out) {
         .specular = settings.specular,
         .shininess = settings.shininess,
         .zoom = 1,
+        .fit = "visible",
         .progress = "auto",
         .isa = "auto",
         .quality = "normal",

@@ -81,7 +81,8 @@ typedef struct options {
 
     const char *view; /* NULL: the volume's own */
     double azimuth, elevation, roll, zoom;
-    double fov; /* 0: parallel */
+    double fov;      /* 0: parallel */
+    const char *fit; /* what the picture frames */
     place_value position, target, up;
 
     int64_t dims[3]; /* 0: not given */

@@ -7,6 +7,8 @@
 #include "run/log.h"
 #include "run/start.h"
 
+#include <snowglass/extend.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -65,6 +67,43 @@ static int place_camera(scene *s) {
         done = make_settings(s->asked, &s->whole, &s->settings);
     s->settings.stop = interrupt_asked;
     return done;
+}
+
+/* What `frames` pictures of a turn show, from each side. */
+static snow_status frame_turn(scene *s, snow_comm *comm, size_t frames) {
+    double *azimuths = malloc(frames * sizeof *azimuths);
+    if (!azimuths)
+        return snow_context_fail(s->context, SNOW_STATUS_NO_MEMORY,
+                                 "out of memory for %zu angles; close other "
+                                 "programs",
+                                 frames);
+    for (size_t i = 0; i < frames; i++)
+        azimuths[i] = s->asked->azimuth + 360 * (double)i / (double)frames;
+    snow_status status = snow_view_fit(
+        comm, s->volume, s->transfer, &s->settings, azimuths, frames, &s->view);
+    free(azimuths);
+    return status;
+}
+
+/* Frames what the look shows, once for all pictures.  What later steps show is
+ * not known: their grid is framed. */
+static snow_status frame_view(scene *s) {
+    snow_comm *comm = launch_ranks() > 1 ? launch_comm() : NULL;
+    snow_status status = SNOW_STATUS_OK;
+    if (strcmp(s->asked->fit, "visible") != 0)
+        return SNOW_STATUS_OK;
+    if (!s->framed && s->turns)
+        status = frame_turn(s, comm, (size_t)s->asked->frames);
+    else if (!s->framed)
+        status = snow_view_fit(comm, s->volume, s->steps ? NULL : s->transfer,
+                               &s->settings, NULL, 0, &s->view);
+    if (status != SNOW_STATUS_OK)
+        return status;
+    if (!s->framed)
+        s->frame_of = s->view;
+    s->view = s->frame_of;
+    s->framed = true;
+    return SNOW_STATUS_OK;
 }
 
 /* If a look was chosen automatically for a volume without surfaces, it is not
@@ -143,6 +182,23 @@ static snow_status make_look(scene *s, const options *step) {
     return status;
 }
 
+static int frame_alone(scene *s, const options *step) {
+    double begin = seconds_now(), before = snow_volume_read_seconds(s->volume);
+    snow_status status = frame_view(s);
+    int done = CONTINUE;
+    if (may_leave(s, status)) {
+        done = leave_in_file(s, step);
+        before = 0;
+        status = done == CONTINUE ? frame_view(s) : SNOW_STATUS_OK;
+    }
+    if (status != SNOW_STATUS_OK)
+        return fail_volume(s->context, status, name_of_input(s->path));
+    double reading = snow_volume_read_seconds(s->volume) - before;
+    s->times.look += seconds_now() - begin - reading;
+    s->times.read += reading;
+    return done;
+}
+
 /* Decompression and conversion count as reading. */
 static int open_alone(scene *s, const options *step) {
     int done = plan_memory(s, step);
@@ -163,7 +219,7 @@ static int open_alone(scene *s, const options *step) {
     if (done == CONTINUE)
         done = place_camera(s);
     choose_shade(s);
-    return done;
+    return done == CONTINUE ? frame_alone(s, step) : done;
 }
 
 /* Eight bits per channel suffice between ranks if the picture is placed on a
@@ -210,6 +266,13 @@ static int open_part(scene *s, const options *step) {
     if (!s->transfer)
         s->transfer = transfer;
     choose_shade(s);
+    how.transfer = s->transfer;
+    status = frame_view(s);
+    if (status == SNOW_STATUS_OK && s->framed)
+        status = snow_ranks_repartition(launch_comm(), s->transfer, &s->view,
+                                        &s->settings, &how, &s->volume);
+    if (status != SNOW_STATUS_OK)
+        return fail_status(s->context, status);
     s->times.read += seconds_now() - begin;
     return CONTINUE;
 }

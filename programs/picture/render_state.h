@@ -21,6 +21,8 @@ typedef struct scene {
     const char *path; /* path of the volume */
     bool each_time;   /* all time steps of the file are opened in turn */
     bool turns;       /* pictures from several sides are requested */
+    bool steps;       /* or of several time steps */
+    bool framed;      /* the view below frames all pictures */
     int64_t left;     /* then: how many are left, including the next */
     memory_plan plan; /* the memory plan, if this process is alone */
     bool in_slabs; /* the volume did not fit beside its interesting voxels: this
@@ -30,7 +32,7 @@ typedef struct scene {
     snow_volume *volume;
     snow_transfer *transfer;
     snow_frame *frame;
-    snow_view view;
+    snow_view view, frame_of; /* the latter: as framed */
     snow_settings settings;
     render_times
         times; /* seconds for reading and look; sums over all volumes */

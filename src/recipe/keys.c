@@ -74,6 +74,15 @@ static int endian_named(const char *name) {
     return find_name(endian_name, name);
 }
 
+static const char *fit_name(int value) {
+    static const char *const names[] = {"", "visible", "volume"};
+    return of_list(names, 3, value);
+}
+
+static int fit_named(const char *name) {
+    return find_name(fit_name, name);
+}
+
 /* --- the table ------------------------------------------------------------ */
 
 #define AT(name) offsetof(snow_recipe, name)
@@ -127,6 +136,7 @@ const recipe_key recipe_keys[] = {
     REAL("roll", roll, 0, 0),
     REAL("zoom", zoom, 1e-6, 1e6),
     REAL("perspective", fov, 0, SNOW_FOV_MAX),
+    {"fit", &recipe_given_name, AT(fit), 0, 0, 0, fit_name, fit_named},
     {"position", &recipe_point, AT(position), 0, 0, 3, NULL, NULL},
     {"target", &recipe_point, AT(target), 0, 0, 3, NULL, NULL},
     {"up", &recipe_point, AT(up), 0, 0, 3, NULL, NULL},

@@ -20,7 +20,8 @@ oracle.need_modules()
 place = oracle.folder()
 # The box's diagonal is 50 voxels, so that a pixel of 50 x 50 is one voxel.
 SHAPE, SIDE = (18, 24, 40), 50
-RENDER = [oracle.TOOL, "render", "-q", "-s", f"{SIDE}x{SIDE}", "-y", "-c",
+RENDER = [oracle.TOOL, "render", "-q", "-s", f"{SIDE}x{SIDE}", "-y", "--fit",
+          "volume", "-c",
           "grey", "--range", "0,255", "--no-labels", "-o", "a.npy"]
 
 

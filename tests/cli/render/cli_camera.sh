@@ -5,7 +5,7 @@
 
 # The head phantom is a patient: RAS, millimetres.
 render() {
-    "$TOOL" render -q phantom:head --dims 40x40x40 -s 64x48 "$@"
+    "$TOOL" render -q phantom:head --dims 40x40x40 -s 64x48 --fit volume "$@"
 }
 
 run 0 "a view by name" render --view left -o a.npy

@@ -39,10 +39,10 @@ refused 2 "a time label of one picture" 'but of movie' \
 check "nothing is written then" absent x.npy
 
 run 0 "letters turn in a turntable" head_of turntable -q -o 't_%d.png' \
-    --frames 4 --legend --background navy
+    --frames 4 --legend --background navy --fit volume
 for n in 0 1 2 3; do
     run 0 "frame $n as a picture" head_of render -q -o "u_$n.png" --legend \
-        --background navy --azimuth $((90 * n))
+        --background navy --azimuth $((90 * n)) --fit volume
     check "is that of the turntable" cmp -s "t_$n.png" "u_$n.png"
 done
 run 4 "frames with letters are not kept without" head_of turntable -q \

@@ -4,7 +4,7 @@
 . "$(dirname "$0")/../../support/shell.sh"
 
 "$TOOL" phantom head --dims 160x160x160 -q -o a.nrrd
-small=(-s 64x64 --preset linear)
+small=(-s 64x64 --preset linear --fit volume)
 for size in 30M 30000K 0.03G 30MB 30MiB 30000000; do
     run 0 "a picture within $size" "$TOOL" render -q a.nrrd "${small[@]}" \
         -o "a$size.png" --memory $size --stats "a$size.json"

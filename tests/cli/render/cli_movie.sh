@@ -129,9 +129,9 @@ for name in block slice; do
         -o ${name}_0.nrrd
     cp ${name}_0.nrrd ${name}_1.nrrd
     run 0 "a movie of two" "$TOOL" movie "${name}_%d.nrrd" -q -s 64x64 \
-        --view superior -o "${name}_%d.png"
+        --view superior --fit volume -o "${name}_%d.png"
     run 0 "the picture of one" "$TOOL" render ${name}_0.nrrd -q -s 64x64 \
-        --view superior -o $name.png
+        --view superior --fit volume -o $name.png
     run 0 "is the same" "$TOOL" compare ${name}_0.png $name.png
 done
 

@@ -52,6 +52,7 @@ check "the last of -v -q counts: silent" [ ! -s "$ERR" ]
 
 # The options of every topic are taken, and those that must change the picture
 # do.
+small="$small --fit volume" # one place of the object for all looks
 run 0 "a picture to begin with" render -q -o base.npy
 changes() {
     rm -f changed.npy
@@ -75,6 +76,7 @@ changes --azimuth -30
 changes --elevation 20
 changes --roll 15
 changes --zoom 2
+changes --fit visible
 changes --perspective
 changes --perspective 60
 changes --view left
@@ -144,10 +146,10 @@ for way in "--perspective 30" "--perspective=30" "--perspective=60 --perspective
     run 0 "$way is --perspective" "$TOOL" compare eye.npy eye2.npy
 done
 run 0 "an input behind --perspective" "$TOOL" render -q --perspective \
-    phantom:shells --dims 24x24x20 -s 40x30 -o eye3.npy
+    phantom:shells --dims 24x24x20 -s 40x30 --fit volume -o eye3.npy
 run 0 "it is no number" "$TOOL" compare eye.npy eye3.npy
 run 0 "a number and an input behind it" "$TOOL" render -q --perspective 30 \
-    phantom:shells --dims 24x24x20 -s 40x30 -o eye4.npy
+    phantom:shells --dims 24x24x20 -s 40x30 --fit volume -o eye4.npy
 run 0 "they are told apart" "$TOOL" compare eye.npy eye4.npy
 run 0 "the exact picture in perspective" \
     render -q -o eye5.npy --perspective --method footprint

@@ -112,9 +112,9 @@ for i in 0 1 2; do
     same "frame $i" "w_$i.png" "s_$i.png"
 done
 run 0 "a movie in slabs" "$TOOL" movie a.nrrd a.nrrd "${look[@]}" -q \
-    --range 0,255 -o 'm_%d.png' --memory 11M
+    --range 0,255 -o 'm_%d.png' --memory 11M --fit volume
 run 0 "its first step alone" "$TOOL" render a.nrrd "${look[@]}" -q \
-    --range 0,255 -o whole.png -y
+    --range 0,255 -o whole.png -y --fit volume
 same "a movie" m_0.png whole.png
 same "its second step" m_1.png whole.png
 

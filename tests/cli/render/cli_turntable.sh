@@ -3,7 +3,8 @@
 # absent, frame by frame, whatever ends it, and goes on from there.
 . "$(dirname "$0")/../../support/shell.sh"
 
-small="phantom:engine --dims 32x32x24 -s 60x44"
+# One frame for all pictures (oracle_fit.py) is not that of each alone.
+small="phantom:engine --dims 32x32x24 -s 60x44 --fit volume"
 # shellcheck disable=SC2086
 turn() { "$TOOL" turntable $small -q "$@"; }
 # shellcheck disable=SC2086

@@ -1,0 +1,367 @@
+/* parallel/fit.c - frames what a look shows: the bounds before the camera of
+ * the interesting voxels, of one process or of all ranks' parts.
+ *
+ * A row's first and last interesting voxel bound the others of it, in
+ * perspective too. Bounds are largest values, which do not depend on the order
+ * of rows, threads and ranks. */
+#include "base/record.h"
+#include "base/thread_pool.h"
+#include "base/vec3.h"
+#include "classify/classify.h"
+#include "comm/comm.h"
+#include "render/settings_resolve.h"
+#include "volume/stream.h"
+
+#include <snowglass/ranks.h>
+
+#include <math.h>
+#include <string.h>
+
+/* Of a picture's side that the bounds fill. */
+#define FILLED 0.92
+
+/* The largest places of voxels: before the first camera along right, up and
+ * back and against them; in all pictures to the right, left, top and bottom, in
+ * half pictures from the middle. */
+#define PLACES 6
+#define BOUNDS (PLACES + 4)
+
+typedef struct fit {
+    snow_context *context;
+    const snow_transfer *transfer;
+    snow_settings settings;
+    snow_volume_info whole;
+    const snow_view *view;
+    snow_camera *cameras;
+    double (*margins)[3]; /* of each: half a voxel along right, up and back */
+    size_t count;
+    double (*bounds)[BOUNDS]; /* of each worker */
+} fit;
+
+/* --- bounds --------------------------------------------------------------- */
+
+/* Half a voxel's box along the camera's axes. */
+static void find_margin(const fit *f, const snow_camera *camera,
+                        double margin[3]) {
+    const double *axes[3] = {camera->right, camera->up, camera->back};
+    for (int i = 0; i < 3; i++) {
+        margin[i] = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            double step[3];
+            for (int k = 0; k < 3; k++)
+                step[k] = f->whole.matrix[k][axis];
+            margin[i] += fabs(snow_dot(step, axes[i])) / 2;
+        }
+    }
+}
+
+/* Widens the last bounds by a voxel's box; all is in the picture up to 1. */
+static void add_place(const snow_view *view, const snow_camera *camera,
+                      const double at[3], const double margin[3],
+                      double bounds[4]) {
+    const double half[2] = {camera->pitch / 2 * view->width,
+                            camera->pitch / 2 * view->height};
+    double depth = camera->distance;
+    double scale = depth > 0 ? depth / (depth - at[2] - margin[2]) : 1;
+    for (int i = 0; i < 4; i++) {
+        double place = i % 2 ? -at[i / 2] : at[i / 2];
+        bounds[i] =
+            fmax(bounds[i], (place + margin[i / 2]) * scale / half[i / 2]);
+    }
+}
+
+/* A voxel of the whole, whose number may be a fraction. */
+static void add_voxel(const fit *f, const double voxel[3],
+                      double bounds[BOUNDS]) {
+    double from_middle[3] = {0, 0, 0};
+    for (int axis = 0; axis < 3; axis++)
+        for (int i = 0; i < 3; i++)
+            from_middle[i] +=
+                f->whole.matrix[i][axis] *
+                (voxel[axis] - ((double)f->whole.dims[axis] - 1) / 2);
+    for (size_t n = 0; n < f->count; n++) {
+        const snow_camera *c = &f->cameras[n];
+        const double *axes[3] = {c->right, c->up, c->back};
+        double at[3];
+        for (int i = 0; i < 3; i++) {
+            at[i] = c->middle[i] + snow_dot(from_middle, axes[i]);
+            if (n == 0) {
+                bounds[2 * i] = fmax(bounds[2 * i], at[i]);
+                bounds[2 * i + 1] = fmax(bounds[2 * i + 1], -at[i]);
+            }
+        }
+        add_place(f->view, c, at, f->margins[n], bounds + PLACES);
+    }
+}
+
+static void begin_bounds(double bounds[BOUNDS]) {
+    for (int i = 0; i < BOUNDS; i++)
+        bounds[i] = -INFINITY;
+}
+
+static void widen(double bounds[BOUNDS], const double other[BOUNDS]) {
+    for (int i = 0; i < BOUNDS; i++)
+        bounds[i] = fmax(bounds[i], other[i]);
+}
+
+/* --- voxels --------------------------------------------------------------- */
+
+/* The slices of a slab or a part that it answers for. */
+typedef struct slices {
+    const fit *f;
+    snow_extent part;
+    snow_placement placement; /* slices in memory order */
+    snow_classifier classifier;
+    snow_row_block *row_blocks; /* of each worker */
+} slices;
+
+static void add_row_block(const slices *s, const snow_row_block *row_block,
+                          int64_t y, int64_t z, double bounds[BOUNDS]) {
+    const snow_extent *part = &s->part;
+    size_t at = 0;
+    for (int64_t row = 0; row < row_block->rows; row++) {
+        size_t end = row_block->row_end[row], last = end;
+        int64_t own = part->first[0] - part->stored[0];
+        while (at < end && row_block->columns[at] < own)
+            at++;
+        while (last > at &&
+               row_block->columns[last - 1] >= own + part->count[0])
+            last--;
+        for (int side = 0; side < 2 && at < last; side++) {
+            uint32_t column = row_block->columns[side ? last - 1 : at];
+            const double voxel[3] = {(double)(part->stored[0] + column),
+                                     (double)(y + row), (double)z};
+            add_voxel(s->f, voxel, bounds);
+        }
+        at = end;
+    }
+}
+
+static void bound_slice(void *job, int64_t item, int worker) {
+    slices *s = job;
+    snow_row_block *row_block = &s->row_blocks[worker];
+    const snow_extent *part = &s->part;
+    int64_t z = part->first[2] + item, end = part->first[1] + part->count[1];
+    for (int64_t y = part->first[1]; y < end; y += row_block->room_rows) {
+        int64_t rows = end - y;
+        if (rows > row_block->room_rows)
+            rows = row_block->room_rows;
+        snow_classify_row_block(&s->classifier, &s->placement,
+                                z - part->stored[2], y - part->stored[1], rows,
+                                row_block);
+        add_row_block(s, row_block, y, z, s->f->bounds[worker]);
+    }
+}
+
+static snow_status bound_slices(slices *s, int threads) {
+    snow_status status = SNOW_STATUS_OK;
+    for (int i = 0; i < threads && status == SNOW_STATUS_OK; i++)
+        status = snow_row_block_make(s->f->context, &s->placement,
+                                     s->classifier.channels, &s->row_blocks[i]);
+    if (status == SNOW_STATUS_OK)
+        status = snow_parallel(s->f->context, threads, s->part.count[2],
+                               bound_slice, s);
+    for (int i = 0; i < threads; i++)
+        snow_row_block_free(s->f->context, &s->row_blocks[i]);
+    return status;
+}
+
+static snow_status bound_slab(const snow_volume *slab, void *user) {
+    const fit *f = user;
+    const int64_t *dims = slab->info.dims;
+    const snow_classify_options options = {.threshold = f->settings.threshold,
+                                           .opacity_exponent = 1,
+                                           .isa = f->settings.isa};
+    slices s = {.f = f,
+                .placement = {.slice_axis = 2,
+                              .u_axis = 0,
+                              .v_axis = 1,
+                              .columns = dims[0],
+                              .rows = dims[1],
+                              .slices = dims[2]}};
+    snow_volume_find_extent(slab, &s.part);
+    if (!s.part.count[0] || !s.part.count[1] || !s.part.count[2])
+        return SNOW_STATUS_OK;
+    int threads = f->context->limit ? 1 : f->settings.threads; /* row blocks */
+    s.row_blocks = snow_allocate_array(f->context, (uint64_t)threads,
+                                       sizeof *s.row_blocks);
+    if (!s.row_blocks)
+        return SNOW_STATUS_NO_MEMORY;
+    memset(s.row_blocks, 0, (size_t)threads * sizeof *s.row_blocks);
+    snow_status status = snow_classifier_make(f->context, slab, f->transfer,
+                                              &options, &s.classifier);
+    if (status == SNOW_STATUS_OK)
+        status = bound_slices(&s, threads);
+    snow_classifier_fini(f->context, &s.classifier);
+    snow_release(f->context, s.row_blocks);
+    return status;
+}
+
+/* The middles of the voxels at the corners. */
+static void bound_box(const fit *f) {
+    for (int corner = 0; corner < 8; corner++) {
+        double voxel[3];
+        for (int i = 0; i < 3; i++)
+            voxel[i] = corner >> i & 1 ? (double)(f->whole.dims[i] - 1) : 0;
+        add_voxel(f, voxel, f->bounds[0]);
+    }
+}
+
+/* Collective.  One walk over what is shown. */
+static snow_status find_bounds(const fit *f, snow_comm *comm,
+                               const snow_volume *volume, double out[BOUNDS]) {
+    const snow_slab_cut cut = {.ghosts = f->transfer &&
+                                         f->transfer->gradient_count > 0};
+    snow_status status = SNOW_STATUS_OK;
+    for (int i = 0; i < f->settings.threads; i++)
+        begin_bounds(f->bounds[i]);
+    if (f->transfer)
+        status = snow_slabs_visit(volume, &cut, bound_slab, (void *)f);
+    begin_bounds(out);
+    for (int i = 0; i < f->settings.threads; i++)
+        widen(out, f->bounds[i]);
+    if (comm) {
+        SNOW_TRY(snow_comm_agree_status(comm, status));
+        status = snow_comm_reduce_doubles(comm, out, BOUNDS, SNOW_REDUCE_MAX);
+    }
+    if (status == SNOW_STATUS_OK && !(out[0] > -INFINITY)) {
+        bound_box(f);
+        memcpy(out, f->bounds[0], sizeof *f->bounds);
+    }
+    return status;
+}
+
+/* --- the view ------------------------------------------------------------- */
+
+static snow_status place_cameras(fit *f, const double *azimuths,
+                                 const snow_view *view) {
+    f->view = view;
+    for (size_t n = 0; n < f->count; n++) {
+        snow_view turned = *view;
+        turned.azimuth = azimuths ? azimuths[n] : view->azimuth;
+        SNOW_TRY(
+            snow_camera_make(f->context, &f->whole, &turned, &f->cameras[n]));
+        find_margin(f, &f->cameras[n], f->margins[n]);
+    }
+    return SNOW_STATUS_OK;
+}
+
+static void move_target(const fit *f, const double step[3], snow_view *view) {
+    const snow_camera *c = &f->cameras[0];
+    const double *axes[3] = {c->right, c->up, c->back};
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            view->target[i] += axes[k][i] * step[k];
+}
+
+/* The middle of the bounds before the first camera.  In depth it is that of
+ * the volume, unless a parallel camera turns about it. */
+static void aim(const fit *f, const double bounds[BOUNDS], snow_view *view) {
+    const bool turns = f->count > 1 && !(view->fov > 0);
+    const double step[3] = {(bounds[0] - bounds[1]) / 2,
+                            (bounds[2] - bounds[3]) / 2,
+                            turns ? (bounds[4] - bounds[5]) / 2 : 0};
+    view->has_target = true;
+    for (int i = 0; i < 3; i++) {
+        view->target[i] = f->whole.matrix[i][3];
+        for (int axis = 0; axis < 3; axis++)
+            view->target[i] += f->whole.matrix[i][axis] *
+                               ((double)f->whole.dims[axis] - 1) / 2;
+    }
+    move_target(f, step, view);
+}
+
+/* Perspective moves the middle of the bounds, which is put right again. */
+static void aim_again(const fit *f, const double bounds[BOUNDS],
+                      snow_view *view) {
+    const double half = f->cameras[0].pitch / 2, *in = bounds + PLACES;
+    const double step[3] = {(in[0] - in[1]) / 2 * half * view->width,
+                            (in[2] - in[3]) / 2 * half * view->height, 0};
+    move_target(f, step, view);
+}
+
+/* Those of one parallel picture, around its middle. */
+static void center_bounds(const fit *f, double bounds[BOUNDS]) {
+    const double at[3] = {(bounds[0] + bounds[1]) / 2,
+                          (bounds[2] + bounds[3]) / 2, 0};
+    begin_bounds(bounds);
+    add_place(f->view, f->cameras, at, f->margins[0], bounds + PLACES);
+}
+
+/* The first walk finds the target, the last one how far what is shown is from
+ * it. */
+static snow_status fit_view(fit *f, snow_comm *comm, const snow_volume *volume,
+                            const double *azimuths, snow_view *view) {
+    double bounds[BOUNDS], zoom = view->zoom, reach = 0;
+    SNOW_TRY(place_cameras(f, azimuths, view));
+    SNOW_TRY(find_bounds(f, comm, volume, bounds));
+    view->zoom = 1;
+    aim(f, bounds, view);
+    SNOW_TRY(place_cameras(f, azimuths, view));
+    if (f->count == 1 && !(view->fov > 0))
+        center_bounds(f, bounds);
+    else
+        SNOW_TRY(find_bounds(f, comm, volume, bounds));
+    if (f->count == 1 && view->fov > 0) {
+        aim_again(f, bounds, view);
+        SNOW_TRY(place_cameras(f, azimuths, view));
+        SNOW_TRY(find_bounds(f, comm, volume, bounds));
+    }
+    for (int i = PLACES; i < BOUNDS; i++)
+        reach = fmax(reach, bounds[i]);
+    view->zoom = zoom * FILLED / reach;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status make_room(fit *f) {
+    f->cameras = snow_allocate_array(f->context, f->count, sizeof *f->cameras);
+    f->margins = snow_allocate_array(f->context, f->count, sizeof *f->margins);
+    f->bounds = snow_allocate_array(f->context, (uint64_t)f->settings.threads,
+                                    sizeof *f->bounds);
+    return f->cameras && f->margins && f->bounds ? SNOW_STATUS_OK
+                                                 : SNOW_STATUS_NO_MEMORY;
+}
+
+/* The surface of mode iso is where values begin. */
+static snow_status choose_transfer(fit *f, snow_transfer **own) {
+    const double iso = f->settings.iso;
+    const snow_color_point white = {iso, 1, 1, 1};
+    const snow_opacity_point step[] = {{iso, 0}, {iso, 1}};
+    if (f->settings.mode != SNOW_MODE_OVER && f->settings.mode != SNOW_MODE_ISO)
+        f->transfer = NULL;
+    if (f->settings.mode != SNOW_MODE_ISO || !f->transfer)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_transfer_new(f->context, &white, 1, step, 2, own));
+    f->transfer = *own;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_view_fit(snow_comm *comm, const snow_volume *volume,
+                          const snow_transfer *transfer,
+                          const snow_settings *settings, const double *azimuths,
+                          size_t count, snow_view *view) {
+    fit f = {.context = volume->context, .transfer = transfer};
+    snow_transfer *own = NULL;
+    snow_view fitted;
+    snow_volume_whole(volume, &f.whole);
+    f.count = azimuths ? count : 1;
+    SNOW_TRY(SNOW_RECORD_READ(f.context, snow_view, view, &fitted));
+    SNOW_TRY(SNOW_RECORD_READ(f.context, snow_settings, settings, &f.settings));
+    if (fitted.has_position || fitted.has_target || !f.count)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_settings_resolve(f.context, &f.whole, &f.settings));
+    snow_status status = choose_transfer(&f, &own);
+    if (status == SNOW_STATUS_OK)
+        status = make_room(&f);
+    if (comm)
+        status = snow_comm_agree_status(comm, status);
+    if (status == SNOW_STATUS_OK)
+        status = fit_view(&f, comm, volume, azimuths, &fitted);
+    snow_release(f.context, f.cameras);
+    snow_release(f.context, f.margins);
+    snow_release(f.context, f.bounds);
+    snow_transfer_free(own);
+    return status == SNOW_STATUS_OK
+               ? SNOW_RECORD_FILL(f.context, snow_view, &fitted, view)
+               : status;
+}

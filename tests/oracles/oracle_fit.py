@@ -1,0 +1,104 @@
+"""What --fit frames: the pixels that a look shows fill the picture but for 4 %
+at each edge, in one view, in perspective, and in all frames of a turntable;
+pictures of files that are read in slabs are the same."""
+import glob
+import os
+import subprocess
+import sys
+
+try:
+    import numpy as np
+except ImportError as missing:
+    print("skip  ", missing)
+    sys.exit(77)
+
+import oracle
+
+place = oracle.folder()
+SIDE = 200
+MARGIN = 0.04 * SIDE
+# A voxel's look reaches up to half a voxel beyond its box, half a pixel here.
+SLACK = 2.5
+
+
+def scene():
+    """Two blocks off the middle of an uneven grid, one of them brighter."""
+    voxels = np.zeros((70, 90, 80), np.uint8)
+    voxels[10:30, 20:32, 50:72] = 200
+    voxels[40:44, 60:84, 12:20] = 120
+    np.save("a.npy", voxels)
+
+
+def draw(*options, out="b.npy", verb="render"):
+    done = subprocess.run(
+        [oracle.TOOL, verb, "-q", "a.npy", "-y", "-o", out, "-s",
+         f"{SIDE}x{SIDE}", "--no-labels", "--opacity", "0:0,99:0,100:1",
+         "--spacing", "1x1.2x0.9", *options], capture_output=True, text=True)
+    if done.returncode:
+        oracle.fail(" ".join(options), done.stderr.strip())
+        return np.zeros((SIDE, SIDE, 4))
+    return np.load(out) if "%" not in out else None
+
+
+def edges(picture):
+    """Free pixels at the left, right, top and bottom; alpha above 1/2."""
+    rows, columns = np.nonzero(picture[..., -1] > 0.5)
+    if not rows.size:
+        return [SIDE] * 4
+    height, width = picture.shape[:2]
+    return [columns.min(), width - 1 - columns.max(), rows.min(),
+            height - 1 - rows.max()]
+
+
+def expect(name, free, tight=True):
+    """All of it is in the frame, and some of it reaches the margin."""
+    oracle.checked += 1
+    if min(free) < MARGIN - SLACK:
+        oracle.fail(name, f"leaves {free}, not {MARGIN} pixels")
+    if tight and min(free) > MARGIN + SLACK:
+        oracle.fail(name, f"leaves {free}: it could be larger")
+
+
+def same(name, a, b):
+    oracle.checked += 1
+    if not np.array_equal(a, b):
+        oracle.fail(name, "is another picture")
+
+
+scene()
+for view in ("+z", "-x", "iso"):
+    for turn in ((), ("--azimuth", "33", "--elevation", "-20", "--roll", "10")):
+        free = edges(draw("--view", view, *turn))
+        expect(f"{view} {turn}", free)
+        if abs(free[0] - free[1]) > SLACK or abs(free[2] - free[3]) > SLACK:
+            oracle.fail(f"{view} {turn}", f"{free} is not in the middle")
+        free = edges(draw("--view", view, *turn, "--perspective", "50"))
+        expect(f"{view} {turn} in perspective", free)
+expect("a surface", edges(draw("--mode", "iso", "--iso", "60")))
+expect("a surface of less",
+       edges(draw("--mode", "iso", "--iso", "150")))
+# Projections show the box.
+expect("a projection", edges(draw("--mode", "mip", "--view", "iso")))
+# Nothing to be seen: the box, too.
+draw("--opacity", "0:0,250:0,251:1")
+# Zoom multiplies.
+near, far = edges(draw()), edges(draw("--zoom", "0.5"))
+oracle.checked += 1
+if abs(SIDE / 2 - min(far) - (SIDE / 2 - min(near)) / 2) > 1:
+    oracle.fail("--zoom 0.5", f"{near} became {far}")
+# A camera placed by the user frames by itself.
+same("--target", draw("--target", "40,40,40"),
+     draw("--target", "40,40,40", "--fit", "volume"))
+# One scale for all frames of a turn.
+for way in ((), ("--perspective",)):
+    draw("--frames", "8", *way, out="f_%02d.npy", verb="turntable")
+    free = [edges(np.load(name)) for name in sorted(glob.glob("f_*.npy"))]
+    expect(f"a turn {way}", np.min(free, axis=0).tolist())
+# A larger volume stays in its file.
+np.save("a.npy", np.load("a.npy").repeat(3, 0).repeat(3, 1).repeat(3, 2))
+for way in ((), ("--perspective",)):
+    whole = draw("--view", "iso", *way)
+    same(f"in slabs {way}", whole,
+         draw("--view", "iso", *way, "--memory", "8M"))
+    same(f"by one thread {way}", whole, draw("--view", "iso", *way, "-j", "1"))
+oracle.finish()
