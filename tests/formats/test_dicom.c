@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <zlib.h>
 
 /* The most memory that a refusal may ask for at once. */
 #define MOST ((size_t)200 * 1024)
@@ -516,6 +517,68 @@ static void packed_pixels_must_be_what_the_header_says(void **state) {
     support_files_end(&files);
 }
 
+/* --- deflated files ------------------------------------------------------- */
+
+#define BOMB_BYTES ((uint32_t)65 << 20)
+
+/* The elements of a slice, deflated, whose last one claims BOMB_BYTES zeros and
+ * has them. */
+static void write_bomb(const support_files *files, const char *name,
+                       double height, uint32_t last) {
+    static unsigned char packed[1 << 20];
+    static const unsigned char zeros[4096];
+    file f;
+    z_stream stream = {.avail_out = sizeof packed - 256};
+    begin(&f, "1.2.840.10008.1.2.1.99", height);
+    size_t meta = 132 + 8 + 22; /* the mark and the syntax */
+    element(&f, last, "OB", NULL, BOMB_BYTES);
+    memcpy(packed, f.bytes, meta);
+    assert_int_equal(deflateInit2(&stream, 9, Z_DEFLATED, -15, 9, 0), Z_OK);
+    stream.next_out = packed + meta;
+    stream.next_in = f.bytes + meta;
+    stream.avail_in = (uInt)(f.size - meta);
+    deflate(&stream, Z_NO_FLUSH);
+    for (uint32_t made = 0; made < BOMB_BYTES; made += sizeof zeros) {
+        stream.next_in = (unsigned char *)(uintptr_t)zeros;
+        stream.avail_in = sizeof zeros;
+        deflate(&stream, Z_NO_FLUSH);
+    }
+    assert_int_equal(deflate(&stream, Z_FINISH), Z_STREAM_END);
+    deflateEnd(&stream);
+    support_write(files, name, packed, meta + stream.total_out);
+}
+
+/* A slice needs the headers of those beside it and no more of their pixels than
+ * its image has, whatever they inflate to. */
+static void a_deflated_bomb_costs_what_its_image_has(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    file f;
+    slice(&f, 0, 1);
+    const char *plain = support_write(&files, "a.dcm", f.bytes, f.size);
+    write_bomb(&files, "b.dcm", 1, DICOM_TAG_PIXELS);
+    snow_volume *volume = support_opened(&files, plain, NULL);
+    const uint16_t *voxels = snow_volume_voxels(volume);
+    assert_int_equal(snow_volume_get_info(volume)->dims[2], 2);
+    for (int i = 0; i < 16; i++)
+        assert_int_equal(voxels[i], i < 8 ? 1 + i : 0);
+    snow_volume_close(volume);
+    assert_true(files.largest <= MOST);
+    support_files_end(&files);
+}
+
+static void a_deflated_bomb_before_the_pixels_is_refused(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    write_bomb(&files, "b.dcm", 1, 0x00291010);
+    support_refused(&files, support_path(&files, "b.dcm"), NULL,
+                    SNOW_STATUS_BAD_INPUT, "inflates to more than 64 MiB",
+                    MOST);
+    support_files_end(&files);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slices_are_ordered_along_their_normal),
@@ -531,6 +594,8 @@ int main(void) {
         cmocka_unit_test(a_file_says_nothing_of_the_patient),
         cmocka_unit_test(a_file_cut_anywhere_is_refused),
         cmocka_unit_test(lengths_that_lie_cost_no_memory),
+        cmocka_unit_test(a_deflated_bomb_costs_what_its_image_has),
+        cmocka_unit_test(a_deflated_bomb_before_the_pixels_is_refused),
         cmocka_unit_test(run_lengths_are_unpacked),
         cmocka_unit_test(packed_pixels_must_be_what_the_header_says),
     };

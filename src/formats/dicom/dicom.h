@@ -3,6 +3,7 @@
  *   files   files.c    which files belong together
  *     |
  *   parse   parse.c    a file's elements, values.c their values
+ *           deflated.c the bytes of deflated ones
  *     |
  *   header  header.c   a file's image, and its frames
  *     |
@@ -141,12 +142,31 @@ typedef struct dicom_reader {
     snow_seekable *inner_store;
 } dicom_reader;
 
-/* Parses a file up to its pixels, or including them.  Errors:
+/* Parses a file up to its pixels, or including those of an image.  Errors:
  * SNOW_STATUS_BAD_INPUT (a value longer than the file, too deeply nested
  * sequences, compressed pixels without an end), SNOW_STATUS_NO_MEMORY. */
 snow_status snow_dicom_open(snow_context *context, snow_seekable *store,
-                            bool pixels, dicom_reader *out);
+                            const dicom_image *image, dicom_reader *out);
 void snow_dicom_close(dicom_reader *reader);
+
+/* --- deflated.c ----------------------------------------------------------- */
+
+typedef struct dicom_inflater dicom_inflater;
+
+/* Begins at a byte of the packed store, which outlives it.  `pixels` is the
+ * number of their bytes, 0 if they are not wanted. */
+snow_status snow_dicom_inflate_begin(snow_context *context,
+                                     snow_seekable *packed, uint64_t at,
+                                     uint64_t pixels, dicom_inflater **out);
+void snow_dicom_inflate_end(dicom_inflater *inflater); /* NULL is accepted */
+
+/* Inflates until *bytes, a growing block of the context, has at least `wanted`
+ * bytes or the stream ends.  Errors: SNOW_STATUS_BAD_INPUT (damaged, or far
+ * more bytes than an image has), SNOW_STATUS_NO_MEMORY. */
+snow_status snow_dicom_inflate_to(dicom_inflater *inflater, uint64_t wanted,
+                                  unsigned char **bytes, size_t *used);
+
+bool snow_dicom_inflate_ended(const dicom_inflater *inflater);
 
 /* Finds the first element with a tag from list index `begin` up to `end`, not
  * within others; an item of a sequence counts from 0; NULL if there is none. */

@@ -108,7 +108,7 @@ static snow_status add_image(collection *c, dicom_reader *reader, char *path,
 static snow_status add_store(collection *c, snow_seekable *store, char *path,
                              const char *series) {
     dicom_reader reader;
-    SNOW_TRY(snow_dicom_open(c->context, store, false, &reader));
+    SNOW_TRY(snow_dicom_open(c->context, store, NULL, &reader));
     snow_status status = add_image(c, &reader, path, series);
     snow_dicom_close(&reader);
     return status;

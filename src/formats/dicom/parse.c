@@ -17,11 +17,11 @@
 #include "formats/dicom/dicom.h"
 
 #include <string.h>
-#include <zlib.h>
 
 #define PREAMBLE 128
 #define UNDEFINED 0xffffffffu /* length: up to a delimiter */
 #define META_GROUP 2
+#define LONGEST_HEAD 12 /* bytes of an element before its value */
 
 #define TAG_CLASS 0x00020002u
 #define TAG_SYNTAX 0x00020010u
@@ -138,18 +138,44 @@ bool snow_dicom_probe(const unsigned char *bytes, size_t size) {
 typedef struct walk {
     dicom_reader *reader;
     uint64_t at, size;
-    bool pixels;               /* are requested */
+    bool stops;                /* at the pixels */
+    uint64_t pixels;           /* bytes of them that are wanted */
+    dicom_inflater *inflater;  /* of a deflated file, whose size is unknown */
+    size_t inflated;           /* bytes of it so far */
     unsigned char piece[4096]; /* of the file, from `from` on */
     uint64_t from;
     size_t held;
 } walk;
 
+/* Inflates at least `bytes` from here on, if there are as many. */
+static snow_status need(walk *w, uint64_t bytes) {
+    dicom_reader *r = w->reader;
+    if (!w->inflater)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_dicom_inflate_to(w->inflater, w->at + bytes, &r->inflated,
+                                   &w->inflated));
+    if (snow_dicom_inflate_ended(w->inflater))
+        w->size = w->inflated;
+    return SNOW_STATUS_OK;
+}
+
+static size_t read_piece(walk *w) {
+    size_t count = sizeof w->piece;
+    if (!w->inflater)
+        return snow_seekable_read(w->reader->store, w->at, w->piece, count);
+    if (w->at >= w->inflated)
+        return 0;
+    if (count > w->inflated - w->at)
+        count = w->inflated - w->at;
+    memcpy(w->piece, w->reader->inflated + w->at, count);
+    return count;
+}
+
 static const unsigned char *look(walk *w, size_t *have) {
     uint64_t end = w->from + w->held;
     if (w->at < w->from || w->at > end || end - w->at < 12) {
         w->from = w->at;
-        w->held = snow_seekable_read(w->reader->store, w->at, w->piece,
-                                     sizeof w->piece);
+        w->held = read_piece(w);
         end = w->from + w->held;
     }
     *have = (size_t)(end - w->at);
@@ -158,6 +184,7 @@ static const unsigned char *look(walk *w, size_t *have) {
 
 static snow_status next_head(walk *w, coding how, head *out) {
     size_t have;
+    SNOW_TRY(need(w, LONGEST_HEAD));
     const unsigned char *at = look(w, &have);
     if (!parse_head(at, have, how, out))
         return snow_fail(w->reader->context, SNOW_STATUS_BAD_INPUT,
@@ -167,14 +194,24 @@ static snow_status next_head(walk *w, coding how, head *out) {
     return SNOW_STATUS_OK;
 }
 
+/* Of pixels no more are inflated than are wanted; for the others the packed
+ * bytes must suffice. */
 static snow_status check_length(walk *w, const head *h) {
-    if (h->length <= w->size - w->at)
+    uint64_t bytes = h->length, most = w->size - w->at;
+    if (h->tag == DICOM_TAG_PIXELS && bytes > w->pixels)
+        bytes = w->pixels;
+    SNOW_TRY(need(w, bytes));
+    if (w->inflater)
+        most = w->size == UINT64_MAX
+                   ? snow_seekable_size(w->reader->store) * SNOW_DEFLATE_RATIO
+                   : w->size - w->at;
+    if (h->length <= most)
         return SNOW_STATUS_OK;
     return snow_fail(w->reader->context, SNOW_STATUS_BAD_INPUT,
                      "is truncated or damaged: element (%04x,%04x) claims %lu "
                      "bytes, of which %llu exist; get the file again",
                      h->tag >> 16, h->tag & 0xffff, (unsigned long)h->length,
-                     (unsigned long long)(w->size - w->at));
+                     (unsigned long long)most);
 }
 
 /* Adds an element to the list; its value comes next. */
@@ -203,6 +240,7 @@ static snow_status walk_fragments(walk *w, coding how) {
     head h;
     size_t index;
     for (;;) {
+        SNOW_TRY(need(w, LONGEST_HEAD));
         if (w->at >= w->size)
             return snow_fail(w->reader->context, SNOW_STATUS_BAD_INPUT,
                              "is truncated or damaged: its compressed pixels "
@@ -291,11 +329,14 @@ static snow_status walk_element(walk *w, coding how, const head *h, int depth) {
  * itself ends with its last byte; blanks after the last element are dropped. */
 static snow_status walk_set(walk *w, coding how, uint64_t end, int depth) {
     head h;
-    while (w->at < end && (depth || w->size - w->at >= 8)) {
+    for (;;) {
+        SNOW_TRY(need(w, LONGEST_HEAD));
+        if (w->at >= end || (!depth && w->size - w->at < 8))
+            return SNOW_STATUS_OK;
         SNOW_TRY(next_head(w, how, &h));
         if (h.tag == TAG_ITEM_END && depth)
             return SNOW_STATUS_OK;
-        if (depth == 0 && h.tag == DICOM_TAG_PIXELS && !w->pixels) {
+        if (depth == 0 && h.tag == DICOM_TAG_PIXELS && w->stops) {
             w->reader->has_pixels = true;
             w->reader->packed = h.length == UNDEFINED;
             w->reader->pixel_bytes = w->reader->packed ? 0 : h.length;
@@ -305,7 +346,6 @@ static snow_status walk_set(walk *w, coding how, uint64_t end, int depth) {
         if (depth == 0 && h.tag == DICOM_TAG_PIXELS)
             return SNOW_STATUS_OK; /* nothing after it is needed */
     }
-    return SNOW_STATUS_OK;
 }
 
 /* Reads the meta information, which is always explicit and little endian, and
@@ -333,53 +373,26 @@ static snow_status walk_meta(walk *w) {
     }
 }
 
-/* --- deflated files ------------------------------------------------------- */
+/* --- opening -------------------------------------------------------------- */
 
-/* Decompresses what follows the meta information into a store of its own. */
-static snow_status inflate_rest(walk *w, z_stream *stream) {
+/* What follows the meta information is another row of bytes. */
+static snow_status begin_inflating(walk *w) {
+    SNOW_TRY(snow_dicom_inflate_begin(w->reader->context, w->reader->store,
+                                      w->at, w->pixels, &w->inflater));
+    w->at = w->from = w->held = 0;
+    w->size = UINT64_MAX;
+    return need(w, LONGEST_HEAD);
+}
+
+/* The reader's store becomes the inflated bytes. */
+static snow_status keep_inflated(walk *w) {
     dicom_reader *r = w->reader;
-    size_t room = 0, used = 0;
-    unsigned char in[4096];
-    int answer = Z_OK;
-    while (answer == Z_OK) {
-        if (!stream->avail_in) {
-            stream->next_in = in;
-            stream->avail_in =
-                (uInt)snow_seekable_read(r->store, w->at, in, sizeof in);
-            w->at += stream->avail_in;
-        }
-        SNOW_TRY(snow_reserve(r->context, &r->inflated, &room, used,
-                              used + sizeof in));
-        stream->next_out = r->inflated + used;
-        stream->avail_out = (uInt)sizeof in;
-        answer = inflate(stream, Z_NO_FLUSH);
-        used += sizeof in - stream->avail_out;
-    }
-    if (answer != Z_STREAM_END)
-        return snow_fail(r->context, SNOW_STATUS_BAD_INPUT,
-                         "is truncated or damaged: its deflated elements "
-                         "cannot be decompressed; get the file again");
-    SNOW_TRY(snow_source_open_memory(r->context, "it", r->inflated, used,
+    SNOW_TRY(snow_source_open_memory(r->context, "it", r->inflated, w->inflated,
                                      &r->inner));
     SNOW_TRY(snow_seekable_open(r->inner, &r->inner_store));
     r->store = r->inner_store;
-    w->at = w->from = w->held = 0;
-    w->size = used;
     return SNOW_STATUS_OK;
 }
-
-static snow_status inflate_set(walk *w) {
-    z_stream stream = {0};
-    if (inflateInit2(&stream, -MAX_WBITS) != Z_OK)
-        return snow_fail(
-            w->reader->context, SNOW_STATUS_NO_MEMORY,
-            "out of memory to decompress it; close other programs");
-    snow_status status = inflate_rest(w, &stream);
-    inflateEnd(&stream);
-    return status;
-}
-
-/* --- opening -------------------------------------------------------------- */
 
 static snow_status walk_file(walk *w) {
     size_t have;
@@ -389,7 +402,7 @@ static snow_status walk_file(walk *w) {
     w->at = have >= 4 && !memcmp(at, "DICM", 4) ? PREAMBLE + 4 : 0;
     SNOW_TRY(walk_meta(w));
     if (!strcmp(r->syntax, DEFLATED))
-        SNOW_TRY(inflate_set(w));
+        SNOW_TRY(begin_inflating(w));
     at = look(w, &have);
     if (have < 8)
         return snow_fail(r->context, SNOW_STATUS_BAD_INPUT,
@@ -404,11 +417,17 @@ static snow_status walk_file(walk *w) {
 }
 
 snow_status snow_dicom_open(snow_context *context, snow_seekable *store,
-                            bool pixels, dicom_reader *out) {
+                            const dicom_image *image, dicom_reader *out) {
     dicom_reader reader = {.context = context, .store = store};
     walk w = {
-        .reader = &reader, .pixels = pixels, .size = snow_seekable_size(store)};
+        .reader = &reader, .stops = !image, .size = snow_seekable_size(store)};
+    if (image && !snow_mul_u64(snow_dicom_frame_bytes(image),
+                               (uint64_t)image->frames, &w.pixels))
+        w.pixels = UINT64_MAX;
     snow_status status = walk_file(&w);
+    if (status == SNOW_STATUS_OK && w.inflater)
+        status = keep_inflated(&w);
+    snow_dicom_inflate_end(w.inflater);
     if (status != SNOW_STATUS_OK) {
         snow_dicom_close(&reader);
         return status;

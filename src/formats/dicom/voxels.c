@@ -68,7 +68,7 @@ static snow_status open_image(decoder *d, const dicom_image *image) {
         SNOW_TRY(snow_source_open(context, image->path, &d->source));
         SNOW_TRY(snow_seekable_open(d->source, &d->store));
     }
-    SNOW_TRY(snow_dicom_open(context, d->store, true, &d->reader));
+    SNOW_TRY(snow_dicom_open(context, d->store, image, &d->reader));
     d->image = image;
     return has_palette(image)
                ? snow_dicom_palette_read(&d->reader, image, &d->palette)
