@@ -6,7 +6,6 @@
  * length, times the gradient opacity if there is one. Voxels that are not
  * interesting contribute nothing. */
 #include "classify/classify.h"
-#include "classify/classify_u8.h"
 
 #include "base/exp_log.h"
 
@@ -88,7 +87,6 @@ snow_status snow_classifier_make(snow_context *context,
     c->threshold = options->threshold;
     c->exponent = options->opacity_exponent;
     c->classify_row = row->classify_row;
-    c->classify_u8 = snow_classify_u8_pick(options->isa);
     c->gradient_factors = snow_transfer_has_gradient_opacity(transfer);
     if (c->gradient_factors) {
         SNOW_TRY(snow_gradient_opacity_init(context, volume, transfer,

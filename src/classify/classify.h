@@ -46,12 +46,6 @@ typedef size_t snow_classify_row_fn(const snow_classifier *classifier,
                                     int64_t columns, uint32_t *kept,
                                     float *samples);
 
-/* Writes the columns of the 8-bit voxels of a row that are kept. `keep` is
- * indexed by value - `lowest`. Returns their number. */
-typedef size_t snow_classify_u8_fn(const unsigned char *keep,
-                                   const void *voxels, unsigned char lowest,
-                                   int64_t columns, uint32_t *kept);
-
 /* The transfer function prepared for one volume, threshold and path length. For
  * 8- and 16-bit voxels it is a table over all native values. */
 struct snow_classifier {
@@ -63,9 +57,8 @@ struct snow_classifier {
     double threshold; /* opacity 0 to 255 */
     double exponent;  /* path length / reference length */
     snow_classify_row_fn *classify_row;
-    snow_classify_u8_fn *classify_u8; /* NULL: the plain loop */
-    unsigned char *keep;              /* per native value: is it kept? */
-    float *table;                     /* per native value: its sample */
+    unsigned char *keep; /* per native value: is it kept? */
+    float *table;        /* per native value: its sample */
     /* With a gradient opacity the table holds straight colours and opacities of
      * the reference length. These fields say what remains to be done. */
     bool gradient_factors;

@@ -8,16 +8,12 @@ static size_t TYPED(classify_row)(const snow_classifier *c, const void *voxels,
     const TYPE *voxel = voxels;
     size_t count = 0;
 #ifdef LOWEST
-    if (sizeof(TYPE) == 1 && c->classify_u8 && stride == 1)
-        count = c->classify_u8(c->keep, voxels, (unsigned char)(LOWEST),
-                               columns, kept);
-    else
-        /* First the columns, without a branch: the next voxel overwrites one
-         * that is not kept. */
-        for (int64_t i = 0; i < columns; i++) {
-            kept[count] = (uint32_t)i;
-            count += c->keep[(int)voxel[i * stride] - (LOWEST)];
-        }
+    /* First the columns, without a branch: the next voxel overwrites one that
+     * is not kept. */
+    for (int64_t i = 0; i < columns; i++) {
+        kept[count] = (uint32_t)i;
+        count += c->keep[(int)voxel[i * stride] - (LOWEST)];
+    }
     if (c->channels == 2)
         for (size_t n = 0; n < count; n++) {
             size_t entry = (size_t)(voxel[kept[n] * stride] - (LOWEST));
