@@ -180,8 +180,7 @@ static void add_slice(speed_table *t, int64_t slice, bool shaded,
         else
             add_rows(t, slice, 4);
     }
-    snow_composite_sheet(pixels, &t->sheet,
-                         snow_over_pick(SNOW_ISA_SCALAR, t->channels));
+    snow_composite_sheet(pixels, &t->sheet, snow_over_of(t->channels));
 }
 
 static snow_status prepare(snow_context *context, const snow_volume *volume,

@@ -2,12 +2,11 @@
  * slices to produce the local image" (line 13 of figure 8); Porter and Duff
  * 1984. */
 #include "composite/over.h"
-#include "simd/isa.h"
 
 #include <string.h>
 
-static void over_grey_scalar(float *restrict front, const float *restrict back,
-                             size_t count) {
+static void over_grey(float *restrict front, const float *restrict back,
+                      size_t count) {
     for (size_t i = 0; i < count; i++) {
         float left = 1 - front[2 * i + 1];
         front[2 * i] += left * back[2 * i];
@@ -15,8 +14,8 @@ static void over_grey_scalar(float *restrict front, const float *restrict back,
     }
 }
 
-static void over_rgba_scalar(float *restrict front, const float *restrict back,
-                             size_t count) {
+static void over_rgba(float *restrict front, const float *restrict back,
+                      size_t count) {
     for (size_t i = 0; i < count; i++) {
         float left = 1 - front[4 * i + 3];
         for (size_t c = 0; c < 4; c++)
@@ -24,28 +23,8 @@ static void over_rgba_scalar(float *restrict front, const float *restrict back,
     }
 }
 
-#if SNOW_HAS_AVX
-#define SELECT_AVX2
-#include "simd/select.h"
-
-#include "composite/over.tmpl.h"
-#define SELECT_AVX512
-#include "simd/select.h"
-
-#include "composite/over.tmpl.h"
-#endif
-
-snow_composite_fn *snow_over_pick(snow_isa isa, int channels) {
-    return channels == 2 ? SNOW_OF_ISA(isa, over_grey)
-                         : SNOW_OF_ISA(isa, over_rgba);
-}
-
-void snow_over_row(float *front, const float *back, size_t count,
-                   int channels) {
-    if (channels == 2)
-        over_grey_scalar(front, back, count);
-    else
-        over_rgba_scalar(front, back, count);
+snow_composite_fn *snow_over_of(int channels) {
+    return channels == 2 ? over_grey : over_rgba;
 }
 
 void snow_composite_sheet(float *image, snow_sheet *sheet,

@@ -8,16 +8,17 @@
 
 #include <snowglass/render.h>
 
-/* front += (1 - front.alpha) * back, for `count` pixels of `channels` floats,
- * alpha last. */
-void snow_over_row(float *front, const float *back, size_t count, int channels);
-
-/* The same for one number of channels. */
+/* Lays `count` pixels behind others. */
 typedef void snow_composite_fn(float *front, const float *back, size_t count);
 
-/* The loop of an instruction set (resolved) for 2 or 4 channels; all give the
- * same bits. */
-snow_composite_fn *snow_over_pick(snow_isa isa, int channels);
+/* front += (1 - front.alpha) * back, for pixels of 2 or 4 floats, alpha last.
+ */
+snow_composite_fn *snow_over_of(int channels);
+
+static inline void snow_over_row(float *front, const float *back, size_t count,
+                                 int channels) {
+    snow_over_of(channels)(front, back, count);
+}
 
 /* Composites a sheet behind the image, row by row with `composite`, which must
  * fit their number of channels, and clears the sheet. Both have the same size.

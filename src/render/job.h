@@ -86,8 +86,7 @@ snow_status snow_job_finish(snow_frame *frame, const snow_job *job);
 
 /* How sheets get into the local image. */
 static inline snow_composite_fn *snow_job_composite(const snow_job *job) {
-    return job->composite ? job->composite
-                          : snow_over_pick(SNOW_ISA_SCALAR, job->channels);
+    return job->composite ? job->composite : snow_over_of(job->channels);
 }
 
 /* Clears what a sheet of slice `slice` of the stored ones holds of samples that

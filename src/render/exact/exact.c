@@ -57,7 +57,6 @@ struct snow_exact {
     snow_gatherer gatherer;
     bool gathers; /* the picture at work */
     snow_encoding encoding;
-    snow_composite_fn *over;
     snow_sparse *groups; /* EA, IA, PA of GROUP_SLICES slices each */
     snow_dense *dense;   /* gathering: slices spread out */
     uint16_t
@@ -225,8 +224,6 @@ static snow_status find_not_opaque(snow_exact *exact, const snow_job *job) {
 static snow_status choose_loops(snow_exact *exact, const snow_job *job) {
     const snow_settings *settings = &job->settings;
     exact->gathers = false;
-    exact->over = job->composite ? job->composite
-                                 : snow_over_pick(settings->isa, job->channels);
     if (settings->method != SNOW_METHOD_FOOTPRINT || job->stored.perspective)
         return SNOW_STATUS_OK;
     return snow_gatherer_make(exact->context, &job->stored, settings->kernel,
@@ -591,7 +588,8 @@ static void composite_run(const pass *work, int64_t n, int y, float *gathered,
                          job->channels, back);
     if (job->depths)
         snow_depth_note(job, slice, run.first, y, count, back);
-    exact->over(row + (size_t)run.first * channels, back, (size_t)count);
+    snow_job_composite(job)(row + (size_t)run.first * channels, back,
+                            (size_t)count);
     if (closes(work, n))
         snow_gather_close(row, run, job->channels,
                           exact->not_opaque + (size_t)y * open_row(job));
