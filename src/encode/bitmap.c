@@ -73,8 +73,6 @@ static size_t bitmap_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-static const snow_reader whole_reader = {bitmap_next_row};
-
 /* --- slices of a band ----------------------------------------------------- */
 
 /* Bytes of a row in the plain form. */
@@ -176,17 +174,14 @@ static size_t words_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-static const snow_reader plain_reader = {plain_next_row};
-static const snow_reader words_reader = {words_next_row};
-
 static void bitmap_begin_walk(snow_walk *walk) {
     const snow_sparse *s = walk->sparse;
     if (!s->band) {
-        walk->reader = &whole_reader;
+        walk->next_row = bitmap_next_row;
     } else if (walk->slice_bytes == plain_bytes(s)) {
-        walk->reader = &plain_reader;
+        walk->next_row = plain_next_row;
     } else {
-        walk->reader = &words_reader;
+        walk->next_row = words_next_row;
         walk->ea = walk->slice + summary_bytes(s);
     }
 }

@@ -158,13 +158,10 @@ static size_t cells_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-static const snow_reader whole_reader = {crs_next_row};
-static const snow_reader cells_reader = {cells_next_row};
-
 static void crs_begin_walk(snow_walk *walk) {
-    walk->reader = &whole_reader;
+    walk->next_row = crs_next_row;
     if (walk->sparse->band) {
-        walk->reader = &cells_reader;
+        walk->next_row = cells_next_row;
         walk->ea = walk->slice + summary_bytes(walk->sparse);
     }
 }

@@ -132,20 +132,18 @@ void snow_sparse_fini(snow_sparse *s) {
     *s = (snow_sparse){.context = s->context};
 }
 
+/* Of a slice of no bytes. */
 static size_t nothing_next_row(snow_walk *walk, snow_span *spans) {
     (void)walk;
     (void)spans;
     return 0;
 }
 
-/* The reader of a slice of no bytes. */
-static const snow_reader nothing = {nothing_next_row};
-
 void snow_walk_begin(snow_walk *walk, const snow_sparse *s, int64_t slice) {
     snow_slice_pointer pointer = s->pa[slice];
     *walk =
         (snow_walk){.sparse = s,
-                    .reader = &nothing,
+                    .next_row = nothing_next_row,
                     .slice_bytes = (size_t)(s->pa[slice + 1].ea - pointer.ea),
                     .voxel = (size_t)pointer.ia};
     if (!walk->slice_bytes)
@@ -155,7 +153,7 @@ void snow_walk_begin(snow_walk *walk, const snow_sparse *s, int64_t slice) {
 }
 
 size_t snow_walk_row(snow_walk *walk, snow_span *spans, size_t *voxel) {
-    size_t count = walk->reader->next_row(walk, spans), voxels = 0;
+    size_t count = walk->next_row(walk, spans), voxels = 0;
     for (size_t i = 0; i < count; i++)
         voxels += spans[i].length;
     *voxel = walk->voxel;

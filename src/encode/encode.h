@@ -29,7 +29,6 @@ typedef struct snow_slice_pointer {
 } snow_slice_pointer;
 
 typedef struct snow_scheme snow_scheme;
-typedef struct snow_reader snow_reader;
 
 /* A volume's interesting voxels, or those of a band of rows
  * (encode/values/value_shell.c). Slices are appended in order; beginning again
@@ -61,10 +60,17 @@ typedef struct snow_sparse {
     bool run_interesting;
 } snow_sparse;
 
+typedef struct snow_walk snow_walk;
+
+/* Reads the next row's spans of one form of a slice into `spans`, which has
+ * room for (columns + 1) / 2; returns their number. The caller advances the
+ * walk's voxel and row. */
+typedef size_t snow_next_row_fn(snow_walk *walk, snow_span *spans);
+
 /* A walk through the rows of one slice. */
-typedef struct snow_walk {
+struct snow_walk {
     const snow_sparse *sparse;
-    const snow_reader *reader;  /* of the form of the slice */
+    snow_next_row_fn *next_row; /* of the form of the slice */
     const unsigned char *slice; /* its first byte in EA */
     size_t slice_bytes;
     const unsigned char *ea; /* next run, cell or word to read */
@@ -74,14 +80,6 @@ typedef struct snow_walk {
      */
     uint32_t run;
     bool run_interesting, started;
-} snow_walk;
-
-/* Functions that read one form of a slice. */
-struct snow_reader {
-    /* Reads the next row's spans into `spans`, which has room for (columns + 1)
-     * / 2; returns their number. The caller advances the walk's voxel and row.
-     */
-    size_t (*next_row)(snow_walk *walk, snow_span *spans);
 };
 
 /* A way to write EA (section 3.2). */

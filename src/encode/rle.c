@@ -173,13 +173,10 @@ static size_t rows_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-static const snow_reader whole_reader = {rle_next_row};
-static const snow_reader rows_reader = {rows_next_row};
-
 static void rle_begin_walk(snow_walk *walk) {
-    walk->reader = &whole_reader;
+    walk->next_row = rle_next_row;
     if (walk->sparse->band) {
-        walk->reader = &rows_reader;
+        walk->next_row = rows_next_row;
         walk->ea = walk->slice + summary_bytes(walk->sparse);
     }
 }
