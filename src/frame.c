@@ -1,10 +1,11 @@
-/* frame.c - one picture: figure 8 of the paper, with its line numbers in the
- * margin.  render/picture.h has its records, README.md the folder of each. */
+/* frame.c - one picture: figure 8 of the paper, with its line numbers.  Records
+ * are those of render/picture.h; how a stage works is said in its folder. */
 #include "frame.h"
 
 #include "parallel/internal.h"
 #include "parallel/load_balance.h"
 #include "render/buffers.h"
+#include "render/modes/occlusion.h"
 #include "render/parts.h"
 
 /* Lines 02 to 13: from a part of the volume to its local image. */
@@ -53,7 +54,7 @@ static snow_status complete(snow_picture *p, snow_status status) {
             (n + 1 == p->pass_count || next->depth))
             status = snow_method_figures(p->pass->method, p, &p->pass->job);
     }
-    return p->ahead ? status : p->combiner->agree(p, status);
+    return p->ahead ? status : snow_occlude(p, p->combiner->agree(p, status));
 }
 
 /* --- frames --------------------------------------------------------------- */

@@ -101,6 +101,7 @@ typedef struct snow_settings {
     snow_light light;       /* (auto) */
     double depth_darkening; /* 0 to 1: darkens what lies behind its neighbours;
                                over and iso (0) */
+    double occlusion; /* 0 to 1: darkens what has much around it; the same (0) */
 } snow_settings;
 SNOW_RECORD(snow_settings);
 
@@ -140,10 +141,10 @@ SNOW_API snow_status snow_frame_render(snow_frame *frame,
 SNOW_API snow_status snow_render_file(snow_context *context, const char *path,
     const snow_view *view, const snow_settings *settings, snow_image **image);
 
-/* Owned by the frame, until its next picture. Depths (of settings.depth or
- * depth_darkening, else NULL): world distance along the line of sight, from the
- * target's plane to where opacity passes 1/2 or to the isosurface; NaN where
- * there is neither. */
+/* Owned by the frame, until its next picture. Depths (of settings.depth,
+ * depth_darkening or occlusion, else NULL): world distance along the line of
+ * sight, from the target's plane to where opacity passes 1/2 or to the
+ * isosurface; NaN where there is neither. */
 SNOW_API const snow_image *snow_frame_depth(const snow_frame *frame);
 SNOW_API const snow_stats *snow_frame_stats(const snow_frame *frame);
 

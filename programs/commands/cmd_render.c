@@ -174,6 +174,7 @@ void fill_settings(const options *asked, snow_settings *out) {
     out->light_azimuth = asked->light.azimuth;
     out->light_elevation = asked->light.elevation;
     out->depth_darkening = asked->depth_darkening;
+    out->occlusion = asked->occlusion;
     out->quality = (snow_quality)snow_quality_from_name(asked->quality);
     out->isa = (snow_isa)snow_isa_from_name(asked->isa);
     out->threads = (int)asked->threads;

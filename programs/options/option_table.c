@@ -142,6 +142,10 @@ const option_row option_table[] = {
      FIELD(depth_darkening), 0, 1, "",
      "darken what lies deeper than its surroundings, in modes over and iso, "
      "with strength S, 0 to 1 (default 0; 1 without S)"},
+    {"occlusion", 0, "[S]", TOPIC_LOOK, RENDER, read_strength, FIELD(occlusion),
+     0, 1, "",
+     "darken surfaces that have much around them, as in holes and folds, in "
+     "modes over and iso, with strength S, 0 to 1 (default 0; 1 without S)"},
     {"tf", 0, "FILE", TOPIC_LOOK, LOOKED, read_text, FIELD(tf), 0, 0, "",
      "transfer function from a file, in place of a preset: Snowglass .json or "
      ".csv, 3D Slicer .vp or .xml, ParaView or niivue .json, Amrvis .pal; "

@@ -77,7 +77,8 @@ typedef struct options {
     range_value range;
     const char *opacity_unit, *shade;
     light_value light;
-    double ambient, diffuse, specular, shininess, depth_darkening;
+    double ambient, diffuse, specular, shininess;
+    double depth_darkening, occlusion;
 
     const char *view; /* NULL: the volume's own */
     double azimuth, elevation, roll, zoom;

@@ -20,7 +20,7 @@ void warn_unused(const options *asked) {
     static const char *const of_opacity[] = {"opacity", "gradient-opacity"};
     static const char *const of_light[] = {
         "light",    "shade",     "ambient",        "diffuse",
-        "specular", "shininess", "depth-darkening"};
+        "specular", "shininess", "depth-darkening", "occlusion"};
     bool lit = strcmp(asked->mode, "iso") == 0;
     if (strcmp(asked->mode, "over") == 0 || !is_heard(asked))
         return;

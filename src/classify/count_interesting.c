@@ -4,75 +4,57 @@
 #include "classify/count_interesting.h"
 #include "volume/stream.h"
 
-#include <string.h>
-
-typedef struct pass {
-    const snow_volume *volume;
-    snow_extent part;
-    snow_block_counts *tally;
-    int64_t *columns; /* per stored column: its block; -1: a neighbour's */
-} pass;
-
-/* Counts rows of one slice of the whole volume, beginning with row y. */
-static void add_row_block(const pass *p, const snow_row_block *row_block,
-                          int64_t y, int64_t z) {
-    const int64_t *blocks = p->tally->blocks;
-    int64_t slice = snow_block_counts_find(p->tally, 2, z) * blocks[1];
-    size_t at = 0;
-    for (int64_t row = 0; row < row_block->rows; row++) {
-        int64_t *counts =
-            p->tally->counts +
-            (slice + snow_block_counts_find(p->tally, 1, y + row)) * blocks[0];
-        for (; at < row_block->row_end[row]; at++) {
-            int64_t block = p->columns[row_block->columns[at]];
-            if (block >= 0)
-                counts[block]++;
-        }
-    }
+/* Entries first .. end - 1 of a row block, without those of neighbours. */
+static void trim_row(const snow_extent *part, const snow_row_block *row_block,
+                     size_t first, size_t end, snow_interesting_row *row) {
+    const int64_t from = part->first[0] - part->stored[0];
+    const uint32_t *columns = row_block->columns;
+    while (first < end && columns[first] < from)
+        first++;
+    while (end > first && columns[end - 1] >= from + part->count[0])
+        end--;
+    row->count = end - first;
+    row->columns = columns + first;
+    row->opacities = row_block->samples + (first + 1) * row->stride - 1;
 }
 
-static void add_slices(const pass *p, const snow_classifier *classifier,
-                       const snow_placement *placement,
-                       snow_row_block *row_block) {
-    const snow_extent *part = &p->part;
-    int64_t end = part->first[1] + part->count[1];
+static void visit_slices(const snow_interesting_walk *walk,
+                         const snow_extent *part,
+                         const snow_classifier *classifier,
+                         const snow_placement *placement,
+                         snow_row_block *row_block, snow_interesting_fn *visit,
+                         void *user) {
+    const int64_t end = part->first[1] + part->count[1];
+    snow_interesting_row row = {.stored = part->stored[0],
+                                .stride = (size_t)classifier->channels};
     for (int64_t i = 0; i < part->count[2]; i++) {
-        int64_t z = part->first[2] + i;
-        if (snow_monitor_look(p->volume->context->monitor, 0))
+        row.z = part->first[2] + i;
+        if (snow_monitor_look(walk->volume->context->monitor, 0))
             return;
         for (int64_t y = part->first[1]; y < end; y += row_block->room_rows) {
             int64_t rows = end - y;
             if (rows > row_block->room_rows)
                 rows = row_block->room_rows;
-            snow_classify_row_block(classifier, placement, z - part->stored[2],
+            snow_classify_row_block(classifier, placement,
+                                    row.z - part->stored[2],
                                     y - part->stored[1], rows, row_block);
-            add_row_block(p, row_block, y, z);
+            for (int64_t n = 0; n < rows; n++) {
+                row.y = y + n;
+                trim_row(part, row_block, n ? row_block->row_end[n - 1] : 0,
+                         row_block->row_end[n], &row);
+                if (row.count)
+                    visit(user, &row);
+            }
         }
     }
 }
 
-static snow_status find_columns(snow_context *context, pass *p) {
-    int64_t columns = p->volume->info.dims[0];
-    p->columns =
-        snow_allocate_array(context, (uint64_t)columns, sizeof *p->columns);
-    if (!p->columns)
-        return SNOW_STATUS_NO_MEMORY;
-    for (int64_t i = 0; i < columns; i++) {
-        int64_t x = p->part.stored[0] + i, own = x - p->part.first[0];
-        p->columns[i] = own >= 0 && own < p->part.count[0]
-                            ? snow_block_counts_find(p->tally, 0, x)
-                            : -1;
-    }
-    return SNOW_STATUS_OK;
-}
-
-snow_status snow_count_interesting_blocks(const snow_volume *volume,
-                                          const snow_transfer *transfer,
-                                          double threshold, snow_isa isa,
-                                          snow_block_counts *tally) {
+snow_status snow_visit_interesting(const snow_interesting_walk *walk,
+                                   snow_interesting_fn *visit, void *user) {
+    const snow_volume *volume = walk->volume;
     const int64_t *dims = volume->info.dims;
     snow_context *context = volume->context;
-    /* Slices in memory order; counting needs no camera. */
+    /* Slices in memory order; there is no camera. */
     snow_placement placement = {.slice_axis = 2,
                                 .u_axis = 0,
                                 .v_axis = 1,
@@ -80,28 +62,67 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
                                 .rows = dims[1],
                                 .slices = dims[2]};
     snow_classify_options options = {
-        .threshold = threshold, .opacity_exponent = 1, .isa = isa};
+        .threshold = walk->threshold, .opacity_exponent = 1, .isa = walk->isa};
     snow_classifier classifier = {0};
     snow_row_block row_block = {0};
-    pass p = {.volume = volume, .tally = tally};
+    snow_extent part;
     SNOW_TRY(snow_volume_need_voxels(volume));
-    snow_volume_find_extent(volume, &p.part);
-    if (!p.part.count[0] || !p.part.count[1] || !p.part.count[2])
+    snow_volume_find_extent(volume, &part);
+    if (!part.count[0] || !part.count[1] || !part.count[2])
         return SNOW_STATUS_OK;
-    snow_status status = find_columns(context, &p);
-    if (status == SNOW_STATUS_OK)
-        status = snow_classifier_make(context, volume, transfer, &options,
-                                      &classifier);
+    snow_status status = snow_classifier_make(context, volume, walk->transfer,
+                                              &options, &classifier);
     if (status == SNOW_STATUS_OK)
         status = snow_row_block_make(context, &placement, classifier.channels,
                                      &row_block);
     if (status == SNOW_STATUS_OK)
-        add_slices(&p, &classifier, &placement, &row_block);
+        visit_slices(walk, &part, &classifier, &placement, &row_block, visit,
+                     user);
     if (status == SNOW_STATUS_OK)
         status = snow_monitor_status(context->monitor);
     snow_row_block_free(context, &row_block);
     snow_classifier_fini(context, &classifier);
-    snow_release(context, p.columns);
+    return status;
+}
+
+/* --- counts --------------------------------------------------------------- */
+
+typedef struct counting {
+    snow_block_counts *tally;
+    int64_t *columns; /* of the whole: their blocks */
+} counting;
+
+static void count_row(void *of, const snow_interesting_row *row) {
+    const counting *c = of;
+    const int64_t *blocks = c->tally->blocks;
+    const int64_t *columns = c->columns + row->stored;
+    int64_t *counts = c->tally->counts +
+                      (snow_block_counts_find(c->tally, 2, row->z) * blocks[1] +
+                       snow_block_counts_find(c->tally, 1, row->y)) *
+                          blocks[0];
+    for (size_t n = 0; n < row->count; n++)
+        counts[columns[row->columns[n]]]++;
+}
+
+snow_status snow_count_interesting_blocks(const snow_volume *volume,
+                                          const snow_transfer *transfer,
+                                          double threshold, snow_isa isa,
+                                          snow_block_counts *tally) {
+    counting c = {.tally = tally};
+    snow_extent part;
+    snow_volume_find_extent(volume, &part);
+    c.columns = snow_allocate_array(volume->context, (uint64_t)part.dims[0],
+                                    sizeof *c.columns);
+    if (!c.columns)
+        return SNOW_STATUS_NO_MEMORY;
+    for (int64_t x = 0; x < part.dims[0]; x++)
+        c.columns[x] = snow_block_counts_find(tally, 0, x);
+    const snow_interesting_walk walk = {.volume = volume,
+                                        .transfer = transfer,
+                                        .threshold = threshold,
+                                        .isa = isa};
+    snow_status status = snow_visit_interesting(&walk, count_row, &c);
+    snow_release(volume->context, c.columns);
     return status;
 }
 

@@ -1,10 +1,29 @@
-/* classify/count_interesting.h - counts interesting voxels by blocks, for the
- * partition of a volume (decompose/partition.h). */
+/* classify/count_interesting.h - visits interesting voxels, and counts them by
+ * blocks for the partition of a volume (decompose/partition.h). */
 #ifndef SNOW_CLASSIFY_COUNT_INTERESTING_H
 #define SNOW_CLASSIFY_COUNT_INTERESTING_H
 
 #include "classify/classify.h"
 #include "decompose/partition.h"
+
+/* Those of row (y, z) of the whole that a volume owns. */
+typedef struct snow_interesting_row {
+    int64_t y, z, stored; /* the column of the whole that is 0 here */
+    size_t count, stride; /* of opacities, from one to the next */
+    const uint32_t *columns;
+    const float *opacities;
+} snow_interesting_row;
+
+/* A walk over all rows that have any.  Errors: as below; stopped. */
+typedef struct snow_interesting_walk {
+    const snow_volume *volume;
+    const snow_transfer *transfer;
+    double threshold;
+    snow_isa isa;
+} snow_interesting_walk;
+typedef void snow_interesting_fn(void *user, const snow_interesting_row *row);
+snow_status snow_visit_interesting(const snow_interesting_walk *walk,
+                                   snow_interesting_fn *visit, void *user);
 
 /* Adds the interesting voxels that a volume owns to block counts. The grid of
  * the counts is the volume's own, or that of the volume it is a part of.

@@ -113,7 +113,8 @@ static int64_t terms_of(const snow_flight *p) {
         place->origin[0], place->origin[1],   place->eye.at[0],
         place->eye.at[1], place->eye.at[2],   s->ambient,
         s->diffuse,       s->specular,        s->shininess,
-        s->light_azimuth, s->light_elevation, s->depth_darkening};
+        s->light_azimuth, s->light_elevation, s->depth_darkening,
+        s->occlusion};
     uint64_t hash = UINT64_C(14695981039346656037);
     mix(&hash, numbers, sizeof numbers);
     mix(&hash, reals, sizeof reals);
@@ -335,9 +336,16 @@ static snow_status agree(snow_picture *p, snow_status status) {
     return snow_comm_agree_status(snow_flight_of(p)->ranks->comm, status);
 }
 
+static snow_status reduce(snow_picture *p, int64_t *values, size_t count,
+                          snow_reduce by) {
+    return snow_comm_reduce_ints(snow_flight_of(p)->ranks->comm, values, count,
+                                 by);
+}
+
 const snow_combine_ops snow_combine_ranks = {.begin = begin,
                                              .synchronize = synchronize,
                                              .place = place,
                                              .combine = combine,
                                              .display = display,
-                                             .agree = agree};
+                                             .agree = agree,
+                                             .reduce = reduce};

@@ -129,6 +129,7 @@ const recipe_key recipe_keys[] = {
     REAL("specular", settings.specular, 0, 1),
     REAL("shininess", settings.shininess, 0, 1000),
     REAL("depth-darkening", settings.depth_darkening, 0, 1),
+    REAL("occlusion", settings.occlusion, 0, 1),
     NAME("quality", settings.quality, quality_name, snow_quality_from_name),
     KNOWN("view", view, view_name, view_named),
     REAL("azimuth", azimuth, 0, 0),

@@ -18,6 +18,12 @@ static snow_status nobody(snow_picture *p, snow_status status) {
     return status;
 }
 
+static snow_status keep(snow_picture *p, int64_t *values, size_t count,
+                        snow_reduce by) {
+    (void)p, (void)values, (void)count, (void)by;
+    return SNOW_STATUS_OK;
+}
+
 static snow_status fail_part(const snow_picture *p, const char *what,
                              const char *name) {
     return snow_fail(p->job.context, SNOW_STATUS_BAD_USAGE,
@@ -170,4 +176,5 @@ const snow_combine_ops snow_combine_alone = {.begin = nobody,
                                              .place = place,
                                              .combine = combine,
                                              .display = display,
-                                             .agree = nobody};
+                                             .agree = nobody,
+                                             .reduce = keep};

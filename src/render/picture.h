@@ -16,6 +16,8 @@
 #include "render/job.h"
 #include "volume/stream.h"
 
+#include <snowglass/extend.h>
+
 typedef struct snow_picture snow_picture;
 
 /* How a part's voxels become its local image, job->pixels and job->depths or,
@@ -59,6 +61,9 @@ typedef struct snow_combine_ops {
                                          snow_status status);
     /* 19 - 20 */ snow_combine_fn *display;
     snow_combine_fn *agree;
+    /* Collective.  Numbers of all, element by element. */
+    snow_status (*reduce)(snow_picture *picture, int64_t *values, size_t count,
+                          snow_reduce by);
 } snow_combine_ops;
 
 /* One walk over the parts. */

@@ -42,6 +42,7 @@ static snow_status check_numbers(snow_context *context,
         {"light azimuth", s->light_azimuth, -1e6, 1e6},
         {"light elevation", s->light_elevation, -1e6, 1e6},
         {"depth darkening", s->depth_darkening, 0, 1},
+        {"occlusion", s->occlusion, 0, 1},
         {"opacity length", s->opacity_length, 0, 1e300},
         {"threads", s->threads, 0, SNOW_THREADS_MOST},
     };
@@ -113,8 +114,8 @@ snow_status snow_settings_resolve(snow_context *context,
     SNOW_TRY(check_numbers(context, s));
     SNOW_TRY(resolve_machine(context, s));
     if (s->mode != SNOW_MODE_OVER && s->mode != SNOW_MODE_ISO)
-        s->depth_darkening = 0;
-    s->depth = s->depth || s->depth_darkening > 0;
+        s->depth_darkening = s->occlusion = 0;
+    s->depth = s->depth || s->depth_darkening > 0 || s->occlusion > 0;
     if (s->light == SNOW_LIGHT_AUTO)
         s->light = s->light_azimuth != 0 || s->light_elevation != 0
                        ? SNOW_LIGHT_DIRECTION

@@ -57,6 +57,10 @@ depths "over" 1/255 --opacity 0.3:0,0.31:1 $oblique
 # shellcheck disable=SC2086
 depths "darkened" 1/255 --opacity 0.3:0,0.31:1 --depth-darkening $oblique
 # shellcheck disable=SC2086
+depths "occluded" 1/255 --opacity 0.3:0,0.31:1 --occlusion $oblique
+# shellcheck disable=SC2086
+depths "an iso occluded" 1/255 -m iso --iso 60 --occlusion $oblique
+# shellcheck disable=SC2086
 depths "an iso darkened" 1/255 -m iso --iso 60 --depth-darkening $oblique
 
 # shellcheck disable=SC2086

@@ -38,14 +38,15 @@ static void mean_line(const float *in, float *out, int count, size_t step,
 }
 
 /* Three boxes are close to a Gaussian of their deviation. */
-static void blur_plane(const blur *b, float *plane, int reach) {
-    const size_t width = (size_t)b->width;
-    for (int pass = 0; pass < 3; pass++) {
-        for (int y = 0; y < b->height; y++)
-            mean_line(plane + (size_t)y * width, b->line + (size_t)y * width,
-                      b->width, 1, reach);
-        for (int x = 0; x < b->width; x++)
-            mean_line(b->line + x, plane + x, b->height, width, reach);
+void snow_blur_plane(float *plane, float *spare, int width, int height,
+                     double deviation) {
+    int reach = (int)lround((sqrt(4 * deviation * deviation + 1) - 1) / 2);
+    for (int pass = 0; pass < 3 && reach > 0; pass++) {
+        for (int y = 0; y < height; y++)
+            mean_line(plane + (size_t)y * (size_t)width,
+                      spare + (size_t)y * (size_t)width, width, 1, reach);
+        for (int x = 0; x < width; x++)
+            mean_line(spare + x, plane + x, height, (size_t)width, reach);
     }
 }
 
@@ -63,9 +64,8 @@ static void fill_behind(size_t count, const float *depth, float *filled) {
 static void add_behind(const blur *b, const float *depth, double deviation,
                        double unit) {
     size_t count = (size_t)b->width * (size_t)b->height;
-    int reach = (int)lround((sqrt(4 * deviation * deviation + 1) - 1) / 2);
     fill_behind(count, depth, b->mean);
-    blur_plane(b, b->mean, reach);
+    snow_blur_plane(b->mean, b->line, b->width, b->height, deviation);
     for (size_t n = 0; n < count; n++)
         if (!isnan(depth[n])) {
             double behind = ((double)depth[n] - (double)b->mean[n]) / unit;

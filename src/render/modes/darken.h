@@ -11,4 +11,8 @@
 snow_status snow_depth_darken(const snow_job *job, const snow_image *depth,
                               snow_image *image, snow_stats *stats);
 
+/* Blurs a plane in its place; what is at its borders goes on beyond them. */
+void snow_blur_plane(float *plane, float *spare, int width, int height,
+                     double deviation);
+
 #endif

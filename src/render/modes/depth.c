@@ -1,6 +1,7 @@
 /* render/modes/depth.c - depths of mode over: footprints once more, front to
  * back, with an eye on opacity alone. */
 #include "render/modes/depth.h"
+#include "base/vec3.h"
 #include "volume/volume.h"
 
 #include <math.h>
@@ -36,6 +37,26 @@ static void meet_slice(const snow_placement *p, int x, int y, double k,
     snow_perspective_ray(&p->eye, x + 0.5, y + 0.5, ray);
     for (int axis = 0; axis < 2; axis++)
         at[axis] = p->eye.at[axis] + (k - p->eye.at[2]) * (ray[axis] / ray[2]);
+}
+
+void snow_depth_find(const snow_placement *p, const double of[4], int x, int y,
+                     double depth, double at[3], double away[3]) {
+    at[2] = 0;
+    away[2] = 1;
+    meet_slice(p, x, y, 0, at);
+    meet_slice(p, x, y, 1, away);
+    away[0] -= at[0];
+    away[1] -= at[1];
+    if (p->perspective) {
+        memcpy(at, p->eye.at, sizeof p->eye.at);
+        snow_perspective_ray(&p->eye, x + 0.5, y + 0.5, away);
+    }
+    const double rise = snow_dot(of, away);
+    for (int n = 0; n < 3; n++)
+        away[n] /= rise;
+    const double way = depth - of[3] - snow_dot(of, at);
+    for (int n = 0; n < 3; n++)
+        at[n] += way * away[n];
 }
 
 /* Whether slices rise along the ray of a pixel. */

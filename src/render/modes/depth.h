@@ -18,4 +18,9 @@ void snow_depth_note(const snow_job *job, int64_t slice, int x, int y,
 void snow_depth_note_sheet(const snow_job *job, int64_t slice,
                            const snow_sheet *sheet);
 
+/* Grid position (u, v, k) at a depth on the ray of pixel (x, y), and the way to
+ * where depth is larger by 1; `of` as above. */
+void snow_depth_find(const snow_placement *placement, const double of[4], int x,
+                     int y, double depth, double at[3], double away[3]);
+
 #endif

@@ -104,17 +104,19 @@ changes --ambient 0.6
 changes --diffuse 0.1
 changes --specular 0.9
 changes --shininess 3
-for darkening in 0 0.5 1; do
-    run 0 "an engine, darkened by $darkening" "$TOOL" phantom:engine \
-        --dims 64x64x28 -s 96x96 -o "dark$darkening.npy" \
-        --depth-darkening "$darkening"
+for way in depth-darkening occlusion; do
+    for strength in 0 0.5 1; do
+        run 0 "an engine, $way $strength" "$TOOL" phantom:engine -y \
+            --dims 64x64x28 -s 96x96 -o "dark$strength.npy" \
+            --$way "$strength"
+    done
+    run 6 "$way shows" "$TOOL" compare dark0.npy dark0.5.npy
+    run 6 "by as much as is asked" "$TOOL" compare dark0.5.npy dark1.npy
+    run 0 "wholly without a number" "$TOOL" phantom:engine -y \
+        --dims 64x64x28 -s 96x96 -o dark.npy --$way
+    run 0 "as by 1" "$TOOL" compare dark1.npy dark.npy
+    same --$way 0
 done
-run 6 "darkening shows" "$TOOL" compare dark0.npy dark0.5.npy
-run 6 "by as much as is asked" "$TOOL" compare dark0.5.npy dark1.npy
-run 0 "wholly without a number" "$TOOL" phantom:engine \
-    --dims 64x64x28 -s 96x96 -o dark.npy --depth-darkening
-run 0 "as by 1" "$TOOL" compare dark1.npy dark.npy
-same --depth-darkening 0
 changes --spacing 1x1x3
 same -m over
 same -j 1

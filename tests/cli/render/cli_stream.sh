@@ -49,6 +49,14 @@ run 0 "floats in slabs" "$TOOL" render a_f32.nrrd "${look[@]}" --view -z \
     --range 0,255 -q -o slabs.png -y --memory 46M
 same "floats" whole.png slabs.png
 
+# What lies around is found slab by slab.
+run 0 "occlusion, whole" "$TOOL" render a.nrrd "${look[@]}" --view -z -q \
+    --occlusion -o whole.png -y
+run 0 "occlusion, in slabs" "$TOOL" render a.nrrd "${look[@]}" --view -z -v \
+    --occlusion -o slabs.png -y --memory 16M
+says 'a.nrrd: stays in its file'
+same "occlusion" whole.png slabs.png
+
 # Other modes; of the surface slabs that hold nothing of it too.
 # In the short tier each from one of the eyes.
 eyes=("--view -z" "--view left --azimuth 30 --perspective")

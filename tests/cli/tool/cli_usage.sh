@@ -132,6 +132,7 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
 --ambient 2 x|from 0 to 1
 --shininess -1 x|out of range
 --depth-darkening 2 x|from 0 to 1
+--occlusion 1.5 x|from 0 to 1
 --dims 8x8 x|are not dimensions
 --dims 8x8x0 x|are not dimensions
 --dims 8x8x-8 x|are not dimensions
