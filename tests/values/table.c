@@ -50,20 +50,62 @@ static void measure_nodes(const value_plan *plan, value_table *table) {
     free(until);
 }
 
+/* The last value before a step between two others, or -1. */
+static int find_step(const value_plan *plan, int from, int to) {
+    double first[4], last[4], near[2][4];
+    value_look(plan, from, first);
+    value_look(plan, to, last);
+    for (int v = from; v < to; v++) {
+        value_look(plan, v, near[0]);
+        value_look(plan, v + 1, near[1]);
+        if (2 * fabs(near[1][3] - near[0][3]) > fabs(last[3] - first[3]))
+            return v;
+    }
+    return -1;
+}
+
+static bool has_step(const value_plan *plan) {
+    const reference_scene *scene = &plan->scene->base;
+    for (size_t n = 0; n + 1 < scene->opacity_count; n++)
+        if (scene->opacities[n].value == scene->opacities[n + 1].value &&
+            scene->opacities[n].opacity != scene->opacities[n + 1].opacity)
+            return true;
+    return scene->settings.threshold > 0;
+}
+
+/* Pairs of nodes about a step have it midway; looks are 1/128 node apart. */
+static void move_to_steps(const value_plan *plan, value_table *table) {
+    const double apart = VALUE_MOST / (128.0 * (table->nodes - 1));
+    for (int node = 0; node + 1 < table->nodes; node++) {
+        double *at = table->at + node;
+        int from = (int)ceil(at[0]), to = (int)floor(at[1]);
+        int step = from < to ? find_step(plan, from, to) : -1;
+        if (step < 0)
+            continue;
+        double by = rint((step + 0.5 - (at[0] + at[1]) / 2) / apart) * apart;
+        at[0] += by;
+        at[1] += by;
+        node++;
+    }
+}
+
 static void place_nodes(const value_plan *plan, value_table *table) {
+    const bool moved = !plan->measured && table->nodes == 256 && has_step(plan);
     for (int node = 0; node < table->nodes; node++)
         table->at[node] = table->nodes == 129
                               ? 128 * node
                               : (double)VALUE_MOST * node / (table->nodes - 1);
     if (plan->measured)
         measure_nodes(plan, table);
+    if (moved)
+        move_to_steps(plan, table);
     for (int v = 0, node = 0; v <= VALUE_MOST; v++) {
         while (node + 1 < table->nodes &&
                table->at[node + 1] - v <= v - table->at[node])
             node++;
         table->index[v] = (uint8_t)node;
     }
-    if (plan->measured)
+    if (plan->measured || moved)
         return;
     for (int v = 0; v <= VALUE_MOST; v++)
         if (table->nodes == 129)

@@ -177,6 +177,53 @@ static void measure_nodes(const snow_value_look *look,
     }
 }
 
+/* Whether opacity jumps somewhere: at the threshold, or where two points of the
+ * look have one value. */
+static bool has_step(const snow_value_look *look) {
+    const snow_transfer *t = look->transfer;
+    for (size_t n = 0; n + 1 < t->opacity_count; n++)
+        if (t->opacities[n].value == t->opacities[n + 1].value &&
+            t->opacities[n].opacity != t->opacities[n + 1].opacity)
+            return true;
+    return look->threshold > 0;
+}
+
+/* The last number before the step between two nodes: opacity changes there by
+ * more than half of what it changes by from node to node.  -1 without one. */
+static int find_step(const snow_value_look *look, int from, int to,
+                     snow_transfer_hint *hint) {
+    double first[4], last[4], before[4], here[4];
+    look_at(look, from, hint, first);
+    look_at(look, to, hint, last);
+    memcpy(before, first, sizeof before);
+    for (int v = from; v < to; v++) {
+        look_at(look, v + 1, hint, here);
+        if (2 * fabs(here[3] - before[3]) > fabs(last[3] - first[3]))
+            return v;
+        memcpy(before, here, sizeof before);
+    }
+    return -1;
+}
+
+/* Two nodes are moved so that a step lies midway between them, or it would be
+ * seen up to half a node from its place.  They stay where looks are known. */
+static void move_to_steps(const snow_value_look *look,
+                          snow_value_table *table) {
+    snow_transfer_hint hint = {0};
+    for (int node = 0; node + 1 < look->nodes; node++) {
+        double *at = table->at + node;
+        int from = (int)ceil(at[0]), to = (int)floor(at[1]);
+        int step = from < to ? find_step(look, from, to, &hint) : -1;
+        if (step < 0)
+            continue;
+        double by = step + 0.5 - 0.5 * (at[0] + at[1]);
+        by = rint(by / table->step) * table->step;
+        at[0] += by;
+        at[1] += by;
+        node++; /* the next one has its place */
+    }
+}
+
 static void find_nodes(const snow_value_look *look, snow_value_table *table) {
     for (int v = 0, node = 0; v <= SNOW_VALUE_MOST; v++) {
         while (node + 1 < look->nodes &&
@@ -204,9 +251,11 @@ static snow_status place_evenly(snow_context *context,
                                              : (double)SNOW_VALUE_MOST * node /
                                                    (look->nodes - 1);
     table->scale = look->nodes == 129 ? 256 : 510;
-    table->nodes = is_steep(look) ? table->node_of : NULL;
-    table->step = table->nodes ? MEASURED_STEP : apart / (2 * look->steps);
-    table->look_count = table->nodes
+    table->measured = is_steep(look);
+    bool moved = look->nodes == 256 && has_step(look);
+    table->nodes = table->measured || moved ? table->node_of : NULL;
+    table->step = table->measured ? MEASURED_STEP : apart / (2 * look->steps);
+    table->look_count = table->measured
                             ? (size_t)(SNOW_VALUE_MOST / MEASURED_STEP) + 2
                             : (size_t)(2 * look->steps * (look->nodes - 1)) + 1;
     return SNOW_STATUS_OK;
@@ -219,14 +268,14 @@ snow_status snow_value_looks_make(snow_context *context,
         SNOW_TRY(place_evenly(context, look, table));
         SNOW_TRY(find_plain(context, look, table));
     }
-    if (table->nodes)
+    if (table->measured)
         measure_nodes(look, table);
-    if (table->nodes || !known)
+    if (!known && table->nodes && !table->measured)
+        move_to_steps(look, table);
+    if (table->measured || !known)
         find_nodes(look, table);
     for (int node = 0; node < look->nodes; node++)
-        table->look_of[node] =
-            table->nodes ? (int)(table->at[node] / MEASURED_STEP + 0.5)
-                         : 2 * look->steps * node;
+        table->look_of[node] = (int)(table->at[node] / table->step + 0.5);
     SNOW_TRY(fill_looks(context, look, table));
     return table->nodes ? SNOW_STATUS_OK : fill_planes(context, look, table);
 }

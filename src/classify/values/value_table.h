@@ -40,8 +40,9 @@ typedef struct snow_value_table {
      * the slab, lowest bit first. */
     uint64_t *entries; /* [front * SNOW_VALUE_PITCH + back] */
     int16_t scale;     /* the node of V is (V scale + 2^14) / 2^15, or: */
-    uint8_t *nodes;    /* by V; NULL: evenly placed */
+    uint8_t *nodes;    /* by V; NULL: all evenly placed */
     uint8_t *node_of;  /* by V, always */
+    bool measured;     /* nodes are placed by what the look changes */
     double *at;        /* V of each node */
     double *logs;      /* of 1 - opacity, and colours, by V */
     float *plain;
