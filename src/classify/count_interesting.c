@@ -2,6 +2,7 @@
  * encodes voxels counts them too, so that both agree on which are interesting.
  */
 #include "classify/count_interesting.h"
+#include "base/thread_pool.h"
 #include "volume/stream.h"
 
 /* Entries first .. end - 1 of a row block, without those of neighbours. */
@@ -18,70 +19,85 @@ static void trim_row(const snow_extent *part, const snow_row_block *row_block,
     row->opacities = row_block->samples + (first + 1) * row->stride - 1;
 }
 
-static void visit_slices(const snow_interesting_walk *walk,
-                         const snow_extent *part,
-                         const snow_classifier *classifier,
-                         const snow_placement *placement,
-                         snow_row_block *row_block, snow_interesting_fn *visit,
-                         void *user) {
+typedef struct visiting {
+    snow_extent part;
+    snow_classifier classifier;
+    snow_placement placement;
+    snow_row_block *row_blocks; /* of the workers */
+    snow_interesting_fn *visit;
+    void *user;
+} visiting;
+
+static void visit_slice(void *of, int64_t item, int worker) {
+    const visiting *v = of;
+    const snow_extent *part = &v->part;
     const int64_t end = part->first[1] + part->count[1];
-    snow_interesting_row row = {.stored = part->stored[0],
-                                .stride = (size_t)classifier->channels};
-    for (int64_t i = 0; i < part->count[2]; i++) {
-        row.z = part->first[2] + i;
-        if (snow_monitor_look(walk->volume->context->monitor, 0))
-            return;
-        for (int64_t y = part->first[1]; y < end; y += row_block->room_rows) {
-            int64_t rows = end - y;
-            if (rows > row_block->room_rows)
-                rows = row_block->room_rows;
-            snow_classify_row_block(classifier, placement,
-                                    row.z - part->stored[2],
-                                    y - part->stored[1], rows, row_block);
-            for (int64_t n = 0; n < rows; n++) {
-                row.y = y + n;
-                trim_row(part, row_block, n ? row_block->row_end[n - 1] : 0,
-                         row_block->row_end[n], &row);
-                if (row.count)
-                    visit(user, &row);
-            }
+    snow_row_block *row_block = &v->row_blocks[worker];
+    snow_interesting_row row = {.z = part->first[2] + item,
+                                .stored = part->stored[0],
+                                .worker = worker,
+                                .stride = (size_t)v->classifier.channels};
+    for (int64_t y = part->first[1]; y < end; y += row_block->room_rows) {
+        int64_t rows = end - y;
+        if (rows > row_block->room_rows)
+            rows = row_block->room_rows;
+        snow_classify_row_block(&v->classifier, &v->placement,
+                                row.z - part->stored[2], y - part->stored[1],
+                                rows, row_block);
+        for (int64_t n = 0; n < rows; n++) {
+            row.y = y + n;
+            trim_row(part, row_block, n ? row_block->row_end[n - 1] : 0,
+                     row_block->row_end[n], &row);
+            if (row.count)
+                v->visit(v->user, &row);
         }
     }
+}
+
+static snow_status visit_slices(snow_context *context, int threads,
+                                visiting *v) {
+    snow_status status = SNOW_STATUS_OK;
+    const uint64_t bytes = (uint64_t)threads * sizeof *v->row_blocks;
+    v->row_blocks = snow_allocate_clear(context, (size_t)bytes);
+    if (!v->row_blocks)
+        return SNOW_STATUS_NO_MEMORY;
+    for (int n = 0; n < threads && status == SNOW_STATUS_OK; n++)
+        status = snow_row_block_make(context, &v->placement,
+                                     v->classifier.channels, &v->row_blocks[n]);
+    if (status == SNOW_STATUS_OK)
+        status =
+            snow_parallel(context, threads, v->part.count[2], visit_slice, v);
+    for (int n = 0; n < threads; n++)
+        snow_row_block_free(context, &v->row_blocks[n]);
+    snow_release(context, v->row_blocks);
+    return status;
 }
 
 snow_status snow_visit_interesting(const snow_interesting_walk *walk,
                                    snow_interesting_fn *visit, void *user) {
     const snow_volume *volume = walk->volume;
     const int64_t *dims = volume->info.dims;
-    snow_context *context = volume->context;
     /* Slices in memory order; there is no camera. */
-    snow_placement placement = {.slice_axis = 2,
+    visiting v = {.placement = {.slice_axis = 2,
                                 .u_axis = 0,
                                 .v_axis = 1,
                                 .columns = dims[0],
                                 .rows = dims[1],
-                                .slices = dims[2]};
-    snow_classify_options options = {
+                                .slices = dims[2]},
+                  .visit = visit,
+                  .user = user};
+    const snow_classify_options options = {
         .threshold = walk->threshold, .opacity_exponent = 1, .isa = walk->isa};
-    snow_classifier classifier = {0};
-    snow_row_block row_block = {0};
-    snow_extent part;
     SNOW_TRY(snow_volume_need_voxels(volume));
-    snow_volume_find_extent(volume, &part);
-    if (!part.count[0] || !part.count[1] || !part.count[2])
+    snow_volume_find_extent(volume, &v.part);
+    if (!v.part.count[0] || !v.part.count[1] || !v.part.count[2])
         return SNOW_STATUS_OK;
-    snow_status status = snow_classifier_make(context, volume, walk->transfer,
-                                              &options, &classifier);
+    snow_status status = snow_classifier_make(
+        volume->context, volume, walk->transfer, &options, &v.classifier);
     if (status == SNOW_STATUS_OK)
-        status = snow_row_block_make(context, &placement, classifier.channels,
-                                     &row_block);
-    if (status == SNOW_STATUS_OK)
-        visit_slices(walk, &part, &classifier, &placement, &row_block, visit,
-                     user);
-    if (status == SNOW_STATUS_OK)
-        status = snow_monitor_status(context->monitor);
-    snow_row_block_free(context, &row_block);
-    snow_classifier_fini(context, &classifier);
+        status = visit_slices(volume->context,
+                              walk->threads > 1 ? walk->threads : 1, &v);
+    snow_classifier_fini(volume->context, &v.classifier);
     return status;
 }
 

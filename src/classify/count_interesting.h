@@ -9,6 +9,7 @@
 /* Those of row (y, z) of the whole that a volume owns. */
 typedef struct snow_interesting_row {
     int64_t y, z, stored; /* the column of the whole that is 0 here */
+    int worker;           /* below the walk's threads */
     size_t count, stride; /* of opacities, from one to the next */
     const uint32_t *columns;
     const float *opacities;
@@ -20,6 +21,7 @@ typedef struct snow_interesting_walk {
     const snow_transfer *transfer;
     double threshold;
     snow_isa isa;
+    int threads; /* 0: one, which visits rows in order */
 } snow_interesting_walk;
 typedef void snow_interesting_fn(void *user, const snow_interesting_row *row);
 snow_status snow_visit_interesting(const snow_interesting_walk *walk,

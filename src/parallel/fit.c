@@ -5,9 +5,8 @@
  * perspective too. Bounds are largest values, which do not depend on the order
  * of rows, threads and ranks. */
 #include "base/record.h"
-#include "base/thread_pool.h"
 #include "base/vec3.h"
-#include "classify/classify.h"
+#include "classify/count_interesting.h"
 #include "comm/comm.h"
 #include "render/settings_resolve.h"
 #include "volume/stream.h"
@@ -106,95 +105,26 @@ static void widen(double bounds[BOUNDS], const double other[BOUNDS]) {
 
 /* --- voxels --------------------------------------------------------------- */
 
-/* The slices of a slab or a part that it answers for. */
-typedef struct slices {
-    const fit *f;
-    snow_extent part;
-    snow_placement placement; /* slices in memory order */
-    snow_classifier classifier;
-    snow_row_block *row_blocks; /* of each worker */
-} slices;
-
-static void add_row_block(const slices *s, const snow_row_block *row_block,
-                          int64_t y, int64_t z, double bounds[BOUNDS]) {
-    const snow_extent *part = &s->part;
-    size_t at = 0;
-    for (int64_t row = 0; row < row_block->rows; row++) {
-        size_t end = row_block->row_end[row], last = end;
-        int64_t own = part->first[0] - part->stored[0];
-        while (at < end && row_block->columns[at] < own)
-            at++;
-        while (last > at &&
-               row_block->columns[last - 1] >= own + part->count[0])
-            last--;
-        for (int side = 0; side < 2 && at < last; side++) {
-            uint32_t column = row_block->columns[side ? last - 1 : at];
-            const double voxel[3] = {(double)(part->stored[0] + column),
-                                     (double)(y + row), (double)z};
-            add_voxel(s->f, voxel, bounds);
-        }
-        at = end;
+static void bound_row(void *of, const snow_interesting_row *row) {
+    const fit *f = of;
+    for (int side = 0; side < 2; side++) {
+        const uint32_t column = row->columns[side ? row->count - 1 : 0];
+        const double voxel[3] = {(double)(row->stored + column), (double)row->y,
+                                 (double)row->z};
+        add_voxel(f, voxel, f->bounds[row->worker]);
     }
-}
-
-static void bound_slice(void *job, int64_t item, int worker) {
-    slices *s = job;
-    snow_row_block *row_block = &s->row_blocks[worker];
-    const snow_extent *part = &s->part;
-    int64_t z = part->first[2] + item, end = part->first[1] + part->count[1];
-    for (int64_t y = part->first[1]; y < end; y += row_block->room_rows) {
-        int64_t rows = end - y;
-        if (rows > row_block->room_rows)
-            rows = row_block->room_rows;
-        snow_classify_row_block(&s->classifier, &s->placement,
-                                z - part->stored[2], y - part->stored[1], rows,
-                                row_block);
-        add_row_block(s, row_block, y, z, s->f->bounds[worker]);
-    }
-}
-
-static snow_status bound_slices(slices *s, int threads) {
-    snow_status status = SNOW_STATUS_OK;
-    for (int i = 0; i < threads && status == SNOW_STATUS_OK; i++)
-        status = snow_row_block_make(s->f->context, &s->placement,
-                                     s->classifier.channels, &s->row_blocks[i]);
-    if (status == SNOW_STATUS_OK)
-        status = snow_parallel(s->f->context, threads, s->part.count[2],
-                               bound_slice, s);
-    for (int i = 0; i < threads; i++)
-        snow_row_block_free(s->f->context, &s->row_blocks[i]);
-    return status;
 }
 
 static snow_status bound_slab(const snow_volume *slab, void *user) {
     const fit *f = user;
-    const int64_t *dims = slab->info.dims;
-    const snow_classify_options options = {.threshold = f->settings.threshold,
-                                           .opacity_exponent = 1,
-                                           .isa = f->settings.isa};
-    slices s = {.f = f,
-                .placement = {.slice_axis = 2,
-                              .u_axis = 0,
-                              .v_axis = 1,
-                              .columns = dims[0],
-                              .rows = dims[1],
-                              .slices = dims[2]}};
-    snow_volume_find_extent(slab, &s.part);
-    if (!s.part.count[0] || !s.part.count[1] || !s.part.count[2])
-        return SNOW_STATUS_OK;
-    int threads = f->context->limit ? 1 : f->settings.threads; /* row blocks */
-    s.row_blocks = snow_allocate_array(f->context, (uint64_t)threads,
-                                       sizeof *s.row_blocks);
-    if (!s.row_blocks)
-        return SNOW_STATUS_NO_MEMORY;
-    memset(s.row_blocks, 0, (size_t)threads * sizeof *s.row_blocks);
-    snow_status status = snow_classifier_make(f->context, slab, f->transfer,
-                                              &options, &s.classifier);
-    if (status == SNOW_STATUS_OK)
-        status = bound_slices(&s, threads);
-    snow_classifier_fini(f->context, &s.classifier);
-    snow_release(f->context, s.row_blocks);
-    return status;
+    const snow_interesting_walk walk = {
+        .volume = slab,
+        .transfer = f->transfer,
+        .threshold = f->settings.threshold,
+        .isa = f->settings.isa,
+        /* under a limit there may be no room for more row blocks */
+        .threads = f->context->limit ? 1 : f->settings.threads};
+    return snow_visit_interesting(&walk, bound_row, user);
 }
 
 /* The middles of the voxels at the corners. */
