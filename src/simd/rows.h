@@ -42,7 +42,6 @@
  *   V(row_rsqrt)(v)               1 / sqrt(v) within 5e-6, without approximate
  *                                 instructions
  *   V(row_turn)(v, by)            -v where `by` is below 0, else v
- *   V(row_positive)(v)            1 where v > 0, else 0
  */
 #ifndef SNOW_SIMD_ROWS_H
 #define SNOW_SIMD_ROWS_H

@@ -298,9 +298,4 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_row_turn(snow_avx2_vec v,
     return _mm256_xor_ps(v, _mm256_and_ps(by, _mm256_set1_ps(-0.0F)));
 }
 
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_row_positive(snow_avx2_vec v) {
-    return _mm256_and_ps(_mm256_cmp_ps(v, _mm256_setzero_ps(), _CMP_GT_OQ),
-                         _mm256_set1_ps(1));
-}
-
 #endif

@@ -218,10 +218,4 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_row_turn(snow_avx512_vec v,
     return _mm512_xor_ps(v, _mm512_and_ps(by, _mm512_set1_ps(-0.0F)));
 }
 
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_row_positive(snow_avx512_vec v) {
-    return _mm512_maskz_mov_ps(
-        _mm512_cmp_ps_mask(v, _mm512_setzero_ps(), _CMP_GT_OQ),
-        _mm512_set1_ps(1));
-}
-
 #endif

@@ -228,10 +228,4 @@ static inline snow_scalar_vec snow_scalar_row_turn(snow_scalar_vec v,
                              ((snow_scalar_mask)by & INT32_MIN));
 }
 
-static inline snow_scalar_vec snow_scalar_row_positive(snow_scalar_vec v) {
-    snow_scalar_vec one = snow_scalar_set1(1);
-    return (snow_scalar_vec)((snow_scalar_mask)one &
-                             (snow_scalar_mask)(v > snow_scalar_set1(0)));
-}
-
 #endif

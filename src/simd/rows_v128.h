@@ -44,7 +44,6 @@
 #define snow_v128_row_round snow_scalar_row_round
 #define snow_v128_row_rsqrt snow_scalar_row_rsqrt
 #define snow_v128_row_turn snow_scalar_row_turn
-#define snow_v128_row_positive snow_scalar_row_positive
 
 #define SNOW_V128_ROW_OF(name, each)                                    \
     static inline snow_v128_row snow_v128_row_##name(snow_v128_row a,   \
