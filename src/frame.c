@@ -1,11 +1,10 @@
-/* frame.c - one picture: figure 8 of the paper, with its line numbers.  Records
- * are those of render/picture.h; how a stage works is said in its folder. */
+/* frame.c - one picture: figure 8 of the paper, with its line numbers in the
+ * margin.  render/picture.h has its records, README.md the folder of each. */
 #include "frame.h"
 
 #include "parallel/internal.h"
 #include "parallel/load_balance.h"
 #include "render/buffers.h"
-#include "render/modes/occlusion.h"
 #include "render/parts.h"
 
 /* Lines 02 to 13: from a part of the volume to its local image. */

@@ -144,6 +144,10 @@ extern const snow_render_method snow_method_exact, snow_method_groups,
 /* Of one process. */
 extern const snow_combine_ops snow_combine_alone;
 
+/* Collective (render/modes/occlusion.c).  Darkens a picture that has its depths
+ * by settings.occlusion.  Errors: `status`; no memory; of reading slabs. */
+snow_status snow_occlude(snow_picture *picture, snow_status status);
+
 /* Ends a picture, whatever became of it: the frame gets its figures and depths,
  * and the caller its image; where it failed, its images are freed. */
 snow_status snow_picture_end(snow_picture *picture, snow_status status,
