@@ -86,8 +86,9 @@ snow_status snow_visit_interesting(const snow_interesting_walk *walk,
                                 .slices = dims[2]},
                   .visit = visit,
                   .user = user};
-    const snow_classify_options options = {
-        .threshold = walk->threshold, .opacity_exponent = 1, .isa = walk->isa};
+    const snow_classify_options options = {.threshold = walk->threshold,
+                                           .opacity_exponent = walk->exponent,
+                                           .isa = walk->isa};
     SNOW_TRY(snow_volume_need_voxels(volume));
     snow_volume_find_extent(volume, &v.part);
     if (!v.part.count[0] || !v.part.count[1] || !v.part.count[2])
@@ -136,6 +137,7 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
     const snow_interesting_walk walk = {.volume = volume,
                                         .transfer = transfer,
                                         .threshold = threshold,
+                                        .exponent = 1,
                                         .isa = isa};
     snow_status status = snow_visit_interesting(&walk, count_row, &c);
     snow_release(volume->context, c.columns);

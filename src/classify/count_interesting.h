@@ -19,7 +19,7 @@ typedef struct snow_interesting_row {
 typedef struct snow_interesting_walk {
     const snow_volume *volume;
     const snow_transfer *transfer;
-    double threshold;
+    double threshold, exponent; /* as snow_classify_options */
     snow_isa isa;
     int threads; /* 0: one, which visits rows in order */
 } snow_interesting_walk;

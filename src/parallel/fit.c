@@ -121,6 +121,7 @@ static snow_status bound_slab(const snow_volume *slab, void *user) {
         .volume = slab,
         .transfer = f->transfer,
         .threshold = f->settings.threshold,
+        .exponent = 1,
         .isa = f->settings.isa,
         /* under a limit there may be no room for more row blocks */
         .threads = f->context->limit ? 1 : f->settings.threads};

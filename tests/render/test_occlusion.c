@@ -62,13 +62,14 @@ static void bound(const reference_scene *scene, int low[3], int high[3]) {
 static void take_means(const reference_scene *scene, const field *f,
                        const int high[3], double *cells) {
     double share = 1.0 / (f->cell[0] * f->cell[1] * f->cell[2]);
+    double exponent = f->deviation[0] / reference_opacity_length(scene);
     for (int z = f->low[2]; z <= high[2]; z++)
         for (int y = f->low[1]; y <= high[1]; y++)
             for (int x = f->low[0]; x <= high[0]; x++)
                 *cell_at(f, cells, (x - f->low[0]) / f->cell[0] + MARGIN,
                          (y - f->low[1]) / f->cell[1] + MARGIN,
                          (z - f->low[2]) / f->cell[2] + MARGIN) +=
-                    share * opacity_at(scene, x, y, z);
+                    share * (1 - pow(1 - opacity_at(scene, x, y, z), exponent));
 }
 
 /* One pass of three weights, `apart` cells apart; nothing is beyond the ends.

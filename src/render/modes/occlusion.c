@@ -97,6 +97,7 @@ static void lay_out(occlusion *o) {
     }
     for (int i = 0; i < 2; i++)
         o->deviation[i] = deviations[i] * side;
+    o->walk.exponent = o->deviation[0] / o->job->settings.opacity_length;
     for (int n = 0; n < 3; n++) {
         o->cell[n] = (int64_t)fmax(1, o->deviation[0] / o->spacing[n]);
         o->cells[n] = (o->cells[n] - 1) / o->cell[n] + 1;
@@ -309,6 +310,7 @@ snow_status snow_occlude(snow_picture *p, snow_status status) {
     o.below = p->job.placement.path / 2;
     o.walk = (snow_interesting_walk){
         .transfer = iso ? p->frame->identity.transfer : p->job.transfer,
+        .exponent = 1,
         .threshold = iso ? 0 : p->job.settings.threshold,
         .isa = p->job.settings.isa};
     status = occlude(p, &o);

@@ -107,14 +107,13 @@ changes --shininess 3
 for way in depth-darkening occlusion; do
     for strength in 0 0.5 1; do
         run 0 "an engine, $way $strength" "$TOOL" phantom:engine -y \
-            --dims 64x64x28 -s 96x96 -o "dark$strength.npy" \
-            --azimuth 30 --elevation 20 --$way "$strength"
+            --dims 128x128x56 -s 96x96 -o "dark$strength.npy" \
+            --$way "$strength"
     done
     run 6 "$way shows" "$TOOL" compare dark0.npy dark0.5.npy
     run 6 "by as much as is asked" "$TOOL" compare dark0.5.npy dark1.npy
     run 0 "wholly without a number" "$TOOL" phantom:engine -y \
-        --dims 64x64x28 -s 96x96 -o dark.npy --azimuth 30 --elevation 20 \
-        --$way
+        --dims 128x128x56 -s 96x96 -o dark.npy --$way
     run 0 "as by 1" "$TOOL" compare dark1.npy dark.npy
     same --$way 0
 done
