@@ -3,8 +3,6 @@
 #include "frame.h"
 
 #include "parallel/internal.h"
-#include "parallel/load_balance.h"
-#include "render/buffers.h"
 #include "render/parts.h"
 
 /* Lines 02 to 13: from a part of the volume to its local image. */
@@ -56,39 +54,20 @@ static snow_status complete(snow_picture *p, snow_status status) {
     return p->ahead ? status : snow_occlude(p, p->combiner->agree(p, status));
 }
 
-/* --- frames --------------------------------------------------------------- */
-
-snow_status snow_frame_new(snow_context *context, snow_frame **out) {
-    snow_frame *frame = NULL;
-    SNOW_TRY(snow_buffers_new(context, &frame));
-    snow_status status = snow_load_balance_new(context, &frame->work);
-    if (status == SNOW_STATUS_OK)
-        *out = frame;
-    else
-        snow_buffers_free(frame);
-    return status;
-}
-
-void snow_frame_free(snow_frame *frame) {
-    if (!frame)
-        return;
-    snow_ranks_free(frame->ranks);
-    snow_load_balance_free(frame->context, frame->work);
-    snow_buffers_free(frame);
-}
-
 /* --- a picture of one process --------------------------------------------- */
 
-snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
-                                   const snow_transfer *transfer,
-                                   const snow_view *view,
-                                   const snow_settings *settings, int parts,
-                                   int part, snow_image **image) {
-    const snow_request request = {volume,   transfer, view,
-                                  settings, parts,    part};
-    snow_picture p = {.frame = frame, .combiner = &snow_combine_alone};
-    snow_picture_watch(&p, settings);
-    snow_status status = complete(&p, begin(&p, &request));
+snow_status snow_frame_render_alone(snow_frame *frame,
+                                    const snow_request *request,
+                                    const snow_bytes *bytes,
+                                    snow_image **image) {
+    if (frame->ranks && snow_ranks_busy(frame->ranks))
+        return snow_fail(frame->context, SNOW_STATUS_BAD_USAGE,
+                         "this frame has a picture of several ranks in flight; "
+                         "call snow_ranks_finish first");
+    snow_picture p = {
+        .frame = frame, .combiner = &snow_combine_alone, .bytes = bytes};
+    snow_picture_watch(&p, request->settings);
+    snow_status status = complete(&p, begin(&p, request));
     return snow_picture_end(&p, snow_monitor_end(&p.monitor, status), image);
 }
 
@@ -97,12 +76,23 @@ snow_status snow_frame_render(snow_frame *frame, const snow_volume *volume,
                               const snow_view *view,
                               const snow_settings *settings,
                               snow_image **image) {
-    if (frame->ranks && snow_ranks_busy(frame->ranks))
-        return snow_fail(frame->context, SNOW_STATUS_BAD_USAGE,
-                         "this frame has a picture of several ranks in flight; "
-                         "call snow_ranks_finish first");
-    return snow_frame_render_slab(frame, volume, transfer, view, settings, 1, 0,
-                                  image);
+    const snow_request request = {volume, transfer, view, settings, 1, 0};
+    return snow_frame_render_alone(frame, &request, NULL, image);
+}
+
+snow_status snow_frame_render_bytes(
+    snow_frame *frame, const snow_volume *volume, const snow_transfer *transfer,
+    const snow_view *view, const snow_settings *settings,
+    const double background[3], unsigned char *pixels, size_t stride) {
+    const snow_request request = {volume, transfer, view, settings, 1, 0};
+    const snow_bytes bytes = {pixels, stride, background};
+    snow_image *image = NULL;
+    SNOW_TRY(snow_picture_check_bytes(frame->context, &request, &bytes));
+    SNOW_TRY(snow_frame_render_alone(frame, &request, &bytes, &image));
+    if (image) /* of a method that did not write them */
+        snow_bytes_image(image, frame->stats.isa, &bytes);
+    snow_image_free(image);
+    return SNOW_STATUS_OK;
 }
 
 /* --- pictures of many ranks, two of which may be under way ---------------- */

@@ -8,6 +8,7 @@
 
 #include <snowglass/snowglass.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* All that lives between two commands. */
 static struct worker {
@@ -16,8 +17,8 @@ static struct worker {
     snow_volume *volume;
     snow_transfer *transfer;
     snow_frame *frame;
-    snow_image *image;
-    snow_view view; /* its width and height are set when it is loaded */
+    unsigned char *rgba; /* over black */
+    snow_view view;      /* its width and height are set when it is loaded */
     snow_settings settings;
     snow_volume_options options;
     snow_color_point colors[PIPE_VALUES];
@@ -59,11 +60,15 @@ static void load(void) {
     check(snow_view_from_name(worker.context, "+z", &worker.view));
     check(snow_frame_new(worker.context, &worker.frame));
     worker.view.width = worker.view.height = face.size;
+    worker.rgba = malloc(4 * (size_t)face.size * (size_t)face.size);
+    if (!worker.rgba)
+        pipe_fail(&face, "no memory");
 }
 
 /* A changed transfer function is made here, since making it is part of showing
  * it. */
 static void frame(double azimuth, double elevation) {
+    static const double black[3] = {0, 0, 0};
     if (worker.changed) {
         snow_transfer_free(worker.transfer);
         worker.transfer = NULL;
@@ -74,24 +79,13 @@ static void frame(double azimuth, double elevation) {
     }
     worker.view.azimuth = azimuth;
     worker.view.elevation = elevation;
-    snow_image_free(worker.image);
-    worker.image = NULL;
-    check(snow_frame_render(worker.frame, worker.volume, worker.transfer,
-                            &worker.view, &worker.settings, &worker.image));
+    check(snow_frame_render_bytes(worker.frame, worker.volume, worker.transfer,
+                                  &worker.view, &worker.settings, black,
+                                  worker.rgba, 4 * (size_t)face.size));
 }
 
-static unsigned char byte_of(float x) {
-    return (unsigned char)(255 * (x < 0 ? 0 : x > 1 ? 1 : x) + 0.5F);
-}
-
-/* Over black, premultiplied colour is what is seen.  Grey pictures have two
- * channels. */
 static void pixel(int x, int y, unsigned char rgb[3]) {
-    int channels = snow_image_channels(worker.image);
-    const float *at = snow_image_pixels(worker.image) +
-                      (y * snow_image_width(worker.image) + x) * channels;
-    for (int c = 0; c < 3; c++)
-        rgb[c] = byte_of(at[channels == 2 ? 0 : c]);
+    memcpy(rgb, worker.rgba + 4 * (y * face.size + x), 3);
 }
 
 static void set_up(char **argv) {
@@ -121,7 +115,7 @@ int main(int argc, char **argv) {
         pipe_fail(&face, "wants RAW X Y Z SIZE THREADS SHADED METHOD QUALITY");
     set_up(argv);
     pipe_serve(&face);
-    snow_image_free(worker.image);
+    free(worker.rgba);
     snow_frame_free(worker.frame);
     snow_transfer_free(worker.transfer);
     snow_volume_close(worker.volume);

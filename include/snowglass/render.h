@@ -1,7 +1,6 @@
-/* snowglass/render.h - from a volume to a picture: the paper's pipeline.
- *
- * A frame owns the buffers of the pipeline's stages (figure 7 of the paper) and
- * keeps them, and encodings, from picture to picture. */
+/* snowglass/render.h - from a volume to a picture: the paper's pipeline. A frame
+ * owns the buffers of its stages (figure 7) and keeps them, and encodings, from
+ * picture to picture. */
 #ifndef SNOWGLASS_RENDER_H
 #define SNOWGLASS_RENDER_H
 
@@ -10,7 +9,6 @@
 #include <snowglass/view.h>
 
 typedef struct snow_frame snow_frame;
-
 /* How voxels reach the picture (docs/fast.md). */
 typedef enum snow_method {
     SNOW_METHOD_AUTO = 0,
@@ -99,9 +97,8 @@ typedef struct snow_settings {
     snow_stop_fn *stop;     /* whether the picture is to end early (NULL) */
     void *stop_user;        /* its argument (NULL) */
     snow_light light;       /* (auto) */
-    double depth_darkening; /* 0 to 1: darkens what lies behind its neighbours;
-                               over and iso (0) */
-    double occlusion; /* 0 to 1: darkens what has much around it; the same (0) */
+    double depth_darkening; /* 0 to 1: of what lies behind its neighbours (0) */
+    double occlusion; /* 0 to 1: of what has much around it; both over, iso (0) */
 } snow_settings;
 SNOW_RECORD(snow_settings);
 
@@ -125,32 +122,35 @@ typedef struct snow_stats {
     uint64_t kept_bytes, kept_most; /* encodings along other slice axes */
 } snow_stats;
 SNOW_RECORD(snow_stats);
-
 SNOW_API snow_status snow_frame_new(snow_context *context, snow_frame **out);
 SNOW_API void snow_frame_free(snow_frame *frame);
 
 /* Renders one picture: figure 8 of the paper on one processor. All objects are
  * of one context; `settings` may be NULL. Errors, which leave the frame as it
- * was: BAD_USAGE, BAD_INPUT (a geometry that no float can hold), STOPPED. */
+ * was: BAD_USAGE, BAD_INPUT (a geometry that no float can hold), STOPPED. As
+ * bytes (docs/output.md) it is red, green, blue, alpha of each pixel, not
+ * premultiplied, or opaque on `background` (NULL: none); not mean and sum. */
 SNOW_API snow_status snow_frame_render(snow_frame *frame,
     const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings, snow_image **image);
+SNOW_API snow_status snow_frame_render_bytes(snow_frame *frame,
+    const snow_volume *volume, const snow_transfer *transfer,
+    const snow_view *view, const snow_settings *settings,
+    const double background[3], unsigned char *pixels, size_t stride);
 
 /* Renders a file (or phantom:NAME) with the default look. `view` and `settings`
  * may be NULL. Errors: of snow_volume_open, snow_frame_render. */
 SNOW_API snow_status snow_render_file(snow_context *context, const char *path,
     const snow_view *view, const snow_settings *settings, snow_image **image);
 
-/* Owned by the frame, until its next picture. Depths (of settings.depth,
- * depth_darkening or occlusion, else NULL): world distance along the line of
- * sight, from the target's plane to where opacity passes 1/2 or to the
- * isosurface; NaN where there is neither. */
+/* Owned by the frame, until its next picture. Depths, NULL unless asked for or
+ * needed: world distance along the line of sight from the target's plane to
+ * where opacity passes 1/2 or the isosurface, or NaN. */
 SNOW_API const snow_image *snow_frame_depth(const snow_frame *frame);
 SNOW_API const snow_stats *snow_frame_stats(const snow_frame *frame);
 
 /* Of modes mean and sum: smallest and largest value (0 and 1 without any), and
- * its colours, those of the transfer function spread over low to high (low <=
- * high), opaque, or transparent where there is no value. */
+ * its colours of a transfer function spread over low to high (low <= high). */
 SNOW_API void snow_image_value_range(
     const snow_image *values, double *low, double *high);
 SNOW_API snow_status snow_image_apply_colormap(const snow_image *values,

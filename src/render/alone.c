@@ -83,6 +83,9 @@ static snow_status take_layer(snow_picture *p, size_t bytes, bool clear) {
 /* A shear-warp picture is written once, and whole. */
 static snow_status make_image(snow_picture *p) {
     bool written = p->pass->method->warps;
+    if (written && p->bytes && p->job.settings.depth_darkening == 0 &&
+        p->job.settings.occlusion == 0)
+        return SNOW_STATUS_OK;
     return p->image ? SNOW_STATUS_OK
                     : (written ? snow_image_make : snow_image_new)(
                           p->job.context, p->view.width, p->view.height,
@@ -103,7 +106,7 @@ static snow_status place_over(snow_picture *p) {
         SNOW_TRY(new_depths(p, &p->depth));
         p->local.depths = p->depth->pixels;
     }
-    p->local.pixels = p->image->pixels;
+    p->local.pixels = p->image ? p->image->pixels : NULL;
     p->local.layers = 1;
     p->local.nodes[0] = root;
     if (p->pass->method == &snow_method_groups &&

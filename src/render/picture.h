@@ -99,6 +99,8 @@ struct snow_picture {
     int pass_count;
     snow_local_image local;
     snow_image *image, *depth; /* NULL where another rank has them */
+    const snow_bytes *bytes;   /* wanted instead of the image, which is made by
+                                  methods that do not write them; or NULL */
     snow_image *near;          /* depths of the local image */
     snow_stats stats, unused; /* of the passes that draw the picture; depths' */
     snow_ranks_stats ranks_stats;
@@ -115,6 +117,11 @@ void snow_picture_watch(snow_picture *picture, const snow_settings *settings);
 /* The plan: the job and, in mode over, the passes. */
 snow_status snow_picture_plan(snow_picture *picture,
                               const snow_request *request);
+
+/* Refuses bytes that such a picture cannot be made as. */
+snow_status snow_picture_check_bytes(snow_context *context,
+                                     const snow_request *request,
+                                     const snow_bytes *bytes);
 
 /* The passes of other modes, when the range of values is known. */
 snow_status snow_picture_plan_mode(snow_picture *picture);

@@ -22,18 +22,19 @@
  *   V(load_pairs2)(p, at, left, right), V(load_pairs4)
  *                                  pixels of 2 or 4 floats at p + at[0], p +
  *                                  at[1] ..., as many as a vector holds, and
- *                                  those behind each of them
+ *                                  those behind each of them; not avx512
  *   V(popcount)(x)                 bits that are set in a uint64_t
  *   V(sums4)(v), V(sums2)(v)       the sum of the pixels of each of LANES / 4
- *                                  or / 2 vectors, by halves; avx512 has no
- *                                  sums2
+ *                                  or / 2 vectors, by halves; not sums2 of
+ *                                  avx512
  *   V(sqrt)(v)                     the square root, rounded correctly
  *   V(wide)                        a type: LANES / 2 numbers of 64 bits
  *   V(low_times)(a, b)             products of their lower 32 bits
  *   V(fractions4)(p), V(fractions2), V(fractions1)
  *                                  the lower 32 bits of numbers of 64 bits at p
  *                                  as fractions of 24 bits, each 4, 2 times or
- *                                  once, as many as a vector holds
+ *                                  once, as many as a vector holds; of avx512
+ *                                  only the last
  *   V(scatter4)(p, n, v), V(scatter2)
  *                                  stores the pixels of v, of 4 or 2 floats,
  *                                  as entries n[0], n[1] ... of a table;

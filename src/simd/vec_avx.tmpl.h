@@ -60,8 +60,7 @@ INLINE V(wide) V(low_times)(V(wide) a, V(wide) b) {
 
 /* The upper 24 of the 32 bits of each lane, as a fraction. */
 INLINE V(vec) V(fraction)(V(int) v) {
-    return M(mul_ps)(M(cvtepi32_ps)(M(srli_epi32)(v, 8)),
-                     M(set1_ps)(0x1p-24f));
+    return M(mul_ps)(M(cvtepi32_ps)(M(srli_epi32)(v, 8)), M(set1_ps)(0x1p-24f));
 }
 
 INLINE int V(popcount)(uint64_t x) {

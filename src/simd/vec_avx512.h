@@ -26,7 +26,7 @@ typedef uint64_t snow_avx512_wide __attribute__((vector_size(64)));
 #include "simd/vec_avx.tmpl.h"
 
 /* Of each of two vectors the quarters i and j, added to those behind them. */
-#define SNOW_AVX512_FOLD(a, b, first, second)            \
+#define SNOW_AVX512_FOLD(a, b, first, second)        \
     _mm512_add_ps(_mm512_shuffle_f32x4(a, b, first), \
                   _mm512_shuffle_f32x4(a, b, second))
 
@@ -54,53 +54,11 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_gather2(const float *p,
     return _mm512_castpd_ps(_mm512_i32gather_pd(places, p, 8));
 }
 
-/* Four runs of four floats. */
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_runs(const float *p,
-                                                    const int64_t *at) {
-    __m512 v = _mm512_castps128_ps512(_mm_loadu_ps(p + at[0]));
-    v = _mm512_insertf32x4(v, _mm_loadu_ps(p + at[1]), 1);
-    v = _mm512_insertf32x4(v, _mm_loadu_ps(p + at[2]), 2);
-    return _mm512_insertf32x4(v, _mm_loadu_ps(p + at[3]), 3);
-}
-
-SNOW_AVX512_INLINE void snow_avx512_load_pairs2(const float *p,
-                                                const int64_t *at,
-                                                snow_avx512_vec *left,
-                                                snow_avx512_vec *right) {
-    __m512d a = _mm512_castps_pd(snow_avx512_runs(p, at));
-    __m512d b = _mm512_castps_pd(snow_avx512_runs(p, at + 4));
-    const __m512i even = _mm512_setr_epi64(0, 2, 4, 6, 8, 10, 12, 14);
-    const __m512i odd = _mm512_setr_epi64(1, 3, 5, 7, 9, 11, 13, 15);
-    *left = _mm512_castpd_ps(_mm512_permutex2var_pd(a, even, b));
-    *right = _mm512_castpd_ps(_mm512_permutex2var_pd(a, odd, b));
-}
-
-SNOW_AVX512_INLINE void snow_avx512_load_pairs4(const float *p,
-                                                const int64_t *at,
-                                                snow_avx512_vec *left,
-                                                snow_avx512_vec *right) {
-    *left = snow_avx512_runs(p, at);
-    *right = snow_avx512_runs(p + 4, at);
-}
-
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fractions1(const uint64_t *p) {
     const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18,
                                            20, 22, 24, 26, 28, 30);
     return snow_avx512_fraction(_mm512_permutex2var_epi32(
         _mm512_loadu_si512(p), even, _mm512_loadu_si512(p + 8)));
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fractions2(const uint64_t *p) {
-    return snow_avx512_fraction(
-        _mm512_shuffle_epi32(_mm512_loadu_si512(p), 0xA0));
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fractions4(const uint64_t *p) {
-    const __m512i twice = _mm512_setr_epi64(0, 0, 1, 1, 2, 2, 3, 3);
-    __m512i v = _mm512_castsi256_si512(
-        _mm256_loadu_si256((const __m256i *)(const void *)p));
-    return snow_avx512_fraction(
-        _mm512_shuffle_epi32(_mm512_permutexvar_epi64(twice, v), 0xA0));
 }
 
 SNOW_AVX512_INLINE void snow_avx512_scatter4(float *p, const uint32_t *n,

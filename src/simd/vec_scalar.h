@@ -134,10 +134,9 @@ static inline float snow_scalar_fraction(uint64_t place) {
 }
 
 static inline snow_scalar_vec snow_scalar_fractions1(const uint64_t *p) {
-    return (snow_scalar_vec){snow_scalar_fraction(p[0]),
-                             snow_scalar_fraction(p[1]),
-                             snow_scalar_fraction(p[2]),
-                             snow_scalar_fraction(p[3])};
+    return (snow_scalar_vec){
+        snow_scalar_fraction(p[0]), snow_scalar_fraction(p[1]),
+        snow_scalar_fraction(p[2]), snow_scalar_fraction(p[3])};
 }
 
 static inline snow_scalar_vec snow_scalar_fractions2(const uint64_t *p) {

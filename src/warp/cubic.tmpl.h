@@ -61,9 +61,9 @@ WARP_NAME(_mix)(const snow_intermediate_view *plane, const warp_group *group,
     for (int n = 0; n < GROUP; n += WARP_PIXELS) {
         V(vec) runs[WARP_PIXELS];
         for (int i = 0; i < WARP_PIXELS; i++)
-            runs[i] = WARP_NAME(_run)(plane->pixels + group->at[n + i],
-                                      plane->stride, &along_y[0][n + i],
-                                      V(set1)(across[n + i]));
+            runs[i] =
+                WARP_NAME(_run)(plane->pixels + group->at[n + i], plane->stride,
+                                &along_y[0][n + i], V(set1)(across[n + i]));
         V(store)(pixels + n * WARP_CHANNELS, VC(sums, WARP_CHANNELS)(runs));
     }
 }

@@ -43,8 +43,6 @@ static warp_pair pair_of(snow_isa isa, snow_filter filter, int channels) {
 #if SNOW_HAS_AVX
     if (isa == SNOW_ISA_AVX512 && cubic && !grey)
         return PAIR(cubic4, avx512);
-    if (isa == SNOW_ISA_AVX512 && !cubic)
-        return grey ? PAIR(linear2, avx512) : PAIR(linear4, avx512);
     if (isa == SNOW_ISA_AVX512 || isa == SNOW_ISA_AVX2) {
         if (cubic)
             return grey ? PAIR(cubic2, avx2) : PAIR(cubic4, avx2);

@@ -5,7 +5,7 @@
 TARGET static void NAME(words)(const word_input *in, word_output *out) {
     for (int at = 0; at < 16; at += LANES) {
         V(vec) a = V(load)(in->a + at), b = V(load)(in->b + at);
-        V(vec) c = V(load)(in->c + at), left, right;
+        V(vec) c = V(load)(in->c + at);
         V(store)(out->lanes[ADD] + at, V(add)(a, b));
         V(store)(out->lanes[SUB] + at, V(sub)(a, b));
         V(store)(out->lanes[MUL] + at, V(mul)(a, b));
@@ -21,6 +21,8 @@ TARGET static void NAME(words)(const word_input *in, word_output *out) {
         (out->lanes[GATHER2] + at, V(gather2)(in->table, in->entries + at / 2));
         V(store)
         (out->lanes[FRACTIONS1] + at, V(fractions1)(in->places + at));
+#if LANES <= 8
+        V(vec) left, right;
         V(store)
         (out->lanes[FRACTIONS2] + at, V(fractions2)(in->places + at / 2));
         V(store)
@@ -31,6 +33,7 @@ TARGET static void NAME(words)(const word_input *in, word_output *out) {
         V(load_pairs4)(in->table, in->at + at / 4, &left, &right);
         V(store)(out->left4 + at, left);
         V(store)(out->right4 + at, right);
+#endif
     }
     V(vec) all[4];
     for (int n = 0; n < 4; n++)

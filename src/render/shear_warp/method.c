@@ -20,7 +20,8 @@ static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
                                .shared = p->combiner != &snow_combine_alone,
                                .aside = p->aside,
                                .resumes = p->local.image.layers > 0,
-                               .begin_at = p->begin_at};
+                               .begin_at = p->begin_at,
+                               .bytes = p->local.pixels ? NULL : p->bytes};
 }
 
 /* The image comes first, for the slabs of a file are cut to the memory that it
@@ -59,6 +60,10 @@ static snow_status draw(snow_picture *p, snow_job *job) {
 
 static snow_status show(snow_picture *p, snow_job *job) {
     const snow_value_params params = params_of(p, job);
+    if (params.bytes && p->local.image.width == 0) {
+        snow_bytes_clear(p->view.width, p->view.height, params.bytes);
+        return SNOW_STATUS_OK;
+    }
     return snow_value_display(p->frame->value_path, &params, &p->local.image,
                               p->local.pixels, job->stats);
 }

@@ -5,6 +5,7 @@
 #define SNOW_RENDER_SHEAR_WARP_SHEAR_WARP_H
 
 #include "base/line_batch.h"
+#include "composite/bytes.h"
 #include "render/shear_warp/intermediate.h"
 #include "render/shear_warp/lattice.h"
 #include "transform/clip.h"
@@ -39,6 +40,7 @@ typedef struct snow_value_params {
     bool resumes;   /* draws behind the parts that were drawn before */
     double begin_at; /* 0 to below 1: the share of the image's lines before the
                         one that is drawn first */
+    const snow_bytes *bytes; /* what is shown goes there; NULL: to floats */
 } snow_value_params;
 
 /* The finite values of a volume, or their logarithms, of which those in a file

@@ -15,7 +15,9 @@
 typedef struct show_job {
     const snow_shear_warp_warping *warping;
     float *pixels, *lines;
-    size_t line_floats; /* of the lines of one worker */
+    size_t line_floats;      /* of the lines of one worker */
+    const snow_bytes *bytes; /* instead of pixels */
+    snow_bytes_fn *convert;
 } show_job;
 
 /* --- a smaller image -------------------------------------------------------
@@ -209,24 +211,33 @@ static void show_lines(void *of, int64_t item, int worker) {
     const snow_shear_warp_warping *w = job->warping;
     float *spare = job->lines + (size_t)worker * job->line_floats;
     int first = (int)item * LINES, end = first + LINES;
+    const size_t floats = (size_t)(w->width * w->plane.channels);
     for (int y = first; y < end && y < w->height; y++) {
-        float *out =
-            job->pixels + (size_t)y * (size_t)(w->width * w->plane.channels);
+        float *out = job->bytes ? spare + w->spare_floats
+                                : job->pixels + (size_t)y * floats;
         if (w->line)
             w->line(w, y, 0, w->width, spare, out);
         else
             show_row(w, y, 0, w->width, out);
+        if (job->bytes)
+            job->convert(out, w->width, w->plane.channels,
+                         job->bytes->background, snow_bytes_row(job->bytes, y));
     }
 }
 
 snow_status snow_value_show(snow_value_path *path,
                             const snow_value_params *params, float *pixels) {
     const snow_shear_warp_warping *w = &path->image->warping;
-    show_job job = {
-        .warping = w, .pixels = pixels, .line_floats = w->spare_floats};
+    show_job job = {.warping = w,
+                    .pixels = pixels,
+                    .line_floats = w->spare_floats,
+                    .bytes = params->bytes,
+                    .convert = snow_bytes_of(params->settings->isa)};
     size_t threads = (size_t)params->settings->threads;
     if (w->made)
         w->made(w);
+    if (job.bytes)
+        job.line_floats += (size_t)(w->width * w->plane.channels);
     SNOW_TRY(snow_reserve(path->context, &path->lines, &path->lines_capacity, 0,
                           threads * job.line_floats * sizeof *path->lines));
     job.lines = path->lines;
