@@ -41,7 +41,7 @@ typedef struct snow_recipe {
     const char *tf;    /* file of the look's base (look_file.h), or NULL */
     bool log;          /* as in snow_look */
     const char *depth; /* path of the depths, or NULL */
-    int fit; /* of the tool: 1 visible, 2 volume */
+    int fit;           /* of the tool: 1 visible, 2 volume */
 } snow_recipe;
 SNOW_RECORD(snow_recipe);
 

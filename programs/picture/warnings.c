@@ -19,7 +19,7 @@ static void warn_option(const options *asked, const char *name) {
 void warn_unused(const options *asked) {
     static const char *const of_opacity[] = {"opacity", "gradient-opacity"};
     static const char *const of_light[] = {
-        "light",    "shade",     "ambient",        "diffuse",
+        "light",    "shade",     "ambient",         "diffuse",
         "specular", "shininess", "depth-darkening", "occlusion"};
     bool lit = strcmp(asked->mode, "iso") == 0;
     if (strcmp(asked->mode, "over") == 0 || !is_heard(asked))

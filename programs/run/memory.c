@@ -4,9 +4,9 @@
  *   limit    0 ........ smallest slab ........ voxels and picture ........
  *                refused      |     in slabs           |    in memory
  *
- * Bytes of an interesting voxel are those of the encodings: its value of 8 or 16
- * bits, or four floats for the exact methods.  Its position takes little more
- * than one bit. */
+ * Bytes of an interesting voxel are those of the encodings: its value of 8 or
+ * 16 bits, or four floats for the exact methods.  Its position takes little
+ * more than one bit. */
 #include "run/memory.h"
 #include "commands/commands.h"
 #include "run/free_memory.h"
@@ -19,9 +19,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#define PIXEL_BYTES 16  /* four floats */
-#define PLACE_SHARE 7   /* EA: one byte for this many voxels */
-#define MASK_BYTES 1    /* of shear-warp: masks and bounds of cells */
+#define PIXEL_BYTES 16 /* four floats */
+#define PLACE_SHARE 7  /* EA: one byte for this many voxels */
+#define MASK_BYTES 1   /* of shear-warp: masks and bounds of cells */
 
 /* Rows of integers of 8 and 16 bits are as they are, and other types numbers of
  * 16 bits; where they are not read in place, they are packed too. */

@@ -5,8 +5,9 @@
  * steps of a quarter of a voxel; shear-warp takes values between slices along
  * its own rows, at the density of its lattice.  How near the two are is a
  * structural similarity (SSIM, stated beside each picture; 1 would be equal).
- * Its bound is a little below what was measured and looked at.  With SNOW_PICTURES set to a folder the
- * pairs are written there, splatted left, ray-cast right. */
+ * Its bound is a little below what was measured and looked at.  With
+ * SNOW_PICTURES set to a folder the pairs are written there, splatted left,
+ * ray-cast right. */
 #include "reference/model.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* tests/values/test_value_bspline.c - method shear-warp with kernel bspline, beside
- * the float64 reference of the value model. */
+/* tests/values/test_value_bspline.c - method shear-warp with kernel bspline,
+ * beside the float64 reference of the value model. */
 #include "values/pictures.h"
 
 static value_scene smoothed(int n) {

@@ -1,5 +1,5 @@
-/* tests/values/test_value_fade.c - method shear-warp with gradient opacity, beside
- * the float64 reference of the value model. */
+/* tests/values/test_value_fade.c - method shear-warp with gradient opacity,
+ * beside the float64 reference of the value model. */
 #include "values/pictures.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))

@@ -1,5 +1,6 @@
-/* tests/values/test_value_faint.c - method shear-warp with looks of which each slab
- * shows next to nothing, beside the float64 reference of the value model. */
+/* tests/values/test_value_faint.c - method shear-warp with looks of which each
+ * slab shows next to nothing, beside the float64 reference of the value model.
+ */
 #include "values/pictures.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* tests/values/test_value_holes.c - method shear-warp where voxels have no value or
- * are cut off, beside the float64 reference of the value model. */
+/* tests/values/test_value_holes.c - method shear-warp where voxels have no
+ * value or are cut off, beside the float64 reference of the value model. */
 #include <math.h>
 
 #include "values/pictures.h"

@@ -1,6 +1,6 @@
-/* tests/values/test_value_perspective.c - method shear-warp in perspective beside
- * the float64 reference of the value model, and what must not change a bit of
- * its pictures. */
+/* tests/values/test_value_perspective.c - method shear-warp in perspective
+ * beside the float64 reference of the value model, and what must not change a
+ * bit of its pictures. */
 #include <math.h>
 
 #include "frame.h"

@@ -51,7 +51,7 @@ typedef struct snow_value_table {
      * + SNOW_VALUE_BESIDE], with zeros beside the nodes. */
     float *planes;
     int plane_pitch;
-    double step;  /* numbers between two of these looks */
+    double step; /* numbers between two of these looks */
     size_t look_count;
     int look_of[SNOW_VALUE_PITCH]; /* the place of each node among them */
     size_t entries_capacity, node_of_capacity, at_capacity, looks_capacity;
