@@ -165,7 +165,7 @@ for way in "step0.nrrd step1.nrrd" "step0.nrrd step1.nrrd --crop :,3:30,5:31" \
     # shellcheck disable=SC2086
     run 0 "a movie alone, $way" "$TOOL" movie $way -s 64x64 -y -o step_%d.npy
     look=$(grep -o 'grey .*histogram)' "$ERR")
-    [ "${way%%0*}" = large ] && way+=" --memory 13M"
+    [ "${way%%0*}" = large ] && way+=" --memory 13600K"
     # shellcheck disable=SC2086
     run 0 "by 12" launch 12 "$MPI_TOOL" movie $way -s 64x64 -y \
         -o steps_%d.npy
@@ -176,7 +176,7 @@ for way in "step0.nrrd step1.nrrd" "step0.nrrd step1.nrrd --crop :,3:30,5:31" \
     done
 done
 refused 5 "a step too large for one" 'the range of all steps needs' \
-    "$TOOL" movie large0.nrrd large1.nrrd --memory 13M -o x_%d.png
+    "$TOOL" movie large0.nrrd large1.nrrd --memory 13600K -o x_%d.png
 
 # Each rank reads its box of a mask.
 "$TOOL" phantom shells --dims 40x36x44 -q -o mask.nrrd
