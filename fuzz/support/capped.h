@@ -32,7 +32,7 @@ static void capped_release(void *user, void *memory) {
     free(block);
 }
 
-static void ignore_notice(void *user, const char *text) {
+static void ignore_warning(void *user, const char *text) {
     (void)user;
     (void)text;
 }
@@ -45,7 +45,7 @@ static inline snow_context *capped_context(size_t *held) {
     *held = 0;
     if (snow_context_new(&allocator, &context) != SNOW_STATUS_OK)
         abort();
-    snow_context_set_warning(context, ignore_notice, NULL);
+    snow_context_set_warning(context, ignore_warning, NULL);
     return context;
 }
 

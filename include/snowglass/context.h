@@ -46,7 +46,7 @@ SNOW_API const char *snow_context_message(const snow_context *context);
 /* Receives warnings (a guess, bytes after the data), one line each; or NULL. */
 typedef void snow_warning_fn(void *user, const char *text);
 SNOW_API void snow_context_set_warning(
-    snow_context *context, snow_warning_fn *notice, void *user);
+    snow_context *context, snow_warning_fn *warning, void *user);
 
 /* Whether a picture is to end now, with STOPPED (snow_settings.stop). Called
  * often, by the thread that called the library; not for the same context. */

@@ -28,7 +28,7 @@ SNOW_API snow_status snow_insitu_set_error(
 
 /* Receives warnings (pictures left out or lowered, and why), on rank 0. */
 SNOW_API void snow_insitu_set_warning(
-    snow_insitu *insitu, snow_warning_fn *notice, void *user);
+    snow_insitu *insitu, snow_warning_fn *warning, void *user);
 
 /* Alike on all ranks: voxels of the global grid along x, y, z, world place of
  * voxel 0 (NULL: 0), distance of neighbours (NULL: 1). Forgets all bricks. */

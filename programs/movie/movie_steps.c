@@ -485,7 +485,7 @@ static int pool_steps(const shot_list *list, shot_renderer *shots,
         report_step(shots->scene.asked, i, list->count);
         done = pool_round(list, i, shots, pool);
     }
-    hear_notices(shots->scene.asked, shots->scene.context, true);
+    hear_warnings(shots->scene.asked, shots->scene.context, true);
     return done == CONTINUE
                ? launch_agree(look_at_pool(&shots->scene, &first, pool))
                : done;
@@ -500,7 +500,7 @@ int steps_look(const shot_list *list, shot_renderer *shots) {
     /* All steps are opened again later and cause the same notes.  They are
      * printed now, except if ranks read steps that rank 0 does not see now. */
     const bool later = launch_ranks() > 1;
-    hear_notices(shots->scene.asked, shots->scene.context, !later);
+    hear_warnings(shots->scene.asked, shots->scene.context, !later);
     int64_t room = pool.quota + 2;
     pool.values =
         malloc((size_t)(room * (list->count + 1)) * sizeof *pool.values);
@@ -510,6 +510,6 @@ int steps_look(const shot_list *list, shot_renderer *shots) {
         done = pool_steps(list, shots, &pool);
     }
     free(pool.values);
-    hear_notices(shots->scene.asked, shots->scene.context, later);
+    hear_warnings(shots->scene.asked, shots->scene.context, later);
     return done;
 }

@@ -109,7 +109,7 @@ int fail_volume(const snow_context *context, snow_status status,
 }
 
 /* All steps of a file cause the same note; it is printed once. */
-static void hear_notice(void *user, const char *text) {
+static void hear_warning(void *user, const char *text) {
     static char last[256];
     (void)user;
     if (strncmp(last, text, sizeof last - 1) == 0)
@@ -122,20 +122,20 @@ int open_context(const options *asked, snow_context **out) {
     snow_status status = snow_context_new(NULL, out);
     if (status != SNOW_STATUS_OK)
         return fail_status(NULL, status);
-    hear_notices(asked, *out, true);
+    hear_warnings(asked, *out, true);
     return CONTINUE;
 }
 
-void hear_notices(const options *asked, snow_context *context, bool hear) {
+void hear_warnings(const options *asked, snow_context *context, bool hear) {
     hear = hear && asked->verbosity >= 0 && launch_talks();
-    snow_context_set_warning(context, hear ? hear_notice : NULL, NULL);
+    snow_context_set_warning(context, hear ? hear_warning : NULL, NULL);
 }
 
 int open_render_context(const options *asked, snow_context **out) {
     if (launch_ranks() == 1)
         return open_context(asked, out);
     *out = snow_comm_context(launch_comm());
-    hear_notices(asked, *out, true);
+    hear_warnings(asked, *out, true);
     return CONTINUE;
 }
 

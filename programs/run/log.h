@@ -32,7 +32,7 @@ int open_context(const options *asked, snow_context **out);
 
 /* Sends a context's warnings to standard error or drops them; they are printed
  * on rank 0 only, and never when quiet. */
-void hear_notices(const options *asked, snow_context *context, bool hear);
+void hear_warnings(const options *asked, snow_context *context, bool hear);
 
 /* The context for rendering: the communicator's if there is one, otherwise a
  * new one as above.  Returns CONTINUE or an exit code. */

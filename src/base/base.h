@@ -24,10 +24,10 @@ typedef struct snow_monitor snow_monitor; /* base/monitor.h */
 
 struct snow_context {
     snow_allocator allocator;
-    pthread_mutex_t lock;    /* of bytes, peak and message: several threads of a
-                                picture allocate */
-    snow_warning_fn *notice; /* NULL: no warnings */
-    void *notice_user;
+    pthread_mutex_t lock; /* of bytes, peak and message: several threads of a
+                             picture allocate */
+    snow_warning_fn *warning; /* NULL: no warnings */
+    void *warning_user;
     uint64_t bytes, peak; /* allocated now; the most so far */
     uint64_t limit;       /* of bytes; 0: none */
     struct snow_pool

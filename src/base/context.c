@@ -51,10 +51,10 @@ const char *snow_context_message(const snow_context *context) {
     return context->message;
 }
 
-void snow_context_set_warning(snow_context *context, snow_warning_fn *notice,
+void snow_context_set_warning(snow_context *context, snow_warning_fn *warning,
                               void *user) {
-    context->notice = notice;
-    context->notice_user = user;
+    context->warning = warning;
+    context->warning_user = user;
 }
 
 void snow_context_set_progress(snow_context *context,
@@ -150,13 +150,13 @@ static void notify(snow_context *context, const char *format,
     char text[SNOW_MESSAGE_BYTES];
     vsnprintf(text, sizeof text, format, arguments);
     keep_to_one_line(text);
-    context->notice(context->notice_user, text);
+    context->warning(context->warning_user, text);
 }
 
 void snow_context_warn(snow_context *context, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    if (context->notice)
+    if (context->warning)
         notify(context, format, arguments);
     va_end(arguments);
 }

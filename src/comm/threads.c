@@ -66,8 +66,8 @@ static snow_status prepare_rank(thread_crew *crew, thread_rank *member,
     member->crew = crew;
     SNOW_TRY(snow_context_new(&shared, &member->context));
     if (rank == 0)
-        snow_context_set_warning(member->context, crew->context->notice,
-                                 crew->context->notice_user);
+        snow_context_set_warning(member->context, crew->context->warning,
+                                 crew->context->warning_user);
     snow_status status = snow_mailbox_comm(crew->mailbox, member->context, rank,
                                            false, &member->comm);
     return status == SNOW_STATUS_OK ? status

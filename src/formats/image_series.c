@@ -165,9 +165,9 @@ static snow_status look_at_first(stack *s) {
 static snow_status read_slices(stack *s, int64_t first, snow_volume *volume) {
     size_t bytes = (size_t)(s->slice.dims[0] * s->slice.dims[1]) *
                    snow_type_size(s->slice.type);
-    snow_warning_fn *notice = s->context->notice;
+    snow_warning_fn *warning = s->context->warning;
     snow_status status = SNOW_STATUS_OK;
-    s->context->notice = NULL;
+    s->context->warning = NULL;
     for (int64_t z = 0; z < volume->info.dims[2] && status == SNOW_STATUS_OK;
          z++) {
         snow_volume *slice = NULL;
@@ -180,7 +180,7 @@ static snow_status read_slices(stack *s, int64_t first, snow_volume *volume) {
                    slice->voxels, bytes);
         snow_volume_close(slice);
     }
-    s->context->notice = notice;
+    s->context->warning = warning;
     return status;
 }
 

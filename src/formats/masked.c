@@ -65,10 +65,10 @@ static snow_status look(const opening *o, const char *path,
                         const snow_volume_options *options,
                         snow_volume_info *out) {
     snow_context *context = o->context;
-    snow_warning_fn *notice = context->notice;
-    context->notice = NULL;
+    snow_warning_fn *warning = context->warning;
+    context->warning = NULL;
     snow_status status = o->open(context, path, options, out, NULL);
-    context->notice = notice;
+    context->warning = warning;
     return status;
 }
 

@@ -82,21 +82,21 @@ snow_comm *snow_insitu_comm(const snow_insitu *insitu) {
     return insitu->comm;
 }
 
-void snow_insitu_set_warning(snow_insitu *insitu, snow_warning_fn *notice,
+void snow_insitu_set_warning(snow_insitu *insitu, snow_warning_fn *warning,
                              void *user) {
-    insitu->notice = notice;
-    insitu->notice_user = user;
+    insitu->warning = warning;
+    insitu->warning_user = user;
 }
 
 void snow_insitu_report(snow_insitu *insitu, const char *format, ...) {
     char text[SNOW_INSITU_MESSAGE];
-    if (!insitu->notice || snow_comm_rank(insitu->comm) != 0)
+    if (!insitu->warning || snow_comm_rank(insitu->comm) != 0)
         return;
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    insitu->notice(insitu->notice_user, text);
+    insitu->warning(insitu->warning_user, text);
 }
 
 /* --- errors --------------------------------------------------------------- */

@@ -61,8 +61,8 @@ struct snow_insitu {
     snow_comm *comm;
     snow_context *context;
     bool owns_comm, owns_context;
-    snow_warning_fn *notice;
-    void *notice_user;
+    snow_warning_fn *warning;
+    void *warning_user;
     char message[SNOW_INSITU_MESSAGE];
     snow_status given; /* of the first setter that failed since the last
                          collective call; message is its */

@@ -133,11 +133,11 @@ static snow_status inspect_file(opening *o, int64_t *stream,
     SNOW_TRY(snow_comm_broadcast(o->comm, stream, sizeof *stream, 0));
     if (*stream)
         return read_stream(o, share);
-    snow_warning_fn *notice = o->context->notice;
-    o->context->notice = NULL;
+    snow_warning_fn *warning = o->context->warning;
+    o->context->warning = NULL;
     snow_status status =
         o->open(o->context, o->path, &o->options, &o->whole, NULL);
-    o->context->notice = notice;
+    o->context->warning = warning;
     SNOW_TRY(snow_comm_agree_status(o->comm, status));
     return compare_files(o);
 }

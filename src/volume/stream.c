@@ -28,19 +28,19 @@ static void warn_once(void *user, const char *text) {
     if (stream->told_count == REMARKS_MOST)
         return;
     stream->given[stream->told_count++] = sum;
-    if (stream->notice)
-        stream->notice(stream->notice_user, text);
+    if (stream->warning)
+        stream->warning(stream->warning_user, text);
 }
 
 /* Begins and ends telling through warn_once. */
 static void listen_once(snow_context *context, snow_stream *stream) {
-    stream->notice = context->notice;
-    stream->notice_user = context->notice_user;
+    stream->warning = context->warning;
+    stream->warning_user = context->warning_user;
     snow_context_set_warning(context, warn_once, stream);
 }
 
 static void listen_again(snow_context *context, const snow_stream *stream) {
-    snow_context_set_warning(context, stream->notice, stream->notice_user);
+    snow_context_set_warning(context, stream->warning, stream->warning_user);
 }
 
 /* Moves a text behind the record. */

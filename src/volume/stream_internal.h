@@ -22,8 +22,8 @@ struct snow_stream {
     snow_volume_statistics range;
     char *path;
     /* Warnings of reading, each of which is given once: a hash of each. */
-    snow_warning_fn *notice;
-    void *notice_user;
+    snow_warning_fn *warning;
+    void *warning_user;
     uint64_t given[REMARKS_MOST];
     int told_count;
 };

@@ -74,7 +74,7 @@ static void gzip_is_undone_whatever_the_name(void **state) {
     assert_int_equal(read_through(source, 1000, &total), SNOW_STATUS_OK);
     assert_int_equal(total, SIZE);
     assert_int_equal(snow_source_finish(source), SNOW_STATUS_OK);
-    assert_int_equal(files.notices, 0);
+    assert_int_equal(files.warnings, 0);
     snow_source_close(source);
     support_files_end(&files);
 }
@@ -158,27 +158,27 @@ static void finish_sees_a_wrong_check_sum_after_all_bytes(void **state) {
     support_files_end(&files);
 }
 
-static void garbage_after_gzip_is_one_notice(void **state) {
+static void garbage_after_gzip_is_one_warning(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
     size_t size = support_gzip(plain, 500, packed, sizeof packed);
     memcpy(packed + size, "garbage", 7);
     assert_int_equal(read_packed(&files, size + 7), SNOW_STATUS_OK);
-    assert_int_equal(files.notices, 1);
-    assert_non_null(strstr(files.notice, "ignored"));
+    assert_int_equal(files.warnings, 1);
+    assert_non_null(strstr(files.warning, "ignored"));
     support_files_end(&files);
 }
 
-static void left_over_bytes_are_one_notice(void **state) {
+static void left_over_bytes_are_one_warning(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
     snow_source *source = opened(&files, support_write(&files, "a", "abc", 3));
     assert_int_equal(snow_source_skip(source, 1, "it"), SNOW_STATUS_OK);
     assert_int_equal(snow_source_finish(source), SNOW_STATUS_OK);
-    assert_int_equal(files.notices, 1);
-    assert_non_null(strstr(files.notice, "2 bytes"));
+    assert_int_equal(files.warnings, 1);
+    assert_non_null(strstr(files.warning, "2 bytes"));
     snow_source_close(source);
     support_files_end(&files);
 }
@@ -501,8 +501,8 @@ int main(void) {
         cmocka_unit_test(a_cut_gzip_stream_is_an_error_at_every_length),
         cmocka_unit_test(a_wrong_check_sum_or_length_is_an_error),
         cmocka_unit_test(finish_sees_a_wrong_check_sum_after_all_bytes),
-        cmocka_unit_test(garbage_after_gzip_is_one_notice),
-        cmocka_unit_test(left_over_bytes_are_one_notice),
+        cmocka_unit_test(garbage_after_gzip_is_one_warning),
+        cmocka_unit_test(left_over_bytes_are_one_warning),
         cmocka_unit_test(peeking_takes_nothing),
         cmocka_unit_test(skipping_beyond_the_end_is_an_error),
         cmocka_unit_test(lines_end_with_lf_crlf_or_the_file),

@@ -279,12 +279,12 @@ static void a_folder_is_a_volume_whatever_its_names(void **state) {
     for (int z = 0; z < 4; z++)
         assert_int_equal(voxels[8 * z + 7], 10 * z + 7);
     assert_string_equal(snow_volume_patient(volume), "Hidden^Name");
-    assert_int_equal(files.notices, 0);
+    assert_int_equal(files.warnings, 0);
     snow_volume_close(volume);
     /* a slice stands for all, and says so */
     volume = support_opened(&files, support_path(&files, "9"), NULL);
     assert_int_equal(snow_volume_get_info(volume)->dims[2], 4);
-    assert_non_null(strstr(files.notice, "one of 4 slices"));
+    assert_non_null(strstr(files.warning, "one of 4 slices"));
     snow_volume_close(volume);
     support_files_end(&files);
 }
@@ -302,7 +302,7 @@ static void a_slice_tells_that_those_beside_it_are_damaged(void **state) {
     snow_volume *volume =
         support_opened(&files, support_path(&files, "1"), NULL);
     assert_int_equal(snow_volume_get_info(volume)->dims[2], 3);
-    assert_int_equal(files.notices, 2);
+    assert_int_equal(files.warnings, 2);
     snow_volume_close(volume);
     support_files_end(&files);
 }
@@ -325,8 +325,8 @@ static void a_slice_without_a_number_is_there_once(void **state) {
     snow_volume *volume =
         support_opened(&files, support_path(&files, "1"), NULL);
     assert_int_equal(snow_volume_get_info(volume)->dims[2], 3);
-    assert_int_equal(files.notices, 1);
-    assert_non_null(strstr(files.notice, "one of 3 slices"));
+    assert_int_equal(files.warnings, 1);
+    assert_non_null(strstr(files.warning, "one of 3 slices"));
     snow_volume_close(volume);
     support_files_end(&files);
 }

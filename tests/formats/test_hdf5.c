@@ -50,7 +50,7 @@ static void the_only_data_set_needs_no_name(void **state) {
     support_files files;
     support_files_begin(&files);
     expect_counting(support_opened(&files, write_sets(&files, names), NULL));
-    assert_int_equal(files.notices, 0);
+    assert_int_equal(files.warnings, 0);
     support_files_end(&files);
 }
 

@@ -101,7 +101,7 @@ static void a_plain_file_is_read_and_turned_from_lps(void **state) {
     assert_sample(volume);
     assert_matrix(volume,
                   (double[]){-1, 0, 0, -10, 0, -2, 0, -20, 0, 0, 3, 30});
-    assert_string_equal(place->notices, "");
+    assert_string_equal(place->warnings, "");
     snow_volume_close(volume);
 }
 
@@ -331,7 +331,7 @@ static void a_compressed_stream_of_another_size_is_noticed(void **state) {
     size = pack_sample(15, packed, 30);
     f = make_file(packed_header(), packed, size);
     snow_volume_close(open_file(place, &f));
-    assert_non_null(strstr(place->notices, "6 bytes after the data"));
+    assert_non_null(strstr(place->warnings, "6 bytes after the data"));
 }
 
 static void voxels_may_be_written_as_text(void **state) {

@@ -56,8 +56,9 @@ static void expect_matrix(const snow_volume_info *info,
                      info->matrix[i / 4][i % 4], wanted[i / 4][i % 4]);
 }
 
-/* Opens the map and compares its matrix and the notices heard. */
-static void expect_place(const map *m, const double wanted[3][4], int notices) {
+/* Opens the map and compares its matrix and the warnings heard. */
+static void expect_place(const map *m, const double wanted[3][4],
+                         int warnings) {
     support_files files;
     support_files_begin(&files);
     snow_volume *volume = support_opened(&files, write_map(&files, m), NULL);
@@ -65,7 +66,7 @@ static void expect_place(const map *m, const double wanted[3][4], int notices) {
     expect_matrix(snow_volume_get_info(volume), wanted);
     for (int i = 0; i < VOXELS; i++)
         assert_int_equal(voxels[i], i);
-    assert_int_equal(files.notices, notices);
+    assert_int_equal(files.warnings, warnings);
     snow_volume_close(volume);
     support_files_end(&files);
 }

@@ -82,7 +82,7 @@ static void a_fixed_variable_is_read(void **state) {
     begin(&f, 0, 4);
     put_voxels(&f, 24);
     expect_counting(support_opened(&files, write_nc(&files, &f), NULL), 4);
-    assert_int_equal(files.notices, 0);
+    assert_int_equal(files.warnings, 0);
     support_files_end(&files);
 }
 

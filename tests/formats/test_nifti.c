@@ -134,7 +134,7 @@ static void both_versions_and_byte_orders_give_one_volume(void **state) {
         const int16_t *voxels = snow_volume_voxels(volume);
         for (int k = 0; k < 12; k++)
             assert_int_equal(voxels[k], 100 + k);
-        assert_string_equal(place->notices, "");
+        assert_string_equal(place->warnings, "");
         snow_volume_close(volume);
     }
 }
@@ -251,12 +251,12 @@ static void bad_geometry_falls_back_with_a_warning(void **state) {
     put_sform(&f, (double[12]){1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0});
     snow_volume *volume = open_file(place, &f);
     assert_matrix(volume, (double[]){1, 0, 0, 10, 0, 2, 0, 20, 0, 0, 3, 30});
-    assert_non_null(strstr(place->notices, "sform"));
+    assert_non_null(strstr(place->warnings, "sform"));
     snow_volume_close(volume);
     put_qform(&f, NAN, 0, 0);
     volume = open_file(place, &f);
     assert_matrix(volume, (double[]){1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0});
-    assert_non_null(strstr(place->notices, "qform"));
+    assert_non_null(strstr(place->warnings, "qform"));
     assert_false(snow_volume_get_info(volume)->medical);
     snow_volume_close(volume);
 }
@@ -269,7 +269,7 @@ static void an_impossible_spacing_becomes_1_with_a_warning(void **state) {
     put_pixdim(&f, 3, -5);
     snow_volume *volume = open_file(place, &f);
     assert_matrix(volume, (double[]){1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 5, 0});
-    assert_non_null(strstr(place->notices, "pixdim"));
+    assert_non_null(strstr(place->warnings, "pixdim"));
     snow_volume_close(volume);
 }
 
@@ -307,7 +307,7 @@ static void the_time_step_that_is_asked_for_is_read(void **state) {
                          100 + 2 * time);
         snow_volume_close(volume);
     }
-    assert_non_null(strstr(place->notices, "volume 0 of 6"));
+    assert_non_null(strstr(place->warnings, "volume 0 of 6"));
     const snow_volume_options beyond = {.size = sizeof beyond, .time = 6};
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_open_memory(place->context, "a.nii", f.bytes,
@@ -323,7 +323,7 @@ static void only_the_fourth_axis_is_called_time(void **state) {
     for (size_t i = 0; i < 8; i++)
         put_dim(&f, i, dim[i]);
     snow_volume_close(open_file(place, &f));
-    assert_non_null(strstr(place->notices, "time step 0 of 6"));
+    assert_non_null(strstr(place->warnings, "time step 0 of 6"));
 }
 
 static void few_axes_and_extensions_are_read(void **state) {
@@ -425,7 +425,7 @@ static void bytes_after_the_voxels_are_a_warning(void **state) {
     file f = make_file(1, false);
     f.size += 5;
     snow_volume_close(open_file(place, &f));
-    assert_non_null(strstr(place->notices, "5 bytes after"));
+    assert_non_null(strstr(place->warnings, "5 bytes after"));
 }
 
 /* Packs a file into `packed`; returns its size. */

@@ -39,7 +39,7 @@ static void the_last_index_is_x(void **state) {
     assert_true(info->dims[0] == 4 && info->dims[1] == 3 && info->dims[2] == 2);
     for (int i = 0; i < 24; i++)
         assert_int_equal(voxels[i], i);
-    assert_int_equal(files.notices, 0);
+    assert_int_equal(files.warnings, 0);
     snow_volume_close(volume);
     support_files_end(&files);
 }
@@ -74,7 +74,7 @@ static void time_comes_before_channel_before_z(void **state) {
     const uint8_t *voxels = snow_volume_voxels(volume);
     assert_int_equal(snow_volume_get_info(volume)->times, 2);
     assert_int_equal(voxels[0], (3 + 2) * 8);
-    assert_int_equal(files.notices, 2);
+    assert_int_equal(files.warnings, 2);
     snow_volume_close(volume);
     support_files_end(&files);
 }

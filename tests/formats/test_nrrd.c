@@ -78,7 +78,7 @@ static void a_plain_file_is_read(void **state) {
     assert_false(info->medical);
     assert_string_equal(info->unit, "");
     expect_counting(volume);
-    assert_int_equal(files.notices, 0);
+    assert_int_equal(files.warnings, 0);
     support_files_end(&files);
 }
 
@@ -208,7 +208,7 @@ static void skips_apply_on_their_side_of_the_packing(void **state) {
         write_nrrd(&files, "d.nrrd", SHORTS "encoding: raw\nbyte skip: -1\n\n",
                    data, 54),
         NULL));
-    assert_int_equal(files.notices, 0);
+    assert_int_equal(files.warnings, 0);
     support_files_end(&files);
 }
 
@@ -272,7 +272,7 @@ static void numbers_in_text_are_read(void **state) {
         NULL);
     assert_true(*(const uint64_t *)snow_volume_voxels(volume) == UINT64_MAX);
     snow_volume_close(volume);
-    assert_int_equal(files.notices, 0);
+    assert_int_equal(files.warnings, 0);
     volume = support_opened(
         &files,
         support_write_text(&files, "c.nrrd",
@@ -281,7 +281,7 @@ static void numbers_in_text_are_read(void **state) {
         NULL);
     assert_true(((const float *)snow_volume_voxels(volume))[1] == -100);
     snow_volume_close(volume);
-    assert_int_equal(files.notices, 1);
+    assert_int_equal(files.warnings, 1);
     volume = support_opened(
         &files,
         support_write_text(&files, "d.nrrd",
@@ -389,7 +389,7 @@ static void other_worlds_are_not_medical(void **state) {
         {1, 0, 0, 1}, {0, 2, 0, 1}, {0, 0, -3, -1}};
     expect_matrix(volume, turned);
     assert_string_equal(snow_volume_get_info(volume)->unit, "nm");
-    assert_int_equal(files.notices, 1);
+    assert_int_equal(files.warnings, 1);
     snow_volume_close(volume);
     support_files_end(&files);
 }
@@ -454,13 +454,13 @@ static void a_last_axis_of_time_or_list_has_steps(void **state) {
         for (int64_t time = 0; time < 3; time++) {
             snow_volume_options options = {.size = sizeof options,
                                            .time = time};
-            files.notices = 0;
+            files.warnings = 0;
             snow_volume *volume = support_opened(&files, path, &options);
             assert_int_equal(*(const uint8_t *)snow_volume_voxels(volume),
                              16 * time);
             assert_int_equal(snow_volume_get_info(volume)->times, 3);
             assert_int_equal(snow_volume_get_info(volume)->time, time);
-            assert_int_equal(files.notices, 1);
+            assert_int_equal(files.warnings, 1);
             snow_volume_close(volume);
         }
         snow_volume_options beyond = {.size = sizeof beyond, .time = 3};
@@ -703,7 +703,7 @@ static void data_too_short_or_too_long_are_told(void **state) {
     memcpy(longer, counting(), 48);
     expect_counting(support_opened(
         &files, write_nrrd(&files, "b.nrrd", header, longer, 50), NULL));
-    assert_int_equal(files.notices, 1);
+    assert_int_equal(files.warnings, 1);
     support_files_end(&files);
 }
 
@@ -943,7 +943,7 @@ static void the_real_balls_are_one_ball(void **state) {
                             sizeof(double[4][4]));
         snow_volume_close(other);
     }
-    assert_int_equal(files.notices, 0);
+    assert_int_equal(files.warnings, 0);
     snow_volume_close(ball);
     support_files_end(&files);
 }

@@ -52,7 +52,7 @@ static void samples_stay_as_they_are(void **state) {
     assert_true(info->dims[0] == 5 && info->dims[1] == 3 && info->dims[2] == 1);
     for (int i = 0; i < 15; i++)
         assert_int_equal(voxels[i], (7 + i % 5) << 8 | i / 5);
-    assert_int_equal(files.notices, 0);
+    assert_int_equal(files.warnings, 0);
     snow_volume_close(volume);
     support_files_end(&files);
 }
@@ -67,7 +67,7 @@ static void colours_are_channels(void **state) {
     const uint8_t *voxels = snow_volume_voxels(volume);
     for (int x = 0; x < 4; x++)
         assert_int_equal(voxels[x], 3 * x + 2);
-    assert_int_equal(files.notices, 1);
+    assert_int_equal(files.warnings, 1);
     snow_volume_close(volume);
     support_files_end(&files);
 }
@@ -85,7 +85,7 @@ static void a_folder_tells_of_its_channels_once(void **state) {
     const uint8_t *voxels = snow_volume_voxels(volume);
     for (int z = 0; z < 12; z++)
         assert_int_equal(voxels[8 * z], z);
-    assert_int_equal(files.notices, 1);
+    assert_int_equal(files.warnings, 1);
     snow_volume_close(volume);
     support_files_end(&files);
 }

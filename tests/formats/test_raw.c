@@ -33,7 +33,7 @@ static void options_describe_the_bytes(void **state) {
     assert_string_equal(info->format, "raw");
     assert_true(info->spacing[0] == 0.5 && info->spacing[1] == 1 &&
                 info->spacing[2] == 2 && info->matrix[2][2] == 2);
-    assert_int_equal(files.notices, 0);
+    assert_int_equal(files.warnings, 0);
     snow_volume_close(volume);
     support_files_end(&files);
 }
@@ -114,14 +114,14 @@ static void a_short_file_is_refused_before_its_memory(void **state) {
     support_files_end(&files);
 }
 
-static void a_long_file_is_read_with_one_notice(void **state) {
+static void a_long_file_is_read_with_one_warning(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
     const char *path = support_write(&files, "a.raw", counting(), 49);
     snow_volume_close(support_opened(&files, path, &given));
-    assert_int_equal(files.notices, 1);
-    assert_non_null(strstr(files.notice, "1 byte after"));
+    assert_int_equal(files.warnings, 1);
+    assert_non_null(strstr(files.warning, "1 byte after"));
     support_files_end(&files);
 }
 
@@ -175,8 +175,8 @@ static void the_name_tells_what_options_leave_out(void **state) {
         snow_volume *volume = support_opened(&files, path, NULL);
         assert_int_equal(*(const uint16_t *)snow_volume_voxels(volume), 0x0100);
         assert_int_equal(snow_volume_get_info(volume)->dims[1], 3);
-        assert_int_equal(files.notices, (int)i + 1);
-        assert_non_null(strstr(files.notice, "4x3x2 uint16, little"));
+        assert_int_equal(files.warnings, (int)i + 1);
+        assert_non_null(strstr(files.warning, "4x3x2 uint16, little"));
         snow_volume_close(volume);
     }
     const char *path =
@@ -195,7 +195,7 @@ static void options_win_over_the_name(void **state) {
         support_write(&files, "a_9x9x9_float64.raw", counting(), 48);
     snow_volume *volume = support_opened(&files, path, &given);
     assert_int_equal(snow_volume_get_info(volume)->dims[0], 4);
-    assert_int_equal(files.notices, 0);
+    assert_int_equal(files.warnings, 0);
     snow_volume_close(volume);
     support_files_end(&files);
 }
@@ -261,7 +261,7 @@ static void the_real_engine_and_head_have_their_figures(void **state) {
                 m.wsum == 1419355380335);
     assert_true(snow_volume_get_info(volume)->spacing[2] == 2);
     snow_volume_close(volume);
-    assert_int_equal(files.notices, 0);
+    assert_int_equal(files.warnings, 0);
     support_files_end(&files);
 }
 
@@ -271,7 +271,7 @@ int main(void) {
         cmocka_unit_test(every_type_is_read_in_both_byte_orders),
         cmocka_unit_test(an_offset_skips_bytes),
         cmocka_unit_test(a_short_file_is_refused_before_its_memory),
-        cmocka_unit_test(a_long_file_is_read_with_one_notice),
+        cmocka_unit_test(a_long_file_is_read_with_one_warning),
         cmocka_unit_test(a_cut_or_damaged_gzip_is_refused),
         cmocka_unit_test(a_gzip_that_cannot_hold_the_sizes_is_refused_early),
         cmocka_unit_test(the_name_tells_what_options_leave_out),

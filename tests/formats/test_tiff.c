@@ -73,7 +73,7 @@ static void pages_are_slices_in_order(void **state) {
     assert_true(info->dims[0] == 3 && info->dims[1] == 2 && info->dims[2] == 5);
     for (int z = 0; z < 5; z++)
         assert_true(voxels[6 * z] == 10 + z && voxels[6 * z + 5] == 10 + z);
-    assert_int_equal(files.notices, 0);
+    assert_int_equal(files.warnings, 0);
     snow_volume_close(volume);
     support_files_end(&files);
 }

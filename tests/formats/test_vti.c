@@ -58,7 +58,7 @@ static void text_and_base64_are_read_in_place(void **state) {
         assert_true(info->matrix[0][0] == 0.5 && info->matrix[0][3] == 1.5);
         expect_counting(volume);
     }
-    assert_int_equal(files->notices, 0);
+    assert_int_equal(files->warnings, 0);
 }
 
 static void the_scalars_of_the_file_come_before_others(void **state) {

@@ -52,7 +52,7 @@ static snow_status open_records(support_place *place, const records *r,
         .context = place->context, .records = r->bytes, .size = r->size};
     snow_volume_info info = {.size = sizeof info};
     place->largest = 0;
-    *place->notices = 0;
+    *place->warnings = 0;
     return snow_zarr_read_store(&store, path, options ? options : &none, &info,
                                 out);
 }
@@ -86,7 +86,7 @@ static void only_the_chunks_of_a_box_are_read(void **state) {
     const uint8_t *voxels = snow_volume_voxels(volume);
     for (int i = 0; i < 4; i++)
         assert_int_equal(voxels[i], 1);
-    assert_string_equal(place->notices, "");
+    assert_string_equal(place->warnings, "");
     snow_volume_close(volume);
     expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "0.0.0: holds 7 bytes",
                    4096);
@@ -104,7 +104,7 @@ static void chunks_that_are_missing_are_filled_and_told(void **state) {
     const uint8_t *voxels = snow_volume_voxels(volume);
     for (int i = 0; i < 16; i++)
         assert_int_equal(voxels[i], i % 4 < 2 ? 7 : 1);
-    assert_non_null(strstr(place->notices, "1 of 2 chunks are not stored"));
+    assert_non_null(strstr(place->warnings, "1 of 2 chunks are not stored"));
     snow_volume_close(volume);
 }
 
@@ -193,7 +193,7 @@ static void names_are_kept_on_one_line(void **state) {
              "\"|u1\", \"order\": \"C\", \"compressor\": null}");
     expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "a?b", 1 << 16);
     assert_null(strchr(snow_context_message(place->context), '\n'));
-    assert_non_null(strstr(place->notices, "level 0 of 2 (p?q)"));
+    assert_non_null(strstr(place->warnings, "level 0 of 2 (p?q)"));
 }
 
 static void the_check_sum_is_castagnolis(void **state) {

@@ -299,7 +299,7 @@ static void both_kinds_and_byte_orders_of_pfm_are_read(void **state) {
         assert_pixels(f, &data, 1, 2,
                       i < 2 ? (float[]){4, 5, 6, 1, 1, 2, 3, 1}
                             : (float[]){2, 2, 2, 1, 1, 1, 1, 1});
-        assert_string_equal(f->notice, "");
+        assert_string_equal(f->warning, "");
     }
 }
 
@@ -308,7 +308,7 @@ static void a_scale_of_pfm_is_told_not_applied(void **state) {
     file data = pfm("Pf\n1 1\n-2.5\n");
     put_floats(&data, (double[]){3}, 1, 4, false);
     assert_pixels(f, &data, 1, 1, (float[]){3, 3, 3, 1});
-    assert_non_null(strstr(f->notice, "2.5"));
+    assert_non_null(strstr(f->warning, "2.5"));
 }
 
 static void damaged_pfm_headers_are_refused(void **state) {
@@ -346,12 +346,12 @@ static void files_cut_anywhere_are_refused(void **state) {
         }
         snow_image_free(
             support_load(f->context, whole[i].bytes, whole[i].size));
-        assert_string_equal(f->notice, "");
+        assert_string_equal(f->warning, "");
         put(&whole[i], "xyz", 3);
         snow_image_free(
             support_load(f->context, whole[i].bytes, whole[i].size));
-        assert_non_null(strstr(f->notice, "3 bytes"));
-        f->notice[0] = 0;
+        assert_non_null(strstr(f->warning, "3 bytes"));
+        f->warning[0] = 0;
     }
 }
 

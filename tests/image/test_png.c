@@ -580,9 +580,9 @@ static void bytes_after_the_end_are_told(void **state) {
     data.bytes = realloc(data.bytes, data.size + 5);
     memcpy(data.bytes + data.size, "after", 5);
     snow_image_free(support_load(f->context, data.bytes, data.size));
-    assert_string_equal(f->notice, "");
+    assert_string_equal(f->warning, "");
     snow_image_free(support_load(f->context, data.bytes, data.size + 5));
-    assert_non_null(strstr(f->notice, "5 bytes"));
+    assert_non_null(strstr(f->warning, "5 bytes"));
     free(data.bytes);
 }
 

@@ -18,8 +18,8 @@ static void noting_release(void *user, void *block) {
 
 static void note(void *user, const char *text) {
     support_files *files = user;
-    files->notices++;
-    snprintf(files->notice, sizeof files->notice, "%s", text);
+    files->warnings++;
+    snprintf(files->warning, sizeof files->warning, "%s", text);
 }
 
 void support_files_begin(support_files *files) {

@@ -10,8 +10,8 @@ typedef struct support_files {
     snow_context *context;
     char folder[SUPPORT_FOLDER_BYTES]; /* of temporary files */
     size_t largest;                    /* request for memory so far */
-    int notices;                       /* heard so far */
-    char notice[1024];                 /* the last one */
+    int warnings;                      /* heard so far */
+    char warning[1024];                /* the last one */
 } support_files;
 
 /* Group fixtures are not needed: a test begins and ends its own.  The end

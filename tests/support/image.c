@@ -4,15 +4,15 @@
 #include <dirent.h>
 #include <unistd.h>
 
-static void hear_notice(void *user, const char *text) {
+static void hear_warning(void *user, const char *text) {
     image_fixture *fixture = user;
-    snprintf(fixture->notice, sizeof fixture->notice, "%s", text);
+    snprintf(fixture->warning, sizeof fixture->warning, "%s", text);
 }
 
 int support_image_setup(void **state) {
     image_fixture *fixture = calloc(1, sizeof *fixture);
     fixture->context = support_context();
-    snow_context_set_warning(fixture->context, hear_notice, fixture);
+    snow_context_set_warning(fixture->context, hear_warning, fixture);
     support_folder_make(fixture->folder);
     *state = fixture;
     return 0;

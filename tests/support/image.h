@@ -14,7 +14,7 @@ typedef struct image_fixture {
     snow_context *context;
     char folder[SUPPORT_FOLDER_BYTES];
     char path[128]; /* told by support_image_path last */
-    char notice[SNOW_MESSAGE_BYTES];
+    char warning[SNOW_MESSAGE_BYTES];
 } image_fixture;
 
 int support_image_setup(void **state);

@@ -21,8 +21,9 @@ static void release_recorded(void *user, void *block) {
 
 static void hear(void *user, const char *text) {
     support_place *place = user;
-    size_t used = strlen(place->notices);
-    snprintf(place->notices + used, sizeof place->notices - used, "%s\n", text);
+    size_t used = strlen(place->warnings);
+    snprintf(place->warnings + used, sizeof place->warnings - used, "%s\n",
+             text);
 }
 
 int support_place_begin(void **state) {

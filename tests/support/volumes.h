@@ -11,7 +11,7 @@ typedef struct support_place {
     size_t largest;  /* bytes of the largest allocation since it was set 0 */
     int64_t fail_at; /* this allocation and all later ones fail; 0: none */
     int64_t allocations;               /* so far */
-    char notices[4096];                /* all remarks, one a line */
+    char warnings[4096];               /* all remarks, one a line */
     char folder[SUPPORT_FOLDER_BYTES]; /* an empty folder, removed with its
                                           files at the end */
 } support_place;

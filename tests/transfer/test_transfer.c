@@ -509,7 +509,7 @@ static void ct_presets_keep_their_hounsfield_values(void **state) {
     snow_context_free(context);
 }
 
-static void count_notice(void *user, const char *text) {
+static void count_warning(void *user, const char *text) {
     assert_non_null(strstr(text, "Hounsfield"));
     ++*(int *)user;
 }
@@ -518,19 +518,19 @@ static void ct_presets_warn_of_values_with_an_offset(void **state) {
     (void)state;
     const uint16_t values[] = {0, 1040, 1900};
     snow_context *context = support_context();
-    int notices = 0;
-    snow_context_set_warning(context, count_notice, &notices);
+    int warnings = 0;
+    snow_context_set_warning(context, count_warning, &warnings);
     snow_volume *volume = support_row(context, SNOW_TYPE_UINT16, values, 3);
     snow_transfer_free(support_look(
         volume, (snow_look){.size = sizeof(snow_look), .preset = "ct-soft"}));
-    assert_int_equal(notices, 1);
+    assert_int_equal(warnings, 1);
     snow_transfer_free(
         support_look(volume, (snow_look){.size = sizeof(snow_look),
                                          .preset = "ct-soft",
                                          .range = SNOW_RANGE_VALUES,
                                          .low = 674,
                                          .high = 1524}));
-    assert_int_equal(notices, 1);
+    assert_int_equal(warnings, 1);
     snow_volume_close(volume);
     snow_context_free(context);
 }

@@ -22,7 +22,7 @@ static snow_volume *shared(support_place *place, snow_type type, int64_t count,
 static snow_volume *converted(support_place *place, snow_volume *volume,
                               snow_type type, const double range[2]) {
     snow_volume *out = NULL;
-    place->notices[0] = 0;
+    place->warnings[0] = 0;
     if (snow_volume_convert(volume, type, range, &out) != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(place->context));
     snow_volume_close(volume);
@@ -61,7 +61,7 @@ static void values_that_fit_are_kept(void **state) {
     check(converted(place, shared(place, SNOW_TYPE_INT8, 3, to, 1, 0),
                     SNOW_TYPE_FLOAT64, NULL),
           SNOW_TYPE_FLOAT64, wide, sizeof wide);
-    assert_string_equal(place->notices, "");
+    assert_string_equal(place->warnings, "");
 }
 
 static void integers_of_64_bits_stay_whole(void **state) {
@@ -73,7 +73,7 @@ static void integers_of_64_bits_stay_whole(void **state) {
     snow_volume_close(
         converted(place, shared(place, SNOW_TYPE_INT64, 1, from + 2, 1, 0),
                   SNOW_TYPE_UINT64, NULL));
-    assert_non_null(strstr(place->notices, "1 values were rounded"));
+    assert_non_null(strstr(place->warnings, "1 values were rounded"));
     refused(place, shared(place, SNOW_TYPE_INT64, 3, from, 1, 0),
             SNOW_TYPE_INT32, NULL,
             "3 values such as 9.22337e+18 do not fit int32");
@@ -86,7 +86,7 @@ static void fractions_are_rounded_with_a_word(void **state) {
     check(converted(place, shared(place, SNOW_TYPE_FLOAT32, 4, from, 1, 0),
                     SNOW_TYPE_INT16, NULL),
           SNOW_TYPE_INT16, to, sizeof to);
-    assert_non_null(strstr(place->notices, "3 values were rounded to int16"));
+    assert_non_null(strstr(place->warnings, "3 values were rounded to int16"));
 }
 
 static void what_does_not_fit_is_refused(void **state) {
@@ -114,7 +114,7 @@ static void what_is_not_finite_stays_so_in_floats(void **state) {
     const float *to = snow_volume_voxels(volume);
     assert_true(isnan(to[0]) && to[1] > 0 && isinf(to[1]) && to[2] < 0 &&
                 isinf(to[2]) && to[3] == 0.1F);
-    assert_non_null(strstr(place->notices, "1 values were rounded"));
+    assert_non_null(strstr(place->warnings, "1 values were rounded"));
     snow_volume_close(volume);
 }
 
@@ -128,7 +128,7 @@ static void a_range_is_spread_over_the_type(void **state) {
                     SNOW_TYPE_UINT8, range),
           SNOW_TYPE_UINT8, bytes, sizeof bytes);
     assert_non_null(
-        strstr(place->notices, "values 0 to 100 became 0 to 255 of uint8"));
+        strstr(place->warnings, "values 0 to 100 became 0 to 255 of uint8"));
     check(converted(place, shared(place, SNOW_TYPE_INT16, 5, from, 1, 0),
                     SNOW_TYPE_INT8, range),
           SNOW_TYPE_INT8, low, sizeof low);

@@ -389,8 +389,8 @@ static void a_mask_without_voxels_is_told(void **state) {
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_open(place->context, a, &options, &volume),
                      SNOW_STATUS_OK);
-    assert_non_null(strstr(place->notices, "no voxel is left inside this "
-                                           "mask, whose values are 0 to 5"));
+    assert_non_null(strstr(place->warnings, "no voxel is left inside this "
+                                            "mask, whose values are 0 to 5"));
     snow_volume_close(volume);
 }
 

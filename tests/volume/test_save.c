@@ -61,7 +61,7 @@ static void every_format_keeps_every_type_and_the_matrix(void **state) {
             snow_volume_close(back);
             snow_volume_close(volume);
         }
-    assert_string_equal(place->notices, "");
+    assert_string_equal(place->warnings, "");
 }
 
 static void raw_keeps_every_type_when_told_what_it_is(void **state) {
@@ -83,11 +83,11 @@ static void raw_keeps_every_type_when_told_what_it_is(void **state) {
             support_same_voxels(volume, back);
             snow_volume_close(back);
             snow_volume_close(volume);
-            place->notices[0] = 0;
+            place->warnings[0] = 0;
         }
     snow_volume *volume = make_volume(place, SNOW_TYPE_UINT8, false, oblique);
     save(place, volume, support_place_path(place, "a.raw"));
-    assert_non_null(strstr(place->notices, "--dims 5x3x4 --type uint8"));
+    assert_non_null(strstr(place->warnings, "--dims 5x3x4 --type uint8"));
     snow_volume_close(volume);
 }
 
