@@ -105,18 +105,19 @@ snow_status snow_visit_interesting(const snow_interesting_walk *walk,
 /* --- counts --------------------------------------------------------------- */
 
 typedef struct counting {
-    snow_block_counts *tally;
+    snow_block_counts *block_counts;
     int64_t *columns; /* of the whole: their blocks */
 } counting;
 
 static void count_row(void *of, const snow_interesting_row *row) {
     const counting *c = of;
-    const int64_t *blocks = c->tally->blocks;
+    const int64_t *blocks = c->block_counts->blocks;
     const int64_t *columns = c->columns + row->stored;
-    int64_t *counts = c->tally->counts +
-                      (snow_block_counts_find(c->tally, 2, row->z) * blocks[1] +
-                       snow_block_counts_find(c->tally, 1, row->y)) *
-                          blocks[0];
+    int64_t *counts =
+        c->block_counts->counts +
+        (snow_block_counts_find(c->block_counts, 2, row->z) * blocks[1] +
+         snow_block_counts_find(c->block_counts, 1, row->y)) *
+            blocks[0];
     for (size_t n = 0; n < row->count; n++)
         counts[columns[row->columns[n]]]++;
 }
@@ -124,8 +125,8 @@ static void count_row(void *of, const snow_interesting_row *row) {
 snow_status snow_count_interesting_blocks(const snow_volume *volume,
                                           const snow_transfer *transfer,
                                           double threshold, snow_isa isa,
-                                          snow_block_counts *tally) {
-    counting c = {.tally = tally};
+                                          snow_block_counts *block_counts) {
+    counting c = {.block_counts = block_counts};
     snow_extent part;
     snow_volume_find_extent(volume, &part);
     c.columns = snow_allocate_array(volume->context, (uint64_t)part.dims[0],
@@ -133,7 +134,7 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
     if (!c.columns)
         return SNOW_STATUS_NO_MEMORY;
     for (int64_t x = 0; x < part.dims[0]; x++)
-        c.columns[x] = snow_block_counts_find(tally, 0, x);
+        c.columns[x] = snow_block_counts_find(block_counts, 0, x);
     const snow_interesting_walk walk = {.volume = volume,
                                         .transfer = transfer,
                                         .threshold = threshold,
@@ -152,11 +153,12 @@ snow_status snow_count_interesting(const snow_volume *volume,
     int64_t count = 0;
     snow_extent part;
     snow_volume_find_extent(volume, &part);
-    snow_block_counts tally = {.blocks = {1, 1, 1}, .counts = &count};
+    snow_block_counts block_counts = {.blocks = {1, 1, 1}, .counts = &count};
     for (int axis = 0; axis < 3; axis++)
-        tally.grid.dims[axis] = tally.block[axis] = part.dims[axis];
+        block_counts.grid.dims[axis] = block_counts.block[axis] =
+            part.dims[axis];
     SNOW_TRY(snow_count_interesting_blocks(volume, transfer, threshold, isa,
-                                           &tally));
+                                           &block_counts));
     *out = count;
     return SNOW_STATUS_OK;
 }

@@ -34,7 +34,7 @@ snow_status snow_visit_interesting(const snow_interesting_walk *walk,
 snow_status snow_count_interesting_blocks(const snow_volume *volume,
                                           const snow_transfer *transfer,
                                           double threshold, snow_isa isa,
-                                          snow_block_counts *tally);
+                                          snow_block_counts *block_counts);
 
 /* The total number of interesting voxels. Errors: as above. */
 snow_status snow_count_interesting(const snow_volume *volume,

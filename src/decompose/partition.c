@@ -11,32 +11,33 @@
 #include <string.h>
 
 snow_block_counts snow_block_counts_for_slabs(const snow_partition_grid *grid) {
-    snow_block_counts tally = {.grid = *grid, .blocks = {1, 1, 1}};
-    memcpy(tally.block, grid->dims, sizeof tally.block);
-    tally.block[grid->axis] = 1;
-    tally.blocks[grid->axis] =
+    snow_block_counts block_counts = {.grid = *grid, .blocks = {1, 1, 1}};
+    memcpy(block_counts.block, grid->dims, sizeof block_counts.block);
+    block_counts.block[grid->axis] = 1;
+    block_counts.blocks[grid->axis] =
         grid->borders ? grid->count : grid->dims[grid->axis];
-    return tally;
+    return block_counts;
 }
 
-size_t snow_block_counts_blocks(const snow_block_counts *tally) {
-    return (size_t)(tally->blocks[0] * tally->blocks[1] * tally->blocks[2]);
+size_t snow_block_counts_blocks(const snow_block_counts *block_counts) {
+    return (size_t)(block_counts->blocks[0] * block_counts->blocks[1] *
+                    block_counts->blocks[2]);
 }
 
-int64_t snow_block_counts_begin(const snow_block_counts *tally, int axis,
+int64_t snow_block_counts_begin(const snow_block_counts *block_counts, int axis,
                                 int64_t n) {
-    const snow_partition_grid *grid = &tally->grid;
+    const snow_partition_grid *grid = &block_counts->grid;
     if (grid->borders && axis == grid->axis)
         return grid->borders[n];
-    int64_t begin = n * tally->block[axis];
+    int64_t begin = n * block_counts->block[axis];
     return begin < grid->dims[axis] ? begin : grid->dims[axis];
 }
 
-int64_t snow_block_counts_find(const snow_block_counts *tally, int axis,
+int64_t snow_block_counts_find(const snow_block_counts *block_counts, int axis,
                                int64_t voxel) {
-    const snow_partition_grid *grid = &tally->grid;
+    const snow_partition_grid *grid = &block_counts->grid;
     if (!grid->borders || axis != grid->axis)
-        return voxel / tally->block[axis];
+        return voxel / block_counts->block[axis];
     int64_t low = 0, high = grid->count - 1;
     while (low < high) {
         int64_t middle = high - (high - low) / 2;
@@ -48,31 +49,34 @@ int64_t snow_block_counts_find(const snow_block_counts *tally, int axis,
     return low;
 }
 
-snow_box snow_block_counts_box(const snow_block_counts *tally,
+snow_box snow_block_counts_box(const snow_block_counts *block_counts,
                                const int64_t first[3], const int64_t end[3]) {
     snow_box box;
     for (int i = 0; i < 3; i++) {
-        box.first[i] = snow_block_counts_begin(tally, i, first[i]);
-        box.count[i] = snow_block_counts_begin(tally, i, end[i]) - box.first[i];
+        box.first[i] = snow_block_counts_begin(block_counts, i, first[i]);
+        box.count[i] =
+            snow_block_counts_begin(block_counts, i, end[i]) - box.first[i];
     }
     return box;
 }
 
 /* Blocks first .. end - 1 of block counts for slabs. */
-static snow_box slab_box(const snow_block_counts *tally, int64_t first,
+static snow_box slab_box(const snow_block_counts *block_counts, int64_t first,
                          int64_t end) {
     int64_t from[3] = {0, 0, 0}, to[3] = {1, 1, 1};
-    from[tally->grid.axis] = first;
-    to[tally->grid.axis] = end;
-    return snow_block_counts_box(tally, from, to);
+    from[block_counts->grid.axis] = first;
+    to[block_counts->grid.axis] = end;
+    return snow_block_counts_box(block_counts, from, to);
 }
 
 void snow_partition_equal(const snow_partition_grid *grid, int ranks,
                           snow_box *boxes) {
-    snow_block_counts tally = snow_block_counts_for_slabs(grid);
+    snow_block_counts block_counts = snow_block_counts_for_slabs(grid);
     for (int rank = 0; rank < ranks; rank++) {
-        snow_slab slab = snow_slab_equal(tally.blocks[grid->axis], ranks, rank);
-        boxes[rank] = slab_box(&tally, slab.first, slab.first + slab.count);
+        snow_slab slab =
+            snow_slab_equal(block_counts.blocks[grid->axis], ranks, rank);
+        boxes[rank] =
+            slab_box(&block_counts, slab.first, slab.first + slab.count);
     }
 }
 
@@ -177,57 +181,59 @@ static void partition(const row *r, int64_t *starts) {
 }
 
 snow_status snow_partition_counted(snow_context *context,
-                                   const snow_block_counts *tally, int ranks,
-                                   snow_box *boxes) {
-    int axis = tally->grid.axis;
-    int64_t items = tally->blocks[axis], all = 0;
+                                   const snow_block_counts *block_counts,
+                                   int ranks, snow_box *boxes) {
+    int axis = block_counts->grid.axis;
+    int64_t items = block_counts->blocks[axis], all = 0;
     int64_t *sums = snow_allocate_array(
         context, (uint64_t)items + 1 + (uint64_t)ranks + 1, sizeof *sums);
     if (!sums)
         return SNOW_STATUS_NO_MEMORY;
     for (int64_t i = 0; i < items; i++)
-        all += tally->counts[i];
+        all += block_counts->counts[i];
     sums[0] = 0;
     for (int64_t i = 0; i < items; i++) {
-        snow_box slab = slab_box(tally, i, i + 1);
+        snow_box slab = slab_box(block_counts, i, i + 1);
         double share =
-            (double)slab.count[axis] / (double)tally->grid.dims[axis];
-        sums[i + 1] = sums[i] + SNOW_EMPTINESS * tally->counts[i] + 1 +
+            (double)slab.count[axis] / (double)block_counts->grid.dims[axis];
+        sums[i + 1] = sums[i] + SNOW_EMPTINESS * block_counts->counts[i] + 1 +
                       (int64_t)((double)all * share);
     }
     int64_t *starts = sums + items + 1;
     row r = {sums, items, SNOW_THICKEST * ((items - 1) / ranks + 1), ranks};
     partition(&r, starts);
     for (int rank = 0; rank < ranks; rank++)
-        boxes[rank] = slab_box(tally, starts[rank], starts[rank + 1]);
+        boxes[rank] = slab_box(block_counts, starts[rank], starts[rank + 1]);
     snow_release(context, sums);
     return SNOW_STATUS_OK;
 }
 
 /* --- loads ---------------------------------------------------------------- */
 
-static int64_t load_of(const snow_block_counts *tally, const snow_box *box) {
+static int64_t load_of(const snow_block_counts *block_counts,
+                       const snow_box *box) {
     int64_t first[3], last[3], load = 0;
     for (int i = 0; i < 3; i++) {
-        first[i] = snow_block_counts_find(tally, i, box->first[i]);
-        last[i] =
-            snow_block_counts_find(tally, i, box->first[i] + box->count[i] - 1);
+        first[i] = snow_block_counts_find(block_counts, i, box->first[i]);
+        last[i] = snow_block_counts_find(block_counts, i,
+                                         box->first[i] + box->count[i] - 1);
     }
     for (int64_t z = first[2]; z <= last[2]; z++)
         for (int64_t y = first[1]; y <= last[1]; y++) {
             const int64_t *counts =
-                tally->counts + (z * tally->blocks[1] + y) * tally->blocks[0];
+                block_counts->counts +
+                (z * block_counts->blocks[1] + y) * block_counts->blocks[0];
             for (int64_t x = first[0]; x <= last[0]; x++)
                 load += counts[x];
         }
     return load;
 }
 
-void snow_partition_loads(const snow_block_counts *tally, const snow_box *boxes,
-                          int ranks, int64_t *loads) {
+void snow_partition_loads(const snow_block_counts *block_counts,
+                          const snow_box *boxes, int ranks, int64_t *loads) {
     for (int rank = 0; rank < ranks; rank++) {
         const snow_box *box = &boxes[rank];
-        loads[rank] = snow_box_voxels(box) ? load_of(tally, box) : 0;
+        loads[rank] = snow_box_voxels(box) ? load_of(block_counts, box) : 0;
     }
 }
 

@@ -41,14 +41,14 @@ snow_block_counts snow_block_counts_for_bricks(const snow_partition_grid *grid,
 
 /* The number of blocks; the first voxel of block `n` along an axis (dims for
  * the one past the last); the block that contains a voxel. */
-size_t snow_block_counts_blocks(const snow_block_counts *tally);
-int64_t snow_block_counts_begin(const snow_block_counts *tally, int axis,
+size_t snow_block_counts_blocks(const snow_block_counts *block_counts);
+int64_t snow_block_counts_begin(const snow_block_counts *block_counts, int axis,
                                 int64_t n);
-int64_t snow_block_counts_find(const snow_block_counts *tally, int axis,
+int64_t snow_block_counts_find(const snow_block_counts *block_counts, int axis,
                                int64_t voxel);
 
 /* The voxels of blocks first .. end - 1 along each axis. */
-snow_box snow_block_counts_box(const snow_block_counts *tally,
+snow_box snow_block_counts_box(const snow_block_counts *block_counts,
                                const int64_t first[3], const int64_t end[3]);
 
 /* Slabs with numbers of slices as equal as possible, or runs between borders,
@@ -68,20 +68,20 @@ void snow_partition_equal(const snow_partition_grid *grid, int ranks,
  */
 #define SNOW_THICKEST 4
 snow_status snow_partition_counted(snow_context *context,
-                                   const snow_block_counts *tally, int ranks,
-                                   snow_box *boxes);
+                                   const snow_block_counts *block_counts,
+                                   int ranks, snow_box *boxes);
 
 /* Bricks: the grid is cut in two across an axis, and so are its parts, each
  * with its share of the ranks (a k-d tree). Such boxes have an order from front
  * to back from every direction and every point. Errors: SNOW_STATUS_NO_MEMORY.
  */
 snow_status snow_partition_bricks(snow_context *context,
-                                  const snow_block_counts *tally, int ranks,
-                                  snow_box *boxes);
+                                  const snow_block_counts *block_counts,
+                                  int ranks, snow_box *boxes);
 
 /* The interesting voxels of boxes that are aligned with the blocks. */
-void snow_partition_loads(const snow_block_counts *tally, const snow_box *boxes,
-                          int ranks, int64_t *loads);
+void snow_partition_loads(const snow_block_counts *block_counts,
+                          const snow_box *boxes, int ranks, int64_t *loads);
 
 /* The largest load over the mean one: the time of all ranks relative to that of
  * equal loads; 1 without any load. */

@@ -21,13 +21,13 @@
 #define BOUND_OPAQUE (1.0 / 255)
 
 /* What a sweep came to. */
-typedef struct sweep_tally {
+typedef struct sweep_summary {
     int clear, opaque;
     double clear_most, opaque_most, strongest;
-} sweep_tally;
+} sweep_summary;
 
 static void check(snow_context *context, scenario *p, const float *serial,
-                  double strongest, int ranks, sweep_tally *tally) {
+                  double strongest, int ranks, sweep_summary *summary) {
     scenario_by_ranks(context, p, ranks);
     double gap = scenario_gap(p, serial);
     bool values = p->stats.method == SNOW_METHOD_SHEAR_WARP;
@@ -44,22 +44,22 @@ static void check(snow_context *context, scenario *p, const float *serial,
     assert_int_equal(p->ranks, ranks);
     scenario_check_counts(p, ranks);
     if (p->how.pixel_bits != 8) {
-        double *most = opaque ? &tally->opaque_most : &tally->clear_most;
+        double *most = opaque ? &summary->opaque_most : &summary->clear_most;
         *most = fmax(*most, gap);
     }
-    tally->clear += !opaque;
-    tally->opaque += opaque;
-    tally->strongest += strongest;
+    summary->clear += !opaque;
+    summary->opaque += opaque;
+    summary->strongest += strongest;
     free(p->picture);
 }
 
-static void report(const char *title, const sweep_tally *tally) {
-    int all = tally->clear + tally->opaque;
+static void report(const char *title, const sweep_summary *summary) {
+    int all = summary->clear + summary->opaque;
     print_message("             %s: %d pictures differ by up to %.2g, %d with "
                   "opaque pixels by %.2g; strongest opacity %.2f in the mean\n",
-                  title, tally->clear, tally->clear_most, tally->opaque,
-                  tally->opaque_most, tally->strongest / all);
-    assert_true(tally->strongest / all > 0.2);
+                  title, summary->clear, summary->clear_most, summary->opaque,
+                  summary->opaque_most, summary->strongest / all);
+    assert_true(summary->strongest / all > 0.2);
 }
 
 /* --- small volumes of all kinds ------------------------------------------- */
@@ -107,7 +107,7 @@ static scenario scenario_of(int n, int64_t depth, reference_scene *scene) {
 static void sweep(const char *title, int scenes, double fov,
                   const snow_method *methods, int method_count) {
     snow_context *context = support_context();
-    sweep_tally tally = {0};
+    sweep_summary summary = {0};
     for (int n = 0; n < scenes; n++) {
         reference_scene scene;
         snow_transfer *transfer = NULL;
@@ -121,13 +121,13 @@ static void sweep(const char *title, int scenes, double fov,
         for (int i = first_count(n); i < COUNTS; i += COUNT_STRIDE) {
             p.cut = (partitioning)((n + i) % PARTITIONINGS);
             p.how.pixel_bits = (n + i) % 7 == 0 ? 8 : 0;
-            check(context, &p, serial, strongest, rank_counts[i], &tally);
+            check(context, &p, serial, strongest, rank_counts[i], &summary);
         }
         free(serial);
         snow_transfer_free(transfer);
         model_free(&scene);
     }
-    report(title, &tally);
+    report(title, &summary);
     snow_context_free(context);
 }
 
@@ -271,7 +271,7 @@ static void look_around(const char *name, const snow_volume *volume,
                                         "+z", "-z", "iso", "iso"};
     snow_context *context = support_context();
     snow_transfer *transfer = NULL;
-    sweep_tally tally = {0};
+    sweep_summary summary = {0};
     assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
                      SNOW_STATUS_OK);
     for (int n = 0; n < 8; n += stride) {
@@ -298,11 +298,11 @@ static void look_around(const char *name, const snow_volume *volume,
         for (int i = first_count(n) + n % 2; i < COUNTS;
              i += 2 * COUNT_STRIDE) {
             p.cut = (partitioning)((n + i / 2) % PARTITIONINGS);
-            check(context, &p, serial, strongest, rank_counts[i], &tally);
+            check(context, &p, serial, strongest, rank_counts[i], &summary);
         }
         free(serial);
     }
-    report(name, &tally);
+    report(name, &summary);
     snow_transfer_free(transfer);
     snow_context_free(context);
 }
@@ -331,7 +331,7 @@ static void drafts_of(const char *name, const snow_volume *volume, int side) {
     static const char *const names[] = {"+x", "-y", "+z", "iso", "-z", "iso"};
     snow_context *context = support_context();
     snow_transfer *transfer = NULL;
-    sweep_tally tally = {0};
+    sweep_summary summary = {0};
     assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
                      SNOW_STATUS_OK);
     for (int n = 0; n < 6; n++) {
@@ -355,11 +355,11 @@ static void drafts_of(const char *name, const snow_volume *volume, int side) {
         float *serial = scenario_alone(context, &p, &strongest);
         for (int i = first_count(n); i < COUNTS; i += COUNT_STRIDE) {
             p.cut = (partitioning)((n + i) % PARTITIONINGS);
-            check(context, &p, serial, strongest, rank_counts[i], &tally);
+            check(context, &p, serial, strongest, rank_counts[i], &summary);
         }
         free(serial);
     }
-    report(name, &tally);
+    report(name, &summary);
     snow_transfer_free(transfer);
     snow_context_free(context);
 }

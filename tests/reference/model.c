@@ -96,23 +96,23 @@ static double strongest_opacity(const reference_scene *scene,
 }
 
 void model_check(const model_stage *stage, const reference_scene *scene,
-                 double bound, model_tally *tally) {
+                 double bound, model_summary *summary) {
     float *picture = model_picture(stage, scene);
     double *reference = reference_render(scene);
     double distance = model_distance(scene, picture, reference);
     if (!(distance < bound))
         fail_msg("differs by %g: %s", distance, model_words(scene));
-    tally->pictures++;
-    tally->largest = fmax(tally->largest, distance);
-    tally->opacity += strongest_opacity(scene, reference);
+    summary->pictures++;
+    summary->largest = fmax(summary->largest, distance);
+    summary->opacity += strongest_opacity(scene, reference);
     free(picture);
     free(reference);
 }
 
-void model_report(const model_tally *tally) {
-    double opacity = tally->opacity / tally->pictures;
+void model_report(const model_summary *summary) {
+    double opacity = summary->opacity / summary->pictures;
     print_message("             %d pictures differ by up to %.2g; their "
                   "strongest opacity is %.2f in the mean\n",
-                  tally->pictures, tally->largest, opacity);
+                  summary->pictures, summary->largest, opacity);
     assert_true(opacity > 0.4);
 }

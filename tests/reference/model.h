@@ -100,19 +100,19 @@ double model_distance(const reference_scene *scene, const float *picture,
                       const double *reference);
 
 /* What a sweep of pictures came to. */
-typedef struct model_tally {
+typedef struct model_summary {
     int pictures;
     double largest; /* difference of a picture and its reference */
     double opacity; /* strongest of each picture, summed up */
-} model_tally;
+} model_summary;
 
 /* Renders the scene both ways and fails the test, with the scene in words,
  * unless the pictures differ by less than `bound`. */
 void model_check(const model_stage *stage, const reference_scene *scene,
-                 double bound, model_tally *tally);
+                 double bound, model_summary *summary);
 
-/* Prints a tally; fails the test when the pictures showed next to nothing. */
-void model_report(const model_tally *tally);
+/* Prints a summary; fails the test when the pictures showed next to nothing. */
+void model_report(const model_summary *summary);
 
 /* The scene's settings in words; lasts until the next call. */
 const char *model_words(const reference_scene *scene);

@@ -58,7 +58,7 @@ static reference_scene drawn_scene(uint64_t *state, int n) {
 static void pictures_from_any_place_are_those_of_the_reference(void **state) {
     (void)state;
     model_stage stage = model_open();
-    model_tally parallel = {0}, seen = {0};
+    model_summary parallel = {0}, seen = {0};
     uint64_t random = 1;
     for (int n = 0; n < 240; n += (int)support_stride(7)) {
         reference_scene scene = drawn_scene(&random, n);

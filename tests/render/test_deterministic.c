@@ -540,10 +540,10 @@ static flat splat_parts(const stage *s) {
 }
 
 /* What a sweep came to. */
-typedef struct tally {
+typedef struct summary {
     int clear, opaque;
     double clear_most, opaque_most, strongest;
-} part_tally;
+} part_summary;
 
 /* Rounding of over. */
 #define BOUND_OVER 2e-6
@@ -552,7 +552,7 @@ typedef struct tally {
 #define BOUND_VALUES(parts) ((24 * 0.5 + (parts)) / 32767)
 
 static void compare(const stage *s, const flat *whole, const flat *parts,
-                    double bound, part_tally *tally) {
+                    double bound, part_summary *summary) {
     assert_int_equal(whole->width, parts->width);
     size_t count = (size_t)(whole->width * whole->height * whole->channels);
     double most = 0, strongest = 0;
@@ -573,11 +573,11 @@ static void compare(const stage *s, const flat *whole, const flat *parts,
                  (long long)s->boxes[0].count[2], most, strongest,
                  (int)s->settings.quality, s->scene.view.fov,
                  model_words(&s->scene));
-    tally->clear += !opaque;
-    tally->opaque += opaque;
-    double *of = opaque ? &tally->opaque_most : &tally->clear_most;
+    summary->clear += !opaque;
+    summary->opaque += opaque;
+    double *of = opaque ? &summary->opaque_most : &summary->clear_most;
     *of = fmax(*of, most);
-    tally->strongest += strongest;
+    summary->strongest += strongest;
 }
 
 static const double turns[][3] = {
@@ -624,7 +624,7 @@ static reference_scene valued_scene(int n, double fov) {
 }
 
 static void sweep(const char *title, int scenes, double fov) {
-    part_tally tally = {0};
+    part_summary summary = {0};
     for (int n = 0; n < scenes; n += (int)support_stride(7)) {
         stage s = {.scene = valued_scene(n, fov)};
         open_whole(&s);
@@ -638,7 +638,7 @@ static void sweep(const char *title, int scenes, double fov) {
                 cut(&s, how);
                 open_parts(&s);
                 flat parts = splat_parts(&s);
-                compare(&s, &whole, &parts, BOUND_VALUES(s.count), &tally);
+                compare(&s, &whole, &parts, BOUND_VALUES(s.count), &summary);
                 free(parts.pixels);
                 close_parts(&s);
             }
@@ -647,13 +647,13 @@ static void sweep(const char *title, int scenes, double fov) {
         close_stage(&s);
         model_free(&s.scene);
     }
-    int all = tally.clear + tally.opaque;
+    int all = summary.clear + summary.opaque;
     print_message("             %s: %d pictures differ by up to %.2g, %d with "
                   "opaque pixels by %.2g; strongest opacity %.2f in the mean\n",
-                  title, tally.clear, tally.clear_most, tally.opaque,
-                  tally.opaque_most, tally.strongest / all);
-    assert_true(tally.clear * (int)support_stride(7) > scenes &&
-                tally.strongest / all > 0.3);
+                  title, summary.clear, summary.clear_most, summary.opaque,
+                  summary.opaque_most, summary.strongest / all);
+    assert_true(summary.clear * (int)support_stride(7) > scenes &&
+                summary.strongest / all > 0.3);
 }
 
 static void parts_make_up_the_intermediate_image(void **state) {
@@ -703,7 +703,7 @@ static void parts_by_exact_methods_make_up_the_picture(void **state) {
     (void)state;
     static const snow_method methods[] = {
         SNOW_METHOD_ORIGINAL, SNOW_METHOD_TESTED, SNOW_METHOD_FOOTPRINT};
-    part_tally tally = {0};
+    part_summary summary = {0};
     for (int n = 0; n < 66; n += (int)support_stride(7)) {
         stage s = {.scene = scene_of(n, n % 4 == 3 ? 40 : 0)};
         s.scene.settings.method = methods[n % 3];
@@ -714,7 +714,7 @@ static void parts_by_exact_methods_make_up_the_picture(void **state) {
             cut(&s, how);
             open_parts(&s);
             flat parts = shoot_parts(&s);
-            compare(&s, &whole, &parts, BOUND_OVER, &tally);
+            compare(&s, &whole, &parts, BOUND_OVER, &summary);
             free(parts.pixels);
             close_parts(&s);
         }
@@ -723,8 +723,8 @@ static void parts_by_exact_methods_make_up_the_picture(void **state) {
         model_free(&s.scene);
     }
     print_message("             %d pictures differ by up to %.2g\n",
-                  tally.clear + tally.opaque,
-                  fmax(tally.clear_most, tally.opaque_most));
+                  summary.clear + summary.opaque,
+                  fmax(summary.clear_most, summary.opaque_most));
 }
 
 /* --- pictures of parts ---------------------------------------------------- */

@@ -49,17 +49,17 @@ static reference_scene numbered_scene(size_t n, const int64_t size[3]) {
 static void the_exact_methods_make_the_references_picture(void **state) {
     (void)state;
     model_stage stage = model_open();
-    model_tally tally = {0};
+    model_summary summary = {0};
     for (size_t n = 0; n < 240; n += support_stride(7)) {
         reference_scene scene = numbered_scene(n, dims);
         scene.settings.method = methods[n % 3];
         if (scene.settings.method != SNOW_METHOD_ORIGINAL)
             scene.settings.threshold = thresholds[n / 3 % 3];
         scene.view.fov = n / 11 % 3 == 2 ? 35 : 0;
-        model_check(&stage, &scene, 1e-3, &tally);
+        model_check(&stage, &scene, 1e-3, &summary);
         model_free(&scene);
     }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 
@@ -76,7 +76,7 @@ static void curves_of_any_shape(void **state) {
     for (size_t n = 0; n < COUNT(many); n++)
         many[n] = (snow_opacity_point){(double)n / 7, (double)(n % 5) / 4};
     model_stage stage = model_open();
-    model_tally exact = {0};
+    model_summary exact = {0};
     for (size_t n = 0; n < 48; n++) {
         reference_scene scene = numbered_scene(n, dims);
         scene.gradients = curves[n % 4].points;
@@ -97,7 +97,7 @@ static void voxels_that_are_no_numbers_or_infinite(void **state) {
     (void)state;
     static const float odd[] = {NAN, INFINITY, -INFINITY};
     model_stage stage = model_open();
-    model_tally tally = {0};
+    model_summary summary = {0};
     uint64_t random = 5;
     for (size_t n = 0; n < 24; n++) {
         reference_scene scene = numbered_scene(n, dims);
@@ -109,10 +109,10 @@ static void voxels_that_are_no_numbers_or_infinite(void **state) {
         for (int i = 0; i < 300; i++)
             model_voxels(&scene)[support_random(&random) % 1950] = odd[i % 3];
         scene.settings.method = methods[n % 3];
-        model_check(&stage, &scene, 1e-3, &tally);
+        model_check(&stage, &scene, 1e-3, &summary);
         model_free(&scene);
     }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 

@@ -74,7 +74,7 @@ static void every_kernel_and_footprint_from_every_side(void **state) {
     (void)state;
     model_stage stage = model_open();
     uint64_t random = 1;
-    model_tally tally = {0};
+    model_summary summary = {0};
     for (size_t k = 0; k < COUNT(kernels); k++)
         for (int footprint = 2; footprint <= 9; footprint++)
             for (size_t n = support_start(k + (size_t)footprint, 11);
@@ -83,10 +83,10 @@ static void every_kernel_and_footprint_from_every_side(void **state) {
                 scene.settings.kernel = kernels[k];
                 scene.settings.footprint = footprint;
                 stand_at(&scene, n, zooms[n / COUNT(stands)]);
-                model_check(&stage, &scene, BOUND, &tally);
+                model_check(&stage, &scene, BOUND, &summary);
                 model_free(&scene);
             }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 
@@ -106,7 +106,7 @@ static void pixels_that_lie_on_the_grid(void **state) {
     static const double lengths[] = {1, 0.5, 2, 0.25, 4};
     model_stage stage = model_open();
     uint64_t random = 7;
-    model_tally tally = {0};
+    model_summary summary = {0};
     size_t pictures = COUNT(kernels) * 8 * COUNT(lengths) * 9;
     for (size_t n = 0; n < pictures; n += support_stride(11)) {
         reference_scene scene = drawn_scene(&random);
@@ -123,10 +123,10 @@ static void pixels_that_lie_on_the_grid(void **state) {
                 scene.info.matrix[r][c] *= r == c;
         double length = lengths[rest / COUNT(kernels) / 8];
         stand_at(&scene, n % 9, zoom_for(&scene, length));
-        model_check(&stage, &scene, BOUND, &tally);
+        model_check(&stage, &scene, BOUND, &summary);
         model_free(&scene);
     }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 
@@ -134,7 +134,7 @@ static void every_type_matrix_threshold_and_shading(void **state) {
     (void)state;
     model_stage stage = model_open();
     uint64_t random = 2;
-    model_tally tally = {0};
+    model_summary summary = {0};
     size_t n = 0;
     for (; n < COUNT(types) * MODEL_MATRICES * 12; n += support_stride(7)) {
         reference_scene drawn = drawn_scene(&random);
@@ -146,11 +146,11 @@ static void every_type_matrix_threshold_and_shading(void **state) {
         scene.settings.shade =
             rest / 2 % 2 == 0 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
         scene.settings.threshold = thresholds[rest / 4];
-        model_check(&stage, &scene, BOUND, &tally);
+        model_check(&stage, &scene, BOUND, &summary);
         model_free(&scene);
         model_free(&drawn);
     }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 
@@ -160,7 +160,7 @@ static void every_size_of_picture(void **state) {
                                    {30, 1}, {2, 2}, {17, 33}, {100, 3}, {8, 8}};
     model_stage stage = model_open();
     uint64_t random = 3;
-    model_tally tally = {0};
+    model_summary summary = {0};
     for (size_t s = 0; s < COUNT(sizes); s++)
         for (size_t n = 0; n < COUNT(stands); n++) {
             reference_scene scene = drawn_scene(&random);
@@ -168,10 +168,10 @@ static void every_size_of_picture(void **state) {
             scene.view.width = sizes[s][0];
             scene.view.height = sizes[s][1];
             scene.settings.kernel = kernels[draw(&random, COUNT(kernels))];
-            model_check(&stage, &scene, BOUND, &tally);
+            model_check(&stage, &scene, BOUND, &summary);
             model_free(&scene);
         }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 
@@ -182,7 +182,7 @@ static void volumes_thin_along_some_axes(void **state) {
         {1, 7, 5}, {2, 2, 2}, {300, 2, 3}, {3, 270, 2}, {2, 3, 260}};
     model_stage stage = model_open();
     uint64_t random = 4;
-    model_tally tally = {0};
+    model_summary summary = {0};
     for (size_t t = 0; t < COUNT(thin); t++)
         for (size_t n = 0; n < COUNT(stands); n++) {
             model_matrix matrix = (model_matrix)draw(&random, MODEL_MATRICES);
@@ -196,10 +196,10 @@ static void volumes_thin_along_some_axes(void **state) {
             scene.view.height = 18;
             stand_at(&scene, n, zooms[draw(&random, COUNT(zooms))]);
             scene.settings.kernel = kernels[draw(&random, COUNT(kernels))];
-            model_check(&stage, &scene, BOUND, &tally);
+            model_check(&stage, &scene, BOUND, &summary);
             free((void *)(uintptr_t)scene.voxels);
         }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 
@@ -210,7 +210,7 @@ static void volumes_thin_along_some_axes(void **state) {
 static void small_kernels_that_are_widened_a_little(void **state) {
     (void)state;
     model_stage stage = model_open();
-    model_tally tally = {0};
+    model_summary summary = {0};
     uint64_t random = 5;
     for (int n = 0; n < 600; n += (int)support_stride(7)) {
         reference_scene scene = model_blank((int64_t[]){40, 40, 1}, 1);
@@ -222,10 +222,10 @@ static void small_kernels_that_are_widened_a_little(void **state) {
         double length = 1 + 0.03 * support_uniform(&random);
         double roll = 45 * support_uniform(&random);
         model_turn(&scene, 0, 0, roll, zoom_for(&scene, length));
-        model_check(&stage, &scene, BOUND / 2, &tally);
+        model_check(&stage, &scene, BOUND / 2, &summary);
         model_free(&scene);
     }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 
@@ -237,7 +237,7 @@ static void slices_and_rows_that_are_large(void **state) {
         {210, 150, 3}, {4, 190, 170}, {200, 5, 160}, {17000, 3, 2}};
     static const double oblique[] = {0, 25};
     model_stage stage = model_open();
-    model_tally tally = {0};
+    model_summary summary = {0};
     for (size_t n = 0; n < COUNT(large) * COUNT(oblique); n++) {
         reference_scene scene =
             model_scene(large[n / 2], SNOW_TYPE_UINT16, n == 3, MODEL_PLAIN, n);
@@ -251,10 +251,10 @@ static void slices_and_rows_that_are_large(void **state) {
         model_turn(&scene, oblique[n % 2], -oblique[n % 2], 0, 1);
         scene.settings.method =
             n % 3 == 0 ? SNOW_METHOD_TESTED : SNOW_METHOD_FOOTPRINT;
-        model_check(&stage, &scene, BOUND, &tally);
+        model_check(&stage, &scene, BOUND, &summary);
         model_free(&scene);
     }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 
@@ -277,7 +277,7 @@ static void voxels_that_are_no_numbers_or_infinite(void **state) {
     (void)state;
     model_stage stage = model_open();
     uint64_t random = 5;
-    model_tally tally = {0};
+    model_summary summary = {0};
     for (size_t n = 0; n < 2 * COUNT(stands); n++) {
         reference_scene scene = model_scene(
             dims, n % 2 == 0 ? SNOW_TYPE_FLOAT32 : SNOW_TYPE_FLOAT64,
@@ -287,10 +287,10 @@ static void voxels_that_are_no_numbers_or_infinite(void **state) {
         scene.view.height = 18;
         stand_at(&scene, n, 1);
         scene.settings.method = (snow_method)(SNOW_METHOD_ORIGINAL + n % 3);
-        model_check(&stage, &scene, BOUND, &tally);
+        model_check(&stage, &scene, BOUND, &summary);
         model_free(&scene);
     }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 
@@ -298,7 +298,7 @@ static void lights_from_all_sides_and_every_coefficient(void **state) {
     (void)state;
     model_stage stage = model_open();
     uint64_t random = 6;
-    model_tally tally = {0};
+    model_summary summary = {0};
     /* Real numbers with noise: no gradient is square to the line of sight, so
      * that rounding does not decide which way it is turned. */
     for (size_t n = 0; n < 60; n++) {
@@ -316,10 +316,10 @@ static void lights_from_all_sides_and_every_coefficient(void **state) {
         settings->diffuse = support_uniform(&random);
         settings->specular = support_uniform(&random);
         settings->shininess = n % 5 == 0 ? 0 : 100 * support_uniform(&random);
-        model_check(&stage, &scene, BOUND, &tally);
+        model_check(&stage, &scene, BOUND, &summary);
         model_free(&scene);
     }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 
@@ -327,7 +327,7 @@ static void opacities_of_other_lengths_than_a_voxel(void **state) {
     (void)state;
     model_stage stage = model_open();
     static const double lengths[] = {0.1, 0.9, 3, 40};
-    model_tally tally = {0};
+    model_summary summary = {0};
     for (size_t n = 0; n < 2 * COUNT(stands); n++) {
         reference_scene scene = model_scene(
             dims, SNOW_TYPE_UINT8, true, (model_matrix)(n % MODEL_MATRICES), n);
@@ -336,10 +336,10 @@ static void opacities_of_other_lengths_than_a_voxel(void **state) {
         scene.view.height = 18;
         scene.settings.opacity_length = lengths[n % COUNT(lengths)];
         scene.settings.threshold = thresholds[n % COUNT(thresholds)];
-        model_check(&stage, &scene, BOUND, &tally);
+        model_check(&stage, &scene, BOUND, &summary);
         model_free(&scene);
     }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 
@@ -348,7 +348,7 @@ static void opacities_of_other_lengths_than_a_voxel(void **state) {
 static void slices_that_are_shifted_a_little(void **state) {
     (void)state;
     model_stage stage = model_open();
-    model_tally tally = {0};
+    model_summary summary = {0};
     for (size_t n = 0; n < COUNT(kernels); n++) {
         reference_scene scene = model_scene(
             (int64_t[]){9, 8, 64}, SNOW_TYPE_UINT8, true, MODEL_PLAIN, n);
@@ -356,10 +356,10 @@ static void slices_that_are_shifted_a_little(void **state) {
         scene.settings.kernel = kernels[n];
         scene.settings.footprint = 3;
         model_turn(&scene, 0, 0, 0, 3);
-        model_check(&stage, &scene, 1e-5, &tally);
+        model_check(&stage, &scene, 1e-5, &summary);
         model_free(&scene);
     }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 
@@ -406,7 +406,7 @@ static void transfer_functions_of_any_shape(void **state) {
     static const snow_color_point steps[] = {
         {30, 1, 0, 0}, {30, 0, 1, 0}, {60, 0, 0, 1}, {60, 1, 1, 1}};
     model_stage stage = model_open();
-    model_tally tally = {0};
+    model_summary summary = {0};
     for (size_t n = 0; n < 4 * COUNT(types); n++) {
         reference_scene scene = model_scene(
             dims, types[n / 4], false, (model_matrix)(n % MODEL_MATRICES), n);
@@ -417,10 +417,10 @@ static void transfer_functions_of_any_shape(void **state) {
         scene.view.width = 24;
         scene.view.height = 18;
         stand_at(&scene, n, 1);
-        model_check(&stage, &scene, BOUND, &tally);
+        model_check(&stage, &scene, BOUND, &summary);
         free((void *)(uintptr_t)scene.voxels);
     }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 
@@ -432,7 +432,7 @@ static void logarithmic_scales(void **state) {
     static const snow_color_point colors[] = {
         {1, 1, 0, 0}, {10, 0, 1, 0.5}, {100, 0, 0.3, 1}};
     model_stage stage = model_open();
-    model_tally tally = {0};
+    model_summary summary = {0};
     for (size_t n = 0; n < 3 * COUNT(types); n++) {
         reference_scene scene = model_scene(
             dims, types[n / 3], false, (model_matrix)(n % MODEL_MATRICES), n);
@@ -445,10 +445,10 @@ static void logarithmic_scales(void **state) {
         scene.view.width = 24;
         scene.view.height = 18;
         stand_at(&scene, n, 1);
-        model_check(&stage, &scene, BOUND, &tally);
+        model_check(&stage, &scene, BOUND, &summary);
         free((void *)(uintptr_t)scene.voxels);
     }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 

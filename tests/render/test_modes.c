@@ -68,10 +68,10 @@ static reference_scene mode_scene(uint64_t *state, size_t n, snow_mode mode) {
 
 /* How a picture differs from the reference.  Where a sum of weights is about
  * 1/2, rounding decides whether there is a pixel. */
-typedef struct tally {
+typedef struct mode_summary {
     size_t pixels, missing, shown;
     double largest, total;
-} tally;
+} mode_summary;
 
 static double size_of_value(const reference_scene *scene, double reference) {
     return scene->settings.mode == SNOW_MODE_SUM ? fmax(100, fabs(reference))
@@ -79,7 +79,7 @@ static double size_of_value(const reference_scene *scene, double reference) {
 }
 
 static void compare(const reference_scene *scene, snow_image *image,
-                    const double *reference, tally *t) {
+                    const double *reference, mode_summary *t) {
     bool values = has_values(scene->settings.mode);
     int channels = snow_image_channels(image);
     assert_int_equal(channels, values ? 1 : 4);
@@ -103,7 +103,7 @@ static void compare(const reference_scene *scene, snow_image *image,
 }
 
 static void add_picture(const model_stage *stage, const reference_scene *scene,
-                        tally *t) {
+                        mode_summary *t) {
     snow_image *image = model_image(stage, scene);
     double *reference = reference_mode(scene);
     compare(scene, image, reference, t);
@@ -111,7 +111,7 @@ static void add_picture(const model_stage *stage, const reference_scene *scene,
     free(reference);
 }
 
-static void report(const char *what, const tally *t) {
+static void report(const char *what, const mode_summary *t) {
     print_message("             %s: %zu of %zu pixels shown, differ by up to "
                   "%.2g, %.2g in the mean; %zu on one side only\n",
                   what, t->shown, t->pixels, t->largest,
@@ -123,7 +123,7 @@ static void exact_pictures(double fov_share) {
     model_stage stage = model_open();
     uint64_t random = 11;
     for (size_t m = 0; m < COUNT(modes); m++) {
-        tally t = {0};
+        mode_summary t = {0};
         for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 3;
              n += support_stride(7)) {
             reference_scene scene = mode_scene(&random, n, modes[m]);
@@ -155,7 +155,7 @@ static void every_type_and_matrix_in_perspective(void **state) {
 /* --- depth ------------------------------------------------------------ */
 
 static void compare_depth(const model_stage *stage,
-                          const reference_scene *scene, tally *t) {
+                          const reference_scene *scene, mode_summary *t) {
     const snow_image *depth = snow_frame_depth(stage->frame);
     assert_non_null(depth);
     assert_int_equal(snow_image_channels(depth), 1);
@@ -180,7 +180,7 @@ static void depths_of_over(void **state) {
     (void)state;
     model_stage stage = model_open();
     uint64_t random = 31;
-    tally t = {0};
+    mode_summary t = {0};
     for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 3;
          n += support_stride(7)) {
         reference_scene scene = mode_scene(&random, n, SNOW_MODE_OVER);

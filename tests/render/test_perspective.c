@@ -184,7 +184,7 @@ static void every_kernel_and_method_from_every_side(void **state) {
     (void)state;
     model_stage stage = model_open();
     uint64_t random = 1;
-    model_tally tally = {0};
+    model_summary summary = {0};
     for (int kernel = 0; kernel < 4; kernel++)
         for (size_t f = 0; f < COUNT(fovs); f++)
             for (size_t n = support_start((size_t)kernel + f, 7);
@@ -198,10 +198,10 @@ static void every_kernel_and_method_from_every_side(void **state) {
                         : (snow_method)(SNOW_METHOD_TESTED + n % 2);
                 scene.view.fov = fovs[f];
                 stand_at(&scene, n, zooms[n / COUNT(stands)]);
-                model_check(&stage, &scene, BOUND, &tally);
+                model_check(&stage, &scene, BOUND, &summary);
                 model_free(&scene);
             }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 
@@ -210,7 +210,7 @@ static void every_kernel_and_method_from_every_side(void **state) {
 static void slices_on_both_sides_of_the_eye(void **state) {
     (void)state;
     model_stage stage = model_open();
-    model_tally tally = {0};
+    model_summary summary = {0};
     for (int n = 0; n < 8; n++) {
         reference_scene scene =
             model_scene((int64_t[]){5, 6, 31}, SNOW_TYPE_UINT8, n % 2 == 0,
@@ -225,10 +225,10 @@ static void slices_on_both_sides_of_the_eye(void **state) {
             SNOW_STATUS_OK);
         assert_true(p.eye.at[2] > 0 && p.eye.at[2] < 30);
         scene.settings.method = (snow_method)(SNOW_METHOD_TESTED + n % 2);
-        model_check(&stage, &scene, BOUND, &tally);
+        model_check(&stage, &scene, BOUND, &summary);
         model_free(&scene);
     }
-    model_report(&tally);
+    model_report(&summary);
     model_close(&stage);
 }
 

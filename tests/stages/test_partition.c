@@ -22,7 +22,7 @@ static snow_partition_grid grid_of(const int64_t dims[3], int axis,
     return grid;
 }
 
-/* A tally as a cut needs it, with counts of `inside` (NULL: none). */
+/* Block counts as a cut needs them, with counts of `inside` (NULL: none). */
 typedef int64_t inside_fn(const int64_t dims[3], const snow_box *block);
 
 static snow_block_counts count(kind how, const snow_partition_grid *grid,
@@ -43,16 +43,19 @@ static snow_block_counts count(kind how, const snow_partition_grid *grid,
     return t;
 }
 
-static void cut(snow_context *context, kind how, const snow_block_counts *tally,
-                int ranks, snow_box *boxes) {
+static void cut(snow_context *context, kind how,
+                const snow_block_counts *block_counts, int ranks,
+                snow_box *boxes) {
     if (how == EQUAL)
-        snow_partition_equal(&tally->grid, ranks, boxes);
+        snow_partition_equal(&block_counts->grid, ranks, boxes);
     else if (how == COUNTED)
-        assert_int_equal(snow_partition_counted(context, tally, ranks, boxes),
-                         SNOW_STATUS_OK);
+        assert_int_equal(
+            snow_partition_counted(context, block_counts, ranks, boxes),
+            SNOW_STATUS_OK);
     else
-        assert_int_equal(snow_partition_bricks(context, tally, ranks, boxes),
-                         SNOW_STATUS_OK);
+        assert_int_equal(
+            snow_partition_bricks(context, block_counts, ranks, boxes),
+            SNOW_STATUS_OK);
 }
 
 /* The voxels of an ellipsoid that fills the grid: of a row those between two
@@ -129,17 +132,17 @@ static void every_voxel_is_in_exactly_one_box(void **state) {
         int64_t multiple = 1 + (int64_t)(support_random(&random_state) % 9);
         int ranks = some_ranks[support_random(&random_state) % 11];
         snow_partition_grid grid = grid_of(dims, axis, multiple);
-        snow_block_counts tally =
+        snow_block_counts block_counts =
             count(how, &grid, ranks, round % 5 ? noise : NULL);
-        cut(context, how, &tally, ranks, boxes);
+        cut(context, how, &block_counts, ranks, boxes);
         check_cover(dims, axis, multiple, boxes, ranks);
-        snow_partition_loads(&tally, boxes, ranks, loads);
+        snow_partition_loads(&block_counts, boxes, ranks, loads);
         for (int rank = 0; rank < ranks; rank++)
             sum += loads[rank];
-        for (size_t i = 0; i < snow_block_counts_blocks(&tally); i++)
-            sum -= tally.counts[i];
+        for (size_t i = 0; i < snow_block_counts_blocks(&block_counts); i++)
+            sum -= block_counts.counts[i];
         assert_int_equal(sum, 0);
-        free(tally.counts);
+        free(block_counts.counts);
     }
     snow_context_free(context);
 }
@@ -150,10 +153,10 @@ static double imbalance(kind how, const int64_t dims[3], int ranks) {
     snow_context *context = support_context();
     static snow_box boxes[4096];
     static int64_t loads[4096];
-    snow_block_counts tally = count(how, &grid, ranks, ellipsoid);
-    cut(context, how, &tally, ranks, boxes);
-    snow_partition_loads(&tally, boxes, ranks, loads);
-    free(tally.counts);
+    snow_block_counts block_counts = count(how, &grid, ranks, ellipsoid);
+    cut(context, how, &block_counts, ranks, boxes);
+    snow_partition_loads(&block_counts, boxes, ranks, loads);
+    free(block_counts.counts);
     snow_context_free(context);
     return snow_partition_imbalance(loads, ranks);
 }
@@ -228,13 +231,13 @@ static void no_slabs_are_cheaper_than_counted_ones(void **state) {
         int64_t costs[64], all = 0, dearest = 0;
         snow_box boxes[12];
         const snow_partition_grid grid = grid_of(dims, 2, 1);
-        snow_block_counts tally = count(COUNTED, &grid, ranks, noise);
+        snow_block_counts block_counts = count(COUNTED, &grid, ranks, noise);
         for (int i = 0; i < items; i++)
-            all += tally.counts[i];
+            all += block_counts.counts[i];
         for (int i = 0; i < items; i++)
-            costs[i] = SNOW_EMPTINESS * tally.counts[i] + 1 +
+            costs[i] = SNOW_EMPTINESS * block_counts.counts[i] + 1 +
                        (int64_t)((double)all * (1.0 / items));
-        cut(context, COUNTED, &tally, ranks, boxes);
+        cut(context, COUNTED, &block_counts, ranks, boxes);
         for (int rank = 0; rank < ranks; rank++) {
             int64_t cost = 0;
             for (int64_t i = 0; i < boxes[rank].count[2]; i++)
@@ -246,7 +249,7 @@ static void no_slabs_are_cheaper_than_counted_ones(void **state) {
             dearest,
             least_by_trying(costs, items, ranks,
                             SNOW_THICKEST * ((items - 1) / ranks + 1)));
-        free(tally.counts);
+        free(block_counts.counts);
     }
     snow_context_free(context);
 }
@@ -266,13 +269,13 @@ static void no_rank_stores_all_that_is_empty(void **state) {
     snow_context *context = support_context();
     snow_box boxes[100];
     for (kind how = COUNTED; how <= BRICKS; how++) {
-        snow_block_counts tally = count(how, &grid, 100, one_slice);
-        cut(context, how, &tally, 100, boxes);
+        snow_block_counts block_counts = count(how, &grid, 100, one_slice);
+        cut(context, how, &block_counts, 100, boxes);
         for (int rank = 0; rank < 100; rank++)
             assert_true(snow_box_voxels(&boxes[rank]) <=
                         (how == COUNTED ? SNOW_THICKEST : SNOW_EMPTINESS + 1) *
                             64 * 64 * 10);
-        free(tally.counts);
+        free(block_counts.counts);
     }
     snow_context_free(context);
 }
@@ -284,14 +287,14 @@ static void a_grid_without_interesting_voxels_is_cut_equally(void **state) {
     snow_context *context = support_context();
     snow_box boxes[32];
     for (kind how = COUNTED; how <= BRICKS; how++) {
-        snow_block_counts tally = count(how, &grid, 32, NULL);
-        cut(context, how, &tally, 32, boxes);
+        snow_block_counts block_counts = count(how, &grid, 32, NULL);
+        cut(context, how, &block_counts, 32, boxes);
         for (int rank = 0; rank < 32; rank++)
             assert_int_equal(snow_box_voxels(&boxes[rank]), 64 * 64 * 4);
         int64_t loads[32];
-        snow_partition_loads(&tally, boxes, 32, loads);
+        snow_partition_loads(&block_counts, boxes, 32, loads);
         assert_true(snow_partition_imbalance(loads, 32) == 1);
-        free(tally.counts);
+        free(block_counts.counts);
     }
     snow_context_free(context);
 }
@@ -305,19 +308,22 @@ static void blocks_of_a_huge_grid_fit_the_memory(void **state) {
         for (int grouped = 0; grouped < 2; grouped++) {
             grid.borders = grouped ? borders : NULL;
             grid.count = 3;
-            snow_block_counts tally =
+            snow_block_counts block_counts =
                 snow_block_counts_for_bricks(&grid, ranks);
-            assert_in_range(snow_block_counts_blocks(&tally), ranks, 1 << 22);
+            assert_in_range(snow_block_counts_blocks(&block_counts), ranks,
+                            1 << 22);
             for (int i = 0; i < 3; i++) {
-                assert_int_equal(snow_block_counts_begin(&tally, i, 0), 0);
-                assert_int_equal(
-                    snow_block_counts_begin(&tally, i, tally.blocks[i]),
-                    100000);
+                assert_int_equal(snow_block_counts_begin(&block_counts, i, 0),
+                                 0);
+                assert_int_equal(snow_block_counts_begin(
+                                     &block_counts, i, block_counts.blocks[i]),
+                                 100000);
                 for (int64_t voxel = 0; voxel < 100000; voxel += 9) {
-                    int64_t n = snow_block_counts_find(&tally, i, voxel);
+                    int64_t n = snow_block_counts_find(&block_counts, i, voxel);
                     assert_true(
-                        snow_block_counts_begin(&tally, i, n) <= voxel &&
-                        voxel < snow_block_counts_begin(&tally, i, n + 1));
+                        snow_block_counts_begin(&block_counts, i, n) <= voxel &&
+                        voxel <
+                            snow_block_counts_begin(&block_counts, i, n + 1));
                 }
             }
         }

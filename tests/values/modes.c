@@ -82,13 +82,13 @@ bool value_label_slab(value_field *field, const value_ray *ray, int slab,
 
 /* --- projections and the isosurface --------------------------------------- */
 
-typedef struct tally {
+typedef struct ray_summary {
     double most, least, sum, length;
     bool any;
-} tally;
+} ray_summary;
 
 /* A kept part of a slab from f to b. */
-static void count_slab(tally *sums, double f, double b, double length) {
+static void count_slab(ray_summary *sums, double f, double b, double length) {
     sums->most = sums->any ? fmax(sums->most, fmax(f, b)) : fmax(f, b);
     sums->least = sums->any ? fmin(sums->least, fmin(f, b)) : fmin(f, b);
     sums->sum += (f + b) / 2 * length;
@@ -152,7 +152,7 @@ void value_mode_sample(const value_field *field, const value_ray *ray,
                        double out[4]) {
     const value_plan *plan = field->plan;
     snow_mode mode = plan->scene->base.settings.mode;
-    tally sums = {0};
+    ray_summary sums = {0};
     memset(out, 0, 4 * sizeof *out);
     for (int slab = 0; slab + 1 < plan->sheets; slab++) {
         int part[2];
