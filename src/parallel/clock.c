@@ -7,12 +7,12 @@ double snow_ranks_clock(const snow_ranks *r) {
     return snow_comm_seconds(r->comm) - r->overlapped;
 }
 
-static double processor_time(const snow_flight *f) {
+static double processor_time(const snow_in_flight *f) {
     return f->picture.job.settings.threads == 1 ? snow_thread_seconds()
                                                 : snow_cpu_seconds();
 }
 
-double snow_flight_cpu(const snow_flight *f) {
+double snow_in_flight_cpu(const snow_in_flight *f) {
     return processor_time(f) - f->ranks->overlapped_cpu;
 }
 

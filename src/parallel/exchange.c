@@ -38,7 +38,7 @@ static snow_rectangle drawn_part(const snow_shear_warp_image *image, int layer,
 }
 
 /* Whether lines y0 .. y1 - 1 are finished; if so, what of them was drawn on. */
-static bool look_at_lines(const snow_flight *p, int y0, int y1,
+static bool look_at_lines(const snow_in_flight *p, int y0, int y1,
                           snow_rectangle *drawn) {
     const snow_shear_warp_image *image = &p->picture.local.image;
     int first = y0 / image->tile_height,
@@ -69,7 +69,7 @@ static snow_local sheared_local(const snow_shear_warp_image *image,
 }
 
 /* Pixels of the picture, in ranks->images. */
-static snow_local picture_local(const snow_flight *p, const snow_job *job) {
+static snow_local picture_local(const snow_in_flight *p, const snow_job *job) {
     const snow_view *view = job->view;
     const snow_local_image *image = &p->picture.local;
     snow_local local = {.width = view->width,
@@ -101,7 +101,8 @@ static snow_composite_op composite_op_of(snow_mode mode) {
     }
 }
 
-snow_status snow_flight_room(snow_flight *f, const snow_job *job, int layers) {
+snow_status snow_in_flight_room(snow_in_flight *f, const snow_job *job,
+                                int layers) {
     snow_ranks *r = f->ranks;
     size_t bytes = (size_t)layers * snow_job_bytes(job);
     SNOW_TRY(snow_reserve(job->context, &r->images, &r->images_capacity, 0,
@@ -111,18 +112,18 @@ snow_status snow_flight_room(snow_flight *f, const snow_job *job, int layers) {
     return SNOW_STATUS_OK;
 }
 
-static const snow_placement *placement_of(const snow_flight *p,
+static const snow_placement *placement_of(const snow_in_flight *p,
                                           const snow_job *job) {
     return p->picture.pass->method->warps ? &p->picture.local.placement
                                           : &job->placement;
 }
 
 /* An empty intermediate image is the same on all ranks. */
-static bool is_empty(const snow_flight *p) {
+static bool is_empty(const snow_in_flight *p) {
     return p->picture.pass->method->warps && !p->picture.local.image.width;
 }
 
-snow_status snow_flight_prepare(snow_flight *p, const snow_job *job) {
+snow_status snow_in_flight_prepare(snow_in_flight *p, const snow_job *job) {
     const snow_placement *placement = placement_of(p, job);
     const bool warps = p->picture.pass->method->warps;
     snow_viewer sight;
@@ -141,7 +142,7 @@ snow_status snow_flight_prepare(snow_flight *p, const snow_job *job) {
                             &sight, p->ranks->order);
 }
 
-static void set_rounds(snow_flight *p, const snow_exchange_figures *given) {
+static void set_rounds(snow_in_flight *p, const snow_exchange_figures *given) {
     snow_ranks_stats *stats = &p->picture.ranks_stats;
     const int most = (int)(sizeof stats->radices / sizeof *stats->radices);
     stats->rounds = given->rounds;
@@ -153,7 +154,7 @@ static void set_rounds(snow_flight *p, const snow_exchange_figures *given) {
 }
 
 /* Sends parts of a local image while the rest of it is drawn. */
-static snow_status send_while_drawing(snow_flight *p) {
+static snow_status send_while_drawing(snow_in_flight *p) {
     snow_combiner *combiner = p->ranks->combiner;
     snow_rectangle drawn;
     int y0, y1;
@@ -174,7 +175,7 @@ static snow_status send_while_drawing(snow_flight *p) {
     return SNOW_STATUS_OK;
 }
 
-static snow_status exchange(snow_flight *p, const snow_job *job) {
+static snow_status exchange(snow_in_flight *p, const snow_job *job) {
     snow_ranks *r = p->ranks;
     const snow_local *local = &p->local;
     const bool warps = p->picture.pass->method->warps;
@@ -202,22 +203,22 @@ static snow_status exchange(snow_flight *p, const snow_job *job) {
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_flight_exchange(snow_flight *p, const snow_job *job) {
+snow_status snow_in_flight_exchange(snow_in_flight *p, const snow_job *job) {
     snow_ranks *r = p->ranks;
     snow_ranks_stats *stats = &p->picture.ranks_stats;
-    double mark = snow_ranks_clock(r), cpu = snow_flight_cpu(p);
+    double mark = snow_ranks_clock(r), cpu = snow_in_flight_cpu(p);
     if (is_empty(p))
         return SNOW_STATUS_OK;
     SNOW_TRY(exchange(p, job));
     if (p->picture.pass->method->warps)
         SNOW_TRY(snow_lines_exchange(r, &p->picture.local.image, &p->region));
     stats->seconds_combine += snow_ranks_clock(r) - mark;
-    stats->cpu_combine += snow_flight_cpu(p) - cpu;
+    stats->cpu_combine += snow_in_flight_cpu(p) - cpu;
     return SNOW_STATUS_OK;
 }
 
 /* This rank's pixels to their places in its own image. */
-static void keep_pixels(const snow_flight *p, int pixel_bits,
+static void keep_pixels(const snow_in_flight *p, int pixel_bits,
                         snow_image *image) {
     const snow_ranks *r = p->ranks;
     size_t channels = (size_t)image->channels, at = 0;
@@ -235,39 +236,39 @@ static void keep_pixels(const snow_flight *p, int pixel_bits,
     }
 }
 
-static snow_status gather(snow_flight *p, const snow_job *job, int pixel_bits,
-                          snow_image *image) {
+static snow_status gather(snow_in_flight *p, const snow_job *job,
+                          int pixel_bits, snow_image *image) {
     snow_ranks_stats *stats = &p->picture.ranks_stats;
     if (p->how.scattered) {
         keep_pixels(p, pixel_bits, image);
         return SNOW_STATUS_OK;
     }
     const snow_gather_params params = {pixel_bits, image, p->bytes, stats};
-    double cpu = snow_flight_cpu(p);
+    double cpu = snow_in_flight_cpu(p);
     snow_status status = snow_pixels_gather(p->ranks, job, &params);
-    stats->cpu_gather += snow_flight_cpu(p) - cpu;
+    stats->cpu_gather += snow_in_flight_cpu(p) - cpu;
     return status;
 }
 
 /* Local work. */
-static snow_status make_pixels(snow_flight *p, const snow_job *job,
+static snow_status make_pixels(snow_in_flight *p, const snow_job *job,
                                int pixel_bits) {
     snow_ranks *r = p->ranks;
     snow_stats *stats = &p->picture.stats;
     if (!p->picture.pass->method->warps)
         return snow_pixels_copy(r, job, &p->region, pixel_bits);
-    double mark = snow_ranks_clock(r), cpu = snow_flight_cpu(p);
+    double mark = snow_ranks_clock(r), cpu = snow_in_flight_cpu(p);
     snow_status status = snow_pixels_warp(r, &p->picture.local.image, job,
                                           &p->region, pixel_bits);
     stats->seconds_warp += snow_ranks_clock(r) - mark;
-    p->picture.ranks_stats.cpu_warp += snow_flight_cpu(p) - cpu;
+    p->picture.ranks_stats.cpu_warp += snow_in_flight_cpu(p) - cpu;
     /* Bands that were sent may not have been drawn. */
     return status == SNOW_STATUS_OK ? snow_monitor_status(&p->picture.monitor)
                                     : status;
 }
 
-snow_status snow_flight_deliver(snow_flight *p, const snow_job *job,
-                                int pixel_bits, snow_image *image) {
+snow_status snow_in_flight_deliver(snow_in_flight *p, const snow_job *job,
+                                   int pixel_bits, snow_image *image) {
     if (is_empty(p))
         return SNOW_STATUS_OK;
     SNOW_TRY(snow_comm_agree_status(p->ranks->comm,

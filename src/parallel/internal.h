@@ -32,7 +32,7 @@ typedef struct snow_local {
 
 /* One picture on its way.  The driver (frame.c) knows the picture in it only,
  * which is its first member. */
-typedef struct snow_flight {
+typedef struct snow_in_flight {
     snow_picture picture;
     snow_ranks *ranks;
     snow_ranks_options how;
@@ -53,10 +53,10 @@ typedef struct snow_flight {
     snow_status status;
     char message[SNOW_MESSAGE_BYTES]; /* of a failure */
     bool done;
-} snow_flight;
+} snow_in_flight;
 
-static inline snow_flight *snow_flight_of(snow_picture *picture) {
-    return (snow_flight *)picture;
+static inline snow_in_flight *snow_in_flight_of(snow_picture *picture) {
+    return (snow_in_flight *)picture;
 }
 
 /* Pictures under way at the same time: one is combined, one is drawn. */
@@ -67,9 +67,9 @@ struct snow_ranks {
     snow_context *context;
     snow_comm *comm; /* that all below is for */
     snow_combiner *combiner;
-    snow_flight *pictures; /* SNOW_PICTURES_MOST, in turn */
-    int first, in_flight;  /* the oldest; how many */
-    snow_flight *drawn;    /* not ended yet, in waits for messages; or NULL */
+    snow_in_flight *pictures; /* SNOW_PICTURES_MOST, in turn */
+    int first, in_flight;     /* the oldest; how many */
+    snow_in_flight *drawn; /* not ended yet, in waits for messages; or NULL */
     double overlapped;     /* seconds of that, of all pictures */
     double overlapped_cpu; /* the same in processor time */
     bool standing;         /* the clock, since then: */
@@ -112,12 +112,12 @@ snow_status snow_ranks_of(snow_frame *frame, snow_comm *comm);
 void snow_ranks_free(snow_ranks *ranks);
 
 /* The n-th picture under way, the oldest first. */
-static inline snow_flight *snow_flight_at(const snow_ranks *r, int n) {
+static inline snow_in_flight *snow_in_flight_at(const snow_ranks *r, int n) {
     return &r->pictures[(r->first + n) % SNOW_PICTURES_MOST];
 }
 
 /* Ends its drawing, and what it was made with. */
-void snow_flight_end(snow_flight *flight);
+void snow_in_flight_end(snow_in_flight *in_flight);
 
 /* Whether pictures are under way whose local images the frame holds. */
 bool snow_ranks_busy(const snow_ranks *ranks);
@@ -128,7 +128,7 @@ double snow_ranks_clock(const snow_ranks *ranks);
 
 /* Processor time for a picture (snow_ranks_stats.cpu_splat), which stands
  * alike. */
-double snow_flight_cpu(const snow_flight *flight);
+double snow_in_flight_cpu(const snow_in_flight *in_flight);
 
 /* Figure 8's driver (frame.c) makes pictures between these.  Opens a place for
  * one, whose combiner is that of one process where there is one rank. */
@@ -165,43 +165,46 @@ void snow_ranks_drain(snow_ranks *ranks);
 extern const snow_combine_ops snow_combine_ranks;
 
 /* Whether this rank keeps pixels of the picture. */
-static inline bool snow_flight_keeps(const snow_flight *f) {
+static inline bool snow_in_flight_keeps(const snow_in_flight *f) {
     return f->ranks->rank == 0 || f->how.scattered;
 }
 
 /* Local work: what is exchanged of the local image of a job, its order among
  * the ranks, and room. */
-snow_status snow_flight_prepare(snow_flight *flight, const snow_job *job);
+snow_status snow_in_flight_prepare(snow_in_flight *in_flight,
+                                   const snow_job *job);
 
 /* Collective.  Local images to pieces: lines 14 to 18. */
-snow_status snow_flight_exchange(snow_flight *flight, const snow_job *job);
+snow_status snow_in_flight_exchange(snow_in_flight *in_flight,
+                                    const snow_job *job);
 
 /* Collective.  Pieces to pixels of rank 0's `image`, of job->channels. */
-snow_status snow_flight_deliver(snow_flight *flight, const snow_job *job,
-                                int pixel_bits, snow_image *image);
+snow_status snow_in_flight_deliver(snow_in_flight *in_flight,
+                                   const snow_job *job, int pixel_bits,
+                                   snow_image *image);
 
 /* Cleared room in ranks->images for layers of a job's local pixels. */
-snow_status snow_flight_room(snow_flight *flight, const snow_job *job,
-                             int layers);
+snow_status snow_in_flight_room(snow_in_flight *in_flight, const snow_job *job,
+                                int layers);
 
 /* Not collective: whether the mode can be one of many ranks. */
-snow_status snow_flight_check_mode(const snow_flight *flight);
+snow_status snow_in_flight_check_mode(const snow_in_flight *in_flight);
 
 /* Collective.  The range of all parts into the frame's ramp. */
-snow_status snow_flight_agree_range(snow_flight *flight);
+snow_status snow_in_flight_agree_range(snow_in_flight *in_flight);
 
 /* Collective.  The range of all parts, for shear-warp. */
-snow_status snow_flight_agree_values(snow_flight *flight);
+snow_status snow_in_flight_agree_values(snow_in_flight *in_flight);
 
 /* Whether it is known already: the same on all ranks, unless only some have a
  * new volume. */
-bool snow_flight_knows_values(const snow_flight *flight);
+bool snow_in_flight_knows_values(const snow_in_flight *in_flight);
 
 /* Local work: makes it known for a picture without asking the others. */
-snow_status snow_flight_recall_values(snow_flight *flight);
+snow_status snow_in_flight_recall_values(snow_in_flight *in_flight);
 
 /* Local work: colours or values of the pairs that were gathered. */
-snow_status snow_flight_paint(snow_flight *flight);
+snow_status snow_in_flight_paint(snow_in_flight *in_flight);
 
 /* Rounds pixels as if they had travelled as bytes. */
 static inline void snow_round_pixels(snow_image *image) {
@@ -214,11 +217,13 @@ static inline void snow_round_pixels(snow_image *image) {
 
 /* Collective.  Depths of over: a place for the local ones and alphas from the
  * rank in front, if no rank has failed; alphas to the one behind. */
-snow_status snow_flight_take_turn(snow_flight *flight, snow_status status);
-snow_status snow_flight_give_turn(snow_flight *flight, snow_status status);
+snow_status snow_in_flight_take_turn(snow_in_flight *in_flight,
+                                     snow_status status);
+snow_status snow_in_flight_give_turn(snow_in_flight *in_flight,
+                                     snow_status status);
 
 /* Collective.  The nearest of the ranks' depths to rank 0's picture. */
-snow_status snow_flight_combine_depths(snow_flight *flight);
+snow_status snow_in_flight_combine_depths(snow_in_flight *in_flight);
 
 /* How pixels travel to rank 0. */
 typedef struct snow_gather_params {

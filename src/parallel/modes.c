@@ -23,7 +23,7 @@
 #include <math.h>
 #include <string.h>
 
-snow_status snow_flight_check_mode(const snow_flight *f) {
+snow_status snow_in_flight_check_mode(const snow_in_flight *f) {
     const snow_settings *s = &f->picture.job.settings;
     if (s->deterministic &&
         (s->mode == SNOW_MODE_MEAN || s->mode == SNOW_MODE_SUM))
@@ -35,7 +35,7 @@ snow_status snow_flight_check_mode(const snow_flight *f) {
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_flight_agree_range(snow_flight *f) {
+snow_status snow_in_flight_agree_range(snow_in_flight *f) {
     enum { MINUS_LOW, HIGH, HOLES, COUNT };
     snow_identity_transfer *identity = &f->picture.frame->identity;
     snow_comm *comm = f->ranks->comm;
@@ -61,7 +61,7 @@ snow_status snow_flight_agree_range(snow_flight *f) {
 }
 
 /* A part without voxels of its own has none that count. */
-static snow_status measure_values(snow_flight *f, snow_data_range *range) {
+static snow_status measure_values(snow_in_flight *f, snow_data_range *range) {
     const snow_extent *part = &f->part;
     const snow_job *job = &f->picture.job;
     snow_frame *frame = f->picture.frame;
@@ -76,7 +76,7 @@ static snow_status measure_values(snow_flight *f, snow_data_range *range) {
                               job->settings.threads, range);
 }
 
-snow_status snow_flight_agree_values(snow_flight *f) {
+snow_status snow_in_flight_agree_values(snow_in_flight *f) {
     enum { MINUS_LOW, HIGH, HOLES, LOST, COUNT };
     snow_comm *comm = f->ranks->comm;
     snow_data_range range;
@@ -99,13 +99,13 @@ snow_status snow_flight_agree_values(snow_flight *f) {
     return SNOW_STATUS_OK;
 }
 
-bool snow_flight_knows_values(const snow_flight *f) {
+bool snow_in_flight_knows_values(const snow_in_flight *f) {
     const snow_ranks *r = f->ranks;
     return r->values_of && r->values_of == f->generation &&
            r->values.log == f->picture.job.transfer->log;
 }
 
-snow_status snow_flight_recall_values(snow_flight *f) {
+snow_status snow_in_flight_recall_values(snow_in_flight *f) {
     snow_data_range own; /* labels are a part's own, too */
     SNOW_TRY(measure_values(f, &own));
     snow_value_set_range(f->picture.frame->value_path, &f->ranks->values);
@@ -114,7 +114,7 @@ snow_status snow_flight_recall_values(snow_flight *f) {
 
 /* --- pairs ---------------------------------------------------------------- */
 
-snow_status snow_flight_paint(snow_flight *f) {
+snow_status snow_in_flight_paint(snow_in_flight *f) {
     snow_picture *p = &f->picture;
     if (!f->gathered)
         return SNOW_STATUS_OK;
@@ -145,7 +145,7 @@ static void give_depths(const snow_image *pairs, snow_image *depth) {
 }
 
 /* Depths are exchanged as pairs, each of one rank. */
-static snow_job pairs_job(const snow_flight *f) {
+static snow_job pairs_job(const snow_in_flight *f) {
     snow_job job = f->picture.pass->job;
     job.channels = 2;
     job.settings.mode = SNOW_MODE_OVER;
@@ -154,14 +154,14 @@ static snow_job pairs_job(const snow_flight *f) {
 }
 
 /* Local work. */
-static snow_status prepare_pairs(snow_flight *f, const snow_job *job,
+static snow_status prepare_pairs(snow_in_flight *f, const snow_job *job,
                                  snow_image **pairs) {
     snow_picture *p = &f->picture;
     p->local.layers = 1;
-    SNOW_TRY(snow_flight_room(f, job, 1));
+    SNOW_TRY(snow_in_flight_room(f, job, 1));
     take_depths(p->near, f->ranks->images);
-    SNOW_TRY(snow_flight_prepare(f, job));
-    if (!snow_flight_keeps(f))
+    SNOW_TRY(snow_in_flight_prepare(f, job));
+    if (!snow_in_flight_keeps(f))
         return SNOW_STATUS_OK;
     SNOW_TRY(
         snow_image_new(job->context, p->view.width, p->view.height, 2, pairs));
@@ -169,15 +169,15 @@ static snow_status prepare_pairs(snow_flight *f, const snow_job *job,
                           &p->depth);
 }
 
-snow_status snow_flight_combine_depths(snow_flight *f) {
+snow_status snow_in_flight_combine_depths(snow_in_flight *f) {
     const snow_job job = pairs_job(f);
     snow_image *pairs = NULL;
     snow_status status =
         snow_comm_agree_status(f->ranks->comm, prepare_pairs(f, &job, &pairs));
     if (status == SNOW_STATUS_OK)
-        status = snow_flight_exchange(f, &job);
+        status = snow_in_flight_exchange(f, &job);
     if (status == SNOW_STATUS_OK)
-        status = snow_flight_deliver(f, &job, 0, pairs);
+        status = snow_in_flight_deliver(f, &job, 0, pairs);
     if (status == SNOW_STATUS_OK && pairs)
         give_depths(pairs, f->picture.depth);
     snow_image_free(pairs);
@@ -196,14 +196,14 @@ static int seat_of(const snow_ranks *r) {
 }
 
 /* Local work: the order of the ranks, and places. */
-static snow_status prepare_turn(snow_flight *f) {
+static snow_status prepare_turn(snow_in_flight *f) {
     snow_picture *p = &f->picture;
     snow_frame *frame = p->frame;
     const snow_job *job = &p->pass->job;
     snow_job alphas = *job;
     snow_viewer sight;
     alphas.channels = 1;
-    SNOW_TRY(snow_flight_room(f, &alphas, 1));
+    SNOW_TRY(snow_in_flight_room(f, &alphas, 1));
     SNOW_TRY(snow_reserve(job->context, &frame->layer, &frame->layer_capacity,
                           0, snow_job_bytes(job)));
     SNOW_TRY(snow_image_new(job->context, p->view.width, p->view.height, 1,
@@ -218,7 +218,7 @@ static snow_status prepare_turn(snow_flight *f) {
                             &sight, f->ranks->order);
 }
 
-snow_status snow_flight_take_turn(snow_flight *f, snow_status status) {
+snow_status snow_in_flight_take_turn(snow_in_flight *f, snow_status status) {
     snow_ranks *r = f->ranks;
     const snow_job *job = &f->picture.pass->job;
     size_t count = (size_t)job->view->width * (size_t)job->view->height;
@@ -239,7 +239,7 @@ snow_status snow_flight_take_turn(snow_flight *f, snow_status status) {
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_flight_give_turn(snow_flight *f, snow_status status) {
+snow_status snow_in_flight_give_turn(snow_in_flight *f, snow_status status) {
     snow_ranks *r = f->ranks;
     const snow_job *job = &f->picture.pass->job;
     size_t count = (size_t)job->view->width * (size_t)job->view->height;

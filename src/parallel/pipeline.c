@@ -31,20 +31,20 @@ static bool draw_meanwhile(void *of) {
 
 /* --- pictures ------------------------------------------------------------- */
 
-static void keep_status(snow_flight *f, snow_status status) {
+static void keep_status(snow_in_flight *f, snow_status status) {
     f->status = status;
     if (status != SNOW_STATUS_OK)
         memcpy(f->message, f->ranks->context->message, sizeof f->message);
 }
 
-static void begin_call(snow_flight *f) {
+static void begin_call(snow_in_flight *f) {
     f->mark = snow_ranks_clock(f->ranks);
     f->mark_cpu = snow_cpu_seconds();
 }
 
 bool snow_ranks_busy(const snow_ranks *r) {
     for (int n = 0; n < r->in_flight; n++)
-        if (!snow_flight_at(r, n)->done)
+        if (!snow_in_flight_at(r, n)->done)
             return true;
     return false;
 }
@@ -68,8 +68,8 @@ snow_status snow_pipeline_open(snow_frame *frame, snow_comm *comm,
             "two pictures are in flight; call snow_ranks_finish first");
     SNOW_TRY(snow_ranks_of(frame, comm));
     r = frame->ranks;
-    snow_flight *f = snow_flight_at(r, r->in_flight);
-    *f = (snow_flight){
+    snow_in_flight *f = snow_in_flight_at(r, r->in_flight);
+    *f = (snow_in_flight){
         .picture = {.frame = frame,
                     .combiner = r->ranks == 1 ? &snow_combine_alone
                                               : &snow_combine_ranks,
@@ -89,11 +89,11 @@ snow_status snow_pipeline_open(snow_frame *frame, snow_comm *comm,
 
 /* Its figures are found now, while there is a volume, which may go after
  * this. */
-static void begin_early(snow_flight *f, snow_status status) {
+static void begin_early(snow_in_flight *f, snow_status status) {
     snow_picture *p = &f->picture;
     snow_ranks *r = f->ranks;
     if (status == SNOW_STATUS_OK) {
-        p->ranks_stats.cpu_splat += snow_flight_cpu(f) - f->drawn_cpu;
+        p->ranks_stats.cpu_splat += snow_in_flight_cpu(f) - f->drawn_cpu;
         status = snow_method_figures(p->pass->method, p, &p->pass->job);
     }
     keep_status(f, status);
@@ -108,7 +108,7 @@ static void begin_early(snow_flight *f, snow_status status) {
 }
 
 void snow_pipeline_begun(snow_picture *p, snow_status status) {
-    snow_flight *f = snow_flight_of(p);
+    snow_in_flight *f = snow_in_flight_of(p);
     f->ranks->in_flight++;
     snow_monitor_leave(&p->monitor);
     if (p->ahead) {
@@ -123,19 +123,19 @@ void snow_pipeline_begun(snow_picture *p, snow_status status) {
 snow_picture *snow_pipeline_waiting(const snow_frame *frame) {
     const snow_ranks *r = frame->ranks;
     for (int n = 0; n < r->in_flight; n++)
-        if (!snow_flight_at(r, n)->done)
-            return &snow_flight_at(r, n)->picture;
+        if (!snow_in_flight_at(r, n)->done)
+            return &snow_in_flight_at(r, n)->picture;
     return NULL;
 }
 
 snow_picture *snow_pipeline_oldest(const snow_frame *frame) {
     const snow_ranks *r = frame->ranks;
-    bool any = r && r->in_flight && !snow_flight_at(r, 0)->done;
-    return any ? &snow_flight_at(r, 0)->picture : NULL;
+    bool any = r && r->in_flight && !snow_in_flight_at(r, 0)->done;
+    return any ? &snow_in_flight_at(r, 0)->picture : NULL;
 }
 
 snow_status snow_pipeline_resume(snow_picture *p) {
-    snow_flight *f = snow_flight_of(p);
+    snow_in_flight *f = snow_in_flight_of(p);
     begin_call(f);
     snow_monitor_enter(&p->monitor);
     if (f->status != SNOW_STATUS_OK) /* others may have failed since */
@@ -144,7 +144,7 @@ snow_status snow_pipeline_resume(snow_picture *p) {
 }
 
 /* Time and processor time are of the calls for this picture. */
-static void count_time(snow_flight *f) {
+static void count_time(snow_in_flight *f) {
     snow_stats *stats = &f->picture.stats;
     stats->seconds_splat += f->overlapped;
     stats->seconds_frame +=
@@ -153,7 +153,7 @@ static void count_time(snow_flight *f) {
 }
 
 /* A group of one: its local image is the picture. */
-static void end_alone(snow_flight *f, snow_status status) {
+static void end_alone(snow_in_flight *f, snow_status status) {
     snow_picture *p = &f->picture;
     if (status == SNOW_STATUS_OK && f->how.pixel_bits == 8 &&
         p->image->channels > 1)
@@ -164,7 +164,7 @@ static void end_alone(snow_flight *f, snow_status status) {
 }
 
 void snow_pipeline_done(snow_picture *p, snow_status status) {
-    snow_flight *f = snow_flight_of(p);
+    snow_in_flight *f = snow_in_flight_of(p);
     if (status == SNOW_STATUS_STOPPED) /* by any rank */
         atomic_store(&p->monitor.stopped, true);
     if (f->ranks->drawn == f) /* where it failed */
@@ -186,10 +186,10 @@ snow_status snow_pipeline_take(snow_frame *frame, snow_image **image) {
         return fail_in_flight(
             frame->context,
             "no picture is in flight; call snow_ranks_begin first");
-    snow_flight *f = snow_flight_at(r, 0);
+    snow_in_flight *f = snow_in_flight_at(r, 0);
     r->first = (r->first + 1) % SNOW_PICTURES_MOST;
     r->in_flight--;
-    snow_flight_end(f);
+    snow_in_flight_end(f);
     SNOW_TRY(snow_picture_end(&f->picture, f->status, image) == SNOW_STATUS_OK
                  ? SNOW_STATUS_OK
                  : snow_fail(frame->context, f->status, "%s", f->message));

@@ -1,7 +1,7 @@
 /* parallel/ranks.c - what a frame keeps for pictures by many ranks. */
 #include "parallel/internal.h"
 
-void snow_flight_end(snow_flight *f) {
+void snow_in_flight_end(snow_in_flight *f) {
     snow_context *context = f->ranks->context;
     if (f->picture.drawing)
         snow_line_batch_end(f->picture.drawing);
@@ -13,10 +13,10 @@ void snow_flight_end(snow_flight *f) {
 }
 
 /* Pictures that nobody has asked for end here. */
-static void end_flights(snow_ranks *r) {
+static void end_in_flight(snow_ranks *r) {
     for (int n = 0; n < r->in_flight; n++) {
-        snow_flight *f = snow_flight_at(r, n);
-        snow_flight_end(f);
+        snow_in_flight *f = snow_in_flight_at(r, n);
+        snow_in_flight_end(f);
         snow_image_free(f->picture.image);
         snow_image_free(f->picture.depth);
         snow_image_free(f->picture.near);
@@ -29,7 +29,7 @@ void snow_ranks_free(snow_ranks *r) {
     if (!r)
         return;
     snow_context *context = r->context;
-    end_flights(r);
+    end_in_flight(r);
     void *const blocks[] = {r->parts,    r->boxes,   r->order, r->firsts,
                             r->counts,   r->offsets, r->sent,  r->came,
                             r->messages, r->region,  r->lines, r->images,

@@ -35,12 +35,12 @@
 /* Whether a picture has one pass, whose method leaves its local image to be
  * drawn, and needs no word of others first.  Ranks that have failed, or have a
  * new volume alone, may differ: synchronize_all tells. */
-static bool is_ahead(const snow_flight *f) {
+static bool is_ahead(const snow_in_flight *f) {
     const snow_picture *p = &f->picture;
     return p->job.settings.mode == SNOW_MODE_OVER && p->pass_count == 1 &&
            p->passes[0].method->ahead &&
            (p->job.settings.method != SNOW_METHOD_SHEAR_WARP ||
-            snow_flight_knows_values(f));
+            snow_in_flight_knows_values(f));
 }
 
 static bool is_sum(snow_mode mode) {
@@ -48,15 +48,15 @@ static bool is_sum(snow_mode mode) {
 }
 
 /* What the picture is gathered in; pairs have an image of their own. */
-static snow_status make_images(snow_flight *f) {
+static snow_status make_images(snow_in_flight *f) {
     snow_picture *p = &f->picture;
     snow_context *context = p->frame->context;
     if (f->how.pixel_bits != 0 && f->how.pixel_bits != 8)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "invalid pixel_bits %d: must be 8, or 0 for floats",
                          f->how.pixel_bits);
-    SNOW_TRY(snow_flight_check_mode(f));
-    if (is_sum(p->job.settings.mode) || !snow_flight_keeps(f))
+    SNOW_TRY(snow_in_flight_check_mode(f));
+    if (is_sum(p->job.settings.mode) || !snow_in_flight_keeps(f))
         return SNOW_STATUS_OK;
     SNOW_TRY(snow_image_new(context, p->view.width, p->view.height,
                             p->job.channels, &p->image));
@@ -68,7 +68,7 @@ static snow_status make_images(snow_flight *f) {
 }
 
 static snow_status begin(snow_picture *p, snow_status status) {
-    snow_flight *f = snow_flight_of(p);
+    snow_in_flight *f = snow_in_flight_of(p);
     f->generation = p->job.volume->generation;
     f->ranks->apart = false;
     snow_volume_find_extent(p->job.volume, &f->part);
@@ -77,10 +77,10 @@ static snow_status begin(snow_picture *p, snow_status status) {
     if (status == SNOW_STATUS_OK)
         status = make_images(f);
     p->ahead = is_ahead(f);
-    f->drawn_cpu = snow_flight_cpu(f);
+    f->drawn_cpu = snow_in_flight_cpu(f);
     if (status == SNOW_STATUS_OK && p->ahead &&
         p->job.settings.method == SNOW_METHOD_SHEAR_WARP)
-        status = snow_flight_recall_values(f);
+        status = snow_in_flight_recall_values(f);
     return status;
 }
 
@@ -94,7 +94,7 @@ static void mix(uint64_t *hash, const void *bytes, size_t count) {
 }
 
 /* What must be the same on all ranks, as a number. */
-static int64_t terms_of(const snow_flight *p) {
+static int64_t terms_of(const snow_in_flight *p) {
     const snow_job *job = &p->picture.job;
     const snow_settings *s = &job->settings;
     const snow_placement *place = &job->placement;
@@ -146,7 +146,7 @@ static snow_status check_parts(const snow_ranks *r) {
 }
 
 /* Collective.  Every rank's part to all. */
-static snow_status share_parts(snow_ranks *r, const snow_flight *p) {
+static snow_status share_parts(snow_ranks *r, const snow_in_flight *p) {
     r->generation = 0;
     SNOW_TRY(snow_comm_allgather(r->comm, &p->part, sizeof p->part, r->parts));
     for (int rank = 0; rank < r->ranks; rank++) {
@@ -163,7 +163,7 @@ static snow_status share_parts(snow_ranks *r, const snow_flight *p) {
 }
 
 /* Whether this rank knows the parts of a picture. */
-static bool knows_parts(const snow_flight *p) {
+static bool knows_parts(const snow_in_flight *p) {
     return p->generation && p->ranks->generation == p->generation;
 }
 
@@ -178,7 +178,7 @@ static snow_status fail_apart(snow_ranks *r) {
 
 /* Collective.  How the ranks' own work went, and what they have counted in the
  * picture before; parts, where one is new. */
-static snow_status synchronize_all(snow_flight *p, snow_status status,
+static snow_status synchronize_all(snow_in_flight *p, snow_status status,
                                    bool *new_parts) {
     enum { FAILED, NEW, AHEAD, NOT_AHEAD, TERMS, MINUS_TERMS, COUNT };
     snow_ranks *r = p->ranks;
@@ -209,22 +209,22 @@ static snow_status synchronize_all(snow_flight *p, snow_status status,
 }
 
 static snow_status synchronize(snow_picture *p, snow_status status) {
-    snow_flight *f = snow_flight_of(p);
+    snow_in_flight *f = snow_in_flight_of(p);
     bool new_parts;
     SNOW_TRY(synchronize_all(f, status, &new_parts));
     if (p->job.settings.mode != SNOW_MODE_OVER)
-        SNOW_TRY(snow_flight_agree_range(f));
+        SNOW_TRY(snow_in_flight_agree_range(f));
     return p->job.settings.method == SNOW_METHOD_SHEAR_WARP
-               ? snow_flight_agree_values(f)
+               ? snow_in_flight_agree_values(f)
                : SNOW_STATUS_OK;
 }
 
 /* --- places --------------------------------------------------------------- */
 
 /* Where pixels come together that are not the picture yet. */
-static snow_status place_gathered(snow_flight *f) {
+static snow_status place_gathered(snow_in_flight *f) {
     const snow_job *job = &f->picture.pass->job;
-    if (!snow_flight_keeps(f) || !is_sum(job->settings.mode))
+    if (!snow_in_flight_keeps(f) || !is_sum(job->settings.mode))
         return SNOW_STATUS_OK;
     if (f->gathered)
         memset(f->gathered->pixels, 0, snow_job_bytes(job));
@@ -236,7 +236,7 @@ static snow_status place_gathered(snow_flight *f) {
 
 /* A layer, or in deterministic pictures of the exact methods one for each
  * node. */
-static snow_status place_layers(snow_flight *f) {
+static snow_status place_layers(snow_in_flight *f) {
     const snow_job *job = &f->picture.pass->job;
     snow_local_image *local = &f->picture.local;
     local->layers = 1;
@@ -248,15 +248,15 @@ static snow_status place_layers(snow_flight *f) {
                          "parts of a deterministic picture must begin and end "
                          "at multiples of %d groups of slices",
                          SNOW_GROUPS);
-    return snow_flight_room(f, job, local->layers);
+    return snow_in_flight_room(f, job, local->layers);
 }
 
 static snow_status place(snow_picture *p, snow_status status) {
-    snow_flight *f = snow_flight_of(p);
+    snow_in_flight *f = snow_in_flight_of(p);
     const snow_job *job = &p->pass->job;
-    f->drawn_cpu = snow_flight_cpu(f);
+    f->drawn_cpu = snow_in_flight_cpu(f);
     if (p->pass->depth)
-        return snow_flight_take_turn(f, status);
+        return snow_in_flight_take_turn(f, status);
     SNOW_TRY(status);
     SNOW_TRY(place_gathered(f));
     if (p->pass->method->warps)
@@ -274,21 +274,21 @@ static snow_status place(snow_picture *p, snow_status status) {
 
 /* Collective.  Of a picture whose local image was begun: what it needs is
  * prepared before the ranks meet, where this one knows all parts. */
-static snow_status synchronize_ahead(snow_flight *f, const snow_job *job,
+static snow_status synchronize_ahead(snow_in_flight *f, const snow_job *job,
                                      snow_status status) {
     bool known = knows_parts(f), new_parts;
     if (f->picture.drawing && job->settings.deterministic)
         snow_ranks_drain(f->ranks);
     if (status == SNOW_STATUS_OK && known)
-        status = snow_flight_prepare(f, job);
+        status = snow_in_flight_prepare(f, job);
     SNOW_TRY(synchronize_all(f, status, &new_parts));
     return new_parts ? snow_comm_agree_status(f->ranks->comm,
-                                              snow_flight_prepare(f, job))
+                                              snow_in_flight_prepare(f, job))
                      : SNOW_STATUS_OK;
 }
 
 /* Local work: the rest of the local image. */
-static snow_status end_local(snow_flight *f, const snow_job *job) {
+static snow_status end_local(snow_in_flight *f, const snow_job *job) {
     snow_picture *p = &f->picture;
     if (p->drawing) {
         double mark = snow_ranks_clock(f->ranks);
@@ -296,16 +296,16 @@ static snow_status end_local(snow_flight *f, const snow_job *job) {
         p->drawing = NULL;
         p->stats.seconds_splat += snow_ranks_clock(f->ranks) - mark;
     }
-    p->ranks_stats.cpu_splat += snow_flight_cpu(f) - f->drawn_cpu;
+    p->ranks_stats.cpu_splat += snow_in_flight_cpu(f) - f->drawn_cpu;
     SNOW_TRY(snow_monitor_status(&p->monitor));
-    return snow_flight_prepare(f, job);
+    return snow_in_flight_prepare(f, job);
 }
 
 static snow_status combine(snow_picture *p, const snow_job *job,
                            snow_status status) {
-    snow_flight *f = snow_flight_of(p);
+    snow_in_flight *f = snow_in_flight_of(p);
     if (p->pass->depth)
-        return snow_flight_give_turn(f, status);
+        return snow_in_flight_give_turn(f, status);
     if (p->ahead)
         SNOW_TRY(synchronize_ahead(f, job, status));
     else {
@@ -313,33 +313,33 @@ static snow_status combine(snow_picture *p, const snow_job *job,
             status = end_local(f, job);
         SNOW_TRY(snow_comm_agree_status(f->ranks->comm, status));
     }
-    return snow_flight_exchange(f, job);
+    return snow_in_flight_exchange(f, job);
 }
 
 /* --- the picture ---------------------------------------------------------- */
 
 static snow_status display(snow_picture *p, snow_status status) {
-    snow_flight *f = snow_flight_of(p);
+    snow_in_flight *f = snow_in_flight_of(p);
     const snow_job *job = &p->pass->job;
     bool whole = !is_sum(job->settings.mode);
     SNOW_TRY(status);
     if (p->pass->depth)
-        return snow_flight_combine_depths(f);
-    SNOW_TRY(snow_flight_deliver(f, job, whole ? f->how.pixel_bits : 0,
-                                 whole ? p->image : f->gathered));
+        return snow_in_flight_combine_depths(f);
+    SNOW_TRY(snow_in_flight_deliver(f, job, whole ? f->how.pixel_bits : 0,
+                                    whole ? p->image : f->gathered));
     if (is_sum(job->settings.mode))
-        return snow_comm_agree_status(f->ranks->comm, snow_flight_paint(f));
-    return p->near ? snow_flight_combine_depths(f) : SNOW_STATUS_OK;
+        return snow_comm_agree_status(f->ranks->comm, snow_in_flight_paint(f));
+    return p->near ? snow_in_flight_combine_depths(f) : SNOW_STATUS_OK;
 }
 
 static snow_status agree(snow_picture *p, snow_status status) {
-    return snow_comm_agree_status(snow_flight_of(p)->ranks->comm, status);
+    return snow_comm_agree_status(snow_in_flight_of(p)->ranks->comm, status);
 }
 
 static snow_status reduce(snow_picture *p, int64_t *values, size_t count,
                           snow_reduce by) {
-    return snow_comm_reduce_ints(snow_flight_of(p)->ranks->comm, values, count,
-                                 by);
+    return snow_comm_reduce_ints(snow_in_flight_of(p)->ranks->comm, values,
+                                 count, by);
 }
 
 const snow_combine_ops snow_combine_ranks = {.begin = begin,

@@ -23,7 +23,7 @@
     } while (0)
 
 /* Pictures of one volume, turned by `step` degrees each. */
-typedef struct flight {
+typedef struct pipeline {
     const char *path;
     snow_view view;
     snow_settings settings;
@@ -32,11 +32,11 @@ typedef struct flight {
     double hidden;              /* of rank 0 */
     atomic_uint_fast64_t early; /* of all ranks, one after another */
     float *pixels[PICTURES];    /* one after another */
-} flight;
+} pipeline;
 
 typedef struct seat {
     snow_comm *comm;
-    flight *f;
+    pipeline *f;
     snow_volume *volume;
     snow_transfer *transfer;
     snow_frame *frame;
@@ -48,7 +48,7 @@ static void leave(seat *s) {
     snow_volume_close(s->volume);
 }
 
-static snow_status sit_down(snow_comm *comm, flight *f, seat *s) {
+static snow_status sit_down(snow_comm *comm, pipeline *f, seat *s) {
     const snow_look look = {.size = sizeof look, .colormap = "viridis"};
     *s = (seat){.comm = comm, .f = f};
     SNOW_TRY(snow_ranks_open(comm, f->path, NULL, &look, &f->view, &f->settings,
@@ -61,7 +61,7 @@ static snow_status sit_down(snow_comm *comm, flight *f, seat *s) {
 
 /* The volume that a picture was begun with may go. */
 static snow_status begin(seat *s, int number) {
-    flight *f = s->f;
+    pipeline *f = s->f;
     snow_view view = f->view;
     view.azimuth += f->step * number;
     SNOW_TRY(snow_ranks_repartition(s->comm, s->transfer, &view, &f->settings,
@@ -118,14 +118,15 @@ static snow_status compare_ways(snow_comm *comm, void *user) {
 
 /* --- what is flown -------------------------------------------------------- */
 
-static void flight_free(flight *f) {
+static void pipeline_free(pipeline *f) {
     for (int n = 0; n < PICTURES; n++)
         free(f->pixels[n]);
     free(f);
 }
 
-static flight *flight_of(const char *folder, const int64_t dims[3], int side) {
-    flight *f = calloc(1, sizeof *f);
+static pipeline *pipeline_of(const char *folder, const int64_t dims[3],
+                             int side) {
+    pipeline *f = calloc(1, sizeof *f);
     assert_non_null(f);
     for (int n = 0; n < PICTURES; n++)
         f->pixels[n] = calloc((size_t)(side * side) * 4, sizeof(float));
@@ -148,11 +149,11 @@ static flight *flight_of(const char *folder, const int64_t dims[3], int side) {
     return f;
 }
 
-static flight *flight_new(const char *folder) {
-    return flight_of(folder, (const int64_t[3]){34, 30, 38}, 72);
+static pipeline *pipeline_new(const char *folder) {
+    return pipeline_of(folder, (const int64_t[3]){34, 30, 38}, 72);
 }
 
-static void run(flight *f, int ranks, snow_comm_body_fn *body) {
+static void run(pipeline *f, int ranks, snow_comm_body_fn *body) {
     snow_context *context = support_context();
     if (snow_comm_run_threads(context, ranks, body, f) != SNOW_STATUS_OK)
         fail_msg("%d ranks, azimuth %g, elevation %g, fov %g, %d threads: %s",
@@ -174,7 +175,7 @@ static void pictures_that_overlap_have_the_same_bits(void **state) {
         {0, -80, 5}, {25, 20, 7}, {-130, -50, 9}, {10, 5, 50}};
     char folder[SUPPORT_FOLDER_BYTES];
     support_folder_make(folder);
-    flight *f = flight_new(folder);
+    pipeline *f = pipeline_new(folder);
     for (int n = 0; n < (int)(sizeof sides / sizeof *sides); n++)
         for (int seen = 0; seen < 2; seen++)
             for (int i = (int)support_start((size_t)(2 * n + seen), 4);
@@ -188,7 +189,7 @@ static void pictures_that_overlap_have_the_same_bits(void **state) {
                 f->how.combining = (snow_combine)((n + seen + i) % 5);
                 run(f, rank_counts[i], compare_ways);
             }
-    flight_free(f);
+    pipeline_free(f);
     support_folder_remove(folder);
 }
 
@@ -197,7 +198,7 @@ static void pictures_of_every_method_may_be_begun(void **state) {
     (void)state;
     char folder[SUPPORT_FOLDER_BYTES];
     support_folder_make(folder);
-    flight *f = flight_new(folder);
+    pipeline *f = pipeline_new(folder);
     for (int way = 0; way < 5; way++)
         for (int i = 0; i < 4; i++) {
             f->view.azimuth = 38;
@@ -211,7 +212,7 @@ static void pictures_of_every_method_may_be_begun(void **state) {
             f->step = way == 4 ? 0 : 6;
             run(f, rank_counts[i], compare_ways);
         }
-    flight_free(f);
+    pipeline_free(f);
     support_folder_remove(folder);
 }
 
@@ -221,7 +222,7 @@ static void pictures_sent_early_have_the_same_bits(void **state) {
     (void)state;
     char folder[SUPPORT_FOLDER_BYTES];
     support_folder_make(folder);
-    flight *f = flight_new(folder);
+    pipeline *f = pipeline_new(folder);
     for (int ranks = 2; ranks <= 33;
          ranks += ranks < 5 ? 1 : (int)support_stride(7)) {
         f->view.azimuth = 11 * ranks;
@@ -232,11 +233,11 @@ static void pictures_sent_early_have_the_same_bits(void **state) {
         f->how.combining = (snow_combine)(ranks % 5);
         run(f, ranks, compare_ways);
     }
-    flight_free(f);
+    pipeline_free(f);
     support_folder_remove(folder);
 }
 
-static void run_modelled(flight *f, int ranks, double latency) {
+static void run_modelled(pipeline *f, int ranks, double latency) {
     const snow_network network = {
         .latency = latency, .bandwidth = 1e9, .slowness = 1};
     snow_context *context = support_context();
@@ -252,14 +253,14 @@ static void pictures_are_sent_while_they_are_drawn(void **state) {
     (void)state;
     char folder[SUPPORT_FOLDER_BYTES];
     support_folder_make(folder);
-    flight *f = flight_of(folder, (const int64_t[3]){150, 160, 170}, 300);
+    pipeline *f = pipeline_of(folder, (const int64_t[3]){150, 160, 170}, 300);
     f->step = 2;
     for (int ranks = 2; ranks <= 4; ranks++) {
         f->early = 0;
         run_modelled(f, ranks, 0);
         assert_true(f->early > 0);
     }
-    flight_free(f);
+    pipeline_free(f);
     support_folder_remove(folder);
 }
 
@@ -268,10 +269,10 @@ static void pictures_are_drawn_while_messages_travel(void **state) {
     (void)state;
     char folder[SUPPORT_FOLDER_BYTES];
     support_folder_make(folder);
-    flight *f = flight_new(folder);
+    pipeline *f = pipeline_new(folder);
     run_modelled(f, 3, 1);
     assert_true(f->hidden > 0);
-    flight_free(f);
+    pipeline_free(f);
     support_folder_remove(folder);
 }
 
@@ -284,7 +285,7 @@ static bool says(const seat *s, const char *text) {
 
 static snow_status misuse_seat(seat *s) {
     snow_image *image = NULL;
-    flight *f = s->f;
+    pipeline *f = s->f;
     REQUIRE(s->comm,
             snow_ranks_finish(s->frame, &image) == SNOW_STATUS_BAD_USAGE);
     REQUIRE(s->comm, says(s, "no picture is in flight"));
@@ -321,19 +322,19 @@ static void too_many_pictures_are_refused_and_those_begun_end(void **state) {
     (void)state;
     char folder[SUPPORT_FOLDER_BYTES];
     support_folder_make(folder);
-    flight *f = flight_new(folder);
+    pipeline *f = pipeline_new(folder);
     for (int i = 0; i < COUNTS; i++) {
         f->settings.threads = 1 + i % 3;
         run(f, rank_counts[i], misuse);
     }
-    flight_free(f);
+    pipeline_free(f);
     support_folder_remove(folder);
 }
 
 /* The second picture is wrong, on one rank or on all; the others are not. */
 static snow_status spoil_seat(seat *s, bool all) {
     snow_image *image = NULL;
-    flight *f = s->f;
+    pipeline *f = s->f;
     snow_settings other = f->settings;
     bool wrong = all || snow_comm_rank(s->comm) == 1;
     if (all)
@@ -367,10 +368,10 @@ static void a_wrong_picture_is_told_in_its_turn(void **state) {
     (void)state;
     char folder[SUPPORT_FOLDER_BYTES];
     support_folder_make(folder);
-    flight *f = flight_new(folder);
+    pipeline *f = pipeline_new(folder);
     for (int i = 1; i < 5; i++)
         run(f, rank_counts[i], spoil);
-    flight_free(f);
+    pipeline_free(f);
     support_folder_remove(folder);
 }
 
