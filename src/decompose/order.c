@@ -11,25 +11,25 @@
 
 /* 1 if rays run from `a` to `b` along an axis on which they are separated, with
  * `a` lower; -1 from `b` to `a`; 0 if none does. */
-static int runs_upward(const snow_viewer *sight, int axis, int64_t a_end,
+static int runs_upward(const snow_viewer *viewer, int axis, int64_t a_end,
                        int64_t b_first) {
-    if (!sight->perspective)
-        return (sight->along[axis] > 0) - (sight->along[axis] < 0);
+    if (!viewer->perspective)
+        return (viewer->along[axis] > 0) - (viewer->along[axis] < 0);
     /* A ray from an eye between the two meets only one of them. */
-    if (sight->eye[axis] <= (double)a_end - 0.5)
+    if (viewer->eye[axis] <= (double)a_end - 0.5)
         return 1;
-    return sight->eye[axis] >= (double)b_first - 0.5 ? -1 : 0;
+    return viewer->eye[axis] >= (double)b_first - 0.5 ? -1 : 0;
 }
 
 /* The same with the boxes in either order; 2 if they are not separated. */
 static int before_along(const snow_box *a, const snow_box *b,
-                        const snow_viewer *sight, int axis) {
+                        const snow_viewer *viewer, int axis) {
     int64_t a_end = a->first[axis] + a->count[axis];
     int64_t b_end = b->first[axis] + b->count[axis];
     if (a_end <= b->first[axis])
-        return runs_upward(sight, axis, a_end, b->first[axis]);
+        return runs_upward(viewer, axis, a_end, b->first[axis]);
     if (b_end <= a->first[axis])
-        return -runs_upward(sight, axis, b_end, a->first[axis]);
+        return -runs_upward(viewer, axis, b_end, a->first[axis]);
     return 2;
 }
 
@@ -37,10 +37,10 @@ static int before_along(const snow_box *a, const snow_box *b,
  * no ray meets both. The boxes are disjoint; they extend half a voxel to all
  * sides. */
 static int box_before(const snow_box *a, const snow_box *b,
-                      const snow_viewer *sight) {
+                      const snow_viewer *viewer) {
     int found = 2;
     for (int axis = 0; axis < 3; axis++) {
-        int here = before_along(a, b, sight, axis);
+        int here = before_along(a, b, viewer, axis);
         if (here == 2)
             continue;
         if (here == 0 || (found != 2 && found != here))
@@ -56,7 +56,7 @@ static bool is_empty(const snow_box *box) {
 
 /* Counts for each box the boxes before it; false if two overlap. */
 static bool count_before(const snow_box *boxes, int count,
-                         const snow_viewer *sight, int *before) {
+                         const snow_viewer *viewer, int *before) {
     for (int a = 0; a < count; a++)
         for (int b = a + 1; b < count; b++) {
             if (is_empty(&boxes[a]) || is_empty(&boxes[b]))
@@ -64,7 +64,7 @@ static bool count_before(const snow_box *boxes, int count,
             snow_box shared;
             if (snow_box_intersect(&boxes[a], &boxes[b], &shared))
                 return false;
-            int order = box_before(&boxes[a], &boxes[b], sight);
+            int order = box_before(&boxes[a], &boxes[b], viewer);
             before[b] += order > 0;
             before[a] += order < 0;
         }
@@ -74,7 +74,7 @@ static bool count_before(const snow_box *boxes, int count,
 /* Removes boxes with no box before them, the lowest number first; returns their
  * number. Each is compared with all others once: count^2 steps. */
 static int take_boxes(const snow_box *boxes, int count,
-                      const snow_viewer *sight, int *before, int *order) {
+                      const snow_viewer *viewer, int *before, int *order) {
     int taken = 0, ready = 0;
     for (int n = 0; n < count; n++)
         if (!is_empty(&boxes[n]) && before[n] == 0)
@@ -83,7 +83,7 @@ static int take_boxes(const snow_box *boxes, int count,
         const snow_box *box = &boxes[order[taken]];
         for (int n = 0; n < count; n++)
             if (n != order[taken] && !is_empty(&boxes[n]) &&
-                box_before(box, &boxes[n], sight) > 0 && --before[n] == 0)
+                box_before(box, &boxes[n], viewer) > 0 && --before[n] == 0)
                 order[ready++] = n;
     }
     for (int n = 0; n < count; n++)
@@ -93,18 +93,18 @@ static int take_boxes(const snow_box *boxes, int count,
 }
 
 snow_status snow_order_boxes(snow_context *context, const snow_box *boxes,
-                             int count, const snow_viewer *sight, int *order) {
+                             int count, const snow_viewer *viewer, int *order) {
     int *work = snow_allocate_array(context, (uint64_t)count * 2, sizeof *work);
     if (!work)
         return SNOW_STATUS_NO_MEMORY;
     int *before = work, *found = work + count;
     memset(work, 0, (size_t)count * 2 * sizeof *work);
     snow_status status = SNOW_STATUS_OK;
-    if (!count_before(boxes, count, sight, before))
+    if (!count_before(boxes, count, viewer, before))
         status = snow_fail(context, SNOW_STATUS_BAD_USAGE,
                            "parts of the volume overlap: every voxel must "
                            "belong to one processor only");
-    else if (take_boxes(boxes, count, sight, before, found) < count)
+    else if (take_boxes(boxes, count, viewer, before, found) < count)
         status = snow_fail(context, SNOW_STATUS_BAD_USAGE,
                            "parts of the volume have no order from front to "
                            "back: they occlude each other in a cycle; "

@@ -19,6 +19,6 @@ typedef struct snow_viewer {
  * (boxes that overlap, or occlude each other in a cycle),
  * SNOW_STATUS_NO_MEMORY. */
 snow_status snow_order_boxes(snow_context *context, const snow_box *boxes,
-                             int count, const snow_viewer *sight, int *order);
+                             int count, const snow_viewer *viewer, int *order);
 
 #endif

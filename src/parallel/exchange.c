@@ -126,7 +126,7 @@ static bool is_empty(const snow_in_flight *p) {
 snow_status snow_in_flight_prepare(snow_in_flight *p, const snow_job *job) {
     const snow_placement *placement = placement_of(p, job);
     const bool warps = p->picture.pass->method->warps;
-    snow_viewer sight;
+    snow_viewer viewer;
     if (is_empty(p))
         return SNOW_STATUS_OK;
     p->local = warps
@@ -137,9 +137,9 @@ snow_status snow_in_flight_prepare(snow_in_flight *p, const snow_job *job) {
         SNOW_TRY(snow_lines_prepare(p->ranks, &p->picture.local.image));
     if (job->settings.deterministic)
         return snow_layers_prepare(p->ranks, &p->local, placement);
-    snow_clip_viewer(placement, &sight);
+    snow_clip_viewer(placement, &viewer);
     return snow_order_boxes(job->context, p->ranks->boxes, p->ranks->ranks,
-                            &sight, p->ranks->order);
+                            &viewer, p->ranks->order);
 }
 
 static void set_rounds(snow_in_flight *p, const snow_exchange_figures *given) {

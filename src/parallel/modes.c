@@ -201,7 +201,7 @@ static snow_status prepare_turn(snow_in_flight *f) {
     snow_frame *frame = p->frame;
     const snow_job *job = &p->pass->job;
     snow_job alphas = *job;
-    snow_viewer sight;
+    snow_viewer viewer;
     alphas.channels = 1;
     SNOW_TRY(snow_in_flight_room(f, &alphas, 1));
     SNOW_TRY(snow_reserve(job->context, &frame->layer, &frame->layer_capacity,
@@ -213,9 +213,9 @@ static snow_status prepare_turn(snow_in_flight *f) {
         p->near->pixels[n] = NAN;
     p->local.pixels = frame->layer;
     p->local.depths = p->near->pixels;
-    snow_clip_viewer(&job->placement, &sight);
+    snow_clip_viewer(&job->placement, &viewer);
     return snow_order_boxes(job->context, f->ranks->boxes, f->ranks->ranks,
-                            &sight, f->ranks->order);
+                            &viewer, f->ranks->order);
 }
 
 snow_status snow_in_flight_take_turn(snow_in_flight *f, snow_status status) {

@@ -49,7 +49,7 @@ snow_status snow_ranks_have_order(snow_context *context,
                                   const snow_volume_info *whole,
                                   const snow_view *view, const snow_box *boxes,
                                   int count, bool *out) {
-    snow_viewer sight;
+    snow_viewer viewer;
     snow_placement placement;
     records r;
     SNOW_TRY(read_records(context, whole, view, NULL, &r));
@@ -57,8 +57,9 @@ snow_status snow_ranks_have_order(snow_context *context,
     int *order = snow_allocate_array(context, (uint64_t)count, sizeof *order);
     if (!order)
         return SNOW_STATUS_NO_MEMORY;
-    snow_clip_viewer(&placement, &sight);
-    snow_status status = snow_order_boxes(context, boxes, count, &sight, order);
+    snow_clip_viewer(&placement, &viewer);
+    snow_status status =
+        snow_order_boxes(context, boxes, count, &viewer, order);
     snow_release(context, order);
     if (status == SNOW_STATUS_NO_MEMORY)
         return status;

@@ -443,13 +443,13 @@ static void cut(stage *s, int how) {
 
 static void front_to_back(const stage *s, int *order) {
     snow_placement p;
-    snow_viewer sight;
+    snow_viewer viewer;
     assert_int_equal(
         snow_placement_make(s->context, &s->whole->info, &s->scene.view, &p),
         SNOW_STATUS_OK);
-    snow_clip_viewer(&p, &sight);
+    snow_clip_viewer(&p, &viewer);
     assert_int_equal(
-        snow_order_boxes(s->context, s->boxes, s->count, &sight, order),
+        snow_order_boxes(s->context, s->boxes, s->count, &viewer, order),
         SNOW_STATUS_OK);
 }
 
@@ -805,7 +805,7 @@ static void a_part_with_too_few_ghosts_is_refused(void **state) {
 /* Whether no box in the order is before an earlier one, along any of many rays
  * that are walked voxel by voxel. */
 static void check_order(const snow_box *boxes, const int *order, int count,
-                        const snow_viewer *sight, uint64_t *seed) {
+                        const snow_viewer *viewer, uint64_t *seed) {
     int place[MOST_PARTS];
     for (int n = 0; n < count; n++)
         place[order[n]] = n;
@@ -814,10 +814,11 @@ static void check_order(const snow_box *boxes, const int *order, int count,
         int last = -1;
         for (int axis = 0; axis < 3; axis++) {
             double target = support_uniform(seed) * 12 - 0.5;
-            step[axis] = sight->perspective ? (target - sight->eye[axis]) / 400
-                                            : sight->along[axis] / 100;
-            at[axis] = sight->perspective ? sight->eye[axis]
-                                          : target - sight->along[axis] * 20;
+            step[axis] = viewer->perspective
+                             ? (target - viewer->eye[axis]) / 400
+                             : viewer->along[axis] / 100;
+            at[axis] = viewer->perspective ? viewer->eye[axis]
+                                           : target - viewer->along[axis] * 20;
         }
         for (int n = 0; n < 4000; n++) {
             for (int axis = 0; axis < 3; axis++)
@@ -845,19 +846,19 @@ static void boxes_are_ordered_from_front_to_back(void **state) {
     open_whole(&s);
     for (int n = 0; n < 27; n++) {
         int order[MOST_PARTS];
-        snow_viewer sight = {.perspective = n % 2};
+        snow_viewer viewer = {.perspective = n % 2};
         for (int axis = 0; axis < 3; axis++) {
-            sight.along[axis] =
+            viewer.along[axis] =
                 n % 5 == axis ? 0 : support_uniform(&seed) * 2 - 1;
-            sight.eye[axis] = support_uniform(&seed) * 60 - 30;
+            viewer.eye[axis] = support_uniform(&seed) * 60 - 30;
             if (n % 3 == axis) /* beside, or between the boxes */
-                sight.eye[axis] = support_uniform(&seed) * 12;
+                viewer.eye[axis] = support_uniform(&seed) * 12;
         }
         cut(&s, 6 + n % 3);
         assert_int_equal(
-            snow_order_boxes(s.context, s.boxes, s.count, &sight, order),
+            snow_order_boxes(s.context, s.boxes, s.count, &viewer, order),
             SNOW_STATUS_OK);
-        check_order(s.boxes, order, s.count, &sight, &seed);
+        check_order(s.boxes, order, s.count, &viewer, &seed);
     }
     s.count = 0;
     close_stage(&s);
@@ -867,22 +868,22 @@ static void boxes_are_ordered_from_front_to_back(void **state) {
 static void boxes_without_an_order_are_refused(void **state) {
     (void)state;
     snow_context *context = support_context();
-    const snow_viewer sight = {.along = {1, 1, 1}};
+    const snow_viewer viewer = {.along = {1, 1, 1}};
     int order[3] = {7, 7, 7};
     /* Three bars around a corner: each lies before the next. */
     const snow_box ring[] = {
         {{0, 0, 2}, {4, 2, 2}}, {{2, 0, 0}, {2, 4, 2}}, {{0, 2, 0}, {2, 2, 4}}};
-    assert_int_equal(snow_order_boxes(context, ring, 3, &sight, order),
+    assert_int_equal(snow_order_boxes(context, ring, 3, &viewer, order),
                      SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(snow_context_message(context), "cycle"));
     const snow_box twice[] = {{{0, 0, 0}, {4, 2, 2}}, {{3, 1, 1}, {2, 4, 2}}};
-    assert_int_equal(snow_order_boxes(context, twice, 2, &sight, order),
+    assert_int_equal(snow_order_boxes(context, twice, 2, &viewer, order),
                      SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(snow_context_message(context), "overlap"));
     assert_int_equal(order[0], 7);
     /* Empty ones are nowhere, and last. */
     const snow_box empty[] = {{{0, 0, 0}, {0, 2, 2}}, {{0, 0, 0}, {2, 4, 2}}};
-    assert_int_equal(snow_order_boxes(context, empty, 2, &sight, order),
+    assert_int_equal(snow_order_boxes(context, empty, 2, &viewer, order),
                      SNOW_STATUS_OK);
     assert_int_equal(order[0], 1);
     assert_int_equal(order[1], 0);
