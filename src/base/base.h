@@ -81,14 +81,6 @@ void *snow_allocate_array(snow_context *context, uint64_t count, size_t size);
 snow_status snow_reserve(snow_context *context, void *block_pointer,
                          size_t *capacity, size_t keep, size_t bytes);
 
-/* The next part of a block: `bytes` bytes from base + *at on, which goes behind
- * them to a multiple of 64.  Without a base nothing but *at counts. */
-static inline void *snow_lay_out(char *base, size_t *at, size_t bytes) {
-    void *part = base ? base + *at : NULL;
-    *at += (bytes + 63) / 64 * 64;
-    return part;
-}
-
 /* --- checked sizes -------------------------------------------------------- */
 
 /* a * b or a + b into *out; false when it does not fit. */

@@ -15,8 +15,8 @@ static snow_status stopped_status(snow_context *context) {
                      "stopped, as the caller asked");
 }
 
-void snow_monitor_init(snow_context *context, snow_monitor *monitor,
-                       snow_stop_fn *stop, void *user) {
+static void init(snow_context *context, snow_monitor *monitor,
+                 snow_stop_fn *stop, void *user) {
     *monitor = (snow_monitor){.context = context,
                               .stop = stop,
                               .stop_user = user,
@@ -42,13 +42,13 @@ void snow_monitor_leave(snow_monitor *monitor) {
 
 void snow_monitor_begin(snow_context *context, snow_monitor *monitor,
                         snow_stop_fn *stop, void *user) {
-    snow_monitor_init(context, monitor, stop, user);
+    init(context, monitor, stop, user);
     if (stop || context->progress)
         snow_monitor_enter(monitor);
 }
 
 void snow_monitor_begin_reading(snow_context *context, snow_monitor *monitor) {
-    snow_monitor_init(context, monitor, NULL, NULL);
+    init(context, monitor, NULL, NULL);
     monitor->reads = true;
     if (context->progress && !context->monitor)
         snow_monitor_enter(monitor);
@@ -88,15 +88,11 @@ snow_status snow_monitor_status(const snow_monitor *monitor) {
     return stopped_status(monitor->context);
 }
 
-void snow_monitor_ask(snow_monitor *monitor) {
+/* Asks, on the calling thread only. */
+static void ask(snow_monitor *monitor) {
     if (monitor && monitor->stop && !atomic_load(&monitor->stopped) &&
         monitor->stop(monitor->stop_user))
         atomic_store(&monitor->stopped, true);
-}
-
-snow_status snow_ask_stop(snow_context *context) {
-    snow_monitor_ask(context->monitor);
-    return snow_monitor_status(context->monitor);
 }
 
 /* Just below 1, which is kept for the end, and never falling. */
@@ -126,7 +122,7 @@ bool snow_monitor_item(snow_monitor *monitor, int worker, int64_t item,
     if (!monitor)
         return false;
     if (worker == 0) {
-        snow_monitor_ask(monitor);
+        ask(monitor);
         if (monitor->batch)
             snow_monitor_report(monitor, monitor->stage,
                                 monitor->begin +
@@ -144,7 +140,7 @@ bool snow_monitor_look(snow_monitor *monitor, int worker) {
         double now = snow_seconds();
         if (now - monitor->asked >= ASK_INTERVAL) {
             monitor->asked = now;
-            snow_monitor_ask(monitor);
+            ask(monitor);
         }
     }
     return atomic_load_explicit(&monitor->stopped, memory_order_relaxed);

@@ -52,10 +52,8 @@ void snow_monitor_begin_reading(snow_context *context, snow_monitor *monitor);
  * has failed after a stop was asked for. */
 snow_status snow_monitor_end(snow_monitor *monitor, snow_status status);
 
-/* The same in steps, for pictures that several calls work on: prepares a
- * monitor; makes it the context's own for a while. */
-void snow_monitor_init(snow_context *context, snow_monitor *monitor,
-                       snow_stop_fn *stop, void *user);
+/* For pictures that several calls work on: makes it the context's own for a
+ * while. */
 void snow_monitor_enter(snow_monitor *monitor);
 void snow_monitor_leave(snow_monitor *monitor);
 
@@ -65,9 +63,6 @@ void snow_monitor_done(snow_monitor *monitor);
 /* SNOW_STATUS_OK, or SNOW_STATUS_STOPPED and its message.  `monitor` may be
  * NULL, here and in all that follows. */
 snow_status snow_monitor_status(const snow_monitor *monitor);
-
-/* Asks, on the calling thread only. */
-void snow_monitor_ask(snow_monitor *monitor);
 
 /* A batch begins, which reports if it was announced; or it ends. */
 static inline void snow_monitor_batch(snow_monitor *monitor) {
@@ -85,9 +80,6 @@ bool snow_monitor_item(snow_monitor *monitor, int worker, int64_t item,
 /* Within a long item: the same, but asks no more than a thousand times a
  * second. */
 bool snow_monitor_look(snow_monitor *monitor, int worker);
-
-/* The same for the context's monitor, outside of batches. */
-snow_status snow_ask_stop(snow_context *context);
 
 /* The next batch is the part from `begin` to `end` (0 to 1) of a stage. */
 void snow_monitor_next(snow_monitor *monitor, snow_stage stage, double begin,

@@ -18,18 +18,6 @@ snow_slab snow_slab_grouped(int64_t slices, int parts, int part) {
     return slab;
 }
 
-int64_t snow_group_border(int64_t slices, int64_t at) {
-    int64_t nearest = slices;
-    for (int group = SNOW_GROUPS - 1; group >= 0; group--) {
-        int64_t border = snow_group_slab(slices, group).first;
-        int64_t here = at < border ? border - at : at - border;
-        int64_t best = at < nearest ? nearest - at : at - nearest;
-        if (here <= best)
-            nearest = border;
-    }
-    return nearest;
-}
-
 /* The group that begins at a slice, among those with slices; SNOW_GROUPS at the
  * end, -1 if none does. */
 static int group_at(int64_t slices, int64_t slice) {

@@ -28,10 +28,6 @@ snow_slab snow_group_slab(int64_t slices, int group);
  * last. */
 snow_slab snow_slab_grouped(int64_t slices, int parts, int part);
 
-/* The border between groups nearest to slice `at` (0 to `slices`), to align
- * other cuts to groups. */
-int64_t snow_group_border(int64_t slices, int64_t at);
-
 /* A node of the tree: groups index << rank .. (index + 1 << rank) - 1. */
 typedef struct snow_group_node {
     int rank, index;

@@ -23,10 +23,6 @@ typedef struct snow_partition_params {
     snow_isa isa;
 } snow_partition_params;
 
-/* The caller's options, or the defaults for NULL and for fields that the
- * caller's version of the record lacks. */
-snow_ranks_options snow_ranks_options_known(const snow_ranks_options *how);
-
 /* What picture and ranks ask for; `fades` as in render/ghosts.h.  Not to be
  * copied, for its borders. Errors: SNOW_STATUS_BAD_USAGE (view, settings,
  * options), SNOW_STATUS_BAD_INPUT. */

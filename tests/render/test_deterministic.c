@@ -915,7 +915,6 @@ static void slabs_of_groups_are_made_of_whole_nodes(void **state) {
                     group += 1 << nodes[n].rank;
                 }
                 end = slab.first + slab.count;
-                assert_int_equal(snow_group_border(sizes[s], end), end);
             }
             assert_int_equal(end, sizes[s]);
         }
@@ -923,9 +922,6 @@ static void slabs_of_groups_are_made_of_whole_nodes(void **state) {
     assert_int_equal(snow_group_nodes(100, (snow_slab){1, 4}, nodes), -1);
     assert_int_equal(snow_group_nodes(320, (snow_slab){0, 320}, nodes), 1);
     assert_int_equal(nodes[0].rank, SNOW_GROUP_RANKS);
-    assert_int_equal(snow_group_border(320, 14), 10);
-    assert_int_equal(snow_group_border(320, 16), 20);
-    assert_int_equal(snow_group_border(320, 319), 320);
 }
 
 int main(void) {

@@ -183,13 +183,6 @@ static inline const int64_t *snow_value_at(const snow_value_store *s,
     return s->at + slice * (s->rows + 2 * s->margin) + s->margin;
 }
 
-/* The place of a row of natives, which is one of the volume. */
-static inline int64_t snow_value_native_row(const snow_value_store *s,
-                                            int64_t slice, int64_t row) {
-    return s->in_place ? slice * s->slice_step + row * s->row_step
-                       : snow_value_at(s, slice)[row];
-}
-
 /* The number of a native value. */
 static inline int16_t snow_value_of_native(const snow_value_store *s,
                                            int64_t place) {
