@@ -11,16 +11,4 @@ snow_status snow_frame_render_alone(snow_frame *frame,
                                     const snow_bytes *bytes,
                                     snow_image **image);
 
-/* Renders the slab `part` of `parts` (decompose/slab.h) of the slices that the
- * volume answers for, in the place where it lies in the whole picture. */
-static inline snow_status
-snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
-                       const snow_transfer *transfer, const snow_view *view,
-                       const snow_settings *settings, int parts, int part,
-                       snow_image **out) {
-    const snow_request request = {volume,   transfer, view,
-                                  settings, parts,    part};
-    return snow_frame_render_alone(frame, &request, NULL, out);
-}
-
 #endif

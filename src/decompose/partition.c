@@ -236,13 +236,3 @@ void snow_partition_loads(const snow_block_counts *block_counts,
         loads[rank] = snow_box_voxels(box) ? load_of(block_counts, box) : 0;
     }
 }
-
-double snow_partition_imbalance(const int64_t *loads, int ranks) {
-    double sum = 0, most = 0;
-    for (int rank = 0; rank < ranks; rank++) {
-        sum += (double)loads[rank];
-        if ((double)loads[rank] > most)
-            most = (double)loads[rank];
-    }
-    return sum > 0 ? most * ranks / sum : 1;
-}

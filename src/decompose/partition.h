@@ -83,8 +83,4 @@ snow_status snow_partition_bricks(snow_context *context,
 void snow_partition_loads(const snow_block_counts *block_counts,
                           const snow_box *boxes, int ranks, int64_t *loads);
 
-/* The largest load over the mean one: the time of all ranks relative to that of
- * equal loads; 1 without any load. */
-double snow_partition_imbalance(const int64_t *loads, int ranks);
-
 #endif

@@ -37,12 +37,14 @@ static void render_slabs(const model_stage *stage, const reference_scene *scene,
         snow_volume_wrap(stage->context, &scene->info, scene->voxels, &volume),
         SNOW_STATUS_OK);
     transfer = model_transfer(stage->context, scene);
-    for (int n = 0; n < parts; n++)
+    for (int n = 0; n < parts; n++) {
+        const snow_request request = {volume,       transfer,
+                                      &scene->view, &scene->settings,
+                                      parts,        rising ? n : parts - 1 - n};
         assert_int_equal(
-            snow_frame_render_slab(stage->frame, volume, transfer, &scene->view,
-                                   &scene->settings, parts,
-                                   rising ? n : parts - 1 - n, &images[n]),
+            snow_frame_render_alone(stage->frame, &request, NULL, &images[n]),
             SNOW_STATUS_OK);
+    }
     snow_transfer_free(transfer);
     snow_volume_close(volume);
 }

@@ -676,9 +676,10 @@ static const char *refusal(const model_stage *stage, const snow_volume *volume,
     static char message[512];
     snow_transfer *transfer = model_transfer(stage->context, scene);
     snow_image *image = NULL;
+    const snow_request request = {volume,           transfer, &scene->view,
+                                  &scene->settings, parts,    0};
     snow_status status =
-        snow_frame_render_slab(stage->frame, volume, transfer, &scene->view,
-                               &scene->settings, parts, 0, &image);
+        snow_frame_render_alone(stage->frame, &request, NULL, &image);
     assert_int_equal(status, SNOW_STATUS_BAD_USAGE);
     assert_null(image);
     snow_transfer_free(transfer);
