@@ -158,9 +158,6 @@ snow_lights snow_lights_of(const snow_placement *placement,
 void snow_half_way(const double light[3], const double viewer[3],
                    double half[3]);
 
-/* A shininess as a whole number if it is one up to 1024, else -1. */
-int snow_whole_shininess(double shininess);
-
 /* W is the inverse transpose of the matrix' linear part; it transforms index
  * gradients to world space. Errors: SNOW_STATUS_BAD_USAGE (a singular matrix).
  */

@@ -102,9 +102,6 @@ void snow_shape_row_begin(snow_shape_row *row, const snow_solid *solids,
  * within SNOW_SHAPE_FAR of it. */
 double snow_shape_distance(const snow_shape_row *row, double x);
 
-/* The share of a voxel inside a surface at `distance`. */
-double snow_shape_cover(const snow_phantom_grid *grid, double distance);
-
 /* Blends `value` over *under if `distance` is inside. */
 void snow_shape_paint(const snow_phantom_grid *grid, double *under,
                       double value, double distance);

@@ -156,14 +156,10 @@ double snow_shape_distance(const snow_shape_row *row, double x) {
 }
 
 /* Linear across the edge: approximately the share of a voxel cut by a plane. */
-double snow_shape_cover(const snow_phantom_grid *grid, double distance) {
-    double share = 0.5 - distance / grid->edge;
-    return smaller(larger(share, 0), 1);
-}
-
 void snow_shape_paint(const snow_phantom_grid *grid, double *under,
                       double value, double distance) {
-    *under += (value - *under) * snow_shape_cover(grid, distance);
+    double share = smaller(larger(0.5 - distance / grid->edge, 0), 1);
+    *under += (value - *under) * share;
 }
 
 /* The finaliser of SplitMix64 (Steele, Lea, Flood 2014): each input bit

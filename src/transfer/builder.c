@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-double snow_between(double low, double high, double share) {
+static double between(double low, double high, double share) {
     if (share >= 1)
         return high;
     double value = isfinite(high - low) ? low + share * (high - low)
@@ -19,7 +19,7 @@ double snow_between(double low, double high, double share) {
 
 double snow_between_on(bool log, double low, double high, double share) {
     if (!log || share >= 1)
-        return snow_between(low, high, share);
+        return between(low, high, share);
     if (share == 0)
         return low;
     double from = snow_log2_rising(low), to = snow_log2_rising(high);
@@ -71,22 +71,19 @@ static snow_status object_range(const snow_histogram *histogram, double *low,
 
 /* Copies points; their values are shares of a range unless they are data
  * values. */
-static void copy_colors(const snow_look *points, bool log, double low,
+static void copy_points(const snow_look *points, bool log, double low,
                         double high, snow_transfer_builder *builder) {
     bool shares = points->domain != SNOW_DOMAIN_DATA;
-    builder->color_count = points->color_count;
+    if (points->color_count)
+        builder->color_count = points->color_count;
+    if (points->opacity_count)
+        builder->opacity_count = points->opacity_count;
     for (size_t i = 0; i < points->color_count; i++) {
         builder->colors[i] = points->colors[i];
         if (shares)
             builder->colors[i].value =
                 snow_between_on(log, low, high, points->colors[i].value);
     }
-}
-
-static void copy_opacities(const snow_look *points, bool log, double low,
-                           double high, snow_transfer_builder *builder) {
-    bool shares = points->domain != SNOW_DOMAIN_DATA;
-    builder->opacity_count = points->opacity_count;
     for (size_t i = 0; i < points->opacity_count; i++) {
         builder->opacities[i] = points->opacities[i];
         if (shares)
@@ -128,10 +125,7 @@ snow_status snow_transfer_builder_points(const snow_look *points,
     builder->name = points->name;
     builder->low = low;
     builder->high = high;
-    if (points->color_count)
-        copy_colors(points, histogram->log, low, high, builder);
-    if (points->opacity_count)
-        copy_opacities(points, histogram->log, low, high, builder);
+    copy_points(points, histogram->log, low, high, builder);
     builder->gradient_count = points->gradient_opacity_count;
     if (points->gradient_opacity_count)
         memcpy(builder->gradients, points->gradient_opacities,

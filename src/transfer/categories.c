@@ -6,18 +6,16 @@ static bool same_color(const snow_color_point *a, const snow_color_point *b) {
     return a->red == b->red && a->green == b->green && a->blue == b->blue;
 }
 
-bool snow_transfer_has_categories(const snow_transfer *transfer) {
-    const snow_color_point *c = transfer->colors;
-    for (size_t n = 1; n < transfer->color_count; n++)
-        if (c[n].value == c[n - 1].value && !same_color(&c[n], &c[n - 1]))
-            return true;
-    return false;
-}
-
+/* Colours of categories have steps, and do not change in between. */
 bool snow_transfer_has_labels(const snow_transfer *transfer, snow_type type) {
     const snow_color_point *c = transfer->colors;
-    for (size_t n = 1; n < transfer->color_count; n++)
-        if (c[n].value != c[n - 1].value && !same_color(&c[n], &c[n - 1]))
+    bool steps = false;
+    for (size_t n = 1; n < transfer->color_count; n++) {
+        if (same_color(&c[n], &c[n - 1]))
+            continue;
+        if (c[n].value != c[n - 1].value)
             return false;
-    return type < SNOW_TYPE_FLOAT32 && snow_transfer_has_categories(transfer);
+        steps = true;
+    }
+    return steps && type < SNOW_TYPE_FLOAT32;
 }

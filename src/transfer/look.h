@@ -134,11 +134,9 @@ void snow_transfer_builder_colormap(snow_transfer_builder *builder,
                                     int colormap, double low, double high);
 
 /* low + share * (high - low), for any finite ends: exactly high from share 1
- * on, and never decreasing as share grows, whatever the rounding. */
-double snow_between(double low, double high, double share);
-
-/* The same, on a logarithmic scale if `log` is set (0 < low < high), and the
- * inverse: the share at which a value lies. */
+ * on, and never decreasing as share grows, whatever the rounding; on a
+ * logarithmic scale if `log` is set (0 < low < high).  The inverse: the share
+ * at which a value lies. */
 double snow_between_on(bool log, double low, double high, double share);
 double snow_share_on(bool log, double low, double high, double value);
 

@@ -47,9 +47,6 @@ void snow_transfer_near(const snow_transfer *transfer, double value,
  * < b, a <= value <= b: from 0 to 1, never decreasing. */
 double snow_part_of_decades(double value, double a, double b);
 
-/* Whether colours have steps, as those of categories have. */
-bool snow_transfer_has_categories(const snow_transfer *transfer);
-
 /* Whether values are labels: whole numbers that are shown in colours of
  * categories, without any in between. */
 bool snow_transfer_has_labels(const snow_transfer *transfer, snow_type type);

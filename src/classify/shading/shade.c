@@ -70,7 +70,8 @@ void snow_half_way(const double light[3], const double viewer[3],
         memset(half, 0, 3 * sizeof *half);
 }
 
-int snow_whole_shininess(double shininess) {
+/* A shininess as a whole number if it is one up to 1024, else -1. */
+static int whole_shininess(double shininess) {
     bool whole = shininess <= 1024 && shininess == floor(shininess);
     return whole ? (int)shininess : -1;
 }
@@ -85,7 +86,7 @@ snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
         .diffuse = settings->diffuse,
         .specular = settings->specular,
         .shininess = settings->shininess,
-        .whole = snow_whole_shininess(settings->shininess),
+        .whole = whole_shininess(settings->shininess),
         .isa = snow_isa_resolve(settings->isa),
         .lights = snow_lights_of(placement, settings),
     };

@@ -61,8 +61,10 @@ void snow_value_lines_slice(snow_value_lines *lines, int64_t slice) {
         snow_fetch_slice(&lines->fetch[2], slice + 1, &lines->slice[2]);
 }
 
-void snow_value_line_continue(int16_t *line, int64_t columns, int margin,
-                              bool labels) {
+/* Columns 0 and columns - 1 are there, and those beside them if there are any:
+ * writes the margin of a line. */
+static void continue_line(int16_t *line, int64_t columns, int margin,
+                          bool labels) {
     int16_t *first = line + margin, *last = first + columns - 1;
     int step = columns > 1;
     int16_t before = snow_value_beyond(first[0], first[step], labels);
@@ -112,8 +114,7 @@ static void read_row(const snow_value_lines *lines, int64_t row, int16_t *out) {
     code_row(lines, 0, row, out + lines->margin);
     if (lines->cubic)
         smooth_row(lines, row, out + lines->margin);
-    snow_value_line_continue(out, lines->columns, lines->margin,
-                             lines->coder->names);
+    continue_line(out, lines->columns, lines->margin, lines->coder->names);
 }
 
 void snow_value_lines_read(snow_value_lines *lines, int64_t row, int16_t *out) {

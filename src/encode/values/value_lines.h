@@ -50,9 +50,4 @@ snow_value_lines_natives(const snow_value_lines *lines, int64_t row) {
     return slice->voxels + (size_t)(row - lines->first) * slice->stride;
 }
 
-/* Columns 0 and columns - 1 are there, and those beside them if there are any:
- * writes the margin of a line. */
-void snow_value_line_continue(int16_t *line, int64_t columns, int margin,
-                              bool labels);
-
 #endif
