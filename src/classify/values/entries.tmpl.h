@@ -75,10 +75,10 @@ TARGET static void NAME(collect_diagonal)(const snow_value_table *table,
     }
 }
 
-/* Words of these entries, as by pack. */
-TARGET static void NAME(pack_all)(float sums[5][ENTRIES], float steps,
-                                  float full, bool placed,
-                                  uint64_t out[ENTRIES]) {
+/* Entries of such sums: a word for each channel, whose bit 15 is one of the
+ * place's. */
+TARGET static void NAME(pack)(float sums[5][ENTRIES], float steps, float full,
+                              bool placed, uint64_t out[ENTRIES]) {
     uint32_t words[4][ENTRIES], sixteenths[ENTRIES];
     for (int w = 0; w < ENTRIES; w++) {
         float alpha = sums[3][w] > 0 ? sums[3][w] : 1;

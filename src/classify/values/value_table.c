@@ -26,20 +26,6 @@ typedef struct entry_ways {
 #define TEMPLATE "classify/values/entries.tmpl.h"
 #include "simd/each_isa.h"
 
-static uint64_t pack(const float rgba[4], float place, float full,
-                     bool placed) {
-    uint64_t entry = 0;
-    int sixteenths = place * 16 < 15 ? (int)(place * 16) : 15;
-    for (int c = 0; c < 4; c++) {
-        int word = (int)(rgba[c] * full + 0.5F);
-        word = word > 32767 ? 32767 : word;
-        if (placed)
-            word |= (sixteenths >> c & 1) << 15;
-        entry |= (uint64_t)(unsigned)word << 16 * c;
-    }
-    return entry;
-}
-
 typedef struct table_job {
     const snow_value_look *look;
     snow_value_table *table;
@@ -63,19 +49,22 @@ static void fill_some(const table_job *job, int64_t first, const int *backs,
                       int count, uint64_t *row, float *most) {
     const snow_value_look *look = job->look;
     entry_ways ways;
+    float sums[5][ENTRIES];
+    uint64_t entries[ENTRIES];
     for (int w = 0; w < ENTRIES; w++) {
         int64_t way = job->table->look_of[backs[w < count ? w : 0]] - first;
         ways.apart[w] = way * (65536 / look->steps);
         ways.at[w] = first * 65536 + ways.apart[w] / 2;
     }
     SNOW_OF_ISA(look->isa, collect_all)(job->table, look->steps, &ways);
+    for (int w = 0; w < ENTRIES; w++)
+        for (int c = 0; c < 5; c++)
+            sums[c][w] = c < 4 ? ways.sum[w][c] : ways.places[w][3];
+    SNOW_OF_ISA(look->isa, pack)
+    (sums, (float)look->steps, job->full, look->placed, entries);
     for (int w = 0; w < count; w++) {
-        const float *sum = ways.sum[w], alpha = sum[3];
-        float place = ways.places[w][3] / ((float)look->steps * alpha);
-        uint64_t entry =
-            alpha > 0 ? pack(sum, place, job->full, look->placed) : 0;
-        *most = alpha > *most ? alpha : *most;
-        row[backs[w]] = (entry >> 48 & 0x7fff) == 0 ? 0 : entry;
+        *most = sums[3][w] > *most ? sums[3][w] : *most;
+        row[backs[w]] = entries[w];
     }
 }
 
@@ -121,7 +110,7 @@ static void fill_rows(void *of, int64_t item, int worker) {
         const int first = front + apart; /* the back of entry 0 */
         SNOW_OF_ISA(look->isa, collect_diagonal)
         (job->table, look->steps, front, apart, sums);
-        SNOW_OF_ISA(look->isa, pack_all)
+        SNOW_OF_ISA(look->isa, pack)
         (sums, (float)look->steps, job->full, look->placed, entries);
         for (int w = first < 0 ? -first : 0; w < count && first + w < nodes;
              w++) {
