@@ -12,14 +12,7 @@
 #include "simd/each_isa.h"
 
 snow_bytes_fn *snow_bytes_of(snow_isa isa) {
-#if SNOW_HAS_AVX
-    if (isa == SNOW_ISA_AVX512)
-        return bytes_avx512;
-    if (isa == SNOW_ISA_AVX2)
-        return bytes_avx2;
-#endif
-    (void)isa;
-    return bytes_scalar;
+    return SNOW_OF_ISA(isa, bytes);
 }
 
 void snow_bytes_image(const snow_image *image, snow_isa isa,

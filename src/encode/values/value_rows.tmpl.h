@@ -64,3 +64,6 @@ TARGET static void NAME(outside_words)(const unsigned char *natives,
                (~UINT64_C(0) >> (64 - (count - n)));
     }
 }
+
+static const snow_value_loops NAME(loops) = {
+    NAME(outside), NAME(pack), NAME(outside_bytes), NAME(outside_words)};
