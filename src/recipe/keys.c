@@ -2,7 +2,6 @@
 #include "recipe/kinds.h"
 
 #include <stddef.h>
-#include <string.h>
 
 /* --- names ---------------------------------------------------------------- */
 
@@ -31,17 +30,6 @@ static const char *view_name(int value) {
     return snow_view_name((size_t)value);
 }
 
-static int find_name(const char *(*name_of)(int value), const char *name) {
-    for (int i = 0; name_of(i); i++)
-        if (strcmp(name_of(i), name) == 0)
-            return i;
-    return -1;
-}
-
-static int view_named(const char *name) {
-    return find_name(view_name, name);
-}
-
 /* The first type is "none". */
 static const char *type_name(int value) {
     return value > SNOW_TYPE_FLOAT64 ? NULL : snow_type_name((snow_type)value);
@@ -61,26 +49,14 @@ static const char *shade_name(int value) {
     return of_list(names, 2, value);
 }
 
-static int shade_named(const char *name) {
-    return find_name(shade_name, name);
-}
-
 static const char *endian_name(int value) {
     static const char *const names[] = {"", "little", "big"};
     return of_list(names, 3, value);
 }
 
-static int endian_named(const char *name) {
-    return find_name(endian_name, name);
-}
-
 static const char *fit_name(int value) {
     static const char *const names[] = {"", "visible", "volume"};
     return of_list(names, 3, value);
-}
-
-static int fit_named(const char *name) {
-    return find_name(fit_name, name);
 }
 
 /* --- the table ------------------------------------------------------------ */
@@ -122,7 +98,7 @@ const recipe_key recipe_keys[] = {
     MADE("gradient-opacity", points, gradient_opacity_count, 0, 0, 0),
     MADE("range", range, range, 0, 0, 0),
     MADE("opacity-unit", unit, opacity_per_mm, 0, 0, 0),
-    NAME("shade", settings.shade, shade_name, shade_named),
+    NAME("shade", settings.shade, shade_name, NULL),
     MADE("light", light, settings, 0, 0, 2),
     REAL("ambient", settings.ambient, 0, 1),
     REAL("diffuse", settings.diffuse, 0, 1),
@@ -131,13 +107,13 @@ const recipe_key recipe_keys[] = {
     REAL("depth-darkening", settings.depth_darkening, 0, 1),
     REAL("occlusion", settings.occlusion, 0, 1),
     NAME("quality", settings.quality, quality_name, snow_quality_from_name),
-    KNOWN("view", view, view_name, view_named),
+    KNOWN("view", view, view_name, NULL),
     REAL("azimuth", azimuth, 0, 0),
     REAL("elevation", elevation, 0, 0),
     REAL("roll", roll, 0, 0),
     REAL("zoom", zoom, 1e-6, 1e6),
     REAL("perspective", fov, 0, SNOW_FOV_MAX),
-    {"fit", &recipe_given_name, AT(fit), 0, 0, 0, fit_name, fit_named},
+    {"fit", &recipe_given_name, AT(fit), 0, 0, 0, fit_name, NULL},
     {"position", &recipe_point, AT(position), 0, 0, 3, NULL, NULL},
     {"target", &recipe_point, AT(target), 0, 0, 3, NULL, NULL},
     {"up", &recipe_point, AT(up), 0, 0, 3, NULL, NULL},
@@ -155,7 +131,7 @@ const recipe_key recipe_keys[] = {
     {"spacing", &recipe_given_reals, AT(data.spacing), 1e-300, 1e300,
      3, NULL, NULL},
     {"endian", &recipe_given_name, AT(data.endian), 0, 0, 0,
-     endian_name, endian_named},
+     endian_name, NULL},
     {"offset", &recipe_long, AT(data.offset), 0, 9e15, 0, NULL,
      NULL},
     MADE("crop", crop, data.crop, 0, 9e15, 2),

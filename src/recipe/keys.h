@@ -32,7 +32,7 @@ struct recipe_key {
     double low, high; /* of numbers; both 0: any finite number */
     int count;        /* of arrays */
     /* For names: the name of a value (NULL past the last), and the value of a
-     * name (-1: unknown). */
+     * name (-1: unknown; NULL: names are found by the former alone). */
     const char *(*name_of)(int value);
     int (*named)(const char *name);
 };

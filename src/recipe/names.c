@@ -42,11 +42,21 @@ static bool refuse_name(const recipe_key *key, char wrong[WRONG_BYTES]) {
     return false;
 }
 
+/* The value of a name; -1: unknown. */
+static int value_named(const recipe_key *key, const char *text) {
+    if (key->named)
+        return key->named(text);
+    for (int i = 0; key->name_of(i); i++)
+        if (strcmp(key->name_of(i), text) == 0)
+            return i;
+    return -1;
+}
+
 /* A text that must be a known name; it is stored as text. */
 static bool read_known(const recipe_key *key, const json_t *value, void *field,
                        char wrong[WRONG_BYTES]) {
     const char *text = json_string_value(value);
-    if (!text || key->named(text) < 0)
+    if (!text || value_named(key, text) < 0)
         return refuse_name(key, wrong);
     return read_text(key, value, field, wrong);
 }
@@ -55,7 +65,7 @@ static bool read_known(const recipe_key *key, const json_t *value, void *field,
 static bool read_name(const recipe_key *key, const json_t *value, void *field,
                       char wrong[WRONG_BYTES]) {
     const char *text = json_string_value(value);
-    int named = text ? key->named(text) : -1;
+    int named = text ? value_named(key, text) : -1;
     if (named < 0)
         return refuse_name(key, wrong);
     memcpy(field, &named, sizeof named);
