@@ -22,6 +22,17 @@ snow_encoding snow_encoding_choose(uint64_t voxels, uint64_t interesting,
     return SNOW_ENCODING_CRS;
 }
 
+/* No slice is there yet. */
+static void begin(snow_sparse *s, const snow_scheme *scheme, int64_t columns,
+                  int64_t rows) {
+    s->scheme = scheme;
+    s->columns = columns;
+    s->rows = rows;
+    s->filled = 0;
+    s->ea_bytes = s->ia_voxels = 0;
+    s->pa[0] = (snow_slice_pointer){0, 0};
+}
+
 snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
                               const snow_placement *placement, int channels) {
     uint64_t voxels, pointers;
@@ -37,14 +48,9 @@ snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
             (long long)placement->columns, (long long)placement->rows);
     SNOW_TRY(
         snow_reserve(s->context, &s->pa, &s->pa_capacity, 0, (size_t)pointers));
-    s->scheme = scheme;
     s->channels = channels;
     s->band = false;
-    s->columns = placement->columns;
-    s->rows = placement->rows;
-    s->filled = 0;
-    s->ea_bytes = s->ia_voxels = 0;
-    s->pa[0] = (snow_slice_pointer){0, 0};
+    begin(s, scheme, placement->columns, placement->rows);
     return SNOW_STATUS_OK;
 }
 
@@ -104,14 +110,9 @@ snow_status snow_sparse_begin_band(snow_sparse *s, const snow_scheme *scheme,
                                    int64_t slices) {
     SNOW_TRY(snow_reserve(s->context, &s->pa, &s->pa_capacity, 0,
                           ((size_t)slices + 1) * sizeof *s->pa));
-    s->scheme = scheme;
     s->channels = 0;
     s->band = true;
-    s->columns = columns;
-    s->rows = rows;
-    s->filled = 0;
-    s->ea_bytes = s->ia_voxels = 0;
-    s->pa[0] = (snow_slice_pointer){0, 0};
+    begin(s, scheme, columns, rows);
     return SNOW_STATUS_OK;
 }
 

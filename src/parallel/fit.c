@@ -98,11 +98,6 @@ static void begin_bounds(double bounds[BOUNDS]) {
         bounds[i] = -INFINITY;
 }
 
-static void widen(double bounds[BOUNDS], const double other[BOUNDS]) {
-    for (int i = 0; i < BOUNDS; i++)
-        bounds[i] = fmax(bounds[i], other[i]);
-}
-
 /* --- voxels --------------------------------------------------------------- */
 
 static void bound_row(void *of, const snow_interesting_row *row) {
@@ -150,7 +145,8 @@ static snow_status find_bounds(const fit *f, snow_comm *comm,
         status = snow_slabs_visit(volume, &cut, bound_slab, (void *)f);
     begin_bounds(out);
     for (int i = 0; i < f->settings.threads; i++)
-        widen(out, f->bounds[i]);
+        for (int n = 0; n < BOUNDS; n++)
+            out[n] = fmax(out[n], f->bounds[i][n]);
     if (comm) {
         SNOW_TRY(snow_comm_agree_status(comm, status));
         status = snow_comm_reduce_doubles(comm, out, BOUNDS, SNOW_REDUCE_MAX);

@@ -108,14 +108,6 @@ snow_status snow_identity_transfer_above(snow_job *job,
     return prepare_identity_transfer(job, &wanted, identity);
 }
 
-/* The ramp of a picture of pairs. */
-static snow_status choose_identity_transfer(snow_job *job,
-                                            snow_identity_transfer *identity) {
-    const struct snow_identity_kind wanted = {.inverted = job->settings.mode ==
-                                                          SNOW_MODE_MINIP};
-    return prepare_identity_transfer(job, &wanted, identity);
-}
-
 /* --- from pairs to a picture ---------------------------------------------- */
 
 typedef struct finish_job {
@@ -307,7 +299,9 @@ snow_status snow_modes_paint(snow_frame *frame, const snow_job *job,
 
 snow_status snow_modes_value_weight(snow_frame *frame, snow_job *job,
                                     snow_job *pairs) {
-    SNOW_TRY(choose_identity_transfer(job, &frame->identity));
+    const struct snow_identity_kind ramp = {.inverted = job->settings.mode ==
+                                                        SNOW_MODE_MINIP};
+    SNOW_TRY(prepare_identity_transfer(job, &ramp, &frame->identity));
     *pairs = *job;
     pairs->transfer = frame->identity.transfer;
     pairs->channels = 2;
