@@ -4,17 +4,12 @@
 
 #include <math.h>
 
-static double determinant(double m[3][3]) {
-    double cross[3];
-    snow_cross(m[1], m[2], cross);
-    return snow_dot(m[0], cross);
-}
-
 /* The columns of `out` are the dual vectors of m's rows. */
 static bool invert(double m[3][3], double out[3][3]) {
-    double volume = determinant(m);
+    double dual[3];
+    snow_cross(m[1], m[2], dual);
+    const double volume = snow_dot(m[0], dual);
     for (int i = 0; i < 3; i++) {
-        double dual[3];
         snow_cross(m[(i + 1) % 3], m[(i + 2) % 3], dual);
         for (int j = 0; j < 3; j++) {
             out[j][i] = dual[j] / volume;
