@@ -1,6 +1,5 @@
 /* snowglass/render.h - from a volume to a picture: the paper's pipeline. A
- * frame owns the buffers of its stages (figure 7) and keeps them, and
- * encodings, from picture to picture. */
+ * frame keeps the buffers of its stages (figure 7), and encodings. */
 #ifndef SNOWGLASS_RENDER_H
 #define SNOWGLASS_RENDER_H
 
@@ -98,8 +97,7 @@ typedef struct snow_settings {
     void *stop_user;        /* its argument (NULL) */
     snow_light light;       /* (auto) */
     double depth_darkening; /* 0 to 1: of what lies behind its neighbours (0) */
-    double
-        occlusion; /* 0 to 1: of what has much around it; both over, iso (0) */
+    double occlusion;       /* 0 to 1: of what has much around it (0) */
 } snow_settings;
 SNOW_RECORD(snow_settings);
 
