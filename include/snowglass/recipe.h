@@ -2,10 +2,8 @@
  * for programs, and for pictures of a running simulation.
  *
  * A recipe is one JSON object. Its keys are the long options of the tool:
- *
  *   {"input": "head.nii.gz", "output": "head_%04d.png", "size": [640, 480],
  *    "colormap": "viridis", "range": [10, 200], "background": [1, 1, 1]}
- *
  * A key that is absent has its default, an unknown one is an error. In
  * libsnowglass-recipe, which needs jansson. */
 #ifndef SNOWGLASS_RECIPE_H

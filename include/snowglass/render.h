@@ -8,6 +8,7 @@
 #include <snowglass/view.h>
 
 typedef struct snow_frame snow_frame;
+
 /* How voxels reach the picture (docs/fast.md). */
 typedef enum snow_method {
     SNOW_METHOD_AUTO = 0,
@@ -31,7 +32,7 @@ typedef enum snow_kernel {
     SNOW_KERNEL_AUTO = 0, /* tent; bspline by original and footprint */
     SNOW_KERNEL_BSPLINE,
     SNOW_KERNEL_TENT,
-    SNOW_KERNEL_GAUSS,
+    SNOW_KERNEL_GAUSS, /* by footprint and original only, as is box */
     SNOW_KERNEL_BOX
 } snow_kernel;
 
@@ -57,7 +58,7 @@ typedef enum snow_shade { SNOW_SHADE_PHONG = 0, SNOW_SHADE_NONE } snow_shade;
 /* Where the light comes from (docs/model.md, section 4). */
 typedef enum snow_light {
     SNOW_LIGHT_AUTO = 0, /* key; a direction where angles are not 0 */
-    SNOW_LIGHT_KEY,      /* most from the upper left, the rest head light */
+    SNOW_LIGHT_KEY,      /* 0.65 from 25 degrees left, 35 up; 0.35 head */
     SNOW_LIGHT_HEAD,     /* from the viewer */
     SNOW_LIGHT_DIRECTION /* from light_azimuth and light_elevation */
 } snow_light;
@@ -96,8 +97,8 @@ typedef struct snow_settings {
     snow_stop_fn *stop;     /* whether the picture is to end early (NULL) */
     void *stop_user;        /* its argument (NULL) */
     snow_light light;       /* (auto) */
-    double depth_darkening; /* 0 to 1: of what lies behind its neighbours (0) */
-    double occlusion;       /* 0 to 1: of what has much around it (0) */
+    double depth_darkening; /* over, iso: 0 to 1, of what lies deeper (0) */
+    double occlusion;       /* over, iso: 0 to 1, of what is enclosed (0) */
 } snow_settings;
 SNOW_RECORD(snow_settings);
 
@@ -121,17 +122,20 @@ typedef struct snow_stats {
     uint64_t kept_bytes, kept_most; /* encodings along other slice axes */
 } snow_stats;
 SNOW_RECORD(snow_stats);
+
 SNOW_API snow_status snow_frame_new(snow_context *context, snow_frame **out);
 SNOW_API void snow_frame_free(snow_frame *frame);
 
 /* Renders one picture: figure 8 of the paper on one processor. All objects are
  * of one context; `settings` may be NULL. Errors, which leave the frame as it
- * was: BAD_USAGE, BAD_INPUT (a geometry that no float can hold), STOPPED. As
- * bytes (docs/output.md) it is red, green, blue, alpha of each pixel, not
- * premultiplied, or opaque on `background` (NULL: none); not mean and sum. */
+ * was: BAD_USAGE, BAD_INPUT (no float can hold the geometry), STOPPED. */
 SNOW_API snow_status snow_frame_render(snow_frame *frame,
     const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings, snow_image **image);
+
+/* The same as bytes: red, green, blue, straight alpha, row 0 on top, rows
+ * `stride` bytes apart; or opaque on a `background` of 0 to 1 (NULL: none).
+ * Errors: also BAD_USAGE (stride below 4 times the width; modes mean, sum). */
 SNOW_API snow_status snow_frame_render_bytes(snow_frame *frame,
     const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings,
@@ -142,9 +146,8 @@ SNOW_API snow_status snow_frame_render_bytes(snow_frame *frame,
 SNOW_API snow_status snow_render_file(snow_context *context, const char *path,
     const snow_view *view, const snow_settings *settings, snow_image **image);
 
-/* Owned by the frame, until its next picture. Depths, NULL unless asked for or
- * needed: world distance along the line of sight from the target's plane to
- * where opacity passes 1/2 or the isosurface, or NaN. */
+/* Owned by the frame until its next picture. Depths, or NULL: world distance
+ * from the target's plane to where opacity passes 1/2, or the surface. */
 SNOW_API const snow_image *snow_frame_depth(const snow_frame *frame);
 SNOW_API const snow_stats *snow_frame_stats(const snow_frame *frame);
 

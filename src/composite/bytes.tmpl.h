@@ -1,44 +1,23 @@
-/* composite/bytes.tmpl.h - see bytes.h.  Loops that the compiler vectorizes;
- * include simd/select.h first. */
+/* composite/bytes.tmpl.h - see bytes.h.  Include simd/select.h first. */
 
-/* Levels of channel c of some pixels; that behind the last is of alpha. */
-TARGET static inline __attribute__((always_inline)) void
-NAME(levels)(const float *row, int count, int channels, int c,
-             const double *background, int *levels) {
-    for (int x = 0; x < count; x++) {
-        const float *pixel = row + x * channels;
-        const bool missing = snow_has_nan(pixel, channels);
-        const double color = missing ? 0 : (double)pixel[c];
-        double alpha =
-            missing ? 0 : snow_clamp_unit((double)pixel[channels - 1]);
-        if (c < channels - 1 && !background)
-            alpha = alpha > 0 ? snow_clamp_unit(color / alpha) : 0;
-        if (background)
-            alpha = snow_clamp_unit(color + (1 - alpha) * *background);
-        levels[x] = (int)(alpha * 255 + 0.5);
-    }
-}
-
+/* By the loops of PNG files (image/samples.h). */
 TARGET static inline __attribute__((always_inline)) void
 NAME(some)(const float *row, int count, int channels, const double *background,
            unsigned char *rgba) {
-    int levels[4][SOME];
-    const bool grey =
-        channels == 2 && (!background || (background[0] == background[1] &&
-                                          background[1] == background[2]));
-    for (int c = 0; c < (grey ? 1 : 3); c++)
-        if (background)
-            NAME(levels)
-    (row, count, channels, channels == 2 ? 0 : c, background + c, levels[c]);
-    else NAME(levels)(row, count, channels, channels == 2 ? 0 : c, NULL,
-                      levels[c]);
-    if (!background)
-        NAME(levels)(row, count, channels, channels - 1, NULL, levels[3]);
+    double samples[4 * SOME];
+    unsigned char levels[4 * SOME];
+    const int kept = background ? 3 : channels, green = kept > 2 ? 1 : 0;
+    if (background)
+        snow_flatten_row(row, count, channels, background, 3, samples);
+    else
+        snow_straighten_row(row, count, channels, samples);
+    snow_quantise_8(samples, (size_t)(count * kept), levels);
     for (int x = 0; x < count; x++) {
-        rgba[4 * x] = (unsigned char)levels[0][x];
-        rgba[4 * x + 1] = (unsigned char)levels[grey ? 0 : 1][x];
-        rgba[4 * x + 2] = (unsigned char)levels[grey ? 0 : 2][x];
-        rgba[4 * x + 3] = background ? 255 : (unsigned char)levels[3][x];
+        const unsigned char *of = levels + x * kept;
+        rgba[4 * x] = of[0];
+        rgba[4 * x + 1] = of[green];
+        rgba[4 * x + 2] = of[2 * green];
+        rgba[4 * x + 3] = background ? 255 : of[kept - 1];
     }
 }
 

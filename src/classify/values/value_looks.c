@@ -95,7 +95,7 @@ static snow_status fill_planes(snow_context *context,
                                const snow_value_look *look,
                                snow_value_table *table) {
     const size_t rows = 2 * (size_t)look->steps;
-    const size_t pitch = (size_t)look->nodes + 2 * SNOW_VALUE_BESIDE;
+    const size_t pitch = (size_t)look->nodes + 2 * SNOW_VALUE_ENTRIES;
     const size_t bytes = 4 * rows * pitch * sizeof *table->planes;
     SNOW_TRY(snow_reserve(context, &table->planes, &table->planes_capacity, 0,
                           bytes));
@@ -104,7 +104,7 @@ static snow_status fill_planes(snow_context *context,
     for (size_t n = 0; n < table->look_count; n++) {
         float *at = table->planes + n % rows * pitch + n / rows;
         for (size_t c = 0; c < 4; c++)
-            at[c * rows * pitch + SNOW_VALUE_BESIDE] = table->looks[4 * n + c];
+            at[c * rows * pitch + SNOW_VALUE_ENTRIES] = table->looks[4 * n + c];
     }
     return SNOW_STATUS_OK;
 }

@@ -14,7 +14,7 @@
 /* --- entries ----------------------------------------------------------------
  */
 
-#define ENTRIES SNOW_VALUE_BESIDE
+#define ENTRIES SNOW_VALUE_ENTRIES
 
 /* The ways through some entries: the first look and the way from step to step,
  * both times 65536; then sums of colours and alpha, and of them by steps. */

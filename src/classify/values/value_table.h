@@ -13,7 +13,7 @@
 /* Entries of one row of the table, of which `nodes` are used. */
 #define SNOW_VALUE_PITCH 256
 /* Entries that are made at once. */
-#define SNOW_VALUE_BESIDE 16
+#define SNOW_VALUE_ENTRIES 16
 
 /* Numbers of values whose slabs are all invisible. */
 typedef struct snow_value_run {
@@ -48,7 +48,7 @@ typedef struct snow_value_table {
     float *plain;
     float *looks; /* premultiplied RGBA of a step, by V */
     /* The same where nodes are evenly placed: [channel][look % (2 steps)][node
-     * + SNOW_VALUE_BESIDE], with zeros beside the nodes. */
+     * + SNOW_VALUE_ENTRIES], with zeros beside the nodes. */
     float *planes;
     int plane_pitch;
     double step; /* numbers between two of these looks */

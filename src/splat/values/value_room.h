@@ -49,7 +49,8 @@ typedef struct value_queue {
     int16_t slopes[6][QUEUE];         /* u, v, p: of the front, of the back */
     int16_t from[QUEUE], part[QUEUE]; /* of a slab that is cut, of 32768 */
     int16_t color[4][QUEUE];
-    int16_t place[QUEUE], light[QUEUE], white[QUEUE];
+    int16_t place[QUEUE]; /* of the opacity in the slab, of 32768 */
+    int16_t light[QUEUE], white[QUEUE]; /* factors of the colour, of white */
     int16_t ray[2][QUEUE]; /* perspective: phases from the tile's first cell */
     /* Perspective: what the differences of both sheets along u and v lack. */
     int16_t stretch[2][2];
