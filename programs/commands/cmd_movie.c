@@ -21,7 +21,7 @@ static int check_movie(const options *asked) {
 
 /* Lists the steps.  The rank that writes also checks the output. */
 static int prepare_movie(const options *asked, shot_renderer *shots,
-                         step_files *files, shot_list *list, sequence **s) {
+                         step_files *files, shot_list *list, movie **s) {
     int done = check_movie(asked);
     if (done == CONTINUE)
         done = steps_find(asked, files);
@@ -38,7 +38,7 @@ static int prepare_movie(const options *asked, shot_renderer *shots,
 
 /* Chooses the transfer function, then makes the frames. */
 static int run_movie(const options *asked, shot_renderer *shots,
-                     step_files *files, shot_list *list, sequence **s,
+                     step_files *files, shot_list *list, movie **s,
                      double begin) {
     int done = prepare_movie(asked, shots, files, list, s);
     if (done == CONTINUE)
@@ -55,7 +55,7 @@ int cmd_movie(const options *asked) {
     shot_renderer shots = {.count = 0};
     step_files files = {NULL, 0, 0};
     shot_list list = {.shots = NULL};
-    sequence *s = NULL;
+    movie *s = NULL;
     int done = run_movie(asked, &shots, &files, &list, &s, begin);
     progress(asked, NULL);
     movie_close(s);

@@ -39,7 +39,7 @@ static int check_turntable(const options *asked) {
 
 /* The rank that writes checks the outputs. */
 static int prepare_turntable(const options *asked, shot_list *list,
-                             shot_renderer *shots, sequence **s) {
+                             shot_renderer *shots, movie **s) {
     int done = check_turntable(asked);
     if (done == CONTINUE)
         done = make_shots(asked, list);
@@ -59,7 +59,7 @@ static int prepare_turntable(const options *asked, shot_list *list,
 int cmd_turntable(const options *asked) {
     double begin = seconds_now();
     shot_list list = {.shots = NULL};
-    sequence *s = NULL;
+    movie *s = NULL;
     shot_renderer shots = {.count = 0};
     int done = prepare_turntable(asked, &list, &shots, &s);
     if (done == CONTINUE) {

@@ -37,7 +37,7 @@
 /* Words that ranks exchange, besides exit codes and CONTINUE. */
 #define PASS (-2) /* the frame is kept, not rendered */
 
-struct sequence {
+struct movie {
     const options *asked;
     const shot_list *list;
     movie_place place;
@@ -58,11 +58,11 @@ struct sequence {
 int movie_check(const options *asked) {
     if (!asked->output)
         return fail_usage("no output given; add -o OUT.mp4 or -o f_%%04d.png");
-    bool movie = movie_format_of(asked->output) != NULL;
-    if (movie && asked->bits)
+    bool is_movie = movie_format_of(asked->output) != NULL;
+    if (is_movie && asked->bits)
         return fail_usage("%s: --bits works only for PNG; remove it",
                           asked->output);
-    if (!movie && snow_image_format_bits(asked->output) == 0 &&
+    if (!is_movie && snow_image_format_bits(asked->output) == 0 &&
         (asked->background.given || asked->bits))
         return fail_usage("%s: --background and --bits work only for PNG, WebP "
                           "and movies; remove them or name a .png",
@@ -71,7 +71,7 @@ int movie_check(const options *asked) {
                          same_place(asked->stats, asked->output)))
         return fail_usage(
             "--stats: is the same file as --output; name two files");
-    if (asked->depth && (movie || strcmp(asked->depth, asked->output) != 0 ||
+    if (asked->depth && (is_movie || strcmp(asked->depth, asked->output) != 0 ||
                          !snow_image_format_has_depth(asked->output)))
         return fail_usage(
             "--depth: frames hold depths in their own files, as channel Z; "
@@ -84,7 +84,7 @@ int movie_check(const options *asked) {
 
 /* --- one frame, by the workers -------------------------------------------- */
 
-static bool needs_encoder(const sequence *s) {
+static bool needs_encoder(const movie *s) {
     return s->place.format && s->place.format->arguments;
 }
 
@@ -97,7 +97,7 @@ static snow_status fault(frame_slot *slot, const char *path, int number) {
 }
 
 /* Loads a frame that was kept, for ffmpeg. */
-static snow_status load_frame(const sequence *s, frame_slot *slot,
+static snow_status load_frame(const movie *s, frame_slot *slot,
                               const char *path) {
     snow_status status = snow_image_load(slot->context, path, &slot->image);
     if (status != SNOW_STATUS_OK)
@@ -112,7 +112,7 @@ static snow_status load_frame(const sequence *s, frame_slot *slot,
     return SNOW_STATUS_BAD_INPUT;
 }
 
-static snow_status fill_bytes(const sequence *s, frame_slot *slot,
+static snow_status fill_bytes(const movie *s, frame_slot *slot,
                               const snow_image_options *form) {
     if (!slot->work) /* once: all frames have one size */
         slot->work =
@@ -128,7 +128,7 @@ static snow_status fill_bytes(const sequence *s, frame_slot *slot,
 }
 
 /* Makes a new frame: its unfinished file and its bytes. */
-static snow_status make_frame(const sequence *s, frame_slot *slot) {
+static snow_status make_frame(const movie *s, frame_slot *slot) {
     const movie_shot *shot = &s->list->shots[slot->index];
     snow_overlay *overlay = NULL;
     snow_image_options form = s->form;
@@ -147,7 +147,7 @@ static snow_status make_frame(const sequence *s, frame_slot *slot) {
 }
 
 static snow_status prepare_frame(void *user, frame_slot *slot) {
-    const sequence *s = user;
+    const movie *s = user;
     char path[PATH_MAX];
     if (!s->record.kept[slot->index])
         return make_frame(s, slot);
@@ -159,7 +159,7 @@ static snow_status prepare_frame(void *user, frame_slot *slot) {
 }
 
 /* The record is written before the first frame that it lists. */
-static snow_status begin_record(sequence *s, frame_slot *slot) {
+static snow_status begin_record(movie *s, frame_slot *slot) {
     int number = record_begin(&s->record, &s->place, s->list->count);
     s->begun = number == 0;
     return number == 0 ? SNOW_STATUS_OK : fault(slot, s->place.record, number);
@@ -168,7 +168,7 @@ static snow_status begin_record(sequence *s, frame_slot *slot) {
 /* Gives a frame its final name.  A frame of this name that is not recorded may
  * come from a run that was killed between the two; it is replaced if a record
  * shows such a run.  Otherwise another program wrote it, and it stays. */
-static snow_status name_frame(sequence *s, frame_slot *slot) {
+static snow_status name_frame(movie *s, frame_slot *slot) {
     char aside[PATH_MAX], path[PATH_MAX];
     struct stat what;
     place_aside(&s->place, slot->index, aside, sizeof aside);
@@ -181,7 +181,7 @@ static snow_status name_frame(sequence *s, frame_slot *slot) {
 }
 
 static snow_status commit(void *user, frame_slot *slot) {
-    sequence *s = user;
+    movie *s = user;
     snow_status status = SNOW_STATUS_OK;
     if (!s->record.kept[slot->index]) {
         if (!s->begun)
@@ -206,7 +206,7 @@ static void release(void *user, frame_slot *slot) {
 
 /* A movie by ffmpeg has no transparency: its background is black unless another
  * is requested.  Its frames are kept as the encoder gets them. */
-static void set_form(sequence *s) {
+static void set_form(movie *s) {
     snow_image_options_init(&s->form);
     const color_value *color = &s->asked->background;
     if (color->given)
@@ -216,7 +216,7 @@ static void set_form(sequence *s) {
     s->form.overwrite = true; /* of unfinished files */
 }
 
-static int open_parts(sequence *s) {
+static int open_parts(movie *s) {
     int done = place_read(s->asked->output, &s->place);
     if (done == CONTINUE)
         done = open_context(s->asked, &s->context);
@@ -231,8 +231,8 @@ static int open_parts(sequence *s) {
     return done;
 }
 
-int movie_open(const options *asked, const shot_list *list, sequence **out) {
-    sequence *s = calloc(1, sizeof *s);
+int movie_open(const options *asked, const shot_list *list, movie **out) {
+    movie *s = calloc(1, sizeof *s);
     if (!s) {
         say("out of memory at the start; close other programs");
         return SNOW_STATUS_NO_MEMORY;
@@ -250,7 +250,7 @@ int movie_open(const options *asked, const shot_list *list, sequence **out) {
     return CONTINUE;
 }
 
-void movie_close(sequence *s) {
+void movie_close(movie *s) {
     if (!s)
         return;
     frames_free(s->queue);
@@ -277,7 +277,7 @@ static int count_workers(const options *asked) {
     return workers < 1 ? 1 : (int)workers;
 }
 
-static int start_encoder(sequence *s) {
+static int start_encoder(movie *s) {
     encoder_job job = {.format = s->place.format,
                        .width = (int)s->asked->size[0],
                        .height = (int)s->asked->size[1],
@@ -294,7 +294,7 @@ static int start_encoder(sequence *s) {
 }
 
 /* Claims the output for this run. */
-static int claim_output(sequence *s) {
+static int claim_output(movie *s) {
     int number = record_claim(&s->record, &s->place);
     struct stat what;
     s->claimed = number == 0;
@@ -312,7 +312,7 @@ static int claim_output(sequence *s) {
 
 /* Prepares the frames' folder, the record, ffmpeg and the queue; removes
  * leftovers. */
-static int begin_parts(sequence *s) {
+static int begin_parts(movie *s) {
     const frame_sink sink = {s, prepare_frame, commit, release};
     struct stat what;
     s->made_folder = s->place.format && stat(s->place.folder, &what) != 0;
@@ -341,7 +341,7 @@ static int begin_parts(sequence *s) {
 
 /* The state of the loop. */
 typedef struct run {
-    sequence *s; /* NULL on ranks that do not write */
+    movie *s; /* NULL on ranks that do not write */
     const options *asked;
     const shot_list *list;
     const movie_renderer *renderer;
@@ -446,14 +446,14 @@ static int render_frames(run *r) {
 
 /* --- the end -------------------------------------------------------------- */
 
-static int report_encoder(sequence *s, const char *text) {
+static int report_encoder(movie *s, const char *text) {
     return fail_output("%s: ffmpeg failed: %s; the frames are in %s: correct "
                        "this and repeat the command with --resume",
                        s->place.output, text, s->place.folder);
 }
 
 /* Gives the movie its name when it is complete. */
-static int name_movie(sequence *s) {
+static int name_movie(movie *s) {
     int number =
         place_output(s->place.movie, s->place.output, s->asked->overwrite);
     if (number == 0) {
@@ -466,7 +466,7 @@ static int name_movie(sequence *s) {
                        s->place.output, strerror(number), s->place.folder);
 }
 
-static int finish_encoder(sequence *s) {
+static int finish_encoder(movie *s) {
     char text[600];
     if (encoder_finish(&s->encoder, text, sizeof text))
         return name_movie(s);
@@ -475,7 +475,7 @@ static int finish_encoder(sequence *s) {
 }
 
 /* Makes an animated WebP when all frames exist. */
-static int join_movie(sequence *s) {
+static int join_movie(movie *s) {
     const webp_job job = {.count = s->list->count,
                           .width = (int)s->asked->size[0],
                           .height = (int)s->asked->size[1],
@@ -492,7 +492,7 @@ static int join_movie(sequence *s) {
 
 /* Reports the first error of the queue.  If the pipe broke, ffmpeg's message
  * gives the reason. */
-static int report_queue(sequence *s, snow_status status) {
+static int report_queue(movie *s, snow_status status) {
     char text[600];
     if (s->encoding && status == SNOW_STATUS_BAD_OUTPUT &&
         strncmp(frames_message(s->queue), "ffmpeg:", 7) == 0 &&
@@ -504,7 +504,7 @@ static int report_queue(sequence *s, snow_status status) {
 }
 
 /* An interrupted run leaves complete frames and their record, or nothing. */
-static void clean_up(sequence *s) {
+static void clean_up(movie *s) {
     encoder_stop(&s->encoder);
     if (!s->claimed) {
         if (s->made_folder) /* unless another program put a file there */
@@ -523,7 +523,7 @@ static void clean_up(sequence *s) {
 
 /* The workers are idle only now: complete files get their names, others are
  * removed. */
-static int finish_movie(sequence *s, int done) {
+static int finish_movie(movie *s, int done) {
     if (s->queue && done == EXIT_INTERRUPTED)
         frames_stop(s->queue);
     snow_status status = s->queue ? frames_drain(s->queue) : SNOW_STATUS_OK;
@@ -582,7 +582,7 @@ static int run_writer(run *r, double begin) {
     return done;
 }
 
-int movie_run(sequence *s, const options *asked, const shot_list *list,
+int movie_run(movie *s, const options *asked, const shot_list *list,
               const movie_renderer *renderer, double begin) {
     run r = {.s = renderer->writes ? s : NULL,
              .asked = asked,

@@ -1,6 +1,6 @@
 /* movie.h - many pictures as one movie: what turntable and movie share.
  *
- * A sequence is a list of shots.  They are rendered one after another; with
+ * A movie is a list of shots.  They are rendered one after another; with
  * several ranks the next is rendered while one is combined.  Meanwhile other
  * threads compress and write the frames before (frames.h).  Every frame becomes
  * a file, complete or absent:
@@ -70,7 +70,7 @@ typedef struct movie_renderer {
     int ranks;
 } movie_renderer;
 
-typedef struct sequence sequence;
+typedef struct movie movie;
 
 /* Refuses options that contradict each other.  Returns CONTINUE or an exit
  * code.
@@ -79,17 +79,17 @@ int movie_check(const options *asked);
 
 /* Opens the output: checks whether it can be written and what an earlier run
  * left there.  Writes nothing yet, but locks what will be resumed.  `list` and
- * `asked` must outlive the sequence.  Only for the rank that writes.  Returns
+ * `asked` must outlive the movie.  Only for the rank that writes.  Returns
  * CONTINUE or an exit code. */
-int movie_open(const options *asked, const shot_list *list, sequence **out);
+int movie_open(const options *asked, const shot_list *list, movie **out);
 
 /* Makes all frames that are missing, the movie from them, and the figures of
  * --stats.  Ranks that do not write pass NULL for `s`.  Returns an exit
  * code. */
-int movie_run(sequence *s, const options *asked, const shot_list *list,
+int movie_run(movie *s, const options *asked, const shot_list *list,
               const movie_renderer *renderer, double begin);
 
 /* Accepts NULL. */
-void movie_close(sequence *s);
+void movie_close(movie *s);
 
 #endif
