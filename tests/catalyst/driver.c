@@ -49,8 +49,8 @@ static void *block(size_t count, size_t size) {
     return blocks[block_count++] = calloc(count, size);
 }
 
-static void tell_points(conduit_node *domain, int64_t first, int64_t count,
-                        int cells) {
+static void describe_points(conduit_node *domain, int64_t first, int64_t count,
+                            int cells) {
     conduit_node_set_path_char8_str(domain, "coordsets/coords/type", "uniform");
     conduit_node_set_path_int32(domain, "coordsets/coords/dims/i",
                                 (int32_t)(dims[0] + cells));
@@ -72,8 +72,9 @@ static void tell_points(conduit_node *domain, int64_t first, int64_t count,
 
 /* Slices first .. first + count - 1, of which those outside of own .. own_end -
  * 1 are flagged as ghosts. */
-static void tell_domain(conduit_node *domain, const char *way, int64_t first,
-                        int64_t count, int64_t own, int64_t own_end) {
+static void describe_domain(conduit_node *domain, const char *way,
+                            int64_t first, int64_t count, int64_t own,
+                            int64_t own_end) {
     int cells = !is(way, "vertex") && !is(way, "strided");
     int64_t step = is(way, "strided") ? 3 : 1;
     int64_t all = dims[0] * dims[1] * count;
@@ -83,7 +84,7 @@ static void tell_domain(conduit_node *domain, const char *way, int64_t first,
     for (int64_t i = 0; i < all; i++)
         values[i * step + (step > 1)] = field(
             i % dims[0], i / dims[0] % dims[1], first + i / dims[0] / dims[1]);
-    tell_points(domain, first, count, cells);
+    describe_points(domain, first, count, cells);
     conduit_node_set_path_char8_str(domain, "fields/other/association",
                                     "vertex");
     conduit_node_set_path_char8_str(domain, "fields/v/association",
@@ -108,8 +109,8 @@ static void tell_domain(conduit_node *domain, const char *way, int64_t first,
 }
 
 /* This rank's domain, or domains. */
-static void tell_mesh(conduit_node *channel, const char *way, int rank,
-                      int ranks) {
+static void describe_mesh(conduit_node *channel, const char *way, int rank,
+                          int ranks) {
     int parts = is(way, "multi") ? 3 : 1;
     conduit_node_set_path_char8_str(channel, "type",
                                     parts > 1 ? "multimesh" : "mesh");
@@ -126,8 +127,8 @@ static void tell_mesh(conduit_node *channel, const char *way, int rank,
         }
         if (parts > 1)
             snprintf(path, sizeof path, "data/domain%d", part);
-        tell_domain(conduit_node_fetch(channel, path), way, first, last - first,
-                    own, end);
+        describe_domain(conduit_node_fetch(channel, path), way, first,
+                        last - first, own, end);
     }
     if (is(way, "wrong") || (is(way, "mixed") && rank == ranks - 1))
         conduit_node_set_path_char8_str(channel, "data/coordsets/coords/type",
@@ -175,8 +176,9 @@ static int run(const struct catalyst_impl *impl, char **argv, int rank,
         conduit_node_set_path_int64(params, "catalyst/state/timestep", step);
         conduit_node_set_path_float64(params, "catalyst/state/time", step);
         if (!is(way, "empty") || rank < ranks - 1)
-            tell_mesh(conduit_node_fetch(params, "catalyst/channels/grid"), way,
-                      rank, is(way, "empty") && ranks > 1 ? ranks - 1 : ranks);
+            describe_mesh(conduit_node_fetch(params, "catalyst/channels/grid"),
+                          way, rank,
+                          is(way, "empty") && ranks > 1 ? ranks - 1 : ranks);
         bad |= impl->execute(params) != catalyst_status_ok;
         conduit_node_destroy(params);
         while (block_count > 0)

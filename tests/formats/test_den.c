@@ -94,13 +94,13 @@ static void damaged_files_are_refused(void **state) {
 }
 
 /* What is known but not read is called by its name. */
-static void strangers_are_known(void **state) {
+static void unsupported_formats_are_known(void **state) {
     (void)state;
     static const struct {
         size_t offset;
         const char *magic;
         const char *given;
-    } strangers[] = {
+    } unsupported[] = {
         {257, "ustar", "is a tar archive; unpack it"},
         {0, "11111\n66 66 66 8", "is an SLC volume"},
         {0, "PK\3\4", "is a zip archive"},
@@ -110,14 +110,14 @@ static void strangers_are_known(void **state) {
     };
     support_files files;
     support_files_begin(&files);
-    for (size_t i = 0; i < sizeof strangers / sizeof *strangers; i++) {
+    for (size_t i = 0; i < sizeof unsupported / sizeof *unsupported; i++) {
         char bytes[512] = "";
-        memcpy(bytes + strangers[i].offset, strangers[i].magic,
-               strlen(strangers[i].magic));
+        memcpy(bytes + unsupported[i].offset, unsupported[i].magic,
+               strlen(unsupported[i].magic));
         const char *path =
             support_write(&files, "strange", bytes, sizeof bytes);
         support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT,
-                        strangers[i].given, 1 << 17);
+                        unsupported[i].given, 1 << 17);
     }
     support_files_end(&files);
 }
@@ -127,7 +127,7 @@ int main(void) {
         cmocka_unit_test(both_byte_orders_are_read),
         cmocka_unit_test(a_box_is_cut_out),
         cmocka_unit_test(damaged_files_are_refused),
-        cmocka_unit_test(strangers_are_known),
+        cmocka_unit_test(unsupported_formats_are_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -229,8 +229,8 @@ static void fill_brick(const scene *s, const snow_box *box, char *first,
 }
 
 /* Tells all bricks of this rank, in the order of the scene. */
-static snow_status tell_bricks(snow_insitu *insitu, const scene *s, int rank,
-                               double t, rank_memory *m) {
+static snow_status describe_bricks(snow_insitu *insitu, const scene *s,
+                                   int rank, double t, rank_memory *m) {
     const snow_halo halo = {{s->halo, s->halo, s->halo},
                             {s->halo, s->halo, s->halo}};
     size_t value = snow_type_size(s->type);
@@ -257,7 +257,7 @@ static snow_status tell_bricks(snow_insitu *insitu, const scene *s, int rank,
 }
 
 /* Everything but the bricks. */
-static snow_status tell_picture(snow_insitu *insitu, const scene *s) {
+static snow_status describe_picture(snow_insitu *insitu, const scene *s) {
     snow_opacity_point scaled[5];
     snow_look look = look_of(s, scaled);
     SNOW_TRY(snow_insitu_set_grid(insitu, s->dims, NULL, NULL));
@@ -340,9 +340,9 @@ static snow_status run_rank(snow_comm *comm, void *user) {
     int rank = snow_comm_rank(comm);
     SNOW_TRY(snow_insitu_new(comm, &insitu));
     snow_context_set_memory_limit(insitu->context, OUTER_LIMIT);
-    snow_status status = tell_picture(insitu, s);
+    snow_status status = describe_picture(insitu, s);
     if (status == SNOW_STATUS_OK)
-        status = tell_bricks(insitu, s, rank, 0, &m);
+        status = describe_bricks(insitu, s, rank, 0, &m);
     if (status == SNOW_STATUS_OK && s->first_deterministic)
         status = draw_deterministic(insitu, s);
     if (status == SNOW_STATUS_OK)
@@ -568,8 +568,8 @@ static snow_status scatter_rank(snow_comm *comm, void *user) {
     int rank = snow_comm_rank(comm);
     const size_t floats = sizeof all->sum / sizeof *all->sum;
     SNOW_TRY(snow_insitu_new(comm, &insitu));
-    tell_picture(insitu, &all->scene);
-    tell_bricks(insitu, &all->scene, rank, 0, &m);
+    describe_picture(insitu, &all->scene);
+    describe_bricks(insitu, &all->scene, rank, 0, &m);
     SNOW_TRY(snow_insitu_update(insitu));
     SNOW_TRY(snow_insitu_render(insitu, &image));
     if (rank == 0)
@@ -795,7 +795,7 @@ static snow_status make_movie(snow_insitu *insitu, movie *m, int rank) {
         rank_memory memory = {.count = 0};
         snow_insitu_stats figures = {.size = sizeof figures};
         snow_status status =
-            tell_bricks(insitu, &m->scene, rank, m->speed * step, &memory);
+            describe_bricks(insitu, &m->scene, rank, m->speed * step, &memory);
         if (status == SNOW_STATUS_OK)
             status = snow_insitu_step(insitu, step);
         free_memory(&memory);
@@ -813,7 +813,7 @@ static snow_status movie_rank(snow_comm *comm, void *user) {
     const snow_look automatic = {.size = sizeof automatic};
     SNOW_TRY(snow_insitu_new(comm, &insitu));
     snow_insitu_set_warning(insitu, hear, m);
-    snow_status status = tell_picture(insitu, &m->scene);
+    snow_status status = describe_picture(insitu, &m->scene);
     if (status == SNOW_STATUS_OK && m->automatic)
         status = snow_insitu_set_look(insitu, &automatic);
     if (status == SNOW_STATUS_OK)
@@ -1154,8 +1154,8 @@ static snow_status draw_once(snow_comm *comm, void *user) {
     snow_insitu *insitu = NULL;
     snow_image *image = NULL;
     SNOW_TRY(snow_insitu_new(comm, &insitu));
-    tell_picture(insitu, s);
-    tell_bricks(insitu, s, snow_comm_rank(comm), 0, &m);
+    describe_picture(insitu, s);
+    describe_bricks(insitu, s, snow_comm_rank(comm), 0, &m);
     snow_status status = snow_insitu_update(insitu);
     if (status == SNOW_STATUS_OK)
         status = snow_insitu_render(insitu, &image);
@@ -1264,8 +1264,8 @@ static snow_status faulty_rank(snow_comm *comm, void *user) {
     snow_insitu *insitu = NULL;
     SNOW_TRY(snow_insitu_new(comm, &insitu));
     if (f->fault != FAULT_NO_GRID) {
-        tell_picture(insitu, &f->scene);
-        tell_bricks(insitu, &f->scene, rank, 0, &m);
+        describe_picture(insitu, &f->scene);
+        describe_bricks(insitu, &f->scene, rank, 0, &m);
     }
     if (rank == 1)
         make_fault(insitu, f, rank);
@@ -1276,8 +1276,8 @@ static snow_status faulty_rank(snow_comm *comm, void *user) {
     /* After it, the same works where it is told right. */
     free_memory(&m);
     m.count = 0;
-    tell_picture(insitu, &f->scene);
-    tell_bricks(insitu, &f->scene, rank, 0, &m);
+    describe_picture(insitu, &f->scene);
+    describe_bricks(insitu, &f->scene, rank, 0, &m);
     f->recovers[rank] = snow_insitu_update(insitu) == SNOW_STATUS_OK;
     snow_insitu_free(insitu);
     free_memory(&m);

@@ -641,8 +641,8 @@ static snow_status combine_bad_orders(snow_comm *comm, void *user) {
     bad[2].grain = 4;
     bad[3].radix = 1;
     bad[4].height = -1;
-    const int strangers[] = {8, 9, 10};
-    bad[5].ranks = strangers;
+    const int outsiders[] = {8, 9, 10};
+    bad[5].ranks = outsiders;
     snow_status status = SNOW_STATUS_OK;
     for (int i = 0; i < 6; i++)
         if (snow_exchange(combiner, &bad[i], &region) !=
