@@ -32,37 +32,37 @@ static int print_version(void) {
 }
 
 /* `help` takes a word; other verbs take files. */
-static int run_help(const options *asked) {
-    if (asked->operand_count > 1)
+static int run_help(const options *opts) {
+    if (opts->operand_count > 1)
         return fail_usage(
             "%s: is one word too many; help takes one topic or verb",
-            asked->operands[1]);
-    return help_print(asked->operand_count ? asked->operands[0] : NULL, NULL);
+            opts->operands[1]);
+    return help_print(opts->operand_count ? opts->operands[0] : NULL, NULL);
 }
 
 /* bench is not in the list: it reads its own arguments. */
-static int run_verb(const verb_row *verb, const options *asked) {
+static int run_verb(const verb_row *verb, const options *opts) {
     switch (verb->bit) {
     case VERB_RENDER:
-        return cmd_render(asked);
+        return cmd_render(opts);
     case VERB_TURNTABLE:
-        return cmd_turntable(asked);
+        return cmd_turntable(opts);
     case VERB_MOVIE:
-        return cmd_movie(asked);
+        return cmd_movie(opts);
     case VERB_INFO:
-        return cmd_info(asked);
+        return cmd_info(opts);
     case VERB_PHANTOM:
-        return cmd_phantom(asked);
+        return cmd_phantom(opts);
     case VERB_CONVERT:
-        return cmd_convert(asked);
+        return cmd_convert(opts);
     case VERB_COMPARE:
-        return cmd_compare(asked);
+        return cmd_compare(opts);
     case VERB_TF:
-        return cmd_tf(asked);
+        return cmd_tf(opts);
     case VERB_DOCTOR:
-        return cmd_doctor(asked);
+        return cmd_doctor(opts);
     default:
-        return run_help(asked);
+        return run_help(opts);
     }
 }
 
@@ -75,35 +75,35 @@ static bool is_for_all(const verb_row *verb) {
 /* `named` is false if the verb was not written and render is assumed. */
 static int run_command(const verb_row *verb, bool named, int argc,
                        char **argv) {
-    options asked;
-    options_init(&asked);
-    int done = options_parse(&asked, verb, argc, argv);
+    options opts;
+    options_init(&opts);
+    int done = options_parse(&opts, verb, argc, argv);
     if (done != CONTINUE)
         return done;
-    if (asked.version)
+    if (opts.version)
         return print_version();
-    if (asked.help && !launch_talks())
+    if (opts.help && !launch_talks())
         return SNOW_STATUS_OK;
-    if (asked.help)
-        return help_print(asked.help_word,
+    if (opts.help)
+        return help_print(opts.help_word,
                           named && verb->bit != VERB_HELP ? verb : NULL);
     if (launch_ranks() > 1 && is_for_all(verb))
-        snow_comm_set_timeout(launch_comm(), asked.timeout);
-    done = config_check(&asked);
+        snow_comm_set_timeout(launch_comm(), opts.timeout);
+    done = config_check(&opts);
     if (done == CONTINUE)
-        done = look_load(&asked); /* on every rank: the file is small */
+        done = look_load(&opts); /* on every rank: the file is small */
     if (is_for_all(verb))
         done = launch_agree(done);
     if (done != CONTINUE) {
-        look_unload(&asked);
+        look_unload(&opts);
         return done;
     }
     double begin = seconds_now();
-    done = run_verb(verb, &asked);
+    done = run_verb(verb, &opts);
     if (done == SNOW_STATUS_OK)
-        done = config_save(&asked);
-    look_unload(&asked);
-    if (asked.verbosity > 0 &&
+        done = config_save(&opts);
+    look_unload(&opts);
+    if (opts.verbosity > 0 &&
         verb->bit != VERB_RENDER) /* render reports more itself */
         say("seconds: total %.3f", seconds_now() - begin);
     return done;

@@ -35,7 +35,7 @@ static json_t *size_json(const snow_image *image) {
 
 /* Pictures of two sizes have no difference to measure, but this is a result
  * (exit code 6), not an error. */
-static int judge_sizes(const options *asked, snow_image *const images[2]) {
+static int judge_sizes(const options *opts, snow_image *const images[2]) {
     int done = SNOW_STATUS_OK;
     const snow_image *a = images[0], *b = images[1];
     if (snow_image_width(a) == snow_image_width(b) &&
@@ -43,13 +43,13 @@ static int judge_sizes(const options *asked, snow_image *const images[2]) {
         return CONTINUE;
     say("%s and %s: %d x %d and %d x %d pixels; only pictures of one size can "
         "be compared",
-        name_of_input(asked->operands[0]), name_of_input(asked->operands[1]),
+        name_of_input(opts->operands[0]), name_of_input(opts->operands[1]),
         snow_image_width(a), snow_image_height(a), snow_image_width(b),
         snow_image_height(b));
-    if (asked->json) {
+    if (opts->json) {
         json_t *object = json_object();
         json_object_set_new(object, "within", json_false());
-        json_object_set_new(object, "tolerance", json_number(asked->tolerance));
+        json_object_set_new(object, "tolerance", json_number(opts->tolerance));
         json_object_set_new(object, "sizes",
                             json_pack("[oo]", size_json(a), size_json(b)));
         done = print_json(object);
@@ -72,11 +72,11 @@ static int report_text(const snow_image_difference *d, double tolerance,
 /* The differences are printed even if they are too large: whoever sees exit
  * code 6 wants to know by how much.  A largest difference of NaN exceeds every
  * tolerance. */
-static int judge_difference(const options *asked,
+static int judge_difference(const options *opts,
                             const snow_image_difference *d) {
-    bool within = d->largest <= asked->tolerance;
-    int done = asked->json ? report_json(d, asked->tolerance, within)
-                           : report_text(d, asked->tolerance, within);
+    bool within = d->largest <= opts->tolerance;
+    int done = opts->json ? report_json(d, opts->tolerance, within)
+                          : report_text(d, opts->tolerance, within);
     if (done == SNOW_STATUS_OK && !within)
         return SNOW_STATUS_DIFFERENT;
     return done;
@@ -84,21 +84,21 @@ static int judge_difference(const options *asked,
 
 /* Both pictures share one context, which holds the message of a failed
  * comparison. */
-int cmd_compare(const options *asked) {
+int cmd_compare(const options *opts) {
     snow_context *context = NULL;
     snow_image *images[2] = {NULL, NULL};
     snow_image_difference difference = {.size = sizeof difference};
-    int done = open_context(asked, &context);
+    int done = open_context(opts, &context);
     if (done == CONTINUE)
-        done = load_picture(context, asked->operands[0], &images[0]);
+        done = load_picture(context, opts->operands[0], &images[0]);
     if (done == CONTINUE)
-        done = load_picture(context, asked->operands[1], &images[1]);
+        done = load_picture(context, opts->operands[1], &images[1]);
     if (done == CONTINUE)
-        done = judge_sizes(asked, images);
+        done = judge_sizes(opts, images);
     if (done == CONTINUE) {
         snow_status status =
             snow_image_compare(images[0], images[1], &difference);
-        done = status == SNOW_STATUS_OK ? judge_difference(asked, &difference)
+        done = status == SNOW_STATUS_OK ? judge_difference(opts, &difference)
                                         : fail_status(context, status);
     }
     snow_image_free(images[0]);

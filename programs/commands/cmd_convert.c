@@ -10,25 +10,25 @@
 
 /* The file name decides the format.  Writing to a pipe may block, so an
  * interruption there does not wait for the write to end. */
-int save_volume(snow_context *context, const options *asked,
+int save_volume(snow_context *context, const options *opts,
                 const snow_volume *volume) {
     char text[256];
-    if (!is_special(asked->output))
+    if (!is_special(opts->output))
         interrupt_hold();
     snow_status status =
-        snow_volume_save(volume, asked->output, asked->overwrite);
+        snow_volume_save(volume, opts->output, opts->overwrite);
     if (status != SNOW_STATUS_OK)
         return fail_status(context, status);
     describe_volume(snow_volume_get_info(volume), text, sizeof text);
-    if (asked->verbosity >= 0) /* without the input's format */
-        say("%s: %s", asked->output, strchr(text, ' ') + 1);
+    if (opts->verbosity >= 0) /* without the input's format */
+        say("%s: %s", opts->output, strchr(text, ' ') + 1);
     return SNOW_STATUS_OK;
 }
 
 /* --dims and --type describe raw input.  Any other input states its own type,
  * so for it --type is the type to convert to. */
-static snow_type wanted_type(const options *asked, snow_volume_options *data) {
-    snow_type type = asked->as;
+static snow_type wanted_type(const options *opts, snow_volume_options *data) {
+    snow_type type = opts->as;
     if (!type && data->type && !data->dims[0]) {
         type = data->type;
         data->type = SNOW_TYPE_NONE;
@@ -49,10 +49,10 @@ static bool keeps_scaling(const char *path) {
 
 /* The data values that --range stands for.  Returns CONTINUE or an exit
  * code. */
-static int find_range(const options *asked, const snow_volume *volume,
+static int find_range(const options *opts, const snow_volume *volume,
                       double range[2]) {
     snow_volume_statistics m = {.size = sizeof m};
-    switch (asked->range.kind) {
+    switch (opts->range.kind) {
     case SNOW_RANGE_PERCENTILES:
         return fail_usage("--range: percentiles cannot be converted; give two "
                           "data values or full");
@@ -62,29 +62,29 @@ static int find_range(const options *asked, const snow_volume *volume,
         range[1] = m.max;
         return CONTINUE;
     default:
-        range[0] = asked->range.low;
-        range[1] = asked->range.high;
+        range[0] = opts->range.low;
+        range[1] = opts->range.high;
         return CONTINUE;
     }
 }
 
 /* Replaces the volume if another type is needed. */
-static int change_type(snow_context *context, const options *asked,
+static int change_type(snow_context *context, const options *opts,
                        snow_type type, snow_volume **volume) {
     const snow_volume_info *info = snow_volume_get_info(*volume);
     bool scaled = info->slope != 1 || info->intercept != 0;
-    bool spread = asked->range.kind != SNOW_RANGE_AUTO;
+    bool spread = opts->range.kind != SNOW_RANGE_AUTO;
     double range[2];
     snow_volume *made;
-    if (!type && !spread && (!scaled || keeps_scaling(asked->output)))
+    if (!type && !spread && (!scaled || keeps_scaling(opts->output)))
         return CONTINUE;
-    int done = spread ? find_range(asked, *volume, range) : CONTINUE;
+    int done = spread ? find_range(opts, *volume, range) : CONTINUE;
     if (done != CONTINUE)
         return done;
     snow_status status =
         snow_volume_convert(*volume, type, spread ? range : NULL, &made);
     if (status != SNOW_STATUS_OK) {
-        say("%s: %s", asked->operands[0], snow_context_message(context));
+        say("%s: %s", opts->operands[0], snow_context_message(context));
         return (int)status;
     }
     snow_volume_close(*volume);
@@ -92,31 +92,31 @@ static int change_type(snow_context *context, const options *asked,
     return CONTINUE;
 }
 
-static int convert(snow_context *context, const options *asked) {
-    snow_volume_options data = data_options(asked);
-    snow_type type = wanted_type(asked, &data);
+static int convert(snow_context *context, const options *opts) {
+    snow_volume_options data = data_options(opts);
+    snow_type type = wanted_type(opts, &data);
     snow_volume *volume = NULL;
     snow_status status =
-        snow_volume_open(context, asked->operands[0], &data, &volume);
+        snow_volume_open(context, opts->operands[0], &data, &volume);
     if (status != SNOW_STATUS_OK)
         return fail_status(context, status);
-    int done = change_type(context, asked, type, &volume);
+    int done = change_type(context, opts, type, &volume);
     if (done == CONTINUE)
-        done = save_volume(context, asked, volume);
+        done = save_volume(context, opts, volume);
     snow_volume_close(volume);
     return done;
 }
 
-int cmd_convert(const options *asked) {
+int cmd_convert(const options *opts) {
     snow_context *context = NULL;
-    if (!asked->output)
+    if (!opts->output)
         return fail_usage("no output file given; add -o OUT.nrrd");
-    if (asked->range.kind != SNOW_RANGE_AUTO && !asked->as && !asked->type)
+    if (opts->range.kind != SNOW_RANGE_AUTO && !opts->as && !opts->type)
         return fail_usage("--range: needs a type to spread the values over; "
                           "add --as uint8, for example");
-    int done = open_context(asked, &context);
+    int done = open_context(opts, &context);
     if (done == CONTINUE)
-        done = convert(context, asked);
+        done = convert(context, opts);
     snow_context_free(context);
     return done;
 }

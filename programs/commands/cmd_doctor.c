@@ -193,6 +193,6 @@ static int report_text(void) {
 
 /* Needs no context, no file and hardly any memory, so it works where nothing
  * else does. */
-int cmd_doctor(const options *asked) {
-    return asked->json ? report_json() : report_text();
+int cmd_doctor(const options *opts) {
+    return opts->json ? report_json() : report_text();
 }

@@ -28,11 +28,11 @@ typedef struct facts {
 
 /* Everything is computed before the first line is printed, so that a failure
  * prints nothing. */
-static snow_status gather_facts(const options *asked, facts *f) {
+static snow_status gather_facts(const options *opts, facts *f) {
     f->info = snow_volume_get_info(f->volume);
-    f->thresholds[0] = asked->threshold;
+    f->thresholds[0] = opts->threshold;
     f->threshold_count = 1;
-    if (asked->threshold < 0) {
+    if (opts->threshold < 0) {
         memcpy(f->thresholds, paper_thresholds, sizeof paper_thresholds);
         f->threshold_count = 3;
     }
@@ -247,26 +247,26 @@ static int report_text(const facts *f) {
 }
 
 /* No picture is made, but the sparse ratio needs the transfer function. */
-int cmd_info(const options *asked) {
+int cmd_info(const options *opts) {
     snow_context *context = NULL;
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL;
-    int done = check_look(asked);
+    int done = check_look(opts);
     if (done == CONTINUE)
-        done = open_context(asked, &context);
+        done = open_context(opts, &context);
     if (done == CONTINUE)
-        done = open_input(context, asked, asked->operands[0], &volume);
+        done = open_input(context, opts, opts->operands[0], &volume);
     if (done == CONTINUE)
-        done = open_look(context, asked, volume, &transfer);
+        done = open_look(context, opts, volume, &transfer);
     if (done == CONTINUE) {
         facts f = {.volume = volume, .transfer = transfer};
-        if (asked->patient && *snow_volume_patient(volume))
+        if (opts->patient && *snow_volume_patient(volume))
             f.patient = snow_volume_patient(volume);
-        snow_status status = gather_facts(asked, &f);
+        snow_status status = gather_facts(opts, &f);
         if (status != SNOW_STATUS_OK)
             done = fail_status(context, status);
         else
-            done = asked->json ? report_json(&f) : report_text(&f);
+            done = opts->json ? report_json(&f) : report_text(&f);
     }
     snow_transfer_free(transfer);
     snow_volume_close(volume);

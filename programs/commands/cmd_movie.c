@@ -12,52 +12,52 @@
 
 #include <stdlib.h>
 
-static int check_movie(const options *asked) {
-    if (asked->operand_count == 0)
+static int check_movie(const options *opts) {
+    if (opts->operand_count == 0)
         return fail_usage(
             "movie: no input given; give snowglass movie INPUT... -o OUT");
-    return movie_check(asked);
+    return movie_check(opts);
 }
 
 /* Lists the steps.  The rank that writes also checks the output. */
-static int prepare_movie(const options *asked, shot_renderer *shots,
+static int prepare_movie(const options *opts, shot_renderer *shots,
                          step_files *files, shot_list *list, movie **s) {
-    int done = check_movie(asked);
+    int done = check_movie(opts);
     if (done == CONTINUE)
-        done = steps_find(asked, files);
+        done = steps_find(opts, files);
     done = launch_agree(done);
     if (done == CONTINUE)
-        done = shots_open(asked, shots);
+        done = shots_open(opts, shots);
     if (done != CONTINUE)
         return done;
     done = steps_list(files, shots, list);
     if (done == CONTINUE && launch_talks())
-        done = movie_open(asked, list, s);
+        done = movie_open(opts, list, s);
     return launch_agree(done);
 }
 
 /* Chooses the transfer function, then makes the frames. */
-static int run_movie(const options *asked, shot_renderer *shots,
+static int run_movie(const options *opts, shot_renderer *shots,
                      step_files *files, shot_list *list, movie **s,
                      double begin) {
-    int done = prepare_movie(asked, shots, files, list, s);
+    int done = prepare_movie(opts, shots, files, list, s);
     if (done == CONTINUE)
         done = steps_look(list, shots);
     if (done != CONTINUE)
         return done;
     shots->count = list->count;
     movie_renderer renderer = shots_renderer(shots);
-    return movie_run(*s, asked, list, &renderer, begin);
+    return movie_run(*s, opts, list, &renderer, begin);
 }
 
-int cmd_movie(const options *asked) {
+int cmd_movie(const options *opts) {
     double begin = seconds_now();
     shot_renderer shots = {.count = 0};
     step_files files = {NULL, 0, 0};
     shot_list list = {.shots = NULL};
     movie *s = NULL;
-    int done = run_movie(asked, &shots, &files, &list, &s, begin);
-    progress(asked, NULL);
+    int done = run_movie(opts, &shots, &files, &list, &s, begin);
+    progress(opts, NULL);
     movie_close(s);
     shots_close(&shots);
     free(list.shots);

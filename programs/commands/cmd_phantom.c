@@ -3,17 +3,17 @@
 #include "run/log.h"
 
 /* There is no sensible default output, so none is assumed. */
-int cmd_phantom(const options *asked) {
+int cmd_phantom(const options *opts) {
     snow_context *context = NULL;
     snow_volume *volume = NULL;
-    if (!asked->output)
+    if (!opts->output)
         return fail_usage("no output file given; add -o OUT.nrrd");
-    int done = open_context(asked, &context);
+    int done = open_context(opts, &context);
     if (done != CONTINUE)
         return done;
     snow_status status = snow_volume_open_phantom(
-        context, asked->operands[0], asked->dims, asked->seed, &volume);
-    done = status == SNOW_STATUS_OK ? save_volume(context, asked, volume)
+        context, opts->operands[0], opts->dims, opts->seed, &volume);
+    done = status == SNOW_STATUS_OK ? save_volume(context, opts, volume)
                                     : fail_status(context, status);
     snow_volume_close(volume);
     snow_context_free(context);

@@ -19,8 +19,8 @@ static json_t *names_json(const char *(*name)(size_t)) {
     return list;
 }
 
-static int list(const options *asked) {
-    if (asked->json) {
+static int list(const options *opts) {
+    if (opts->json) {
         json_t *o = json_object();
         json_object_set_new(o, "presets", names_json(snow_preset_name));
         json_object_set_new(o, "colormaps", names_json(snow_colormap_name));
@@ -57,8 +57,8 @@ static void take_colormap(int index, const char *name, named *out) {
 }
 
 /* A file has priority over a preset of the same name. */
-static int find_transfer(const options *asked, const char *name, named *out) {
-    int done = open_context(asked, &out->context);
+static int find_transfer(const options *opts, const char *name, named *out) {
+    int done = open_context(opts, &out->context);
     if (done != CONTINUE)
         return done;
     int preset = snow_preset_from_name(name),
@@ -150,11 +150,11 @@ static void paint_transfer(const snow_transfer *transfer, const double ends[2],
     }
 }
 
-static int save_picture(const options *asked, const named *n) {
+static int save_picture(const options *opts, const named *n) {
     snow_transfer *transfer = NULL;
     snow_image *image = NULL;
     snow_image_options form = {.size = sizeof form,
-                               .overwrite = asked->overwrite};
+                               .overwrite = opts->overwrite};
     double ends[2];
     find_ends(&n->look, ends);
     snow_status status = make_whole(n, &transfer);
@@ -163,7 +163,7 @@ static int save_picture(const options *asked, const named *n) {
     if (status == SNOW_STATUS_OK) {
         paint_transfer(transfer, ends, snow_image_pixels(image));
         interrupt_hold();
-        status = snow_image_save(image, asked->output, &form);
+        status = snow_image_save(image, opts->output, &form);
     }
     snow_image_free(image);
     snow_transfer_free(transfer);
@@ -201,13 +201,13 @@ static char *text_of(const named *n, text_writer *write, size_t *length,
     return text;
 }
 
-static int show(const options *asked, const named *n) {
+static int show(const options *opts, const named *n) {
     static const char *const values[] = {
         "data values", "shares of the range of all values",
         "shares of the range of the object's values"};
-    if (asked->output)
-        return save_picture(asked, n);
-    if (asked->json) {
+    if (opts->output)
+        return save_picture(opts, n);
+    if (opts->json) {
         size_t length;
         int done;
         char *text = text_of(n, snow_look_write_json, &length, &done);
@@ -235,71 +235,71 @@ static bool ends_with(const char *text, const char *suffix) {
 }
 
 /* Reports what a table cannot hold. */
-static void report_losses(const options *asked, const snow_look *p) {
-    if (asked->verbosity >= 0 &&
+static void report_losses(const options *opts, const snow_look *p) {
+    if (opts->verbosity >= 0 &&
         (p->gradient_opacity_count || p->log || p->domain))
         say("%s: a table cannot hold%s%s%s; write .json to keep it",
-            asked->output,
+            opts->output,
             p->gradient_opacity_count ? " the gradient opacity" : "",
             p->log ? " the logarithmic scale" : "",
             p->domain ? " values as shares of a range" : "");
 }
 
-static int convert(const options *asked, const named *n) {
-    bool csv = ends_with(asked->output, ".csv");
+static int convert(const options *opts, const named *n) {
+    bool csv = ends_with(opts->output, ".csv");
     size_t length;
     int done;
     char *text = text_of(n, csv ? snow_look_write_csv : snow_look_write_json,
                          &length, &done);
     if (done == CONTINUE && csv)
-        report_losses(asked, &n->look);
+        report_losses(opts, &n->look);
     if (done == CONTINUE) {
         if (!csv)
             text[length++] = '\n';
-        if (!is_special(asked->output))
+        if (!is_special(opts->output))
             interrupt_hold();
-        done = write_text(text, length, asked->output, asked->overwrite);
+        done = write_text(text, length, opts->output, opts->overwrite);
     }
     free(text);
     return done;
 }
 
-static int check_convert(const options *asked) {
-    if (!asked->output)
+static int check_convert(const options *opts) {
+    if (!opts->output)
         return fail_usage(
             "no output file given; add -o OUT.json or -o OUT.csv");
-    if (!ends_with(asked->output, ".json") &&
-        !ends_with(asked->output, ".csv") && strcmp(asked->output, "-") != 0)
+    if (!ends_with(opts->output, ".json") && !ends_with(opts->output, ".csv") &&
+        strcmp(opts->output, "-") != 0)
         return fail_usage("%s: transfer functions are written as .json or "
                           ".csv; use one of these endings",
-                          asked->output);
-    if (strcmp(asked->output, "-") == 0)
+                          opts->output);
+    if (strcmp(opts->output, "-") == 0)
         return CONTINUE;
-    return check_stats_path(asked->output, asked->overwrite);
+    return check_stats_path(opts->output, opts->overwrite);
 }
 
 /* --- the verb ------------------------------------------------------------- */
 
-static int run_named(const options *asked, const char *name,
+static int run_named(const options *opts, const char *name,
                      int (*act)(const options *, const named *)) {
     named n = {.context = NULL};
-    int done = find_transfer(asked, name, &n);
+    int done = find_transfer(opts, name, &n);
     if (done == CONTINUE)
-        done = act(asked, &n);
+        done = act(opts, &n);
     lose(&n);
     return done;
 }
 
-int cmd_tf(const options *asked) {
-    const char *word = asked->operand_count ? asked->operands[0] : "";
+int cmd_tf(const options *opts) {
+    const char *word = opts->operand_count ? opts->operands[0] : "";
     bool converts = strcmp(word, "convert") == 0;
-    if (strcmp(word, "list") == 0 && asked->operand_count == 1)
-        return list(asked);
-    if ((!converts && strcmp(word, "show") != 0) || asked->operand_count != 2)
+    if (strcmp(word, "list") == 0 && opts->operand_count == 1)
+        return list(opts);
+    if ((!converts && strcmp(word, "show") != 0) || opts->operand_count != 2)
         return fail_usage("tf: no action given; use tf list, tf show "
                           "NAME|FILE, or tf convert IN -o OUT.json");
-    int done = converts ? check_convert(asked) : CONTINUE;
+    int done = converts ? check_convert(opts) : CONTINUE;
     if (done != CONTINUE)
         return done;
-    return run_named(asked, asked->operands[1], converts ? convert : show);
+    return run_named(opts, opts->operands[1], converts ? convert : show);
 }

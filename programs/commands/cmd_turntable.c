@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int make_shots(const options *asked, shot_list *out) {
-    out->count = asked->frames;
+static int make_shots(const options *opts, shot_list *out) {
+    out->count = opts->frames;
     out->shots = calloc((size_t)out->count, sizeof *out->shots);
     if (!out->shots) {
         say("out of memory for a list of %lld frames; make fewer",
@@ -21,33 +21,33 @@ static int make_shots(const options *asked, shot_list *out) {
     }
     for (int64_t i = 0; i < out->count; i++)
         out->shots[i] = (movie_shot){
-            .path = asked->operands[0],
-            .time = asked->time,
-            .azimuth = asked->azimuth + 360 * (double)i / (double)asked->frames,
+            .path = opts->operands[0],
+            .time = opts->time,
+            .azimuth = opts->azimuth + 360 * (double)i / (double)opts->frames,
             .step = -1};
     return CONTINUE;
 }
 
 /* An earlier input from a pipe cannot be compared with a new one. */
-static int check_turntable(const options *asked) {
-    if (asked->resume && strcmp(asked->operands[0], "-") == 0)
+static int check_turntable(const options *opts) {
+    if (opts->resume && strcmp(opts->operands[0], "-") == 0)
         return fail_usage("--resume: standard input cannot be compared with "
                           "the earlier run's; name a file");
-    int done = scene_check(asked);
-    return done == CONTINUE ? movie_check(asked) : done;
+    int done = scene_check(opts);
+    return done == CONTINUE ? movie_check(opts) : done;
 }
 
 /* The rank that writes checks the outputs. */
-static int prepare_turntable(const options *asked, shot_list *list,
+static int prepare_turntable(const options *opts, shot_list *list,
                              shot_renderer *shots, movie **s) {
-    int done = check_turntable(asked);
+    int done = check_turntable(opts);
     if (done == CONTINUE)
-        done = make_shots(asked, list);
+        done = make_shots(opts, list);
     if (done == CONTINUE && launch_talks())
-        done = movie_open(asked, list, s);
+        done = movie_open(opts, list, s);
     done = launch_agree(done);
     if (done == CONTINUE)
-        done = shots_open(asked, shots);
+        done = shots_open(opts, shots);
     if (done != CONTINUE)
         return done;
     shots->count = list->count;
@@ -56,15 +56,15 @@ static int prepare_turntable(const options *asked, shot_list *list,
     return shots_volume(shots, &list->shots[0]);
 }
 
-int cmd_turntable(const options *asked) {
+int cmd_turntable(const options *opts) {
     double begin = seconds_now();
     shot_list list = {.shots = NULL};
     movie *s = NULL;
     shot_renderer shots = {.count = 0};
-    int done = prepare_turntable(asked, &list, &shots, &s);
+    int done = prepare_turntable(opts, &list, &shots, &s);
     if (done == CONTINUE) {
         movie_renderer renderer = shots_renderer(&shots);
-        done = movie_run(s, asked, &list, &renderer, begin);
+        done = movie_run(s, opts, &list, &renderer, begin);
     }
     movie_close(s);
     shots_close(&shots);

@@ -5,67 +5,67 @@
 
 #include "options/options.h"
 
-int cmd_render(const options *asked);
-int cmd_turntable(const options *asked);
-int cmd_movie(const options *asked);
-int cmd_info(const options *asked);
-int cmd_phantom(const options *asked);
-int cmd_convert(const options *asked);
-int cmd_compare(const options *asked);
-int cmd_doctor(const options *asked);
-int cmd_tf(const options *asked);
+int cmd_render(const options *opts);
+int cmd_turntable(const options *opts);
+int cmd_movie(const options *opts);
+int cmd_info(const options *opts);
+int cmd_phantom(const options *opts);
+int cmd_convert(const options *opts);
+int cmd_compare(const options *opts);
+int cmd_doctor(const options *opts);
+int cmd_tf(const options *opts);
 
 /* The name of an input in messages: its path, or "standard input" for "-". */
 const char *name_of_input(const char *path);
 
 /* The options that describe an input, as the library takes them; the look's
  * texts stay those of the options. */
-snow_volume_options data_options(const options *asked);
-snow_look look_options(const options *asked);
+snow_volume_options data_options(const options *opts);
+snow_look look_options(const options *opts);
 
 /* Opens the input volume: a file, phantom:NAME, or "-" for standard input.
  * Returns CONTINUE or an exit code. */
-int open_input(snow_context *context, const options *asked, const char *path,
+int open_input(snow_context *context, const options *opts, const char *path,
                snow_volume **out);
 
 /* Loads the file of --tf, if there is one, into the options; the second
  * function frees it.  Returns CONTINUE or an exit code. */
-int look_load(options *asked);
-void look_unload(options *asked);
+int look_load(options *opts);
+void look_unload(options *opts);
 
 /* Writes a volume to the output file and reports it.  Returns an exit code. */
-int save_volume(snow_context *context, const options *asked,
+int save_volume(snow_context *context, const options *opts,
                 const snow_volume *volume);
 
 /* Refuses look options that contradict each other, before a volume is read.
  * Returns CONTINUE or an exit code. */
-int check_look(const options *asked);
+int check_look(const options *opts);
 
 /* Makes the transfer function that the options request.  Returns CONTINUE or an
  * exit code. */
-int open_look(snow_context *context, const options *asked,
+int open_look(snow_context *context, const options *opts,
               const snow_volume *volume, snow_transfer **out);
 
 /* Fills the settings from the options, except the opacity length, which depends
  * on the volume's unit. */
-void fill_settings(const options *asked, snow_settings *out);
+void fill_settings(const options *opts, snow_settings *out);
 
 /* Make the settings and the view that the options request.  Return CONTINUE or
  * an exit code. */
-int make_settings(const options *asked, const snow_volume_info *info,
+int make_settings(const options *opts, const snow_volume_info *info,
                   snow_settings *out);
-int make_view(snow_context *context, const options *asked,
+int make_view(snow_context *context, const options *opts,
               const snow_volume_info *info, snow_view *out);
 
 /* Refuses --depth in modes without depth.  Returns CONTINUE or an exit code. */
-int check_depth_mode(const options *asked);
+int check_depth_mode(const options *opts);
 
 /* The form of the picture file that the options request. */
-snow_image_options picture_form(const options *asked);
+snow_image_options picture_form(const options *opts);
 
 /* Refuses settings that contradict each other, before a volume is read.
  * Returns CONTINUE or an exit code. */
-int check_settings(const options *asked);
+int check_settings(const options *opts);
 
 /* "raw 256x256x110 uint8, spacing 1x1x1 mm". */
 void describe_volume(const snow_volume_info *info, char *out, size_t size);

@@ -38,7 +38,7 @@
 #define PASS (-2) /* the frame is kept, not rendered */
 
 struct movie {
-    const options *asked;
+    const options *opts;
     const shot_list *list;
     movie_place place;
     frame_record record;
@@ -55,31 +55,31 @@ struct movie {
     bool has_marks;
 };
 
-int movie_check(const options *asked) {
-    if (!asked->output)
+int movie_check(const options *opts) {
+    if (!opts->output)
         return fail_usage("no output given; add -o OUT.mp4 or -o f_%%04d.png");
-    bool is_movie = movie_format_of(asked->output) != NULL;
-    if (is_movie && asked->bits)
+    bool is_movie = movie_format_of(opts->output) != NULL;
+    if (is_movie && opts->bits)
         return fail_usage("%s: --bits works only for PNG; remove it",
-                          asked->output);
-    if (!is_movie && snow_image_format_bits(asked->output) == 0 &&
-        (asked->background.given || asked->bits))
+                          opts->output);
+    if (!is_movie && snow_image_format_bits(opts->output) == 0 &&
+        (opts->background.given || opts->bits))
         return fail_usage("%s: --background and --bits work only for PNG, WebP "
                           "and movies; remove them or name a .png",
-                          asked->output);
-    if (asked->stats && (strcmp(asked->stats, asked->output) == 0 ||
-                         same_place(asked->stats, asked->output)))
+                          opts->output);
+    if (opts->stats && (strcmp(opts->stats, opts->output) == 0 ||
+                        same_place(opts->stats, opts->output)))
         return fail_usage(
             "--stats: is the same file as --output; name two files");
-    if (asked->depth && (is_movie || strcmp(asked->depth, asked->output) != 0 ||
-                         !snow_image_format_has_depth(asked->output)))
+    if (opts->depth && (is_movie || strcmp(opts->depth, opts->output) != 0 ||
+                        !snow_image_format_has_depth(opts->output)))
         return fail_usage(
             "--depth: frames hold depths in their own files, as channel Z; "
             "give --output and --depth the same pattern, such as f_%%04d.exr");
-    int done = check_depth_mode(asked);
+    int done = check_depth_mode(opts);
     if (done == CONTINUE)
-        done = paint_check(asked, true);
-    return done == CONTINUE ? check_settings(asked) : done;
+        done = paint_check(opts, true);
+    return done == CONTINUE ? check_settings(opts) : done;
 }
 
 /* --- one frame, by the workers -------------------------------------------- */
@@ -102,8 +102,8 @@ static snow_status load_frame(const movie *s, frame_slot *slot,
     snow_status status = snow_image_load(slot->context, path, &slot->image);
     if (status != SNOW_STATUS_OK)
         return status;
-    if (snow_image_width(slot->image) == (int)s->asked->size[0] &&
-        snow_image_height(slot->image) == (int)s->asked->size[1])
+    if (snow_image_width(slot->image) == (int)s->opts->size[0] &&
+        snow_image_height(slot->image) == (int)s->opts->size[1])
         return SNOW_STATUS_OK;
     snprintf(slot->fault, sizeof slot->fault,
              "%s: has another size than the movie; remove it and continue with "
@@ -116,7 +116,7 @@ static snow_status fill_bytes(const movie *s, frame_slot *slot,
                               const snow_image_options *form) {
     if (!slot->work) /* once: all frames have one size */
         slot->work =
-            malloc((size_t)s->asked->size[0] * (size_t)s->asked->size[1] * 3);
+            malloc((size_t)s->opts->size[0] * (size_t)s->opts->size[1] * 3);
     if (!slot->work) {
         snprintf(
             slot->fault, sizeof slot->fault,
@@ -191,7 +191,7 @@ static snow_status commit(void *user, frame_slot *slot) {
     }
     if (status != SNOW_STATUS_OK || !s->encoding)
         return status;
-    size_t size = (size_t)s->asked->size[0] * (size_t)s->asked->size[1] * 3;
+    size_t size = (size_t)s->opts->size[0] * (size_t)s->opts->size[1] * 3;
     int number = encoder_write(&s->encoder, slot->work, size);
     return number == 0 ? SNOW_STATUS_OK : fault(slot, "ffmpeg", number);
 }
@@ -208,36 +208,36 @@ static void release(void *user, frame_slot *slot) {
  * is requested.  Its frames are kept as the encoder gets them. */
 static void set_form(movie *s) {
     snow_image_options_init(&s->form);
-    const color_value *color = &s->asked->background;
+    const color_value *color = &s->opts->background;
     if (color->given)
         memcpy(s->form.background, color->rgb, sizeof s->form.background);
     s->form.flatten = color->given || needs_encoder(s);
-    s->form.bits = s->asked->bits ? (s->asked->bits[0] == '8' ? 8 : 16) : 0;
+    s->form.bits = s->opts->bits ? (s->opts->bits[0] == '8' ? 8 : 16) : 0;
     s->form.overwrite = true; /* of unfinished files */
 }
 
 static int open_parts(movie *s) {
-    int done = place_read(s->asked->output, &s->place);
+    int done = place_read(s->opts->output, &s->place);
     if (done == CONTINUE)
-        done = open_context(s->asked, &s->context);
+        done = open_context(s->opts, &s->context);
     if (done == CONTINUE)
-        done = place_check(s->context, &s->place, s->asked);
-    if (done == CONTINUE && s->asked->stats)
-        done = check_stats_path(s->asked->stats, s->asked->overwrite);
+        done = place_check(s->context, &s->place, s->opts);
+    if (done == CONTINUE && s->opts->stats)
+        done = check_stats_path(s->opts->stats, s->opts->overwrite);
     if (done == CONTINUE)
-        done = record_open(s->asked, s->list, &s->place, &s->record);
+        done = record_open(s->opts, s->list, &s->place, &s->record);
     if (done == CONTINUE)
         set_form(s);
     return done;
 }
 
-int movie_open(const options *asked, const shot_list *list, movie **out) {
+int movie_open(const options *opts, const shot_list *list, movie **out) {
     movie *s = calloc(1, sizeof *s);
     if (!s) {
         say("out of memory at the start; close other programs");
         return SNOW_STATUS_NO_MEMORY;
     }
-    s->asked = asked;
+    s->opts = opts;
     s->list = list;
     s->encoder.pipe = -1;
     s->record.file = -1;
@@ -260,15 +260,15 @@ void movie_close(movie *s) {
     free(s);
 }
 
-static int64_t count_threads(const options *asked) {
-    return asked->threads ? asked->threads : launch_processors();
+static int64_t count_threads(const options *opts) {
+    return opts->threads ? opts->threads : launch_processors();
 }
 
 /* Half of the processors compress, at most FRAME_WORKERS_MOST; fewer if
  * pictures are huge. */
-static int count_workers(const options *asked) {
-    int64_t threads = count_threads(asked);
-    int64_t frame = asked->size[0] * asked->size[1] * PIXEL_BYTES;
+static int count_workers(const options *opts) {
+    int64_t threads = count_threads(opts);
+    int64_t frame = opts->size[0] * opts->size[1] * PIXEL_BYTES;
     int64_t workers = threads / 2;
     if (workers > QUEUE_BYTES / frame - 2)
         workers = QUEUE_BYTES / frame - 2;
@@ -279,10 +279,10 @@ static int count_workers(const options *asked) {
 
 static int start_encoder(movie *s) {
     encoder_job job = {.format = s->place.format,
-                       .width = (int)s->asked->size[0],
-                       .height = (int)s->asked->size[1],
-                       .rate = s->asked->fps,
-                       .threads = (int)count_threads(s->asked),
+                       .width = (int)s->opts->size[0],
+                       .height = (int)s->opts->size[1],
+                       .rate = s->opts->fps,
+                       .threads = (int)count_threads(s->opts),
                        .path = s->place.movie,
                        .log = s->place.log};
     int number = encoder_start(&job, &s->encoder);
@@ -325,13 +325,13 @@ static int begin_parts(movie *s) {
     s->begun = !s->record.anew;
     if (needs_encoder(s) && encoder_is_there())
         done = start_encoder(s);
-    else if (needs_encoder(s) && s->asked->verbosity >= 0)
+    else if (needs_encoder(s) && s->opts->verbosity >= 0)
         say("note: %s: ffmpeg was not found on the PATH; only frames are made, "
             "in %s",
             s->place.output, s->place.folder);
     if (done != CONTINUE)
         return done;
-    if (frames_new(&sink, count_workers(s->asked), &s->queue) == SNOW_STATUS_OK)
+    if (frames_new(&sink, count_workers(s->opts), &s->queue) == SNOW_STATUS_OK)
         return CONTINUE;
     say("out of memory for the queue of frames; use a smaller --size");
     return SNOW_STATUS_NO_MEMORY;
@@ -342,7 +342,7 @@ static int begin_parts(movie *s) {
 /* The state of the loop. */
 typedef struct run {
     movie *s; /* NULL on ranks that do not write */
-    const options *asked;
+    const options *opts;
     const shot_list *list;
     const movie_renderer *renderer;
     movie_progress progress;
@@ -455,7 +455,7 @@ static int report_encoder(movie *s, const char *text) {
 /* Gives the movie its name when it is complete. */
 static int name_movie(movie *s) {
     int number =
-        place_output(s->place.movie, s->place.output, s->asked->overwrite);
+        place_output(s->place.movie, s->place.output, s->opts->overwrite);
     if (number == 0) {
         record_close(&s->record);
         place_remove_folder(&s->place);
@@ -477,9 +477,9 @@ static int finish_encoder(movie *s) {
 /* Makes an animated WebP when all frames exist. */
 static int join_movie(movie *s) {
     const webp_job job = {.count = s->list->count,
-                          .width = (int)s->asked->size[0],
-                          .height = (int)s->asked->size[1],
-                          .rate = s->asked->fps,
+                          .width = (int)s->opts->size[0],
+                          .height = (int)s->opts->size[1],
+                          .rate = s->opts->fps,
                           .alpha = !s->form.flatten};
     int number = webp_join(&job, &s->place);
     if (number == 0)
@@ -554,13 +554,13 @@ static int report_figures(run *r, double begin) {
     times.total = seconds_now() - begin;
     report.times = &times;
     report.image = r->last;
-    if (r->asked->verbosity > 0)
+    if (r->opts->verbosity > 0)
         movie_report(&r->figures, &times);
-    if (!r->asked->stats)
+    if (!r->opts->stats)
         return SNOW_STATUS_OK;
     return write_json(
         movie_stats_json(&r->figures, &report, r->renderer->ranks),
-        r->asked->stats, r->asked->overwrite);
+        r->opts->stats, r->opts->overwrite);
 }
 
 /* The rank that writes decides; the others follow its words. */
@@ -569,7 +569,7 @@ static int run_writer(run *r, double begin) {
     int done = movie_figures_begin(&r->figures, r->list->count)
                    ? begin_parts(r->s)
                    : SNOW_STATUS_NO_MEMORY;
-    movie_progress_begin(&r->progress, r->asked, r->list->count);
+    movie_progress_begin(&r->progress, r->opts, r->list->count);
     done = share_word(r, done);
     if (done == CONTINUE)
         done = render_frames(r);
@@ -582,10 +582,10 @@ static int run_writer(run *r, double begin) {
     return done;
 }
 
-int movie_run(movie *s, const options *asked, const shot_list *list,
+int movie_run(movie *s, const options *opts, const shot_list *list,
               const movie_renderer *renderer, double begin) {
     run r = {.s = renderer->writes ? s : NULL,
-             .asked = asked,
+             .opts = opts,
              .list = list,
              .renderer = renderer};
     if (r.s)

@@ -75,18 +75,18 @@ typedef struct movie movie;
 /* Refuses options that contradict each other.  Returns CONTINUE or an exit
  * code.
  */
-int movie_check(const options *asked);
+int movie_check(const options *opts);
 
 /* Opens the output: checks whether it can be written and what an earlier run
  * left there.  Writes nothing yet, but locks what will be resumed.  `list` and
- * `asked` must outlive the movie.  Only for the rank that writes.  Returns
+ * `opts` must outlive the movie.  Only for the rank that writes.  Returns
  * CONTINUE or an exit code. */
-int movie_open(const options *asked, const shot_list *list, movie **out);
+int movie_open(const options *opts, const shot_list *list, movie **out);
 
 /* Makes all frames that are missing, the movie from them, and the figures of
  * --stats.  Ranks that do not write pass NULL for `s`.  Returns an exit
  * code. */
-int movie_run(movie *s, const options *asked, const shot_list *list,
+int movie_run(movie *s, const options *opts, const shot_list *list,
               const movie_renderer *renderer, double begin);
 
 /* Accepts NULL. */

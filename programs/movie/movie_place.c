@@ -96,30 +96,30 @@ bool place_aside(const movie_place *place, int64_t index, char *out,
 }
 
 static int check_frame(snow_context *context, const char *path,
-                       const options *asked) {
-    snow_image_options form = picture_form(asked);
+                       const options *opts) {
+    snow_image_options form = picture_form(opts);
     form.overwrite = true;
-    snow_status status = snow_image_check(context, path, (int)asked->size[0],
-                                          (int)asked->size[1], &form);
+    snow_status status = snow_image_check(context, path, (int)opts->size[0],
+                                          (int)opts->size[1], &form);
     return status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
 }
 
 /* The library knows which names it can write, and where.  A later check looks
  * for frames that exist already. */
 static int check_pattern(snow_context *context, const movie_place *place,
-                         const options *asked) {
+                         const options *opts) {
     char aside[PATH_MAX];
     char frame[PATH_MAX];
     if (!place_aside(place, INT64_C(1000000000), aside, sizeof aside) ||
         !place_frame(place, 0, frame, sizeof frame))
         return fail_length(place->output);
-    return check_frame(context, frame, asked);
+    return check_frame(context, frame, opts);
 }
 
 /* A folder can be made where a file of the same name could be made, and the
  * check for a picture finds that out without leaving a file. */
 static int check_movie(snow_context *context, const movie_place *place,
-                       const options *asked) {
+                       const options *opts) {
     struct stat what;
     char probe[PATH_MAX], name[32];
     if (lstat(place->output, &what) == 0) {
@@ -128,7 +128,7 @@ static int check_movie(snow_context *context, const movie_place *place,
         if (!S_ISREG(what.st_mode) && !S_ISLNK(what.st_mode))
             return fail_output("%s: is not a regular file; name one",
                                place->output);
-        if (!asked->overwrite)
+        if (!opts->overwrite)
             return fail_output("%s: exists; use --overwrite or another name",
                                place->output);
     }
@@ -137,13 +137,13 @@ static int check_movie(snow_context *context, const movie_place *place,
     snprintf(name, sizeof name, ".frames%s", frames_suffix(place));
     if (!join(probe, sizeof probe, place->output, name))
         return fail_length(place->output);
-    return check_frame(context, probe, asked);
+    return check_frame(context, probe, opts);
 }
 
 int place_check(snow_context *context, const movie_place *place,
-                const options *asked) {
-    return place->format ? check_movie(context, place, asked)
-                         : check_pattern(context, place, asked);
+                const options *opts) {
+    return place->format ? check_movie(context, place, opts)
+                         : check_pattern(context, place, opts);
 }
 
 int64_t place_first(const movie_place *place, int64_t from) {

@@ -23,7 +23,7 @@ int place_read(const char *output, movie_place *out);
 /* Whether frames and movie can be written there.  Returns CONTINUE or an exit
  * code. */
 int place_check(snow_context *context, const movie_place *place,
-                const options *asked);
+                const options *opts);
 
 /* A frame's final name, and its name until it is complete; `size` bytes suffice
  * for both after place_check succeeded. */

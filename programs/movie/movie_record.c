@@ -56,9 +56,9 @@ static void print_identity(FILE *out, const char *path) {
 
 /* An option that names a file (a transfer function, a mask) also records the
  * file's identity. */
-static void print_options(FILE *out, const options *asked) {
+static void print_options(FILE *out, const options *opts) {
     for (size_t i = 0; option_table[i].name; i++) {
-        const char *text = asked->given[i];
+        const char *text = opts->given[i];
         struct stat what;
         if (!text || !has_effect(option_table[i].name))
             continue;
@@ -73,9 +73,9 @@ static void print_options(FILE *out, const options *asked) {
 }
 
 /* AVX2 and AVX-512 give the same bits; other instruction sets differ. */
-static const char *kernels(const options *asked) {
-    const char *isa = strcmp(asked->isa, "auto") ? asked->isa : snow_isa_used();
-    if (asked->deterministic)
+static const char *kernels(const options *opts) {
+    const char *isa = strcmp(opts->isa, "auto") ? opts->isa : snow_isa_used();
+    if (opts->deterministic)
         return "deterministic";
     return strncmp(isa, "avx", 3) == 0 ? "vector" : isa;
 }
@@ -93,17 +93,17 @@ static void print_shots(FILE *out, const shot_list *list) {
 }
 
 /* NULL if out of memory. */
-static char *write_text(const options *asked, const shot_list *list) {
+static char *write_text(const options *opts, const shot_list *list) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out)
         return NULL;
     fprintf(out, FIRST_LINE "version %s\nkernels %s\n", snow_version(),
-            kernels(asked));
-    if (launch_ranks() > 1 && !asked->deterministic)
+            kernels(opts));
+    if (launch_ranks() > 1 && !opts->deterministic)
         fprintf(out, "ranks %d\n", launch_ranks());
-    print_options(out, asked);
+    print_options(out, opts);
     print_shots(out, list);
     bool good = !ferror(out);
     if (fclose(out) != 0 || !good) {
@@ -222,14 +222,14 @@ static int fail_other(const movie_place *place, const char *old,
 }
 
 /* Checks frames that have no record, or a record that must not be resumed. */
-static int check_other_files(const options *asked, const movie_place *place,
+static int check_other_files(const options *opts, const movie_place *place,
                              bool recorded) {
     char path[PATH_MAX];
     int64_t first = place_first(place, 0);
-    if (first < 0 || asked->overwrite ||
+    if (first < 0 || opts->overwrite ||
         !place_frame(place, first, path, sizeof path))
         return CONTINUE;
-    if (asked->resume)
+    if (opts->resume)
         return fail_output(
             "%s: exists without a record of how it was made; use --overwrite "
             "without --resume to start again, or another name",
@@ -256,26 +256,26 @@ static bool fits(const shot_list *list, const movie_place *place,
 }
 
 /* A record without finished frames counts as none. */
-static int compare(const options *asked, const shot_list *list,
+static int compare(const options *opts, const shot_list *list,
                    const movie_place *place, const char *old_text,
                    frame_record *out) {
     const char *old = old_text, *now = out->text;
     const char *done = strstr(old_text, "\ndone ");
     done = done ? done + 1 : "";
-    if (asked->resume && fits(list, place, &old, &now, done, out))
+    if (opts->resume && fits(list, place, &old, &now, done, out))
         return CONTINUE;
-    if (asked->resume && *done && !asked->overwrite)
+    if (opts->resume && *done && !opts->overwrite)
         return fail_other(place, old, now);
     memset(out->kept, 0, (size_t)list->count * sizeof *out->kept);
     out->keeps = 0;
     mark_kept(done, place, 0, out); /* how many frames there were */
-    if (asked->resume && !*done)
+    if (opts->resume && !*done)
         return CONTINUE;
-    if (*done && !asked->overwrite && place->format)
+    if (*done && !opts->overwrite && place->format)
         return fail_output("%s: an unfinished movie is in %s; use --resume to "
                            "continue or --overwrite to start again",
                            place->output, place->folder);
-    return check_other_files(asked, place, true);
+    return check_other_files(opts, place, true);
 }
 
 /* Opens and locks an existing record; -1 with CONTINUE: there is none. */
@@ -293,10 +293,10 @@ static int open_file(const movie_place *place, frame_record *out) {
     return CONTINUE;
 }
 
-int record_open(const options *asked, const shot_list *list,
+int record_open(const options *opts, const shot_list *list,
                 const movie_place *place, frame_record *out) {
     *out = (frame_record){.file = -1, .anew = true};
-    out->text = write_text(asked, list);
+    out->text = write_text(opts, list);
     out->kept = calloc((size_t)list->count, sizeof *out->kept);
     if (!out->text || !out->kept) {
         say("out of memory for a list of %" PRId64 " frames; make fewer",
@@ -309,9 +309,9 @@ int record_open(const options *asked, const shot_list *list,
     char *old = out->file >= 0 ? read_text_of(out->file) : NULL;
     bool continues =
         old && *old; /* not of a run that was killed before it wrote */
-    out->replaces = asked->overwrite || continues;
-    done = continues ? compare(asked, list, place, old, out)
-                     : check_other_files(asked, place, false);
+    out->replaces = opts->overwrite || continues;
+    done = continues ? compare(opts, list, place, old, out)
+                     : check_other_files(opts, place, false);
     free(old);
     return done;
 }

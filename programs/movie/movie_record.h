@@ -34,7 +34,7 @@ typedef struct frame_record {
 /* Reads an existing record and compares it.  Writes nothing.  Returns CONTINUE
  * or an exit code: another run is active, frames exist that must not be
  * replaced, or --resume was given with other settings. */
-int record_open(const options *asked, const shot_list *list,
+int record_open(const options *opts, const shot_list *list,
                 const movie_place *place, frame_record *out);
 
 /* Creates an empty record if there is none, before anything else is written: if

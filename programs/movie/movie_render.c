@@ -11,9 +11,9 @@
 #include <stdio.h>
 #include <string.h>
 
-int shots_open(const options *asked, shot_renderer *out) {
+int shots_open(const options *opts, shot_renderer *out) {
     *out = (shot_renderer){.count = 0};
-    return scene_new(asked, &out->scene);
+    return scene_new(opts, &out->scene);
 }
 
 void shots_close(shot_renderer *shots) {
@@ -58,7 +58,7 @@ int shots_volume(shot_renderer *shots, const movie_shot *shot) {
         shots->time == shot->time)
         return CONTINUE;
     if (!shots->drawn)
-        progress(s->asked, "reading");
+        progress(s->opts, "reading");
     shots->time = shot->time;
     int done = scene_open(s, shot->path, shot->time);
     return done == CONTINUE
@@ -69,17 +69,17 @@ int shots_volume(shot_renderer *shots, const movie_shot *shot) {
 /* Prints the settings that were chosen automatically, as render does, for all
  * frames. */
 static void report_choices(const shot_renderer *shots, snow_image *image) {
-    const options *asked = shots->scene.asked;
+    const options *opts = shots->scene.opts;
     char text[1024];
     scene_choices(&shots->scene, text, sizeof text);
-    if (asked->verbosity >= 0)
+    if (opts->verbosity >= 0)
         say("%s%s; %" PRId64 " frames of %lldx%lld to %s", text,
-            shots->painted.words, shots->count, (long long)asked->size[0],
-            (long long)asked->size[1], asked->output);
+            shots->painted.words, shots->count, (long long)opts->size[0],
+            (long long)opts->size[1], opts->output);
     /* An empty first step says nothing about later ones, so only a turntable
      * warns. */
     warn_picture(&shots->scene, shots->scene.turns ? image : NULL);
-    marks_report(asked);
+    marks_report(opts);
 }
 
 static int begin(void *self, const movie_shot *shot) {
@@ -94,7 +94,7 @@ static int finish_shot(void *self, snow_image **image) {
     int done = scene_finish(&shots->scene, image);
     if (done == CONTINUE)
         done =
-            paint_values(shots->scene.asked, shots->scene.context,
+            paint_values(shots->scene.opts, shots->scene.context,
                          shots->scene.transfer, true, image, &shots->painted);
     if (done != CONTINUE)
         return done;
@@ -106,8 +106,8 @@ static int finish_shot(void *self, snow_image **image) {
 
 static const snow_image *depth(void *self) {
     const shot_renderer *shots = self;
-    return shots->scene.asked->depth ? snow_frame_depth(shots->scene.frame)
-                                     : NULL;
+    return shots->scene.opts->depth ? snow_frame_depth(shots->scene.frame)
+                                    : NULL;
 }
 
 static void report_picture(void *self, render_report *out) {
@@ -118,7 +118,7 @@ static void report_picture(void *self, render_report *out) {
 static void marks(void *self, picture_marks *out) {
     const shot_renderer *shots = self;
     const scene *s = &shots->scene;
-    *out = (picture_marks){s->asked,
+    *out = (picture_marks){s->opts,
                            s->drawn.whole,
                            s->view,
                            s->transfer,

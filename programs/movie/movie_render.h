@@ -20,7 +20,7 @@ typedef struct shot_renderer {
 } shot_renderer;
 
 /* Returns CONTINUE or an exit code. */
-int shots_open(const options *asked, shot_renderer *out);
+int shots_open(const options *opts, shot_renderer *out);
 void shots_close(shot_renderer *shots);
 
 /* Checks that a volume is one time step, on the same grid as the first one.

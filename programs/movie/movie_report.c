@@ -11,11 +11,11 @@
 #define LINE_SECONDS 10
 #define LIVE_SECONDS 0.2
 
-void movie_progress_begin(movie_progress *progress, const options *asked,
+void movie_progress_begin(movie_progress *progress, const options *opts,
                           int64_t count) {
     double now = seconds_now();
     *progress = (movie_progress){
-        .asked = asked, .begin = now, .last = now, .count = count};
+        .opts = opts, .begin = now, .last = now, .count = count};
 }
 
 /* "1:02:03", "2:03" or "4 s". */
@@ -52,7 +52,7 @@ void movie_progress_step(movie_progress *p, int64_t index, bool rendered) {
     bool live = progress_is_live();
     char line[160];
     p->rendered += rendered;
-    if (!progress_is_wanted(p->asked) ||
+    if (!progress_is_wanted(p->opts) ||
         now - p->last < (live ? LIVE_SECONDS : LINE_SECONDS))
         return;
     p->last = now;
@@ -62,13 +62,13 @@ void movie_progress_step(movie_progress *p, int64_t index, bool rendered) {
     size_t bar = strlen(line);
     write_line(p, index, now, line + bar, sizeof line - bar);
     if (live)
-        progress(p->asked, line);
+        progress(p->opts, line);
     else
         say("%s", line);
 }
 
 void movie_progress_end(movie_progress *p) {
-    progress(p->asked, NULL);
+    progress(p->opts, NULL);
 }
 
 bool movie_figures_begin(movie_figures *figures, int64_t count) {

@@ -8,13 +8,13 @@
 /* A line that is overwritten on a terminal, and printed every 10 s
  * elsewhere. */
 typedef struct movie_progress {
-    const options *asked;
+    const options *opts;
     double begin, last; /* times of the first frame and of the last line */
     int64_t count;      /* number of all frames */
     int64_t rendered;   /* frames rendered since the beginning */
 } movie_progress;
 
-void movie_progress_begin(movie_progress *progress, const options *asked,
+void movie_progress_begin(movie_progress *progress, const options *opts,
                           int64_t count);
 
 /* Frame `index` is done, rendered now or kept. */

@@ -152,10 +152,10 @@ static int add_file(const char *path, step_files *out) {
     return add_path(out, path);
 }
 
-int steps_find(const options *asked, step_files *out) {
+int steps_find(const options *opts, step_files *out) {
     int done = CONTINUE;
-    for (int i = 0; i < asked->operand_count && done == CONTINUE; i++) {
-        const char *path = asked->operands[i];
+    for (int i = 0; i < opts->operand_count && done == CONTINUE; i++) {
+        const char *path = opts->operands[i];
         struct stat what;
         done = names_are_meant(path) && stat(path, &what) != 0
                    ? add_pattern(path, out)
@@ -166,15 +166,15 @@ int steps_find(const options *asked, step_files *out) {
 
 /* Whether the transfer function depends on the options alone: a preset with
  * values of its own, or one that is spread over given values. */
-static bool look_is_fixed(const options *asked) {
-    if (!asked->preset)
+static bool look_is_fixed(const options *opts) {
+    if (!opts->preset)
         return false;
     const char *name =
-        snow_preset_name((size_t)snow_preset_from_name(asked->preset));
-    bool values = asked->range.kind == SNOW_RANGE_VALUES ||
-                  asked->window == asked->window; /* not NaN: given */
+        snow_preset_name((size_t)snow_preset_from_name(opts->preset));
+    bool values = opts->range.kind == SNOW_RANGE_VALUES ||
+                  opts->window == opts->window; /* not NaN: given */
     bool own =
-        strncmp(name, "ct-", 3) == 0 && asked->range.kind == SNOW_RANGE_AUTO;
+        strncmp(name, "ct-", 3) == 0 && opts->range.kind == SNOW_RANGE_AUTO;
     return values || own;
 }
 
@@ -206,10 +206,10 @@ static int64_t number_in(const char *path, int64_t usual) {
 }
 
 int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
-    const options *asked = shots->scene.asked;
-    movie_shot first = {files->paths[0], asked->time, asked->azimuth, 0};
+    const options *opts = shots->scene.opts;
+    movie_shot first = {files->paths[0], opts->time, opts->azimuth, 0};
     out->count = files->count;
-    const bool given = options_given(asked, "time");
+    const bool given = options_given(opts, "time");
     shots->scene.steps = true;
     shots->scene.each_time = files->count == 1 && !given;
     shots->whole_files = files->count > 1 && !given;
@@ -220,7 +220,7 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
             return done;
         out->count = info.times;
     }
-    out->together = out->count > 1 && !look_is_fixed(asked);
+    out->together = out->count > 1 && !look_is_fixed(opts);
     out->shots = calloc((size_t)out->count, sizeof *out->shots);
     if (!out->shots)
         return fail_memory();
@@ -336,17 +336,17 @@ static int look_at_pool(scene *s, const snow_volume_info *step,
         snow_volume_wrap(s->context, &info, pool->values, &volume);
     if (status != SNOW_STATUS_OK)
         return fail_status(s->context, status);
-    int done = open_look(s->context, s->asked, volume, &s->transfer);
+    int done = open_look(s->context, s->opts, volume, &s->transfer);
     snow_volume_close(volume);
     return done;
 }
 
-static void report_step(const options *asked, int64_t step, int64_t count) {
+static void report_step(const options *opts, int64_t step, int64_t count) {
     char line[96];
     snprintf(line, sizeof line,
              "reading values of step %" PRId64 " of %" PRId64, step + 1, count);
     if (progress_is_live())
-        progress(asked, line);
+        progress(opts, line);
 }
 
 /* The slices of a member: from slab[0] up to, not including, slab[1]. */
@@ -456,15 +456,14 @@ static int pool_round(const shot_list *list, int64_t first,
 
 /* Chooses so many ranks per step that none is idle if there are few steps, and
  * more if a step is too large for so few. */
-static int choose_group(const options *asked, const snow_volume_info *step,
+static int choose_group(const options *opts, const snow_volume_info *step,
                         int64_t steps) {
     const int ranks = launch_ranks();
     int group = steps < ranks ? ranks / (int)steps : 1;
     snow_volume_info share = *step;
     for (; group < ranks; group++) {
         share.dims[2] = (step->dims[2] + group - 1) / group;
-        if (!asked->memory ||
-            memory_needed(asked, &share).least <= asked->memory)
+        if (!opts->memory || memory_needed(opts, &share).least <= opts->memory)
             break;
     }
     return group;
@@ -479,13 +478,13 @@ static int pool_steps(const shot_list *list, shot_renderer *shots,
         done = shots_check(shots, list->shots[0].path, &first);
     done = launch_agree(done);
     if (done == CONTINUE)
-        pool->group = choose_group(shots->scene.asked, &first, list->count);
+        pool->group = choose_group(shots->scene.opts, &first, list->count);
     int groups = done == CONTINUE ? launch_ranks() / pool->group : 1;
     for (int64_t i = 0; i < list->count && done == CONTINUE; i += groups) {
-        report_step(shots->scene.asked, i, list->count);
+        report_step(shots->scene.opts, i, list->count);
         done = pool_round(list, i, shots, pool);
     }
-    hear_warnings(shots->scene.asked, shots->scene.context, true);
+    hear_warnings(shots->scene.opts, shots->scene.context, true);
     return done == CONTINUE
                ? launch_agree(look_at_pool(&shots->scene, &first, pool))
                : done;
@@ -500,7 +499,7 @@ int steps_look(const shot_list *list, shot_renderer *shots) {
     /* All steps are opened again later and cause the same notes.  They are
      * printed now, except if ranks read steps that rank 0 does not see now. */
     const bool later = launch_ranks() > 1;
-    hear_warnings(shots->scene.asked, shots->scene.context, !later);
+    hear_warnings(shots->scene.opts, shots->scene.context, !later);
     int64_t room = pool.quota + 2;
     pool.values =
         malloc((size_t)(room * (list->count + 1)) * sizeof *pool.values);
@@ -510,6 +509,6 @@ int steps_look(const shot_list *list, shot_renderer *shots) {
         done = pool_steps(list, shots, &pool);
     }
     free(pool.values);
-    hear_warnings(shots->scene.asked, shots->scene.context, later);
+    hear_warnings(shots->scene.opts, shots->scene.context, later);
     return done;
 }

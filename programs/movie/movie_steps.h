@@ -15,7 +15,7 @@ typedef struct step_files {
 /* Finds the files.  A pattern stands for all existing files.  A missing number
  * between them is an error, as is a missing file.  Returns CONTINUE or an exit
  * code. */
-int steps_find(const options *asked, step_files *out);
+int steps_find(const options *opts, step_files *out);
 void steps_free(step_files *files);
 
 /* Makes one shot for each file.  A single file gives one shot for each time

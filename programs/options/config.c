@@ -180,47 +180,47 @@ int config_take(options *out, const verb_row *verb) {
 
 /* --- writing -------------------------------------------------------------- */
 
-static void fill_data(const options *asked, snow_recipe *out) {
+static void fill_data(const options *opts, snow_recipe *out) {
     snow_volume_options *data = &out->data;
-    memcpy(data->dims, asked->dims, sizeof data->dims);
-    memcpy(data->spacing, asked->spacing, sizeof data->spacing);
-    memcpy(data->crop, asked->crop, sizeof data->crop);
-    data->type = asked->type;
-    data->offset = asked->offset;
-    data->time = asked->time;
-    data->channel = asked->channel;
-    data->dataset = asked->dataset;
-    data->series = asked->series;
-    data->mask = asked->mask;
-    memcpy(data->clip, asked->clip, sizeof data->clip);
-    data->labels = asked->labels;
-    if (asked->endian)
-        data->endian = strcmp(asked->endian, "big") == 0 ? SNOW_ENDIAN_BIG
-                                                         : SNOW_ENDIAN_LITTLE;
+    memcpy(data->dims, opts->dims, sizeof data->dims);
+    memcpy(data->spacing, opts->spacing, sizeof data->spacing);
+    memcpy(data->crop, opts->crop, sizeof data->crop);
+    data->type = opts->type;
+    data->offset = opts->offset;
+    data->time = opts->time;
+    data->channel = opts->channel;
+    data->dataset = opts->dataset;
+    data->series = opts->series;
+    data->mask = opts->mask;
+    memcpy(data->clip, opts->clip, sizeof data->clip);
+    data->labels = opts->labels;
+    if (opts->endian)
+        data->endian = strcmp(opts->endian, "big") == 0 ? SNOW_ENDIAN_BIG
+                                                        : SNOW_ENDIAN_LITTLE;
 }
 
-static void fill_look(const options *asked, snow_recipe *out) {
-    out->preset = asked->preset;
-    out->colormap = asked->colormap;
-    out->tf = asked->tf;
-    out->log = asked->log;
-    out->range = asked->range.kind;
-    out->low = asked->range.low;
-    out->high = asked->range.high;
-    if (!isnan(asked->window)) {
+static void fill_look(const options *opts, snow_recipe *out) {
+    out->preset = opts->preset;
+    out->colormap = opts->colormap;
+    out->tf = opts->tf;
+    out->log = opts->log;
+    out->range = opts->range.kind;
+    out->low = opts->range.low;
+    out->high = opts->range.high;
+    if (!isnan(opts->window)) {
         out->range = SNOW_RANGE_VALUES;
-        out->low = asked->level - asked->window / 2;
-        out->high = asked->level + asked->window / 2;
+        out->low = opts->level - opts->window / 2;
+        out->high = opts->level + opts->window / 2;
     }
-    out->opacity_count = asked->opacities.count;
-    memcpy(out->opacities, asked->opacities.points,
-           asked->opacities.count * sizeof *out->opacities);
-    out->gradient_opacity_count = asked->gradient_opacities.count;
-    memcpy(out->gradient_opacities, asked->gradient_opacities.points,
-           asked->gradient_opacities.count * sizeof *out->gradient_opacities);
-    out->opacity_per_mm = strcmp(asked->opacity_unit, "mm") == 0;
+    out->opacity_count = opts->opacities.count;
+    memcpy(out->opacities, opts->opacities.points,
+           opts->opacities.count * sizeof *out->opacities);
+    out->gradient_opacity_count = opts->gradient_opacities.count;
+    memcpy(out->gradient_opacities, opts->gradient_opacities.points,
+           opts->gradient_opacities.count * sizeof *out->gradient_opacities);
+    out->opacity_per_mm = strcmp(opts->opacity_unit, "mm") == 0;
     out->opacity_per_voxel =
-        !out->opacity_per_mm && options_given(asked, "opacity-unit");
+        !out->opacity_per_mm && options_given(opts, "opacity-unit");
 }
 
 static void fill_place(const place_value *place, double out[3]) {
@@ -228,58 +228,58 @@ static void fill_place(const place_value *place, double out[3]) {
         memcpy(out, place->at, sizeof place->at);
 }
 
-static void fill_view(const options *asked, snow_recipe *out) {
-    out->view = asked->view;
-    out->width = (int)asked->size[0];
-    out->height = (int)asked->size[1];
-    out->azimuth = asked->azimuth;
-    out->elevation = asked->elevation;
-    out->roll = asked->roll;
-    out->zoom = asked->zoom;
-    out->fov = asked->fov;
-    out->fit = strcmp(asked->fit, "volume") ? 1 : 2;
-    fill_place(&asked->position, out->position);
-    fill_place(&asked->target, out->target);
-    fill_place(&asked->up, out->up);
+static void fill_view(const options *opts, snow_recipe *out) {
+    out->view = opts->view;
+    out->width = (int)opts->size[0];
+    out->height = (int)opts->size[1];
+    out->azimuth = opts->azimuth;
+    out->elevation = opts->elevation;
+    out->roll = opts->roll;
+    out->zoom = opts->zoom;
+    out->fov = opts->fov;
+    out->fit = strcmp(opts->fit, "volume") ? 1 : 2;
+    fill_place(&opts->position, out->position);
+    fill_place(&opts->target, out->target);
+    fill_place(&opts->up, out->up);
 }
 
 /* A movie of many files has no single input. */
-static void fill_recipe(const options *asked, snow_recipe *out) {
+static void fill_recipe(const options *opts, snow_recipe *out) {
     snow_recipe_init(out);
-    if (asked->operand_count == 1 && strcmp(asked->operands[0], "-") != 0)
-        out->input = asked->operands[0];
-    out->output = asked->output;
-    out->depth = asked->depth;
-    out->image.flatten = asked->background.given;
-    memcpy(out->image.background, asked->background.rgb,
+    if (opts->operand_count == 1 && strcmp(opts->operands[0], "-") != 0)
+        out->input = opts->operands[0];
+    out->output = opts->output;
+    out->depth = opts->depth;
+    out->image.flatten = opts->background.given;
+    memcpy(out->image.background, opts->background.rgb,
            sizeof out->image.background);
-    if (asked->bits)
-        out->image.bits = asked->bits[0] == '8' ? 8 : 16;
-    fill_data(asked, out);
-    fill_look(asked, out);
-    fill_view(asked, out);
-    out->no_labels = asked->no_labels;
-    out->legend = asked->legend;
-    out->time_label = asked->time_label;
-    fill_settings(asked, &out->settings);
+    if (opts->bits)
+        out->image.bits = opts->bits[0] == '8' ? 8 : 16;
+    fill_data(opts, out);
+    fill_look(opts, out);
+    fill_view(opts, out);
+    out->no_labels = opts->no_labels;
+    out->legend = opts->legend;
+    out->time_label = opts->time_label;
+    fill_settings(opts, &out->settings);
 }
 
-static int check_place(const options *asked) {
+static int check_place(const options *opts) {
     static const char *const names[] = {"output", "depth", "stats"};
-    const char *const paths[] = {asked->output, asked->depth, asked->stats};
+    const char *const paths[] = {opts->output, opts->depth, opts->stats};
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
-        if (paths[i] && (strcmp(asked->save_config, paths[i]) == 0 ||
-                         same_place(asked->save_config, paths[i])))
+        if (paths[i] && (strcmp(opts->save_config, paths[i]) == 0 ||
+                         same_place(opts->save_config, paths[i])))
             return fail_usage(
                 "--save-config: is the same file as --%s; name two files",
                 names[i]);
-    return check_stats_path(asked->save_config, asked->overwrite);
+    return check_stats_path(opts->save_config, opts->overwrite);
 }
 
-int config_check(const options *asked) {
-    if (!asked->save_config)
+int config_check(const options *opts) {
+    if (!opts->save_config)
         return CONTINUE;
-    return launch_agree(launch_talks() ? check_place(asked) : CONTINUE);
+    return launch_agree(launch_talks() ? check_place(opts) : CONTINUE);
 }
 
 /* The recipe as a JSON tree; the library writes it as text. */
@@ -297,21 +297,21 @@ static json_t *recipe_tree(snow_context *context, const snow_recipe *recipe) {
     return tree;
 }
 
-int config_save(const options *asked) {
+int config_save(const options *opts) {
     snow_context *context = NULL;
     snow_recipe recipe = {.size = sizeof recipe};
     json_t *tree = NULL;
-    if (!asked->save_config || !launch_talks())
+    if (!opts->save_config || !launch_talks())
         return SNOW_STATUS_OK;
-    fill_recipe(asked, &recipe);
+    fill_recipe(opts, &recipe);
     if (snow_context_new(NULL, &context) == SNOW_STATUS_OK)
         tree = recipe_tree(context, &recipe);
     snow_context_free(context);
     if (!tree)
         return fail_output(
             "%s: out of memory for its text; close other programs",
-            asked->save_config);
-    if (!options_given(asked, "shade")) /* otherwise the look decides */
+            opts->save_config);
+    if (!options_given(opts, "shade")) /* otherwise the look decides */
         json_object_del(tree, "shade");
-    return write_json(tree, asked->save_config, asked->overwrite);
+    return write_json(tree, opts->save_config, opts->overwrite);
 }

@@ -11,9 +11,9 @@ int config_take(options *out, const verb_row *verb);
 
 /* Refuses a --save-config file that cannot be written, before rendering.
  * Returns CONTINUE or an exit code. */
-int config_check(const options *asked);
+int config_check(const options *opts);
 
 /* Writes the --save-config file, if one is given.  Returns an exit code. */
-int config_save(const options *asked);
+int config_save(const options *opts);
 
 #endif

@@ -218,13 +218,13 @@ static const option_row *row_named(const char *name) {
     return row;
 }
 
-bool options_given(const options *asked, const char *name) {
-    return asked->given[row_named(name) - option_table] != NULL;
+bool options_given(const options *opts, const char *name) {
+    return opts->given[row_named(name) - option_table] != NULL;
 }
 
-bool options_typed(const options *asked, const char *name) {
-    return options_given(asked, name) &&
-           !asked->configured[row_named(name) - option_table];
+bool options_typed(const options *opts, const char *name) {
+    return options_given(opts, name) &&
+           !opts->configured[row_named(name) - option_table];
 }
 
 int options_take(options *out, const verb_row *verb, const char *name,

@@ -204,10 +204,10 @@ int options_take(options *out, const verb_row *verb, const char *name,
 
 /* Whether an option was given, on the command line or in the file of
  * --config. */
-bool options_given(const options *asked, const char *name);
+bool options_given(const options *opts, const char *name);
 
 /* Whether it was given on the command line. */
-bool options_typed(const options *asked, const char *name);
+bool options_typed(const options *opts, const char *name);
 
 /* Prints help to standard output: `word` names a topic or a verb; NULL means
  * the page of `verb`, or the overview if that is NULL too.  Returns an exit

@@ -15,27 +15,26 @@ static bool shows_marks(const char *path) {
     return movie_format_of(path) || snow_image_format_bits(path) > 0;
 }
 
-int marks_check(const options *asked) {
-    if (asked->output && (asked->legend || asked->time_label) &&
-        !shows_marks(asked->output))
+int marks_check(const options *opts) {
+    if (opts->output && (opts->legend || opts->time_label) &&
+        !shows_marks(opts->output))
         return fail_usage("%s: --%s cannot be drawn into a file of floats; "
                           "remove it or name a .png",
-                          asked->output,
-                          asked->legend ? "legend" : "time-label");
+                          opts->output, opts->legend ? "legend" : "time-label");
     return CONTINUE;
 }
 
-void marks_report(const options *asked) {
-    if (asked->legend && asked->fov > 0 && asked->verbosity >= 0)
+void marks_report(const options *opts) {
+    if (opts->legend && opts->fov > 0 && opts->verbosity >= 0)
         say("--legend: the scale bar is left out: in perspective no single "
             "length is valid");
 }
 
 /* Presets for CT use Hounsfield units, unless a range spreads them over other
  * values. */
-static const char *unit_of_values(const options *asked) {
-    int preset = asked->preset ? snow_preset_from_name(asked->preset) : -1;
-    bool spread = asked->range.kind != SNOW_RANGE_AUTO || !isnan(asked->window);
+static const char *unit_of_values(const options *opts) {
+    int preset = opts->preset ? snow_preset_from_name(opts->preset) : -1;
+    bool spread = opts->range.kind != SNOW_RANGE_AUTO || !isnan(opts->window);
     bool ct =
         preset >= 0 && strncmp(snow_preset_name((size_t)preset), "ct-", 3) == 0;
     return ct && !spread ? "HU" : NULL;
@@ -45,26 +44,26 @@ static const char *unit_of_values(const options *asked) {
  * that the values were painted with. */
 static snow_status add_colors(const picture_marks *marks,
                               snow_overlay *overlay) {
-    const options *asked = marks->asked;
+    const options *opts = marks->opts;
     double range[2] = {marks->range[0], marks->range[1]};
-    bool over = strcmp(asked->mode, "over") == 0;
+    bool over = strcmp(opts->mode, "over") == 0;
     if (range[0] == 0 && range[1] == 0)
         snow_transfer_domain(marks->transfer, &range[0], &range[1]);
     return snow_overlay_color_bar(overlay, marks->transfer,
-                                  unit_of_values(asked), over ? NULL : range);
+                                  unit_of_values(opts), over ? NULL : range);
 }
 
 static snow_status add_marks(const picture_marks *marks, const snow_view *view,
                              int64_t step, snow_overlay *overlay) {
-    const options *asked = marks->asked;
+    const options *opts = marks->opts;
     snow_status status = SNOW_STATUS_OK;
-    if (!asked->no_labels)
+    if (!opts->no_labels)
         status = snow_overlay_orientation(overlay, &marks->info, view);
-    if (status == SNOW_STATUS_OK && asked->legend)
+    if (status == SNOW_STATUS_OK && opts->legend)
         status = add_colors(marks, overlay);
-    if (status == SNOW_STATUS_OK && asked->legend)
+    if (status == SNOW_STATUS_OK && opts->legend)
         status = snow_overlay_scale_bar(overlay, &marks->info, view);
-    if (status == SNOW_STATUS_OK && asked->time_label && step >= 0) {
+    if (status == SNOW_STATUS_OK && opts->time_label && step >= 0) {
         char text[40];
         snprintf(text, sizeof text, "step %" PRId64, step);
         status = snow_overlay_title(overlay, text);
@@ -74,14 +73,14 @@ static snow_status add_marks(const picture_marks *marks, const snow_view *view,
 
 snow_status marks_make(const picture_marks *marks, double azimuth, int64_t step,
                        snow_context *context, snow_overlay **out) {
-    const options *asked = marks->asked;
-    bool letters = !asked->no_labels && marks->info.medical;
+    const options *opts = marks->opts;
+    bool letters = !opts->no_labels && marks->info.medical;
     snow_view view = marks->view;
     snow_overlay *overlay = NULL;
     *out = NULL;
-    if (!shows_marks(asked->output) && strcmp(asked->output, "-") != 0)
+    if (!shows_marks(opts->output) && strcmp(opts->output, "-") != 0)
         return SNOW_STATUS_OK;
-    if (!letters && !asked->legend && !asked->time_label)
+    if (!letters && !opts->legend && !opts->time_label)
         return SNOW_STATUS_OK;
     view.azimuth = azimuth;
     snow_status status =

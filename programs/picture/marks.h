@@ -9,7 +9,7 @@
 /* All that the overlays depend on, except the frame.  Several threads may read
  * it at once; the transfer function must outlive it. */
 typedef struct picture_marks {
-    const options *asked;
+    const options *opts;
     snow_volume_info info;
     snow_view view;
     const snow_transfer *transfer;
@@ -19,7 +19,7 @@ typedef struct picture_marks {
 
 /* Refuses marks for files of floats, which cannot show them.  Returns CONTINUE
  * or an exit code. */
-int marks_check(const options *asked);
+int marks_check(const options *opts);
 
 /* Makes the overlay for a picture from an azimuth; NULL if nothing is drawn.
  * `step` is a time step, or -1.  Error messages go to the context. */
@@ -27,6 +27,6 @@ snow_status marks_make(const picture_marks *marks, double azimuth, int64_t step,
                        snow_context *context, snow_overlay **out);
 
 /* Reports the parts that a legend lacks. */
-void marks_report(const options *asked);
+void marks_report(const options *opts);
 
 #endif

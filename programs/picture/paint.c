@@ -12,28 +12,28 @@ static bool keeps_values(const char *path) {
     return !movie_format_of(path) && snow_image_format_bits(path) == 0;
 }
 
-static bool range_is_given(const options *asked) {
-    return asked->range.kind != SNOW_RANGE_AUTO || !isnan(asked->window);
+static bool range_is_given(const options *opts) {
+    return opts->range.kind != SNOW_RANGE_AUTO || !isnan(opts->window);
 }
 
-int paint_check(const options *asked, bool movie) {
-    if (!movie || strcmp(asked->mode, "sum") != 0 || range_is_given(asked) ||
-        keeps_values(asked->output))
+int paint_check(const options *opts, bool movie) {
+    if (!movie || strcmp(opts->mode, "sum") != 0 || range_is_given(opts) ||
+        keeps_values(opts->output))
         return CONTINUE;
     return fail_usage("--mode sum: all frames of a movie need the same range; "
                       "give --range LO,HI, or write frames as .npy");
 }
 
-int paint_values(const options *asked, snow_context *context,
+int paint_values(const options *opts, snow_context *context,
                  const snow_transfer *transfer, bool movie, snow_image **image,
                  paint_given *given) {
     double low, high;
     snow_image *painted = NULL;
     *given = (paint_given){.words = ""};
     if (!*image || snow_image_channels(*image) != 1 ||
-        keeps_values(asked->output))
+        keeps_values(opts->output))
         return CONTINUE;
-    if (range_is_given(asked) || movie)
+    if (range_is_given(opts) || movie)
         snow_transfer_domain(transfer, &low, &high);
     else
         snow_image_value_range(*image, &low, &high);
@@ -46,6 +46,6 @@ int paint_values(const options *asked, snow_context *context,
     given->range[0] = low;
     given->range[1] = high;
     snprintf(given->words, sizeof given->words,
-             "; %ss of %g..%g in the look's colours", asked->mode, low, high);
+             "; %ss of %g..%g in the look's colours", opts->mode, low, high);
     return CONTINUE;
 }

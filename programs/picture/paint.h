@@ -16,14 +16,14 @@ typedef struct paint_given {
 /* Refuses what cannot be painted, before anything is read: a movie of sums
  * needs a given range, since each frame has another.  Returns CONTINUE or an
  * exit code. */
-int paint_check(const options *asked, bool movie);
+int paint_check(const options *opts, bool movie);
 
 /* Replaces a picture of values by one of colours, unless the output holds
  * values. The look's colours are spread over the requested range; otherwise, in
  * a movie of means, over the look's own, or over the values of the picture.
  * `given` gets the range and the words that report it.  Returns CONTINUE or an
  * exit code. */
-int paint_values(const options *asked, snow_context *context,
+int paint_values(const options *opts, snow_context *context,
                  const snow_transfer *transfer, bool movie, snow_image **image,
                  paint_given *given);
 

@@ -24,19 +24,19 @@ typedef struct rank_figures {
     uint64_t peak;
 } rank_figures;
 
-int scene_check(const options *asked) {
-    warn_unused(asked);
-    if (launch_ranks() > 1 && strcmp(asked->operands[0], "-") == 0)
+int scene_check(const options *opts) {
+    warn_unused(opts);
+    if (launch_ranks() > 1 && strcmp(opts->operands[0], "-") == 0)
         return fail_usage("-: standard input cannot be shared by several "
                           "ranks, which each read a part; name a file");
     return CONTINUE;
 }
 
-int scene_new(const options *asked, scene *out) {
-    *out = (scene){.asked = asked};
-    int done = open_render_context(asked, &out->context);
+int scene_new(const options *opts, scene *out) {
+    *out = (scene){.opts = opts};
+    int done = open_render_context(opts, &out->context);
     if (done == CONTINUE) {
-        snow_context_set_memory_limit(out->context, asked->memory);
+        snow_context_set_memory_limit(out->context, opts->memory);
         snow_context_set_progress(out->context, progress_hear, NULL);
         size_t ranks = (size_t)launch_ranks();
         out->figures = calloc(ranks, sizeof(rank_figures));
@@ -62,9 +62,9 @@ void scene_free(scene *s) {
 /* --- a volume ------------------------------------------------------------- */
 
 static int place_camera(scene *s) {
-    int done = make_view(s->context, s->asked, &s->whole, &s->view);
+    int done = make_view(s->context, s->opts, &s->whole, &s->view);
     if (done == CONTINUE)
-        done = make_settings(s->asked, &s->whole, &s->settings);
+        done = make_settings(s->opts, &s->whole, &s->settings);
     s->settings.stop = interrupt_asked;
     return done;
 }
@@ -78,7 +78,7 @@ static snow_status frame_turn(scene *s, snow_comm *comm, size_t frames) {
                                  "programs",
                                  frames);
     for (size_t i = 0; i < frames; i++)
-        azimuths[i] = s->asked->azimuth + 360 * (double)i / (double)frames;
+        azimuths[i] = s->opts->azimuth + 360 * (double)i / (double)frames;
     snow_status status = snow_view_fit(
         comm, s->volume, s->transfer, &s->settings, azimuths, frames, &s->view);
     free(azimuths);
@@ -90,10 +90,10 @@ static snow_status frame_turn(scene *s, snow_comm *comm, size_t frames) {
 static snow_status frame_view(scene *s) {
     snow_comm *comm = launch_ranks() > 1 ? launch_comm() : NULL;
     snow_status status = SNOW_STATUS_OK;
-    if (strcmp(s->asked->fit, "visible") != 0)
+    if (strcmp(s->opts->fit, "visible") != 0)
         return SNOW_STATUS_OK;
     if (!s->framed && s->turns)
-        status = frame_turn(s, comm, (size_t)s->asked->frames);
+        status = frame_turn(s, comm, (size_t)s->opts->frames);
     else if (!s->framed)
         status = snow_view_fit(comm, s->volume, s->steps ? NULL : s->transfer,
                                &s->settings, NULL, 0, &s->view);
@@ -110,7 +110,7 @@ static snow_status frame_view(scene *s) {
  * shaded, unless shading is requested. */
 static void choose_shade(scene *s) {
     if (s->transfer && snow_transfer_is_unshaded(s->transfer) &&
-        !options_given(s->asked, "shade"))
+        !options_given(s->opts, "shade"))
         s->settings.shade = SNOW_SHADE_NONE;
 }
 
@@ -225,14 +225,14 @@ static int open_alone(scene *s, const options *step) {
 /* Eight bits per channel suffice between ranks if the picture is placed on a
  * background and rounded to them in the end. */
 static snow_ranks_options how_of(const scene *s) {
-    const options *asked = s->asked;
-    bool coarse = asked->background.given && !asked->deterministic &&
-                  !(asked->bits && asked->bits[0] == '1');
+    const options *opts = s->opts;
+    bool coarse = opts->background.given && !opts->deterministic &&
+                  !(opts->bits && opts->bits[0] == '1');
     return (snow_ranks_options){
         .size = sizeof(snow_ranks_options),
-        .cut = (snow_partition)option_choice("cut", asked->cut),
-        .combining = (snow_combine)option_choice("combine", asked->combine),
-        .radix = (int)asked->radix,
+        .cut = (snow_partition)option_choice("cut", opts->cut),
+        .combining = (snow_combine)option_choice("combine", opts->combine),
+        .radix = (int)opts->radix,
         .pixel_bits = coarse ? 8 : 0,
         .turns = s->turns,
         .transfer = s->transfer};
@@ -278,7 +278,7 @@ static int open_part(scene *s, const options *step) {
 }
 
 options scene_step(const scene *s, int64_t time) {
-    options step = *s->asked;
+    options step = *s->opts;
     step.time = time;
     step.each_time = s->each_time;
     return step;
@@ -453,11 +453,11 @@ render_report scene_report(const scene *s) {
 }
 
 void scene_choices(const scene *s, char *out, size_t size) {
-    const double *from = s->asked->position.at;
-    const char *view = s->asked->view ? s->asked->view
-                                      : snow_view_default_name(&s->drawn.whole);
+    const double *from = s->opts->position.at;
+    const char *view =
+        s->opts->view ? s->opts->view : snow_view_default_name(&s->drawn.whole);
     char place[96];
-    if (s->asked->position.given) {
+    if (s->opts->position.given) {
         snprintf(place, sizeof place, "from %g,%g,%g", from[0], from[1],
                  from[2]);
         view = place;

@@ -17,7 +17,7 @@ typedef struct scene_shot {
 } scene_shot;
 
 typedef struct scene {
-    const options *asked;
+    const options *opts;
     const char *path; /* path of the volume */
     bool each_time;   /* all time steps of the file are opened in turn */
     bool turns;       /* pictures from several sides are requested */
@@ -52,10 +52,10 @@ typedef struct scene {
 
 /* Refuses options that ranks do not support.  Returns CONTINUE or an exit
  * code. */
-int scene_check(const options *asked);
+int scene_check(const options *opts);
 
 /* Returns CONTINUE or an exit code, as all functions here do. */
-int scene_new(const options *asked, scene *out);
+int scene_new(const options *opts, scene *out);
 void scene_free(scene *s);
 
 /* The options with another time step. */

@@ -5,38 +5,38 @@
 
 #include <string.h>
 
-static bool is_heard(const options *asked) {
-    return asked->verbosity >= 0 && launch_talks();
+static bool is_heard(const options *opts) {
+    return opts->verbosity >= 0 && launch_talks();
 }
 
 /* An option of a configuration may be meant for another mode, so only options
  * on the command line are reported. */
-static void warn_option(const options *asked, const char *name) {
-    if (options_typed(asked, name))
-        say("note: --%s has no effect in mode %s", name, asked->mode);
+static void warn_option(const options *opts, const char *name) {
+    if (options_typed(opts, name))
+        say("note: --%s has no effect in mode %s", name, opts->mode);
 }
 
-void warn_unused(const options *asked) {
+void warn_unused(const options *opts) {
     static const char *const of_opacity[] = {"opacity", "gradient-opacity"};
     static const char *const of_light[] = {
         "light",    "shade",     "ambient",         "diffuse",
         "specular", "shininess", "depth-darkening", "occlusion"};
-    bool lit = strcmp(asked->mode, "iso") == 0;
-    if (strcmp(asked->mode, "over") == 0 || !is_heard(asked))
+    bool lit = strcmp(opts->mode, "iso") == 0;
+    if (strcmp(opts->mode, "over") == 0 || !is_heard(opts))
         return;
     for (size_t i = 0; i < sizeof of_opacity / sizeof *of_opacity; i++)
-        warn_option(asked, of_opacity[i]);
+        warn_option(opts, of_opacity[i]);
     for (size_t i = 0; i < sizeof of_light / sizeof *of_light && !lit; i++)
-        warn_option(asked, of_light[i]);
+        warn_option(opts, of_light[i]);
 }
 
 /* Reports a method that was requested by name, or a kernel's, but not used. */
 static void warn_method(const scene *s) {
-    bool asked =
-        strcmp(s->asked->method, "shear-warp") == 0 ||
-        (strcmp(s->asked->method, "auto") == 0 &&
-         (strcmp(s->asked->kernel, "auto") != 0 || s->asked->footprint != 0));
-    if (!asked || s->stats.method == SNOW_METHOD_SHEAR_WARP)
+    bool opts =
+        strcmp(s->opts->method, "shear-warp") == 0 ||
+        (strcmp(s->opts->method, "auto") == 0 &&
+         (strcmp(s->opts->kernel, "auto") != 0 || s->opts->footprint != 0));
+    if (!opts || s->stats.method == SNOW_METHOD_SHEAR_WARP)
         return;
     say("note: method %s is used in place of shear-warp, which takes kernels "
         "tent of 2 voxels and bspline of 4, slices at most 24 times as far "
@@ -73,7 +73,7 @@ static void warn_empty(const scene *s, snow_image *image) {
 }
 
 void warn_picture(const scene *s, snow_image *image) {
-    if (!is_heard(s->asked))
+    if (!is_heard(s->opts))
         return;
     warn_method(s);
     warn_empty(s, image);

@@ -6,7 +6,7 @@
 #include "picture/render_state.h"
 
 /* Reports options of the command line that have no effect in the mode. */
-void warn_unused(const options *asked);
+void warn_unused(const options *opts);
 
 /* Reports about the last picture, before anything is drawn on it: another
  * method than requested, and an empty picture, unless `image` is NULL. */

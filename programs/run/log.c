@@ -118,24 +118,24 @@ static void hear_warning(void *user, const char *text) {
     say("note: %s", text);
 }
 
-int open_context(const options *asked, snow_context **out) {
+int open_context(const options *opts, snow_context **out) {
     snow_status status = snow_context_new(NULL, out);
     if (status != SNOW_STATUS_OK)
         return fail_status(NULL, status);
-    hear_warnings(asked, *out, true);
+    hear_warnings(opts, *out, true);
     return CONTINUE;
 }
 
-void hear_warnings(const options *asked, snow_context *context, bool hear) {
-    hear = hear && asked->verbosity >= 0 && launch_talks();
+void hear_warnings(const options *opts, snow_context *context, bool hear) {
+    hear = hear && opts->verbosity >= 0 && launch_talks();
     snow_context_set_warning(context, hear ? hear_warning : NULL, NULL);
 }
 
-int open_render_context(const options *asked, snow_context **out) {
+int open_render_context(const options *opts, snow_context **out) {
     if (launch_ranks() == 1)
-        return open_context(asked, out);
+        return open_context(opts, out);
     *out = snow_comm_context(launch_comm());
-    hear_warnings(asked, *out, true);
+    hear_warnings(opts, *out, true);
     return CONTINUE;
 }
 
@@ -156,15 +156,15 @@ bool progress_is_live(void) {
     return isatty(STDERR_FILENO) && term && strcmp(term, "dumb") != 0;
 }
 
-bool progress_is_wanted(const options *asked) {
-    return launch_talks() && asked->verbosity >= 0 &&
-           strcmp(asked->progress, "never") != 0;
+bool progress_is_wanted(const options *opts) {
+    return launch_talks() && opts->verbosity >= 0 &&
+           strcmp(opts->progress, "never") != 0;
 }
 
-void progress(const options *asked, const char *stage) {
-    if (!progress_is_wanted(asked))
+void progress(const options *opts, const char *stage) {
+    if (!progress_is_wanted(opts))
         return;
-    bool always = strcmp(asked->progress, "always") == 0;
+    bool always = strcmp(opts->progress, "always") == 0;
     bool live = progress_is_live();
     pthread_mutex_lock(&talking);
     wipe_stage();
@@ -189,7 +189,7 @@ static struct {
     pthread_mutex_t lock;
     pthread_cond_t ended;
     bool running, ending;
-    const options *asked;
+    const options *opts;
     const char *stage;
     double begin;
     double fraction; /* of it, as far as the library has said; below 0: not */
@@ -217,7 +217,7 @@ static void report_stage(void) {
     snprintf(line, sizeof line, "%s%s%s, %.0f s", bar, clock_of_stage.stage,
              share, seconds_now() - clock_of_stage.begin);
     if (progress_is_live())
-        progress(clock_of_stage.asked, line);
+        progress(clock_of_stage.opts, line);
     else
         say("%s", line);
 }
@@ -239,12 +239,12 @@ static void *watch_stage(void *unused) {
 }
 
 /* Signals are handled by the thread that waits for them. */
-void progress_begin(const options *asked, const char *stage) {
+void progress_begin(const options *opts, const char *stage) {
     sigset_t all, before;
-    progress(asked, stage);
-    if (!progress_is_wanted(asked))
+    progress(opts, stage);
+    if (!progress_is_wanted(opts))
         return;
-    clock_of_stage.asked = asked;
+    clock_of_stage.opts = opts;
     clock_of_stage.stage = stage;
     clock_of_stage.begin = seconds_now();
     clock_of_stage.fraction = -1;
@@ -256,7 +256,7 @@ void progress_begin(const options *asked, const char *stage) {
     pthread_sigmask(SIG_SETMASK, &before, NULL);
 }
 
-void progress_end(const options *asked) {
+void progress_end(const options *opts) {
     if (clock_of_stage.running) {
         pthread_mutex_lock(&clock_of_stage.lock);
         clock_of_stage.ending = true;
@@ -265,7 +265,7 @@ void progress_end(const options *asked) {
         pthread_join(clock_of_stage.thread, NULL);
         clock_of_stage.running = false;
     }
-    progress(asked, NULL);
+    progress(opts, NULL);
 }
 
 bool progress_hear(void *unused, snow_stage stage, double fraction) {

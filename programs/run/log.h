@@ -28,15 +28,15 @@ int fail_volume(const snow_context *context, snow_status status,
 
 /* Creates a context whose warnings go to standard error, unless quiet.  Returns
  * CONTINUE or an exit code. */
-int open_context(const options *asked, snow_context **out);
+int open_context(const options *opts, snow_context **out);
 
 /* Sends a context's warnings to standard error or drops them; they are printed
  * on rank 0 only, and never when quiet. */
-void hear_warnings(const options *asked, snow_context *context, bool hear);
+void hear_warnings(const options *opts, snow_context *context, bool hear);
 
 /* The context for rendering: the communicator's if there is one, otherwise a
  * new one as above.  Returns CONTINUE or an exit code. */
-int open_render_context(const options *asked, snow_context **out);
+int open_render_context(const options *opts, snow_context **out);
 void close_render_context(snow_context *context);
 
 /* Seconds of a monotonic clock. */
@@ -44,13 +44,13 @@ double seconds_now(void);
 
 /* Prints the name of a stage on standard error, as --progress requests; NULL
  * ends the last stage. */
-void progress(const options *asked, const char *stage);
+void progress(const options *opts, const char *stage);
 
 /* The same for a stage that may take long: its seconds are printed every 10 s,
  * on a terminal every second, until progress_end.  In between only the library
  * may print, and no other stage may begin. */
-void progress_begin(const options *asked, const char *stage);
-void progress_end(const options *asked);
+void progress_begin(const options *opts, const char *stage);
+void progress_end(const options *opts);
 
 /* Hears of the library's progress (a snow_progress_fn): it is a part of such a
  * stage, shown as a bar on a terminal.  Asks for a stop after a signal. */
@@ -61,7 +61,7 @@ void progress_bar(double fraction, char *out, size_t size);
 
 /* Whether --progress may say anything, and whether it goes to a terminal, where
  * a line is written over. */
-bool progress_is_wanted(const options *asked);
+bool progress_is_wanted(const options *opts);
 bool progress_is_live(void);
 
 /* Flushes standard output and reports a failed write.  Returns an exit code. */

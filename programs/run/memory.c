@@ -30,21 +30,20 @@ static double shear_warp_bytes(double value_bytes) {
 }
 
 /* Bytes of an interesting voxel, without the arrays that all voxels share. */
-static double encoded_bytes(const options *asked,
-                            const snow_volume_info *info) {
-    if (strcmp(asked->method, "original") == 0 ||
-        strcmp(asked->method, "raycast") == 0)
+static double encoded_bytes(const options *opts, const snow_volume_info *info) {
+    if (strcmp(opts->method, "original") == 0 ||
+        strcmp(opts->method, "raycast") == 0)
         return 0;
-    if (strcmp(asked->method, "footprint") == 0)
+    if (strcmp(opts->method, "footprint") == 0)
         return PIXEL_BYTES + 1.0 / PLACE_SHARE;
     return shear_warp_bytes((double)snow_type_size(info->type));
 }
 
 /* Bytes of the largest intermediate image: the two sides of a slice, each
  * extended by the largest shift of the slices. */
-static double image_bytes(const options *asked, const snow_volume_info *info) {
+static double image_bytes(const options *opts, const snow_volume_info *info) {
     const int64_t *dims = info->dims;
-    double scale = strcmp(asked->quality, "draft") ? 2 : 1, most = 0;
+    double scale = strcmp(opts->quality, "draft") ? 2 : 1, most = 0;
     for (int axis = 0; axis < 3; axis++) {
         double deep = (double)dims[axis];
         double wide = (double)dims[(axis + 1) % 3] + deep;
@@ -55,17 +54,17 @@ static double image_bytes(const options *asked, const snow_volume_info *info) {
     return most * scale * scale * PIXEL_BYTES;
 }
 
-static uint64_t picture_bytes(const options *asked) {
-    return (uint64_t)(asked->size[0] * asked->size[1]) * PIXEL_BYTES;
+static uint64_t picture_bytes(const options *opts) {
+    return (uint64_t)(opts->size[0] * opts->size[1]) * PIXEL_BYTES;
 }
 
-memory_need memory_needed(const options *asked, const snow_volume_info *info) {
+memory_need memory_needed(const options *opts, const snow_volume_info *info) {
     double voxels =
         (double)info->dims[0] * (double)info->dims[1] * (double)info->dims[2];
     double least = voxels * (double)snow_type_size(info->type) +
-                   (double)picture_bytes(asked);
+                   (double)picture_bytes(opts);
     double most =
-        least + voxels * encoded_bytes(asked, info) + image_bytes(asked, info);
+        least + voxels * encoded_bytes(opts, info) + image_bytes(opts, info);
     return (memory_need){(uint64_t)least, (uint64_t)most};
 }
 
@@ -125,10 +124,9 @@ static bool is_read_once(const char *path) {
 
 /* Inspects the headers in a context of its own, without warnings: opening the
  * file repeats them and reports its errors.  Returns false on error. */
-static bool measure(const options *asked, const char *path,
+static bool measure(const options *opts, const char *path,
                     const snow_volume_options *data, sizes *out) {
-    sizes s = {.info = {.size = sizeof s.info},
-               .picture = picture_bytes(asked)};
+    sizes s = {.info = {.size = sizeof s.info}, .picture = picture_bytes(opts)};
     snow_context *context;
     if (is_read_once(path) ||
         snow_context_new(NULL, &context) != SNOW_STATUS_OK)
@@ -137,7 +135,7 @@ static bool measure(const options *asked, const char *path,
         snow_volume_inspect(context, path, data, &s.info) == SNOW_STATUS_OK;
     if (fine) {
         s.masking = masking_bytes(context, path, data);
-        s.need = memory_needed(asked, &s.info);
+        s.need = memory_needed(opts, &s.info);
         s.voxels = s.need.least - s.picture;
         if (s.voxels + s.masking > s.need.least)
             s.need.least = s.voxels + s.masking;
@@ -216,11 +214,11 @@ static uint64_t choose_slab(const sizes *s, uint64_t limit, int threads) {
 
 /* The limit: what this machine has free, less a reserve for other programs, or
  * what --memory allows. */
-static uint64_t limit_of(const options *asked, bool *own) {
+static uint64_t limit_of(const options *opts, bool *own) {
     uint64_t there = free_memory();
-    *own = there == UINT64_MAX || (asked->memory && asked->memory <= there);
+    *own = there == UINT64_MAX || (opts->memory && opts->memory <= there);
     if (*own)
-        return asked->memory;
+        return opts->memory;
     return there / 10 * 9;
 }
 
@@ -246,8 +244,8 @@ static bool is_small_folder(const char *path) {
     return bytes < free_memory() / 8;
 }
 
-static int threads_of(const options *asked) {
-    return asked->threads ? (int)asked->threads : launch_processors();
+static int threads_of(const options *opts) {
+    return opts->threads ? (int)opts->threads : launch_processors();
 }
 
 static void report_need(const sizes *s) {
@@ -286,29 +284,29 @@ static int refuse_volume(const sizes *s, const char *path, uint64_t limit,
     return SNOW_STATUS_NO_MEMORY;
 }
 
-int memory_plan_for(const options *asked, const char *path,
+int memory_plan_for(const options *opts, const char *path,
                     const snow_volume_options *data, bool report,
                     memory_plan *out) {
     const char *why = why_whole(path);
     bool own = true;
-    uint64_t limit = asked->memory;
+    uint64_t limit = opts->memory;
     sizes s;
-    *out = (memory_plan){.may_stream = !why, .limit = asked->memory};
-    if (!asked->memory && !report && is_small_folder(path))
+    *out = (memory_plan){.may_stream = !why, .limit = opts->memory};
+    if (!opts->memory && !report && is_small_folder(path))
         return CONTINUE;
-    if (!measure(asked, path, data, &s)) {
+    if (!measure(opts, path, data, &s)) {
         out->may_stream = false;
         return CONTINUE;
     }
     if (report)
         report_need(&s);
-    limit = limit_of(asked, &own);
+    limit = limit_of(opts, &own);
     if (limit)
-        out->slab_bytes = choose_slab(&s, limit, threads_of(asked));
+        out->slab_bytes = choose_slab(&s, limit, threads_of(opts));
     out->packed = s.packed;
     if (!limit || s.need.least <= limit)
         return CONTINUE;
-    if (why && (!asked->memory || s.need.least <= asked->memory))
+    if (why && (!opts->memory || s.need.least <= opts->memory))
         return CONTINUE; /* the system may know better what is free */
     out->limit = limit;
     if (why || slabs_least(&s) > limit || slabs_least(&s) >= s.need.least)
@@ -317,12 +315,12 @@ int memory_plan_for(const options *asked, const char *path,
     return CONTINUE;
 }
 
-int memory_check(const options *asked, const char *path,
+int memory_check(const options *opts, const char *path,
                  const snow_volume_options *data) {
     sizes s;
-    if (!asked->memory || !measure(asked, path, data, &s) ||
-        s.need.least <= asked->memory)
+    if (!opts->memory || !measure(opts, path, data, &s) ||
+        s.need.least <= opts->memory)
         return CONTINUE;
-    return refuse_volume(&s, path, asked->memory, true,
+    return refuse_volume(&s, path, opts->memory, true,
                          "the range of all steps");
 }

@@ -12,7 +12,7 @@ typedef struct memory_need {
     uint64_t most;  /* the same if all voxels are interesting, approximately */
 } memory_need;
 
-memory_need memory_needed(const options *asked, const snow_volume_info *info);
+memory_need memory_needed(const options *opts, const snow_volume_info *info);
 
 /* How a volume is to be opened. */
 typedef struct memory_plan {
@@ -29,13 +29,13 @@ typedef struct memory_plan {
  * machine has free.  The size of the interesting voxels is known only after
  * encoding; the context keeps it within the limit.  Nothing is known about
  * standard input.  Returns CONTINUE or an exit code. */
-int memory_plan_for(const options *asked, const char *path,
+int memory_plan_for(const options *opts, const char *path,
                     const snow_volume_options *data, bool report,
                     memory_plan *out);
 
 /* The same where all voxels are needed at once: refused is what is over
  * --memory as a whole. */
-int memory_check(const options *asked, const char *path,
+int memory_check(const options *opts, const char *path,
                  const snow_volume_options *data);
 
 #endif
