@@ -38,7 +38,7 @@ static const char help[] =
     "on up\n"
     "to 32 nodes, over the original on one node and over themselves: the "
     "nodes'\n"
-    "work is measured, the network between them is modelled.\n"
+    "work is measured, the network between them is simulated.\n"
     "\n"
     "speed prints how fast pictures are made while the view turns: volumes, "
     "looks,\n"
@@ -368,9 +368,9 @@ bool bench_for_all(int argc, char **argv) {
 int bench_main(int argc, char **argv) {
     const struct bench_ranks *ranks = find_of_ranks(argc, argv);
     if (ranks) {
-        if (launch_comm())
-            snow_comm_set_timeout(launch_comm(), RANKS_TIMEOUT);
-        return ranks->run(argc - 1, argv + 1, launch_comm());
+        if (process_comm())
+            snow_comm_set_timeout(process_comm(), RANKS_TIMEOUT);
+        return ranks->run(argc - 1, argv + 1, process_comm());
     }
     bench_options options = {.kernel = SNOW_KERNEL_GAUSS};
     bench_command command = {0};

@@ -7,17 +7,18 @@
 
 /* What is no business of all ranks is that of the first. */
 static int run(int argc, char **argv) {
-    if (!bench_for_all(argc, argv) && !launch_talks())
+    if (!bench_for_all(argc, argv) && !process_talks())
         return SNOW_STATUS_OK;
     int done = bench_main(argc, argv);
     return done == SNOW_STATUS_OK ? finish_stdout() : done;
 }
 
-int tool_run(int argc, char **argv, const launch *how) {
-    launch_begin(how);
+int tool_run(int argc, char **argv, const process_start *how) {
+    process_begin(how);
     interrupt_install();
-    int done = launch_agree(run(argc, argv));
-    if (launch_ranks() > 1) /* whose launcher ends all with the first to fail */
+    int done = process_agree(run(argc, argv));
+    if (process_ranks() >
+        1) /* whose launcher ends all with the first to fail */
         interrupt_mute();
     return done;
 }

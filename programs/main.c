@@ -26,7 +26,7 @@ static void fill_standard_streams(void) {
 }
 
 static int print_version(void) {
-    if (launch_talks())
+    if (process_talks())
         printf("snowglass %s\n", snow_version());
     return finish_stdout();
 }
@@ -82,18 +82,18 @@ static int run_command(const verb_row *verb, bool named, int argc,
         return done;
     if (opts.version)
         return print_version();
-    if (opts.help && !launch_talks())
+    if (opts.help && !process_talks())
         return SNOW_STATUS_OK;
     if (opts.help)
         return help_print(opts.help_word,
                           named && verb->bit != VERB_HELP ? verb : NULL);
-    if (launch_ranks() > 1 && is_for_all(verb))
-        snow_comm_set_timeout(launch_comm(), opts.timeout);
+    if (process_ranks() > 1 && is_for_all(verb))
+        snow_comm_set_timeout(process_comm(), opts.timeout);
     done = config_check(&opts);
     if (done == CONTINUE)
         done = look_load(&opts); /* on every rank: the file is small */
     if (is_for_all(verb))
-        done = launch_agree(done);
+        done = process_agree(done);
     if (done != CONTINUE) {
         look_unload(&opts);
         return done;
@@ -122,17 +122,17 @@ static int dispatch(int argc, char **argv) {
         return fail_usage("%s is not built yet; %s", verb->name, verb->text);
     if (verb->bit == VERB_BENCH) /* of MPI: mpi_main.c */
         return sibling_become("snowglass-bench", argv + 1);
-    if (!is_for_all(verb) && !launch_talks())
+    if (!is_for_all(verb) && !process_talks())
         return SNOW_STATUS_OK;
     return run_command(verb, true, argc - 1, argv + 1);
 }
 
-int tool_run(int argc, char **argv, const launch *how) {
+int tool_run(int argc, char **argv, const process_start *how) {
     fill_standard_streams();
-    launch_begin(how);
+    process_begin(how);
     interrupt_install();
-    int done = launch_agree(dispatch(argc, argv));
-    if (launch_ranks() >
+    int done = process_agree(dispatch(argc, argv));
+    if (process_ranks() >
         1) /* the launcher would end all ranks with the first failure */
         interrupt_mute();
     return done;

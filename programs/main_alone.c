@@ -2,6 +2,6 @@
 #include "run/start.h"
 
 int main(int argc, char **argv) {
-    const launch alone = {.comm = NULL};
+    const process_start alone = {.comm = NULL};
     return tool_run(argc, argv, &alone);
 }

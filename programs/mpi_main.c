@@ -91,9 +91,9 @@ static int share_processors(void) {
 
 /* A broken communicator cannot agree on an exit code.  The rank that prints has
  * given the reason already. */
-static void end_job(const launch *how, int code) {
-    if (!launch_talks())
-        fprintf(stderr, "snowglass: rank %d: %s\n", launch_rank(),
+static void end_job(const process_start *how, int code) {
+    if (!process_talks())
+        fprintf(stderr, "snowglass: rank %d: %s\n", process_rank(),
                 snow_context_message(snow_comm_context(how->comm)));
     MPI_Abort(MPI_COMM_WORLD, code ? code : SNOW_STATUS_FAILED);
 }
@@ -122,7 +122,7 @@ static void limit_seconds(unsigned seconds) {
 static int run_tool(int argc, char **argv) {
     char library[MPI_MAX_LIBRARY_VERSION_STRING];
     snow_context *context = NULL;
-    launch how = {.mpi = library};
+    process_start how = {.mpi = library};
     name_library(library);
     int done = check_launcher(library);
     if (done != CONTINUE)

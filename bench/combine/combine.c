@@ -3,7 +3,7 @@
  * simulated networks (mpi_combine.c). */
 #include "combine.h"
 #include "line.h"
-#include "words.h"
+#include "option_table.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -75,24 +75,24 @@ static const char *word_of_box(int argc, char **argv) {
 }
 
 /* What does not go together; an exit code, or -1 to go on. */
-static int check_words(const bench_words *table, int argc, char **argv,
-                       const combine_options *options, FILE *said) {
+static int check_options(const bench_option_table *table, int argc, char **argv,
+                         const combine_options *options, FILE *said) {
     char path[COMBINE_NAME_BYTES];
     const char *word = word_of_box(argc, argv);
     if (options->check && options->sizes_only)
-        return bench_words_fail(table, said,
-                                "there are no pixels to look at; leave out",
-                                "--check");
+        return bench_option_table_fail(
+            table, said, "there are no pixels to look at; leave out",
+            "--check");
     if (!options->pattern)
         return -1;
     if (!combine_file_name(options->pattern, 0, path, sizeof path))
-        return bench_words_fail(table, said,
-                                "one picture, or a number's place as in "
-                                "slab_%02d.png, is not what this names:",
-                                options->pattern);
+        return bench_option_table_fail(table, said,
+                                       "one picture, or a number's place as in "
+                                       "slab_%02d.png, is not what this names:",
+                                       options->pattern);
     if (word)
-        return bench_words_fail(table, said, "pictures in files make no use of",
-                                word);
+        return bench_option_table_fail(
+            table, said, "pictures in files make no use of", word);
     return -1;
 }
 
@@ -111,7 +111,7 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
                              .beta = BENCH_BETA,
                              .scan = 0.1e-9,
                              .blend = 0.25e-9};
-    const bench_word words[] = {
+    const bench_option entries[] = {
         {"--ranks", BENCH_WHOLE, &out->ranks, 1, 4096, NULL},
         {"--size", BENCH_WHOLE, &size, 1, 32768, NULL},
         {"--pattern", BENCH_TEXT, &out->pattern, 0, 0, NULL},
@@ -119,14 +119,14 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
         {"--radix", BENCH_WHOLE, &out->radix, 2, 4096, NULL},
         {"--gather", BENCH_WHOLE, &out->gather, 2, 4096, NULL},
         {"--pieces", BENCH_CHOICE, &regions, 0, 0, piece_names},
-        {"--whole", BENCH_WORD, &out->whole, 0, 0, NULL},
-        {"--grey", BENCH_WORD, &grey, 0, 0, NULL},
-        {"--floats", BENCH_WORD, &floats, 0, 0, NULL},
-        {"--check", BENCH_WORD, &out->check, 0, 0, NULL},
-        {"--sizes-only", BENCH_WORD, &out->sizes_only, 0, 0, NULL},
-        {"--rates", BENCH_WORD, &out->rates, 0, 0, NULL},
+        {"--whole", BENCH_FLAG, &out->whole, 0, 0, NULL},
+        {"--grey", BENCH_FLAG, &grey, 0, 0, NULL},
+        {"--floats", BENCH_FLAG, &floats, 0, 0, NULL},
+        {"--check", BENCH_FLAG, &out->check, 0, 0, NULL},
+        {"--sizes-only", BENCH_FLAG, &out->sizes_only, 0, 0, NULL},
+        {"--rates", BENCH_FLAG, &out->rates, 0, 0, NULL},
         {"--runs", BENCH_WHOLE, &out->runs, 1, 1000, NULL},
-        {"--json", BENCH_WORD, &out->json, 0, 0, NULL},
+        {"--json", BENCH_FLAG, &out->json, 0, 0, NULL},
         {"--azimuth", BENCH_NUMBER, &out->azimuth, -1e6, 1e6, NULL},
         {"--elevation", BENCH_NUMBER, &out->elevation, -1e6, 1e6, NULL},
         {"--cube", BENCH_NUMBER, &out->cube, 0, 4, NULL},
@@ -136,11 +136,11 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
         {"--beta", BENCH_NUMBER, &out->beta, 0, 1, NULL},
         {"--scan", BENCH_NUMBER, &out->scan, 0, 1, NULL},
         {"--blend", BENCH_NUMBER, &out->blend, 0, 1, NULL},
-        {"--help", BENCH_WORD, &helps, 0, 0, NULL},
+        {"--help", BENCH_FLAG, &helps, 0, 0, NULL},
     };
-    const bench_words table = {"combine", words, sizeof words / sizeof *words,
-                               NULL};
-    int code = bench_words_read(&table, argc, argv, said);
+    const bench_option_table table = {"combine", entries,
+                                      sizeof entries / sizeof *entries, NULL};
+    int code = bench_option_table_read(&table, argc, argv, said);
     if (code >= 0)
         return code;
     out->method = (snow_combine)method;
@@ -152,7 +152,8 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
         out->pattern = NULL;
     if (helps && said)
         fputs(help, stdout);
-    return helps ? SNOW_STATUS_OK : check_words(&table, argc, argv, out, said);
+    return helps ? SNOW_STATUS_OK
+                 : check_options(&table, argc, argv, out, said);
 }
 
 /* Ranks that are threads of this process. */

@@ -18,7 +18,7 @@ static snow_status allocate_packed(const snow_combiner *combiner,
                                    combine_gather *state, size_t pixel_bytes) {
     snow_context *context = combiner->comm->context;
     const int regions = combiner->rounds.tree ? 1 : combiner->comm->ranks;
-    const int64_t capacity = snow_border_room(&combiner->borders, regions);
+    const int64_t capacity = snow_region_room(&combiner->bounds, regions);
     if (state->packed_capacity == capacity &&
         state->packed_bytes == pixel_bytes)
         return SNOW_STATUS_OK;

@@ -2,7 +2,7 @@
  * are.
  */
 #include "frame.h"
-#include "words.h"
+#include "option_table.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -72,7 +72,8 @@ static const char help[] =
     "no\n"
     "method of exchange and gather can beat, ratio what these took over it.\n"
     "projected_ms is\n"
-    "what the modelled machine takes for a picture, t1_ms what one rank takes\n"
+    "what the simulated machine takes for a picture, t1_ms what one rank "
+    "takes\n"
     "(processor time), efficiency t1_ms over ranks and projected_ms.  turn_ms "
     "and\n"
     "turn_overlap_ms are of one picture of a turning volume, without and with\n"
@@ -154,30 +155,30 @@ static const char *read_texts(const texts *t, frame_options *out) {
         return t->size;
     if (t->network && !read_network(t->network, &out->network))
         return t->network;
-    out->modelled = t->network != NULL;
+    out->simulated = t->network != NULL;
     return NULL;
 }
 
 /* What does not go together. */
-static int check(const bench_words *table, const frame_options *options,
+static int check(const bench_option_table *table, const frame_options *options,
                  const snow_comm *comm, FILE *said) {
     if (!options->path)
-        return bench_words_fail(table, said, "there is no INPUT; name a file",
-                                "");
+        return bench_option_table_fail(table, said,
+                                       "there is no INPUT; name a file", "");
     if (options->check && options->no_check)
-        return bench_words_fail(table, said, "leave out --check or",
-                                "--no-check");
+        return bench_option_table_fail(table, said, "leave out --check or",
+                                       "--no-check");
     if (options->radix && options->combining != SNOW_COMBINE_RADIX)
-        return bench_words_fail(table, said,
-                                "only --combine radix has a radix; leave out",
-                                "--radix");
+        return bench_option_table_fail(
+            table, said, "only --combine radix has a radix; leave out",
+            "--radix");
     if (comm && options->ranks)
-        return bench_words_fail(
+        return bench_option_table_fail(
             table, said, "mpirun tells how many ranks; leave out", "--ranks");
-    if (comm && options->modelled)
-        return bench_words_fail(table, said,
-                                "MPI's network is not modelled; leave out",
-                                "--network");
+    if (comm && options->simulated)
+        return bench_option_table_fail(
+            table, said, "MPI's network is not simulated; leave out",
+            "--network");
     return -1;
 }
 
@@ -186,7 +187,7 @@ static int parse(int argc, char **argv, const snow_comm *comm, FILE *said,
     int cut = 0, combining = 0;
     bool helps = false;
     texts t = {0};
-    const bench_word words[] = {
+    const bench_option entries[] = {
         {"--ranks", BENCH_WHOLE, &out->ranks, 1, 4096, NULL},
         {"--dims", BENCH_TEXT, &t.dims, 0, 0, NULL},
         {"--type", BENCH_TEXT, &t.type, 0, 0, NULL},
@@ -197,19 +198,19 @@ static int parse(int argc, char **argv, const snow_comm *comm, FILE *said,
         {"--cut", BENCH_CHOICE, &cut, 0, 0, cuts},
         {"--combine", BENCH_CHOICE, &combining, 0, 0, combinings},
         {"--radix", BENCH_WHOLE, &out->radix, 2, 64, NULL},
-        {"--check", BENCH_WORD, &out->check, 0, 0, NULL},
-        {"--no-check", BENCH_WORD, &out->no_check, 0, 0, NULL},
+        {"--check", BENCH_FLAG, &out->check, 0, 0, NULL},
+        {"--no-check", BENCH_FLAG, &out->no_check, 0, 0, NULL},
         {"--network", BENCH_TEXT, &t.network, 0, 0, NULL},
         {"--runs", BENCH_WHOLE, &out->runs, 1, 1000, NULL},
         {"--alpha", BENCH_NUMBER, &out->alpha, 0, 1, NULL},
         {"--beta", BENCH_NUMBER, &out->beta, 0, 1, NULL},
         {"--turn", BENCH_WHOLE, &out->turn, 2, 10000, NULL},
-        {"--json", BENCH_WORD, &out->json, 0, 0, NULL},
-        {"--help", BENCH_WORD, &helps, 0, 0, NULL},
+        {"--json", BENCH_FLAG, &out->json, 0, 0, NULL},
+        {"--help", BENCH_FLAG, &helps, 0, 0, NULL},
     };
-    const bench_words table = {"frame", words, sizeof words / sizeof *words,
-                               &out->path};
-    int code = bench_words_read(&table, argc, argv, said);
+    const bench_option_table table = {
+        "frame", entries, sizeof entries / sizeof *entries, &out->path};
+    int code = bench_option_table_read(&table, argc, argv, said);
     if (code >= 0)
         return code;
     if (helps && said)
@@ -218,8 +219,8 @@ static int parse(int argc, char **argv, const snow_comm *comm, FILE *said,
         return SNOW_STATUS_OK;
     const char *bad = read_texts(&t, out);
     if (bad)
-        return bench_words_fail(&table, said,
-                                "this value is not possible:", bad);
+        return bench_option_table_fail(&table, said,
+                                       "this value is not possible:", bad);
     out->cut = (snow_partition)cut;
     out->combining = (snow_combine)combining;
     return check(&table, out, comm, said);
@@ -244,7 +245,7 @@ static int run_threads(frame_session *session) {
     snow_status status;
     if (snow_context_new(NULL, &context) != SNOW_STATUS_OK)
         return SNOW_STATUS_NO_MEMORY;
-    if (options->modelled)
+    if (options->simulated)
         status = snow_comm_run_simulated(
             context, options->ranks, &options->network, frame_body, session);
     else

@@ -1,7 +1,7 @@
 /* bench/frame/frame.h - one whole picture of a volume by many ranks: how long,
  * how even, and whether it is the picture of one.
  *
- *   frame.c        options; ranks that are threads, modelled or MPI's
+ *   frame.c        options; ranks that are threads, simulated or MPI's
  *   frame_run.c    what every rank does, measures and tells the others
  *   frame_turn.c   pictures of a turning volume, with and without overlap
  *   frame_print.c  a line of key=value, or JSON
@@ -41,12 +41,12 @@ typedef struct frame_options {
     bool check, no_check, json;
     double alpha, beta;   /* seconds a message, a byte, of the bound; below 0:
                              those of the network */
-    bool modelled;        /* whether `network` is, and time with it */
+    bool simulated;       /* whether `network` is, and time with it */
     snow_network network; /* one processor a node */
 } frame_options;
 
 /* Stages in seconds of wall time, but those in which messages travel, and
- * totals: these are of the communicator's clock, and modelled where it is. */
+ * totals: these are of the communicator's clock, and simulated where it is. */
 typedef enum frame_stage {
     FRAME_READ,   /* opened, cut and counted; with the transfer function */
     FRAME_ENCODE, /* of the first picture: classified, shaded, encoded */

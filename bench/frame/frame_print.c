@@ -19,7 +19,7 @@ static void put_setting(bench_line *out, const frame_options *options,
     bench_line_int(out, "nodes", result->nodes);
     bench_line_int(out, "rank_per_node", result->node_ranks);
     bench_line_int(out, "threads", 1);
-    bench_line_int(out, "modelled", options->modelled);
+    bench_line_int(out, "simulated", options->simulated);
     bench_line_text(out, "method", snow_method_name(result->method));
     bench_line_text(out, "cut", cuts[options->cut]);
     bench_line_text(out, "combine", combinings[options->combining]);
@@ -76,12 +76,12 @@ static void put_times(bench_line *out, const frame_result *result) {
 /* Of exchange and gather together. */
 static void put_bound(bench_line *out, const frame_options *options,
                       const frame_result *result) {
-    const bool modelled = options->modelled;
+    const bool simulated = options->simulated;
     const double alpha = options->alpha >= 0 ? options->alpha
-                         : modelled          ? options->network.latency
+                         : simulated         ? options->network.latency
                                              : BENCH_ALPHA;
     const double beta = options->beta >= 0 ? options->beta
-                        : modelled         ? 1 / options->network.bandwidth
+                        : simulated        ? 1 / options->network.bandwidth
                                            : BENCH_BETA;
     const double bound = bench_bound(
         result->ranks, (double)result->active_most * result->channels * 4,
@@ -92,7 +92,7 @@ static void put_bound(bench_line *out, const frame_options *options,
     bench_line_number(out, "ratio", bound > 0 ? took / bound : 0);
 }
 
-/* Time of the modelled machine is the picture's: its ranks' processor time and
+/* Time of the simulated machine is the picture's: its ranks' processor time and
  * its messages. */
 static void put_projection(bench_line *out, const frame_options *options,
                            const frame_result *result) {
@@ -101,9 +101,9 @@ static void put_projection(bench_line *out, const frame_options *options,
         bench_line_ms(out, "t1_ms", result->alone);
         bench_line_ms(out, "t1_first_ms", result->alone_first);
     }
-    if (options->modelled)
+    if (options->simulated)
         bench_line_ms(out, "projected_ms", projected);
-    if (options->modelled && result->checked && projected > 0)
+    if (options->simulated && result->checked && projected > 0)
         bench_line_number(out, "efficiency",
                           result->alone / (result->ranks * projected));
 }

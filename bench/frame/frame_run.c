@@ -183,9 +183,9 @@ static snow_status sum_up(frame_rank *s, frame_result *out) {
     for (int i = 0; i < ranks; i++)
         add_rank(&s->all[i], ranks, out);
     out->method = s->all[0].method;
-    out->nodes = ranks; /* that are modelled, of one processor */
+    out->nodes = ranks; /* that are simulated, of one processor */
     out->node_ranks = 1;
-    if (!s->options->modelled) {
+    if (!s->options->simulated) {
         bench_hosts hosts;
         status = bench_hosts_count(s->comm, &hosts);
         if (status != SNOW_STATUS_OK)

@@ -1,6 +1,6 @@
 /* bench/tables/figures.c - figures 11 and 12 of the paper, measured: the nodes'
  * work is done and timed, one node after another; the network between them is
- * modelled (snow_comm_run_simulated).
+ * simulated (snow_comm_run_simulated).
  *
  * Each node holds a slab, the paper's equal ones, encodes it, splats it, and
  * the local images are combined at node 0.  Reading is not timed.  The SP2 is

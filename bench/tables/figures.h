@@ -15,7 +15,7 @@
 #define FIGURE_CLUSTERS 3 /* below */
 #define FIGURE_WAYS 4     /* original and the three encodings */
 
-/* A machine that the nodes are modelled as, and how it combines. */
+/* A machine that the nodes are simulated as, and how it combines. */
 typedef struct figure_cluster {
     const char *name, *text;
     snow_network network; /* slowness 0: from the paper's seconds */

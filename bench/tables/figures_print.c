@@ -12,7 +12,7 @@ static void print_head(int figure, const bench_options *options) {
            "256x256 grey, footprint %s, one thread a node; "
            "encoding, splatting and combining; medians of %d runs\n"
            "nodes are timed one after another on this machine, the network "
-           "is modelled; the paper shows its figure as a picture without "
+           "is simulated; the paper shows its figure as a picture without "
            "numbers\n",
            figure,
            figure == 11 ? "the original splatting" : "the same splatting",
@@ -109,7 +109,7 @@ snow_status figure_chart(const bench_options *options, int figure,
                               : "Speed-up of each splatting over itself on "
                                 "one node (the paper's figure 12)",
         .notes = {"256x256 grey, footprint 2x2; encoding, "
-                  "splatting and combining; nodes timed, network modelled",
+                  "splatting and combining; nodes timed, network simulated",
                   machine_processor()},
         .x_label = "nodes",
         .y_label = "speed-up",

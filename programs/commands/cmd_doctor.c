@@ -132,10 +132,10 @@ static int report_json(void) {
     json_object_set_new(o, "libraries", libraries_json());
     json_object_set_new(o, "isa_found", words_json(snow_isa_found()));
     json_object_set_new(o, "isa", json_string(snow_isa_used()));
-    json_object_set_new(o, "threads", json_integer(launch_processors()));
+    json_object_set_new(o, "threads", json_integer(process_processors()));
     json_object_set_new(
-        o, "mpi", launch_mpi() ? json_string(launch_mpi()) : json_false());
-    json_object_set_new(o, "ranks", json_integer(launch_ranks()));
+        o, "mpi", process_mpi() ? json_string(process_mpi()) : json_false());
+    json_object_set_new(o, "ranks", json_integer(process_ranks()));
     json_object_set_new(o, "display", json_false());
     json_object_set_new(o, "memory_bytes",
                         json_integer((json_int_t)memory_bytes()));
@@ -178,10 +178,10 @@ static int report_text(void) {
     print_libraries();
     printf("%-16sfound %s; used %s\n", "isa", snow_isa_found(),
            snow_isa_used());
-    printf("%-16s%d\n", "threads", launch_processors());
-    if (launch_mpi())
-        printf("%-16s%s, %d rank%s\n", "mpi", launch_mpi(), launch_ranks(),
-               launch_ranks() > 1 ? "s" : "");
+    printf("%-16s%d\n", "threads", process_processors());
+    if (process_mpi())
+        printf("%-16s%s, %d rank%s\n", "mpi", process_mpi(), process_ranks(),
+               process_ranks() > 1 ? "s" : "");
     else
         print_row("mpi", "no; use snowglass-mpi");
     print_row("display", "not needed");

@@ -25,15 +25,15 @@ static int prepare_movie(const options *opts, shot_renderer *shots,
     int done = check_movie(opts);
     if (done == CONTINUE)
         done = steps_find(opts, files);
-    done = launch_agree(done);
+    done = process_agree(done);
     if (done == CONTINUE)
         done = shots_open(opts, shots);
     if (done != CONTINUE)
         return done;
     done = steps_list(files, shots, list);
-    if (done == CONTINUE && launch_talks())
+    if (done == CONTINUE && process_talks())
         done = movie_open(opts, list, s);
-    return launch_agree(done);
+    return process_agree(done);
 }
 
 /* Chooses the transfer function, then makes the frames. */

@@ -4,7 +4,7 @@
  * Bad options are refused before the volume is read: options that contradict
  * each other and outputs that cannot be written. */
 #include "commands/commands.h"
-#include "picture/marks.h"
+#include "picture/annotations.h"
 #include "picture/outputs.h"
 #include "picture/paint.h"
 #include "picture/render_state.h"
@@ -37,7 +37,7 @@ int check_settings(const options *opts) {
     if (opts->view && opts->position.given)
         return fail_usage("--position: conflicts with --view, which also "
                           "places the camera; give only one of them");
-    int done = marks_check(opts);
+    int done = annotations_check(opts);
     return done == CONTINUE ? check_look(opts) : done;
 }
 
@@ -95,7 +95,7 @@ static int check_combination(const options *opts) {
     if (is_stream(opts->output) && isatty(STDOUT_FILENO))
         return fail_usage("--output: standard output is a terminal; send it to "
                           "a pipe or a file");
-    int done = scene_check(opts);
+    int done = render_state_check(opts);
     if (done == CONTINUE)
         done = check_depth(opts);
     return done == CONTINUE ? check_settings(opts) : done;
@@ -187,7 +187,7 @@ int make_settings(const options *opts, const snow_volume_info *info,
                   snow_settings *out) {
     fill_settings(opts, out);
     if (!out->threads)
-        out->threads = launch_threads();
+        out->threads = process_threads();
     return opacity_length(opts, info, &out->opacity_length);
 }
 
@@ -221,21 +221,23 @@ int make_view(snow_context *context, const options *opts,
 
 /* One picture and its timings. */
 typedef struct work {
-    scene scene;
+    render_state state;
     snow_image *image; /* NULL on ranks that do not write */
     double begin;
     paint_given painted; /* how a picture of values was painted */
 } work;
 
-static snow_status make_marks(const work *w, snow_overlay **out) {
-    const scene *s = &w->scene;
-    const picture_marks marks = {s->opts,
-                                 s->whole,
-                                 s->view,
-                                 s->transfer,
-                                 {w->painted.range[0], w->painted.range[1]}};
-    marks_report(s->opts);
-    return marks_make(&marks, s->opts->azimuth, -1, s->context, out);
+static snow_status make_annotations(const work *w, snow_overlay **out) {
+    const render_state *s = &w->state;
+    const picture_annotations annotations = {
+        s->opts,
+        s->whole,
+        s->view,
+        s->transfer,
+        {w->painted.range[0], w->painted.range[1]}};
+    annotations_report(s->opts);
+    return annotations_make(&annotations, s->opts->azimuth, -1, s->context,
+                            out);
 }
 
 /* A pipe is written directly and may block, so an interruption there does not
@@ -247,13 +249,13 @@ static int write_picture(work *w, const options *opts) {
     if (!is_special(opts->output))
         interrupt_hold(); /* before the message, so that its reader can rely on
                              it */
-    if (!launch_talks())
+    if (!process_talks())
         return CONTINUE;
     const snow_image_options plain = {.size = sizeof plain,
                                       .overwrite = opts->overwrite};
-    const snow_image *depth = snow_frame_depth(w->scene.frame);
+    const snow_image *depth = snow_frame_depth(w->state.frame);
     bool beside = is_beside(opts);
-    snow_status status = make_marks(w, &overlay);
+    snow_status status = make_annotations(w, &overlay);
     progress_begin(opts, "writing");
     form.overlay = overlay;
     form.depth = beside ? depth : NULL;
@@ -262,17 +264,17 @@ static int write_picture(work *w, const options *opts) {
     if (status == SNOW_STATUS_OK && opts->depth && !beside)
         status = snow_image_save(depth, opts->depth, &plain);
     snow_overlay_free(overlay);
-    w->scene.times.write = seconds_now() - begin;
+    w->state.times.write = seconds_now() - begin;
     return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_status(w->scene.context, status);
+                                    : fail_status(w->state.context, status);
 }
 
 /* Comes after the picture is written, since the figures include the writing. */
 static int report_figures(work *w, const options *opts) {
-    if (!launch_talks())
+    if (!process_talks())
         return SNOW_STATUS_OK;
-    w->scene.times.total = seconds_now() - w->begin;
-    render_report report = scene_report(&w->scene);
+    w->state.times.total = seconds_now() - w->begin;
+    render_report report = render_state_report(&w->state);
     report.image = w->image;
     if (opts->verbosity > 0)
         log_stats(&report);
@@ -285,34 +287,34 @@ static int report_figures(work *w, const options *opts) {
 
 static void report_choices(const work *w) {
     char text[1024];
-    scene_choices(&w->scene, text, sizeof text);
-    if (w->scene.opts->verbosity >= 0)
+    render_state_choices(&w->state, text, sizeof text);
+    if (w->state.opts->verbosity >= 0)
         say("%s%s", text, w->painted.words);
-    warn_picture(&w->scene, w->image);
+    warn_picture(&w->state, w->image);
 }
 
 /* Refuses what can be refused before anything is read; the rank that writes
  * checks the outputs. */
 static int check_request(work *w, const options *opts) {
-    int done = launch_agree(check_combination(opts));
+    int done = process_agree(check_combination(opts));
     if (done == CONTINUE)
-        done = scene_new(opts, &w->scene);
-    if (done != CONTINUE || !launch_talks())
+        done = render_state_new(opts, &w->state);
+    if (done != CONTINUE || !process_talks())
         return done;
-    return check_paths(w->scene.context, opts);
+    return check_paths(w->state.context, opts);
 }
 
 /* Up to the picture in memory. */
 static int make_picture(work *w, const options *opts) {
     progress_begin(opts, "reading");
-    int done = scene_open(&w->scene, opts->operands[0], opts->time);
+    int done = render_state_open(&w->state, opts->operands[0], opts->time);
     progress_end(opts);
     if (done != CONTINUE)
         return done;
     progress_begin(opts, "rendering");
-    done = scene_draw(&w->scene, opts->azimuth, &w->image);
+    done = render_state_draw(&w->state, opts->azimuth, &w->image);
     if (done == CONTINUE)
-        done = paint_values(opts, w->scene.context, w->scene.transfer, false,
+        done = paint_values(opts, w->state.context, w->state.transfer, false,
                             &w->image, &w->painted);
     progress_end(opts);
     return done;
@@ -320,16 +322,16 @@ static int make_picture(work *w, const options *opts) {
 
 /* The stages in their order; the first fault ends them. */
 static int run_stages(work *w, const options *opts) {
-    int done = launch_agree(check_request(w, opts));
+    int done = process_agree(check_request(w, opts));
     if (done != CONTINUE)
         return done;
     interrupt_guard();
     done = make_picture(w, opts);
-    done = launch_agree(interrupt_unguard() ? EXIT_INTERRUPTED : done);
+    done = process_agree(interrupt_unguard() ? EXIT_INTERRUPTED : done);
     if (done != CONTINUE)
         return done;
     report_choices(w);
-    done = launch_agree(write_picture(w, opts));
+    done = process_agree(write_picture(w, opts));
     progress_end(opts);
     return done == CONTINUE ? report_figures(w, opts) : done;
 }
@@ -339,6 +341,6 @@ int cmd_render(const options *opts) {
     work w = {.begin = seconds_now()};
     int done = run_stages(&w, opts);
     snow_image_free(w.image);
-    scene_free(&w.scene);
+    render_state_free(&w.state);
     return done;
 }

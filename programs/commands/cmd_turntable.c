@@ -33,7 +33,7 @@ static int check_turntable(const options *opts) {
     if (opts->resume && strcmp(opts->operands[0], "-") == 0)
         return fail_usage("--resume: standard input cannot be compared with "
                           "the earlier run's; name a file");
-    int done = scene_check(opts);
+    int done = render_state_check(opts);
     return done == CONTINUE ? movie_check(opts) : done;
 }
 
@@ -43,15 +43,15 @@ static int prepare_turntable(const options *opts, shot_list *list,
     int done = check_turntable(opts);
     if (done == CONTINUE)
         done = make_shots(opts, list);
-    if (done == CONTINUE && launch_talks())
+    if (done == CONTINUE && process_talks())
         done = movie_open(opts, list, s);
-    done = launch_agree(done);
+    done = process_agree(done);
     if (done == CONTINUE)
         done = shots_open(opts, shots);
     if (done != CONTINUE)
         return done;
     shots->count = list->count;
-    shots->scene.turns = true;
+    shots->state.turns = true;
     /* here, where an interruption still ends at once */
     return shots_volume(shots, &list->shots[0]);
 }

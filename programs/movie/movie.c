@@ -49,10 +49,10 @@ struct movie {
     bool claimed;  /* the record belongs to this run */
     bool begun;    /* and has been written */
     bool made_folder;
-    snow_image_options form; /* the form of the frames' files */
-    picture_marks
-        marks; /* marks of the frames, known from the first picture on */
-    bool has_marks;
+    snow_image_options form;         /* the form of the frames' files */
+    picture_annotations annotations; /* annotations of the frames, known from
+                                the first picture on */
+    bool has_annotations;
 };
 
 int movie_check(const options *opts) {
@@ -133,8 +133,8 @@ static snow_status make_frame(const movie *s, frame_slot *slot) {
     snow_overlay *overlay = NULL;
     snow_image_options form = s->form;
     char path[PATH_MAX];
-    snow_status status = marks_make(&s->marks, shot->azimuth, shot->step,
-                                    slot->context, &overlay);
+    snow_status status = annotations_make(&s->annotations, shot->azimuth,
+                                          shot->step, slot->context, &overlay);
     form.overlay = overlay;
     form.depth = slot->depth;
     place_aside(&s->place, slot->index, path, sizeof path);
@@ -261,7 +261,7 @@ void movie_close(movie *s) {
 }
 
 static int64_t count_threads(const options *opts) {
-    return opts->threads ? opts->threads : launch_processors();
+    return opts->threads ? opts->threads : process_processors();
 }
 
 /* Half of the processors compress, at most FRAME_WORKERS_MOST; fewer if
@@ -391,10 +391,11 @@ static void hand_over(run *r, int64_t index, snow_image *image) {
     render_report report = {0};
     r->renderer->report(r->renderer->self, &report);
     movie_figures_add(&r->figures, &report);
-    if (!r->s->has_marks) /* the queue's lock makes them visible to the workers
-                           */
-        r->renderer->marks(r->renderer->self, &r->s->marks);
-    r->s->has_marks = true;
+    if (!r->s->has_annotations) /* the queue's lock makes them visible to the
+                                 * workers
+                                 */
+        r->renderer->annotations(r->renderer->self, &r->s->annotations);
+    r->s->has_annotations = true;
     (void)frames_put(r->s->queue, index, image,
                      r->renderer->depth(r->renderer->self));
     snow_image_free(r->last);

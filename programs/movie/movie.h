@@ -18,7 +18,7 @@
 #define MOVIE_H
 
 #include "options/options.h"
-#include "picture/marks.h"
+#include "picture/annotations.h"
 
 /* A frame to be made. */
 typedef struct movie_shot {
@@ -58,9 +58,9 @@ typedef struct movie_renderer {
      * Called on the rank that writes. */
     void (*report)(void *self, render_report *out);
 
-    /* The marks of the pictures, known after the first one.  Called on the rank
-     * that writes. */
-    void (*marks)(void *self, picture_marks *out);
+    /* The annotations of the pictures, known after the first one.  Called on
+     * the rank that writes. */
+    void (*annotations)(void *self, picture_annotations *out);
 
     /* Sends the word of the rank that writes to all.  NULL if there is one
      * rank. */

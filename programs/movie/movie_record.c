@@ -101,8 +101,8 @@ static char *write_text(const options *opts, const shot_list *list) {
         return NULL;
     fprintf(out, FIRST_LINE "version %s\nkernels %s\n", snow_version(),
             kernels(opts));
-    if (launch_ranks() > 1 && !opts->deterministic)
-        fprintf(out, "ranks %d\n", launch_ranks());
+    if (process_ranks() > 1 && !opts->deterministic)
+        fprintf(out, "ranks %d\n", process_ranks());
     print_options(out, opts);
     print_shots(out, list);
     bool good = !ferror(out);
@@ -239,8 +239,8 @@ static int check_other_files(const options *opts, const movie_place *place,
         recorded ? "--resume to continue, " : "");
 }
 
-/* Whether the record allows to resume; if so, marks the frames that are kept.
- * Otherwise `old` and `now` point to the first lines that differ. */
+/* Whether the record allows to resume; if so, marks the frames that are
+ * kept. Otherwise `old` and `now` point to the first lines that differ. */
 static bool fits(const shot_list *list, const movie_place *place,
                  const char **old, const char **now, const char *done,
                  frame_record *out) {

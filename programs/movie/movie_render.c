@@ -13,11 +13,11 @@
 
 int shots_open(const options *opts, shot_renderer *out) {
     *out = (shot_renderer){.count = 0};
-    return scene_new(opts, &out->scene);
+    return render_state_new(opts, &out->state);
 }
 
 void shots_close(shot_renderer *shots) {
-    scene_free(&shots->scene);
+    render_state_free(&shots->state);
 }
 
 /* A volume elsewhere in the world would move the camera, and the movie would
@@ -53,14 +53,14 @@ int shots_check(shot_renderer *shots, const char *path,
 }
 
 int shots_volume(shot_renderer *shots, const movie_shot *shot) {
-    scene *s = &shots->scene;
+    render_state *s = &shots->state;
     if (s->volume && strcmp(s->path, shot->path) == 0 &&
         shots->time == shot->time)
         return CONTINUE;
     if (!shots->drawn)
         progress(s->opts, "reading");
     shots->time = shot->time;
-    int done = scene_open(s, shot->path, shot->time);
+    int done = render_state_open(s, shot->path, shot->time);
     return done == CONTINUE
                ? shots_check(shots, name_of_input(shot->path), &s->whole)
                : done;
@@ -69,33 +69,34 @@ int shots_volume(shot_renderer *shots, const movie_shot *shot) {
 /* Prints the settings that were chosen automatically, as render does, for all
  * frames. */
 static void report_choices(const shot_renderer *shots, snow_image *image) {
-    const options *opts = shots->scene.opts;
+    const options *opts = shots->state.opts;
     char text[1024];
-    scene_choices(&shots->scene, text, sizeof text);
+    render_state_choices(&shots->state, text, sizeof text);
     if (opts->verbosity >= 0)
         say("%s%s; %" PRId64 " frames of %lldx%lld to %s", text,
             shots->painted.words, shots->count, (long long)opts->size[0],
             (long long)opts->size[1], opts->output);
     /* An empty first step says nothing about later ones, so only a turntable
      * warns. */
-    warn_picture(&shots->scene, shots->scene.turns ? image : NULL);
-    marks_report(opts);
+    warn_picture(&shots->state, shots->state.turns ? image : NULL);
+    annotations_report(opts);
 }
 
 static int begin(void *self, const movie_shot *shot) {
     shot_renderer *shots = self;
     int done = shots_volume(shots, shot);
-    shots->scene.left = shots->count - shots->begun++;
-    return done == CONTINUE ? scene_begin(&shots->scene, shot->azimuth) : done;
+    shots->state.left = shots->count - shots->begun++;
+    return done == CONTINUE ? render_state_begin(&shots->state, shot->azimuth)
+                            : done;
 }
 
 static int finish_shot(void *self, snow_image **image) {
     shot_renderer *shots = self;
-    int done = scene_finish(&shots->scene, image);
+    int done = render_state_finish(&shots->state, image);
     if (done == CONTINUE)
         done =
-            paint_values(shots->scene.opts, shots->scene.context,
-                         shots->scene.transfer, true, image, &shots->painted);
+            paint_values(shots->state.opts, shots->state.context,
+                         shots->state.transfer, true, image, &shots->painted);
     if (done != CONTINUE)
         return done;
     if (!shots->drawn)
@@ -106,39 +107,40 @@ static int finish_shot(void *self, snow_image **image) {
 
 static const snow_image *depth(void *self) {
     const shot_renderer *shots = self;
-    return shots->scene.opts->depth ? snow_frame_depth(shots->scene.frame)
+    return shots->state.opts->depth ? snow_frame_depth(shots->state.frame)
                                     : NULL;
 }
 
 static void report_picture(void *self, render_report *out) {
     const shot_renderer *shots = self;
-    *out = scene_report(&shots->scene);
+    *out = render_state_report(&shots->state);
 }
 
-static void marks(void *self, picture_marks *out) {
+static void annotations(void *self, picture_annotations *out) {
     const shot_renderer *shots = self;
-    const scene *s = &shots->scene;
-    *out = (picture_marks){s->opts,
-                           s->drawn.whole,
-                           s->view,
-                           s->transfer,
-                           {shots->painted.range[0], shots->painted.range[1]}};
+    const render_state *s = &shots->state;
+    *out = (picture_annotations){
+        s->opts,
+        s->drawn.whole,
+        s->view,
+        s->transfer,
+        {shots->painted.range[0], shots->painted.range[1]}};
 }
 
 static int share_word(void *self, int word) {
     (void)self;
-    return launch_share(word);
+    return process_share(word);
 }
 
 movie_renderer shots_renderer(shot_renderer *shots) {
     return (movie_renderer){.self = shots,
                             .begin = begin,
                             .finish = finish_shot,
-                            .ahead = launch_ranks() > 1,
+                            .ahead = process_ranks() > 1,
                             .depth = depth,
                             .report = report_picture,
-                            .marks = marks,
+                            .annotations = annotations,
                             .share = share_word,
-                            .writes = launch_talks(),
-                            .ranks = launch_ranks()};
+                            .writes = process_talks(),
+                            .ranks = process_ranks()};
 }

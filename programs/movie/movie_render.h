@@ -8,7 +8,7 @@
 #include "picture/render_state.h"
 
 typedef struct shot_renderer {
-    scene scene;
+    render_state state;
     int64_t count;         /* number of frames, for messages */
     int64_t begun;         /* frames begun */
     int64_t time;          /* time step of the present volume */

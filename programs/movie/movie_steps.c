@@ -181,12 +181,12 @@ static bool look_is_fixed(const options *opts) {
 /* Reads what the header says about a shot's volume. */
 static int inspect(const shot_renderer *shots, const movie_shot *shot,
                    snow_volume_info *out) {
-    options step = scene_step(&shots->scene, shot->time);
+    options step = render_state_step(&shots->state, shot->time);
     snow_volume_options data = data_options(&step);
     snow_status status =
-        snow_volume_inspect(shots->scene.context, shot->path, &data, out);
+        snow_volume_inspect(shots->state.context, shot->path, &data, out);
     return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_status(shots->scene.context, status);
+                                    : fail_status(shots->state.context, status);
 }
 
 /* The last number in a file's name before its suffix: 10 for run_0010.nrrd;
@@ -206,14 +206,14 @@ static int64_t number_in(const char *path, int64_t usual) {
 }
 
 int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
-    const options *opts = shots->scene.opts;
+    const options *opts = shots->state.opts;
     movie_shot first = {files->paths[0], opts->time, opts->azimuth, 0};
     out->count = files->count;
     const bool given = options_given(opts, "time");
-    shots->scene.steps = true;
-    shots->scene.each_time = files->count == 1 && !given;
+    shots->state.steps = true;
+    shots->state.each_time = files->count == 1 && !given;
     shots->whole_files = files->count > 1 && !given;
-    if (shots->scene.each_time) {
+    if (shots->state.each_time) {
         snow_volume_info info = {.size = sizeof info};
         int done = inspect(shots, &first, &info);
         if (done != CONTINUE)
@@ -318,7 +318,7 @@ static void pool_slab(value_pool *pool, const snow_volume_info *whole,
  * the shape of `step` (a block, a slice or a row), since the shape counts.
  * Missing values are NaN; memory for them is available where steps were
  * read. */
-static int look_at_pool(scene *s, const snow_volume_info *step,
+static int look_at_pool(render_state *s, const snow_volume_info *step,
                         value_pool *pool) {
     snow_volume_info info = {
         .size = sizeof info, .dims = {1, 1, 1}, .type = SNOW_TYPE_FLOAT64};
@@ -359,11 +359,11 @@ static void share_of(int64_t slices, int group, int member, int64_t slab[2]) {
 /* Reads a share of a step, which may be the whole step. */
 static int read_share(shot_renderer *shots, const movie_shot *shot, int member,
                       value_pool *pool) {
-    scene *s = &shots->scene;
+    render_state *s = &shots->state;
     snow_volume *volume = NULL;
     snow_volume_info whole = {.size = sizeof whole};
     int64_t slab[2];
-    options step = scene_step(s, shot->time);
+    options step = render_state_step(s, shot->time);
     snow_volume_options data = data_options(&step);
     int done = inspect(shots, shot, &whole);
     if (done == CONTINUE)
@@ -387,9 +387,9 @@ static int read_share(shot_renderer *shots, const movie_shot *shot, int member,
 
 static int read_step(shot_renderer *shots, const movie_shot *shot,
                      value_pool *pool) {
-    scene *s = &shots->scene;
+    render_state *s = &shots->state;
     snow_volume *volume = NULL;
-    options step = scene_step(s, shot->time);
+    options step = render_state_step(s, shot->time);
     snow_volume_options data = data_options(&step);
     int done = memory_check(&step, shot->path, &data);
     if (done == CONTINUE)
@@ -407,12 +407,12 @@ static int read_step(shot_renderer *shots, const movie_shot *shot,
 static int append_share(value_pool *pool, int rank, double ends[2]) {
     double *to = pool->values + pool->count;
     step_values given = pool->given;
-    snow_comm *comm = launch_comm();
+    snow_comm *comm = process_comm();
     snow_status status = SNOW_STATUS_OK;
     if (comm)
         status = snow_comm_broadcast(comm, &given, sizeof given, rank);
     size_t bytes = (size_t)given.count * sizeof *to;
-    if (rank == launch_rank())
+    if (rank == process_rank())
         memcpy(to, pool->step, bytes);
     if (comm && status == SNOW_STATUS_OK)
         status = snow_comm_broadcast(comm, to, bytes, rank);
@@ -437,17 +437,18 @@ static int append_step(value_pool *pool, int group) {
 /* Reads steps from `first` on, one for each group of ranks. */
 static int pool_round(const shot_list *list, int64_t first,
                       shot_renderer *shots, value_pool *pool) {
-    const int groups = launch_ranks() / pool->group;
-    int mine = launch_rank() / pool->group, done = CONTINUE;
+    const int groups = process_ranks() / pool->group;
+    int mine = process_rank() / pool->group, done = CONTINUE;
     double begin = seconds_now();
     if (mine < groups && first + mine < list->count) {
         const movie_shot *shot = &list->shots[first + mine];
-        done = pool->group == 1
-                   ? read_step(shots, shot, pool)
-                   : read_share(shots, shot, launch_rank() % pool->group, pool);
+        done =
+            pool->group == 1
+                ? read_step(shots, shot, pool)
+                : read_share(shots, shot, process_rank() % pool->group, pool);
     }
-    shots->scene.times.read += seconds_now() - begin;
-    done = launch_agree(done);
+    shots->state.times.read += seconds_now() - begin;
+    done = process_agree(done);
     for (int group = 0; group < groups && first + group < list->count; group++)
         if (done == CONTINUE)
             done = append_step(pool, group);
@@ -458,7 +459,7 @@ static int pool_round(const shot_list *list, int64_t first,
  * more if a step is too large for so few. */
 static int choose_group(const options *opts, const snow_volume_info *step,
                         int64_t steps) {
-    const int ranks = launch_ranks();
+    const int ranks = process_ranks();
     int group = steps < ranks ? ranks / (int)steps : 1;
     snow_volume_info share = *step;
     for (; group < ranks; group++) {
@@ -476,17 +477,17 @@ static int pool_steps(const shot_list *list, shot_renderer *shots,
     int done = inspect(shots, &list->shots[0], &first);
     if (done == CONTINUE)
         done = shots_check(shots, list->shots[0].path, &first);
-    done = launch_agree(done);
+    done = process_agree(done);
     if (done == CONTINUE)
-        pool->group = choose_group(shots->scene.opts, &first, list->count);
-    int groups = done == CONTINUE ? launch_ranks() / pool->group : 1;
+        pool->group = choose_group(shots->state.opts, &first, list->count);
+    int groups = done == CONTINUE ? process_ranks() / pool->group : 1;
     for (int64_t i = 0; i < list->count && done == CONTINUE; i += groups) {
-        report_step(shots->scene.opts, i, list->count);
+        report_step(shots->state.opts, i, list->count);
         done = pool_round(list, i, shots, pool);
     }
-    hear_warnings(shots->scene.opts, shots->scene.context, true);
+    hear_warnings(shots->state.opts, shots->state.context, true);
     return done == CONTINUE
-               ? launch_agree(look_at_pool(&shots->scene, &first, pool))
+               ? process_agree(look_at_pool(&shots->state, &first, pool))
                : done;
 }
 
@@ -498,17 +499,17 @@ int steps_look(const shot_list *list, shot_renderer *shots) {
         pool.quota = STEP_VALUES;
     /* All steps are opened again later and cause the same notes.  They are
      * printed now, except if ranks read steps that rank 0 does not see now. */
-    const bool later = launch_ranks() > 1;
-    hear_warnings(shots->scene.opts, shots->scene.context, !later);
+    const bool later = process_ranks() > 1;
+    hear_warnings(shots->state.opts, shots->state.context, !later);
     int64_t room = pool.quota + 2;
     pool.values =
         malloc((size_t)(room * (list->count + 1)) * sizeof *pool.values);
-    int done = launch_agree(pool.values ? CONTINUE : fail_memory());
+    int done = process_agree(pool.values ? CONTINUE : fail_memory());
     if (done == CONTINUE) {
         pool.step = pool.values + room * list->count;
         done = pool_steps(list, shots, &pool);
     }
     free(pool.values);
-    hear_warnings(shots->scene.opts, shots->scene.context, later);
+    hear_warnings(shots->state.opts, shots->state.context, later);
     return done;
 }

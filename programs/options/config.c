@@ -175,7 +175,7 @@ static int take_file(options *out, const verb_row *verb) {
 
 /* All ranks read the file; if one of them cannot, all return an error. */
 int config_take(options *out, const verb_row *verb) {
-    return out->config ? launch_agree(take_file(out, verb)) : CONTINUE;
+    return out->config ? process_agree(take_file(out, verb)) : CONTINUE;
 }
 
 /* --- writing -------------------------------------------------------------- */
@@ -279,7 +279,7 @@ static int check_place(const options *opts) {
 int config_check(const options *opts) {
     if (!opts->save_config)
         return CONTINUE;
-    return launch_agree(launch_talks() ? check_place(opts) : CONTINUE);
+    return process_agree(process_talks() ? check_place(opts) : CONTINUE);
 }
 
 /* The recipe as a JSON tree; the library writes it as text. */
@@ -301,7 +301,7 @@ int config_save(const options *opts) {
     snow_context *context = NULL;
     snow_recipe recipe = {.size = sizeof recipe};
     json_t *tree = NULL;
-    if (!opts->save_config || !launch_talks())
+    if (!opts->save_config || !process_talks())
         return SNOW_STATUS_OK;
     fill_recipe(opts, &recipe);
     if (snow_context_new(NULL, &context) == SNOW_STATUS_OK)

@@ -55,7 +55,7 @@ void options_init(options *out) {
 }
 
 bool topic_is_here(topic which) {
-    return which != TOPIC_RANKS || launch_mpi() != NULL;
+    return which != TOPIC_RANKS || process_mpi() != NULL;
 }
 
 /* The index is the number of choices before the word in the row. */

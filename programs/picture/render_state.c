@@ -24,32 +24,32 @@ typedef struct rank_figures {
     uint64_t peak;
 } rank_figures;
 
-int scene_check(const options *opts) {
+int render_state_check(const options *opts) {
     warn_unused(opts);
-    if (launch_ranks() > 1 && strcmp(opts->operands[0], "-") == 0)
+    if (process_ranks() > 1 && strcmp(opts->operands[0], "-") == 0)
         return fail_usage("-: standard input cannot be shared by several "
                           "ranks, which each read a part; name a file");
     return CONTINUE;
 }
 
-int scene_new(const options *opts, scene *out) {
-    *out = (scene){.opts = opts};
+int render_state_new(const options *opts, render_state *out) {
+    *out = (render_state){.opts = opts};
     int done = open_render_context(opts, &out->context);
     if (done == CONTINUE) {
         snow_context_set_memory_limit(out->context, opts->memory);
         snow_context_set_progress(out->context, progress_hear, NULL);
-        size_t ranks = (size_t)launch_ranks();
+        size_t ranks = (size_t)process_ranks();
         out->figures = calloc(ranks, sizeof(rank_figures));
         if (!out->figures) {
             say("out of memory at the start; close other programs");
             done = SNOW_STATUS_NO_MEMORY;
         }
     }
-    return launch_agree(done);
+    return process_agree(done);
 }
 
 /* In any order, but the context last; all of them accept NULL. */
-void scene_free(scene *s) {
+void render_state_free(render_state *s) {
     snow_image_free(s->made);
     snow_frame_free(s->frame);
     snow_transfer_free(s->transfer);
@@ -61,7 +61,7 @@ void scene_free(scene *s) {
 
 /* --- a volume ------------------------------------------------------------- */
 
-static int place_camera(scene *s) {
+static int place_camera(render_state *s) {
     int done = make_view(s->context, s->opts, &s->whole, &s->view);
     if (done == CONTINUE)
         done = make_settings(s->opts, &s->whole, &s->settings);
@@ -70,7 +70,7 @@ static int place_camera(scene *s) {
 }
 
 /* What `frames` pictures of a turn show, from each side. */
-static snow_status frame_turn(scene *s, snow_comm *comm, size_t frames) {
+static snow_status frame_turn(render_state *s, snow_comm *comm, size_t frames) {
     double *azimuths = malloc(frames * sizeof *azimuths);
     if (!azimuths)
         return snow_context_fail(s->context, SNOW_STATUS_NO_MEMORY,
@@ -87,8 +87,8 @@ static snow_status frame_turn(scene *s, snow_comm *comm, size_t frames) {
 
 /* Frames what the look shows, once for all pictures.  What later steps show is
  * not known: their grid is framed. */
-static snow_status frame_view(scene *s) {
-    snow_comm *comm = launch_ranks() > 1 ? launch_comm() : NULL;
+static snow_status frame_view(render_state *s) {
+    snow_comm *comm = process_ranks() > 1 ? process_comm() : NULL;
     snow_status status = SNOW_STATUS_OK;
     if (strcmp(s->opts->fit, "visible") != 0)
         return SNOW_STATUS_OK;
@@ -108,7 +108,7 @@ static snow_status frame_view(scene *s) {
 
 /* If a look was chosen automatically for a volume without surfaces, it is not
  * shaded, unless shading is requested. */
-static void choose_shade(scene *s) {
+static void choose_shade(render_state *s) {
     if (s->transfer && snow_transfer_is_unshaded(s->transfer) &&
         !options_given(s->opts, "shade"))
         s->settings.shade = SNOW_SHADE_NONE;
@@ -123,7 +123,7 @@ static void return_memory(void) {
 }
 
 /* Opens the volume in memory or in its file. */
-static int open_as_planned(scene *s, const options *step) {
+static int open_as_planned(render_state *s, const options *step) {
     if (!s->plan.streams)
         return open_input(s->context, step, s->path, &s->volume);
     return_memory();
@@ -143,7 +143,7 @@ static int open_as_planned(scene *s, const options *step) {
     return CONTINUE;
 }
 
-static int plan_memory(scene *s, const options *step) {
+static int plan_memory(render_state *s, const options *step) {
     snow_volume_options data = data_options(step);
     bool report = step->verbosity > 0 && !s->transfer;
     int done = memory_plan_for(step, s->path, &data, report, &s->plan);
@@ -156,7 +156,7 @@ static int plan_memory(scene *s, const options *step) {
 
 /* The volume is in memory, but what is computed from it does not fit beside it:
  * opens it again as a stream, and starts over. */
-static int leave_in_file(scene *s, const options *step) {
+static int leave_in_file(render_state *s, const options *step) {
     snow_frame_free(s->frame);
     s->frame = NULL;
     snow_volume_close(s->volume);
@@ -165,13 +165,13 @@ static int leave_in_file(scene *s, const options *step) {
     return open_as_planned(s, step);
 }
 
-static bool may_leave(const scene *s, snow_status status) {
+static bool may_leave(const render_state *s, snow_status status) {
     return status == SNOW_STATUS_NO_MEMORY && s->plan.may_stream &&
            !s->plan.streams;
 }
 
 /* Reading slabs is not counted. */
-static snow_status make_look(scene *s, const options *step) {
+static snow_status make_look(render_state *s, const options *step) {
     snow_look look = look_options(step);
     double begin = seconds_now(), before = snow_volume_read_seconds(s->volume);
     snow_status status =
@@ -182,7 +182,7 @@ static snow_status make_look(scene *s, const options *step) {
     return status;
 }
 
-static int frame_alone(scene *s, const options *step) {
+static int frame_alone(render_state *s, const options *step) {
     double begin = seconds_now(), before = snow_volume_read_seconds(s->volume);
     snow_status status = frame_view(s);
     int done = CONTINUE;
@@ -200,7 +200,7 @@ static int frame_alone(scene *s, const options *step) {
 }
 
 /* Decompression and conversion count as reading. */
-static int open_alone(scene *s, const options *step) {
+static int open_alone(render_state *s, const options *step) {
     int done = plan_memory(s, step);
     double begin = seconds_now();
     if (done == CONTINUE)
@@ -224,7 +224,7 @@ static int open_alone(scene *s, const options *step) {
 
 /* Eight bits per channel suffice between ranks if the picture is placed on a
  * background and rounded to them in the end. */
-static snow_ranks_options how_of(const scene *s) {
+static snow_ranks_options how_of(const render_state *s) {
     const options *opts = s->opts;
     bool coarse = opts->background.given && !opts->deterministic &&
                   !(opts->bits && opts->bits[0] == '1');
@@ -239,7 +239,7 @@ static snow_ranks_options how_of(const scene *s) {
 }
 
 /* The camera comes first: the partition of the volume depends on it. */
-static int inspect(scene *s, const snow_volume_options *data) {
+static int inspect(render_state *s, const snow_volume_options *data) {
     snow_volume_info_init(&s->whole);
     snow_status status =
         snow_volume_inspect(s->context, s->path, data, &s->whole);
@@ -249,17 +249,17 @@ static int inspect(scene *s, const snow_volume_options *data) {
 
 /* Making the transfer function counts as reading: it needs values of all
  * parts. */
-static int open_part(scene *s, const options *step) {
+static int open_part(render_state *s, const options *step) {
     double begin = seconds_now();
     snow_volume_options data = data_options(step);
     snow_look look = look_options(step);
     snow_ranks_options how = how_of(s);
     snow_transfer *transfer = NULL;
-    int done = launch_agree(inspect(s, &data));
+    int done = process_agree(inspect(s, &data));
     if (done != CONTINUE)
         return done;
     snow_status status =
-        snow_ranks_open(launch_comm(), s->path, &data, &look, &s->view,
+        snow_ranks_open(process_comm(), s->path, &data, &look, &s->view,
                         &s->settings, &how, &s->volume, &transfer);
     if (status != SNOW_STATUS_OK)
         return fail_status(s->context, status);
@@ -269,7 +269,7 @@ static int open_part(scene *s, const options *step) {
     how.transfer = s->transfer;
     status = frame_view(s);
     if (status == SNOW_STATUS_OK && s->framed)
-        status = snow_ranks_repartition(launch_comm(), s->transfer, &s->view,
+        status = snow_ranks_repartition(process_comm(), s->transfer, &s->view,
                                         &s->settings, &how, &s->volume);
     if (status != SNOW_STATUS_OK)
         return fail_status(s->context, status);
@@ -277,7 +277,7 @@ static int open_part(scene *s, const options *step) {
     return CONTINUE;
 }
 
-options scene_step(const scene *s, int64_t time) {
+options render_state_step(const render_state *s, int64_t time) {
     options step = *s->opts;
     step.time = time;
     step.each_time = s->each_time;
@@ -285,12 +285,12 @@ options scene_step(const scene *s, int64_t time) {
 }
 
 /* The old volume is closed first: there is never memory for two. */
-int scene_open(scene *s, const char *path, int64_t time) {
-    options step = scene_step(s, time);
+int render_state_open(render_state *s, const char *path, int64_t time) {
+    options step = render_state_step(s, time);
     s->path = path;
     snow_volume_close(s->volume);
     s->volume = NULL;
-    return launch_ranks() > 1 ? open_part(s, &step) : open_alone(s, &step);
+    return process_ranks() > 1 ? open_part(s, &step) : open_alone(s, &step);
 }
 
 /* --- a picture ------------------------------------------------------------ */
@@ -316,9 +316,9 @@ static void add_figures(snow_stats *sum, const snow_stats *stats) {
     sum->pa_bytes += stats->pa_bytes;
 }
 
-static void sum_up(scene *s) {
+static void sum_up(render_state *s) {
     const rank_figures *figures = s->figures;
-    const int ranks = launch_ranks();
+    const int ranks = process_ranks();
     int64_t most = 0;
     s->stats = figures[0].stats;
     s->combine = s->gather = 0;
@@ -340,15 +340,15 @@ static void sum_up(scene *s) {
             1 - (double)s->stats.interesting / (double)s->stats.voxels;
 }
 
-static int take_figures(scene *s) {
+static int take_figures(render_state *s) {
     const snow_ranks_stats *shared = snow_frame_ranks_stats(s->frame);
     rank_figures mine = {*snow_frame_stats(s->frame), shared->seconds_combine,
                          shared->seconds_gather,
                          snow_context_peak_bytes(s->context)};
     snow_status status = SNOW_STATUS_OK;
-    if (launch_ranks() > 1)
+    if (process_ranks() > 1)
         status =
-            snow_comm_allgather(launch_comm(), &mine, sizeof mine, s->figures);
+            snow_comm_allgather(process_comm(), &mine, sizeof mine, s->figures);
     else
         memcpy(s->figures, &mine, sizeof mine);
     sum_up(s);
@@ -356,28 +356,28 @@ static int take_figures(scene *s) {
                                     : fail_status(s->context, status);
 }
 
-static snow_status begin_part(scene *s) {
+static snow_status begin_part(render_state *s) {
     snow_ranks_options how = how_of(s);
     snow_status status = SNOW_STATUS_OK;
     if (s->turns)
-        status =
-            snow_ranks_rebalance(s->frame, launch_comm(), s->transfer, &s->view,
-                                 &s->settings, &how, s->left, &s->volume);
+        status = snow_ranks_rebalance(s->frame, process_comm(), s->transfer,
+                                      &s->view, &s->settings, &how, s->left,
+                                      &s->volume);
     return status == SNOW_STATUS_OK
-               ? snow_ranks_begin(s->frame, launch_comm(), s->volume,
+               ? snow_ranks_begin(s->frame, process_comm(), s->volume,
                                   s->transfer, &s->view, &s->settings, &how)
                : status;
 }
 
-static int make_frame(scene *s) {
+static int make_frame(render_state *s) {
     if (s->frame) /* on all ranks */
         return CONTINUE;
     snow_status status = snow_frame_new(s->context, &s->frame);
-    return launch_agree(
+    return process_agree(
         status == SNOW_STATUS_OK ? CONTINUE : fail_status(s->context, status));
 }
 
-static snow_status draw_alone(scene *s) {
+static snow_status draw_alone(render_state *s) {
     double before = snow_volume_read_seconds(s->volume);
     snow_status status = snow_frame_render(s->frame, s->volume, s->transfer,
                                            &s->view, &s->settings, &s->made);
@@ -387,21 +387,21 @@ static snow_status draw_alone(scene *s) {
 
 /* A lost rank makes both pictures in flight fail; only one message is
  * printed. */
-static int fail_picture(scene *s, snow_status status, const char *path) {
+static int fail_picture(render_state *s, snow_status status, const char *path) {
     if (!s->fault)
         s->fault = fail_volume(s->context, status, name_of_input(path));
     return s->fault;
 }
 
-int scene_begin(scene *s, double azimuth) {
+int render_state_begin(render_state *s, double azimuth) {
     snow_status status;
     int done = make_frame(s);
     if (done != CONTINUE)
         return done;
     s->view.azimuth = azimuth;
-    status = launch_ranks() > 1 ? begin_part(s) : draw_alone(s);
+    status = process_ranks() > 1 ? begin_part(s) : draw_alone(s);
     if (may_leave(s, status)) {
-        options step = scene_step(s, s->whole.time);
+        options step = render_state_step(s, s->whole.time);
         done = leave_in_file(s, &step);
         if (done == CONTINUE)
             done = make_frame(s);
@@ -411,14 +411,14 @@ int scene_begin(scene *s, double azimuth) {
     }
     if (status != SNOW_STATUS_OK)
         return fail_picture(s, status, s->path);
-    s->begun[s->in_flight++] = (scene_shot){s->path, s->whole};
+    s->begun[s->in_flight++] = (render_state_shot){s->path, s->whole};
     return CONTINUE;
 }
 
-int scene_finish(scene *s, snow_image **image) {
+int render_state_finish(render_state *s, snow_image **image) {
     snow_image *made = s->made;
     snow_status status = SNOW_STATUS_OK;
-    if (launch_ranks() > 1)
+    if (process_ranks() > 1)
         status = snow_ranks_finish(s->frame, &made);
     s->made = NULL;
     s->drawn = s->begun[0];
@@ -434,14 +434,14 @@ int scene_finish(scene *s, snow_image **image) {
     return done;
 }
 
-int scene_draw(scene *s, double azimuth, snow_image **image) {
-    int done = scene_begin(s, azimuth);
-    return done == CONTINUE ? scene_finish(s, image) : done;
+int render_state_draw(render_state *s, double azimuth, snow_image **image) {
+    int done = render_state_begin(s, azimuth);
+    return done == CONTINUE ? render_state_finish(s, image) : done;
 }
 
 /* --- reports -------------------------------------------------------------- */
 
-render_report scene_report(const scene *s) {
+render_report render_state_report(const render_state *s) {
     return (render_report){.volume = &s->drawn.whole,
                            .stats = &s->stats,
                            .combine = s->combine,
@@ -452,7 +452,7 @@ render_report scene_report(const scene *s) {
                            .times = &s->times};
 }
 
-void scene_choices(const scene *s, char *out, size_t size) {
+void render_state_choices(const render_state *s, char *out, size_t size) {
     const double *from = s->opts->position.at;
     const char *view =
         s->opts->view ? s->opts->view : snow_view_default_name(&s->drawn.whole);

@@ -11,12 +11,12 @@
 #include <snowglass/ranks.h>
 
 /* The settings of one picture. */
-typedef struct scene_shot {
+typedef struct render_state_shot {
     const char *path;
     snow_volume_info whole; /* the whole volume; ranks have parts */
-} scene_shot;
+} render_state_shot;
 
-typedef struct scene {
+typedef struct render_state {
     const options *opts;
     const char *path; /* path of the volume */
     bool each_time;   /* all time steps of the file are opened in turn */
@@ -36,49 +36,49 @@ typedef struct scene {
     snow_settings settings;
     render_times
         times; /* seconds for reading and look; sums over all volumes */
-    scene_shot begun[2]; /* pictures in flight, the oldest first */
+    render_state_shot begun[2]; /* pictures in flight, the oldest first */
     int in_flight;
     int fault;        /* the reported error, 0: none; errors that follow are not
                          reported */
     snow_image *made; /* made by this process alone, and not finished */
     /* The last picture; for ranks sums, and seconds of the slowest. */
-    scene_shot drawn;
+    render_state_shot drawn;
     snow_stats stats;
     double combine, gather; /* seconds of stages of several ranks */
     uint64_t peak;          /* bytes; for ranks the maximum */
     double load;   /* most interesting voxels of a rank, divided by the mean */
     void *figures; /* figures of all ranks */
-} scene;
+} render_state;
 
 /* Refuses options that ranks do not support.  Returns CONTINUE or an exit
  * code. */
-int scene_check(const options *opts);
+int render_state_check(const options *opts);
 
 /* Returns CONTINUE or an exit code, as all functions here do. */
-int scene_new(const options *opts, scene *out);
-void scene_free(scene *s);
+int render_state_new(const options *opts, render_state *out);
+void render_state_free(render_state *s);
 
 /* The options with another time step. */
-options scene_step(const scene *s, int64_t time);
+options render_state_step(const render_state *s, int64_t time);
 
 /* Opens a time step of a volume in place of the present one, and makes the
- * requested look unless the scene has a transfer function already. */
-int scene_open(scene *s, const char *path, int64_t time);
+ * requested look unless the state has a transfer function already. */
+int render_state_open(render_state *s, const char *path, int64_t time);
 
 /* Renders from an azimuth.  *image belongs to the caller; NULL on ranks that do
  * not print. */
-int scene_draw(scene *s, double azimuth, snow_image **image);
+int render_state_draw(render_state *s, double azimuth, snow_image **image);
 
 /* The same in two halves.  Ranks may have two pictures in flight; finish
  * returns the one that was begun first.  Another step may be opened in
  * between. */
-int scene_begin(scene *s, double azimuth);
-int scene_finish(scene *s, snow_image **image);
+int render_state_begin(render_state *s, double azimuth);
+int render_state_finish(render_state *s, snow_image **image);
 
 /* The figures of the last picture, without an image. */
-render_report scene_report(const scene *s);
+render_report render_state_report(const render_state *s);
 
 /* Writes the line that reports the automatic choices, except its end. */
-void scene_choices(const scene *s, char *out, size_t size);
+void render_state_choices(const render_state *s, char *out, size_t size);
 
 #endif

@@ -107,7 +107,7 @@ json_t *stats_json(const render_report *report) {
                         json_string(snow_kernel_name(stats->kernel)));
     json_object_set_new(o, "footprint", json_integer(stats->footprint));
     json_object_set_new(o, "threads", json_integer(stats->threads));
-    json_object_set_new(o, "ranks", json_integer(launch_ranks()));
+    json_object_set_new(o, "ranks", json_integer(process_ranks()));
     json_object_set_new(o, "load", json_number(report->load));
     json_object_set_new(o, "isa", json_string(snow_isa_name(stats->isa)));
     json_object_set_new(o, "quality",
@@ -137,8 +137,8 @@ void log_stats(const render_report *report) {
             stats->kept_bytes, stats->kept_most);
     say("interesting voxels: %" PRId64 " of %" PRId64 ", sparse ratio %.1f %%",
         stats->interesting, stats->voxels, 100 * stats->sparse_ratio);
-    if (launch_ranks() > 1)
+    if (process_ranks() > 1)
         say("ranks: %d, load of the largest part %.2f; combine %.3f s, gather "
             "%.3f s",
-            launch_ranks(), report->load, report->combine, report->gather);
+            process_ranks(), report->load, report->combine, report->gather);
 }

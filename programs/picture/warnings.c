@@ -6,7 +6,7 @@
 #include <string.h>
 
 static bool is_heard(const options *opts) {
-    return opts->verbosity >= 0 && launch_talks();
+    return opts->verbosity >= 0 && process_talks();
 }
 
 /* An option of a configuration may be meant for another mode, so only options
@@ -31,7 +31,7 @@ void warn_unused(const options *opts) {
 }
 
 /* Reports a method that was requested by name, or a kernel's, but not used. */
-static void warn_method(const scene *s) {
+static void warn_method(const render_state *s) {
     bool opts =
         strcmp(s->opts->method, "shear-warp") == 0 ||
         (strcmp(s->opts->method, "auto") == 0 &&
@@ -55,7 +55,7 @@ static bool is_empty(snow_image *image) {
 }
 
 /* A picture of values has no opacity. */
-static void warn_empty(const scene *s, snow_image *image) {
+static void warn_empty(const render_state *s, snow_image *image) {
     snow_mode mode = s->settings.mode;
     if (!image || snow_image_channels(image) == 1 || !is_empty(image))
         return;
@@ -72,7 +72,7 @@ static void warn_empty(const scene *s, snow_image *image) {
             "--target, --position, --zoom and --clip");
 }
 
-void warn_picture(const scene *s, snow_image *image) {
+void warn_picture(const render_state *s, snow_image *image) {
     if (!is_heard(s->opts))
         return;
     warn_method(s);

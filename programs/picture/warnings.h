@@ -10,6 +10,6 @@ void warn_unused(const options *opts);
 
 /* Reports about the last picture, before anything is drawn on it: another
  * method than requested, and an empty picture, unless `image` is NULL. */
-void warn_picture(const scene *s, snow_image *image);
+void warn_picture(const render_state *s, snow_image *image);
 
 #endif

@@ -46,7 +46,7 @@ static void say_list(const char *format, va_list arguments) {
         if ((unsigned char)*at < ' ' || *at == 127)
             *at = '?';
     }
-    if (!launch_talks()) {
+    if (!process_talks()) {
         memcpy(kept, line, sizeof kept);
         return;
     }
@@ -89,9 +89,9 @@ int fail_status(const snow_context *context, snow_status status) {
     static bool reported_broken;
     if (status == SNOW_STATUS_STOPPED) /* interrupt.c has said so */
         return EXIT_INTERRUPTED;
-    if (launch_broken() && reported_broken)
+    if (process_broken() && reported_broken)
         return (int)status;
-    reported_broken = launch_broken();
+    reported_broken = process_broken();
     const char *message = context ? snow_context_message(context) : "";
     say("%s", *message ? message : snow_status_description(status));
     return (int)status;
@@ -127,20 +127,20 @@ int open_context(const options *opts, snow_context **out) {
 }
 
 void hear_warnings(const options *opts, snow_context *context, bool hear) {
-    hear = hear && opts->verbosity >= 0 && launch_talks();
+    hear = hear && opts->verbosity >= 0 && process_talks();
     snow_context_set_warning(context, hear ? hear_warning : NULL, NULL);
 }
 
 int open_render_context(const options *opts, snow_context **out) {
-    if (launch_ranks() == 1)
+    if (process_ranks() == 1)
         return open_context(opts, out);
-    *out = snow_comm_context(launch_comm());
+    *out = snow_comm_context(process_comm());
     hear_warnings(opts, *out, true);
     return CONTINUE;
 }
 
 void close_render_context(snow_context *context) {
-    if (launch_ranks() == 1)
+    if (process_ranks() == 1)
         snow_context_free(context);
 }
 
@@ -157,7 +157,7 @@ bool progress_is_live(void) {
 }
 
 bool progress_is_wanted(const options *opts) {
-    return launch_talks() && opts->verbosity >= 0 &&
+    return process_talks() && opts->verbosity >= 0 &&
            strcmp(opts->progress, "never") != 0;
 }
 

@@ -163,7 +163,7 @@ static const char *print_bytes(uint64_t bytes, char text[32]) {
 
 /* Why a picture cannot be made from slabs; NULL if it can. */
 static const char *why_whole(const char *path) {
-    if (launch_ranks() > 1 || strcmp(path, "-") == 0)
+    if (process_ranks() > 1 || strcmp(path, "-") == 0)
         return "this input";
     if (strncmp(path, "phantom:", 8) == 0)
         return "a phantom";
@@ -245,7 +245,7 @@ static bool is_small_folder(const char *path) {
 }
 
 static int threads_of(const options *opts) {
-    return opts->threads ? (int)opts->threads : launch_processors();
+    return opts->threads ? (int)opts->threads : process_processors();
 }
 
 static void report_need(const sizes *s) {

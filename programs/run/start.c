@@ -8,7 +8,7 @@
 #include <snowglass/snowglass.h>
 #include <stdlib.h>
 
-static launch now;
+static process_start now;
 
 /* 0 if the variable is not set or not valid. */
 static int number_given(const char *name) {
@@ -24,70 +24,70 @@ static void heed_slurm(void) {
     int limit = number_given("SLURM_CPUS_PER_TASK");
     if (!limit && !now.comm)
         limit = number_given("SLURM_CPUS_ON_NODE");
-    if (limit && limit < launch_processors())
+    if (limit && limit < process_processors())
         now.threads = limit;
 }
 
-void launch_begin(const launch *how) {
+void process_begin(const process_start *how) {
     now = *how;
     heed_slurm();
-    if (!launch_talks())
+    if (!process_talks())
         interrupt_mute();
 }
 
-int launch_rank(void) {
+int process_rank(void) {
     return now.comm ? snow_comm_rank(now.comm) : 0;
 }
 
-int launch_ranks(void) {
+int process_ranks(void) {
     return now.comm ? snow_comm_size(now.comm) : 1;
 }
 
-snow_comm *launch_comm(void) {
+snow_comm *process_comm(void) {
     return now.comm;
 }
 
-int launch_threads(void) {
+int process_threads(void) {
     return now.threads;
 }
 
-int launch_processors(void) {
+int process_processors(void) {
     return now.threads ? now.threads : snow_processors();
 }
 
-const char *launch_mpi(void) {
+const char *process_mpi(void) {
     return now.mpi;
 }
 
-bool launch_talks(void) {
-    return launch_rank() == 0;
+bool process_talks(void) {
+    return process_rank() == 0;
 }
 
-bool launch_broken(void) {
-    return launch_ranks() > 1 && snow_comm_broken(now.comm);
+bool process_broken(void) {
+    return process_ranks() > 1 && snow_comm_broken(now.comm);
 }
 
 /* The reason why the communicator broke was printed when it happened.  A rank
  * that does not print has kept its last message. */
-int launch_agree(int done) {
-    if (launch_ranks() == 1)
+int process_agree(int done) {
+    if (process_ranks() == 1)
         return done;
     snow_context *context = snow_comm_context(now.comm);
     const bool given = snow_comm_broken(now.comm);
     snow_status mine = done == CONTINUE ? SNOW_STATUS_OK : (snow_status)done;
-    if (mine != SNOW_STATUS_OK && !launch_talks() && !given)
+    if (mine != SNOW_STATUS_OK && !process_talks() && !given)
         snow_context_fail(context, mine, "%s", last_said());
     snow_status all = snow_comm_agree_status(now.comm, mine);
     if (all == SNOW_STATUS_OK)
         return done;
-    if (mine == SNOW_STATUS_OK && launch_talks() && !given)
+    if (mine == SNOW_STATUS_OK && process_talks() && !given)
         return fail_status(context, all);
     return (int)all;
 }
 
-int launch_share(int word) {
+int process_share(int word) {
     int shared = word;
-    if (launch_ranks() == 1)
+    if (process_ranks() == 1)
         return word;
     const bool given = snow_comm_broken(now.comm);
     snow_status status =

@@ -8,46 +8,46 @@
  * file that it cannot read, memory that it lacks) is agreed on before they
  * continue, since a rank that waits for one that has given up waits for
  * ever. */
-#ifndef LAUNCH_H
-#define LAUNCH_H
+#ifndef START_H
+#define START_H
 
 #include <snowglass/comm.h>
 
-typedef struct launch {
+typedef struct process_start {
     snow_comm *comm; /* of all ranks; NULL: a single process */
     int threads;     /* per rank if not given; 0: all */
     const char *mpi; /* the MPI library and its version, NULL: none */
-} launch;
+} process_start;
 
 /* Runs the tool; returns an exit code, the same on all ranks. */
-int tool_run(int argc, char **argv, const launch *how);
+int tool_run(int argc, char **argv, const process_start *how);
 
 /* Called by tool_run, first of all. */
-void launch_begin(const launch *how);
+void process_begin(const process_start *how);
 
-int launch_rank(void);  /* from 0 */
-int launch_ranks(void); /* at least 1 */
-snow_comm *launch_comm(void);
-int launch_threads(void);
+int process_rank(void);  /* from 0 */
+int process_ranks(void); /* at least 1 */
+snow_comm *process_comm(void);
+int process_threads(void);
 
 /* The default number of threads of a process: `threads` above, or all
  * processors that it may use (snow_processors, and Slurm's limit). */
-int launch_processors(void);
+int process_processors(void);
 
-const char *launch_mpi(void);
+const char *process_mpi(void);
 
 /* Whether this rank prints: the first one. */
-bool launch_talks(void);
+bool process_talks(void);
 
 /* Whether ranks can no longer agree because one is lost. */
-bool launch_broken(void);
+bool process_broken(void);
 
 /* Collective.  `done` is CONTINUE, SNOW_STATUS_OK or another exit code of this
  * rank. Returns it if all are well, otherwise the code of the lowest failed
  * rank, whose message the printing rank has then printed. */
-int launch_agree(int done);
+int process_agree(int done);
 
 /* Collective.  Returns the first rank's word. */
-int launch_share(int word);
+int process_share(int word);
 
 #endif

@@ -70,14 +70,14 @@ static size_t more(size_t a, size_t b) {
  * two sizes, and regions are largest in one of them. */
 static int64_t most_held(const snow_combiner *combiner, int level) {
     const snow_rounds *rounds = &combiner->rounds;
-    const snow_borders *borders = &combiner->borders;
+    const snow_region_bounds *bounds = &combiner->bounds;
     int group = rounds->rank_order;
     for (int i = rounds->count - 1; i >= level && group > 1; i--)
         group = group / rounds->radices[i] > 1 ? group / rounds->radices[i] : 1;
     if (rounds->tree || level == 0)
-        return snow_border_room(borders, 1);
-    return most(snow_border_room(borders, group),
-                snow_border_room(borders, group + 1));
+        return snow_region_room(bounds, 1);
+    return most(snow_region_room(bounds, group),
+                snow_region_room(bounds, group + 1));
 }
 
 /* The most messages of a rank in a round (snow_rounds_room). */
@@ -199,7 +199,7 @@ snow_status snow_combiner_fit(snow_combiner *combiner) {
         return SNOW_STATUS_OK;
     for (int i = 0; i < SNOW_NEEDS; i++) {
         /* Counted regions of the next view may be a little larger. */
-        if (combiner->borders.counted)
+        if (combiner->bounds.counted)
             now[i] += now[i] / 8;
         now[i] = more(now[i], before[i]);
     }
@@ -260,9 +260,9 @@ static snow_status plan_shape(snow_combiner *combiner,
     drop_buffers(combiner);
     combiner->filled = false;
     combiner->shape = shape_of(order);
-    snow_borders_even(&combiner->borders, order->width, order->height,
-                      order->grain);
-    combiner->borders.counted = counts_regions(order, comm->ranks);
+    snow_region_bounds_even(&combiner->bounds, order->width, order->height,
+                            order->grain);
+    combiner->bounds.counted = counts_regions(order, comm->ranks);
     snow_rounds_choose(&combiner->rounds, chosen_method(order), order->radix,
                        comm->ranks, (int64_t)order->width * order->height,
                        (size_t)order->channels * sizeof(float));
@@ -333,7 +333,7 @@ snow_status snow_combiner_plan(snow_combiner *combiner,
     combiner->figures =
         (snow_exchange_figures){.method = chosen_method(order),
                                 .rounds = combiner->rounds.count,
-                                .counted = combiner->borders.counted};
+                                .counted = combiner->bounds.counted};
     memcpy(combiner->figures.radices, combiner->rounds.radices,
            sizeof combiner->figures.radices);
     return SNOW_STATUS_OK;

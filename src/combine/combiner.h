@@ -4,7 +4,7 @@
 #define SNOW_COMBINER_H
 
 #include "combine/active.h"
-#include "combine/borders.h"
+#include "combine/region_bounds.h"
 #include "combine/rounds.h"
 
 /* Message buffers of one rank and one round. Two are used alternately, since
@@ -94,7 +94,7 @@ struct snow_combiner {
     const snow_pixel_loops *loops;
     snow_rounds rounds;
     bool filled; /* `rounds` has its lists, for its rank position and display */
-    snow_borders borders;
+    snow_region_bounds bounds;
     int64_t counts[SNOW_BINS_MOST]; /* snow_exchange_counts */
     int counted_bins;
     int *lines;               /* the order of lines, NULL for the picture's */

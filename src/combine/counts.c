@@ -10,13 +10,13 @@
 
 static void count_lines(snow_combiner *combiner,
                         const snow_exchange_params *order, int64_t *counts) {
-    const snow_borders *borders = &combiner->borders;
+    const snow_region_bounds *bounds = &combiner->bounds;
     int64_t scanned = 0;
     int step =
         order->height / LINES_COUNTED > 1 ? order->height / LINES_COUNTED : 1;
     int bin = 0;
     for (int y = step / 2; y < order->height; y += step) {
-        while (y >= snow_borders_line(borders, bin + 1))
+        while (y >= snow_region_bounds_line(bounds, bin + 1))
             bin++;
         counts[bin] += snow_active_in_line(combiner->loops, order, y);
         if (y >= order->drawn.y0 && y < order->drawn.y1)
@@ -28,13 +28,13 @@ static void count_lines(snow_combiner *combiner,
 
 bool snow_counts_given(const snow_combiner *combiner) {
     const snow_exchange_params *order = &combiner->exchange.order;
-    return order->counts && order->count_groups == combiner->borders.bins;
+    return order->counts && order->count_groups == combiner->bounds.bins;
 }
 
 snow_status snow_counts_divide(snow_combiner *combiner) {
     const snow_exchange_params *order = &combiner->exchange.order;
-    snow_borders *borders = &combiner->borders;
-    const size_t bins = (size_t)borders->bins;
+    snow_region_bounds *bounds = &combiner->bounds;
+    const size_t bins = (size_t)bounds->bins;
     int64_t counts[SNOW_BINS_MOST] = {0};
     if (snow_counts_given(combiner)) {
         memcpy(counts, order->counts, bins * sizeof *counts);
@@ -43,20 +43,20 @@ snow_status snow_counts_divide(snow_combiner *combiner) {
         SNOW_TRY(snow_comm_reduce_ints(combiner->comm, counts, bins,
                                        SNOW_REDUCE_SUM));
     }
-    snow_borders_count(borders, counts);
+    snow_region_bounds_count(bounds, counts);
     memset(combiner->counts, 0, sizeof combiner->counts);
-    combiner->counted_bins = order->whole ? 0 : borders->bins;
+    combiner->counted_bins = order->whole ? 0 : bounds->bins;
     return SNOW_STATUS_OK;
 }
 
 void snow_counts_add(snow_combiner *combiner, snow_stretch part) {
-    const snow_borders *borders = &combiner->borders;
+    const snow_region_bounds *bounds = &combiner->bounds;
     int64_t end;
     int bin = 0;
     for (int64_t at = part.first; at < part.last; at = end) {
-        int64_t line = at / borders->width, next = (line + 1) * borders->width;
+        int64_t line = at / bounds->width, next = (line + 1) * bounds->width;
         end = next < part.last ? next : part.last;
-        while (line >= snow_borders_line(borders, bin + 1))
+        while (line >= snow_region_bounds_line(bounds, bin + 1))
             bin++;
         combiner->counts[bin] +=
             snow_active_count(combiner->part, part.first, at, end);

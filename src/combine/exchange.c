@@ -18,8 +18,9 @@ static snow_stretch stretch_of(const snow_combiner *combiner,
     if (share->region < 0)
         return (snow_stretch){0, 0};
     return (snow_stretch){
-        snow_border(&combiner->borders, share->region, share->regions),
-        snow_border(&combiner->borders, share->region + 1, share->regions)};
+        snow_region_begin(&combiner->bounds, share->region, share->regions),
+        snow_region_begin(&combiner->bounds, share->region + 1,
+                          share->regions)};
 }
 
 static snow_stretch overlap(snow_stretch a, snow_stretch b) {
@@ -265,7 +266,7 @@ static void await_all(snow_combiner *combiner) {
 static snow_status begin_rounds(snow_combiner *combiner) {
     snow_exchange_state *run = &combiner->exchange;
     run->divided = true;
-    if (combiner->borders.counted)
+    if (combiner->bounds.counted)
         SNOW_TRY(snow_counts_divide(combiner));
     SNOW_TRY(snow_combiner_fit(combiner));
     combiner->figures.begin_at = where_to_begin(combiner);
@@ -282,7 +283,7 @@ snow_status snow_exchange_begin(snow_combiner *combiner,
     run->pixel_bytes = (size_t)params->channels * sizeof(float);
     combiner->counted_bins = 0;
     SNOW_TRY(snow_combiner_plan(combiner, &run->order));
-    if (!combiner->borders.counted || snow_counts_given(combiner))
+    if (!combiner->bounds.counted || snow_counts_given(combiner))
         return begin_rounds(combiner);
     await_all(combiner);
     return SNOW_STATUS_OK;

@@ -130,13 +130,13 @@ static void note_range(const snow_histogram *histogram) {
 static snow_status count_as_needed(snow_histogram *histogram) {
     bool found = false;
     if (!histogram->comm && histogram->need < SNOW_NEED_COUNTS)
-        SNOW_TRY(snow_natives_range(histogram, &found));
+        SNOW_TRY(snow_stored_values_range(histogram, &found));
     if (found)
         return SNOW_STATUS_OK;
     histogram->need = SNOW_NEED_COUNTS;
     histogram->finite = 0;
     histogram->min = histogram->max = NAN;
-    return snow_natives_count(histogram);
+    return snow_stored_values_count(histogram);
 }
 
 snow_status snow_histogram_new(const snow_volume *volume, snow_comm *comm,
@@ -153,7 +153,7 @@ snow_status snow_histogram_new(const snow_volume *volume, snow_comm *comm,
         *out = histogram;
         return SNOW_STATUS_OK;
     }
-    if (snow_natives_counted(volume->info.type))
+    if (snow_stored_values_counted(volume->info.type))
         status = count_as_needed(&histogram);
     else {
         histogram.need = SNOW_NEED_COUNTS;
@@ -229,7 +229,7 @@ snow_status snow_count_bins(const snow_histogram *histogram, double low,
     }
     for (int n = 0; n < SNOW_DIGITS; n++) {
         double value;
-        uint64_t count = snow_natives_nth(histogram, n, &value);
+        uint64_t count = snow_stored_values_nth(histogram, n, &value);
         int bin = count ? bin_of(histogram->log, value, low, high, bins) : -1;
         if (bin >= 0)
             counts[bin] += count;

@@ -131,7 +131,7 @@ snow_status snow_quantiles(const snow_histogram *histogram,
     if (!histogram->counts)
         return select_keys(histogram, histogram_mode, fractions, count, out);
     for (size_t n = 0; n < count; n++)
-        out[n] = snow_natives_quantile(
+        out[n] = snow_stored_values_quantile(
             histogram, rank_of(fractions[n], histogram->finite));
     return SNOW_STATUS_OK;
 }

@@ -58,7 +58,7 @@ size_t snow_voxel_walk_next_block(snow_voxel_walk *w,
     const snow_volume_info *info = &w->volume->info;
     int64_t first = 0;
     size_t count = snow_voxel_walk_next_voxels(w, &first);
-    snow_volume_natives(w->volume, first, count, values);
+    snow_volume_stored(w->volume, first, count, values);
     for (size_t i = 0; i < count; i++)
         values[i] = info->slope * values[i] + info->intercept;
     for (size_t i = 0; i < count && w->log; i++)

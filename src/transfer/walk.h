@@ -8,7 +8,7 @@
 
 #define SNOW_WALK_BLOCK 1024
 
-/* Values of 16 bits: natives, and digits of longer keys. */
+/* Values of 16 bits: stored values, and digits of longer keys. */
 #define SNOW_DIGIT_BITS 16
 #define SNOW_DIGITS (1 << SNOW_DIGIT_BITS)
 
@@ -62,26 +62,27 @@ snow_status snow_histogram_sum_table(const snow_histogram *histogram,
 snow_status snow_histogram_new_tables(const snow_histogram *histogram,
                                       size_t tables, uint64_t **out);
 
-/* --- natives.c: 8 and 16 bit types ---
+/* --- stored_values.c: 8 and 16 bit types ---
 
  * Whether values of a type are counted by their native value. */
-bool snow_natives_counted(snow_type type);
+bool snow_stored_values_counted(snow_type type);
 
 /* Collective. Counts them, and sets the range. */
-snow_status snow_natives_count(snow_histogram *histogram);
+snow_status snow_stored_values_count(snow_histogram *histogram);
 
-/* Finds the range alone. Data values rise or fall with natives, so that their
- * extremes are those of the natives.  *found is false where the smallest and
- * largest value that count (finite, and above 0 on a logarithmic scale) are
- * others. */
-snow_status snow_natives_range(snow_histogram *histogram, bool *found);
+/* Finds the range alone. Data values rise or fall with stored values, so that
+ * their extremes are those of the stored values.  *found is false where the
+ * smallest and largest value that count (finite, and above 0 on a logarithmic
+ * scale) are others. */
+snow_status snow_stored_values_range(snow_histogram *histogram, bool *found);
 
 /* The n-th counted value in the order of data values (reversed if the slope is
  * negative), and its count. */
-uint64_t snow_natives_nth(const snow_histogram *histogram, int n,
-                          double *value);
+uint64_t snow_stored_values_nth(const snow_histogram *histogram, int n,
+                                double *value);
 
 /* The value of a rank, from 0, among the counted ones. */
-double snow_natives_quantile(const snow_histogram *histogram, uint64_t rank);
+double snow_stored_values_quantile(const snow_histogram *histogram,
+                                   uint64_t rank);
 
 #endif

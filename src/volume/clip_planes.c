@@ -149,15 +149,15 @@ static snow_status keep_voxel(snow_clip_planes *clip, int64_t index,
 
 snow_status snow_clip_planes_apply(snow_clip_planes *clip,
                                    const int64_t dims[3], int64_t first,
-                                   size_t count, bool keep, double *natives) {
+                                   size_t count, bool keep, double *stored) {
     int64_t at[3] = {first % dims[0], first / dims[0] % dims[1],
                      first / dims[0] / dims[1]};
     for (size_t i = 0; i < count; i++) {
         bool reached;
         if (is_beyond(clip, at, &reached)) {
-            if (keep && reached && !isnan(natives[i]))
-                SNOW_TRY(keep_voxel(clip, first + (int64_t)i, natives[i]));
-            natives[i] = NAN;
+            if (keep && reached && !isnan(stored[i]))
+                SNOW_TRY(keep_voxel(clip, first + (int64_t)i, stored[i]));
+            stored[i] = NAN;
         }
         if (++at[0] < dims[0])
             continue;

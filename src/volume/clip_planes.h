@@ -61,7 +61,7 @@ void snow_clip_planes_show(const snow_clip_planes *clip, snow_type type,
  * on; `keep`: those in reach are kept.  Called with rising indices. */
 snow_status snow_clip_planes_apply(snow_clip_planes *clip,
                                    const int64_t dims[3], int64_t first,
-                                   size_t count, bool keep, double *natives);
+                                   size_t count, bool keep, double *stored);
 
 /* The native value of a voxel that was kept; NaN where there is none. */
 double snow_clip_planes_value(const snow_clip_planes *clip, int64_t index);

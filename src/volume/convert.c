@@ -86,7 +86,7 @@ static void run(const snow_volume *volume, conversion *c, void *voxels) {
     double values[BLOCK];
     for (int64_t first = 0; first < all; first += BLOCK) {
         size_t count = all - first < BLOCK ? (size_t)(all - first) : BLOCK;
-        snow_volume_natives(volume, first, count, values);
+        snow_volume_stored(volume, first, count, values);
         for (size_t i = 0; i < count; i++)
             values[i] = fit(c, info->slope * values[i] + info->intercept);
         if (voxels)

@@ -209,7 +209,7 @@ static void mask_values(const snow_volume *mask, inside *in, int64_t first,
                         size_t count, double *values) {
     const double slope = mask->info.slope, intercept = mask->info.intercept;
     double marks[BLOCK];
-    snow_volume_natives(mask, first, count, marks);
+    snow_volume_stored(mask, first, count, marks);
     for (size_t i = 0; i < count; i++)
         if (!is_inside(in, slope * marks[i] + intercept))
             values[i] = NAN;
@@ -233,7 +233,7 @@ static snow_status leave_out(const snow_volume *volume, const snow_cuts *by,
     *any = false;
     for (int64_t first = 0; first < all; first += BLOCK) {
         size_t count = all - first < BLOCK ? (size_t)(all - first) : BLOCK;
-        snow_volume_natives(volume, first, count, values);
+        snow_volume_stored(volume, first, count, values);
         restore(volume->clip, first, count, values);
         if (by->mask)
             mask_values(by->mask, in, first, count, values);

@@ -18,8 +18,8 @@
  * row length hides a swap of axes. */
 #define WEIGHT_PERIOD 1009
 
-void snow_volume_natives(const snow_volume *volume, int64_t first, size_t count,
-                         double *out) {
+void snow_volume_stored(const snow_volume *volume, int64_t first, size_t count,
+                        double *out) {
     switch (volume->info.type) {
 #define WIDEN(name, c_type, text)                                    \
     case SNOW_TYPE_##name: {                                         \
@@ -35,10 +35,10 @@ void snow_volume_natives(const snow_volume *volume, int64_t first, size_t count,
     }
 }
 
-/* For single looks; loops take snow_volume_natives a block at a time. */
+/* For single looks; loops take snow_volume_stored a block at a time. */
 double snow_volume_native(const snow_volume *volume, int64_t index) {
     double value = NAN;
-    snow_volume_natives(volume, index, 1, &value);
+    snow_volume_stored(volume, index, 1, &value);
     return value;
 }
 
@@ -54,7 +54,7 @@ static size_t next_block(const snow_volume *volume, int64_t first,
     int64_t left = voxel_count(volume) - first;
     size_t count = left < BLOCK ? (size_t)left : BLOCK;
     double slope = volume->info.slope, intercept = volume->info.intercept;
-    snow_volume_natives(volume, first, count, values);
+    snow_volume_stored(volume, first, count, values);
     for (size_t i = 0; i < count; i++)
         values[i] = slope * values[i] + intercept;
     return count;

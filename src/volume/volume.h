@@ -89,7 +89,7 @@ bool snow_matrix_invert3(const double m[4][4], double inverse[3][3]);
 /* The native value at a linear index as a double (int64 values beyond 2^53
  * round); and `count` of them from index `first` on. */
 double snow_volume_native(const snow_volume *volume, int64_t index);
-void snow_volume_natives(const snow_volume *volume, int64_t first, size_t count,
-                         double *out);
+void snow_volume_stored(const snow_volume *volume, int64_t first, size_t count,
+                        double *out);
 
 #endif

@@ -34,8 +34,8 @@ done
 run 2 "frame with a number of ranks" bench frame $head --ranks 4
 says "mpirun tells how many ranks"
 # shellcheck disable=SC2086
-run 2 "frame on a modelled network" bench frame $head --network 1,1,1
-says "is not modelled"
+run 2 "frame on a simulated network" bench frame $head --network 1,1,1
+says "is not simulated"
 run 3 "frame of a file that is missing" bench frame missing.nrrd
 check "it is told once" [ "$(grep -c '^snowglass: bench frame: ' "$ERR")" = 1 ]
 says "missing.nrrd"

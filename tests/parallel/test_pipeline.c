@@ -237,7 +237,7 @@ static void pictures_sent_early_have_the_same_bits(void **state) {
     support_folder_remove(folder);
 }
 
-static void run_modelled(pipeline *f, int ranks, double latency) {
+static void run_simulated(pipeline *f, int ranks, double latency) {
     const snow_network network = {
         .latency = latency, .bandwidth = 1e9, .slowness = 1};
     snow_context *context = support_context();
@@ -257,7 +257,7 @@ static void pictures_are_sent_while_they_are_drawn(void **state) {
     f->step = 2;
     for (int ranks = 2; ranks <= 4; ranks++) {
         f->early = 0;
-        run_modelled(f, ranks, 0);
+        run_simulated(f, ranks, 0);
         assert_true(f->early > 0);
     }
     pipeline_free(f);
@@ -270,7 +270,7 @@ static void pictures_are_drawn_while_messages_travel(void **state) {
     char folder[SUPPORT_FOLDER_BYTES];
     support_folder_make(folder);
     pipeline *f = pipeline_new(folder);
-    run_modelled(f, 3, 1);
+    run_simulated(f, 3, 1);
     assert_true(f->hidden > 0);
     pipeline_free(f);
     support_folder_remove(folder);

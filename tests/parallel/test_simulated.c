@@ -1,4 +1,4 @@
-/* test_modelled - ranks on a modelled cluster: messages arrive as ever, and
+/* test_simulated - ranks on a simulated cluster: messages arrive as ever, and
  * take the time that the network's figures say. */
 #include "support/comm.h"
 

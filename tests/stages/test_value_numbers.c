@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* A converter of a range of natives, with a look that shows all of it. */
+/* A converter of a range of stored values, with a look that shows all of it. */
 typedef struct numbers {
     snow_context *context;
     snow_transfer *transfer;
@@ -51,7 +51,7 @@ static int number_of(const numbers *n, int native) {
     return out;
 }
 
-/* All natives of a range, from the one that is V = 0 on. */
+/* All stored values of a range, from the one that is V = 0 on. */
 static void check_range(snow_type type, double slope, int bottom, int top) {
     numbers n = numbers_of(type, slope, bottom, top);
     const value_rule rule = value_rule_of(top - bottom);
@@ -89,7 +89,7 @@ static void integers_become_numbers_by_the_rule(void **state) {
         }
 }
 
-static void natives_beyond_the_range_are_clamped(void **state) {
+static void stored_values_beyond_the_range_are_clamped(void **state) {
     (void)state;
     numbers n = numbers_of(SNOW_TYPE_INT16, 2, -1000, 3000);
     assert_int_equal(number_of(&n, -32768), 0);
@@ -140,7 +140,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(integers_become_numbers_by_the_rule),
         cmocka_unit_test(the_range_of_integers_is_found),
-        cmocka_unit_test(natives_beyond_the_range_are_clamped),
+        cmocka_unit_test(stored_values_beyond_the_range_are_clamped),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

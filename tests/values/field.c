@@ -44,16 +44,16 @@ value_rule value_rule_of(int steps) {
 }
 
 static int whole_code(const value_plan *plan, double value) {
-    value_rule rule = value_rule_of(plan->natives);
+    value_rule rule = value_rule_of(plan->stored);
     double n = rint((value - plan->low) / plan->step);
-    int64_t t = (int64_t)fmin(fmax(n, 0), plan->natives) * rule.factor;
+    int64_t t = (int64_t)fmin(fmax(n, 0), plan->stored) * rule.factor;
     return value_scale(t / rule.divisor, (int)rule.weight);
 }
 
 static int code_of(const value_plan *plan, double value) {
     if (isnan(value))
         return VALUE_HOLE;
-    if (plan->natives)
+    if (plan->stored)
         return whole_code(plan, value);
     if (!(plan->high > plan->low))
         return 0;

@@ -270,9 +270,9 @@ static void take_integers(value_plan *plan) {
     double high = ceil((plan->high - zero) / slope - 1e-6);
     if (!(high > low))
         return;
-    plan->natives = (int)(high - low);
+    plan->stored = (int)(high - low);
     plan->step = slope;
-    value_rule rule = value_rule_of(plan->natives);
+    value_rule rule = value_rule_of(plan->stored);
     plan->low = low * slope + zero;
     plan->high = plan->low + slope * VALUE_MOST * 32768 * (double)rule.divisor /
                                  ((double)rule.factor * (double)rule.weight);

@@ -56,7 +56,7 @@ typedef struct value_plan {
     int halvings;     /* of the lattice image by boxes, before the warp */
     int mean;         /* samples a side of a pixel */
     double low, high; /* data values of V = 0 and V = 16383 */
-    int natives;      /* of integers: steps from low to the highest */
+    int stored;       /* of integers: steps from low to the highest */
     double step;      /* of a native value, in data units */
     double path;      /* world length of a slab in the table */
     bool plain_fade;  /* experiments only: gradient opacity as a factor */

@@ -77,17 +77,17 @@ void snow_value_coder_fini(snow_context *context, snow_value_coder *coder) {
 }
 
 #define CODE_NARROW(name, type)                                                \
-    static void code_##name(const snow_value_coder *coder,                     \
-                            const type *natives, size_t count, int16_t *out) { \
+    static void code_##name(const snow_value_coder *coder, const type *stored, \
+                            size_t count, int16_t *out) {                      \
         const int16_t *numbers = coder->numbers - coder->lowest;               \
         const snow_value_rule rule = coder->scale.rule;                        \
         const type low = (type)rule.bottom, high = (type)rule.top;             \
         for (size_t n = 0; n < count && coder->ruled; n++) {                   \
-            type native = natives[n] < low ? low : natives[n];                 \
+            type native = stored[n] < low ? low : stored[n];                   \
             out[n] = snow_value_by_rule(&rule, native < high ? native : high); \
         }                                                                      \
         for (size_t n = 0; n < count && !coder->ruled; n++)                    \
-            out[n] = numbers[natives[n]];                                      \
+            out[n] = numbers[stored[n]];                                       \
     }
 
 CODE_NARROW(INT8, int8_t)
@@ -96,14 +96,14 @@ CODE_NARROW(INT16, int16_t)
 CODE_NARROW(UINT16, uint16_t)
 
 #define CODE_WIDE(name, type)                                                  \
-    static void code_##name(const snow_value_coder *coder,                     \
-                            const type *natives, size_t count, int16_t *out) { \
+    static void code_##name(const snow_value_coder *coder, const type *stored, \
+                            size_t count, int16_t *out) {                      \
         const snow_value_scale14 scale = coder->scale;                         \
         const double slope = coder->slope, intercept = coder->intercept;       \
         const bool plain =                                                     \
             scale.high > scale.low && !scale.log && !coder->names;             \
         for (size_t n = 0; n < count; n++) {                                   \
-            double value = slope * (double)natives[n] + intercept;             \
+            double value = slope * (double)stored[n] + intercept;              \
             out[n] = plain && value == value                                   \
                          ? number_of(scale.low, scale.high, value)             \
                          : coded(coder, value);                                \
@@ -117,12 +117,12 @@ CODE_WIDE(UINT64, uint64_t)
 CODE_WIDE(FLOAT32, float)
 CODE_WIDE(FLOAT64, double)
 
-void snow_value_code_row(const snow_value_coder *coder, const void *natives,
+void snow_value_code_row(const snow_value_coder *coder, const void *stored,
                          size_t count, int16_t *out) {
     switch (coder->type) {
-#define CODE_CASE(name, type, text)              \
-    case SNOW_TYPE_##name:                       \
-        code_##name(coder, natives, count, out); \
+#define CODE_CASE(name, type, text)             \
+    case SNOW_TYPE_##name:                      \
+        code_##name(coder, stored, count, out); \
         break;
         SNOW_TYPE_MAP(CODE_CASE)
 #undef CODE_CASE

@@ -33,7 +33,7 @@ snow_status snow_value_coder_make(const snow_volume *volume,
 void snow_value_coder_fini(snow_context *context, snow_value_coder *coder);
 
 /* The numbers of `count` native values in a row. */
-void snow_value_code_row(const snow_value_coder *coder, const void *natives,
+void snow_value_code_row(const snow_value_coder *coder, const void *stored,
                          size_t count, int16_t *out);
 
 /* The same of voxels that clip planes, which make floats of integers, have left

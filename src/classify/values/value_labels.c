@@ -49,13 +49,13 @@ snow_status snow_value_labels_add(const snow_volume *volume,
     int64_t all = info->dims[0] * info->dims[1] * info->dims[2];
     double last = NAN;
     for (int64_t first = 0; first < all; first += BLOCK) {
-        double natives[BLOCK];
+        double stored[BLOCK];
         size_t count = all - first < BLOCK ? (size_t)(all - first) : BLOCK;
-        snow_volume_natives(volume, first, count, natives);
+        snow_volume_stored(volume, first, count, stored);
         for (size_t n = 0; n < count; n++) {
-            if (natives[n] == last)
+            if (stored[n] == last)
                 continue;
-            last = natives[n];
+            last = stored[n];
             SNOW_TRY(add_name(volume->context, labels,
                               info->slope * last + info->intercept));
         }

@@ -28,11 +28,11 @@ typedef struct range_job {
     found_range *found; /* of each worker */
 } range_job;
 
-static void look_at(found_range *found, const double *natives, size_t count) {
+static void look_at(found_range *found, const double *stored, size_t count) {
     double low = found->low, high = found->high;
     bool holes = false;
     for (size_t n = 0; n < count; n++) {
-        double value = natives[n];
+        double value = stored[n];
         bool finite = value - value == 0;
         low = finite && value < low ? value : low;
         high = finite && value > high ? value : high;
@@ -44,24 +44,24 @@ static void look_at(found_range *found, const double *natives, size_t count) {
 }
 
 /* Native values as what a range is measured of. */
-static void take_natives(const range_job *job, double *natives, size_t count) {
+static void take_stored(const range_job *job, double *stored, size_t count) {
     const snow_volume_info *info = &job->volume->info;
     if (!job->log)
         return;
     for (size_t n = 0; n < count; n++) {
-        double value = info->slope * natives[n] + info->intercept;
-        natives[n] = value > 0 ? value : NAN;
+        double value = info->slope * stored[n] + info->intercept;
+        stored[n] = value > 0 ? value : NAN;
     }
 }
 
 /* Native values of one or two bytes, as those of a type whose extremes vectors
  * of any machine find: with the sign bit turned over where `flip` has it. */
 #define LOOK_NARROW(name, type, vector, flip)                            \
-    static void look_at_##name(found_range *found, const type *natives,  \
+    static void look_at_##name(found_range *found, const type *stored,   \
                                size_t count) {                           \
-        vector low = (vector)(natives[0] ^ (flip)), high = low;          \
+        vector low = (vector)(stored[0] ^ (flip)), high = low;           \
         for (size_t n = 0; n < count; n++) {                             \
-            vector here = (vector)(natives[n] ^ (flip));                 \
+            vector here = (vector)(stored[n] ^ (flip));                  \
             low = here < low ? here : low;                               \
             high = here > high ? here : high;                            \
         }                                                                \
@@ -110,11 +110,11 @@ static void look_at_item(void *of, int64_t item, int worker) {
     if (look_at_narrow(job, &job->found[worker], first, (size_t)(end - first)))
         return;
     for (; first < end; first += BLOCK) {
-        double natives[BLOCK];
+        double stored[BLOCK];
         size_t count = end - first < BLOCK ? (size_t)(end - first) : BLOCK;
-        snow_volume_natives(job->volume, first, count, natives);
-        take_natives(job, natives, count);
-        look_at(&job->found[worker], natives, count);
+        snow_volume_stored(job->volume, first, count, stored);
+        take_stored(job, stored, count);
+        look_at(&job->found[worker], stored, count);
     }
 }
 
@@ -123,7 +123,7 @@ static void look_at_clipped(const range_job *job) {
     const snow_clip_planes *clip = job->volume->clip;
     for (size_t n = 0; clip && n < clip->voxel_count; n++) {
         double native = clip->voxels[n].native;
-        take_natives(job, &native, 1);
+        take_stored(job, &native, 1);
         look_at(job->found, &native, 1);
     }
 }
@@ -200,8 +200,8 @@ static void find_visible(const snow_data_range *data,
     }
 }
 
-/* The rule for natives bottom .. top, which are different; *unit is the data
- * value of a number. */
+/* The rule for stored values bottom .. top, which are different; *unit is the
+ * data value of a number. */
 static snow_value_rule rule_of(int32_t bottom, int32_t top, double slope,
                                double *unit) {
     snow_value_rule rule = {.bottom = bottom, .top = top, .weight = INT16_MAX};

@@ -77,41 +77,41 @@ typedef struct marker {
     const snow_value_loops *loops;
     snow_value_lines lines;
     int64_t band;
-    bool by_natives;
-    snow_value_natives ranges[SNOW_VALUE_RUNS]; /* of the runs */
+    bool by_stored;
+    snow_value_stored_range ranges[SNOW_VALUE_RUNS]; /* of the runs */
     int16_t *line;
-    uint64_t *natives; /* a bit for each voxel of a row */
-    uint32_t *bits;    /* of two lines */
+    uint64_t *stored; /* a bit for each voxel of a row */
+    uint32_t *bits;   /* of two lines */
 } marker;
 
 /* Counts what is seen of a row of the band, and copies it where rows are
  * turned. */
-static void take_row(marker *m, int64_t row, const unsigned char *natives) {
+static void take_row(marker *m, int64_t row, const unsigned char *stored) {
     snow_value_store *s = m->store;
     const size_t size = snow_type_size(m->params->coder->type);
     int64_t place = m->lines.number * s->slice_step + row * s->row_step;
     if (s->turned)
-        memcpy(s->copy + (size_t)place * size, natives,
+        memcpy(s->copy + (size_t)place * size, stored,
                (size_t)s->columns * size);
     if (m->store->counted_ranges)
         s->seen[m->band] +=
-            snow_value_count_natives(s, m->params, natives, m->natives);
+            snow_value_count_stored(s, m->params, stored, m->stored);
 }
 
 /* Marks a row, or one beyond the first or last of the volume. */
 static void mark_row(marker *m, int64_t row, uint32_t *bits) {
     const snow_value_store *s = m->store;
-    if (!m->by_natives || row < 0 || row >= s->rows) {
+    if (!m->by_stored || row < 0 || row >= s->rows) {
         snow_value_lines_read(&m->lines, row, m->line);
         mark_line(s, m->loops, m->line, bits);
         return;
     }
-    const unsigned char *natives = snow_value_lines_natives(&m->lines, row);
+    const unsigned char *stored = snow_value_lines_stored(&m->lines, row);
     for (int run = 0; run < s->run_count; run++, bits += snow_value_words(s))
-        snow_value_mark_natives(s, m->params, &m->ranges[run], run, natives,
-                                m->natives, bits);
+        snow_value_mark_stored(s, m->params, &m->ranges[run], run, stored,
+                               m->stored, bits);
     if (row / SNOW_VALUE_BAND == m->band)
-        take_row(m, row, natives);
+        take_row(m, row, stored);
 }
 
 /* Rows of cells first .. end - 1 of a slice. */
@@ -140,10 +140,10 @@ static void begin_marker(marker *m, int64_t low, int64_t high, void *scratch) {
     m->loops = snow_value_loops_of(m->params->isa);
     m->bits = (uint32_t *)scratch;
     m->line = (int16_t *)(void *)(at + bits_bytes(s));
-    m->natives = (uint64_t *)(void *)m->line;
-    m->by_natives = snow_value_store_by_natives(m->params);
-    for (int run = 0; run < s->run_count && m->by_natives; run++)
-        m->ranges[run] = snow_value_natives_of(coder, s->runs[run]);
+    m->stored = (uint64_t *)(void *)m->line;
+    m->by_stored = snow_value_store_by_stored(m->params);
+    for (int run = 0; run < s->run_count && m->by_stored; run++)
+        m->ranges[run] = snow_value_stored_range_of(coder, s->runs[run]);
     memset(m->line, 0, line_bytes(s));
     snow_value_lines_begin(&m->lines, m->params, low, high - low,
                            at + bits_bytes(s) + line_bytes(s));

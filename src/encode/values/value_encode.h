@@ -14,10 +14,10 @@ typedef struct snow_value_loops {
                     uint32_t *out);
     int16_t *(*pack)(const int16_t *line, const uint32_t *bits, size_t words,
                      int16_t *out);
-    void (*outside_bytes)(const unsigned char *natives, size_t count,
-                          snow_value_natives range, uint64_t *out);
-    void (*outside_words)(const unsigned char *natives, size_t count,
-                          snow_value_natives range, uint64_t *out);
+    void (*outside_bytes)(const unsigned char *stored, size_t count,
+                          snow_value_stored_range range, uint64_t *out);
+    void (*outside_words)(const unsigned char *stored, size_t count,
+                          snow_value_stored_range range, uint64_t *out);
 } snow_value_loops;
 
 const snow_value_loops *snow_value_loops_of(snow_isa isa);
@@ -33,17 +33,17 @@ static inline size_t snow_value_words(const snow_value_store *s) {
 }
 
 /* Marks the numbers of a line that are outside of a run, which `range` is of,
- * from a row of natives; `room` for a bit of each. */
-void snow_value_mark_natives(const snow_value_store *store,
-                             const snow_value_store_params *params,
-                             const snow_value_natives *range, int run,
-                             const unsigned char *natives, uint64_t *room,
-                             uint32_t *bits);
+ * from a row of stored values; `room` for a bit of each. */
+void snow_value_mark_stored(const snow_value_store *store,
+                            const snow_value_store_params *params,
+                            const snow_value_stored_range *range, int run,
+                            const unsigned char *stored, uint64_t *room,
+                            uint32_t *bits);
 
-/* The natives of a row that are in one of the ranges of what is seen. */
-int64_t snow_value_count_natives(const snow_value_store *store,
-                                 const snow_value_store_params *params,
-                                 const unsigned char *natives, uint64_t *room);
+/* The stored values of a row that are in one of the ranges of what is seen. */
+int64_t snow_value_count_stored(const snow_value_store *store,
+                                const snow_value_store_params *params,
+                                const unsigned char *stored, uint64_t *room);
 
 /* The bytes of an encoding that is whole. */
 void snow_value_store_add_up(snow_value_store *store);

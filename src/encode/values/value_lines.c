@@ -81,9 +81,9 @@ static void code_row(const snow_value_lines *lines, int of, int64_t row,
     static const int steps[] = {0, -1, 1};
     const snow_placement *p = lines->placement;
     const snow_rows *slice = &lines->slice[of];
-    const unsigned char *natives =
+    const unsigned char *stored =
         slice->voxels + (size_t)(row - lines->first) * slice->stride;
-    snow_value_code_row(lines->coder, natives, (size_t)lines->columns, out);
+    snow_value_code_row(lines->coder, stored, (size_t)lines->columns, out);
     if (lines->volume->clip) {
         int64_t at[3] = {0};
         at[p->v_axis] = row;

@@ -43,9 +43,9 @@ void snow_value_lines_slice(snow_value_lines *lines, int64_t slice);
  * one, if the two beside it are among the rows: out[margin + c] is column c. */
 void snow_value_lines_read(snow_value_lines *lines, int64_t row, int16_t *out);
 
-/* Row `row` of the slice as natives. */
+/* Row `row` of the slice as stored values. */
 static inline const unsigned char *
-snow_value_lines_natives(const snow_value_lines *lines, int64_t row) {
+snow_value_lines_stored(const snow_value_lines *lines, int64_t row) {
     const snow_rows *slice = &lines->slice[0];
     return slice->voxels + (size_t)(row - lines->first) * slice->stride;
 }

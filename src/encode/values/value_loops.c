@@ -1,5 +1,5 @@
-/* encode/values/value_loops.c - the loops over rows of numbers and natives, of
- * each instruction set (value_rows.tmpl.h). */
+/* encode/values/value_loops.c - the loops over rows of numbers and stored
+ * values, of each instruction set (value_rows.tmpl.h). */
 #include "encode/values/value_encode.h"
 
 #include "simd/rows.h"

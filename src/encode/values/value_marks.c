@@ -1,6 +1,6 @@
-/* encode/values/value_marks.c - which voxels of a row of natives are outside of
- * invisible runs, without making numbers of them: the rule rises or falls, so
- * that a run is a range of natives. */
+/* encode/values/value_marks.c - which voxels of a row of stored values are
+ * outside of invisible runs, without making numbers of them: the rule rises or
+ * falls, so that a run is a range of stored values. */
 #include "encode/values/value_encode.h"
 
 #include <string.h>
@@ -29,8 +29,8 @@ static int32_t step_of(const snow_value_rule *rule, int v) {
     return low;
 }
 
-snow_value_natives snow_value_natives_of(const snow_value_coder *coder,
-                                         snow_value_run run) {
+snow_value_stored_range
+snow_value_stored_range_of(const snow_value_coder *coder, snow_value_run run) {
     const snow_value_rule *rule = &coder->scale.rule;
     const bool narrow = snow_type_size(coder->type) == 1;
     const int32_t least = coder->type == SNOW_TYPE_INT8    ? INT8_MIN
@@ -38,15 +38,15 @@ snow_value_natives snow_value_natives_of(const snow_value_coder *coder,
                                                            : 0;
     int32_t from = step_of(rule, run.first), end = step_of(rule, run.last + 1);
     if (from >= end)
-        return (snow_value_natives){.none = true};
+        return (snow_value_stored_range){.none = true};
     int32_t a = native_of(rule, from), b = native_of(rule, end - 1);
     int32_t first = a < b ? a : b, last = a < b ? b : a;
     if (first == rule->bottom) /* those beyond are clamped */
         first = least;
     if (last == rule->top)
         last = least + (narrow ? UINT8_MAX : UINT16_MAX);
-    return (snow_value_natives){.first = (uint16_t)first,
-                                .width = (uint16_t)(last - first)};
+    return (snow_value_stored_range){.first = (uint16_t)first,
+                                     .width = (uint16_t)(last - first)};
 }
 
 /* --- rows -------------------------------------------------------------------
@@ -74,12 +74,12 @@ static void set_bits(uint32_t *bits, size_t first, int count) {
 /* Whether the number beyond a side is outside of a run: that of a voxel, of
  * which the one inside is `step` on. */
 static bool is_beyond_outside(const snow_value_coder *coder,
-                              const unsigned char *natives, int64_t column,
+                              const unsigned char *stored, int64_t column,
                               int64_t step, snow_value_run run) {
     int64_t size = (int64_t)snow_type_size(coder->type);
     int16_t side, inside;
-    snow_value_code_row(coder, natives + column * size, 1, &side);
-    snow_value_code_row(coder, natives + (column + step) * size, 1, &inside);
+    snow_value_code_row(coder, stored + column * size, 1, &side);
+    snow_value_code_row(coder, stored + (column + step) * size, 1, &inside);
     int16_t beyond = snow_value_beyond(side, inside, false);
     return beyond < run.first || beyond > run.last;
 }
@@ -87,16 +87,16 @@ static bool is_beyond_outside(const snow_value_coder *coder,
 /* A bit for each native of a row that is not in a range. */
 static void find_outside(const snow_value_store *s,
                          const snow_value_store_params *params,
-                         const snow_value_natives *range,
-                         const unsigned char *natives, uint64_t *out) {
+                         const snow_value_stored_range *range,
+                         const unsigned char *stored, uint64_t *out) {
     const snow_value_loops *loops = snow_value_loops_of(params->isa);
     const size_t count = (size_t)s->columns;
     if (range->none)
         memset(out, 0xff, (count + 63) / 64 * sizeof *out);
     else if (snow_type_size(params->coder->type) == 1)
-        loops->outside_bytes(natives, count, *range, out);
+        loops->outside_bytes(stored, count, *range, out);
     else
-        loops->outside_words(natives, count, *range, out);
+        loops->outside_words(stored, count, *range, out);
     if (count % 64)
         out[count / 64] &= ~UINT64_C(0) >> (64 - count % 64);
 }
@@ -106,34 +106,34 @@ static bool is_same(const unsigned char *a, const unsigned char *b,
     return a[0] == b[0] && (size == 1 || a[1] == b[1]);
 }
 
-void snow_value_mark_natives(const snow_value_store *s,
-                             const snow_value_store_params *params,
-                             const snow_value_natives *range, int run,
-                             const unsigned char *natives, uint64_t *room,
-                             uint32_t *bits) {
+void snow_value_mark_stored(const snow_value_store *s,
+                            const snow_value_store_params *params,
+                            const snow_value_stored_range *range, int run,
+                            const unsigned char *stored, uint64_t *room,
+                            uint32_t *bits) {
     const size_t count = (size_t)s->columns;
     const int64_t size = (int64_t)snow_type_size(params->coder->type);
     const int64_t step = s->columns > 1;
-    find_outside(s, params, range, natives, room);
+    find_outside(s, params, range, stored, room);
     place_bits((const uint32_t *)(const void *)room, count, s->margin, bits,
                snow_value_words(s));
     for (int end = 0; end < 2; end++) {
         int64_t column = end ? s->columns - 1 : 0, in = end ? -step : step;
-        const unsigned char *side = natives + column * size;
+        const unsigned char *side = stored + column * size;
         if (is_same(side, side + in * size, size)
                 ? room[column / 64] >> column % 64 & 1
-                : is_beyond_outside(params->coder, natives, column, in,
+                : is_beyond_outside(params->coder, stored, column, in,
                                     s->runs[run]))
             set_bits(bits, end ? (size_t)s->margin + count : 0, s->margin);
     }
 }
 
-int64_t snow_value_count_natives(const snow_value_store *s,
-                                 const snow_value_store_params *params,
-                                 const unsigned char *natives, uint64_t *room) {
+int64_t snow_value_count_stored(const snow_value_store *s,
+                                const snow_value_store_params *params,
+                                const unsigned char *stored, uint64_t *room) {
     int64_t outside = 0;
     for (int n = 0; n < s->counted_ranges; n++) {
-        find_outside(s, params, &s->counted[n], natives, room);
+        find_outside(s, params, &s->counted[n], stored, room);
         for (int64_t word = 0; word < (s->columns + 63) / 64; word++)
             outside += __builtin_popcountll(room[word]);
     }

@@ -22,43 +22,45 @@ TARGET static int16_t *NAME(pack)(const int16_t *line, const uint32_t *bits,
     return out;
 }
 
-/* A bit for each of `count` natives of 8 or 16 bits that is outside of a range,
- * in whole words; others are 0. */
-TARGET static void NAME(outside_bytes)(const unsigned char *natives,
-                                       size_t count, snow_value_natives range,
+/* A bit for each of `count` stored values of 8 or 16 bits that is outside of a
+ * range, in whole words; others are 0. */
+TARGET static void NAME(outside_bytes)(const unsigned char *stored,
+                                       size_t count,
+                                       snow_value_stored_range range,
                                        uint64_t *out) {
     const uint8_t first = (uint8_t)range.first, width = (uint8_t)range.width;
     size_t n = 0;
     for (; n + 64 <= count; n += 64)
-        *out++ = V(bytes_outside)(natives + n, first, width);
+        *out++ = V(bytes_outside)(stored + n, first, width);
     if (n < count) {
         unsigned char rest[64] = {0};
-        memcpy(rest, natives + n, count - n);
+        memcpy(rest, stored + n, count - n);
         *out = V(bytes_outside)(rest, first, width) &
                (~UINT64_C(0) >> (64 - (count - n)));
     }
 }
 
-TARGET static inline uint32_t NAME(outside32)(const unsigned char *natives,
+TARGET static inline uint32_t NAME(outside32)(const unsigned char *stored,
                                               V(row) first, V(row) width) {
-    V(row) here = V(row_load)((const int16_t *)(const void *)natives);
+    V(row) here = V(row_load)((const int16_t *)(const void *)stored);
     return V(row_gt)(V(row_add)(here, first), width);
 }
 
-TARGET static void NAME(outside_words)(const unsigned char *natives,
-                                       size_t count, snow_value_natives range,
+TARGET static void NAME(outside_words)(const unsigned char *stored,
+                                       size_t count,
+                                       snow_value_stored_range range,
                                        uint64_t *out) {
     /* Comparisons are of signed numbers. */
     const V(row) first = V(row_set1)((int16_t)(0x8000 - range.first));
     const V(row) width = V(row_set1)((int16_t)(range.width - 0x8000));
     size_t n = 0;
     for (; n + 64 <= count; n += 64)
-        *out++ = NAME(outside32)(natives + 2 * n, first, width) |
-                 (uint64_t)NAME(outside32)(natives + 2 * n + 64, first, width)
+        *out++ = NAME(outside32)(stored + 2 * n, first, width) |
+                 (uint64_t)NAME(outside32)(stored + 2 * n + 64, first, width)
                      << 32;
     if (n < count) {
         unsigned char rest[128] = {0};
-        memcpy(rest, natives + 2 * n, 2 * (count - n));
+        memcpy(rest, stored + 2 * n, 2 * (count - n));
         *out = (NAME(outside32)(rest, first, width) |
                 (uint64_t)NAME(outside32)(rest + 64, first, width) << 32) &
                (~UINT64_C(0) >> (64 - (count - n)));

@@ -66,15 +66,15 @@ static snow_status reserve_rows(snow_value_store *s) {
                         rows * sizeof *s->ends);
 }
 
-/* Whether rows are natives, and where they are. */
-static void place_natives(snow_value_store *s,
-                          const snow_value_store_params *params) {
+/* Whether rows are stored values, and where they are. */
+static void place_stored(snow_value_store *s,
+                         const snow_value_store_params *params) {
     const snow_placement *p = params->placement;
     const snow_value_coder *coder = params->coder;
     const int64_t *dims = params->volume->info.dims;
     const int64_t strides[3] = {1, dims[0], dims[0] * dims[1]};
     s->in_place = params->encoding == SNOW_ENCODING_AUTO && !params->copied &&
-                  snow_value_store_by_natives(params) && !coder->scale.clamps &&
+                  snow_value_store_by_stored(params) && !coder->scale.clamps &&
                   coder->type != SNOW_TYPE_INT8;
     s->turned = s->in_place && p->u_axis != 0;
     s->kind = SNOW_VALUE_NUMBERS;
@@ -83,7 +83,7 @@ static void place_natives(snow_value_store *s,
     s->kind =
         snow_type_size(coder->type) == 1 ? SNOW_VALUE_BYTES : SNOW_VALUE_WORDS;
     s->rule = coder->scale.rule;
-    s->natives = params->volume->voxels;
+    s->stored = params->volume->voxels;
     s->native_count = dims[0] * dims[1] * dims[2];
     s->slice_step = strides[p->slice_axis];
     s->row_step = strides[p->v_axis];
@@ -98,7 +98,7 @@ static snow_status reserve_turned(snow_value_store *s) {
     s->native_count = s->slices * s->slice_step;
     SNOW_TRY(snow_reserve(s->context, &s->copy, &s->copy_capacity, 0,
                           (size_t)(s->native_count * size)));
-    s->natives = s->copy;
+    s->stored = s->copy;
     return SNOW_STATUS_OK;
 }
 
@@ -122,7 +122,7 @@ static void describe(snow_value_store *s,
     s->labels = params->coder->names != NULL;
     if (s->holes && !s->run_count) /* nothing is invisible but holes */
         s->runs[s->run_count++] = SNOW_VALUE_NO_RUN;
-    place_natives(s, params);
+    place_stored(s, params);
     s->mask_words = snow_value_words(s) + 2;
     s->mask_rows =
         (size_t)s->rows + 2 * (size_t)s->margin + 2 * SNOW_VALUE_ROWS;
@@ -156,7 +156,7 @@ snow_status snow_value_store_begin(snow_value_store *s,
 /* --- what it takes ----------------------------------------------------------
  */
 
-/* Of natives there are masks and at most a copy, which counts as IA. */
+/* Of stored values there are masks and at most a copy, which counts as IA. */
 void snow_value_store_add_up(snow_value_store *s) {
     s->voxels = s->ea_bytes = 0;
     if (s->in_place) {

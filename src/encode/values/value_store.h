@@ -9,12 +9,12 @@
  *                      voxel of the shell, so that 32 samples are two loads
  *
  * Where voxels are integers that become numbers by a rule (value_range.h), and
- * no encoding is asked for, there are masks alone, and rows are natives: along
- * z and y those of the volume, in place; along x a copy that is turned.
+ * no encoding is asked for, there are masks alone, and rows are stored values:
+ * along z and y those of the volume, in place; along x a copy that is turned.
  *
  * Beyond each side of the volume there are `margin` more columns and rows,
  * which continue it oddly: v[-1] = 2 v[0] - v[1], and the same farther out.
- * Rows of natives have none: whoever reads them makes them.
+ * Rows of stored values have none: whoever reads them makes them.
  * Cell (c, r) has voxels c, c + 1 of rows r, r + 1.
  *
  * Holes are SNOW_VALUE_HOLE in IA and in rows.  They show nothing; cells that
@@ -45,14 +45,14 @@ typedef enum snow_value_kind {
     SNOW_VALUE_WORDS,   /* native values of 16 bits */
 } snow_value_kind;
 
-/* Natives first .. first + width, which may go round beyond the largest of
- * their type; none: there are no such. */
-typedef struct snow_value_natives {
+/* Stored values first .. first + width, which may go round beyond the largest
+ * of their type; none: there are no such. */
+typedef struct snow_value_stored_range {
     uint16_t first, width;
     bool none;
-} snow_value_natives;
+} snow_value_stored_range;
 
-/* Ranges of natives that are counted, at most. */
+/* Ranges of stored values that are counted, at most. */
 #define SNOW_VALUE_SEEN 4
 
 typedef struct snow_value_store {
@@ -78,17 +78,18 @@ typedef struct snow_value_store {
     snow_sparse *bands;
     int64_t band_count;
     snow_encoding encoding;
-    snow_value_natives counted[SNOW_VALUE_SEEN]; /* natives that are counted, */
-    int counted_ranges;                          /* ... 0: none */
-    int64_t *seen;                               /* and how many, by bands */
+    snow_value_stored_range
+        counted[SNOW_VALUE_SEEN]; /* stored values that are counted, */
+    int counted_ranges;           /* ... 0: none */
+    int64_t *seen;                /* and how many, by bands */
     uint64_t voxels, ea_bytes, ia_bytes, pa_bytes;
     snow_value_kind kind;
-    bool in_place;        /* rows are natives at regular steps */
+    bool in_place;        /* rows are stored values at regular steps */
     bool turned;          /* in a copy */
-    snow_value_rule rule; /* from natives to numbers */
+    snow_value_rule rule; /* from stored values to numbers */
     /* In place voxel (c, r) of slice k is native number k slice_step + r
      * row_step + c of native_count. */
-    const unsigned char *natives;
+    const unsigned char *stored;
     int64_t slice_step, row_step, native_count;
     /* Else it is number, or native number, at[k][r] + c; elsewhere anything may
      * be read. */
@@ -118,8 +119,9 @@ typedef struct snow_value_store_params {
     snow_isa isa;           /* resolved */
     int threads;
     bool copied; /* the volume may go before the picture is drawn */
-    const snow_value_natives *seen; /* ranges of natives that are counted: */
-    int seen_count;                 /* 0: none are; up to SNOW_VALUE_SEEN */
+    const snow_value_stored_range
+        *seen;      /* ranges of stored values that are counted: */
+    int seen_count; /* 0: none are; up to SNOW_VALUE_SEEN */
 } snow_value_store_params;
 
 /* Columns and rows beyond each side: those that rays and gradients reach.  A
@@ -129,13 +131,13 @@ static inline int snow_value_margin(const snow_value_store_params *params) {
     return params->reach + 1 + (p->columns == 1 || p->rows == 1);
 }
 
-/* The natives whose numbers are in a run. */
-snow_value_natives snow_value_natives_of(const snow_value_coder *coder,
-                                         snow_value_run run);
+/* The stored values whose numbers are in a run. */
+snow_value_stored_range
+snow_value_stored_range_of(const snow_value_coder *coder, snow_value_run run);
 
-/* Whether cells are marked by natives, which can be counted then. */
+/* Whether cells are marked by stored values, which can be counted then. */
 static inline bool
-snow_value_store_by_natives(const snow_value_store_params *params) {
+snow_value_store_by_stored(const snow_value_store_params *params) {
     return params->coder->ruled && !params->cubic && !params->holes;
 }
 
@@ -148,8 +150,8 @@ void snow_value_store_fini(snow_value_store *store);
 
 /* The same in parts: begins; makes so many bands more, of those that are left.
  * It is whole when none are.  `params` are those of the beginning, but runs and
- * natives to count are needed no more.  After an error it is to be begun anew.
- * Errors: as above. */
+ * stored values to count are needed no more.  After an error it is to be begun
+ * anew. Errors: as above. */
 snow_status snow_value_store_begin(snow_value_store *store,
                                    const snow_value_store_params *params);
 snow_status snow_value_store_go_on(snow_value_store *store,
@@ -188,8 +190,8 @@ static inline int16_t snow_value_of_native(const snow_value_store *s,
                                            int64_t place) {
     uint16_t word;
     if (s->kind == SNOW_VALUE_BYTES)
-        return snow_value_by_rule(&s->rule, s->natives[place]);
-    memcpy(&word, s->natives + 2 * place, sizeof word);
+        return snow_value_by_rule(&s->rule, s->stored[place]);
+    memcpy(&word, s->stored + 2 * place, sizeof word);
     return snow_value_by_rule(&s->rule, word);
 }
 

@@ -144,7 +144,7 @@ static bool read_coordinates(const netcdf_header *header,
             return false;
     if (!snow_machine_big_endian())
         snow_swap_bytes(line->owned, count, size);
-    snow_volume_natives(line, 0, count, out);
+    snow_volume_stored(line, 0, count, out);
     for (size_t i = 0; i < count; i++)
         out[i] = out[i] * v->values.scale + v->values.offset;
     return true;

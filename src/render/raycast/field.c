@@ -70,7 +70,7 @@ static void fill(const snow_field *field, snow_field_window *w) {
                 (w->first[0] - field->stored[0]) * field->steps[0] +
                 (w->first[1] - field->stored[1] + y) * field->steps[1] +
                 (w->first[2] - field->stored[2] + z) * field->steps[2];
-            snow_volume_natives(field->volume, row, (size_t)w->count[0], value);
+            snow_volume_stored(field->volume, row, (size_t)w->count[0], value);
             for (int x = 0; x < w->count[0]; x++, value++) {
                 if (clip && isnan(*value))
                     *value = snow_clip_planes_value(clip, row + x);

@@ -109,10 +109,11 @@ bool snow_value_serves(const snow_value_path *path, const snow_value_key *has,
            !snow_value_store_left(store);
 }
 
-/* The ranges of interesting natives; 0: voxels cannot be counted by them. */
+/* The ranges of interesting stored values; 0: voxels cannot be counted by them.
+ */
 static int find_seen(const snow_value_path *path,
                      const snow_value_params *params,
-                     snow_value_natives out[SNOW_VALUE_SEEN]) {
+                     snow_value_stored_range out[SNOW_VALUE_SEEN]) {
     const snow_value_rule *rule = &path->coder.scale.rule;
     snow_native_range ranges[SNOW_VALUE_SEEN];
     if (!path->coder.ruled || path->coder.scale.clamps ||
@@ -123,7 +124,7 @@ static int find_seen(const snow_value_path *path,
         &params->volume->info, params->counted, params->settings->threshold,
         rule->bottom, rule->top, ranges, SNOW_VALUE_SEEN);
     for (int n = 0; n < count; n++)
-        out[n] = (snow_value_natives){
+        out[n] = (snow_value_stored_range){
             .first = (uint16_t)ranges[n].first,
             .width = (uint16_t)(ranges[n].last - ranges[n].first)};
     return count > 0 ? count : 0;
@@ -151,7 +152,7 @@ snow_status snow_value_order_make(snow_value_path *path,
         .threads = s->threads,
         .copied = params->shared,
         .seen = out->seen};
-    if (snow_value_store_by_natives(&out->params))
+    if (snow_value_store_by_stored(&out->params))
         out->params.seen_count = find_seen(path, params, out->seen);
     return SNOW_STATUS_OK;
 }

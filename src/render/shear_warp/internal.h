@@ -165,7 +165,7 @@ snow_value_key snow_value_key_of(const snow_value_path *path,
 typedef struct snow_value_order {
     snow_value_store_params params;
     snow_value_run runs[SNOW_VALUE_RUNS];
-    snow_value_natives seen[SNOW_VALUE_SEEN];
+    snow_value_stored_range seen[SNOW_VALUE_SEEN];
 } snow_value_order;
 snow_status snow_value_order_make(snow_value_path *path,
                                   const snow_value_params *params, bool spare,

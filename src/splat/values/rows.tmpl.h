@@ -1,6 +1,6 @@
 /* splat/values/rows.tmpl.h - rows of voxels as numbers: copied ones are loaded,
- * natives become numbers in registers, and so do those beyond the volume's
- * sides.  Included by sample.tmpl.h. */
+ * stored values become numbers in registers, and so do those beyond the
+ * volume's sides.  Included by sample.tmpl.h. */
 
 /* The rows that a sheet is made of. */
 typedef struct NAME(source) {
@@ -35,8 +35,8 @@ static inline NAME(source)
     return s;
 }
 
-/* Where a row of natives begins: of the slice, or of `after` where `end` is 1,
- * or of the next one of either where `half` is 1. */
+/* Where a row of stored values begins: of the slice, or of `after` where `end`
+ * is 1, or of the next one of either where `half` is 1. */
 TARGET VALUE_INLINE int64_t NAME(place_of)(const NAME(source) * s, int end,
                                            int half, int64_t row) {
     const snow_value_store *store = s->store;
@@ -45,17 +45,17 @@ TARGET VALUE_INLINE int64_t NAME(place_of)(const NAME(source) * s, int end,
     return (end ? s->after : s->slice)[row + half * s->next];
 }
 
-TARGET VALUE_INLINE V(row) NAME(load_natives)(const unsigned char *natives,
-                                              int64_t place, const int kind) {
+TARGET VALUE_INLINE V(row) NAME(load_stored)(const unsigned char *stored,
+                                             int64_t place, const int kind) {
     if (kind == SNOW_VALUE_BYTES)
-        return V(row_bytes)(natives + place);
-    return V(row_load)((const int16_t *)(const void *)(natives + 2 * place));
+        return V(row_bytes)(stored + place);
+    return V(row_load)((const int16_t *)(const void *)(stored + 2 * place));
 }
 
 TARGET VALUE_INLINE V(row)
-    NAME(by_rule)(V(row) natives, const snow_value_rule *rule, const int kind) {
+    NAME(by_rule)(V(row) stored, const snow_value_rule *rule, const int kind) {
     V(row)
-    t = V(row_add)(V(row_mul)(natives, V(row_set1)((int16_t)rule->factor)),
+    t = V(row_add)(V(row_mul)(stored, V(row_set1)((int16_t)rule->factor)),
                    V(row_set1)((int16_t)rule->offset));
     if (kind == SNOW_VALUE_BYTES)
         return t;
@@ -77,17 +77,17 @@ static inline int16_t NAME(beyond)(const snow_value_store *s, int64_t place,
                              snow_value_of_native(s, place + step), false);
 }
 
-/* 32 natives of which only some may be there to be read. */
+/* 32 stored values of which only some may be there to be read. */
 TARGET static V(row) NAME(load_some)(const snow_value_store *s, int64_t place) {
     const int64_t size = s->kind == SNOW_VALUE_BYTES ? 1 : 2;
     int64_t first = place < 0 ? -place : 0, end = s->native_count - place;
-    unsigned char natives[64] = {0};
+    unsigned char stored[64] = {0};
     end = end < 32 ? end : 32;
     if (first < end)
-        memcpy(natives + first * size, s->natives + (place + first) * size,
+        memcpy(stored + first * size, s->stored + (place + first) * size,
                (size_t)((end - first) * size));
-    return size == 1 ? NAME(load_natives)(natives, 0, SNOW_VALUE_BYTES)
-                     : NAME(load_natives)(natives, 0, SNOW_VALUE_WORDS);
+    return size == 1 ? NAME(load_stored)(stored, 0, SNOW_VALUE_BYTES)
+                     : NAME(load_stored)(stored, 0, SNOW_VALUE_WORDS);
 }
 
 /* 32 numbers of a row of the volume from `column` on, of which those within its
@@ -97,10 +97,10 @@ TARGET VALUE_INLINE V(row)
                      const int kind) {
     int64_t at = place + column;
     V(row)
-    natives = at >= 0 && at + 32 <= s->native_count
-                  ? NAME(load_natives)(s->natives, at, kind)
-                  : NAME(load_some)(s, at);
-    return NAME(by_rule)(natives, &s->rule, kind);
+    stored = at >= 0 && at + 32 <= s->native_count
+                 ? NAME(load_stored)(s->stored, at, kind)
+                 : NAME(load_some)(s, at);
+    return NAME(by_rule)(stored, &s->rule, kind);
 }
 
 /* 32 numbers of a row of the volume from `column` on, and from the next one on;
@@ -170,7 +170,7 @@ TARGET VALUE_INLINE void NAME(pair)(const NAME(source) * s, int end, int half,
         int64_t place = NAME(place_of)(s, end, half, row) + column;
         for (int n = 0; n < 2; n++)
             out[n] = NAME(by_rule)(
-                NAME(load_natives)(s->store->natives, place + n, kind),
+                NAME(load_stored)(s->store->stored, place + n, kind),
                 &s->store->rule, kind);
     }
 }

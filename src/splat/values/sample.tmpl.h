@@ -215,11 +215,11 @@ NAME(fill_bytes_by)(const NAME(source) * s, int64_t first, uint64_t rows,
     const V(row) u = V(row_set1)(place->weight[0]);
     const V(row) v = V(row_set1)(place->weight[1]);
     const ptrdiff_t step = s->store->row_step;
-    const unsigned char *natives =
-        s->store->natives + s->begin[0] + first * step + s->column;
+    const unsigned char *stored =
+        s->store->stored + s->begin[0] + first * step + s->column;
     while (rows) {
         int row = __builtin_ctzll(rows);
-        const unsigned char *at = natives + row * step;
+        const unsigned char *at = stored + row * step;
         V(row) above = NAME(along_bytes)(&r, at, u, difference, sided);
         for (; rows >> row & 1; row++) {
             at += step;

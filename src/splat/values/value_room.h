@@ -184,7 +184,7 @@ static inline void value_ask_rows(const snow_value_store *s, int64_t slice,
     const int64_t *at = s->in_place ? NULL : snow_value_at(s, slice) + first;
     const size_t size = s->kind == SNOW_VALUE_BYTES ? 1 : 2;
     const unsigned char *voxels =
-        (numbers ? (const unsigned char *)s->values : s->natives) +
+        (numbers ? (const unsigned char *)s->values : s->stored) +
         column * (int64_t)size;
     const size_t step = s->in_place ? (size_t)s->row_step * size : 0;
     if (s->in_place)

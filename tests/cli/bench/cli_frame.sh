@@ -24,9 +24,9 @@ run 0 "once more" frame --ranks 5 --azimuth 30 --json
 cp "$OUT" again.json
 run 0 "equal slabs" frame --ranks 3 --azimuth 30 --json --cut equal
 cp "$OUT" equal.json
-run 0 "on a modelled network" frame --ranks 3 --azimuth 30 --json \
+run 0 "on a simulated network" frame --ranks 3 --azimuth 30 --json \
     --network 2e-6,1e10,1e-6
-cp "$OUT" modelled.json
+cp "$OUT" simulated.json
 
 check "all figures are there and hang together" python3 - <<'END'
 import json, math
@@ -40,7 +40,7 @@ stages = """read encode splat exchange warp gather total first read_cpu
 counters = """bytes_sent_max bytes_sent_sum msgs_max active_px_max voxels_max voxels_sum
     slices_min""".split()
 told = {name: read(name) for name in ("r1", "r3", "r5", "again", "equal",
-                                      "modelled")}
+                                      "simulated")}
 for name, t in told.items():
     ranks = t["ranks"]
     assert t["check"] == "ok" and 0 <= t["max_abs_diff"] <= 1 / 255 + 1e-6, t
@@ -65,7 +65,7 @@ for name, t in told.items():
         assert len(k) == t["rounds"] and math.prod(k) >= ranks, t
         most = max(t["active_px_max"] * t["pixel_bytes"], 1)
         assert t["bound_ms"] > most * (ranks - 1) / ranks * 1e3 * \
-            (1 / 12.125e9 if name != "modelled" else 1e-10), t
+            (1 / 12.125e9 if name != "simulated" else 1e-10), t
         took = t["exchange_ms"] + t["gather_ms"]
         assert math.isclose(t["ratio"], took / t["bound_ms"], rel_tol=1e-3), t
     assert t["bytes_sent_sum"] <= ranks * t["bytes_sent_max"], t
@@ -74,14 +74,14 @@ assert told["r1"]["imbalance"] == 1
 assert told["r5"]["bytes_sent_max"] > 0 and told["r5"]["msgs_max"] > 0
 for key in counters:
     assert told["r5"][key] == told["again"][key], key
-    assert told["r3"][key] == told["modelled"][key], key
+    assert told["r3"][key] == told["simulated"][key], key
 assert told["equal"]["slices_min"] == 36 / 3, told["equal"]
 assert told["equal"]["imbalance"] > told["r3"]["imbalance"], told["equal"]
-modelled = told["modelled"]
-assert modelled["nodes"] == 3 and modelled["rank_per_node"] == 1 and modelled["modelled"] == 1, modelled
-assert modelled["projected_ms"] == modelled["total_ms"], modelled
-assert math.isclose(modelled["efficiency"], modelled["t1_ms"] / 3 /
-                    modelled["projected_ms"], rel_tol=1e-4), modelled
+simulated = told["simulated"]
+assert simulated["nodes"] == 3 and simulated["rank_per_node"] == 1 and simulated["simulated"] == 1, simulated
+assert simulated["projected_ms"] == simulated["total_ms"], simulated
+assert math.isclose(simulated["efficiency"], simulated["t1_ms"] / 3 /
+                    simulated["projected_ms"], rel_tol=1e-4), simulated
 assert "projected_ms" not in told["r3"]
 END
 
@@ -103,7 +103,7 @@ assert t["turn_ms"] > 50 and t["turn_overlap_ms"] > 50, t' "$OUT"
 run 0 "no turning volume" frame --ranks 2 --no-check
 check "nothing is told of one" [ -z "$(grep turn_ "$OUT")" ]
 
-# A slow network takes its time, modelled or not waited for.
+# A slow network takes its time, simulated or not waited for.
 run 0 "a slow network" frame --ranks 3 --json --network 0.5,1e10,0
 check "messages of half a second are told" python3 -c '
 import json, sys

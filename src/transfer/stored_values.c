@@ -1,11 +1,11 @@
-/* transfer/natives.c - voxels of 8 and 16 bits, which are counted once by their
- * native value: all else is computed from these counts. */
+/* transfer/stored_values.c - voxels of 8 and 16 bits, which are counted once by
+ * their native value: all else is computed from these counts. */
 #include "transfer/walk.h"
 
 #include <math.h>
 #include <string.h>
 
-bool snow_natives_counted(snow_type type) {
+bool snow_stored_values_counted(snow_type type) {
     return type == SNOW_TYPE_INT8 || type == SNOW_TYPE_UINT8 ||
            type == SNOW_TYPE_INT16 || type == SNOW_TYPE_UINT16;
 }
@@ -33,7 +33,7 @@ static bool is_even(const void *bytes, size_t size) {
 }
 
 /* `user` points to the counts. */
-static snow_status count_natives(const snow_volume *volume, void *user) {
+static snow_status count_stored(const snow_volume *volume, void *user) {
     uint64_t *counts = user;
     snow_voxel_walk w =
         snow_voxel_walk_begin(volume, false, SNOW_HISTOGRAM_EXACT);
@@ -70,8 +70,8 @@ static snow_status count_natives(const snow_volume *volume, void *user) {
     return SNOW_STATUS_OK;
 }
 
-uint64_t snow_natives_nth(const snow_histogram *histogram, int n,
-                          double *value) {
+uint64_t snow_stored_values_nth(const snow_histogram *histogram, int n,
+                                double *value) {
     const snow_volume_info *info = &histogram->volume->info;
     int place = info->slope < 0 ? SNOW_DIGITS - 1 - n : n;
     *value =
@@ -82,7 +82,7 @@ uint64_t snow_natives_nth(const snow_histogram *histogram, int n,
 static void measure_counts(snow_histogram *histogram) {
     for (int n = 0; n < SNOW_DIGITS; n++) {
         double value;
-        uint64_t count = snow_natives_nth(histogram, n, &value);
+        uint64_t count = snow_stored_values_nth(histogram, n, &value);
         if (!count || !isfinite(value))
             continue;
         if (!histogram->finite) {
@@ -93,19 +93,20 @@ static void measure_counts(snow_histogram *histogram) {
         histogram->finite += count;
     }
 }
-snow_status snow_natives_count(snow_histogram *histogram) {
+snow_status snow_stored_values_count(snow_histogram *histogram) {
     SNOW_TRY(snow_histogram_new_tables(histogram, 1, &histogram->counts));
-    SNOW_TRY(snow_histogram_visit(histogram, SNOW_HISTOGRAM_EXACT,
-                                  count_natives, histogram->counts));
+    SNOW_TRY(snow_histogram_visit(histogram, SNOW_HISTOGRAM_EXACT, count_stored,
+                                  histogram->counts));
     SNOW_TRY(snow_histogram_sum_table(histogram, histogram->counts));
     measure_counts(histogram);
     return SNOW_STATUS_OK;
 }
 
-double snow_natives_quantile(const snow_histogram *histogram, uint64_t rank) {
+double snow_stored_values_quantile(const snow_histogram *histogram,
+                                   uint64_t rank) {
     for (int n = 0; n < SNOW_DIGITS; n++) {
         double value;
-        uint64_t count = snow_natives_nth(histogram, n, &value);
+        uint64_t count = snow_stored_values_nth(histogram, n, &value);
         if (!isfinite(value))
             continue;
         if (rank < count)
@@ -183,7 +184,7 @@ static snow_status find_extremes_of_part(const snow_volume *volume,
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_natives_range(snow_histogram *histogram, bool *found) {
+snow_status snow_stored_values_range(snow_histogram *histogram, bool *found) {
     const snow_volume *volume = histogram->volume;
     extremes n = {.until_negative = histogram->need == SNOW_NEED_SIGN};
     *found = false;

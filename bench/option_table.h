@@ -1,46 +1,46 @@
-/* bench/words.h - options of a benchmark from a table of them.
+/* bench/option_table.h - options of a benchmark from a table of them.
  *
  * For benchmarks whose options have nothing in common with those of others;
  * only a name in full is an option. */
-#ifndef SNOW_BENCH_WORDS_H
-#define SNOW_BENCH_WORDS_H
+#ifndef SNOW_BENCH_OPTION_TABLE_H
+#define SNOW_BENCH_OPTION_TABLE_H
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 
-typedef enum bench_kind {
-    BENCH_WORD,   /* bool: it is there */
+typedef enum bench_option_kind {
+    BENCH_FLAG,   /* bool: it is there */
     BENCH_WHOLE,  /* int, low to high */
     BENCH_NUMBER, /* double, low to high */
     BENCH_CHOICE, /* int: the number of a name */
     BENCH_TEXT    /* const char *: what it says, somebody else reads */
-} bench_kind;
+} bench_option_kind;
 
 /* An option: where its value goes, and what values there are. */
-typedef struct bench_word {
+typedef struct bench_option {
     const char *name;
-    bench_kind kind;
+    bench_option_kind kind;
     void *value;
     double low, high;
     const char *const *choices; /* of a CHOICE, NULL at the end */
-} bench_word;
+} bench_option;
 
-typedef struct bench_words {
+typedef struct bench_option_table {
     const char *verb; /* for messages: "combine" */
-    const bench_word *words;
+    const bench_option *options;
     size_t count;
     const char **operand; /* the one word that is no option; NULL: none may
                              be */
-} bench_words;
+} bench_option_table;
 
-/* Reads the words after argv[0]; an exit code, or -1 to go on.  `said` may be
+/* Reads the options after argv[0]; an exit code, or -1 to go on.  `said` may be
  * NULL: ranks but the first say nothing. */
-int bench_words_read(const bench_words *table, int argc, char **argv,
-                     FILE *said);
+int bench_option_table_read(const bench_option_table *table, int argc,
+                            char **argv, FILE *said);
 
 /* Says what is wrong with a word; the exit code. */
-int bench_words_fail(const bench_words *table, FILE *said, const char *what,
-                     const char *word);
+int bench_option_table_fail(const bench_option_table *table, FILE *said,
+                            const char *what, const char *word);
 
 #endif

@@ -1,11 +1,11 @@
-/* combine/borders.h - borders of regions, and the order of lines.
+/* combine/region_bounds.h - borders of regions, and the order of lines.
  *
  * A rising function maps fractions of the picture (region t of n begins at t /
  * n) to pixels: linear for even regions, by the counts of active pixels in
- * groups of lines for counted ones. Equal fractions give equal borders, so that
+ * groups of lines for counted ones. Equal fractions give equal bounds, so that
  * divisions into 2 and into 4 match. */
-#ifndef SNOW_BORDERS_H
-#define SNOW_BORDERS_H
+#ifndef SNOW_REGION_BOUNDS_H
+#define SNOW_REGION_BOUNDS_H
 
 #include "combine/exchange.h"
 
@@ -15,28 +15,30 @@
  * any picture: this bounds buffers. */
 #define SNOW_IMAGE_REGION_MOST 4
 
-typedef struct snow_borders {
+typedef struct snow_region_bounds {
     int width, height, grain;
     bool counted;
     int bins;                            /* groups of lines */
     int64_t weights[SNOW_BINS_MOST + 1]; /* of all bins before; the total */
-} snow_borders;
+} snow_region_bounds;
 
 /* Even regions. */
-void snow_borders_even(snow_borders *borders, int width, int height, int grain);
+void snow_region_bounds_even(snow_region_bounds *bounds, int width, int height,
+                             int grain);
 
 /* Counted regions: counts[i] is the number of active pixels in bin i, of all
  * ranks; destroyed. */
-void snow_borders_count(snow_borders *borders, int64_t *counts);
+void snow_region_bounds_count(snow_region_bounds *bounds, int64_t *counts);
 
 /* The first line of a bin; that of bin `bins` is the height. */
-int snow_borders_line(const snow_borders *borders, int bin);
+int snow_region_bounds_line(const snow_region_bounds *bounds, int bin);
 
 /* The begin of region t of n; for t = n the end of the picture. */
-int64_t snow_border(const snow_borders *borders, int region, int regions);
+int64_t snow_region_begin(const snow_region_bounds *bounds, int region,
+                          int regions);
 
 /* The most pixels of any of n regions, or an upper bound. */
-int64_t snow_border_room(const snow_borders *borders, int regions);
+int64_t snow_region_room(const snow_region_bounds *bounds, int regions);
 
 /* Fills order[place] with the lines 0 .. height - 1 so that any run of places
  * has lines from all over the picture: sorted by their numbers with the bits

@@ -1,0 +1,33 @@
+/* annotations.h - overlays that are drawn when pictures are written:
+ * orientation letters unless --no-labels, the bars of --legend, the step of
+ * --time-label. */
+#ifndef ANNOTATIONS_H
+#define ANNOTATIONS_H
+
+#include "options/options.h"
+
+/* All that the overlays depend on, except the frame.  Several threads may read
+ * it at once; the transfer function must outlive it. */
+typedef struct picture_annotations {
+    const options *opts;
+    snow_volume_info info;
+    snow_view view;
+    const snow_transfer *transfer;
+    double range[2]; /* the range that mean and sum are painted over; both 0:
+                        none */
+} picture_annotations;
+
+/* Refuses annotations for files of floats, which cannot show them.  Returns
+ * CONTINUE or an exit code. */
+int annotations_check(const options *opts);
+
+/* Makes the overlay for a picture from an azimuth; NULL if nothing is drawn.
+ * `step` is a time step, or -1.  Error messages go to the context. */
+snow_status annotations_make(const picture_annotations *annotations,
+                             double azimuth, int64_t step,
+                             snow_context *context, snow_overlay **out);
+
+/* Reports the parts that a legend lacks. */
+void annotations_report(const options *opts);
+
+#endif
