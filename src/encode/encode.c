@@ -23,14 +23,16 @@ snow_encoding snow_encoding_choose(uint64_t voxels, uint64_t interesting,
 }
 
 /* No slice is there yet. */
-static void begin(snow_sparse *s, const snow_scheme *scheme, int64_t columns,
-                  int64_t rows) {
+static snow_status begin(snow_sparse *s, const snow_scheme *scheme,
+                         int64_t columns, int64_t rows) {
     s->scheme = scheme;
     s->columns = columns;
     s->rows = rows;
     s->filled = 0;
     s->ea_bytes = s->ia_voxels = 0;
     s->pa[0] = (snow_slice_pointer){0, 0};
+    return snow_reserve(s->context, &s->mask, &s->mask_capacity, 0,
+                        snow_mask_words(s) * sizeof *s->mask);
 }
 
 snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
@@ -49,9 +51,7 @@ snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
     SNOW_TRY(
         snow_reserve(s->context, &s->pa, &s->pa_capacity, 0, (size_t)pointers));
     s->channels = channels;
-    s->band = false;
-    begin(s, scheme, placement->columns, placement->rows);
-    return SNOW_STATUS_OK;
+    return begin(s, scheme, placement->columns, placement->rows);
 }
 
 snow_status snow_sparse_begin_slice(snow_sparse *s) {
@@ -89,20 +89,27 @@ snow_status snow_sparse_add_row_block(snow_sparse *s,
     SNOW_TRY(add_samples(s, row_block->samples, row_block->count));
     size_t begin = 0;
     for (int64_t row = 0; row < row_block->rows; row++) {
-        size_t end = row_block->row_end[row];
-        SNOW_TRY(
-            s->scheme->add_row(s, row_block->columns + begin, end - begin));
+        memset(s->mask, 0, snow_mask_words(s) * sizeof *s->mask);
+        for (; begin < row_block->row_end[row]; begin++) {
+            uint32_t column = row_block->columns[begin];
+            s->mask[column / 64] |= UINT64_C(1) << column % 64;
+        }
+        SNOW_TRY(s->scheme->add_row(s, s->mask));
         s->row++;
-        begin = end;
     }
+    return SNOW_STATUS_OK;
+}
+
+/* The next slice begins here. */
+static snow_status point(snow_sparse *s) {
+    s->filled++;
+    s->pa[s->filled] = (snow_slice_pointer){s->ea_bytes, s->ia_voxels};
     return SNOW_STATUS_OK;
 }
 
 snow_status snow_sparse_end_slice(snow_sparse *s) {
     SNOW_TRY(s->scheme->end_slice(s));
-    s->filled++;
-    s->pa[s->filled] = (snow_slice_pointer){s->ea_bytes, s->ia_voxels};
-    return SNOW_STATUS_OK;
+    return point(s);
 }
 
 snow_status snow_sparse_begin_band(snow_sparse *s, const snow_scheme *scheme,
@@ -111,18 +118,17 @@ snow_status snow_sparse_begin_band(snow_sparse *s, const snow_scheme *scheme,
     SNOW_TRY(snow_reserve(s->context, &s->pa, &s->pa_capacity, 0,
                           ((size_t)slices + 1) * sizeof *s->pa));
     s->channels = 0;
-    s->band = true;
-    begin(s, scheme, columns, rows);
-    return SNOW_STATUS_OK;
+    return begin(s, scheme, columns, rows);
 }
 
 snow_status snow_sparse_add_masks(snow_sparse *s, const uint64_t *masks,
                                   size_t voxels) {
-    if (voxels)
-        SNOW_TRY(s->scheme->add_masks(s, masks, voxels));
-    s->filled++;
-    s->pa[s->filled] = (snow_slice_pointer){s->ea_bytes, s->ia_voxels};
-    return SNOW_STATUS_OK;
+    if (!voxels)
+        return point(s);
+    SNOW_TRY(snow_sparse_begin_slice(s));
+    for (; s->row < s->rows; s->row++, masks += snow_mask_words(s))
+        SNOW_TRY(s->scheme->add_row(s, masks));
+    return snow_sparse_end_slice(s);
 }
 
 void snow_sparse_fini(snow_sparse *s) {
@@ -130,31 +136,21 @@ void snow_sparse_fini(snow_sparse *s) {
     snow_release(s->context, s->ia);
     snow_release(s->context, s->numbers);
     snow_release(s->context, s->pa);
+    snow_release(s->context, s->mask);
     *s = (snow_sparse){.context = s->context};
-}
-
-/* Of a slice of no bytes. */
-static size_t nothing_next_row(snow_walk *walk, snow_span *spans) {
-    (void)walk;
-    (void)spans;
-    return 0;
 }
 
 void snow_walk_begin(snow_walk *walk, const snow_sparse *s, int64_t slice) {
     snow_slice_pointer pointer = s->pa[slice];
-    *walk =
-        (snow_walk){.sparse = s,
-                    .next_row = nothing_next_row,
-                    .slice_bytes = (size_t)(s->pa[slice + 1].ea - pointer.ea),
-                    .voxel = (size_t)pointer.ia};
-    if (!walk->slice_bytes)
-        return;
-    walk->slice = walk->ea = s->ea + pointer.ea;
-    s->scheme->begin_walk(walk);
+    *walk = (snow_walk){.sparse = s, .voxel = (size_t)pointer.ia};
+    if (s->pa[slice + 1].ea > pointer.ea)
+        walk->slice = walk->ea = s->ea + pointer.ea;
 }
 
 size_t snow_walk_row(snow_walk *walk, snow_span *spans, size_t *voxel) {
-    size_t count = walk->next_row(walk, spans), voxels = 0;
+    size_t voxels = 0, count = walk->slice
+                                   ? walk->sparse->scheme->next_row(walk, spans)
+                                   : 0;
     for (size_t i = 0; i < count; i++)
         voxels += spans[i].length;
     *voxel = walk->voxel;

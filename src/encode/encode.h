@@ -32,12 +32,8 @@ typedef struct snow_scheme snow_scheme;
 
 /* A volume's interesting voxels, or those of a band of rows
  * (encode/values/value_shell.c). Slices are appended in order; beginning again
- * reuses the buffers.
- *
- * Slices of a whole volume are written as in the paper's figures 4 to 6. Those
- * of a band have forms that cost next to nothing where there are no voxels;
- * each scheme's file draws its own. In all of them a slice without interesting
- * voxels takes no bytes of EA. */
+ * reuses the buffers. Their form is that of the paper's figures 4 to 6; a slice
+ * of a band without interesting voxels takes no bytes of EA. */
 typedef struct snow_sparse {
     snow_context *context;
     const snow_scheme *scheme;
@@ -51,52 +47,41 @@ typedef struct snow_sparse {
     float *ia;
     int16_t *numbers;
     size_t ia_voxels, ia_capacity, numbers_capacity; /* capacities in bytes */
-    bool band;              /* of a band, not of a whole volume */
-    snow_slice_pointer *pa; /* one more than slices */
+    snow_slice_pointer *pa;                          /* one more than slices */
     size_t pa_capacity;
-    int64_t row; /* next row of the slice being encoded */
+    int64_t row;    /* next row of the slice being encoded */
+    uint64_t *mask; /* of a row */
+    size_t mask_capacity;
     /* RLE, while encoding: the current run, which may still grow. */
     uint64_t run;
     bool run_interesting;
 } snow_sparse;
 
-typedef struct snow_walk snow_walk;
-
-/* Reads the next row's spans of one form of a slice into `spans`, which has
- * room for (columns + 1) / 2; returns their number. The caller advances the
- * walk's voxel and row. */
-typedef size_t snow_next_row_fn(snow_walk *walk, snow_span *spans);
-
 /* A walk through the rows of one slice. */
-struct snow_walk {
+typedef struct snow_walk {
     const snow_sparse *sparse;
-    snow_next_row_fn *next_row; /* of the form of the slice */
-    const unsigned char *slice; /* its first byte in EA */
-    size_t slice_bytes;
-    const unsigned char *ea; /* next run, cell or word to read */
-    size_t voxel;            /* the next row's first voxel in IA */
-    int64_t row;             /* the next row */
+    const unsigned char *slice; /* its first byte in EA; NULL: it has none */
+    const unsigned char *ea;    /* RLE: the next run to read */
+    size_t voxel;               /* the next row's first voxel in IA */
+    int64_t row;                /* the next row */
     /* RLE: voxels left in the current run, its kind, and whether there is one.
      */
     uint32_t run;
     bool run_interesting, started;
-};
+} snow_walk;
 
 /* A way to write EA (section 3.2). */
 struct snow_scheme {
-    /* Begins a slice, appends its rows (columns of the interesting voxels,
-     * rising), ends it. Errors: SNOW_STATUS_NO_MEMORY. */
+    /* Begins a slice, appends its rows, ends it. A row is snow_mask_words words
+     * with a bit for each voxel, lowest first; 0 behind the last. Errors:
+     * SNOW_STATUS_NO_MEMORY. */
     snow_status (*begin_slice)(snow_sparse *sparse);
-    snow_status (*add_row)(snow_sparse *sparse, const uint32_t *columns,
-                           size_t count);
+    snow_status (*add_row)(snow_sparse *sparse, const uint64_t *mask);
     snow_status (*end_slice)(snow_sparse *sparse);
-    /* Appends a band's slice of `voxels` > 0 interesting voxels: `masks` holds
-     * snow_mask_words words for each row, a bit for each voxel, lowest first.
-     * Errors: SNOW_STATUS_NO_MEMORY. */
-    snow_status (*add_masks)(snow_sparse *sparse, const uint64_t *masks,
-                             size_t voxels);
-    /* Sets a walk, whose slice is set already, before its first row. */
-    void (*begin_walk)(snow_walk *walk);
+    /* Reads the next row's spans into `spans`, which has room for (columns + 1)
+     * / 2; returns their number. The caller advances the walk's voxel and row.
+     */
+    size_t (*next_row)(snow_walk *walk, snow_span *spans);
 };
 
 extern const snow_scheme snow_scheme_crs;
@@ -144,14 +129,6 @@ static inline size_t snow_mask_words(const snow_sparse *sparse) {
     return ((size_t)sparse->columns + 63) / 64;
 }
 
-/* Whether any of some words is not 0. */
-static inline bool snow_any_set(const uint64_t *masks, size_t words) {
-    uint64_t set = 0;
-    for (size_t w = 0; w < words; w++)
-        set |= masks[w];
-    return set != 0;
-}
-
 /* Appends a slice of a band; `voxels` of it are interesting, and already
  * counted in ia_voxels. Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_sparse_add_masks(snow_sparse *sparse, const uint64_t *masks,
@@ -167,16 +144,10 @@ void snow_walk_begin(snow_walk *walk, const snow_sparse *sparse, int64_t slice);
  * Returns the number of spans. */
 size_t snow_walk_row(snow_walk *walk, snow_span *spans, size_t *voxel);
 
-/* For the schemes: appends `size` bytes of zeros to EA. */
-snow_status snow_sparse_grow_ea(snow_sparse *sparse, size_t size);
-
-/* For the schemes: snow_sparse_open_ea reserves up to `most` bytes at EA's end,
- * to which *at is set, and SNOW_EA_MARGIN more that may be overwritten; the
- * second call says how many of them are used. */
+/* For the schemes: appends `size` bytes of zeros to EA. There are as many as
+ * SNOW_EA_MARGIN more, which may be read and written. */
 #define SNOW_EA_MARGIN 64
-snow_status snow_sparse_open_ea(snow_sparse *sparse, size_t most,
-                                unsigned char **at);
-void snow_sparse_close_ea(snow_sparse *sparse, const unsigned char *end);
+snow_status snow_sparse_grow_ea(snow_sparse *sparse, size_t size);
 
 /* Adds voxels to a row's spans: extends the last span if they touch it, or
  * begins a new one. */
