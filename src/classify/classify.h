@@ -103,9 +103,7 @@ const void *snow_row_voxels(const snow_volume *volume,
                             const snow_placement *placement, int64_t slice,
                             int64_t row, int64_t *stride);
 
-/* --- gradients: classify/shading/gradient.c
- * ----------------------------------------
- */
+/* --- gradients: classify/shading/gradient.c ------------------------------- */
 
 /* A row of voxels along an axis; at[axis] is ignored. */
 typedef struct snow_gradient_row {
@@ -121,9 +119,7 @@ void snow_gradients_of_row(const snow_gradient_row *row,
                            const uint32_t *columns, size_t count,
                            size_t capacity, double *gradients);
 
-/* --- shading: classify/shading/shade.c
- * ---------------------------------------------
- */
+/* --- shading: classify/shading/shade.c ------------------------------------ */
 
 /* The lights of a picture: a distant one, that is fixed to the camera, then a
  * head light, whose direction is that of the viewer; or one of the two. */
@@ -182,9 +178,7 @@ void snow_shade_gradients(const snow_shader *shader,
                           const double gradients[3][SNOW_SHADE_BLOCK],
                           int count, int channels, float *samples);
 
-/* --- perspective: classify/path_length.c
- * -----------------------------------------
- */
+/* --- perspective: classify/path_length.c ---------------------------------- */
 
 /* Corrects the opacities of a row block from the reference length to the path
  * lengths of the voxels' own rays. Colours are premultiplied. */

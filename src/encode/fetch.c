@@ -122,8 +122,7 @@ static void fill_block(snow_fetch *f, int64_t slice) {
     }
 }
 
-/* --- slices ----------------------------------------------------------------
- */
+/* --- slices --------------------------------------------------------------- */
 
 static void slice_of_volume(snow_fetch *f, int64_t slice, snow_rows *out) {
     *out = (snow_rows){.columns = f->columns, .rows = f->rows};

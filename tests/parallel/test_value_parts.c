@@ -114,8 +114,7 @@ static void free_numbered(reference_scene *s) {
     free((void *)(uintptr_t)s->voxels);
 }
 
-/* --- slabs of a file --------------------------------------------------------
- */
+/* --- slabs of a file ------------------------------------------------------ */
 
 /* A picture of a volume by a frame that has made others. */
 static snow_image *image_of(snow_frame *frame, const snow_volume *volume,
@@ -213,8 +212,7 @@ static void slabs_of_a_file_are_projected_alike(void **state) {
     check_slabs(*state, projected);
 }
 
-/* --- many ranks -------------------------------------------------------------
- */
+/* --- many ranks ----------------------------------------------------------- */
 
 static scenario scenario_of(const reference_scene *s, int n,
                             const snow_transfer *transfer) {

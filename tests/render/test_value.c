@@ -34,8 +34,7 @@ static void pictures_are_the_references(void **state) {
     model_close(&stage);
 }
 
-/* --- bits -------------------------------------------------------------------
- */
+/* --- bits ----------------------------------------------------------------- */
 
 /* Both pictures are freed but the first. */
 static void same_bits(int n, const float *first, float *other, size_t count) {
@@ -98,8 +97,7 @@ static void all_vector_levels_give_the_same_image(void **state) {
     model_close(&stage);
 }
 
-/* --- what a frame keeps -----------------------------------------------------
- */
+/* --- what a frame keeps --------------------------------------------------- */
 
 /* A frozen volume of a scene. */
 static snow_volume *frozen(const model_stage *stage, const reference_scene *s) {
@@ -172,8 +170,7 @@ static void only_what_shows_more_is_encoded_anew(void **state) {
     model_close(&stage);
 }
 
-/* --- what is left to other methods ------------------------------------------
- */
+/* --- what is left to other methods ---------------------------------------- */
 
 /* Slices so far apart that rays move aside by too many voxels: footprints draw
  * them, and rays their isosurface. */

@@ -156,9 +156,7 @@ void value_picture_compare(int n, const reference_scene *s,
                  most * 255, worst / 4, far, count);
 }
 
-/* --- holes and planes
- * ---------------------------------------------------------------
- */
+/* --- holes and planes ----------------------------------------------------- */
 
 void value_picture_punch(reference_scene *s, int n) {
     const int64_t *dims = s->info.dims;
@@ -253,8 +251,7 @@ void value_picture_clip(value_scene *scene, size_t count, double planes[2][4]) {
     scene->clip_count = count;
 }
 
-/* --- by the method --------------------------------------------------------
- */
+/* --- by the method -------------------------------------------------------- */
 
 /* The scene's volume without what its planes leave out. */
 static snow_volume *open_volume(const model_stage *stage,

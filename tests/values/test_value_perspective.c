@@ -100,8 +100,7 @@ static void nothing_changes_a_bit(void **state) {
     model_close(&stage);
 }
 
-/* --- where the eye is -----------------------------------------------------
- */
+/* --- where the eye is ----------------------------------------------------- */
 
 /* The method that draws a scene. */
 static snow_method method_of(const model_stage *stage,

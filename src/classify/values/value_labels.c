@@ -6,8 +6,7 @@
 
 #define BLOCK 1024
 
-/* --- names ------------------------------------------------------------------
- */
+/* --- names ---------------------------------------------------------------- */
 
 /* The first name that is not below a value. */
 static int place_of(const snow_value_labels *labels, double value) {
@@ -63,8 +62,7 @@ snow_status snow_value_labels_add(const snow_volume *volume,
     return SNOW_STATUS_OK;
 }
 
-/* --- looks ------------------------------------------------------------------
- */
+/* --- looks ---------------------------------------------------------------- */
 
 static void find_look(const snow_value_look *look, snow_value_labels *labels,
                       int n) {

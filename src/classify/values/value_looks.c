@@ -17,8 +17,7 @@
 /* A look whose steepest ramp spans fewer nodes has them placed by measure. */
 #define STEEP_NODES 4
 
-/* --- looks ------------------------------------------------------------------
- */
+/* --- looks ---------------------------------------------------------------- */
 
 /* Colour and opacity of the reference length at number V. */
 static void look_at(const snow_value_look *look, double v,
@@ -109,8 +108,7 @@ static snow_status fill_planes(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* --- nodes ------------------------------------------------------------------
- */
+/* --- nodes ---------------------------------------------------------------- */
 
 /* Whether opacity would rise from 0 to its largest within so few nodes that are
  * evenly placed, as it does along its steepest ramp, steps left out. */

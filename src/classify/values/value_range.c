@@ -6,8 +6,7 @@
 
 #include <math.h>
 
-/* --- the range of the data -------------------------------------------------
- */
+/* --- the range of the data ------------------------------------------------ */
 
 /* Voxels of a work item, and of a block within it. */
 #define ITEM ((int64_t)1 << 18)
@@ -169,8 +168,7 @@ snow_status snow_data_range_measure(const snow_volume *volume, bool log,
     return status;
 }
 
-/* --- the scale of a look ---------------------------------------------------
- */
+/* --- the scale of a look -------------------------------------------------- */
 
 /* A point of a look on the range's scale. */
 static double point_of(const snow_data_range *data, double value) {

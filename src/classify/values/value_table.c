@@ -11,8 +11,7 @@
 #define FAINTEST 0.004F
 #define HALVINGS_MOST 96
 
-/* --- entries ----------------------------------------------------------------
- */
+/* --- entries -------------------------------------------------------------- */
 
 #define ENTRIES SNOW_VALUE_ENTRIES
 
@@ -145,8 +144,7 @@ static snow_status fill_entries(snow_context *context,
                : SNOW_STATUS_OK;
 }
 
-/* --- invisible runs --------------------------------------------------------
- */
+/* --- invisible runs ------------------------------------------------------- */
 
 /* Keeps the longest runs; they stay rising. */
 void snow_value_table_hide(snow_value_table *table, snow_value_run run) {
@@ -197,8 +195,7 @@ static void find_runs(const snow_value_look *look, snow_value_table *table) {
     }
 }
 
-/* --- the table --------------------------------------------------------------
- */
+/* --- the table ------------------------------------------------------------ */
 
 /* The points of a look, to know it again. */
 static snow_status take_key(snow_context *context, const snow_transfer *t,

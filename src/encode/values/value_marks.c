@@ -5,8 +5,7 @@
 
 #include <string.h>
 
-/* --- ranges -----------------------------------------------------------------
- */
+/* --- ranges --------------------------------------------------------------- */
 
 /* The native that is `step` from the one of number 0. */
 static int32_t native_of(const snow_value_rule *rule, int32_t step) {
@@ -49,8 +48,7 @@ snow_value_stored_range_of(const snow_value_coder *coder, snow_value_run run) {
                                      .width = (uint16_t)(last - first)};
 }
 
-/* --- rows -------------------------------------------------------------------
- */
+/* --- rows ----------------------------------------------------------------- */
 
 /* The words of a row, moved on by `margin` bits (1 to 31), to `words` words. */
 static void place_bits(const uint32_t *from, size_t count, int margin,

@@ -88,8 +88,7 @@ static snow_encoding choose(const snow_value_store *s) {
                                 cells, runs);
 }
 
-/* --- the steps ---------------------------------------------------------------
- */
+/* --- the steps ------------------------------------------------------------ */
 
 static int64_t count_bands(const snow_value_store *s) {
     return s->band_count;

@@ -5,8 +5,7 @@
 
 #include <string.h>
 
-/* --- sizes ------------------------------------------------------------------
- */
+/* --- sizes ---------------------------------------------------------------- */
 
 static snow_status reserve_masks(snow_value_store *s) {
     size_t slices = (size_t)snow_value_planes(s) * (size_t)s->slices;
@@ -153,8 +152,7 @@ snow_status snow_value_store_begin(snow_value_store *s,
     return s->in_place ? SNOW_STATUS_OK : reserve_rows(s);
 }
 
-/* --- what it takes ----------------------------------------------------------
- */
+/* --- what it takes -------------------------------------------------------- */
 
 /* Of stored values there are masks and at most a copy, which counts as IA. */
 void snow_value_store_add_up(snow_value_store *s) {

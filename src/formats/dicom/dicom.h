@@ -93,9 +93,7 @@ static inline const char *snow_dicom_name(const dicom_frame *frame) {
 /* The order of two frames that nothing but their files distinguishes. */
 int snow_dicom_compare_sources(const dicom_frame *a, const dicom_frame *b);
 
-/* --- parse.c, values.c
- * --------------------------------------------------------
- */
+/* --- parse.c, values.c ---------------------------------------------------- */
 
 /* Of the progress of reading a series, one part in so many is headers. */
 #define DICOM_HEADER_SHARE 4

@@ -89,8 +89,7 @@ void snow_value_change_axis(snow_value_path *path,
         snow_value_take_out(path, &kept[axis]);
 }
 
-/* --- ahead ------------------------------------------------------------------
- */
+/* --- ahead ---------------------------------------------------------------- */
 
 /* The turn that leads from one camera to the next. */
 static void find_turn(double from[3][3], double to[3][3], double turn[3][3]) {

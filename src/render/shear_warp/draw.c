@@ -15,8 +15,7 @@
 #define FAINT (0.5 / 255)
 #define FAINTER 1e-4
 
-/* --- light ------------------------------------------------------------------
- */
+/* --- light ---------------------------------------------------------------- */
 
 /* n . x for a world vector x, times |g|: a factor for each of gu, gv, gp. */
 static void project(double inverse[3][3], const snow_placement *p,
@@ -104,8 +103,7 @@ static snow_status place_fade(const snow_value_params *params,
     return SNOW_STATUS_OK;
 }
 
-/* --- sheets and memory ------------------------------------------------------
- */
+/* --- sheets and memory ---------------------------------------------------- */
 
 static snow_status place_sheets(snow_value_path *path,
                                 const snow_value_params *params) {
@@ -199,8 +197,7 @@ static void describe(snow_value_drawing *job) {
     job->scratch_bytes = (job->scratch_bytes + 63) / 64 * 64;
 }
 
-/* --- tiles ------------------------------------------------------------------
- */
+/* --- tiles ---------------------------------------------------------------- */
 
 /* Where row `row` of a phase of a tile is in a layer; *step leads to the next
  * pixel. */
@@ -340,8 +337,7 @@ static void draw_layers(void *of, int64_t item, int worker) {
         draw_layer(job, n, item, room, pixels);
 }
 
-/* --- a picture --------------------------------------------------------------
- */
+/* --- a picture ------------------------------------------------------------ */
 
 /* Sheets, light and memory of the tiles. */
 static snow_status place_drawing(snow_value_path *path,

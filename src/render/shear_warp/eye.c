@@ -49,8 +49,7 @@ bool snow_value_eye_fits(const snow_placement *p) {
                SNOW_VALUE_REACH_MOST;
 }
 
-/* --- the image --------------------------------------------------------------
- */
+/* --- the image ------------------------------------------------------------ */
 
 /* The volume's range along an axis, in voxels of the front sheet, and one voxel
  * more of each sheet. */
@@ -109,8 +108,7 @@ double snow_value_eye_density(const snow_value_lattice *l,
     return most;
 }
 
-/* --- sheets -----------------------------------------------------------------
- */
+/* --- sheets --------------------------------------------------------------- */
 
 /* Samples from one to those of its gradient: about one voxel. */
 static int apart_of(int cells, double step) {

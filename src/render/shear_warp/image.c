@@ -16,8 +16,7 @@ static int blocks_of(const snow_value_lattice *l) {
     return l->width / BLOCK + 1;
 }
 
-/* --- memory -----------------------------------------------------------------
- */
+/* --- memory --------------------------------------------------------------- */
 
 static int wanted_tiles(int64_t cells, int side) {
     return (int)((cells + side - 1) / side);
@@ -114,8 +113,7 @@ snow_status snow_value_reserve_image(snow_value_path *path,
     return SNOW_STATUS_OK;
 }
 
-/* --- blocks of a quincunx --------------------------------------------------
- */
+/* --- blocks of a quincunx ------------------------------------------------- */
 
 /* The tiles along an axis that have samples low .. high, of `cells` a voxel. */
 static void tiles_of(int64_t low, int64_t high, int cells, int side, int tiles,
@@ -167,8 +165,7 @@ static void find_blocks(snow_value_image *image) {
     }
 }
 
-/* --- the image --------------------------------------------------------------
- */
+/* --- the image ------------------------------------------------------------ */
 
 /* The image as it is combined with others. */
 static snow_status describe_plane(snow_context *context, snow_value_image *of,

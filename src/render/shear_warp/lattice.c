@@ -12,8 +12,7 @@ static double length_of(const snow_volume_info *info, int axis) {
     return info->spacing[axis];
 }
 
-/* --- cells ------------------------------------------------------------------
- */
+/* --- cells ---------------------------------------------------------------- */
 
 /* Pixels of the picture a voxel, along the finer in-plane axis. */
 static snow_status measure_density(snow_context *context,
@@ -52,8 +51,7 @@ static void choose_cells(const snow_volume_info *info, const snow_placement *p,
     l->phases = l->cells[0] * l->cells[1] * (1 + l->quincunx);
 }
 
-/* --- sheets -----------------------------------------------------------------
- */
+/* --- sheets --------------------------------------------------------------- */
 
 static void choose_sheets(const snow_volume_info *info, const snow_placement *p,
                           snow_quality quality, snow_value_lattice *l) {
@@ -130,8 +128,7 @@ void snow_value_lattice_sheets(const snow_value_lattice *l,
     }
 }
 
-/* --- the image --------------------------------------------------------------
- */
+/* --- the image ------------------------------------------------------------ */
 
 /* The slice of the front sheet. */
 static void place_front(const snow_placement *p, snow_value_lattice *l) {

@@ -51,8 +51,7 @@ double snow_value_lattice_reach(const snow_volume_info *info,
 /* Moves the image by pixels along an axis. */
 void snow_value_lattice_move(snow_value_lattice *lattice, int axis, double by);
 
-/* --- perspective: eye.c ---------------------------------------------------
- */
+/* --- perspective: eye.c --------------------------------------------------- */
 
 /* Whether the eye is outside of the slices, and not too near: samples of the
  * last sheet and rays are as far apart as encodings provide for. */

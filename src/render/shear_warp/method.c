@@ -68,8 +68,7 @@ static snow_status show(snow_picture *p, snow_job *job) {
                               p->local.pixels, job->stats);
 }
 
-/* --- slabs of a file ------------------------------------------------------
- */
+/* --- slabs of a file ------------------------------------------------------ */
 
 static const snow_volume *kept(void *user, const snow_extent *part,
                                int64_t slices) {

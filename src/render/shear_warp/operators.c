@@ -6,8 +6,7 @@
 
 #include <math.h>
 
-/* --- over -------------------------------------------------------------------
- */
+/* --- over ----------------------------------------------------------------- */
 
 /* Words of some planes to pixels, for a constant number of channels. */
 static inline void read_words(const snow_value_plane *words, int row,
@@ -34,8 +33,7 @@ static void read_over(const snow_value_splat *splat, const void *planes,
             out[n * channels] = (*floats)[c][row][n + 1];
 }
 
-/* --- extremes ---------------------------------------------------------------
- */
+/* --- extremes ------------------------------------------------------------- */
 
 /* A number that adds nothing to an image that begins with it.  Beside holes no
  * number says that a ray is there. */
@@ -68,8 +66,7 @@ static void read_best(const snow_value_splat *splat, const void *planes,
     }
 }
 
-/* --- mean and sum -----------------------------------------------------------
- */
+/* --- mean and sum --------------------------------------------------------- */
 
 /* Half the sum of both ends, and the length, of all slabs. */
 static void read_sums(const snow_value_splat *splat, const void *planes,
@@ -137,8 +134,7 @@ static void hide_below(snow_value_path *path, const snow_value_look *look,
     surface->color[3] = INT16_MAX;
 }
 
-/* --- the records ------------------------------------------------------------
- */
+/* --- the records ---------------------------------------------------------- */
 
 const snow_value_operator *snow_value_operator_of(snow_mode mode) {
     static const snow_value_operator over = {

@@ -60,8 +60,7 @@ snow_value_splat snow_value_splat_of(const snow_value_drawing *d,
     return splat;
 }
 
-/* --- groups of slices --------------------------------------------------------
- */
+/* --- groups of slices ----------------------------------------------------- */
 
 /* Pixels of a tile. */
 static size_t tile_pixels(const snow_value_drawing *d) {

@@ -51,8 +51,7 @@ void snow_value_path_free(snow_value_path *path) {
     snow_release(context, path);
 }
 
-/* --- values -----------------------------------------------------------------
- */
+/* --- values --------------------------------------------------------------- */
 
 static const snow_slab_cut every_slab = {.clipped = true};
 

@@ -20,8 +20,7 @@ typedef struct show_job {
     snow_bytes_fn *convert;
 } show_job;
 
-/* --- a smaller image -------------------------------------------------------
- */
+/* --- a smaller image ------------------------------------------------------ */
 
 /* Adds a line of the image to the sums of one that is `side` times smaller;
  * *first is the number of its first pixel on the lattice. */
@@ -116,8 +115,7 @@ static snow_status place_halved(snow_context *context, snow_value_image *of) {
     return SNOW_STATUS_OK;
 }
 
-/* --- lines ------------------------------------------------------------------
- */
+/* --- lines ---------------------------------------------------------------- */
 
 /* Pixels of line y of the picture, or of denser places. */
 static void show_row(const snow_shear_warp_warping *w, int y, int from, int to,

@@ -4,8 +4,7 @@
 /* Vectors of 32 floats. */
 #define GROUPS (32 / LANES)
 
-/* --- light ------------------------------------------------------------------
- */
+/* --- light ---------------------------------------------------------------- */
 
 TARGET VALUE_INLINE V(vec)
     NAME(dot)(const float by[3], V(vec) u, V(vec) v, V(vec) p) {
@@ -147,8 +146,7 @@ TARGET VALUE_INLINE void NAME(light)(const snow_value_light *l,
         NAME(add_light)(l, 1, to[0], to[0], unit, color, white);
 }
 
-/* --- colours ----------------------------------------------------------------
- */
+/* --- colours -------------------------------------------------------------- */
 
 /* The place of the opacity, of 32768, from the top bits of the four words. */
 TARGET VALUE_INLINE V(row) NAME(split)(V(row) color[4]) {

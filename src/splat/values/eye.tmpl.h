@@ -1,8 +1,7 @@
 /* splat/values/eye.tmpl.h - the sheets' samples in perspective, which are a
  * voxel and more apart.  Include simd/select.h first. */
 
-/* --- masks ------------------------------------------------------------------
- */
+/* --- masks ---------------------------------------------------------------- */
 
 /* Ors the cells of a plane of masks under some rows of lanes; lane 0 of v is
  * the plane's row at `masks`. */
@@ -159,8 +158,7 @@ static inline void NAME(clip_eye)(const snow_value_splat *p, int n, int phase,
     snow_value_clip(p, ends[0], ends[1], clip);
 }
 
-/* --- sheets -----------------------------------------------------------------
- */
+/* --- sheets --------------------------------------------------------------- */
 
 /* Voxels of a row on both sides of the lanes: of a slice, half way to the next
  * one, or the difference of two of them. */
@@ -228,8 +226,7 @@ NAME(fill_eye)(const NAME(source) * s, const snow_value_store *store,
     }
 }
 
-/* --- holes ------------------------------------------------------------------
- */
+/* --- holes ---------------------------------------------------------------- */
 
 /* As NAME(near_holes). */
 static inline bool NAME(near_holes_eye)(const snow_value_store *s,
@@ -287,8 +284,7 @@ TARGET static void NAME(fill_holes_eye)(const NAME(source) * s,
     }
 }
 
-/* --- kernel bspline ---------------------------------------------------------
- */
+/* --- kernel bspline ------------------------------------------------------- */
 
 /* As NAME(mix_line). */
 TARGET VALUE_INLINE void NAME(mix_line_eye)(const NAME(source) * s,
@@ -455,8 +451,7 @@ TARGET VALUE_INLINE void NAME(sample_beside)(const snow_value_splat *p, int n,
     }
 }
 
-/* --- what is needed soon ----------------------------------------------------
- */
+/* --- what is needed soon -------------------------------------------------- */
 
 /* As NAME(ask). */
 static inline void NAME(ask_eye)(const snow_value_splat *p, int n, int phase,

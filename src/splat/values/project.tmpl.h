@@ -28,8 +28,7 @@ TARGET VALUE_INLINE void NAME(lengths_of)(V(row) part, uint32_t mask,
         out[n] = parts[n] == INT16_MAX ? 1 : (float)parts[n] / 32768;
 }
 
-/* --- the rays that there are ------------------------------------------------
- */
+/* --- the rays that there are ---------------------------------------------- */
 
 /* Of a slab that has rows; cuts of others are not known. */
 static inline bool NAME(is_cut)(const value_slab *slab) {
@@ -123,8 +122,7 @@ TARGET static bool NAME(find_rays)(const snow_value_splat *p, int phase,
     return any;
 }
 
-/* --- slabs ------------------------------------------------------------------
- */
+/* --- slabs ---------------------------------------------------------------- */
 
 /* The better ones of a row's pixels and both ends of a slab. */
 TARGET VALUE_INLINE void NAME(keep_best)(int16_t *pixels, V(row) x, V(row) y,

@@ -62,8 +62,7 @@ TARGET VALUE_INLINE V(row)
     return V(row_mulhrs)(V(row_srl)(t, rule->shift), V(row_set1)(rule->weight));
 }
 
-/* --- sides ------------------------------------------------------------------
- */
+/* --- sides ---------------------------------------------------------------- */
 
 /* A bit for each of the first n of 32 lanes. */
 static inline uint32_t NAME(first_lanes)(int64_t n) {
@@ -147,8 +146,7 @@ TARGET static void NAME(pair_beyond)(const NAME(source) * from, int end,
     }
 }
 
-/* --- rows -------------------------------------------------------------------
- */
+/* --- rows ----------------------------------------------------------------- */
 
 /* 32 numbers of a row from `column` on, and from the next one on, wherever they
  * are; `sided`: some may be beyond a side. */

@@ -1,8 +1,7 @@
 /* splat/values/sample.tmpl.h - which samples of a slab can be seen, and the
  * values of its sheets there.  Include simd/select.h first. */
 
-/* --- masks ------------------------------------------------------------------
- */
+/* --- masks ---------------------------------------------------------------- */
 
 /* Ors the cells of a sheet under a tile that are not wholly within a run. */
 TARGET VALUE_INLINE void NAME(add_cells)(const snow_value_store *s, int run,
@@ -77,8 +76,7 @@ static inline void NAME(clip_all)(const snow_value_splat *p, int n, int phase,
         (double[]){u + next->at[0], v + next->at[1], sheet[1].at, 1}, clip);
 }
 
-/* --- sheets -----------------------------------------------------------------
- */
+/* --- sheets --------------------------------------------------------------- */
 
 TARGET VALUE_INLINE V(row) NAME(mix)(V(row) a, V(row) b, V(row) weight) {
     return V(row_add)(a, V(row_mulhrs)(V(row_subs)(b, a), weight));

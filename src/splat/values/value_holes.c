@@ -22,8 +22,7 @@ void snow_value_weigh(int16_t values[32], const int16_t weights[32],
     }
 }
 
-/* --- differences ------------------------------------------------------------
- */
+/* --- differences ---------------------------------------------------------- */
 
 /* Twice the difference for one step: of both sides, of the one that is there,
  * or none. */

@@ -33,8 +33,7 @@ typedef struct label_slab {
     int member[AROUND][2];
 } label_slab;
 
-/* --- places -----------------------------------------------------------------
- */
+/* --- places --------------------------------------------------------------- */
 
 /* A sample on an end of its slab, or one some samples away along an axis. */
 static spot spot_of(const label_sample *at, int end, int axis, int by) {
@@ -62,8 +61,7 @@ static spot spot_of(const label_sample *at, int end, int axis, int by) {
                   u->weight[lane], v->weight[row]};
 }
 
-/* --- membership -------------------------------------------------------------
- */
+/* --- membership ----------------------------------------------------------- */
 
 static int code_of(const snow_value_store *s, int64_t i, int64_t j, int64_t k) {
     return s->values[snow_value_at(s, k)[j] + i];
@@ -110,8 +108,7 @@ static int member_at(const snow_value_store *s, int label, const spot *at) {
     return value_between(row[0], row[1], at->wv);
 }
 
-/* --- gradients --------------------------------------------------------------
- */
+/* --- gradients ------------------------------------------------------------ */
 
 /* Along P, of voxels. */
 static int across(const snow_value_store *s, int label, const spot *at) {
@@ -159,8 +156,7 @@ static void find_slopes(const label_slab *slab, int label, int place,
             (int16_t)value_between(slopes[axis][0], slopes[axis][1], place);
 }
 
-/* --- labels of a slab -------------------------------------------------------
- */
+/* --- labels of a slab ----------------------------------------------------- */
 
 static void add_label(label_slab *slab, int label) {
     for (int n = 0; n < slab->count; n++)
@@ -214,8 +210,7 @@ static int winner(const label_slab *slab, double t) {
     return best;
 }
 
-/* --- colours ----------------------------------------------------------------
- */
+/* --- colours -------------------------------------------------------------- */
 
 /* The part of a slab that is inside. */
 typedef struct label_part {
@@ -281,8 +276,7 @@ static bool pack(label_slab *slab, label_part part, value_queue *q, int count,
     return true;
 }
 
-/* --- a phase of a slab ------------------------------------------------------
- */
+/* --- a phase of a slab ---------------------------------------------------- */
 
 static label_part part_of(const value_slab *slab, int row, int lane) {
     const value_cut *cut = slab->cut;

@@ -121,8 +121,7 @@ static inline int32_t *value_slabs(const snow_value_splat *splat,
     return (int32_t *)(void *)&room->rows[splat->phases];
 }
 
-/* --- places -----------------------------------------------------------------
- */
+/* --- places --------------------------------------------------------------- */
 
 /* Lane 0 of a tile along u; row 0 along v: cells. */
 static inline int64_t value_tile_column(const snow_value_splat *splat, int x) {
@@ -236,8 +235,7 @@ static inline bool value_has_holes(const snow_value_store *s, int64_t slice,
     return any & 1;
 }
 
-/* --- arithmetic -------------------------------------------------------------
- */
+/* --- arithmetic ----------------------------------------------------------- */
 
 static inline int value_saturate(int x) {
     return x < INT16_MIN ? INT16_MIN : x > INT16_MAX ? INT16_MAX : x;
@@ -247,8 +245,7 @@ static inline int value_between(int a, int b, int weight) {
     return a + ((value_saturate(b - a) * weight + 0x4000) >> 15);
 }
 
-/* --- labels -----------------------------------------------------------------
- */
+/* --- labels --------------------------------------------------------------- */
 
 /* Packs the visible samples of a phase of slab `n` from number `count` on, with
  * their colours and gradients. */
@@ -257,8 +254,7 @@ int snow_value_collect_labels(const snow_value_splat *splat, int n, int phase,
                               value_slab *slab, value_queue *queue, int count,
                               bool sloped);
 
-/* --- holes ------------------------------------------------------------------
- */
+/* --- holes ---------------------------------------------------------------- */
 
 /* The weight of a voxel that is there. */
 #define SNOW_VALUE_FULL 16384
@@ -296,8 +292,7 @@ static inline float value_lengthen(const snow_value_table *table, float alpha,
                         : 1 - powf(1 - alpha, share);
 }
 
-/* --- gradient opacity -------------------------------------------------------
- */
+/* --- gradient opacity ----------------------------------------------------- */
 
 /* The colours and alpha of 32 samples, by their gradients and the places of
  * their opacity between front and back, of 32768. */
@@ -307,8 +302,7 @@ void snow_value_fade_colors(const snow_value_fade *fade,
                             const int16_t *back, const int16_t places[32],
                             int16_t color[4][32]);
 
-/* --- cuts -------------------------------------------------------------------
- */
+/* --- cuts ----------------------------------------------------------------- */
 
 /* The parts of a slab within low .. high, for 32 lanes whose ends on both
  * sheets are at front[0] + n front[1] and back[0] + n back[1]. */
@@ -335,8 +329,7 @@ uint32_t snow_value_own_lanes(const snow_value_splat *splat, int n, int phase,
 void snow_value_shorten(const snow_value_table *table, value_queue *queue,
                         int count, int channels);
 
-/* --- instruction sets --------------------------------------------------------
- */
+/* --- instruction sets ----------------------------------------------------- */
 
 /* By [whether there are four channels][gradients are wanted][perspective]. */
 extern snow_value_tile_fn *const snow_value_tiles_scalar[2][2][2];
