@@ -669,7 +669,8 @@ static void ranks_without_memory_fail_together(void **state) {
         long last = 1;
         /* Each of the first ones, then some. */
         for (long failing = -1; failing < last;
-             failing += failing < 30 ? 1 : support_sweep(5, 13)) {
+             failing +=
+             failing < support_sweep(30, 8) ? 1 : support_sweep(5, 29)) {
             miser m = {.failing = failing, .for_good = failing % 2};
             const snow_allocator allocator = {give_or_not, take_back, &m};
             snow_context *context = NULL;

@@ -20,7 +20,7 @@ static const snow_opacity_point above[] = {
 static void pictures_are_the_references(void **state) {
     (void)state;
     model_stage stage = model_open();
-    for (int n = 0; n < VALUE_PICTURES; n += (int)support_stride(7)) {
+    for (int n = 0; n < VALUE_PICTURES; n += (int)support_stride(11)) {
         reference_scene s = value_picture_scene(n);
         float *picture = model_picture(&stage, &s);
         double *expected = value_picture_expected(&(value_scene){.base = s});

@@ -274,8 +274,8 @@ static void other_modes_are_those_of_the_volume_in_memory(void **state) {
         for (size_t s = 0; s < COUNT(slices); s++) {
             pair p = open_pair(place, path, NULL,
                                slices_of(types[t], slices[s]), NULL);
-            for (size_t n = support_start(s + t, 3); n < COUNT(stands);
-                 n += support_stride(3)) {
+            for (size_t n = support_start(s + t, 7); n < COUNT(stands);
+                 n += support_stride(7)) {
                 snow_view view = stand_at(place, n);
                 snow_settings settings;
                 snow_settings_init(&settings);
@@ -302,7 +302,7 @@ static void other_modes_are_those_of_the_volume_in_memory(void **state) {
             close_pair(&p);
         }
     }
-    assert_true(pictures * (int)support_stride(4) >=
+    assert_true(pictures * (int)support_stride(8) >=
                 (int)(COUNT(types) * COUNT(slices) * COUNT(stands)));
 }
 
@@ -515,7 +515,7 @@ static void looks_are_those_of_the_volume_in_memory(void **state) {
                 snow_transfer_evaluate(other, value * 200.0, b);
                 assert_memory_equal(a, b, sizeof a);
                 snow_transfer_free(other);
-                value += (int)support_sweep(40, 90);
+                value += (int)support_sweep(40, 110);
             }
             close_pair(&p);
         }
@@ -728,12 +728,13 @@ static void any_allocation_may_fail(void **state) {
     char path[128];
     strcpy(path, write_head(place, SNOW_TYPE_UINT8, "head.nrrd"));
     fail_everywhere(place, path, SNOW_MODE_OVER, false,
-                    (int)support_stride(13));
-    fail_everywhere(place, path, SNOW_MODE_OVER, true, 37);
+                    (int)support_stride(31));
+    fail_everywhere(place, path, SNOW_MODE_OVER, true,
+                    (int)support_sweep(37, 61));
     fail_everywhere(place, path, SNOW_MODE_SUM, false,
-                    (int)support_sweep(3, 11));
+                    (int)support_sweep(3, 29));
     fail_everywhere(place, path, SNOW_MODE_ISO, true,
-                    (int)support_sweep(3, 11));
+                    (int)support_sweep(3, 29));
 }
 
 /* --- what is refused ------------------------------------------------------ */
