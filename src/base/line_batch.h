@@ -37,8 +37,7 @@ typedef struct snow_line_batch_params {
 } snow_line_batch_params;
 
 /* Begins a batch as snow_parallel_begin does; the one before has ended.  Its
- * progress is what snow_monitor_next announces.  Errors: SNOW_STATUS_NO_MEMORY.
- */
+ * progress is snow_monitor_next's.  Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_line_batch_begin(snow_context *context, snow_line_batch *batch,
                                   const snow_line_batch_params *params);
 

@@ -3,8 +3,7 @@
  * Calls of the progress function are counted with a debt: one is due every
  * INTERVAL; the end of a stage, of which something was reported before, is
  * always reported, and puts the next one off by as much.  So there are at most
- * 20 in any second, and work that is done within an interval reports nothing.
- */
+ * 20 in any second, and work done within an interval reports nothing. */
 #include "base/monitor.h"
 
 #define INTERVAL 0.053

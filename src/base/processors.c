@@ -76,8 +76,7 @@ static int cgroup_limit(void) {
     return lesser_limit(quota_along(own), old);
 }
 
-/* The number of processors is used if there are more than bits of a cpu_set_t.
- */
+/* The number of processors, if there are more than bits of a cpu_set_t. */
 static int affinity(void) {
     cpu_set_t set;
     if (sched_getaffinity(0, sizeof set, &set) == 0)

@@ -60,8 +60,7 @@ bool snow_parse_double(const char *text, double *out) {
         return false;
     errno = 0;
     double value = strtod(number, &end);
-    /* 1e999 is not accepted as infinity; a number too small for a double is 0.
-     */
+    /* 1e999 is not taken for infinity; a number too small for a double is 0. */
     bool overflow = errno == ERANGE && (value > 1 || value < -1);
     if (end == number || overflow || !at_end(end))
         return false;

@@ -78,8 +78,7 @@ typedef struct snow_classify_options {
 
 /* Makes a classifier. The record begins as zeros; a second call reuses the
  * memory of its tables. Errors: SNOW_STATUS_BAD_USAGE (a singular matrix, with
- * a gradient opacity), SNOW_STATUS_NO_MEMORY. Free with snow_classifier_fini.
- */
+ * gradient opacity), SNOW_STATUS_NO_MEMORY. Free with snow_classifier_fini. */
 snow_status snow_classifier_make(snow_context *context,
                                  const snow_volume *volume,
                                  const snow_transfer *transfer,
@@ -113,8 +112,7 @@ typedef struct snow_gradient_row {
 } snow_gradient_row;
 
 /* The gradients of native values at voxels of a row, in index space: x goes to
- * gradients[0 .. count - 1], y and z begin `capacity` and 2 `capacity` later.
- */
+ * gradients[0 .. count - 1]; y and z begin `capacity`, 2 `capacity` later. */
 void snow_gradients_of_row(const snow_gradient_row *row,
                            const uint32_t *columns, size_t count,
                            size_t capacity, double *gradients);
@@ -155,8 +153,7 @@ void snow_half_way(const double light[3], const double viewer[3],
                    double half[3]);
 
 /* W is the inverse transpose of the matrix' linear part; it transforms index
- * gradients to world space. Errors: SNOW_STATUS_BAD_USAGE (a singular matrix).
- */
+ * gradients to the world. Errors: SNOW_STATUS_BAD_USAGE (a singular matrix). */
 snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
                              const snow_placement *placement,
                              const snow_settings *settings, snow_shader *out);

@@ -1,6 +1,5 @@
 /* classify/count_interesting.c - see count_interesting.h. The classifier that
- * encodes voxels counts them too, so that both agree on which are interesting.
- */
+ * encodes voxels counts them too, so that both agree which are interesting. */
 #include "classify/count_interesting.h"
 #include "base/thread_pool.h"
 #include "volume/stream.h"

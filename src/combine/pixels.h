@@ -26,8 +26,7 @@ typedef struct snow_pixel_loops {
     /* Composites layers, from front to back, in pixels first .. last - 1 (see
      * snow_active_merge): writes the mask of the result to words[0] and after,
      * its pixels, packed or all, to `out`; returns their end; adds to *laid.
-     * Over is front += (1 - front.alpha) * back, in this order of operations.
-     */
+     * Over is front += (1 - front.alpha) * back, in this order of steps. */
     float *(*merge)(struct snow_active *layers, int count, int64_t first,
                     int64_t last, uint64_t *words, float *out, bool packed,
                     int64_t *laid);
@@ -41,8 +40,7 @@ typedef enum snow_composite_op {
     SNOW_COMPOSITE_SUM
 } snow_composite_op;
 
-/* The loops for 2 or 4 channels; a `composite_op` other than over requires 2.
- */
+/* The loops for 2 or 4 channels; a `composite_op` other than over needs 2. */
 const snow_pixel_loops *snow_pixels_pick(snow_isa isa, int channels,
                                          snow_composite_op composite_op);
 

@@ -134,8 +134,7 @@ PIXELS_NAME(composite)(float *tile, const float *packed, uint64_t bits) {
 #endif
 }
 
-/* Copies all of a tile's pixels in first .. last - 1; its first is number `at`.
- */
+/* Copies a tile's pixels in first .. last - 1; its first is number `at`. */
 TARGET static inline float *PIXELS_NAME(copy)(float *out, const float *tile,
                                               int64_t at, int64_t first,
                                               int64_t last) {

@@ -57,8 +57,7 @@ static int regions_before(int a, int of, int size, bool also) {
 }
 
 /* The region that a rank position gets when its group is made: regions are
- * assigned by the middles of those before, so that most of their pixels stay.
- */
+ * assigned by the middles of those before, so that most pixels stay. */
 static int region_in(const snow_rounds *rounds, int level, group whole,
                      int rank_position) {
     if (level == 0)
@@ -198,8 +197,7 @@ static double active_part(double parts) {
     return FOOTPRINT * (1 - pow(1 - HIDDEN, 32 * parts));
 }
 
-/* A search of all sequences of radices, pruned where they cannot be the best.
- */
+/* A search of all sequences of radices, pruned where none can be the best. */
 typedef struct search {
     double rank_order, bytes, best;
     int radices[SNOW_ROUNDS_MOST], count; /* current */

@@ -214,8 +214,7 @@ snow_status snow_comm_allgather(snow_comm *comm, const void *mine, size_t count,
 
 /* --- agreement ------------------------------------------------------------ */
 
-/* Whether a message begins with a rank, as one does that was agreed on before.
- */
+/* Whether a message begins with a rank, as one that was agreed on before. */
 static bool names_rank(const char *message) {
     int rank, length = 0;
     return sscanf(message, "rank %d: %n", &rank, &length) == 1 && length > 0;

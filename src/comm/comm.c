@@ -70,8 +70,7 @@ static snow_status heed(snow_comm *comm, snow_status status) {
     return status;
 }
 
-/* Checks that the communicator is not broken, and that rank and tag are valid.
- */
+/* Checks that the communicator is not broken, and rank and tag are valid. */
 static snow_status check_peer(snow_comm *comm, int rank, int tag) {
     SNOW_TRY(comm->broken);
     if (rank < 0 || rank >= comm->ranks || tag < 0 || tag > 32767)

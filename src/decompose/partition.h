@@ -73,8 +73,7 @@ snow_status snow_partition_counted(snow_context *context,
 
 /* Bricks: the grid is cut in two across an axis, and so are its parts, each
  * with its share of the ranks (a k-d tree). Such boxes have an order from front
- * to back from every direction and every point. Errors: SNOW_STATUS_NO_MEMORY.
- */
+ * to back from any direction and any point. Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_partition_bricks(snow_context *context,
                                   const snow_block_counts *block_counts,
                                   int ranks, snow_box *boxes);

@@ -189,8 +189,7 @@ static snow_status add_block_message(snow_context *context, traffic *t,
     return SNOW_STATUS_OK;
 }
 
-/* Beginning with the next rank, so that not all send to the same one at a time.
- */
+/* From the next rank on, so that not all send to the same one at a time. */
 static snow_status make_block_messages(snow_voxels *voxels,
                                        const box_table *c) {
     int me = snow_comm_rank(voxels->comm);

@@ -1,6 +1,5 @@
 /* decompose/slab.h - slab decomposition (SD in figure 7, section 4): divides
- * the slices of a volume into runs, one for each processor. Needs sizes only.
- */
+ * the slices of a volume into runs, one a processor. Needs sizes only. */
 #ifndef SNOW_SLAB_H
 #define SNOW_SLAB_H
 

@@ -64,8 +64,7 @@ typedef struct snow_walk {
     const unsigned char *ea;    /* RLE: the next run to read */
     size_t voxel;               /* the next row's first voxel in IA */
     int64_t row;                /* the next row */
-    /* RLE: voxels left in the current run, its kind, and whether there is one.
-     */
+    /* RLE: voxels left in the run, its kind, and whether there is one. */
     uint32_t run;
     bool run_interesting, started;
 } snow_walk;
@@ -79,8 +78,7 @@ struct snow_scheme {
     snow_status (*add_row)(snow_sparse *sparse, const uint64_t *mask);
     snow_status (*end_slice)(snow_sparse *sparse);
     /* Reads the next row's spans into `spans`, which has room for (columns + 1)
-     * / 2; returns their number. The caller advances the walk's voxel and row.
-     */
+     * / 2; returns their number. The caller advances voxel and row. */
     size_t (*next_row)(snow_walk *walk, snow_span *spans);
 };
 

@@ -50,8 +50,7 @@ typedef struct snow_fetch_params {
 /* Bytes of scratch that a band needs. */
 size_t snow_fetch_bytes(const snow_fetch_params *params);
 
-/* Sets up for a band; the scratch is aligned to 64 and belongs to the caller.
- */
+/* Sets up for a band; the scratch, aligned to 64, belongs to the caller. */
 void snow_fetch_begin(snow_fetch *fetch, const snow_fetch_params *params,
                       void *scratch);
 

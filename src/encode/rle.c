@@ -60,8 +60,7 @@ static snow_status rle_end_slice(snow_sparse *s) {
     return write_run(s);
 }
 
-/* Goes to the run that holds the next voxel; a slice's first is uninteresting.
- */
+/* Goes to the run of the next voxel; a slice's first is uninteresting. */
 static void find_run(snow_walk *walk) {
     while (!walk->run) {
         walk->run_interesting = walk->started && !walk->run_interesting;

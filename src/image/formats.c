@@ -195,8 +195,7 @@ snow_status snow_image_save(const snow_image *image, const char *path,
 
 /* The writer itself knows best what it can write, so one is opened and aborted.
  * Standard output always exists and must not be written to here. */
-/* Whoever reads a pipe takes the end of this check for the end of the picture.
- */
+/* Who reads a pipe takes the end of this check for the end of the picture. */
 static bool is_pipe(const char *path) {
     struct stat here;
     return stat(path, &here) == 0 && S_ISFIFO(here.st_mode);

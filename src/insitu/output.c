@@ -70,8 +70,7 @@ static bool format_path(const snow_insitu *insitu, int64_t step, char *out,
 }
 
 /* Bars and the step's number for a picture that was enlarged to its size, where
- * it was drawn smaller; `range` of values that colours were made of, or NULL.
- */
+ * it was drawn smaller; `range` of values that colours are of, or NULL. */
 static snow_status add_marks(snow_insitu *insitu, int64_t step,
                              const double range[2], snow_overlay *overlay) {
     snow_view view = snow_insitu_view(insitu);

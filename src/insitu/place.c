@@ -102,8 +102,7 @@ static snow_status find_boxes(snow_insitu *insitu,
     return SNOW_STATUS_OK;
 }
 
-/* Collective.  Where ranks have more voxels than the grid, borders are shared.
- */
+/* Collective.  Where ranks have more voxels than the grid, they share some. */
 static snow_status share_borders(snow_insitu *insitu, const int64_t dims[3],
                                  snow_insitu_brick *bricks, int count) {
     int64_t held = 0;

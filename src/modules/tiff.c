@@ -1,5 +1,4 @@
-/* modules/tiff.c - libsnowglass-tiff.so: TIFF volumes and pictures by libtiff.
- */
+/* modules/tiff.c - libsnowglass-tiff.so: TIFF files by libtiff. */
 #include "base/module.h"
 #include "formats/format.h"
 #include "image/image.h"

@@ -306,8 +306,7 @@ static snow_status give_verdict(const mpi_watchdog *watchdog) {
                : SNOW_STATUS_OK;
 }
 
-/* A rank that never waits long is asked too, and checks for notes now and then.
- */
+/* A rank that never waits long is asked too, and looks for notes at times. */
 snow_status snow_watchdog_begin(mpi_watchdog *watchdog) {
     watchdog->turns = 0;
     if (watchdog->limit <= 0)

@@ -206,8 +206,7 @@ static double least_slant(double gradients[3][3], double spread) {
     return angle < 1.57 ? cos(angle) : 0;
 }
 
-/* The largest |g x n| of an axis, n being normal to the slices along another.
- */
+/* The largest |g x n| of an axis, n being normal to slices along another. */
 static double steepest(double gradients[3][3], int axis) {
     double most = 0;
     for (int other = 1; other < 3; other++) {

@@ -5,8 +5,7 @@
 #if SNOW_HAS_AVX || SNOW_HAS_V128
 #include "simd/rows.h"
 
-/* The place in a mask of its n-th set bit, as a byte of a number; 0x80: none.
- */
+/* The place of a mask's n-th set bit, as a byte of a number; 0x80: none. */
 #define BIT(m, b) ((m) >> (b)&1)
 #define BELOW(m, b)                                                    \
     (BIT((m) & ((1 << (b)) - 1), 0) + BIT((m) & ((1 << (b)) - 1), 1) + \

@@ -36,8 +36,7 @@ typedef struct snow_dense {
     int64_t walked;         /* rows added so far */
 } snow_dense;
 
-/* Whether positions in a slice of this shape fit 32 bits, as the loops require.
- */
+/* Whether positions in a slice of this shape fit 32 bits, as loops require. */
 bool snow_dense_serves(const snow_dense_shape *shape);
 
 /* Bytes that a slice of this shape takes. */

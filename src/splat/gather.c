@@ -157,8 +157,7 @@ void snow_gather_rows(const snow_gatherer *g, const snow_dense *d,
         *top = *bottom = 0;
 }
 
-/* Narrows pixels [*first, *end) to those where at + x step is in [low, high].
- */
+/* Narrows pixels [*first, *end) to where at + x step is in [low, high]. */
 static void narrow(double at, double step, double low, double high,
                    double *first, double *end) {
     if (fabs(step) * *end < SLACK) {

@@ -70,7 +70,7 @@ struct snow_gatherer {
 
 /* Prepares the gatherer for a view; *serves is false where scattering must be
  * used: for instruction sets and kernels without these loops, and slices too
- * large for them. Errors: SNOW_STATUS_NO_MEMORY. Free with snow_gatherer_fini.
+ * large for them. Errors: SNOW_STATUS_NO_MEMORY. Freed by snow_gatherer_fini.
  */
 snow_status snow_gatherer_make(snow_context *context,
                                const snow_placement *placement,

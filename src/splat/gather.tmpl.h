@@ -64,8 +64,7 @@ LOCAL(pixel)(const float *window, size_t stride, const float *u, const float *v,
 #endif
 }
 
-/* Pixels first .. end - 1 of a row, at most 16, with weights from the tables.
- */
+/* Pixels first .. end - 1 of a row, at most 16, with weights of the tables. */
 static inline __attribute__((always_inline)) TARGET void
 LOCAL(tabled)(const snow_gatherer *g, const snow_dense *d, const snow_places *p,
               int first, int end, int taps, int blocks, int padded_u,

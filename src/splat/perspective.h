@@ -9,8 +9,7 @@
 #include "transform/perspective.h"
 
 /* The ray of a pixel: it meets a slice at height h above the eye (model, point
- * 2; transform/perspective.h) at eye + h slope, where h has the sign of `side`.
- */
+ * 2; transform/perspective.h) at eye + h slope; h has the sign of `side`. */
 typedef struct snow_pixel_ray {
     double slope[2];
     double side; /* 1 or -1; 0: the ray is parallel to the slices */

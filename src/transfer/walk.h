@@ -57,8 +57,7 @@ snow_status snow_histogram_sum(const snow_histogram *histogram,
 snow_status snow_histogram_sum_table(const snow_histogram *histogram,
                                      uint64_t *counts);
 
-/* Allocates `tables` of SNOW_DIGITS counts, zeros; ranks agree on the status.
- */
+/* Allocates `tables` of SNOW_DIGITS counts, zeros; ranks agree on status. */
 snow_status snow_histogram_new_tables(const snow_histogram *histogram,
                                       size_t tables, uint64_t **out);
 

@@ -81,8 +81,7 @@ bool snow_perspective_sees(const snow_perspective *eye, const double step[3],
     return isfinite(pixel[0]) && isfinite(pixel[1]);
 }
 
-/* u = eu + (k - ek) ray_u / ray_k, and the same for v; derivatives by x and y.
- */
+/* u = eu + (k - ek) ray_u / ray_k, and so for v; derivatives by x and y. */
 void snow_perspective_pixel_width(const snow_placement *p, double slice,
                                   double width[2]) {
     const snow_perspective *eye = &p->eye;

@@ -25,8 +25,7 @@ double snow_perspective_shear_ratio(const snow_placement *p) {
     return far / near;
 }
 
-/* The picture's range along an axis; infinite if it shows the eye's own plane.
- */
+/* The picture's range along an axis; infinite if it shows the eye's plane. */
 static void visible_range(const snow_placement *p, double height, int axis,
                           double range[2]) {
     double low = INFINITY, high = -INFINITY;

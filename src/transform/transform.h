@@ -16,8 +16,7 @@
 
 #include <snowglass/view.h>
 
-/* A camera relative to its target, which is shown in the middle of the picture.
- */
+/* A camera relative to its target, which is in the middle of the picture. */
 typedef struct snow_camera {
     /* A right-handed frame of unit vectors in world space. */
     double right[3], up[3], back[3];
@@ -85,8 +84,7 @@ void snow_frame_turn(double right[3], double up[3], double back[3],
 void snow_slice_normal(const snow_volume_info *info, int axis,
                        double normal[3]);
 
-/* World distance from the middle of the voxel boxes to their farthest corner.
- */
+/* World distance from the middle of the voxel boxes to a farthest corner. */
 double snow_volume_radius(const snow_volume_info *info);
 
 #endif

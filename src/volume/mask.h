@@ -1,5 +1,4 @@
-/* volume/mask.h - volumes without the voxels that a mask or planes leave out.
- */
+/* volume/mask.h - volumes without voxels that a mask or planes leave out. */
 #ifndef SNOW_MASK_H
 #define SNOW_MASK_H
 

@@ -60,8 +60,7 @@ snow_status snow_region_lay_out(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* How many axes a run spans: x, and further ones while those before are whole.
- */
+/* How many axes a run spans: x, and others while those before are whole. */
 static int run_axes(const snow_region *w) {
     if (w->count[0] != w->dims[0])
         return 1;

@@ -20,8 +20,7 @@ typedef snow_status snow_open_fn(snow_context *context, const char *path,
                                  const snow_volume_options *options,
                                  snow_volume_info *info, snow_volume **out);
 
-/* As snow_volume_open_streamed; slabs are boxes of the file that `open` reads.
- */
+/* As snow_volume_open_streamed; slabs are boxes of what `open` reads. */
 snow_status snow_stream_open(snow_context *context, const char *path,
                              const snow_volume_options *options,
                              uint64_t slab_bytes, snow_open_fn *open,
@@ -93,8 +92,7 @@ void snow_print_limit(const snow_context *context, char text[64]);
 snow_status snow_volume_range(const snow_volume *volume,
                               snow_volume_statistics *out);
 
-/* Makes known the range of a volume in its file, as snow_volume_range finds it.
- */
+/* Makes known the range of a volume in its file, as snow_volume_range does. */
 void snow_stream_note_range(const snow_volume *volume,
                             const snow_volume_statistics *range);
 

@@ -21,8 +21,7 @@ size_t snow_type_size(snow_type type) {
     return 0;
 }
 
-/* "none" for what is no type: messages may quote a type before it is checked.
- */
+/* "none" for what is no type: messages may quote one before it is checked. */
 const char *snow_type_name(snow_type type) {
     switch (type) {
 #define TYPE_NAME(name, c_type, text) \

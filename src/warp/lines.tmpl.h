@@ -9,8 +9,7 @@
  *
  * All are undefined at the end. */
 
-/* Computes a group's offsets from its places; beyond `count` they are copies.
- */
+/* A group's offsets from its places; beyond `count` they are copies. */
 TARGET static inline __attribute__((always_inline)) void
 WARP_NAME(_place)(const snow_intermediate_view *plane, int count,
                   warp_group *group) {

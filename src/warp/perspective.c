@@ -42,8 +42,7 @@ static inline void place_pixel(double line[3][2], int x, int64_t place[2]) {
     place[1] = (int64_t)((line[1][0] + x * line[1][1]) * scale);
 }
 
-/* Pixels x .. x + count - 1 of a line, which are within the intermediate image.
- */
+/* Pixels x .. x + count - 1 of a line, within the intermediate image. */
 static void warp_run(const snow_blocks *blocks, double line[3][2],
                      snow_warp_places_fn *warp, int x, int count,
                      float *pixels) {

@@ -90,8 +90,7 @@ static void place_of(const snow_warp_line *line, int x, int64_t place[2]) {
     place[1] = line->start[1] + x * line->step[1];
 }
 
-/* Pixels first .. last of a line, at least one, within the intermediate image.
- */
+/* Pixels first .. last of a line, one at least, in the intermediate image. */
 static void warp_runs(const snow_intermediate_view *plane,
                       const snow_warp_line *line, snow_warp_fn *warp, int first,
                       int last, float *pixels) {

@@ -93,8 +93,7 @@ static void fill_row(void *of, int64_t front, int worker) {
     job->most[front] = most;
 }
 
-/* ENTRIES rows of a table whose nodes are evenly placed, diagonal by diagonal.
- */
+/* ENTRIES rows of a table of evenly placed nodes, diagonal by diagonal. */
 static void fill_rows(void *of, int64_t item, int worker) {
     table_job *job = of;
     const snow_value_look *look = job->look;

@@ -6,8 +6,7 @@
  * to 1, and whose opacity is 1 for every finite voxel, so that classification,
  * the three encodings and splatting serve as they are, and a sheet's pixel is
  * (weighted values, weights).  composite/projection.h has how sheets become a
- * local image of such pairs; here they become colours, or values in data units.
- */
+ * local image of such pairs; here they become colours or data values. */
 #ifndef SNOW_RENDER_MODES_MODES_H
 #define SNOW_RENDER_MODES_MODES_H
 
@@ -50,8 +49,7 @@ snow_status snow_identity_transfer_measure(struct snow_job *job,
 void snow_identity_transfer_widen(snow_identity_transfer *identity, double low,
                                   double high, bool whole);
 
-/* For mode iso, when it is measured: the voxels that are not below its value.
- */
+/* For mode iso, when it is measured: the voxels not below its value. */
 snow_status snow_identity_transfer_above(struct snow_job *job,
                                          snow_identity_transfer *identity);
 

@@ -56,8 +56,7 @@ snow_status snow_field_make(const snow_volume *volume,
                             const snow_settings *settings, bool modes,
                             snow_field *out);
 
-/* Finds voxels and weights for a position, at most one voxel beyond the ends.
- */
+/* Finds voxels and weights of a position, at most a voxel beyond the ends. */
 void snow_field_place(const snow_field *field, const double at[3],
                       snow_field_window *window);
 

@@ -109,8 +109,7 @@ bool snow_value_serves(const snow_value_path *path, const snow_value_key *has,
            !snow_value_store_left(store);
 }
 
-/* The ranges of interesting stored values; 0: voxels cannot be counted by them.
- */
+/* The ranges of interesting stored values; 0: none can be counted. */
 static int find_seen(const snow_value_path *path,
                      const snow_value_params *params,
                      snow_value_stored_range out[SNOW_VALUE_SEEN]) {

@@ -1,5 +1,4 @@
-/* render/shear_warp/internal.h - what shear-warp keeps from picture to picture.
- */
+/* render/shear_warp/internal.h - what shear-warp keeps between pictures. */
 #ifndef SNOW_RENDER_SHEAR_WARP_INTERNAL_H
 #define SNOW_RENDER_SHEAR_WARP_INTERNAL_H
 
@@ -171,8 +170,7 @@ snow_status snow_value_order_make(snow_value_path *path,
                                   const snow_value_params *params, bool spare,
                                   snow_value_order *out);
 
-/* Whether an encoding under a key serves a part of a volume when it is whole.
- */
+/* Whether an encoding under a key serves a part of a whole volume. */
 bool snow_value_fits_key(const snow_value_path *path, const snow_value_key *has,
                          const snow_value_store *store,
                          const snow_value_params *params, uint64_t generation);
@@ -209,8 +207,7 @@ void snow_value_take_out(snow_value_path *path, snow_value_encoding *from);
 /* The encoding of a slab of a file to its place in the path, if it was kept. */
 void snow_value_take_kept(snow_value_path *path, const snow_volume *slab);
 
-/* Whether memory was too small, and there is more now: what was kept is gone.
- */
+/* Whether memory was too small, and there is more: what was kept is gone. */
 bool snow_value_lacks_room(snow_value_path *path, snow_status status);
 
 /* Tiles of the grid. */

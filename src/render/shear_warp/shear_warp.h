@@ -85,8 +85,7 @@ const snow_volume *snow_value_kept(snow_value_path *path,
                                    const snow_value_params *params,
                                    const snow_extent *part, int64_t slices);
 
-/* Keeps the slab that was drawn, if there is room for the next one beside it.
- */
+/* Keeps the slab that was drawn, if there is room for the next beside it. */
 void snow_value_keep(snow_value_path *path, const snow_value_params *params,
                      snow_slabs *slabs);
 

@@ -230,8 +230,7 @@ TARGET static void NAME(fade)(const snow_value_splat *p, value_queue *q, int n,
  * Each goes over the whole queue, so that what one sample waits for is short.
  */
 
-/* Colours, and the places of the opacity in a slab, or in what is left of it.
- */
+/* Colours, and places of the opacity in a slab, or in what is left of it. */
 TARGET VALUE_INLINE void NAME(look_up)(const snow_value_splat *p,
                                        value_queue *q, int count,
                                        const int channels, const bool sloped) {

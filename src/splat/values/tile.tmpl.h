@@ -191,8 +191,7 @@ TARGET VALUE_INLINE int NAME(collect)(const snow_value_splat *p,
                             cuts, eye, false);
 }
 
-/* Behind what is in the planes; closes the pixels that nothing shines through.
- */
+/* Behind what is in the planes; closes pixels that nothing shines through. */
 TARGET VALUE_INLINE int NAME(blend)(snow_value_plane *plane, value_phase *state,
                                     const value_slab *slab,
                                     const value_queue *q, int count,

@@ -218,8 +218,7 @@ static inline value_window value_window_of(const snow_value_store *s,
 int value_list_slabs(const snow_value_splat *splat, int first, int end,
                      const int tile[2], int32_t *out);
 
-/* Whether a window has cells with a hole, with all rows that gradients reach.
- */
+/* Whether a window has cells with a hole, in all rows that gradients reach. */
 static inline bool value_has_holes(const snow_value_store *s, int64_t slice,
                                    value_window w) {
     if (slice >= s->slices) /* of another part, which gradients need */
