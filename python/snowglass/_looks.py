@@ -1,0 +1,89 @@
+"""How data values become colours and opacities."""
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, Optional, Sequence, Tuple, Union
+
+Range = Union[str, Tuple[float, float]]
+
+
+@dataclasses.dataclass(frozen=True)
+class Look:
+    """A look, before there is a volume; what is not given is chosen from the
+    volume's histogram.
+
+    preset        a name of `snowglass.presets()`
+    colormap      a name of `snowglass.colormaps()`; replaces the colours
+                  (`cmap` is another name for it)
+    range         (low, high): the data values over which colours and opacities
+                  are spread; "full": from the smallest to the largest;
+                  "1%,99%": percentiles; None: chosen (`clim` is another name)
+    opacity       [(value, opacity), ...], opacities 0 to 1 at data values; they
+                  replace those of a preset
+    colors        [(value, (red, green, blue)), ...], 0 to 1
+    gradient_opacity  [(magnitude, factor), ...]: factors 0 to 1 of opacities by
+                  the magnitude of the gradient, in data units per unit of length
+    log           points are joined by logarithms of values; 0 and below is
+                  transparent
+    """
+    preset: Optional[str] = None
+    colormap: Optional[str] = None
+    range: Optional[Range] = None
+    opacity: Optional[Sequence[Tuple[float, float]]] = None
+    colors: Optional[Sequence[Tuple[float, Sequence[float]]]] = None
+    gradient_opacity: Optional[Sequence[Tuple[float, float]]] = None
+    log: bool = False
+    cmap: dataclasses.InitVar[Optional[str]] = None
+    clim: dataclasses.InitVar[Optional[Range]] = None
+
+    def __post_init__(self, cmap: Optional[str], clim: Optional[Range]) -> None:
+        for name, other, value in (("colormap", "cmap", cmap),
+                                   ("range", "clim", clim)):
+            if value is None:
+                continue
+            if getattr(self, name) is not None:
+                raise TypeError(f"give {name} or {other}, not both")
+            object.__setattr__(self, name, value)
+
+    def _arguments(self) -> tuple[Any, ...]:
+        """Those of the core's `_look`."""
+        kind, low, high = _parse_range(self.range)
+        colors: Any = None
+        if self.colors is not None:
+            colors = [(value, *color) for value, color in self.colors]
+        fields = {"preset": self.preset, "colormap": self.colormap,
+                  "log": self.log, "low": low, "high": high}
+        return fields, kind, colors, self.opacity, self.gradient_opacity
+
+
+def look_of(look: Union[Look, str, None]) -> Look:
+    """A look; a string is the name of a preset or a colour map."""
+    if look is None:
+        return Look()
+    if isinstance(look, Look):
+        return look
+    if isinstance(look, str):
+        from . import colormaps, presets
+        return Look(colormap=look) if look in colormaps() and \
+            look not in presets() else Look(preset=look)
+    raise TypeError(f"a look must be a snowglass.Look or the name of a preset, "
+                    f"not {type(look).__name__}")
+
+
+def _parse_range(given: Optional[Range]) -> tuple[str, float, float]:
+    if given is None or given == "auto":
+        return "auto", 0.0, 0.0
+    if given == "full":
+        return "full", 0.0, 0.0
+    kind = "values"
+    if isinstance(given, str):
+        words = given.split(",")
+        if all(word.strip().endswith("%") for word in words):
+            kind = "percentiles"
+        ends = [float(word.strip().rstrip("%")) for word in words]
+    else:
+        ends = [float(end) for end in given]
+    if len(ends) != 2:
+        raise ValueError(f"range {given!r}: give (low, high), 'full' or "
+                         f"'1%,99%'")
+    return kind, ends[0], ends[1]

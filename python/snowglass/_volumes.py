@@ -1,0 +1,371 @@
+"""Volumes, and pictures of them."""
+from __future__ import annotations
+
+import dataclasses
+import os
+import re
+import sys
+from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, Optional, \
+    Sequence, Union
+
+from . import _arrays, _movies, _snowglass
+from ._images import Image, Path
+from ._looks import Look, look_of
+
+if TYPE_CHECKING:
+    import numpy.typing
+
+Progress = Union[Callable[[str, float], Any], bool, None]
+
+
+def _print_progress(stage: str, fraction: float) -> None:
+    end = "\n" if fraction >= 1 else "\r"
+    print(f"{stage} {100 * fraction:3.0f} %", end=end, file=sys.stderr)
+
+
+def _progress_of(given: Progress) -> Optional[Callable[[str, float], Any]]:
+    if given is True:
+        return _print_progress
+    return given or None
+
+
+class Volume(_snowglass.Volume):
+    """A regular grid of samples with its place in the world.
+
+    `source` is one of
+
+      - the path of a file (NIfTI, NRRD, MetaImage, DICOM folder, TIFF, HDF5,
+        Zarr, NetCDF, VTK, MRC, NPY, raw, ...) or "phantom:NAME";
+      - an array of three dimensions [z, y, x] (NumPy, DLPack, or whatever
+        numpy.asarray takes), which is not copied where its memory has no gaps,
+        in whatever order its axes lie, and must not change while it is drawn;
+      - an image of nibabel, whose affine is heeded;
+      - a DataArray of xarray with three dimensions, whose evenly spaced
+        coordinates give the spacing.
+
+    spacing     lengths of a voxel along x, y, z
+    affine      4x4 matrix from indices x, y, z to the world, instead
+    axes        what the array's dimensions are: "zyx", "xyz", ...
+    unit        of lengths: "mm", "um", ...
+    medical     whether the world is a patient's right, anterior, superior
+    slope, intercept   data value = slope * stored value + intercept
+    copy        False: an array that cannot be used in place is refused
+    frozen      whether the array stays as it is: encodings are kept from
+                picture to picture then.  True by default; give False for an
+                array that changes between pictures.
+    memory      the most bytes that the library may hold; 0: no limit
+
+    For files: dims, type ("uint8", "int16", ...), endian, offset (raw data),
+    time, channel, crop ((x0, x1), (y0, y1), (z0, z1)), dataset, series, mask
+    (a path), labels ("1,4-7"), clip (planes (a, b, c, d): what lies where
+    a x + b y + c z > d is cut away).
+
+    A Volume may be used by several threads; they take turns.
+    """
+
+    def __new__(cls, source: Any, *, progress: Progress = None,
+                memory: int = 0, **options: Any) -> "Volume":
+        if isinstance(source, (str, os.PathLike)):
+            return cls._open(os.fspath(source), memory, progress, options)
+        if memory:
+            raise TypeError("memory counts for files only")
+        given = _arrays.wrap(source, **options)
+        made = _snowglass.wrap(cls, given.array, given.matrix, given.slope,
+                               given.intercept, given.medical, given.unit, None)
+        if given.frozen:
+            made._freeze()
+        return made
+
+    def __init__(self, source: Any, **options: Any) -> None:
+        pass
+
+    @classmethod
+    def _open(cls, path: str, memory: int, progress: Progress,
+              options: Mapping[str, Any]) -> "Volume":
+        fields = dict(options)
+        clip = fields.pop("clip", None)
+        spacing = fields.get("spacing")
+        if spacing is not None and not hasattr(spacing, "__len__"):
+            fields["spacing"] = (spacing,) * 3
+        for name in ("mask", "dataset", "series", "labels"):
+            if fields.get(name) is not None:
+                fields[name] = os.fspath(fields[name]) if name == "mask" \
+                    else str(fields[name])
+        if "type" in fields and fields["type"] is not None:
+            fields["type"] = str(fields["type"])
+        return _snowglass.open(cls, path, fields, clip, memory,
+                               _progress_of(progress))
+
+    # --- what it is ---
+
+    @property
+    def info(self) -> Mapping[str, Any]:
+        """dims (x, y, z), type, spacing, matrix, slope, intercept, medical,
+        unit, format, times, time, storage."""
+        return self._info
+
+    @property
+    def dims(self) -> tuple[int, int, int]:
+        """Voxels along x, y, z."""
+        return self._info["dims"]
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Of `numpy.asarray(volume)`: voxels along z, y, x."""
+        return self._info["dims"][::-1]
+
+    @property
+    def spacing(self) -> tuple[float, float, float]:
+        """Lengths of a voxel along x, y, z."""
+        return self._info["spacing"]
+
+    @property
+    def affine(self) -> "numpy.typing.NDArray[Any]":
+        """4x4 matrix from indices x, y, z to the world."""
+        import numpy
+        return numpy.array(self._info["matrix"])
+
+    @property
+    def statistics(self) -> Mapping[str, Any]:
+        """voxels, finite, min, max, sum of the data values."""
+        return self._statistics()
+
+    def histogram(self, bins: int = 256,
+                  range: Optional[tuple[float, float]] = None
+                  ) -> tuple["numpy.typing.NDArray[Any]", "numpy.typing.NDArray[Any]"]:
+        """Counts and edges of bins of the finite data values, as
+        numpy.histogram gives them."""
+        import numpy
+        if range is None:
+            known = self._statistics()
+            range = (known["min"], known["max"])
+            if not range[0] < range[1]:
+                range = (range[0] - 0.5, range[1] + 0.5)
+        counts = self._histogram(float(range[0]), float(range[1]), bins)
+        return numpy.array(counts, numpy.int64), \
+            numpy.linspace(range[0], range[1], bins + 1)
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> "numpy.typing.NDArray[Any]":
+        """The stored values, of shape (z, y, x), not writeable."""
+        import numpy
+        array: Any = numpy.asarray(memoryview(self))  # type: ignore[arg-type]
+        if dtype is not None and array.dtype != dtype:
+            return array.astype(dtype)
+        return array.copy() if copy else array
+
+    def __str__(self) -> str:
+        info, known = self._info, self._statistics()
+        dims = "x".join(str(each) for each in info["dims"])
+        spacing = "x".join(f"{each:g}" for each in info["spacing"])
+        unit = " " + info["unit"] if info["unit"] else ""
+        return f"{dims} {info['type']}, {spacing}{unit}, " \
+               f"{known['min']:g}..{known['max']:g}"
+
+    def __repr__(self) -> str:
+        dims = "x".join(str(each) for each in self._info["dims"])
+        return f"<snowglass.Volume {dims} {self._info['type']}>"
+
+    # --- what is made of it ---
+
+    def save(self, path: Path, *, overwrite: bool = True) -> "Volume":
+        """Writes .nrrd, .nii, .nii.gz, .mha, .npy or .raw."""
+        self._save(os.fspath(path), overwrite)
+        return self
+
+    def masked(self, mask: Any, labels: Union[str, Sequence[int], None] = None
+               ) -> "Volume":
+        """A volume without the voxels where the mask, an array [z, y, x] of the
+        same shape, has none of the labels (by default: where it is 0)."""
+        import numpy
+        voxels = numpy.ascontiguousarray(mask)
+        if voxels.dtype == bool:
+            voxels = voxels.view(numpy.uint8)
+        if labels is not None and not isinstance(labels, str):
+            labels = ",".join(str(int(each)) for each in labels)
+        info = self._info
+        matrix = [part for row in info["matrix"] for part in row]
+        other = _snowglass.wrap(Volume, voxels, matrix, 1.0, 0.0,
+                                info["medical"], info["unit"], self)
+        return _snowglass.masked(type(self), self, other, labels)
+
+    def look(self, look: Union[Look, str, None] = None) -> str:
+        """What a look becomes for this volume, in one line."""
+        return self._transfer(look).description
+
+    def _transfer(self, look: Union[Look, str, None], mode: str = "over"
+                  ) -> Any:
+        if isinstance(look, _snowglass.Transfer):
+            return look
+        chosen = look_of(look)
+        if mode not in ("over", "iso") and \
+                chosen.preset is None and chosen.colors is None:
+            chosen = dataclasses.replace(chosen, preset="linear")
+        return self._look(*chosen._arguments())
+
+    def render(self, look: Union[Look, str, None] = None, *,
+               view: Optional[str] = None, size: Union[int, Sequence[int]] = 512,
+               azimuth: float = 0, elevation: float = 0, roll: float = 0,
+               zoom: float = 1, perspective: Union[bool, float] = False,
+               position: Optional[Sequence[float]] = None,
+               target: Optional[Sequence[float]] = None,
+               up: Optional[Sequence[float]] = None, fit: str = "visible",
+               light: Union[str, Sequence[float], None] = None,
+               legend: bool = False, scale_bar: bool = False,
+               letters: bool = True, unit: Optional[str] = None,
+               progress: Progress = None, **settings: Any) -> Image:
+        """A picture.
+
+        look          a Look, the name of a preset, or None: chosen
+        view          a side: "anterior", "left", "+z", "iso", ...; None: chosen
+        size          (width, height) in pixels, or one number for both
+        azimuth, elevation, roll   degrees that the camera moves to its right
+                      and up, and turns clockwise
+        perspective   True (30 degrees) or degrees over the shorter side
+        position, target, up   a camera by points of the world instead
+        fit           "visible": what the look shows fills the picture;
+                      "volume": the whole box does; zoom multiplies either
+        light         "key", "head" or (azimuth, elevation) in degrees
+        legend, scale_bar, letters   what is drawn when the picture is saved as
+                      PNG, WebP or TIFF of 8 bits; `unit` is that of the values
+        progress      called as progress(stage, fraction), or True: printed
+
+        Settings: quality ("draft", "normal", "high"), mode ("over", "mip",
+        "minip", "mean", "sum", "iso"), iso, method, threshold, shade ("phong",
+        "none"), ambient, diffuse, specular, shininess, depth, threads,
+        deterministic, depth_darkening, occlusion, opacity_length, kernel,
+        encoding, footprint, isa.
+
+        Raises ValueError (a value out of its range, an unknown name),
+        MemoryError, snowglass.Error, KeyboardInterrupt within 0.1 s.
+        """
+        if fit not in ("visible", "volume"):
+            raise ValueError(f"fit '{fit}': give visible or volume")
+        transfer = self._transfer(look, settings.get("mode") or "over")
+        width, height = (size, size) if isinstance(size, int) else size
+        fields = {"width": width, "height": height, "azimuth": azimuth,
+                  "elevation": elevation, "roll": roll, "zoom": zoom,
+                  "fov": 30.0 if perspective is True else float(perspective),
+                  "position": position, "target": target, "upward": up}
+        _set_light(light, settings)
+        if transfer.unshaded and settings.get("shade") is None and \
+                settings.get("mode") in (None, "over"):
+            settings["shade"] = "none"
+        azimuths = settings.pop("_azimuths", None)
+        image, depth, _, _, stats = self._render(
+            Image, transfer, view, fields, settings, fit == "visible", azimuths,
+            _progress_of(progress))
+        image.stats, image.depth = stats, depth
+        image._annotations = {"letters": letters, "legend": legend,
+                              "unit": unit, "scale_bar": scale_bar}
+        return image
+
+    def project(self, mode: str = "mip", *, view: Optional[str] = None,
+                size: Union[int, Sequence[int]] = 512, **options: Any
+                ) -> "numpy.typing.NDArray[Any]":
+        """Largest ("mip"), smallest ("minip") or mean values along the rays, or
+        their sum times length ("sum"), in data units: float32 of shape (height,
+        width), NaN where a ray meets no voxel.  Options are those of render."""
+        import numpy
+        options.setdefault("fit", "volume")
+        if mode in ("mean", "sum"):
+            return numpy.asarray(self.render(None, view=view, size=size,
+                                             mode=mode, **options))
+        if mode not in ("mip", "minip"):
+            raise ValueError(f"mode '{mode}': give mip, minip, mean or sum")
+        known = self._statistics()
+        low, high = known["min"], known["max"]
+        if not low < high:
+            high = low + 1
+        ramp = Look(colors=[(low, (0, 0, 0)), (high, (1, 1, 1))],
+                    opacity=[(low, 1), (high, 1)])
+        pixels = numpy.asarray(self.render(ramp, view=view, size=size,
+                                           mode=mode, **options))
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            values = pixels[..., 0] / pixels[..., -1]
+        return (low + (high - low) * values).astype(numpy.float32)
+
+    def turntable(self, path: Path, look: Union[Look, str, None] = None, *,
+                  frames: int = 90, fps: float = 30, progress: Progress = None,
+                  **options: Any) -> None:
+        """Pictures of a whole turn, with one frame for all of them: files by a
+        pattern such as "turn_%04d.png", or a movie (.mp4, .webm, .gif), for
+        which ffmpeg must be installed.  Options are those of render."""
+        _movies.turntable(self, os.fspath(path), look, frames, fps,
+                          _progress_of(progress), options)
+
+
+def _set_light(light: Union[str, Sequence[float], None],
+               settings: dict[str, Any]) -> None:
+    if light is None:
+        return
+    if isinstance(light, str):
+        settings["light"] = light
+        return
+    settings["light"] = "direction"
+    settings["light_azimuth"], settings["light_elevation"] = light
+
+
+def open(source: Path, **options: Any) -> Volume:
+    """A volume of a file: `Volume(source, ...)`."""
+    return Volume(source, **options)
+
+
+def render(source: Any, look: Union[Look, str, None] = None, *,
+           open: Optional[Mapping[str, Any]] = None, **options: Any) -> Image:
+    """A picture of a file, an array or a Volume; `open` holds options of Volume,
+    the others are those of Volume.render."""
+    volume = source if isinstance(source, Volume) else \
+        Volume(source, **(open or {}))
+    return volume.render(look, **options)
+
+
+class Step(Volume):
+    """A volume of a series; `index` is its number."""
+    index: int = 0
+    path: str = ""
+
+
+def series(pattern: Union[Path, Sequence[Path]], **options: Any
+           ) -> Iterator[Step]:
+    """The volumes of a series, one after the other, so that no more than one is
+    in memory: files by a pattern such as "run_%04d.h5", a list of files, or the
+    time steps of one file.  Options are those of Volume."""
+    if not isinstance(pattern, (str, os.PathLike)):
+        paths = [(n, os.fspath(each)) for n, each in enumerate(pattern)]
+    else:
+        paths = _files_of(os.fspath(pattern))
+    for index, path in paths:
+        step = Step(path, **options)
+        times = step.info["times"]
+        step.index, step.path = index, path
+        yield step
+        if len(paths) == 1 and "time" not in options:
+            for time in range(1, times):
+                step = Step(path, time=time, **options)
+                step.index, step.path = time, path
+                yield step
+
+
+def _files_of(pattern: str) -> list[tuple[int, str]]:
+    number = re.search(r"%(0?)(\d*)d", pattern)
+    if not number:
+        return [(0, pattern)]
+    folder = os.path.dirname(pattern) or "."
+    if number.start() < len(pattern) - len(os.path.basename(pattern)):
+        raise ValueError(f"{pattern}: the number must be in the file's name")
+    before, after = pattern[:number.start()], pattern[number.end():]
+    name = re.compile(re.escape(os.path.basename(before)) + r"(\d+)" +
+                      re.escape(after) + "$")
+    found = []
+    for each in os.listdir(folder):
+        match = name.match(each)
+        if match:
+            index = int(match.group(1))
+            path = before + number.group(0) % index + after
+            if os.path.basename(path) == each:
+                found.append((index, path))
+    if not found:
+        raise FileNotFoundError(f"{pattern}: there is no such file")
+    return sorted(found)
+
+

@@ -1,0 +1,15 @@
+#!/bin/bash
+# run.sh PYTHON TOOL FOLDER: the tests of the package in FOLDER, and those of its
+# documents; its types by mypy, where that is installed.
+set -eu
+python=$1 here=$(cd "$(dirname "$0")" && pwd)
+export SNOWGLASS=$2 PYTHONPATH=$3
+"$python" -c 'import numpy' 2>/dev/null || {
+    echo "skipped: $python has no NumPy"
+    exit 77
+}
+"$python" -m unittest discover -s "$here" -p 'test_*.py'
+if "$python" -c 'import mypy' 2>/dev/null; then
+    cd "$PYTHONPATH"
+    "$python" -m mypy --strict --no-warn-return-any snowglass
+fi

@@ -1,0 +1,387 @@
+"""The Python package: pictures are those of the command line, arrays are used in
+place, errors are the library's own lines, threads take turns.
+
+    SNOWGLASS=build/snowglass PYTHONPATH=build/python python3 -m unittest -v
+"""
+import gc
+import os
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import warnings
+
+import numpy
+
+import snowglass as sg
+
+TOOL = os.environ.get("SNOWGLASS", "snowglass")
+LONG = os.environ.get("SNOW_TIER", "short") != "short"
+
+
+def head(**options):
+    return sg.Volume("phantom:head", dims=(64, 64, 48), **options)
+
+
+def resident():
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        caught = warnings.catch_warnings()
+        caught.__enter__()
+        self.addCleanup(caught.__exit__, None, None, None)
+        warnings.simplefilter("error")
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+
+class Pictures(InFolder):
+    def tool(self, *words):
+        subprocess.run([TOOL, *words], check=True, stderr=subprocess.DEVNULL)
+
+    def test_they_are_those_of_the_command_line(self):
+        file = self.path("head.nrrd")
+        head().save(file)
+        cases = [
+            ([], {}),
+            (["--view", "left", "--azimuth", "30", "--quality", "high"],
+             {"view": "left", "azimuth": 30, "quality": "high"}),
+            (["--colormap", "viridis", "--range", "50,200", "--perspective"],
+             {"look": sg.Look(cmap="viridis", clim=(50, 200)),
+              "perspective": True}),
+            (["-m", "mip", "--fit", "volume", "--zoom", "2"],
+             {"mode": "mip", "fit": "volume", "zoom": 2}),
+            (["-m", "iso", "--iso", "120", "--light", "head"],
+             {"mode": "iso", "iso": 120, "light": "head"}),
+            (["--opacity", "80:0,200:0.7", "--shade", "none"],
+             {"look": sg.Look(opacity=[(80, 0), (200, .7)]), "shade": "none"}),
+        ]
+        for words, options in cases:
+            with self.subTest(words):
+                self.tool("render", file, "-s", "120x90", "-o",
+                          self.path("tool.npy"), "-y", "-q", *words)
+                image = sg.Volume(file).render(size=(120, 90), **options)
+                expected = numpy.load(self.path("tool.npy"))
+                if expected.shape[-1] != image.shape[-1]:  # grey, written wide
+                    expected = expected[..., [0, 3]]
+                numpy.testing.assert_array_equal(numpy.asarray(image), expected)
+
+    def test_saved_pictures_have_letters_and_bars(self):
+        image = head().render(size=256, legend=True, scale_bar=True)
+        plain = head().render(size=256, letters=False)
+        image.save(self.path("with.png"))
+        plain.save(self.path("without.png"))
+        difference = sg.compare(self.path("with.png"),
+                                self.path("without.png"))
+        self.assertGreater(difference.largest, 0.5)
+        self.assertEqual(sg.compare(image, plain).largest, 0)
+        self.assertTrue(image._repr_png_().startswith(b"\x89PNG"))
+
+    def test_arrays_of_them_are_not_copies_and_outlive_them(self):
+        image = head().render(size=64)
+        array = numpy.asarray(image)
+        kept = array.copy()
+        self.assertTrue(numpy.shares_memory(array, numpy.asarray(image)))
+        del image
+        gc.collect()
+        head().render(size=64, azimuth=40)
+        numpy.testing.assert_array_equal(array, kept)
+
+    def test_depths(self):
+        image = head().render(size=64, mode="iso", iso=120, depth=True)
+        self.assertEqual(image.depth.shape, (64, 64))
+        self.assertTrue(numpy.isfinite(numpy.asarray(image.depth)).any())
+        self.assertIsNone(head().render(size=16).depth)
+
+    def test_projections_are_in_data_units(self):
+        array = numpy.zeros((6, 6, 6), numpy.int16)
+        array[3:5, 1:3, 4:6] = 700
+        volume = sg.Volume(array)
+        largest = volume.project("mip", view="+z", size=60)
+        self.assertEqual(largest.dtype, numpy.float32)
+        self.assertAlmostEqual(float(numpy.nanmax(largest)), 700, delta=1)
+        self.assertAlmostEqual(float(numpy.nanmin(largest)), 0, delta=1e-3)
+        self.assertTrue(numpy.isnan(largest[0, 0]))
+        row, column = numpy.unravel_index(numpy.nanargmax(largest), (60, 60))
+        self.assertGreater(row, 30)  # y 1.5 of 0..5: row 0 is on top
+        self.assertGreater(column, 30)
+        mean = volume.project("mean", view="+z", size=60)
+        self.assertAlmostEqual(float(numpy.nanmax(mean)), 700 * 2 / 5, delta=1)
+
+    def test_turntables(self):
+        head().turntable(self.path("t_%02d.png"), frames=3, size=48)
+        self.assertEqual(sorted(os.listdir(self.folder.name)),
+                         ["t_00.png", "t_01.png", "t_02.png"])
+        with self.assertRaisesRegex(ValueError, "pattern such as"):
+            head().turntable(self.path("t.txt"), frames=3)
+
+    def test_options(self):
+        volume = head()
+        for options, error, text in [
+                ({"quality": "ultra"}, ValueError, "there is no 'ultra'"),
+                ({"colour": 1}, TypeError, "no option 'colour'"),
+                ({"size": 0}, ValueError, "0"),
+                ({"look": "nope"}, ValueError, "preset 'nope' is unknown"),
+                ({"view": "nope"}, ValueError, "nope"),
+                ({"fit": "nope"}, ValueError, "visible or volume"),
+                ({"zoom": "x"}, TypeError, "number|float"),
+                ({"target": (1, 2)}, TypeError, "target must be 3 numbers"),
+                ({"threads": 2 ** 40}, ValueError, "out of range")]:
+            with self.subTest(options):
+                with self.assertRaisesRegex(error, text):
+                    volume.render(**options)
+        with self.assertRaisesRegex(ValueError, "give rising|below|values"):
+            volume.render(sg.Look(opacity=[(9, 0), (1, 1)]))
+
+    def test_existing_files(self):
+        image = head().render(size=16)
+        image.save(self.path("a.png"))
+        with self.assertRaisesRegex(sg.Error, "exists"):
+            image.save(self.path("a.png"), overwrite=False)
+        with self.assertRaisesRegex(ValueError, "suffix|format|txt"):
+            image.save(self.path("a.txt"))
+
+
+class Arrays(InFolder):
+    def setUp(self):
+        super().setUp()
+        self.array = numpy.asarray(head()).copy()  # [z, y, x]
+        self.spacing = head().spacing
+        self.picture = head().render(view="left", azimuth=25, size=80)
+
+    def same(self, volume, psnr=float("inf")):
+        image = volume.render(view="left", azimuth=25, size=80)
+        self.assertGreaterEqual(sg.compare(image, self.picture).psnr, psnr)
+
+    def test_zyx(self):
+        self.same(sg.Volume(self.array, spacing=self.spacing, copy=False))
+
+    def test_any_order_of_memory_is_used_in_place(self):
+        # Axes of the lattice change places: the same scene within its bound.
+        turned = numpy.asfortranarray(self.array)
+        self.same(sg.Volume(turned, spacing=self.spacing, copy=False), 45)
+        self.same(sg.Volume(numpy.ascontiguousarray(self.array.T), axes="xyz",
+                            spacing=self.spacing, copy=False), 45)
+        self.same(sg.Volume(self.array.T, axes="xyz", spacing=self.spacing,
+                            copy=False))
+
+    def test_gaps_are_copied_with_a_warning(self):
+        wide = numpy.repeat(self.array, 2, axis=2)[:, :, ::2]
+        with self.assertRaisesRegex(ValueError, "in place"):
+            sg.Volume(wide, copy=False)
+        with self.assertWarnsRegex(sg.SnowglassWarning, "copied"):
+            volume = sg.Volume(wide, spacing=self.spacing)
+        self.same(volume)
+        self.same(sg.Volume(wide, spacing=self.spacing, copy=True))
+
+    def test_types(self):
+        for dtype in "bool int8 uint16 int32 uint64 float16 float64 >i2".split():
+            with self.subTest(dtype):
+                array = (self.array // 4).astype(dtype)
+                volume = sg.Volume(array, copy=True)
+                numpy.testing.assert_array_equal(
+                    numpy.asarray(volume).astype(float), array.astype(float))
+        for bad, error in [(numpy.zeros((2, 2, 2), complex), "complex"),
+                           (numpy.zeros((2, 2)), "three dimensions"),
+                           (numpy.zeros((2, 0, 2)), "no voxels"),
+                           (7, "not int")]:
+            with self.assertRaisesRegex((TypeError, ValueError), error):
+                sg.Volume(bad)
+
+    def test_slope_and_intercept(self):
+        volume = sg.Volume(self.array, slope=2, intercept=-1024)
+        self.assertEqual(volume.statistics["min"],
+                         2 * float(self.array.min()) - 1024)
+
+    def test_the_array_outlives_its_name(self):
+        volume = sg.Volume(self.array.copy(), spacing=self.spacing)
+        gc.collect()
+        self.same(volume)
+
+    def test_masks(self):
+        mask = numpy.zeros(self.array.shape, bool)
+        mask[:, :, :32] = True
+        volume = sg.Volume(self.array, spacing=self.spacing)
+        half = volume.masked(mask)
+        self.assertEqual(half.statistics["finite"], mask.sum())
+        self.assertEqual(volume.masked(mask.astype(int) * 5, [4, 5])
+                         .statistics["finite"], mask.sum())
+        with self.assertRaises(sg.Error):
+            volume.masked(mask[:-1])
+
+    def test_memory_grows_by_no_copy(self):
+        array = numpy.zeros((256, 256, 400), numpy.uint8)  # 26 MB
+        array[100:150, 100:150, 100:150] = 200
+        before = resident()
+        volume = sg.Volume(array, copy=False)
+        numpy.asarray(volume)
+        self.assertLess(resident() - before, 4 << 20)
+
+    def test_histogram(self):
+        counts, edges = sg.Volume(self.array).histogram(64, (0, 255))
+        expected, places = numpy.histogram(self.array, 64, (0, 255))
+        numpy.testing.assert_array_equal(counts, expected)
+        numpy.testing.assert_allclose(edges, places)
+
+    def test_nibabel(self):
+        try:
+            import nibabel
+        except ImportError:
+            self.skipTest("nibabel is not installed")
+        affine = numpy.array([[0, -1.5, 0, 9], [2, 0, 0, 8], [0, 0, 3, 7],
+                              [0, 0, 0, 1.0]])
+        image = nibabel.Nifti1Image(self.array.T.astype(numpy.int16), affine)
+        image.to_filename(self.path("a.nii"))
+        by_file = sg.Volume(self.path("a.nii"))
+        by_image = sg.Volume(image)
+        numpy.testing.assert_allclose(by_image.affine, affine)
+        self.assertTrue(by_image.info["medical"])
+        self.assertEqual(by_image.info["unit"], "mm")
+        self.assertEqual(sg.compare(by_file.render(size=80),
+                                    by_image.render(size=80)).largest, 0)
+        self.assertEqual(sg.compare(
+            by_file.render(size=80),
+            sg.Volume(nibabel.load(self.path("a.nii"))).render(size=80)
+        ).largest, 0)
+
+    def test_xarray(self):
+        try:
+            import xarray
+        except ImportError:
+            self.skipTest("xarray is not installed")
+        data = xarray.DataArray(
+            self.array, dims=("z", "y", "x"),
+            coords={"x": ("x", numpy.arange(64) * 0.5, {"units": "um"}),
+                    "y": 3 - numpy.arange(64) * 0.5,
+                    "z": numpy.arange(48) * 2.0})
+        volume = sg.Volume(data)
+        self.assertEqual(volume.spacing, (0.5, 0.5, 2.0))
+        self.assertEqual(volume.info["unit"], "um")
+        self.assertEqual(volume.affine[1, 1], -0.5)
+        self.assertEqual(sg.Volume(data.transpose("x", "z", "y"))
+                         .info["unit"], "um")
+
+    def test_series(self):
+        for n in (3, 5, 12):
+            sg.Volume(self.array // n).save(self.path(f"r_{n:03d}.nrrd"))
+        steps = [(step.index, step.statistics["max"])
+                 for step in sg.series(self.path("r_%03d.nrrd"))]
+        self.assertEqual(steps, [(n, float(self.array.max() // n))
+                                 for n in (3, 5, 12)])
+        with self.assertRaises(FileNotFoundError):
+            next(sg.series(self.path("none_%d.nrrd")))
+
+
+class Calls(InFolder):
+    def test_threads_take_turns(self):
+        volume = head()
+        expected = {n: numpy.asarray(volume.render(size=64, azimuth=n)).copy()
+                    for n in range(0, 40, 10)}
+        failed = []
+
+        def work():
+            try:
+                for n, pixels in expected.items():
+                    image = volume.render(size=64, azimuth=n)
+                    if not numpy.array_equal(numpy.asarray(image), pixels):
+                        failed.append(n)
+            except BaseException as error:  # whatever it is, the test fails
+                failed.append(error)
+
+        threads = [threading.Thread(target=work) for _ in range(4)]
+        for each in threads:
+            each.start()
+        for each in threads:
+            each.join()
+        self.assertEqual(failed, [])
+
+    def test_progress_is_reported_and_may_end_the_call(self):
+        class Enough(Exception):
+            pass
+
+        def enough(stage, fraction):
+            raise Enough(stage)
+
+        volume = head()
+        with self.assertRaises(Enough):
+            volume.render(size=2048, method="raycast", progress=enough)
+        seen = []
+        volume.render(size=300, method="raycast", progress=lambda *each:
+                      seen.append(each))
+        self.assertEqual(seen[-1], ("render", 1.0))
+        self.assertEqual(sorted(each[1] for each in seen if
+                                each[0] == "render"),
+                         [each[1] for each in seen if each[0] == "render"])
+        with self.assertRaisesRegex(RuntimeError, "in use"):
+            volume.render(size=300, method="raycast",
+                          progress=lambda *_: volume.render())
+        volume.render(size=16)
+
+    def test_interrupt(self):
+        volume = sg.Volume("phantom:head")
+        timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            volume.render(size=4096, method="raycast", quality="high")
+        took = time.perf_counter()
+        timer.join()
+        self.assertLess(time.perf_counter() - took, 0.5)
+        volume.render(size=16)
+
+    def test_errors(self):
+        with self.assertRaisesRegex(sg.Error, "nope.nrrd: cannot be opened"):
+            sg.Volume("nope.nrrd")
+        try:
+            sg.Volume("nope.nrrd")
+        except sg.Error as error:
+            self.assertEqual(error.status, 3)
+        with self.assertRaisesRegex(ValueError, "phantom"):
+            sg.Volume("phantom:nope")
+        with self.assertRaises(MemoryError):
+            sg.Volume("phantom:head", memory=1 << 20)
+        with self.assertRaises(TypeError):
+            sg.Image()
+
+    def test_warnings(self):
+        with self.assertWarnsRegex(sg.SnowglassWarning, "Hounsfield"):
+            head().render("ct-bone", size=16)
+        warnings.simplefilter("error")
+        with self.assertRaisesRegex(sg.SnowglassWarning, "Hounsfield"):
+            head().render("ct-bone", size=16)
+
+    def test_memory_stays_flat(self):
+        volume = head()
+        for n in range(20):
+            volume.render(size=96, azimuth=n)
+        before = resident()
+        for n in range(300 if LONG else 60):
+            volume.render("mr-default", size=96, azimuth=n, depth=True)
+            sg.Volume(numpy.zeros((20, 20, 20), numpy.int16)).info
+        self.assertLess(resident() - before, 3 << 20)
+
+    def test_import_is_quick_and_leaves_numpy_out(self):
+        code = "import snowglass, sys; assert 'numpy' not in sys.modules"
+        subprocess.run([sys.executable, "-c", code], check=True)
+
+    def test_a_call_adds_little(self):
+        volume = head()
+        times = []
+        for n in range(40):
+            begin = time.perf_counter()
+            image = volume.render(size=64, azimuth=10, fit="volume")
+            times.append(time.perf_counter() - begin - image.stats["seconds"])
+        self.assertLess(min(times), 0.002)  # 0.2 ms on a quiet machine
+
+
+if __name__ == "__main__":
+    unittest.main()
