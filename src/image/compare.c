@@ -28,10 +28,22 @@ static bool are_equal(double a, double b) {
     return a == b || (isnan(a) && isnan(b));
 }
 
-/* In double precision the difference of two floats cannot overflow. */
+/* The level of a sample of 8 or 16 bits, whose float is rounded: a multiple of
+ * 1/65535, as those of 1/255 are; NaN for other samples. */
+static double level_of(float sample) {
+    double level = rint((double)sample * 65535);
+    return (float)(level / 65535) == sample ? level : (double)NAN;
+}
+
+/* Pictures that are one level apart differ by 1/255 or 1/65535, not by the
+ * difference of two rounded floats.  In double precision the difference of two
+ * floats cannot overflow. */
 static double absolute_difference(float a, float b) {
     if (are_equal(a, b))
         return 0;
+    double levels = fabs(level_of(a) - level_of(b));
+    if (isfinite(levels))
+        return levels / 65535;
     return isfinite(a) && isfinite(b) ? fabs((double)a - (double)b) : INFINITY;
 }
 

@@ -54,6 +54,33 @@ static void differences_are_absolute_and_over_all_channels(void **state) {
     free_both(a, b);
 }
 
+/* Every pair of neighbouring levels, stored as the loaders store them. */
+static void levels_are_counted_exactly(void **state) {
+    image_fixture *f = *state;
+    static const int tops[] = {255, 65535};
+    for (int t = 0; t < 2; t++) {
+        const double top = tops[t];
+        snow_image *a = picture(f, 1, 1, 2), *b = picture(f, 1, 1, 2);
+        for (int level = 0; level < tops[t]; level++) {
+            snow_image_pixels(a)[0] = (float)(level / top);
+            snow_image_pixels(b)[0] = (float)((level + 1) / top);
+            assert_true(compare(a, b).largest == 1 / top);
+        }
+        free_both(a, b);
+    }
+}
+
+/* Beside a level, a sample of a float picture is no level. */
+static void other_floats_are_not_rounded_to_levels(void **state) {
+    image_fixture *f = *state;
+    snow_image *a = picture(f, 1, 1, 2), *b = picture(f, 1, 1, 2);
+    const float level = (float)(100 / 255.0), near = nextafterf(level, 1);
+    snow_image_pixels(a)[0] = level;
+    snow_image_pixels(b)[0] = near;
+    assert_true(compare(a, b).largest == (double)near - (double)level);
+    free_both(a, b);
+}
+
 static void the_first_of_equal_differences_is_told(void **state) {
     image_fixture *f = *state;
     snow_image *a = picture(f, 4, 4, 2), *b = picture(f, 4, 4, 2);
@@ -217,6 +244,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(a_picture_does_not_differ_from_itself),
         TEST(differences_are_absolute_and_over_all_channels),
+        TEST(levels_are_counted_exactly),
+        TEST(other_floats_are_not_rounded_to_levels),
         TEST(the_first_of_equal_differences_is_told),
         TEST(two_channels_count_as_grey),
         TEST(pictures_of_two_sizes_differ),
