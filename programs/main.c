@@ -7,6 +7,7 @@
 #include "commands/commands.h"
 #include "options/config.h"
 #include "run/interrupt.h"
+#include "run/launcher.h"
 #include "run/log.h"
 #include "run/sibling.h"
 #include "run/start.h"
@@ -72,6 +73,18 @@ static bool is_for_all(const verb_row *verb) {
     return (verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE)) != 0;
 }
 
+/* Without MPI each process of a parallel job makes the whole picture; a job
+ * whose processes have different inputs may mean that. */
+static void remark_launcher(const options *opts) {
+    const char *launcher;
+    long rank, ranks = launcher_ranks(&launcher, &rank);
+    if (ranks > 1 && rank == 0 && !process_mpi() && opts->verbosity >= 0)
+        say("this is one of %ld processes that were started by %s, and each of "
+            "them makes the whole output; snowglass-mpi shares the work among "
+            "them",
+            ranks, launcher);
+}
+
 /* `named` is false if the verb was not written and render is assumed. */
 static int run_command(const verb_row *verb, bool named, int argc,
                        char **argv) {
@@ -98,6 +111,8 @@ static int run_command(const verb_row *verb, bool named, int argc,
         look_unload(&opts);
         return done;
     }
+    if (is_for_all(verb))
+        remark_launcher(&opts);
     double begin = seconds_now();
     done = run_verb(verb, &opts);
     if (done == SNOW_STATUS_OK)

@@ -4,6 +4,7 @@
  * connection to the others has failed prints an error itself, and ends the job,
  * since the others may wait for it. */
 #define _GNU_SOURCE /* sched_getaffinity */
+#include "run/launcher.h"
 #include "run/log.h"
 #include "run/sibling.h"
 #include "run/start.h"
@@ -12,7 +13,6 @@
 #include <signal.h>
 #include <snowglass/mpi.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -21,20 +21,6 @@
 #define MPI_SECONDS 300
 #endif
 
-/* The variables in which launchers pass the number of processes and the
- * rank. */
-static const struct {
-    const char *name, *ranks, *rank;
-} launchers[] = {
-    {"Open MPI's mpirun", "OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"},
-    {"MPICH's mpirun or srun", "PMI_SIZE", "PMI_RANK"},
-    {"srun", "SLURM_STEP_NUM_TASKS", "SLURM_PROCID"}};
-
-static long number_of(const char *name) {
-    const char *text = getenv(name);
-    return text ? strtol(text, NULL, 10) : 0;
-}
-
 /* If a program of one MPI runs under the launcher of another, each process is a
  * job of one rank, and all would write the same output. */
 static int check_launcher(const char *library) {
@@ -42,23 +28,21 @@ static int check_launcher(const char *library) {
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     if (ranks > 1)
         return CONTINUE;
-    for (size_t i = 0; i < sizeof launchers / sizeof *launchers; i++) {
-        long given = number_of(launchers[i].ranks);
-        if (given <= 1)
-            continue;
-        /* The others wait until rank 0 has printed: the launcher may end all
-         * with the first one that fails. */
-        if (number_of(launchers[i].rank) != 0)
-            sleep(1);
-        else
-            fprintf(stderr,
-                    "snowglass: %ld processes were started by %s, but %s sees "
-                    "only one; use the mpirun of the MPI that snowglass-mpi "
-                    "was built with\n",
-                    given, launchers[i].name, library);
-        return SNOW_STATUS_BAD_USAGE;
-    }
-    return CONTINUE;
+    const char *launcher;
+    long rank, given = launcher_ranks(&launcher, &rank);
+    if (given == 1)
+        return CONTINUE;
+    /* The others wait until rank 0 has printed: the launcher may end all with
+     * the first one that fails. */
+    if (rank != 0)
+        sleep(1);
+    else
+        fprintf(stderr,
+                "snowglass: %ld processes were started by %s, but %s sees "
+                "only one; use the mpirun of the MPI that snowglass-mpi "
+                "was built with\n",
+                given, launcher, library);
+    return SNOW_STATUS_BAD_USAGE;
 }
 
 /* The name and version end at the first comma or line end. */
@@ -113,9 +97,7 @@ static void give_up(int number) {
 /* The first rank that gives up ends the job, so the limits differ between
  * ranks. */
 static void limit_seconds(unsigned seconds) {
-    long rank = 0;
-    for (size_t i = 0; i < sizeof launchers / sizeof *launchers && !rank; i++)
-        rank = number_of(launchers[i].rank);
+    const long rank = launcher_rank();
     alarm(seconds + (unsigned)(rank < 30 ? rank : 30));
 }
 

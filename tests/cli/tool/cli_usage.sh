@@ -202,4 +202,31 @@ done
 refused 2 "two choices in one" "'crs.rle' is unknown" \
     "$TOOL" --encoding 'crs|rle' x
 check "nothing was written" [ -z "$(ls)" ]
+
+# Started as one of several processes: only the first says so, and works.
+picture() {
+    env "$@" "$TOOL" phantom:cube --dims 8x8x8 -s 8x8 -y -o z.npy
+}
+note='one of 2 processes that were started by .*snowglass-mpi shares'
+while read -r first second; do
+    run 0 "$first $second" picture "$first" "$second"
+    says "^snowglass: this is $note"
+done <<'END'
+OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0
+PMI_SIZE=2 PMI_RANK=0
+SLURM_STEP_NUM_TASKS=2 SLURM_PROCID=0
+END
+while read -r first second; do
+    run 0 "$first $second" picture "$first" "$second"
+    check "$first $second: no word of it" [ -z "$(grep 'one of' "$ERR")" ]
+done <<'END'
+OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=1
+OMPI_COMM_WORLD_SIZE=1 OMPI_COMM_WORLD_RANK=0
+SLURM_NTASKS=2 SLURM_PROCID=0
+END
+run 0 "quietly one of two" env PMI_SIZE=2 "$TOOL" -q phantom:cube \
+    --dims 8x8x8 -s 8x8 -y -o z.npy
+check "says nothing" [ ! -s "$ERR" ]
+run 0 "another verb" env PMI_SIZE=2 "$TOOL" info phantom:cube --dims 8x8x8
+check "has nothing to share" [ ! -s "$ERR" ]
 finish
