@@ -2,16 +2,15 @@
  *
  * Missing options are taken from the file's name, where archives of volumes put
  * them: engine_256x256x110_uint8.raw, head_64x64x93_u16le.raw.gz. */
+#include "formats/raw/raw.h"
 #include "formats/unsupported.h"
-#include "formats/write.h"
 #include "io/folder.h"
 
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Parses a word "256x256x110". */
-static bool parse_dims(const char *word, size_t length, int64_t dims[3]) {
+bool snow_raw_parse_dims(const char *word, size_t length, int64_t dims[3]) {
     int64_t found[3];
     const char *at = word, *end = word + length;
     for (int i = 0; i < 3; i++) {
@@ -33,9 +32,8 @@ static bool parse_dims(const char *word, size_t length, int64_t dims[3]) {
     return true;
 }
 
-/* Parses a type with or without byte order: "uint8", "u16be", "f32". */
-static bool parse_type(const char *word, size_t length, snow_type *type,
-                       snow_endian *endian) {
+bool snow_raw_parse_type(const char *word, size_t length, snow_type *type,
+                         snow_endian *endian) {
     static const char *const brief[][2] = {
         {"i8", "int8"},     {"u8", "uint8"},      {"i16", "int16"},
         {"u16", "uint16"},  {"i32", "int32"},     {"u32", "uint32"},
@@ -73,13 +71,13 @@ static void read_name(snow_context *context, const char *path,
                       snow_volume_options *options) {
     snow_volume_options found = {0};
     for (const char *word = snow_path_name(path); *word;) {
-        size_t length = strcspn(word, "_.- ");
+        size_t length = strcspn(word, RAW_BETWEEN);
         if (!found.dims[0])
-            parse_dims(word, length, found.dims);
+            snow_raw_parse_dims(word, length, found.dims);
         if (!found.type)
-            parse_type(word, length, &found.type, &found.endian);
+            snow_raw_parse_type(word, length, &found.type, &found.endian);
         word += length;
-        word += strspn(word, "_.- ");
+        word += strspn(word, RAW_BETWEEN);
     }
     bool dims = !options->dims[0] && found.dims[0];
     bool type = !options->type && found.type;
@@ -116,14 +114,55 @@ static snow_status refuse_unspecified(snow_source *source,
     bool meant = options->dims[0] || options->type || options->endian ||
                  options->offset || snow_has_suffix(name, ".raw") ||
                  snow_has_suffix(name, ".raw.gz");
+    int64_t left = snow_source_remaining(source);
+    char advice[RAW_ADVICE_BYTES] = "";
+    if (meant && left > 0 && options->offset < (uint64_t)left)
+        snow_raw_advise(name, (uint64_t)left - options->offset, options,
+                        advice);
+    if (*advice)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "is raw data of %llu bytes; give --dims XxYxZ and "
+                         "--type (uint8, int16, float32, ...)%s",
+                         (unsigned long long)left, advice);
     return snow_fail(context,
                      meant ? SNOW_STATUS_BAD_USAGE : SNOW_STATUS_BAD_INPUT,
                      "has an unknown format; if it is raw data, give --dims "
                      "XxYxZ and --type (uint8, int16, float32, ...)");
 }
 
-/* The bytes can only be too few, which snow_volume_read checks; too many are
- * reported. */
+/* Refuses a file with too few bytes.  One with too many is read, and a note
+ * says what else it may be; that there are more is said at their end. */
+static snow_status check_size(snow_source *source,
+                              const snow_volume_options *all,
+                              const snow_volume_info *info) {
+    char advice[RAW_ADVICE_BYTES];
+    snow_context *context = snow_source_context(source);
+    int64_t voxels, left = snow_source_remaining(source);
+    uint64_t bytes;
+    if (left < 0 || all->offset > (uint64_t)left ||
+        !snow_volume_count(info->dims, info->type, &voxels, &bytes) ||
+        (uint64_t)left - all->offset == bytes)
+        return SNOW_STATUS_OK;
+    uint64_t here = (uint64_t)left - all->offset;
+    snow_raw_advise(snow_source_name(source), here, all, advice);
+    if (here > bytes) {
+        if (*advice)
+            snow_notify(context,
+                        "%s: has %llu bytes where the voxels need %llu%s",
+                        snow_source_name(source), (unsigned long long)here,
+                        (unsigned long long)bytes, advice);
+        return SNOW_STATUS_OK;
+    }
+    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                     "has %llu bytes left where the voxels need %llu "
+                     "(%lldx%lldx%lld %s); it is truncated, or its dims or "
+                     "type are wrong%s",
+                     (unsigned long long)here, (unsigned long long)bytes,
+                     (long long)info->dims[0], (long long)info->dims[1],
+                     (long long)info->dims[2], snow_type_name(info->type),
+                     advice);
+}
+
 static snow_status read_raw(snow_source *source,
                             const snow_volume_options *options,
                             snow_volume_info *info, snow_volume **out) {
@@ -145,6 +184,7 @@ static snow_status read_raw(snow_source *source,
     memcpy(info->dims, all.dims, sizeof info->dims);
     info->type = all.type;
     SNOW_TRY(snow_volume_pick_time(context, "time step", &all, info));
+    SNOW_TRY(check_size(source, &all, info));
     return snow_volume_read(source, &all, all.endian == SNOW_ENDIAN_BIG,
                             all.offset, info, out);
 }
