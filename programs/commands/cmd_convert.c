@@ -13,6 +13,9 @@
 int save_volume(snow_context *context, const options *opts,
                 const snow_volume *volume) {
     char text[256];
+    int done = check_no_folder(opts->output);
+    if (done != CONTINUE)
+        return done;
     if (!is_special(opts->output))
         interrupt_hold();
     snow_status status =

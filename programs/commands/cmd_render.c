@@ -66,6 +66,9 @@ static int check_depth(const options *opts) {
     int done = check_depth_mode(opts);
     if (!path || done != CONTINUE)
         return done;
+    done = check_no_folder(path);
+    if (done != CONTINUE)
+        return done;
     if (snow_image_format_bits(path) != 0)
         return fail_usage("--depth: %s cannot hold depths; use a name that "
                           "ends in .npy, .pfm, .exr or .tif",
@@ -114,7 +117,13 @@ snow_image_options picture_form(const options *opts) {
 /* A long rendering must not end at an output that could have been refused at
  * the start. */
 static int check_paths(snow_context *context, const options *opts) {
+    const char *const paths[] = {opts->output, opts->depth, opts->stats};
     snow_image_options form = picture_form(opts);
+    int done = check_input_first(opts, paths, sizeof paths / sizeof *paths);
+    if (done == CONTINUE)
+        done = check_no_folder(opts->output);
+    if (done != CONTINUE)
+        return done;
     snow_status status = snow_image_check(
         context, opts->output, (int)opts->size[0], (int)opts->size[1], &form);
     if (status == SNOW_STATUS_OK && opts->depth && !is_beside(opts))

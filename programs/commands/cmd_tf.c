@@ -156,6 +156,9 @@ static int save_picture(const options *opts, const named *n) {
     snow_image_options form = {.size = sizeof form,
                                .overwrite = opts->overwrite};
     double ends[2];
+    int done = check_no_folder(opts->output);
+    if (done != CONTINUE)
+        return done;
     find_ends(&n->look, ends);
     snow_status status = make_whole(n, &transfer);
     if (status == SNOW_STATUS_OK)
@@ -268,6 +271,9 @@ static int check_convert(const options *opts) {
     if (!opts->output)
         return fail_usage(
             "no output file given; add -o OUT.json or -o OUT.csv");
+    int done = check_no_folder(opts->output);
+    if (done != CONTINUE)
+        return done;
     if (!ends_with(opts->output, ".json") && !ends_with(opts->output, ".csv") &&
         strcmp(opts->output, "-") != 0)
         return fail_usage("%s: transfer functions are written as .json or "

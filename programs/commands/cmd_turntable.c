@@ -44,6 +44,8 @@ static int prepare_turntable(const options *opts, shot_list *list,
     if (done == CONTINUE)
         done = make_shots(opts, list);
     if (done == CONTINUE && process_talks())
+        done = check_input(opts);
+    if (done == CONTINUE && process_talks())
         done = movie_open(opts, list, s);
     done = process_agree(done);
     if (done == CONTINUE)

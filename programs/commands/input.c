@@ -1,6 +1,7 @@
 /* input.c - opens the volume and makes the transfer function from the
  * options. */
 #include "commands/commands.h"
+#include "picture/outputs.h"
 #include "run/log.h"
 
 #include <math.h>
@@ -43,6 +44,33 @@ int open_input(snow_context *context, const options *opts, const char *path,
     snow_volume_options data = data_options(opts);
     snow_status status = snow_volume_open(context, path, &data, out);
     return status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
+}
+
+/* Notes are left to the reading itself.  Standard input can be read only once,
+ * and a pattern of names is no file. */
+int check_input(const options *opts) {
+    const char *path = opts->operand_count == 1 ? opts->operands[0] : "-";
+    snow_context *context = NULL;
+    if (strcmp(path, "-") == 0 || strchr(path, '%'))
+        return CONTINUE;
+    snow_volume_info info;
+    snow_volume_options data = data_options(opts);
+    snow_volume_info_init(&info);
+    snow_status status = snow_context_new(NULL, &context);
+    if (status == SNOW_STATUS_OK)
+        status = snow_volume_inspect(context, path, &data, &info);
+    int done =
+        status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
+    snow_context_free(context);
+    return done;
+}
+
+int check_input_first(const options *opts, const char *const *outputs,
+                      size_t count) {
+    bool free = true;
+    for (size_t i = 0; i < count; i++)
+        free &= !outputs[i] || is_free(outputs[i], opts->overwrite);
+    return free ? CONTINUE : check_input(opts);
 }
 
 /* --window and --level are the radiologists' way to give a range; neither means

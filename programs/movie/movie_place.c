@@ -76,6 +76,9 @@ static int read_pattern(movie_place *out) {
 }
 
 int place_read(const char *output, movie_place *out) {
+    int done = check_no_folder(output);
+    if (done != CONTINUE)
+        return done;
     *out = (movie_place){.output = output, .format = movie_format_of(output)};
     return out->format ? read_movie(out) : read_pattern(out);
 }
@@ -123,8 +126,6 @@ static int check_movie(snow_context *context, const movie_place *place,
     struct stat what;
     char probe[PATH_MAX], name[32];
     if (lstat(place->output, &what) == 0) {
-        if (S_ISDIR(what.st_mode))
-            return fail_output("%s: is a folder; name a file", place->output);
         if (!S_ISREG(what.st_mode) && !S_ISLNK(what.st_mode))
             return fail_output("%s: is not a regular file; name one",
                                place->output);

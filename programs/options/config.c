@@ -273,7 +273,10 @@ static int check_place(const options *opts) {
             return fail_usage(
                 "--save-config: is the same file as --%s; name two files",
                 names[i]);
-    return check_stats_path(opts->save_config, opts->overwrite);
+    int done = check_input_first(opts, &opts->save_config, 1);
+    return done == CONTINUE
+               ? check_stats_path(opts->save_config, opts->overwrite)
+               : done;
 }
 
 int config_check(const options *opts) {

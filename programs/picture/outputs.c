@@ -62,14 +62,39 @@ static int fail_existing(const char *path) {
     return fail_output("%s: exists; use --overwrite or another name", path);
 }
 
+static bool is_folder(const char *path) {
+    struct stat what;
+    size_t length = strlen(path);
+    return (length && path[length - 1] == '/') ||
+           (stat(path, &what) == 0 && S_ISDIR(what.st_mode));
+}
+
+int check_no_folder(const char *path) {
+    return is_folder(path)
+               ? fail_output("%s: is a folder; give the name of a file in it",
+                             path)
+               : CONTINUE;
+}
+
+bool is_free(const char *path, bool overwrite) {
+    struct stat what;
+    char folder[PATH_MAX];
+    folder_of(path, folder, sizeof folder);
+    if (is_special(path))
+        return true;
+    if (is_folder(path) || access(folder, W_OK | X_OK) != 0)
+        return false;
+    return overwrite || lstat(path, &what) != 0;
+}
+
 /* The rules are those of pictures: figures of an earlier run are results too.
  * lstat also finds a dangling link, which counts as a file. */
 int check_stats_path(const char *path, bool overwrite) {
     struct stat what;
     if (is_special(path))
         return CONTINUE;
-    if (stat(path, &what) == 0 && S_ISDIR(what.st_mode))
-        return fail_output("%s: is a folder; name a file", path);
+    if (is_folder(path))
+        return check_no_folder(path);
     if (!overwrite && lstat(path, &what) == 0)
         return fail_existing(path);
     char folder[PATH_MAX];

@@ -14,6 +14,14 @@ bool is_special(const char *path);
 /* Whether two paths name the same file, even one that does not exist yet. */
 bool same_place(const char *a, const char *b);
 
+/* Refuses a folder where a file is to be written, also one that is named with
+ * a slash but does not exist.  Returns CONTINUE or an exit code. */
+int check_no_folder(const char *path);
+
+/* Whether nothing stands in the way of a new file of this name, as far as a
+ * look at its folder tells. */
+bool is_free(const char *path, bool overwrite);
+
 /* Checks before rendering whether the file of --stats can be written.  Returns
  * CONTINUE or an exit code. */
 int check_stats_path(const char *path, bool overwrite);

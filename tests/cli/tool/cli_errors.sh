@@ -123,6 +123,32 @@ refused 4 "an existing phantom" "there.nrrd" \
 check "is kept byte for byte" cmp -s there.nrrd kept
 
 refused 4 "a folder as output" "folder" render -o folder.png -y
+for output in folder folder/ nowhere/ /; do
+    for verb in render turntable convert; do
+        refused 4 "$verb to the folder $output" "^snowglass: $output: is a folder; give the name of a file in it$" \
+            "$TOOL" $verb phantom:cube --dims 8x8x8 -o $output
+    done
+    refused 4 "tf to the folder $output" "^snowglass: $output: is a folder" \
+        "$TOOL" tf convert ct-bone -o $output
+done
+refused 4 "depths to a folder" "^snowglass: folder: is a folder" \
+    render -o a.npy --depth folder
+# What is wrong with the input comes first: it is mended first.
+refused 3 "a bad input and an existing output" "^snowglass: bad.nrrd: " \
+    "$TOOL" bad.nrrd -o there.png
+refused 2 "raw data without dims and an existing output" "give --dims" \
+    "$TOOL" short.raw -o there.png
+refused 3 "a raw file of the wrong size and a folder as output" "short.raw: has 1000 bytes" \
+    "$TOOL" short.raw --dims 8x8x8 --type int32 -o folder
+refused 3 "a bad input and existing figures" "^snowglass: bad.nrrd: " \
+    "$TOOL" bad.nrrd -o a.png --stats stats.json
+refused 3 "a bad input and an existing configuration" "^snowglass: bad.nrrd: " \
+    "$TOOL" bad.nrrd -o a.png --save-config stats.json
+echo precious >t_0000.png
+refused 3 "a turntable of a bad input over existing frames" "^snowglass: bad.nrrd: " \
+    "$TOOL" turntable bad.nrrd -o t_%04d.png
+refused 4 "a mended input" "there.png: " "$TOOL" eight.raw --dims 8x8x8 \
+    --type uint8 -o there.png
 refused 4 "a missing folder" "nowhere" render -o nowhere/a.png
 refused 4 "figures into a missing folder" "nowhere" \
     render -o b.png --stats nowhere/s.json
