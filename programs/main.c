@@ -2,8 +2,8 @@
  * main functions are in main_alone.c and mpi_main.c.
  *
  * The first word is a verb, or the call is a plain `render`.  The tool uses the
- * public headers only.  Its exit codes are the library's status values and
- * 130. */
+ * public headers only.  Its exit codes are the library's status values, 7
+ * and 130 (options.h). */
 #include "commands/commands.h"
 #include "options/config.h"
 #include "run/interrupt.h"
@@ -100,6 +100,8 @@ static int run_command(const verb_row *verb, bool named, int argc,
     if (opts.help)
         return help_print(opts.help_word,
                           named && verb->bit != VERB_HELP ? verb : NULL);
+    if (opts.verbosity < 0 && process_ranks() == 1) /* MPI's errors are kept */
+        silence_others();
     if (process_ranks() > 1 && is_for_all(verb))
         snow_comm_set_timeout(process_comm(), opts.timeout);
     done = config_check(&opts);
@@ -115,8 +117,10 @@ static int run_command(const verb_row *verb, bool named, int argc,
         remark_launcher(&opts);
     double begin = seconds_now();
     done = run_verb(verb, &opts);
-    if (done == SNOW_STATUS_OK)
-        done = config_save(&opts);
+    if (done == SNOW_STATUS_OK || done == EXIT_EMPTY) {
+        int saved = config_save(&opts);
+        done = saved == SNOW_STATUS_OK ? done : saved;
+    }
     look_unload(&opts);
     if (opts.verbosity > 0 &&
         verb->bit != VERB_RENDER) /* render reports more itself */

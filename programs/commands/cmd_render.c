@@ -284,14 +284,16 @@ static int report_figures(work *w, const options *opts) {
         return SNOW_STATUS_OK;
     w->state.times.total = seconds_now() - w->begin;
     render_report report = render_state_report(&w->state);
+    int done = picture_is_empty(w->image) ? EXIT_EMPTY : SNOW_STATUS_OK;
     report.image = w->image;
     if (opts->verbosity > 0)
         log_stats(&report);
     if (!opts->stats)
-        return SNOW_STATUS_OK;
+        return done;
     if (!is_special(opts->stats))
         interrupt_hold();
-    return write_json(stats_json(&report), opts->stats, opts->overwrite);
+    int stats = write_json(stats_json(&report), opts->stats, opts->overwrite);
+    return stats == SNOW_STATUS_OK ? done : stats;
 }
 
 static void report_choices(const work *w) {

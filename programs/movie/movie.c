@@ -18,6 +18,7 @@
 #include "movie/movie_webp.h"
 #include "picture/outputs.h"
 #include "picture/paint.h"
+#include "picture/warnings.h"
 #include "run/interrupt.h"
 #include "run/log.h"
 #include "run/start.h"
@@ -350,6 +351,7 @@ typedef struct run {
     snow_image *last; /* the last picture, for its checksum */
     int64_t begun[2]; /* frames in flight, the oldest first */
     int in_flight;
+    bool shown; /* something is visible in a frame */
 } run;
 
 static int share_word(const run *r, int word) {
@@ -400,6 +402,7 @@ static void hand_over(run *r, int64_t index, snow_image *image) {
                      r->renderer->depth(r->renderer->self));
     snow_image_free(r->last);
     r->last = image;
+    r->shown = r->shown || !picture_is_empty(image);
     movie_progress_step(&r->progress, index, true);
 }
 
@@ -578,6 +581,9 @@ static int run_writer(run *r, double begin) {
     done = share_word(r, finish_movie(r->s, done));
     if (done == CONTINUE)
         done = report_figures(r, begin);
+    /* what frames of an earlier run show is not known */
+    if (done == SNOW_STATUS_OK && !r->shown && !r->figures.kept)
+        done = EXIT_EMPTY;
     snow_image_free(r->last);
     movie_figures_end(&r->figures);
     return done;

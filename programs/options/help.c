@@ -28,7 +28,7 @@ static const char examples[] =
     "\n"
     "exit codes: 0 done; 1 rendering failed; 2 bad usage; 3 input missing,\n"
     "unreadable or unsupported; 4 output not writable; 5 not enough memory;\n"
-    "6 the comparison differs; 130 interrupted.\n";
+    "6 the comparison differs; 7 the picture is empty; 130 interrupted.\n";
 
 /* Prints words, beginning at column `at` and wrapped to `indent`. */
 static void print_wrapped(const char *text, int at, int indent) {

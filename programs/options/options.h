@@ -11,8 +11,10 @@
 #include <snowglass/look_file.h>
 #include <snowglass/snowglass.h>
 
-/* Exit code of an interrupted run; all others are a snow_status. */
+/* Exit codes of an interrupted run, and of one whose picture is written but
+ * empty; all others are a snow_status. */
 #define EXIT_INTERRUPTED 130
+#define EXIT_EMPTY 7
 
 /* Returned by a parser if the command should run. */
 #define CONTINUE (-1)

@@ -44,7 +44,9 @@ static void warn_method(const render_state *s) {
         snow_method_name(s->stats.method));
 }
 
-static bool is_empty(snow_image *image) {
+bool picture_is_empty(snow_image *image) {
+    if (!image || snow_image_channels(image) == 1)
+        return false;
     int64_t count = (int64_t)snow_image_width(image) * snow_image_height(image);
     const float *pixels = snow_image_pixels(image);
     int channels = snow_image_channels(image);
@@ -54,10 +56,9 @@ static bool is_empty(snow_image *image) {
     return true;
 }
 
-/* A picture of values has no opacity. */
 static void warn_empty(const render_state *s, snow_image *image) {
     snow_mode mode = s->settings.mode;
-    if (!image || snow_image_channels(image) == 1 || !is_empty(image))
+    if (!picture_is_empty(image))
         return;
     if (mode == SNOW_MODE_ISO)
         say("note: the picture is empty: no surface of value %g is in view; "

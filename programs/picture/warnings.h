@@ -12,4 +12,8 @@ void warn_unused(const options *opts);
  * method than requested, and an empty picture, unless `image` is NULL. */
 void warn_picture(const render_state *s, snow_image *image);
 
+/* Whether nothing is visible in a picture, which has an exit code of its own; a
+ * picture of values has no opacity, and none is empty. */
+bool picture_is_empty(snow_image *image);
+
 #endif

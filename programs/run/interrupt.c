@@ -14,6 +14,9 @@
  * sig_atomic_t: the handler may run in any thread. */
 static atomic_int held, movie, mute, pending;
 
+/* Where messages go. */
+static atomic_int told = STDERR_FILENO;
+
 /* Whether the library asks; what SIGALRM did before. */
 static atomic_int guarded;
 static struct sigaction alarm_before;
@@ -45,14 +48,14 @@ static void leave(int signal_number) {
     bool again = (held || guarded) && atomic_exchange(&pending, 1);
     if (again || !held) {
         if (!mute && !(again && guarded))
-            given = write(STDERR_FILENO, text, sizeof text - 1);
+            given = write(told, text, sizeof text - 1);
         (void)given;
         if (again || !guarded)
             _exit(EXIT_INTERRUPTED);
         set_timer(INTERRUPT_SECONDS);
     }
     if (held && movie && !mute)
-        given = write(STDERR_FILENO, later, sizeof later - 1);
+        given = write(told, later, sizeof later - 1);
     (void)given;
     errno = number;
 }
@@ -108,6 +111,10 @@ void interrupt_hold_movie(void) {
 
 bool interrupt_seen(void) {
     return pending != 0;
+}
+
+void interrupt_tell(int descriptor) {
+    told = descriptor;
 }
 
 void interrupt_mute(void) {

@@ -47,4 +47,7 @@ bool interrupt_seen(void);
  * interruption, and none does when the work is done. */
 void interrupt_mute(void);
 
+/* Messages go to a descriptor other than that of standard error. */
+void interrupt_tell(int descriptor);
+
 #endif

@@ -7,6 +7,7 @@
 #include "run/start.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <pthread.h>
 #include <signal.h>
@@ -16,6 +17,12 @@
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
+
+#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
+#define SANITIZED
+#include <sanitizer/common_interface_defs.h>
+#include <stdint.h>
+#endif
 
 /* Room for a message of the library (10 KiB) and the words around it. */
 #define LINE_BYTES 12288
@@ -30,6 +37,32 @@ static char kept[LINE_BYTES];
 /* Held while the last line of the terminal changes: a thread of its own reports
  * a long stage. */
 static pthread_mutex_t talking = PTHREAD_MUTEX_INITIALIZER;
+
+/* Where messages go, if not to standard error. */
+static FILE *own;
+
+static FILE *messages(void) {
+    return own ? own : stderr;
+}
+
+/* Libraries underneath write to descriptor 2 itself. */
+void silence_others(void) {
+    int kept_open = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
+    int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    own = kept_open >= 0 && nowhere >= 0 ? fdopen(kept_open, "w") : NULL;
+    if (own) {
+        setvbuf(own, NULL, _IONBF, 0);
+        interrupt_tell(kept_open);
+        (void)dup2(nowhere, STDERR_FILENO);
+#ifdef SANITIZED
+        __sanitizer_set_report_fd((void *)(intptr_t)kept_open);
+#endif
+    } else if (kept_open >= 0) {
+        close(kept_open);
+    }
+    if (nowhere >= 0)
+        close(nowhere);
+}
 
 static void wipe_stage(void) {
     if (stage_shown)
@@ -52,7 +85,7 @@ static void say_list(const char *format, va_list arguments) {
     }
     pthread_mutex_lock(&talking);
     wipe_stage();
-    fprintf(stderr, "snowglass: %s\n", line);
+    fprintf(messages(), "snowglass: %s\n", line);
     pthread_mutex_unlock(&talking);
 }
 

@@ -26,6 +26,10 @@ int fail_status(const snow_context *context, snow_status status);
 int fail_volume(const snow_context *context, snow_status status,
                 const char *input);
 
+/* From here on only this program's own messages are seen: what the libraries
+ * underneath write to standard error is dropped. */
+void silence_others(void);
+
 /* Creates a context whose warnings go to standard error, unless quiet.  Returns
  * CONTINUE or an exit code. */
 int open_context(const options *opts, snow_context **out);

@@ -87,7 +87,7 @@ check "and picture, but for its place" cmp -s f.npy g.npy
 run 0 "from standard input" bash -c \
     "'$TOOL' render - -q --no-labels -s 90x80 -o h.npy --mask m.npy <v.npy"
 check "is the same" cmp -s c.npy h.npy
-run 0 "a mask of no voxel" "$TOOL" render v.npy -o i.png --mask m.npy --labels 9
+run 7 "a mask of no voxel" "$TOOL" render v.npy -o i.png --mask m.npy --labels 9
 says 'm.npy: no voxel is left inside this mask, whose values are 0 to 3'
 
 # --- planes: x up to 15 of 0 to 31, a sixth plane beyond all ------------------
@@ -114,7 +114,7 @@ prints '^finite  *13440 of 26880'
 run 0 "of a box lie where they were" "$TOOL" info v.npy --clip 1,0,0,15 \
     --crop 10:,0:7,0:5
 prints '^finite  *210 of'
-run 0 "planes that leave nothing" "$TOOL" render v.npy -o p.png --clip 1,0,0,-1
+run 7 "planes that leave nothing" "$TOOL" render v.npy -o p.png --clip 1,0,0,-1
 says 'clip: no voxel is left'
 
 # --- figures and movies -------------------------------------------------------

@@ -97,7 +97,7 @@ check "is not remarked on" bash -c "! grep -q 'note: method' '$ERR'"
 run 0 "a surface from near by" "$TOOL" "${near[@]}" -m iso --iso 60 \
     --method shear-warp
 says 'note: method raycast is used in place of shear-warp, .* no eye beside the slices or near'
-run 0 "pixels of many voxels" render -m mip --method shear-warp -o w.npy -s 2x2 \
+run 0 "pixels of many voxels" render -m mip --method shear-warp -o w.npy -s 9x9 \
     --zoom 0.3 --stats made.json
 check "are drawn by shear-warp" grep -q '"method": "shear-warp"' made.json
 finish

@@ -50,7 +50,7 @@ picture() {
     shift 2
     run 0 "a picture of $name" "$TOOL" render "$file" "$@" -s 128x128 -o $name.png
     check "$name is a PNG" is_png $name.png
-    run 0 "an empty one" "$TOOL" render -q "$file" "$@" -s 128x128 \
+    run 7 "an empty one" "$TOOL" render -q "$file" "$@" -s 128x128 \
         --opacity 0:0 -o empty.png -y
     run 6 "$name shows something" \
         "$TOOL" compare $name.png empty.png --tolerance 0.1

@@ -11,7 +11,7 @@ for name in cube head engine shells marschner-lobb turbulence; do
     check "phantom:$name is a PNG" is_png $name.png
     says "phantom:$name: phantom 24x24x20"
     # shellcheck disable=SC2086
-    run 0 "phantom:$name made transparent" "$TOOL" $small -o empty_$name.png \
+    run 7 "phantom:$name made transparent" "$TOOL" $small -o empty_$name.png \
         --opacity 0:0
     run 6 "phantom:$name shows something" \
         "$TOOL" compare $name.png empty_$name.png
@@ -28,14 +28,20 @@ check "-q is silent: no word" [ ! -s "$ERR" ]
 run 0 "one line without -q" render -o said.png
 check "it is one line" [ "$(wc -l <"$ERR")" -eq 1 ]
 says "view \+z; method shear-warp, encoding (crs|bitmap|rle)"
-run 0 "nothing is visible" render -y -o void.png --opacity 900:0,901:1
+run 7 "nothing is visible" render -y -o void.png --opacity 900:0,901:1
 says '^snowglass: note: the picture is empty: no voxel has an opacity'
-run 0 "all is beside the picture" render -y -o void.png --target 5000,0,0
+run 7 "all is beside the picture" render -y -o void.png --target 5000,0,0
 says '^snowglass: note: the picture is empty: no visible voxel is in view'
-run 0 "a surface of no value" render -y -o void.png -m iso --iso 900
+run 7 "a surface of no value" render -y -o void.png -m iso --iso 900
 says '^snowglass: note: the picture is empty: no surface of value 900 '
-run 0 "quietly" render -q -y -o void.png --opacity 900:0,901:1
+check "it is written" is_png void.png
+run 7 "quietly" render -q -y -o void.png --opacity 900:0,901:1
 check "nothing is said" [ ! -s "$ERR" ]
+run 7 "with its figures and configuration" render -q -y -o void.png \
+    --opacity 900:0,901:1 --stats void.json --save-config void.config
+check "which are written" [ -s void.json -a -s void.config ]
+run 0 "a mean of nothing is a picture of values" render -q -y -o void.npy \
+    -m mean --opacity 900:0,901:1
 run 0 "a slice" "$TOOL" phantom cube --dims 1x9x9 -q -o slice.nrrd
 run 0 "from its face" "$TOOL" render slice.nrrd -s 20x20 -y -o void.png
 says '^snowglass: .*view \+x; '

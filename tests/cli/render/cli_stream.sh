@@ -132,11 +132,11 @@ same "its second step" m_1.png whole.png
 
 "$TOOL" phantom cube --dims 256x256x200 -q -o mask.nrrd
 for limit in $(long_tier && echo 200M) 11M; do # in memory, and in slabs
-    run 0 "a mask of no voxel under $limit" "$TOOL" render a.nrrd -s 64x64 \
+    run 7 "a mask of no voxel under $limit" "$TOOL" render a.nrrd -s 64x64 \
         --view -z -o none.png -y --mask mask.nrrd --labels 300 --memory $limit
     says 'mask.nrrd: no voxel is left inside this mask, whose values are [0-9]* to 255; correct'
     check "is told once" test "$(grep -c 'no voxel is left' "$ERR")" = 1
-    run 0 "planes that leave nothing under $limit" "$TOOL" render a.nrrd \
+    run 7 "planes that leave nothing under $limit" "$TOOL" render a.nrrd \
         -s 64x64 --view -z -o none.png -y --clip 1,0,0,-9999 --memory $limit
     says 'clip: no voxel is left'
     run 0 "planes that leave some under $limit" "$TOOL" render a.nrrd \

@@ -137,9 +137,10 @@ refused 4 "a frame of a stranger" "b/7.png: exists" turn -o 'b/%d.png'
 refused 4 "is not resumed" "without a record" turn -o 'b/%d.png' --resume
 check "and stays" cmp b/7.png f_000.png
 # shellcheck disable=SC2086
-run 0 "a turn of nothing" "$TOOL" turntable $small --frames 2 -o 'void%d.png' \
+run 7 "a turn of nothing" "$TOOL" turntable $small --frames 2 -o 'void%d.png' \
     --opacity 900:0,901:1
 says 'note: the picture is empty: no voxel has an opacity'
+check "is written" is_png void1.png
 # Killed before its first frame, a run leaves a record that tells nothing.
 : >b/.%d.png.frames
 refused 4 "nor beside an empty record" "without a record" \

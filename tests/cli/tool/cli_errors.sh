@@ -226,4 +226,20 @@ run 0 "a raw file with a header" \
     "$TOOL" info plain.raw --dims 40x40x40 --type uint8
 says "plain.raw: has 64352 bytes where the voxels need 64000; a header of 352 bytes would be skipped by --offset 352"
 
+# Libraries underneath print by themselves: -q silences them, and nothing else.
+cp "$HERE/../fuzz/corpus/dicom/jpeg_little" jpeg.dcm
+printf '\0\0\0' | dd of=jpeg.dcm bs=1 seek=967 conv=notrunc 2>/dev/null
+if "$TOOL" info jpeg.dcm 2>"$ERR" >"$OUT"; then
+    NAME="a JPEG file with a fault that GDCM corrects"
+    says "^Corrupt JPEG data"
+    run 0 "info of it, quiet" "$TOOL" info -q jpeg.dcm
+    check "nothing is said" [ ! -s "$ERR" ]
+    run 0 "a picture of it, quiet" "$TOOL" -q jpeg.dcm -o jpeg.png
+    check "nothing is said" [ ! -s "$ERR" ]
+else
+    skipped "messages of libraries" "there is no GDCM"
+fi
+refused 3 "an error, quiet" "^snowglass: missing.nrrd: " \
+    "$TOOL" -q missing.nrrd -o z.png
+
 finish
