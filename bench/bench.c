@@ -19,6 +19,7 @@
 static const char help[] =
     "usage: snowglass bench NAME [options]\n"
     "\n"
+    "  all                    all of these but frame, one after another\n"
     "  table1 table2 table3   the paper's tables\n"
     "  figure11 figure12      the paper's speed-ups on 1 to 32 nodes\n"
     "  speed                  how fast pictures are made\n"
@@ -53,7 +54,11 @@ static const char help[] =
     "the\n"
     "mean, for equal slabs, slabs by count, and bricks.\n"
     "\n"
-    "Every row is verified before its times are printed.\n"
+    "Every row is verified before its times are printed.  Figures tell on "
+    "stderr how\n"
+    "far they are and how long they take yet.  all prints with --json one "
+    "object that\n"
+    "holds that of each by its name.\n"
     "\n"
     "  --data DIR       folder that holds "
     "classic/engine_256x256x110_u8.raw.gz\n"
@@ -111,9 +116,17 @@ static const struct bench_entry {
     {"balance", bench_balance, "", true},
 };
 
+/* What runs on the ranks that there are, or on threads of its own; it reads its
+ * own options. */
+static const struct bench_ranks {
+    const char *name;
+    int (*run)(int argc, char **argv, snow_comm *comm);
+} of_ranks[] = {{"combine", combine_main}, {"frame", frame_main}};
+
 #define OF_ALL "djrh"
 
 #define ENTRY_COUNT (sizeof entries / sizeof entries[0])
+#define RANKS_COUNT (sizeof of_ranks / sizeof of_ranks[0])
 
 /* The library's message is complete: what is wrong; what to try. */
 int bench_fail(snow_context *context, snow_status status) {
@@ -240,11 +253,35 @@ typedef struct bench_command {
     const char *words[OPTIONS_MOST];
 } bench_command;
 
+static bool is_all(const bench_command *command) {
+    return strcmp(command->name, "all") == 0;
+}
+
 static const struct bench_entry *find_entry(const char *name) {
     for (size_t i = 0; i < ENTRY_COUNT; i++)
         if (strcmp(name, entries[i].name) == 0)
             return &entries[i];
     return NULL;
+}
+
+/* The names that there are, for a message. */
+static void list_names(char *out, size_t size) {
+    size_t used = (size_t)snprintf(out, size, "all");
+    for (size_t i = 0; i < ENTRY_COUNT && used < size; i++)
+        used +=
+            (size_t)snprintf(out + used, size - used, " %s", entries[i].name);
+    for (size_t i = 0; i < RANKS_COUNT && used < size; i++)
+        used +=
+            (size_t)snprintf(out + used, size - used, " %s", of_ranks[i].name);
+}
+
+/* `name` is NULL if there is none, or too many. */
+static int name_error(const char *what, const char *name) {
+    char names[256];
+    list_names(names, sizeof names);
+    fprintf(stderr, "snowglass: bench: %s%s%s%s; choose one of: %s\n", what,
+            name ? " '" : "", name ? name : "", name ? "'" : "", names);
+    return SNOW_STATUS_BAD_USAGE;
 }
 
 static int check_letters(const bench_command *command,
@@ -289,9 +326,11 @@ static int check_speed(const bench_options *options) {
 
 static int check_command(const bench_command *command,
                          const bench_options *options) {
-    const struct bench_entry *entry = find_entry(command->name);
+    static const struct bench_entry every = {"all", NULL, "q", true};
+    const struct bench_entry *entry =
+        is_all(command) ? &every : find_entry(command->name);
     if (!entry)
-        return usage_error("there is no benchmark", command->name);
+        return name_error("there is no benchmark", command->name);
     int code = check_letters(command, entry);
     if (code < 0 && entry->run == bench_speed)
         return check_speed(options);
@@ -341,21 +380,15 @@ static int parse(int argc, char **argv, bench_options *options,
     }
     /* getopt has moved the words that are no options behind the others. */
     if (optind + 1 != argc)
-        return usage_error("give one thing to measure, not",
-                           optind < argc ? argv[optind + 1] : "none");
+        return name_error(optind < argc ? "give one thing to measure, without"
+                                        : "give one thing to measure",
+                          optind < argc ? argv[optind + 1] : NULL);
     command->name = argv[optind];
     return check_command(command, options);
 }
 
-/* What runs on the ranks that there are, or on threads of its own; it reads its
- * own options. */
-static const struct bench_ranks {
-    const char *name;
-    int (*run)(int argc, char **argv, snow_comm *comm);
-} of_ranks[] = {{"combine", combine_main}, {"frame", frame_main}};
-
 static const struct bench_ranks *find_of_ranks(int argc, char **argv) {
-    for (size_t i = 0; argc > 1 && i < sizeof of_ranks / sizeof *of_ranks; i++)
+    for (size_t i = 0; argc > 1 && i < RANKS_COUNT; i++)
         if (strcmp(argv[1], of_ranks[i].name) == 0)
             return &of_ranks[i];
     return NULL;
@@ -363,6 +396,48 @@ static const struct bench_ranks *find_of_ranks(int argc, char **argv) {
 
 bool bench_for_all(int argc, char **argv) {
     return find_of_ranks(argc, argv) != NULL;
+}
+
+static int run_entry(const struct bench_entry *entry,
+                     const bench_options *options) {
+    snow_context *context;
+    if (entry->needs_data && !bench_data_found(options))
+        return SNOW_STATUS_BAD_INPUT;
+    if (snow_context_new(NULL, &context) != SNOW_STATUS_OK)
+        return SNOW_STATUS_NO_MEMORY;
+    int code = entry->run(context, options);
+    snow_context_free(context);
+    return code;
+}
+
+/* What stands before a benchmark's own lines, or its object. */
+static void print_name(const bench_options *options, const char *name,
+                       size_t number) {
+    fprintf(stderr, "snowglass: bench all: %s, %zu of %zu\n", name, number + 1,
+            ENTRY_COUNT + 1);
+    if (options->json)
+        printf("%s\"%s\":\n", number ? ",\n" : "{\n", name);
+    else
+        printf("%s--- %s ---\n", number ? "\n" : "", name);
+    fflush(stdout);
+}
+
+/* The first fault ends it.  `frame` needs an input. */
+static int run_all(const bench_options *options) {
+    char *words[] = {"combine", "--json"};
+    int code =
+        bench_data_found(options) ? SNOW_STATUS_OK : SNOW_STATUS_BAD_INPUT;
+    for (size_t i = 0; i < ENTRY_COUNT && code == SNOW_STATUS_OK; i++) {
+        print_name(options, entries[i].name, i);
+        code = run_entry(&entries[i], options);
+    }
+    if (code == SNOW_STATUS_OK) {
+        print_name(options, words[0], ENTRY_COUNT);
+        code = combine_main(options->json ? 2 : 1, words, process_comm());
+    }
+    if (options->json && code == SNOW_STATUS_OK)
+        puts("}");
+    return code;
 }
 
 int bench_main(int argc, char **argv) {
@@ -379,13 +454,6 @@ int bench_main(int argc, char **argv) {
         return code;
     if (!options.runs)
         options.runs = options.quick ? 1 : 7;
-    const struct bench_entry *entry = find_entry(command.name);
-    if (entry->needs_data && !bench_data_found(&options))
-        return SNOW_STATUS_BAD_INPUT;
-    snow_context *context;
-    if (snow_context_new(NULL, &context) != SNOW_STATUS_OK)
-        return SNOW_STATUS_NO_MEMORY;
-    code = entry->run(context, &options);
-    snow_context_free(context);
-    return code;
+    return is_all(&command) ? run_all(&options)
+                            : run_entry(find_entry(command.name), &options);
 }

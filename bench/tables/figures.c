@@ -55,6 +55,8 @@ typedef struct figure_job {
     const snow_image *expected; /* NULL: keep the picture instead */
     snow_image *kept;
     double seconds, largest;
+    figure_progress *progress;
+    int counted_way; /* for the progress; below 0: not counted */
 } figure_job;
 
 /* Which slices are the node's.  The original splatting works on all voxels, so
@@ -209,11 +211,16 @@ static snow_status measure(snow_context *context, const snow_network *network,
                            double *seconds) {
     double values[RUNS_MOST];
     for (int run = 0; run < runs; run++) {
+        double begin = figure_progress_clock();
         snow_status status =
             snow_comm_run_simulated(context, nodes, network, be_node, job);
         if (status != SNOW_STATUS_OK)
             return status;
         values[run] = job->seconds;
+        if (job->counted_way >= 0)
+            figure_progress_step(job->progress, job->counted_way,
+                                 figure_progress_clock() - begin,
+                                 job->volume->name, nodes);
     }
     *seconds = bench_median(values, runs);
     return SNOW_STATUS_OK;
@@ -246,6 +253,7 @@ static snow_status measure_cluster(snow_context *context, int runs, int cluster,
         snow_network ours = network;
         ours.slowness = 1;
         job->way = BENCH_ORIGINAL;
+        job->counted_way = -1;
         job->expected = NULL;
         double seconds;
         status = measure(context, &ours, 1, runs, job, &seconds);
@@ -255,17 +263,18 @@ static snow_status measure_cluster(snow_context *context, int runs, int cluster,
     times->slowness[cluster] = network.slowness;
     for (int way = 0; way < FIGURE_WAYS && status == SNOW_STATUS_OK; way++) {
         job->way = figure_ways[way];
+        job->counted_way = way;
         status = measure_way(context, runs, &network, job,
                              times->seconds[cluster][way], &times->largest);
     }
     return status;
 }
 
-static snow_status measure_volume(snow_context *context,
-                                  const bench_options *options,
-                                  const figure_volume *paper,
-                                  bench_volume *volume, figure_times *times) {
-    figure_job job = {.volume = volume, .paper = paper};
+static snow_status
+measure_volume(snow_context *context, const bench_options *options,
+               const figure_volume *paper, bench_volume *volume,
+               figure_progress *progress, figure_times *times) {
+    figure_job job = {.volume = volume, .paper = paper, .progress = progress};
     times->source = volume->source;
     snow_status status =
         snow_transfer_sparse_ratio(volume->transfer, volume->volume,
@@ -309,9 +318,11 @@ static int run_figure(snow_context *context, const bench_options *options,
                       int figure) {
     bench_volume volumes[FIGURE_VOLUMES] = {{0}};
     figure_times times[FIGURE_VOLUMES] = {{0}};
+    figure_progress progress;
     snow_status status = SNOW_STATUS_OK;
     if (options->chart && chart_check(options->chart) != SNOW_STATUS_OK)
         return SNOW_STATUS_BAD_OUTPUT;
+    figure_progress_begin(&progress, figure, options->runs);
     for (int i = 0; i < FIGURE_VOLUMES && status == SNOW_STATUS_OK; i++) {
         const figure_volume *paper = &figure_volumes[i];
         status =
@@ -319,9 +330,10 @@ static int run_figure(snow_context *context, const bench_options *options,
                 ? open_tiny(context, options, paper->set, &volumes[i])
                 : bench_volume_open(context, paper->set, options, &volumes[i]);
         if (status == SNOW_STATUS_OK)
-            status =
-                measure_volume(context, options, paper, &volumes[i], &times[i]);
+            status = measure_volume(context, options, paper, &volumes[i],
+                                    &progress, &times[i]);
     }
+    figure_progress_end(&progress);
     int code = status == SNOW_STATUS_DIFFERENT ? SNOW_STATUS_FAILED
                : status == SNOW_STATUS_OK      ? SNOW_STATUS_OK
                                                : bench_fail(context, status);

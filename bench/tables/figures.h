@@ -51,6 +51,25 @@ extern const figure_volume figure_volumes[FIGURE_VOLUMES];
 double figure_speedup(const figure_times *times, int figure, int cluster,
                       int way, int nodes);
 
+/* How far a figure is: runs by way. */
+typedef struct figure_progress {
+    int figure;
+    double begin, told; /* seconds; told 0: nothing yet */
+    int left[FIGURE_WAYS], done[FIGURE_WAYS];
+    double seconds[FIGURE_WAYS]; /* of those that are done */
+} figure_progress;
+
+void figure_progress_begin(figure_progress *p, int figure, int runs);
+
+/* Seconds of a clock. */
+double figure_progress_clock(void);
+
+/* A run has ended; says so at times, on stderr. */
+void figure_progress_step(figure_progress *p, int way, double seconds,
+                          const char *what, int nodes);
+double figure_progress_left(const figure_progress *p);
+void figure_progress_end(const figure_progress *p);
+
 /* The table on stdout, or JSON; and the chart. */
 void figure_print(const bench_options *options, int figure,
                   const figure_times *times);

@@ -12,6 +12,7 @@ for figure in 12 $(long_tier && echo 11); do
     run 0 "figure $figure" "$TOOL" bench "figure$figure" --quick --json \
         --chart "chart$figure.svg"
     cp "$OUT" "$figure.json"
+    says "^snowglass: bench figure$figure: Head, original, 1 node: [0-9]+ %, [0-9]+ s, about [0-9]+ (s|min) left$"
     check "figure $figure hangs together" python3 - "$figure" <<'END'
 import json, math, sys
 from xml.dom import minidom
@@ -43,6 +44,30 @@ if long_tier; then
     prints "nodes: 32 take, efficiency"
 else
     skipped "figure 11" "left to the long tier"
+fi
+for name in figure13 All; do
+    refused 2 "a benchmark that there is not: $name" \
+        "there is no benchmark '$name'; choose one of: all table1 table2 table3 figure11 figure12 speed balance combine frame$" \
+        "$TOOL" bench $name
+done
+refused 2 "none" "give one thing to measure; choose one of: all table1" \
+    "$TOOL" bench
+refused 2 "an option that not all have" "no option of bench all: '--kernel'" \
+    "$TOOL" bench all --kernel tent
+refused 3 "all of no data" "nowhere" "$TOOL" bench all --data nowhere
+if long_tier; then
+    run 0 "all" "$TOOL" bench all --quick --json
+    says "^snowglass: bench all: combine, 8 of 8$"
+    check "has an object of each" python3 - "$OUT" <<'END'
+import json, sys
+
+told = json.load(open(sys.argv[1]))
+names = "table1 table2 table3 figure11 figure12 speed balance combine".split()
+assert list(told) == names, list(told)
+assert told["table1"]["rows"] and told["figure12"]["figure"] == 12
+END
+else
+    skipped "bench all" "left to the long tier"
 fi
 run 2 "options of others" "$TOOL" bench figure11 --threads 2
 finish
