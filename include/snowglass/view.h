@@ -36,18 +36,18 @@ typedef struct snow_view {
 } snow_view;
 SNOW_RECORD(snow_view);
 
-/* By name, of any case: anterior (+y) posterior left (-x) right superior (+z)
- * inferior iso +x -x +y -y +z -z. The camera is on that side (iso: at (1, 1,
- * 1)); +z is up, for z sides +y. Other fields have their defaults. */
+/* By name, of any case: a side of the world (docs/model.md), where the camera
+ * is; +z is up, for z sides +y. Other fields have their defaults. */
 SNOW_API snow_status snow_view_from_name(
     snow_context *context, const char *name, snow_view *out);
 
-/* Anterior when the volume's file gives a medical orientation, else +z; of a
- * volume thinner than a quarter of its shorter side, its face: left, anterior
- * or inferior, else +x, -y or +z. Its name. */
+/* Anterior of a patient, else +z; of a volume thinner than a quarter of its
+ * shorter side, its face. Its name (NULL), and what a name means for a volume:
+ * axial, coronal, sagittal, front and back are other sides of a patient. */
 SNOW_API snow_status snow_view_default(
     const snow_volume *volume, snow_view *out);
-SNOW_API const char *snow_view_default_name(const snow_volume_info *info);
+SNOW_API const char *snow_view_name_for(
+    const snow_volume_info *info, const char *name);
 
 /* Name of view `index` (from 0); NULL past the end. */
 SNOW_API const char *snow_view_name(size_t index);

@@ -213,8 +213,8 @@ static void place_camera(const options *opts, snow_view *out) {
 int make_view(snow_context *context, const options *opts,
               const snow_volume_info *info, snow_view *out) {
     snow_view_init(out);
-    snow_status status = snow_view_from_name(
-        context, opts->view ? opts->view : snow_view_default_name(info), out);
+    snow_status status =
+        snow_view_from_name(context, snow_view_name_for(info, opts->view), out);
     if (status != SNOW_STATUS_OK)
         return fail_status(context, status);
     out->width = (int)opts->size[0];

@@ -107,22 +107,31 @@ static void print_later(topic which) {
     }
 }
 
+/* Prints names one after the other. */
+static void print_plain_names(const char *title, const char *(*name)(size_t)) {
+    char line[1024];
+    size_t used = (size_t)snprintf(line, sizeof line, "%s:", title);
+    for (size_t i = 0; name(i) && used < sizeof line; i++)
+        used +=
+            (size_t)snprintf(line + used, sizeof line - used, " %s", name(i));
+    print_wrapped(line, 0, 2);
+}
+
 /* Prints one of the library's lists of names. */
 static void print_names(const char *title, const char *(*name)(size_t),
                         const char *(*text)(size_t)) {
-    printf("\n%s:%s", title, text ? "\n" : "");
-    for (size_t i = 0; name(i); i++) {
-        if (text) {
-            int used = printf("  %-18s", name(i));
-            if (used > NAMES)
-                printf("\n%*s", NAMES, "");
-            print_wrapped(text(i), NAMES, NAMES);
-        } else {
-            printf(" %s", name(i));
-        }
+    printf("\n");
+    if (!text) {
+        print_plain_names(title, name);
+        return;
     }
-    if (!text)
-        printf("\n");
+    printf("%s:\n", title);
+    for (size_t i = 0; name(i); i++) {
+        int used = printf("  %-18s", name(i));
+        if (used > NAMES)
+            printf("\n%*s", NAMES, "");
+        print_wrapped(text(i), NAMES, NAMES);
+    }
 }
 
 /* The options of all verbs, then the names that they take. */

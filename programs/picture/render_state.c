@@ -454,8 +454,9 @@ render_report render_state_report(const render_state *s) {
 
 void render_state_choices(const render_state *s, char *out, size_t size) {
     const double *from = s->opts->position.at;
-    const char *view =
-        s->opts->view ? s->opts->view : snow_view_default_name(&s->drawn.whole);
+    const char *view = s->opts->view
+                           ? s->opts->view
+                           : snow_view_name_for(&s->drawn.whole, NULL);
     char place[96];
     if (s->opts->position.given) {
         snprintf(place, sizeof place, "from %g,%g,%g", from[0], from[1],

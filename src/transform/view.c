@@ -31,6 +31,13 @@ static const struct named_view {
     {"-y", {0, -1, 0}, {0, 0, 1}},
     {"+z", {0, 0, 1}, {0, 1, 0}},
     {"-z", {0, 0, -1}, {0, 1, 0}},
+    {"axial", {0, 0, 1}, {0, 1, 0}},
+    {"coronal", {0, -1, 0}, {0, 0, 1}},
+    {"sagittal", {1, 0, 0}, {0, 0, 1}},
+    {"front", {0, -1, 0}, {0, 0, 1}},
+    {"back", {0, 1, 0}, {0, 0, 1}},
+    {"top", {0, 0, 1}, {0, 1, 0}},
+    {"bottom", {0, 0, -1}, {0, 1, 0}},
 };
 
 #define VIEW_COUNT (sizeof views / sizeof views[0])
@@ -61,7 +68,9 @@ snow_status snow_view_from_name(snow_context *context, const char *name,
             return fill_view(context, &views[i], out);
     return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                      "unknown view '%s': must be anterior, posterior, left, "
-                     "right, superior, inferior, iso, +x, -x, +y, -y, +z or -z",
+                     "right, superior, inferior, iso, axial, coronal, "
+                     "sagittal, front, back, top, bottom, +x, -x, +y, -y, +z "
+                     "or -z",
                      name);
 }
 
@@ -81,7 +90,7 @@ static int find_thin(const snow_volume_info *info) {
 }
 
 /* Of patients axial slices are seen from the feet, as radiologists do. */
-const char *snow_view_default_name(const snow_volume_info *info) {
+static const char *default_name(const snow_volume_info *info) {
     static const char *const faces[2][3] = {{"+x", "-y", "+z"},
                                             {"left", "anterior", "inferior"}};
     int thin = find_thin(info), along = 0;
@@ -95,9 +104,21 @@ const char *snow_view_default_name(const snow_volume_info *info) {
     return faces[info->medical][along];
 }
 
+const char *snow_view_name_for(const snow_volume_info *info, const char *name) {
+    static const char *const patient[][2] = {{"axial", "inferior"},
+                                             {"coronal", "anterior"},
+                                             {"sagittal", "left"},
+                                             {"front", "anterior"},
+                                             {"back", "posterior"}};
+    for (size_t i = 0; i < sizeof patient / sizeof *patient && name; i++)
+        if (info->medical && snow_same_name(name, patient[i][0]))
+            return patient[i][1];
+    return name ? name : default_name(info);
+}
+
 snow_status snow_view_default(const snow_volume *volume, snow_view *out) {
     const snow_volume_info *info = snow_volume_get_info(volume);
-    return snow_view_from_name(volume->context, snow_view_default_name(info),
+    return snow_view_from_name(volume->context, snow_view_name_for(info, NULL),
                                out);
 }
 

@@ -76,6 +76,29 @@ static void letters_turn_with_the_camera(void **state) {
     }
 }
 
+/* A patient's planes have the letters that radiologists expect: the right side
+ * at the left of axial and coronal, the face at the left of sagittal. */
+static void planes_of_a_patient_are_seen_as_radiologists_do(void **state) {
+    static const struct {
+        const char *name, *letters; /* left, right, top, bottom */
+    } planes[] = {{"axial", "RLAP"}, {"Coronal", "RLSI"}, {"sagittal", "APSI"},
+                  {"front", "RLSI"}, {"back", "LRSI"},    {"top", "LRAP"},
+                  {"bottom", "RLAP"}};
+    image_fixture *f = *state;
+    snow_volume_info info = patient();
+    for (size_t n = 0; n < sizeof planes / sizeof *planes; n++) {
+        char letters[4][4];
+        snow_view view =
+            view_of(f->context, snow_view_name_for(&info, planes[n].name));
+        assert_int_equal(
+            snow_view_orientation(f->context, &info, &view, letters),
+            SNOW_STATUS_OK);
+        for (int edge = 0; edge < 4; edge++)
+            assert_true(letters[edge][0] == planes[n].letters[edge] &&
+                        letters[edge][1] == 0);
+    }
+}
+
 /* Held against the reference's projection: a step of the patient's axis goes to
  * the edge that bears its first letter. */
 static void a_step_along_a_letter_goes_to_its_edge(void **state) {
@@ -473,6 +496,7 @@ static void it_fails_cleanly_without_memory(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         HERE(letters_of_named_views_are_those_of_radiology),
+        HERE(planes_of_a_patient_are_seen_as_radiologists_do),
         HERE(letters_turn_with_the_camera),
         HERE(a_step_along_a_letter_goes_to_its_edge),
         HERE(what_is_no_patient_has_no_letters),

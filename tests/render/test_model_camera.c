@@ -27,6 +27,13 @@ static const struct {
     {"-y", {0, -1, 0}, {0, 0, 1}},
     {"+z", {0, 0, 1}, {0, 1, 0}},
     {"-z", {0, 0, -1}, {0, 1, 0}},
+    {"axial", {0, 0, 1}, {0, 1, 0}},
+    {"coronal", {0, -1, 0}, {0, 0, 1}},
+    {"sagittal", {1, 0, 0}, {0, 0, 1}},
+    {"front", {0, -1, 0}, {0, 0, 1}},
+    {"back", {0, 1, 0}, {0, 0, 1}},
+    {"top", {0, 0, 1}, {0, 1, 0}},
+    {"bottom", {0, 0, -1}, {0, 1, 0}},
 };
 
 #define NAMES (sizeof names / sizeof *names)
@@ -124,7 +131,25 @@ static void a_thin_volume_is_shown_from_its_face(void **state) {
             info.spacing[i] = faces[n].spacing[i];
             info.matrix[(i + faces[n].shift) % 3][i] = -info.spacing[i];
         }
-        assert_string_equal(snow_view_default_name(&info), faces[n].view);
+        assert_string_equal(snow_view_name_for(&info, NULL), faces[n].view);
+    }
+}
+
+static void names_of_planes_are_sides_of_the_volumes_world(void **state) {
+    (void)state;
+    static const char *const patient[][2] = {
+        {"axial", "inferior"},  {"CORONAL", "anterior"}, {"sagittal", "left"},
+        {"front", "anterior"},  {"Back", "posterior"},   {"top", "top"},
+        {"bottom", "bottom"},   {"left", "left"},        {"+z", "+z"},
+        {"nothing", "nothing"}, {NULL, "anterior"}};
+    snow_volume_info info = {.size = sizeof info, .dims = {4, 4, 4}};
+    for (size_t n = 0; n < sizeof patient / sizeof *patient; n++) {
+        const char *name = patient[n][0];
+        info.medical = true;
+        assert_string_equal(snow_view_name_for(&info, name), patient[n][1]);
+        info.medical = false;
+        assert_string_equal(snow_view_name_for(&info, name),
+                            name ? name : "+z");
     }
 }
 
@@ -482,6 +507,7 @@ int main(void) {
         cmocka_unit_test(an_unknown_view_is_refused),
         cmocka_unit_test(medical_volumes_are_seen_from_the_front),
         cmocka_unit_test(a_thin_volume_is_shown_from_its_face),
+        cmocka_unit_test(names_of_planes_are_sides_of_the_volumes_world),
         cmocka_unit_test(what_is_up_is_at_the_top_and_nothing_is_mirrored),
         cmocka_unit_test(azimuth_moves_the_camera_to_its_right),
         cmocka_unit_test(elevation_moves_the_camera_up),

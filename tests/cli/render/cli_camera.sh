@@ -43,6 +43,24 @@ run 0 "its second picture" "$TOOL" render -q phantom:head --dims 24x24x24 \
     -s 24x24 --target 10,0,0 -o u.npy --perspective --azimuth 180
 check "is that of render" cmp -s t_1.npy u.npy
 
+# Planes and sides by their names: the head is a patient, raw data are none.
+for pair in axial=inferior Coronal=anterior sagittal=left front=anterior \
+    back=posterior top=superior bottom=inferior; do
+    run 0 "view ${pair%=*} of a patient" render --view "${pair%=*}" -y -o p.png
+    run 0 "is ${pair#*=}" render --view "${pair#*=}" -y -o q.png
+    check "$pair: the same picture, letters too" cmp -s p.png q.png
+done
+head -c 27000 /dev/urandom >noise.raw
+for pair in axial=+z coronal=-y sagittal=+x front=-y back=+y top=+z bottom=-z; do
+    for side in "${pair%=*}" "${pair#*=}"; do
+        run 0 "view $side of raw data" "$TOOL" render -q noise.raw \
+            --dims 30x30x30 --type uint8 -s 20x20 --view "$side" -y -o "./$side.npy"
+    done
+    check "$pair: the same picture" \
+        cmp -s "./${pair%=*}.npy" "./${pair#*=}.npy"
+done
+check "and front is not back" bash -c '! cmp -s front.npy back.npy'
+
 refused 2 "an eye within" 'beside or behind the camera' \
     "$TOOL" render phantom:head --dims 20x20x20 -o x.png --position 0,5,0 \
     --target 0,0,0 --perspective

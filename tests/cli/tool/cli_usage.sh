@@ -146,7 +146,7 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
 --time -1 x|whole number
 --preset toast x|--preset: 'toast' is unknown; choose from: linear, ct-aaa
 --colormap beige x|--colormap: 'beige' is unknown; choose from: grey, viridis
---view upside x|--view: 'upside' is unknown; choose from: anterior, .*-z
+--view upside x|--view: 'upside' is unknown; choose from: anterior, .*-z, .*axial
 --view '' x|--view: '' is unknown
 info nope.nii --preset foo|--preset: 'foo' is unknown
 --progress some x|choose from: auto, always, never
