@@ -91,6 +91,8 @@ static bool gives_way(const options *out, const char *key) {
         return options_given(out, "tf");
     if (strcmp(key, "view") == 0)
         return options_given(out, "position");
+    if (strcmp(key, "level") == 0 && !isnan(out->level)) /* --window W,L */
+        return true;
     if (strcmp(key, "position") == 0)
         return options_given(out, "view");
     return (strcmp(key, "window") == 0 || strcmp(key, "level") == 0) &&

@@ -41,8 +41,8 @@ const option_row option_table[] = {
      "pixels; - writes PNG to stdout. Movie: .mp4, .webm, .gif or .webp, or a "
      "pattern such as f_%04d.png for single frames. Volume: .nrrd, .nii, "
      ".nii.gz, .mha, .npy, .raw or .raw.gz"},
-    {"size", 's', "WxH", TOPIC_OUTPUT, RENDER, read_size, FIELD(size), 0, 0, "",
-     "picture size in pixels (default 512x512)"},
+    {"size", 's', "WxH|N", TOPIC_OUTPUT, RENDER, read_size, FIELD(size), 0, 0, "",
+     "picture size in pixels; N is NxN (default 512x512)"},
     {"background", 0, "COLOR|none", TOPIC_OUTPUT, RENDER, read_color,
      FIELD(background), 0, 0, "",
      "background colour of a PNG, WebP or movie: a name, #rgb, #rrggbb, or "
@@ -109,8 +109,9 @@ const option_row option_table[] = {
      "scale the opacity by gradient magnitude (data units per mm): factors "
      "from 0 to 1, linear in between; 0:0,20:1 shows boundaries and hides "
      "uniform regions (default: none)"},
-    {"window", 'w', "W", TOPIC_LOOK, LOOKED, read_real, FIELD(window), 1e-300,
-     1e300, "", "width of the range of data values; needs --level"},
+    {"window", 'w', "W[,L]", TOPIC_LOOK, LOOKED, read_window, FIELD(window), 1e-300,
+     1e300, "", "width of the range of data values, and its centre; W alone needs "
+     "--level"},
     {"level", 0, "L", TOPIC_LOOK, LOOKED, read_real, FIELD(level), 0, 0, "",
      "centre of the range of data values; needs --window"},
     {"range", 0, "LO,HI|pLO,pHI|full", TOPIC_LOOK, INPUT, read_range,

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* The longest number or word that is parsed; a double needs 24 characters, so
  * longer text is not sensible input. */
@@ -206,14 +207,14 @@ static bool hex_color(const char *digits, color_value *out) {
 /* The common notations of colours, but without transparency: a background must
  * be opaque. */
 bool value_color(const char *text, color_value *out) {
-    if (strcmp(text, "none") == 0) {
+    if (strcasecmp(text, "none") == 0) {
         *out = (color_value){.given = false};
         return true;
     }
     if (text[0] == '#')
         return hex_color(text + 1, out);
     for (size_t i = 0; i < sizeof colors / sizeof *colors; i++) {
-        if (strcmp(text, colors[i].name) == 0) {
+        if (strcasecmp(text, colors[i].name) == 0) {
             set_color(out, colors[i].rgb);
             return true;
         }
@@ -259,7 +260,7 @@ static bool percentiles(const char *text, range_value *out) {
 /* An empty range is refused, as is a reversed one: neither has a width to
  * spread colours over. */
 bool value_range(const char *text, range_value *out) {
-    if (strcmp(text, "full") == 0) {
+    if (strcasecmp(text, "full") == 0) {
         *out = (range_value){SNOW_RANGE_FULL, 0, 0};
         return true;
     }
@@ -291,42 +292,17 @@ bool value_points(const char *text, point_list *out) {
     return true;
 }
 
-/* Compares whole words: "crs|rle" and "" are not choices although they
- * occur. */
+/* Compares whole words: "crs|rle" and "" are not choices although they occur.
+ * Case does not matter. */
 bool value_is_choice(const char *choices, const char *text) {
     size_t length = strlen(text);
     if (!choices || length == 0 || strchr(text, '|'))
         return false;
     for (const char *at = choices; at; at = strchr(at, '|')) {
         at += *at == '|';
-        if (strncmp(at, text, length) == 0 &&
+        if (strncasecmp(at, text, length) == 0 &&
             (at[length] == '|' || at[length] == '\0'))
             return true;
     }
     return false;
-}
-
-/* Levenshtein distance with one row of the table; words longer than the row
- * count as far apart. */
-int value_distance(const char *a, const char *b) {
-    int row[NUMBER_BYTES];
-    size_t m = strlen(a), n = strlen(b);
-    if (m >= NUMBER_BYTES || n >= NUMBER_BYTES)
-        return NUMBER_BYTES;
-    for (size_t j = 0; j <= n; j++)
-        row[j] = (int)j;
-    for (size_t i = 1; i <= m; i++) {
-        int corner = row[0];
-        row[0] = (int)i;
-        for (size_t j = 1; j <= n; j++) {
-            int best = corner + (a[i - 1] != b[j - 1]);
-            if (row[j] + 1 < best)
-                best = row[j] + 1;
-            if (row[j - 1] + 1 < best)
-                best = row[j - 1] + 1;
-            corner = row[j];
-            row[j] = best;
-        }
-    }
-    return row[n];
 }

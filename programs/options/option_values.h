@@ -75,10 +75,8 @@ bool value_range(const char *text, range_value *out);
 /* "v:o,v:o,...": values that do not decrease, opacities from 0 to 1. */
 bool value_points(const char *text, point_list *out);
 
-/* True if `text` is one of the words of "a|b|c"; "" is not a choice. */
+/* True if `text` is one of the words of "a|b|c", in any case; "" is not a
+ * choice. */
 bool value_is_choice(const char *choices, const char *text);
-
-/* The number of single-character edits between two words: for suggestions. */
-int value_distance(const char *a, const char *b);
 
 #endif

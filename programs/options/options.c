@@ -5,9 +5,12 @@
  * are refused. */
 #include "options/options.h"
 #include "options/config.h"
+#include "options/guess.h"
+#include "options/parse.h"
 #include "run/log.h"
 #include "run/start.h"
 
+#include <ctype.h>
 #include <getopt.h>
 #include <math.h>
 #include <stdio.h>
@@ -133,20 +136,15 @@ static const option_row *row_of(int code) {
     return row->name ? row : NULL;
 }
 
-/* The option whose name is nearest to the given one, if it is near enough: a
- * third of the letters may be wrong, and one more in short names. */
-static const char *nearest_option(const char *name, unsigned verb) {
-    const char *best = NULL;
-    int least = (int)strlen(name) / 3 + 2;
-    for (const option_row *row = option_table; row->name; row++) {
-        int distance = value_distance(name, row->name);
-        if ((row->verbs & verb) && row->read && distance < least &&
-            topic_is_here(row->topic)) {
-            least = distance;
-            best = row->name;
-        }
-    }
-    return best;
+/* Writes the options of a verb that a name may have been meant to be. */
+static bool guess_option(const char *name, unsigned verb, char *out,
+                         size_t size) {
+    guess near;
+    guess_begin(&near, name);
+    for (const option_row *row = option_table; row->name; row++)
+        if ((row->verbs & verb) && row->read && topic_is_here(row->topic))
+            guess_offer(&near, row->name);
+    return guess_write(&near, "--", out, size);
 }
 
 /* getopt reports unknown and ambiguous abbreviations in the same way, but they
@@ -167,16 +165,14 @@ static int refuse_unknown(const verb_row *verb, const char *word, int code) {
     if (code)
         return fail_usage("-%c: unknown option; see snowglass help %s", code,
                           verb->name);
-    char name[64];
+    char name[64], near[128];
     snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
     if (is_ambiguous(name, strlen(name)))
         return fail_usage("--%s: matches several options; write the full name, "
                           "see snowglass help %s",
                           name, verb->name);
-    const char *near = nearest_option(name, verb->bit);
-    if (near)
-        return fail_usage("--%s: unknown option; did you mean --%s?", name,
-                          near);
+    if (guess_option(name, verb->bit, near, sizeof near))
+        return fail_usage("--%s: unknown option; did you mean %s?", name, near);
     return fail_usage("--%s: unknown option; see snowglass help %s", name,
                       verb->name);
 }
@@ -193,6 +189,21 @@ static int refuse_foreign(const option_row *row, const verb_row *verb) {
                       verb->name);
 }
 
+/* Choices are kept in the small letters of the table: -m MIP is mip.  If there
+ * is no room, the text stays, and is refused where it is used. */
+static const char *keep_choice(options *out, const option_row *row,
+                               const char *text) {
+    size_t length = text ? strlen(text) + 1 : 0;
+    if (!text || (row->read != read_choice && row->read != read_method) ||
+        length > CONFIG_TEXTS_BYTES - out->text_bytes)
+        return text;
+    char *kept = out->texts + out->text_bytes;
+    for (size_t i = 0; i < length; i++)
+        kept[i] = (char)tolower((unsigned char)text[i]);
+    out->text_bytes += length;
+    return kept;
+}
+
 /* Options that are not built come first: they belong to no verb. */
 static int take_option(options *out, const option_row *row,
                        const verb_row *verb, const char *text) {
@@ -205,8 +216,9 @@ static int take_option(options *out, const option_row *row,
     if (!(row->verbs & verb->bit))
         return refuse_foreign(row, verb);
     char wrong[WRONG_BYTES];
-    out->given[row - option_table] = text ? text : "";
-    if (row->read(row, text ? text : "", (char *)out + row->field, wrong))
+    const char *kept = keep_choice(out, row, text);
+    out->given[row - option_table] = kept ? kept : "";
+    if (row->read(row, kept ? kept : "", (char *)out + row->field, wrong))
         return CONTINUE;
     return fail_usage("--%s: '%s' %s", row->name, text, wrong);
 }
@@ -253,21 +265,43 @@ static int take_help(options *out, int argc, char **argv, const char *text) {
     return CONTINUE;
 }
 
-/* An extra word may be a misspelt verb, or a verb after the options. */
-static int refuse_words(const options *out, const verb_row *verb) {
-    const char *first = out->operands[0];
-    for (const verb_row *other = verb_table; other->name; other++) {
-        int distance = value_distance(first, other->name);
-        if (verb->bit != VERB_RENDER || access(first, F_OK) == 0)
+/* Whether a word can be meant as a verb: it is no path of a file. */
+static bool is_plain(const char *word) {
+    return !strpbrk(word, "./:\\%#") && strcmp(word, "-") != 0 &&
+           access(word, F_OK) != 0;
+}
+
+/* The first of several words, where no verb was written, is none. */
+static int refuse_verb(const char *word) {
+    char near[128], verbs[256] = "";
+    size_t used = 0;
+    guess nearest;
+    guess_begin(&nearest, word);
+    for (const verb_row *row = verb_table; row->name; row++) {
+        if (!row->bit)
             continue;
-        if (distance == 0)
-            return fail_usage(
-                "%s: the verb must come first; give snowglass %s %s", first,
-                other->name, other->usage);
-        if (distance <= (int)strlen(first) / 3)
-            return fail_usage("%s: is not a verb; did you mean %s?", first,
-                              other->name);
+        guess_offer(&nearest, row->name);
+        if (used < sizeof verbs)
+            used += (size_t)snprintf(verbs + used, sizeof verbs - used, " %s",
+                                     row->name);
     }
+    if (guess_write(&nearest, "", near, sizeof near))
+        return fail_usage("%s: is not a verb; did you mean %s?", word, near);
+    return fail_usage("%s: is neither a verb nor a file; verbs:%s", word,
+                      verbs);
+}
+
+/* An extra word may be a misspelt verb, or a verb after the options.  `named`:
+ * the verb was written. */
+static int refuse_words(const options *out, const verb_row *verb, bool named) {
+    const char *first = out->operands[0];
+    bool plain = verb->bit == VERB_RENDER && is_plain(first);
+    const verb_row *other = plain ? verb_named(first) : NULL;
+    if (other)
+        return fail_usage("%s: the verb must come first; give snowglass %s %s",
+                          first, other->name, other->usage);
+    if (plain && !named)
+        return refuse_verb(first);
     return fail_usage("%s: is one word too many for %s; give snowglass %s %s",
                       out->operands[verb->operands], verb->name, verb->name,
                       verb->usage);
@@ -275,11 +309,11 @@ static int refuse_words(const options *out, const verb_row *verb) {
 
 /* Checks the number of operands: a file may be missing, or a name with blanks
  * was not quoted. */
-static int check_count(const options *out, const verb_row *verb) {
+static int check_count(const options *out, const verb_row *verb, bool named) {
     if (verb->operands < 0 || out->operand_count == verb->operands)
         return CONTINUE;
     if (out->operand_count > verb->operands)
-        return refuse_words(out, verb);
+        return refuse_words(out, verb, named);
     return fail_usage("%s: an operand is missing; give snowglass %s %s",
                       verb->name, verb->name, verb->usage);
 }
@@ -333,5 +367,6 @@ int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
     out->operands = argv + optind;
     out->operand_count = argc - optind;
     int done = config_take(out, verb);
-    return done == CONTINUE ? check_count(out, verb) : done;
+    bool named = strcmp(argv[0], verb->name) == 0;
+    return done == CONTINUE ? check_count(out, verb, named) : done;
 }

@@ -4,11 +4,13 @@
  * All errors of a single argument are found here, before anything is opened.
  * Checks that need the volume or another option come later. */
 #include "options/parse.h"
+#include "options/guess.h"
 
 #include <math.h>
 #include <snowglass/snowglass.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 /* The limit of snow_image_new, checked here before any volume is read. */
 #define IMAGE_SIDE_MAX 32768
@@ -59,6 +61,19 @@ static void spell_choices(const char *choices, char *out, size_t size) {
     out[used] = '\0';
 }
 
+/* Writes " (did you mean a?)" for a word that is near a choice, else "". */
+static void guess_choice(const char *choices, const char *text, char *out,
+                         size_t size) {
+    char words[128], near[96];
+    guess nearest;
+    guess_begin(&nearest, text);
+    snprintf(words, sizeof words, "%s", choices);
+    for (char *rest = words, *word; (word = strtok_r(rest, "| ", &rest));)
+        guess_offer(&nearest, word);
+    bool any = guess_write(&nearest, "", near, sizeof near);
+    snprintf(out, size, any ? " (did you mean %s?)" : "", near);
+}
+
 /* A planned choice is not unknown: its user has read a manual and need not look
  * for a misspelling. */
 bool read_choice(const option_row *row, const char *text, void *field,
@@ -67,11 +82,12 @@ bool read_choice(const option_row *row, const char *text, void *field,
         *(const char **)field = text;
         return true;
     }
-    char choices[128];
+    char choices[128], near[128];
+    bool later = value_is_choice(row->later, text);
     spell_choices(row->argument, choices, sizeof choices);
-    const char *fault =
-        value_is_choice(row->later, text) ? "is not built yet" : "is unknown";
-    snprintf(wrong, WRONG_BYTES, "%s; choose from: %s", fault, choices);
+    guess_choice(later ? "" : row->argument, text, near, sizeof near);
+    snprintf(wrong, WRONG_BYTES, "%s%s; choose from: %s",
+             later ? "is not built yet" : "is unknown", near, choices);
     return false;
 }
 
@@ -159,11 +175,31 @@ bool read_size(const option_row *row, const char *text, void *field,
                char wrong[WRONG_BYTES]) {
     (void)row;
     int64_t size[2];
-    if (!value_integers(text, 'x', 2, size) || size[0] < 1 || size[1] < 1 ||
-        size[0] > IMAGE_SIDE_MAX || size[1] > IMAGE_SIDE_MAX)
-        return refuse(wrong, "is not a picture size; give WIDTHxHEIGHT of 1 to "
-                             "32768 pixels each, such as 512x512");
+    bool square = value_integer(text, &size[0]);
+    if (square)
+        size[1] = size[0];
+    if ((!square && !value_integers(text, 'x', 2, size)) || size[0] < 1 ||
+        size[1] < 1 || size[0] > IMAGE_SIDE_MAX || size[1] > IMAGE_SIDE_MAX)
+        return refuse(wrong,
+                      "is not a picture size; give WIDTHxHEIGHT of 1 to "
+                      "32768 pixels each, such as 640x480, or one number "
+                      "for both");
     memcpy(field, size, sizeof size);
+    return true;
+}
+
+/* W, or W,L for the level too, unless --level gives another. */
+bool read_window(const option_row *row, const char *text, void *field,
+                 char wrong[WRONG_BYTES]) {
+    options *out = (options *)(void *)((char *)field - row->field);
+    double pair[2];
+    if (!value_reals(text, ',', 2, pair))
+        return read_real(row, text, field, wrong);
+    if (!is_within(row, pair[0]))
+        return refuse_number(row, "a width", wrong);
+    out->window = pair[0];
+    if (!options_given(out, "level"))
+        out->level = pair[1];
     return true;
 }
 
@@ -255,17 +291,34 @@ bool read_type(const option_row *row, const char *text, void *field,
                char wrong[WRONG_BYTES]) {
     (void)row;
     snow_type type = snow_type_from_name(text);
-    if (type == SNOW_TYPE_NONE)
-        return refuse(wrong, "is not a voxel type; choose from:"
+    if (type == SNOW_TYPE_NONE) {
 #define TYPE_NAME(name, type, text) " " text
-                      SNOW_TYPE_MAP(TYPE_NAME));
+        static const char names[] = SNOW_TYPE_MAP(TYPE_NAME);
 #undef TYPE_NAME
+        char near[128];
+        guess_choice(names, text, near, sizeof near);
+        snprintf(wrong, WRONG_BYTES, "is not a voxel type%s; choose from:%s",
+                 near, names);
+        return false;
+    }
     *(snow_type *)field = type;
     return true;
 }
 
-/* Ends an error message with a list of the library's names. */
-static bool refuse_name(const char *(*name)(size_t), char wrong[WRONG_BYTES]) {
+/* Ends an error message with the nearest of the library's names, or with all of
+ * them. */
+static bool refuse_name(const option_row *row, const char *text,
+                        const char *(*name)(size_t), char wrong[WRONG_BYTES]) {
+    char near[128];
+    guess nearest;
+    guess_begin(&nearest, text);
+    guess_offer_all(&nearest, name);
+    if (guess_write(&nearest, "", near, sizeof near)) {
+        snprintf(wrong, WRONG_BYTES,
+                 "is unknown; did you mean %s? snowglass help %s lists all",
+                 near, row->name);
+        return false;
+    }
     size_t used = (size_t)snprintf(wrong, WRONG_BYTES,
                                    "is unknown; choose from: %s", name(0));
     for (size_t i = 1; name(i) && used < WRONG_BYTES; i++)
@@ -279,14 +332,14 @@ static bool refuse_name(const char *(*name)(size_t), char wrong[WRONG_BYTES]) {
 bool read_preset(const option_row *row, const char *text, void *field,
                  char wrong[WRONG_BYTES]) {
     if (snow_preset_from_name(text) < 0)
-        return refuse_name(snow_preset_name, wrong);
+        return refuse_name(row, text, snow_preset_name, wrong);
     return read_text(row, text, field, wrong);
 }
 
 bool read_colormap(const option_row *row, const char *text, void *field,
                    char wrong[WRONG_BYTES]) {
     if (snow_colormap_from_name(text) < 0)
-        return refuse_name(snow_colormap_name, wrong);
+        return refuse_name(row, text, snow_colormap_name, wrong);
     return read_text(row, text, field, wrong);
 }
 
@@ -302,7 +355,7 @@ bool read_view(const option_row *row, const char *text, void *field,
         status = snow_view_from_name(context, text, &view);
     snow_context_free(context);
     if (status == SNOW_STATUS_BAD_USAGE)
-        return refuse_name(snow_view_name, wrong);
+        return refuse_name(row, text, snow_view_name, wrong);
     return read_text(row, text, field, wrong);
 }
 
@@ -357,9 +410,9 @@ bool read_light(const option_row *row, const char *text, void *field,
     (void)row;
     double pair[2] = {0};
     light_value light = {.light = SNOW_LIGHT_DIRECTION};
-    if (strcmp(text, "key") == 0)
+    if (strcasecmp(text, "key") == 0)
         light.light = SNOW_LIGHT_KEY;
-    else if (strcmp(text, "head") == 0)
+    else if (strcasecmp(text, "head") == 0)
         light.light = SNOW_LIGHT_HEAD;
     else if (!value_reals(text, ',', 2, pair))
         return refuse(wrong, "is not a light; give key, head, or "

@@ -17,6 +17,7 @@ option_read read_tolerance;       /* double; quotients are allowed */
 option_read read_integer;         /* int64_t within low..high */
 option_read read_count;           /* uint64_t */
 option_read read_bytes;           /* uint64_t; units as in 4G or 4GiB */
+option_read read_window;          /* double, and the level beside it */
 option_read read_size;            /* int64_t[2] */
 option_read read_dims;            /* int64_t[3] */
 option_read read_labels;          /* const char * */

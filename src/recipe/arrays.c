@@ -129,12 +129,15 @@ static json_t *write_clip(const recipe_key *key, const void *field) {
     return NULL;
 }
 
-/* Width and height, which follow each other in the record. */
+/* Width and height, which follow each other in the record, or both by one. */
 static bool read_size(const recipe_key *key, const json_t *value, void *field,
                       char wrong[WRONG_BYTES]) {
     int64_t sides[3];
-    if (!read_longs(key, value, sides, wrong))
-        return recipe_refuse(wrong, "[width, height], each from 1 to 32768");
+    if (recipe_read_whole(key, value, &sides[0], wrong))
+        sides[1] = sides[0];
+    else if (!read_longs(key, value, sides, wrong))
+        return recipe_refuse(wrong, "[width, height], each from 1 to 32768, or "
+                                    "one number for both");
     ((int *)field)[0] = (int)sides[0];
     ((int *)field)[1] = (int)sides[1];
     return true;

@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 typedef struct unit_fields {
     bool mm, voxel;
@@ -16,8 +17,8 @@ static bool read_unit(const recipe_key *key, const json_t *value, void *field,
                       char wrong[WRONG_BYTES]) {
     (void)key;
     const char *text = json_string_value(value);
-    bool mm = text && strcmp(text, "mm") == 0;
-    if (!mm && (!text || strcmp(text, "voxel") != 0))
+    bool mm = text && strcasecmp(text, "mm") == 0;
+    if (!mm && (!text || strcasecmp(text, "voxel") != 0))
         return recipe_refuse(wrong, "\"voxel\" or \"mm\"");
     *(unit_fields *)field = (unit_fields){mm, !mm};
     return true;
@@ -89,7 +90,7 @@ static bool read_range(const recipe_key *key, const json_t *value, void *field,
     } else if (read_percent(low, &r.low) && read_percent(high, &r.high)) {
         r.kind = SNOW_RANGE_PERCENTILES;
         known = json_array_size(value) == 2;
-    } else if (text && strcmp(text, "full") == 0) {
+    } else if (text && strcasecmp(text, "full") == 0) {
         r = (range_fields){SNOW_RANGE_FULL, 0, 1};
         known = true;
     }
@@ -192,7 +193,7 @@ static bool read_color(const recipe_key *key, const json_t *value, void *field,
     snow_image_options *image = field;
     const char *text = json_string_value(value);
     image->flatten = false;
-    if (text && strcmp(text, "none") == 0)
+    if (text && strcasecmp(text, "none") == 0)
         return true;
     if (!read_hex(text, image->background) &&
         !recipe_read_reals(key, value, image->background, wrong))
@@ -223,9 +224,9 @@ static bool read_light(const recipe_key *key, const json_t *value, void *field,
     snow_settings *settings = field;
     const char *text = json_string_value(value);
     double angles[2] = {0};
-    if (text && strcmp(text, "key") == 0)
+    if (text && strcasecmp(text, "key") == 0)
         settings->light = SNOW_LIGHT_KEY;
-    else if (text && strcmp(text, "head") == 0)
+    else if (text && strcasecmp(text, "head") == 0)
         settings->light = SNOW_LIGHT_HEAD;
     else if (recipe_read_reals(key, value, angles, wrong))
         settings->light = SNOW_LIGHT_DIRECTION;

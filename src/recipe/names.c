@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 static bool read_text(const recipe_key *key, const json_t *value, void *field,
                       char wrong[WRONG_BYTES]) {
@@ -47,7 +48,7 @@ static int value_named(const recipe_key *key, const char *text) {
     if (key->named)
         return key->named(text);
     for (int i = 0; key->name_of(i); i++)
-        if (strcmp(key->name_of(i), text) == 0)
+        if (strcasecmp(key->name_of(i), text) == 0)
             return i;
     return -1;
 }

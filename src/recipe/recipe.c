@@ -58,6 +58,10 @@ static snow_status take_window(snow_context *context, const char *source,
                                json_t *tree, snow_recipe *out) {
     json_t *window = json_object_get(tree, "window");
     json_t *level = json_object_get(tree, "level");
+    if (json_array_size(window) == 2 && !level) { /* [window, level] */
+        level = json_array_get(window, 1);
+        window = json_array_get(window, 0);
+    }
     if (!window && !level)
         return SNOW_STATUS_OK;
     double half = json_number_value(window) / 2;

@@ -1,5 +1,6 @@
 /* render/settings.c - the settings of a picture: their names and defaults.
  * settings_resolve.c finds what they mean for one volume. */
+#include "base/base.h"
 #include "base/record.h"
 
 #include <string.h>
@@ -37,7 +38,7 @@ static const char *const modes[] = {
 /* The index of a name, or -1. */
 static int find_name(const char *const *names, int count, const char *name) {
     for (int i = 0; i < count; i++)
-        if (strcmp(name, names[i]) == 0)
+        if (snow_same_name(name, names[i]))
             return i;
     return -1;
 }
@@ -51,7 +52,7 @@ const char *snow_encoding_name(snow_encoding encoding) {
 }
 
 int snow_method_from_name(const char *name) {
-    if (strcmp(name, "sheared") == 0) /* an alias */
+    if (snow_same_name(name, "sheared")) /* an alias */
         return SNOW_METHOD_SHEAR_WARP;
     return find_name(methods, COUNT(methods), name);
 }

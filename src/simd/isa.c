@@ -23,7 +23,7 @@ const char *snow_isa_name(snow_isa isa) {
 
 int snow_isa_from_name(const char *name) {
     for (int i = 0; i < LEVELS; i++)
-        if (strcmp(name, names[i]) == 0)
+        if (snow_same_name(name, names[i]))
             return i;
     return -1;
 }

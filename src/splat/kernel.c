@@ -86,7 +86,7 @@ const char *snow_kernel_name(snow_kernel kernel) {
 
 int snow_kernel_from_name(const char *name) {
     for (int i = 0; i < KERNEL_COUNT; i++)
-        if (strcmp(name, kernels[i].name) == 0)
+        if (snow_same_name(name, kernels[i].name))
             return i;
     return -1;
 }

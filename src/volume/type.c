@@ -35,7 +35,7 @@ const char *snow_type_name(snow_type type) {
     return "none";
 }
 
-/* Exact: the many spellings of NRRD and raw names are those readers' matter. */
+/* Case does not matter; the many spellings of NRRD and raw names are those readers' matter. */
 snow_type snow_type_from_name(const char *name) {
     static const struct {
         const char *name;
@@ -48,7 +48,7 @@ snow_type snow_type_from_name(const char *name) {
         {"double", SNOW_TYPE_FLOAT64},
     };
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (!strcmp(name, names[i].name))
+        if (snow_same_name(name, names[i].name))
             return names[i].type;
     return SNOW_TYPE_NONE;
 }

@@ -119,6 +119,33 @@ run 0 "a range on the command line" render phantom:cube --config w.json \
     -o p.png --range 75,125
 check "which is the same" cmp -s o.png p.png
 
+# --- other spellings ----------------------------------------------------------
+run 0 "in any case, with one number for both sides" render \
+    phantom:shells --dims 20x20x20 -o sa.png -m MIP -s 40 --window 300,120 \
+    --view Front --quality HIGH --save-config s.json
+run 0 "as is usual" render phantom:shells --dims 20x20x20 -o sb.png -m mip \
+    -s 40x40 --window 300 --level 120 --view -y --quality high
+check "is the same picture" cmp -s sa.png sb.png
+run 0 "which is kept" render --config s.json -o sc.png
+check "as it is" cmp -s sa.png sc.png
+echo '{"input": "phantom:shells", "dims": [20, 20, 20], "mode": "MIP",
+       "size": 40, "window": [300, 120], "view": "Front",
+       "quality": "HIGH"}' >spelt.json
+run 0 "a file takes these spellings too" render --config spelt.json -o sd.png
+check "for the same picture" cmp -s sa.png sd.png
+run 0 "a level on the command line" render --config spelt.json -o se.png \
+    --level 80
+run 0 "or before a window" render phantom:shells --dims 20x20x20 -o sf.png \
+    -m mip -s 40 --level 80 --window 300,120 --view front --quality high
+check "counts" cmp -s se.png sf.png
+check "and is another" bash -c '! cmp -s sa.png se.png'
+echo '{"window": 50, "level": 100}' >w.json
+run 0 "a pair on the command line" render phantom:cube --config w.json \
+    -o sg.png --window 60,90
+run 0 "counts more than a file" render phantom:cube --window 60 --level 90 \
+    -o sh.png
+check "in both" cmp -s sg.png sh.png
+
 # --- places of the camera -----------------------------------------------------
 run 0 "a place, a target and an up" render phantom:shells --dims 24x20x22 \
     -o pa.png -s 60x50 --position 500,-300.5,400 --target 10,8,12 --up 0,1,0.25 \

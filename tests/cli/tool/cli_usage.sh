@@ -19,7 +19,13 @@ info --roll 3 x|--roll: is not an option of info but of render
 x --json|--json: is not an option of render but of info
 -q info x|info: the verb must come first; give snowglass info
 rendr x -o y.png|rendr: is not a verb; did you mean render\?
-x y -o z.png|one word too many for render
+x y -o z.png|x: is neither a verb nor a file; verbs: render turntable movie
+view F|view: is neither a verb nor a file; verbs: render turntable movie info
+-q view F -o z.png|view: is neither a verb nor a file
+trun-table x -o y.mp4|trun-table: is not a verb; did you mean turntable\?
+Inof x|Inof: is not a verb; did you mean info\?
+render view F|F: is one word too many for render
+x.nii y -o z.png|y: is one word too many for render
 render -o z.png|give snowglass render INPUT -o OUT
 compare a.png|give snowglass compare A B
 phantom:cube|no output file given; add -o OUT.png
@@ -36,7 +42,7 @@ help serve|serve is not built yet
 --perspective=150 x -o y.png|--perspective: '150' is out of range
 --perspective 0 x -o y.png|--perspective: '0' is out of range
 --perspective= x -o y.png|--perspective: needs a value
---perspective x y -o y.png|one word too many
+--perspective x.nii y -o y.png|one word too many
 --persp x -o y.png|did you mean --perspective
 info --perspective x|is not an option of info
 --memory lots x -o y.png|--memory: 'lots' is not an amount of memory
@@ -60,7 +66,16 @@ phantom --mask m cube -o y.nrrd|--mask: is not an option of phantom
 --crop 0:1,0:1 x|--crop: 
 --series= x|--series
 --patient x|--patient: is not an option of render but of info
---quality best x|'best' is unknown
+--quality best x|'best' is unknown; choose
+--quality hgih x|'hgih' is unknown \(did you mean high\?\); choose from: draft
+--mode MPI x|'MPI' is unknown \(did you mean mip\?\); choose from: over
+--method cast x|'cast' is unknown \(did you mean raycast\?\)
+--type unit8 x|'unit8' is not a voxel type \(did you mean uint8\?\); choose from: int8
+--preset bone x|--preset: 'bone' is unknown; did you mean ct-bone, ct-bones or ct-cropped-volume-bone\? snowglass help preset
+--preset ct-bnoe x|did you mean ct-bone\?
+--preset Angio x|did you mean mr-angio\?
+-c viridi x|--colormap: 'viridi' is unknown; did you mean viridis\? snowglass help colormap
+--view axail x|--view: 'axail' is unknown; did you mean axial\?
 --frames 3 x|--frames: is not an option of render but of turntable
 movie --frames 3 x -o y.mp4|--frames: is not an option of movie
 --resume x|--resume: is not an option of render but of turntable
@@ -82,7 +97,11 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
 -j 5000 x|whole number
 -j 0 x|whole number
 -j many x|whole number
---size 512 x|--size: '512' is not a picture size
+--hlep|--hlep: unknown option; did you mean --help\?
+--darkening x|did you mean --depth-darkening\?
+--size 0 x|--size: '0' is not a picture size; give WIDTHxHEIGHT
+-s 512, x|is not a picture size
+-s 40000 x|is not a picture size
 -s 0x10 x|is not a picture size
 -s 40000x40000 x|is not a picture size
 -s 8x8x8 x|is not a picture size
@@ -127,6 +146,10 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
 --range p1,99 x|is not a range
 --range p1,p101 x|is not a range
 --window 0 x|out of range
+--window 0,40 x|out of range
+--window 400, x|out of range
+--window 400,40,1 x|out of range
+--window 400,nan x|out of range
 --shade flat x|choose from: phong, none
 --light 30 x|give key, head, or AZIMUTH,ELEVATION
 --ambient 2 x|from 0 to 1
@@ -194,7 +217,11 @@ for table in table1 table2 table3; do
 done
 run 0 "bench -h" "$TOOL" bench -h
 
-for name in "--preset CT_Bone" "-c gray" "-c CoolWarm" "--view Left"; do
+for name in "--preset CT_Bone" "-c gray" "-c CoolWarm" "--view Left" \
+    "--view Axial" "--mode MIP" "--method Shear-Warp" "--quality HIGH" \
+    "--type UINT8" "--light Head" "--range FULL" "--background White" \
+    "--shade None" "--fit Volume" "--encoding CRS" "--size 16" \
+    "--window 400,40"; do
     # shellcheck disable=SC2086
     refused 3 "$name is a name" "nope.nii" \
         "$TOOL" render nope.nii -o z.png $name
