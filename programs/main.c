@@ -35,9 +35,8 @@ static int print_version(void) {
 /* `help` takes a word; other verbs take files. */
 static int run_help(const options *opts) {
     if (opts->operand_count > 1)
-        return fail_usage(
-            "%s: is one word too many; help takes one topic or verb",
-            opts->operands[1]);
+        return fail_usage("%s: is one word too many; help takes one name",
+                          opts->operands[1]);
     return help_print(opts->operand_count ? opts->operands[0] : NULL, NULL);
 }
 
@@ -128,6 +127,12 @@ static int run_command(const verb_row *verb, bool named, int argc,
     return done;
 }
 
+/* help --window means the option, but help --help is the overview. */
+static bool is_option(const char *word) {
+    return word[0] == '-' && strcmp(word, "--help") != 0 &&
+           strcmp(word, "-h") != 0;
+}
+
 /* Only the first word can be a verb: a file of that name is ./NAME. */
 static int dispatch(int argc, char **argv) {
     if (argc < 2) {
@@ -143,6 +148,8 @@ static int dispatch(int argc, char **argv) {
         return sibling_become("snowglass-bench", argv + 1);
     if (!is_for_all(verb) && !process_talks())
         return SNOW_STATUS_OK;
+    if (verb->bit == VERB_HELP && argc == 3 && is_option(argv[2]))
+        return help_print(argv[2], NULL);
     return run_command(verb, true, argc - 1, argv + 1);
 }
 

@@ -1,15 +1,13 @@
 /* help.c - the help, written from the tables of option_table.c and from the
- * library's lists of names; lines are at most 80 characters wide. */
-#include "options/options.h"
+ * library's lists of names.  Verbs that render have a short page
+ * (help_brief.c); options and presets have one each (help_word.c). */
+#include "options/help.h"
+#include "options/guess.h"
 #include "run/log.h"
 #include "run/sibling.h"
 
 #include <stdio.h>
 #include <string.h>
-
-#define WIDTH 80
-#define COLUMN 29 /* column of the options' texts */
-#define NAMES 20  /* column of the texts in a list of names */
 
 static const char overview[] =
     "snowglass - volume rendering by sparse splatting\n"
@@ -30,43 +28,6 @@ static const char examples[] =
     "unreadable or unsupported; 4 output not writable; 5 not enough memory;\n"
     "6 the comparison differs; 7 the picture is empty; 130 interrupted.\n";
 
-/* Prints words, beginning at column `at` and wrapped to `indent`. */
-static void print_wrapped(const char *text, int at, int indent) {
-    for (bool first = true; *text; first = false) {
-        int length = (int)strcspn(text, " ");
-        if (!first && at + 1 + length > WIDTH) {
-            printf("\n%*s", indent, "");
-            at = indent;
-        } else if (!first) {
-            printf(" ");
-            at++;
-        }
-        printf("%.*s", length, text);
-        at += length;
-        text += length + (text[length] == ' ');
-    }
-    printf("\n");
-}
-
-/* Prints one option: names on the left, text on the right, or on the next line
- * if the names are long. */
-static void print_option(const option_row *row) {
-    char left[WIDTH];
-    char letter[5] = "    ";
-    if (row->letter)
-        snprintf(letter, sizeof letter, "-%c, ", row->letter);
-    int used =
-        snprintf(left, sizeof left, "  %s--%s%s%s", letter, row->name,
-                 row->argument ? " " : "", row->argument ? row->argument : "");
-    printf("%s", left);
-    if (used > COLUMN - 2) {
-        printf("\n");
-        used = 0;
-    }
-    printf("%*s", COLUMN - used, "");
-    print_wrapped(row->text, COLUMN, COLUMN);
-}
-
 /* A row belongs to one topic and may serve several verbs. */
 static bool belongs(const option_row *row, topic which, unsigned verbs) {
     return row->topic == which && (row->verbs & verbs) != 0;
@@ -76,8 +37,7 @@ static void print_heading(topic which) {
     printf("%s: %s\n", topic_table[which].name, topic_table[which].text);
 }
 
-/* Whether a verb has options of a topic: its page omits the others. */
-static bool has_options(topic which, unsigned verbs) {
+bool help_has_options(topic which, unsigned verbs) {
     const option_row *row = option_table;
     while (row->name && !(row->read && belongs(row, which, verbs)))
         row++;
@@ -88,7 +48,7 @@ static bool has_options(topic which, unsigned verbs) {
 static void print_options(topic which, unsigned verbs) {
     for (const option_row *row = option_table; row->name; row++) {
         if (row->read && belongs(row, which, verbs))
-            print_option(row);
+            help_option(row, row->text);
     }
 }
 
@@ -103,34 +63,7 @@ static void print_later(topic which) {
     }
     if (used) {
         printf("  not built yet:");
-        print_wrapped(line, 16, 4);
-    }
-}
-
-/* Prints names one after the other. */
-static void print_plain_names(const char *title, const char *(*name)(size_t)) {
-    char line[1024];
-    size_t used = (size_t)snprintf(line, sizeof line, "%s:", title);
-    for (size_t i = 0; name(i) && used < sizeof line; i++)
-        used +=
-            (size_t)snprintf(line + used, sizeof line - used, " %s", name(i));
-    print_wrapped(line, 0, 2);
-}
-
-/* Prints one of the library's lists of names. */
-static void print_names(const char *title, const char *(*name)(size_t),
-                        const char *(*text)(size_t)) {
-    printf("\n");
-    if (!text) {
-        print_plain_names(title, name);
-        return;
-    }
-    printf("%s:\n", title);
-    for (size_t i = 0; name(i); i++) {
-        int used = printf("  %-18s", name(i));
-        if (used > NAMES)
-            printf("\n%*s", NAMES, "");
-        print_wrapped(text(i), NAMES, NAMES);
+        help_wrapped(line, 16, 4);
     }
 }
 
@@ -140,14 +73,14 @@ static int print_topic_page(topic which) {
     print_options(which, ~0U);
     print_later(which);
     if (which == TOPIC_LOOK) {
-        print_names("presets", snow_preset_name, snow_preset_description);
-        print_names("colour maps", snow_colormap_name, NULL);
+        help_names("presets", snow_preset_name, snow_preset_description);
+        help_names("colour maps", snow_colormap_name, NULL);
     } else if (which == TOPIC_CAMERA) {
-        print_names("views", snow_view_name, NULL);
+        help_views();
     } else if (which == TOPIC_DATA) {
-        print_names("formats", snow_format_name, snow_format_description);
-        print_names("phantoms (as phantom:NAME)", snow_phantom_name,
-                    snow_phantom_description);
+        help_names("formats", snow_format_name, snow_format_description);
+        help_names("phantoms (as phantom:NAME)", snow_phantom_name,
+                   snow_phantom_description);
     }
     return finish_stdout();
 }
@@ -161,16 +94,26 @@ static int print_verb_page(const verb_row *row) {
         return sibling_run("snowglass-bench", words);
     }
     printf("snowglass %s %s\n%s\n", row->name, row->usage, row->text);
+    if (row->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE)) {
+        help_brief(row);
+        return finish_stdout();
+    }
     for (int i = 0; topic_table[i].name; i++) {
-        if (topic_is_here((topic)i) && has_options((topic)i, row->bit)) {
+        if (topic_is_here((topic)i) && help_has_options((topic)i, row->bit)) {
             printf("\n");
             print_heading((topic)i);
             print_options((topic)i, row->bit);
         }
     }
     if (row->bit == VERB_PHANTOM)
-        print_names("phantoms", snow_phantom_name, snow_phantom_description);
+        help_names("phantoms", snow_phantom_name, snow_phantom_description);
     return finish_stdout();
+}
+
+void help_topics(unsigned verbs) {
+    for (int i = 0; topic_table[i].name; i++)
+        if (topic_is_here((topic)i) && help_has_options((topic)i, verbs))
+            printf("  %-11s%s\n", topic_table[i].name, topic_table[i].text);
 }
 
 /* The overview omits verbs that are not built yet; help VERB names them. */
@@ -180,36 +123,78 @@ static int print_overview(void) {
         if (row->bit)
             printf("  %-11s%s\n", row->name, row->text);
     }
-    printf("\ntopics (snowglass help TOPIC, or a verb's name):\n");
-    for (int i = 0; topic_table[i].name; i++)
-        if (topic_is_here((topic)i))
-            printf("  %-11s%s\n", topic_table[i].name, topic_table[i].text);
+    printf("\ntopics (snowglass help NAME, also of a verb, an option or a "
+           "preset):\n");
+    help_topics(~0U);
     printf("%s", examples);
     return finish_stdout();
 }
 
-/* Lists the topics, since whoever mistypes one does not know them. */
+/* The topic of a name that this program has; -1: none. */
+static int topic_named(const char *word) {
+    for (int i = 0; topic_table[i].name; i++)
+        if (strcmp(word, topic_table[i].name) == 0 && topic_is_here((topic)i))
+            return i;
+    return -1;
+}
+
+/* The names that are near, or the topics, since whoever mistypes one does not
+ * know them. */
 static int refuse_word(const char *word) {
     char names[256] = "";
     size_t used = 0;
-    for (int i = 0; topic_table[i].name && used < sizeof names; i++)
-        if (topic_is_here((topic)i))
+    guess near;
+    guess_begin(&near, word + strspn(word, "-"));
+    for (const verb_row *row = verb_table; row->name; row++)
+        guess_offer(&near, row->name);
+    for (int i = 0; topic_table[i].name; i++) {
+        if (!topic_is_here((topic)i))
+            continue;
+        guess_offer(&near, topic_table[i].name);
+        if (used < sizeof names)
             used += (size_t)snprintf(names + used, sizeof names - used, " %s",
                                      topic_table[i].name);
-    return fail_usage("%s: is not a topic or a verb; topics:%s", word, names);
+    }
+    for (const option_row *row = option_table; row->name; row++)
+        if (!verb_named(row->name) && topic_named(row->name) < 0)
+            guess_offer(&near, row->name);
+    guess_offer_all(&near, snow_preset_name);
+    const char *what = "is not a verb, topic, option or preset";
+    char meant[128];
+    if (guess_write(&near, "", meant, sizeof meant))
+        return fail_usage("%s: %s; did you mean %s?", word, what, meant);
+    return fail_usage("%s: %s; topics:%s", word, what, names);
 }
 
-/* No topic has the name of a verb, so the order of the searches does not
- * matter. */
+/* The page of a topic or a verb, and that of an option of the same name which
+ * the page does not list. */
+static int print_page(int which, const verb_row *verb, const option_row *row) {
+    int done = verb ? print_verb_page(verb) : print_topic_page((topic)which);
+    bool listed = !row || (verb ? (row->verbs & verb->bit) != 0
+                                : (int)row->topic == which);
+    if (listed || done != SNOW_STATUS_OK)
+        return done;
+    printf("\n");
+    help_option_page(row);
+    return finish_stdout();
+}
+
+/* No topic has the name of a verb, and no option that of a preset. */
 int help_print(const char *word, const verb_row *verb) {
     if (!word)
         return verb ? print_verb_page(verb) : print_overview();
-    for (int i = 0; topic_table[i].name; i++) {
-        if (strcmp(word, topic_table[i].name) == 0 && topic_is_here((topic)i))
-            return print_topic_page((topic)i);
-    }
+    const option_row *row = help_option_named(word);
+    int which = topic_named(word), preset = snow_preset_from_name(word);
     const verb_row *named = verb_named(word);
-    return named ? print_verb_page(named) : refuse_word(word);
+    if (which >= 0 || named)
+        return print_page(which, named, row);
+    if (row)
+        help_option_page(row);
+    else if (preset >= 0)
+        help_preset_page((size_t)preset);
+    else
+        return refuse_word(word);
+    return finish_stdout();
 }
 
 /* Prints to standard error: a call without arguments is a mistake, and its

@@ -123,7 +123,7 @@ typedef struct options {
     int verbosity; /* -1 quiet, 0, 1 verbose; the last one counts */
 
     bool version, help;
-    const char *help_word;            /* the requested topic or verb, or NULL */
+    const char *help_word;            /* the requested name, or NULL */
     const char *config, *save_config; /* NULL: none */
     char texts[CONFIG_TEXTS_BYTES];
     size_t text_bytes;
@@ -211,9 +211,9 @@ bool options_given(const options *opts, const char *name);
 /* Whether it was given on the command line. */
 bool options_typed(const options *opts, const char *name);
 
-/* Prints help to standard output: `word` names a topic or a verb; NULL means
- * the page of `verb`, or the overview if that is NULL too.  Returns an exit
- * code. */
+/* Prints help to standard output: `word` names a verb, a topic, an option with
+ * or without dashes, or a preset; NULL means the page of `verb`, or the
+ * overview if that is NULL too.  Returns an exit code. */
 int help_print(const char *word, const verb_row *verb);
 
 /* Prints the few lines of `snowglass` without arguments to standard error. */

@@ -3,6 +3,8 @@
 # change that is meant, the pages of tests/cli/help are written anew by
 #   for p in tests/cli/help/help_*.txt; do
 #       w=${p#*help_}; build/snowglass help ${w%.txt} >$p; done
+#   for w in window view ct-bone ct-soft-tissue mr-angio; do
+#       build/snowglass help $w; done >tests/cli/help/words.txt
 #   build/snowglass --help >tests/cli/help/overview.txt
 . "$(dirname "$0")/../../support/shell.sh"
 
@@ -34,7 +36,78 @@ check "info --help is help info" cmp -s "$HERE/cli/help/help_info.txt" "$OUT"
 run 0 "info INPUT --help" "$TOOL" info missing.nrrd --help
 check "--help counts after an operand" cmp -s "$HERE/cli/help/help_info.txt" "$OUT"
 
-refused 2 "a topic that is none" "is not a topic or a verb" "$TOOL" help weather
+words() {
+    for word in window view ct-bone ct-soft-tissue mr-angio; do
+        "$TOOL" help $word || return
+    done
+}
+run 0 "pages of options and presets" words
+same_page words.txt
+
+# Verbs that render have one page; every option is found from there.
+for verb in render turntable movie; do
+    run 0 "$verb --help" "$TOOL" $verb --help
+    check "one page" [ "$(wc -l <"$OUT")" -le 50 ]
+    cp "$OUT" page
+    check "three examples" [ "$(grep -c '^  snowglass ' page)" -eq 3 ]
+    grep '^  snowglass ' page >examples
+    while read -r _ arguments; do
+        # shellcheck disable=SC2086
+        run 3 "only the file is missing in: $arguments" "$TOOL" $arguments
+    done <examples
+done
+for verb in turntable movie; do
+    "$TOOL" help $verb >page
+    check "$verb shows what is its own first" bash -c \
+        "grep -m 1 -oE -- '--[a-z-]+ ' page | grep -qE 'frames|time-label'"
+done
+topics=$("$TOOL" help render | sed -n '/^all options/,/^$/s/^  \([a-z]*\) .*/\1/p')
+check "topics are listed" [ "$(wc -w <<<"$topics")" -ge 10 ]
+for topic in $topics; do "$TOOL" help "$topic"; done >all
+sed -nE 's/^  (-.,|   ) --([a-z-]+).*/\2/p' all | sort -u >options
+check "topics list all options" [ "$(wc -l <options)" -ge 70 ]
+"$TOOL" help render | sed -nE 's/^  (-.,|   ) --([a-z-]+).*/\2/p' | sort -u >common
+check "a dozen common ones" [ "$(wc -l <common)" -eq 12 ]
+check "which are among them" [ -z "$(comm -23 common options)" ]
+grep -vx help options >others # whose --help is the overview
+while read -r option; do
+    "$TOOL" help "--$option" >page 2>&1 || fail "help --$option"
+    sed -n 1p page | grep -q -- "--$option" || fail "help --$option tells it"
+    grep -q '^verbs: ' page || fail "help --$option names its verbs"
+    "$TOOL" help "$option" >plain 2>&1 || fail "help $option"
+    grep -Eq "^  (-.,|   ) --$option( |\$)" plain || fail "help $option tells it"
+    grep -E '^.{81}| $' page plain && fail "help $option fits 80 columns"
+done <others
+pass "every option has a page"
+run 0 "presets" "$TOOL" tf list --json
+python3 -c 'import json, sys
+print("\n".join(json.load(open(sys.argv[1]))["presets"]))' "$OUT" >presets
+check "there are many" [ "$(wc -l <presets)" -ge 25 ]
+while read -r preset; do
+    "$TOOL" help "$preset" >page 2>&1 || fail "help $preset"
+    for word in "^--preset $preset: " "^range: +[-0-9]" "^opacity of a " \
+        "^colours: +#"; do
+        grep -Eq -- "$word" page || fail "help $preset: $word"
+    done
+    grep -E '^.{81}| $' page && fail "help $preset fits 80 columns"
+done <presets
+pass "every preset has a page"
+run 0 "a preset of any spelling" "$TOOL" help CT_Bone
+prints '^--preset ct-bone: '
+run 0 "a letter" "$TOOL" help -w
+prints '^  -w, --window '
+run 0 "an option of ranks" "$TOOL" help cut
+prints "^only in snowglass-mpi$"
+run 0 "an option whose name is a topic's too" "$TOOL" help labels
+prints '^      --no-labels '
+prints '^      --labels LIST '
+
+refused 2 "a name that is none" "is not a verb, topic, option or preset; topics: output" \
+    "$TOOL" help weather
+refused 2 "a name that is near" "windw: is not .*; did you mean window\?" \
+    "$TOOL" help windw
+refused 2 "an option that is near" "did you mean help\?" "$TOOL" help --hlep
+refused 2 "no name" "is not a verb" "$TOOL" help --
 refused 2 "help on two topics" "one word too many" "$TOOL" help look camera
 run 2 "snowglass alone" "$TOOL"
 says "usage: snowglass INPUT -o OUT.png"

@@ -1,0 +1,84 @@
+/* help_brief.c - the short page of a verb that renders: its own options first,
+ * then those that are used most, examples, and the topics of all the others. */
+#include "options/help.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum {
+    STILL = VERB_RENDER,
+    MOVIES = VERB_TURNTABLE | VERB_MOVIE,
+    ANY = STILL | MOVIES
+};
+
+/* The common options, with shorter texts than in the table. */
+static const struct {
+    unsigned verbs;
+    const char *name, *text;
+} common[] = {
+    {STILL, "output", "file of the picture; its ending is the format"},
+    {MOVIES, "output",
+     "the movie, such as turn.mp4, or single frames: f_%04d.png"},
+    {ANY, "overwrite", "replace the file if it exists"},
+    {ANY, "size", "size in pixels (default 512x512)"},
+    {ANY, "preset", "look for a kind of data: ct-bone; help preset lists all"},
+    {ANY, "colormap", "colours: viridis; help colormap lists all"},
+    {ANY, "window", "show W data values around L: -w 400,40"},
+    {ANY, "mode",
+     "over: matter with its opacity; mip: the largest value of each ray; help "
+     "mode lists all"},
+    {ANY, "view", "side or plane: left, axial, +z; help view lists all"},
+    {ANY, "azimuth", "move the camera to its right around the volume"},
+    {ANY, "elevation", "then move it up"},
+    {ANY, "zoom", "magnify"},
+    {ANY, "legend", "draw a colour bar and a scale bar"},
+};
+
+static const struct {
+    unsigned verb;
+    const char *lines[3];
+} examples[] = {
+    {VERB_RENDER,
+     {"snowglass head.nii.gz -o head.png",
+      "snowglass render ct.nrrd -o bone.png --preset ct-bone --view left -s "
+      "1024",
+      "snowglass render mra.nii.gz -o mip.png --mode mip --legend"}},
+    {VERB_TURNTABLE,
+     {"snowglass turntable head.nii.gz -o head.mp4",
+      "snowglass turntable ct.nrrd -o bone.gif --preset ct-bone --frames 60",
+      "snowglass turntable cells.tif -o f_%04d.png --elevation 20 --resume"}},
+    {VERB_MOVIE,
+     {"snowglass movie run_%04d.nrrd -o run.mp4",
+      "snowglass movie a.vti b.vti c.vti -o abc.webm -c viridis --range 0,1",
+      "snowglass movie heart.nii.gz -o heart.gif --fps 10 --time-label"}},
+};
+
+/* The options that `render` does not have. */
+static void print_own(const verb_row *verb) {
+    printf("\noptions of %s:\n", verb->name);
+    for (const option_row *row = option_table; row->name; row++)
+        if (row->read && (row->verbs & verb->bit) &&
+            !(row->verbs & VERB_RENDER))
+            help_option(row, row->text);
+}
+
+static void print_examples(const verb_row *verb) {
+    printf("\nexamples:\n");
+    for (size_t i = 0; i < sizeof examples / sizeof *examples; i++)
+        for (int n = 0; n < 3 && examples[i].verb == verb->bit; n++)
+            printf("  %s\n", examples[i].lines[n]);
+}
+
+void help_brief(const verb_row *verb) {
+    if (verb->bit != VERB_RENDER)
+        print_own(verb);
+    printf("\ncommon options:\n");
+    for (size_t i = 0; i < sizeof common / sizeof *common; i++)
+        if (common[i].verbs & verb->bit)
+            help_option(help_option_named(common[i].name), common[i].text);
+    print_examples(verb);
+    printf("\nall options, by topic (snowglass help TOPIC):\n");
+    help_topics(verb->bit);
+    printf("\nsnowglass help NAME explains an option (help window) or a preset "
+           "(help ct-bone).\n");
+}
