@@ -75,15 +75,14 @@ typedef struct snow_volume_options {
     double spacing[3];   /* replaces the file's; raw: 0 for 1 mm */
     uint64_t offset;     /* raw: bytes to skip before the voxels */
     int64_t time;        /* time step of a file with several, from 0 */
-    int64_t crop[3][2];  /* along x, y, z: first voxel, one past the last or 0;
-                            all 0: the whole volume */
+    int64_t crop[3][2];  /* first voxel, one past the last or 0; zeros: all */
     int64_t channel;     /* of voxels with several values, from 0 */
     const char *dataset; /* path (HDF5, Zarr) or name (VTK, NetCDF); or NULL */
     const char *series;  /* DICOM: UID or number; NULL: the largest */
     const char *mask;   /* path, read with the same crop and spacing; or NULL */
     const char *labels; /* of the mask (snow_labels_parse); NULL: all but 0 */
     double clip[SNOW_CLIPS_MAX][4]; /* planes (snow_volume_clip) */
-    bool each_time; /* no warning that the file has other time steps */
+    bool each_time, channel_given; /* no warning of other steps or channels */
 } snow_volume_options;
 SNOW_RECORD(snow_volume_options);
 

@@ -17,6 +17,7 @@ snow_volume_options data_options(const options *opts) {
                                 .time = opts->time,
                                 .each_time = opts->each_time,
                                 .channel = opts->channel,
+                                .channel_given = options_given(opts, "channel"),
                                 .dataset = opts->dataset,
                                 .series = opts->series,
                                 .mask = opts->mask,

@@ -420,7 +420,7 @@ snow_status snow_volume_pick_channel(snow_context *context,
             "channel %lld does not exist; the voxels have %lld, counted from 0",
             (long long)options->channel, (long long)channels);
     *out = options->channel;
-    if (channels > 1)
+    if (channels > 1 && !options->channel && !options->channel_given)
         snow_notify(context,
                     "channel %lld of %lld (counted from 0) is used; --channel "
                     "N selects another",

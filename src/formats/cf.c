@@ -42,7 +42,8 @@ void snow_cf_measure(const double *coordinates, int64_t count,
 /* An axis with another unit cannot be compared with the others: a month is not
  * longer than a degree. */
 void snow_cf_place(snow_context *context, const cf_axis axes[3],
-                   snow_volume_info *info) {
+                   const snow_volume_options *options, snow_volume_info *info) {
+    bool given = snow_spacing_given(options);
     const cf_axis *x = &axes[0];
     double usual = x->given ? fabs(x->step) : 1;
     for (int i = 0; i < 3; i++) {
@@ -50,12 +51,12 @@ void snow_cf_place(snow_context *context, const cf_axis axes[3],
         bool same = axis->given && !strcmp(axis->unit, x->unit);
         info->matrix[i][i] = same ? axis->step : usual;
         info->matrix[i][3] = same ? axis->first : 0;
-        if (same && !axis->even)
+        if (same && !axis->even && !given)
             snow_notify(context,
                         "coordinates along %c are not evenly spaced; their "
                         "mean distance, %g, is used",
                         "xyz"[i], axis -> step);
-        if (axis->given && !same && info->dims[i] > 1)
+        if (axis->given && !same && info->dims[i] > 1 && !given)
             snow_notify(context,
                         "%c has another unit than x (\"%s\"); the spacing of x "
                         "is used for it, --spacing sets another",

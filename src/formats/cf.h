@@ -34,9 +34,9 @@ void snow_cf_measure(const double *coordinates, int64_t count,
 
 /* Sets spacing, origin and unit from the coordinates of x, y and z.  Axes in
  * another unit than x (time, or height beside degrees) get x's spacing, with a
- * warning. */
+ * warning unless the options give it. */
 void snow_cf_place(snow_context *context, const cf_axis axes[3],
-                   snow_volume_info *info);
+                   const snow_volume_options *options, snow_volume_info *info);
 
 /* Sets the type that holds a type's values and NaN (floats for integers of at
  * most 32 bits), slope and intercept. */

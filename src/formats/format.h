@@ -51,6 +51,18 @@ extern const snow_format snow_format_dicom;
 extern const snow_format snow_format_den;
 extern const snow_format snow_format_zarr;
 
+/* Whether the user gives the spacing, so that what a file lacks of it needs no
+ * warning. */
+static inline bool snow_spacing_given(const snow_volume_options *options) {
+    return options->spacing[0] > 0;
+}
+
+/* The note about images that tell the size of a pixel but not the distance of
+ * their slices. */
+#define SNOW_WIDTH_IS_DISTANCE                                             \
+    "the distance of the slices is taken to be the width of a pixel, %g; " \
+    "--spacing sets another"
+
 /* The usual end of a binary reader whose time steps follow one another behind
  * `skip` bytes: lays the window, checks that the source can hold all, makes the
  * volume unless `out` is NULL, reads it, swaps bytes when `big_endian` differs

@@ -149,9 +149,10 @@ static snow_status look_at_first(stack *s) {
     SNOW_TRY(read_file(s, 0, &s->first, NULL));
     s->slice = s->first;
     if (s->first.dims[2] == 1 && s->first.times == 1) {
-        if (s->first.matrix[0][0] != 1 && s->first.matrix[2][2] == -1)
-            snow_notify(s->context, "the distance of the slices is unknown; 1 "
-                                    "is used, --spacing sets another");
+        double pixel = s->first.matrix[0][0];
+        if (pixel != 1 && s->first.matrix[2][2] == -pixel &&
+            !snow_spacing_given(&s->options))
+            snow_notify(s->context, SNOW_WIDTH_IS_DISTANCE, pixel);
         return SNOW_STATUS_OK;
     }
     return snow_fail(s->context, SNOW_STATUS_BAD_INPUT,

@@ -330,15 +330,17 @@ static snow_status stored_type(snow_context *context, const dicom_image *image,
 }
 
 /* Gives all warnings about a volume, each once. */
-static void remark(snow_context *context, const dicom_stack *stack) {
+static void remark(snow_context *context, const dicom_stack *stack,
+                   bool spacing_given) {
     const dicom_frame *first = stack->frames;
     bool unscaled = false;
     for (size_t i = 0; i < stack->places * stack->times; i++)
         unscaled |= first[i].unscaled;
-    if (!first->measured)
+    if (!first->measured && !spacing_given)
         snow_notify(context, "the size of a pixel is missing or invalid; 1 mm "
                              "is used, --spacing sets another");
-    if (stack->slice_count > 1 && (!stack->given || first->guessed))
+    if (stack->slice_count > 1 && (!stack->given || first->guessed) &&
+        !spacing_given)
         snow_notify(context,
                     "the distance of the slices is missing; %g mm is used, "
                     "--spacing sets another",
@@ -412,7 +414,7 @@ static snow_status describe_stack(const dicom_input *input,
     info->medical = stack->placed;
     memcpy(info->unit, "mm", 3);
     memcpy(info->matrix, stack->matrix, sizeof info->matrix);
-    remark(context, stack);
+    remark(context, stack, snow_spacing_given(options));
     SNOW_TRY(snow_volume_pick_channel(context, options, image->samples,
                                       &d->channel));
     return snow_volume_pick_time(context, "volume", options, info);

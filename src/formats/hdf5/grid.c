@@ -268,6 +268,7 @@ static herr_t look_at_scale(hid_t file, const char *name,
  * libhdf5 crashes if it is damaged. */
 static snow_status place_by_scales(snow_context *context, hid_t file,
                                    const hdf5_set *set,
+                                   const snow_volume_options *options,
                                    snow_volume_info *info) {
     scales s = {.context = context, .set = set};
     H5O_info_t about;
@@ -278,7 +279,7 @@ static snow_status place_by_scales(snow_context *context, hid_t file,
     SNOW_TRY(snow_hdf5_visit(context, file, look_at_scale, &s));
     SNOW_TRY(s.status);
     if (s.axes[0].given || s.axes[1].given || s.axes[2].given)
-        snow_cf_place(context, s.axes, info);
+        snow_cf_place(context, s.axes, options, info);
     return SNOW_STATUS_OK;
 }
 
@@ -297,8 +298,9 @@ static void read_values(const hdf5_set *set, cf_values *out) {
 }
 
 snow_status snow_hdf5_place(snow_context *context, hid_t file,
-                            const hdf5_set *set, snow_volume_info *info,
-                            cf_values *values) {
+                            const hdf5_set *set,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, cf_values *values) {
     char group[HDF5_NAME_BYTES];
     *values = snow_cf_values_default();
     read_values(set, values);
@@ -311,7 +313,8 @@ snow_status snow_hdf5_place(snow_context *context, hid_t file,
     bool placed = parent >= 0 && place_by_mesh(parent, set, info);
     if (parent >= 0)
         H5Oclose(parent);
-    return placed ? SNOW_STATUS_OK : place_by_scales(context, file, set, info);
+    return placed ? SNOW_STATUS_OK
+                  : place_by_scales(context, file, set, options, info);
 }
 
 #endif

@@ -164,7 +164,8 @@ static snow_status read_set(snow_context *context, const hdf5_file *file,
     cf_values values;
     SNOW_TRY(check_storage(context, set->id));
     SNOW_TRY(pick(context, set, options, info, start));
-    SNOW_TRY(snow_hdf5_place(context, snow_hdf5_id(file), set, info, &values));
+    SNOW_TRY(snow_hdf5_place(context, snow_hdf5_id(file), set, options, info,
+                             &values));
     SNOW_TRY(snow_region_lay_out(context, options, info, &region));
     SNOW_TRY(check_size(context, file, &region));
     snow_volume *volume = NULL;

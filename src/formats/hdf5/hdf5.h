@@ -60,8 +60,9 @@ snow_status snow_hdf5_find(snow_context *context, hid_t file, const char *asked,
 /* Sets matrix and unit of info, and how values are stored.  Errors:
  * SNOW_STATUS_NO_MEMORY. */
 snow_status snow_hdf5_place(snow_context *context, hid_t file,
-                            const hdf5_set *set, snow_volume_info *info,
-                            cf_values *values);
+                            const hdf5_set *set,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, cf_values *values);
 
 #endif
 #endif

@@ -192,13 +192,16 @@ static void place_origin(const mrc_header *header, snow_volume_info *info) {
 
 /* An invalid cell is common in such files; the voxels are usable even so. */
 static void set_matrix(snow_context *context, const mrc_header *header,
-                       const int order[3], snow_volume_info *info) {
+                       const snow_volume_options *options, const int order[3],
+                       snow_volume_info *info) {
     double axes[3][3];
     if (cell_axes(header, axes)) {
         memcpy(info->unit, "angstrom", sizeof "angstrom");
     } else {
-        snow_notify(context, "the unit cell of the header is invalid; voxels "
-                             "of 1x1x1 are used, --spacing sets others");
+        if (!snow_spacing_given(options))
+            snow_notify(context,
+                        "the unit cell of the header is invalid; voxels "
+                        "of 1x1x1 are used, --spacing sets others");
         for (int i = 0; i < 9; i++)
             axes[i / 3][i % 3] = i % 4 == 0;
     }
@@ -219,6 +222,7 @@ static void count_volumes(const mrc_header *header, snow_volume_info *info) {
 }
 
 static snow_status parse_header(snow_context *context, const mrc_header *header,
+                                const snow_volume_options *options,
                                 snow_volume_info *info, snow_array *array,
                                 uint64_t *extended) {
     int order[3];
@@ -244,7 +248,7 @@ static snow_status parse_header(snow_context *context, const mrc_header *header,
     for (int i = 0; i < 3; i++)
         info->dims[i] = whole(header, 1 + i);
     count_volumes(header, info);
-    set_matrix(context, header, order, info);
+    set_matrix(context, header, options, order, info);
     return SNOW_STATUS_OK;
 }
 
@@ -258,7 +262,7 @@ static snow_status read_mrc(snow_source *source,
     *info = snow_volume_info_default("mrc");
     SNOW_TRY(snow_source_read_all(source, bytes, sizeof bytes, "the header"));
     const mrc_header header = header_of(bytes);
-    SNOW_TRY(parse_header(context, &header, info, &array, &extended));
+    SNOW_TRY(parse_header(context, &header, options, info, &array, &extended));
     SNOW_TRY(snow_volume_pick_time(context, "volume", options, info));
     const int64_t sizes[4] = {info->dims[0], info->dims[1], info->dims[2],
                               info->times};

@@ -206,7 +206,7 @@ describe_variable(const netcdf_header *header, const netcdf_variable *v,
     array->big_endian = true;
     array->more = true;
     if (axes[0].given || axes[1].given || axes[2].given)
-        snow_cf_place(header->context, axes, info);
+        snow_cf_place(header->context, axes, options, info);
     return SNOW_STATUS_OK;
 }
 

@@ -21,6 +21,7 @@ static bool is_usable(const double m[4][4]) {
 /* Spacings that are not lengths become 1 with a warning: such files are common.
  * The sign has no meaning here; qfac marks mirrored axes. */
 static void read_spacing(snow_context *context, const nifti_header *header,
+                         const snow_volume_options *options,
                          double spacing[3]) {
     bool replaced = false;
     for (int i = 0; i < 3; i++) {
@@ -30,7 +31,7 @@ static void read_spacing(snow_context *context, const nifti_header *header,
         spacing[i] = 1;
         replaced |= header->dim[i + 1] > 1;
     }
-    if (replaced)
+    if (replaced && !snow_spacing_given(options))
         snow_notify(context,
                     "spacing %g %g %g (pixdim) is not possible; 1 is used "
                     "where it is wrong",
@@ -118,12 +119,13 @@ static bool try_qform(snow_context *context, const nifti_header *header,
 /* Spacings alone (method 1) give no orientation: left and right are unknown, so
  * the volume is not medical. */
 void nifti_geometry(snow_context *context, const nifti_header *header,
+                    const snow_volume_options *options,
                     snow_volume_info *info) {
     double m[4][4] = {{0}};
     bool placed = try_sform(context, header, m);
     if (!placed) {
         double spacing[3];
-        read_spacing(context, header, spacing);
+        read_spacing(context, header, options, spacing);
         placed = try_qform(context, header, spacing, m);
         if (!placed) {
             memset(m, 0, sizeof m);

@@ -30,7 +30,7 @@ static snow_status describe_volume(snow_context *context,
     info->type = nifti_type(header->datatype);
     info->slope = header->slope;
     info->intercept = header->intercept;
-    nifti_geometry(context, header, info);
+    nifti_geometry(context, header, options, info);
     uint64_t times = 1, all;
     /* Five products of numbers that any header of 348 bytes can claim. */
     bool fits = snow_volume_count(info->dims, info->type, &voxels, &step);

@@ -46,7 +46,7 @@ snow_status nifti_header_parse(snow_context *context,
 
 /* Sets matrix, unit and `medical` of info from the header. */
 void nifti_geometry(snow_context *context, const nifti_header *header,
-                    snow_volume_info *info);
+                    const snow_volume_options *options, snow_volume_info *info);
 
 /* The format's code of a scalar type and the inverse; 0 and SNOW_TYPE_NONE if
  * there is none.  The name of a code that is not a scalar, NULL if unknown. */

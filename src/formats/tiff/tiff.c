@@ -138,7 +138,8 @@ static void share_images(snow_context *context, tiff_plan *plan) {
 }
 
 /* ImageJ stores pixels per unit of length where others store those per inch on
- * paper, which have no meaning here. */
+ * paper, which have no meaning here.  Slices whose distance is not told are as
+ * far apart as pixels. */
 static void set_spacing(snow_tiff *file, tiff_plan *plan,
                         snow_volume_info *info) {
     tiff_shape *shape = &plan->shape;
@@ -151,6 +152,8 @@ static void set_spacing(snow_tiff *file, tiff_plan *plan,
     for (int i = 0; i < 3; i++)
         if (shape->spacing[i] > 0 && isfinite(shape->spacing[i]))
             info->matrix[i][i] = shape->spacing[i];
+        else if (i == 2)
+            info->matrix[2][2] = info->matrix[0][0];
     snow_image_turn(info->matrix);
     memcpy(info->unit, shape->unit, sizeof info->unit);
 }
@@ -239,6 +242,9 @@ static snow_status read_open(snow_tiff *file,
     int64_t channel;
     snow_region region;
     SNOW_TRY(make_plan(file, &plan, info));
+    if (info->dims[2] > 1 && info->matrix[0][0] != 1 &&
+        !(plan.shape.spacing[2] > 0) && !snow_spacing_given(options))
+        snow_notify(file->context, SNOW_WIDTH_IS_DISTANCE, info->matrix[0][0]);
     SNOW_TRY(check_size(file, &plan));
     SNOW_TRY(snow_volume_pick_channel(
         file->context, options, plan.channels * plan.page.samples, &channel));

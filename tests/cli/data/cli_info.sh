@@ -96,4 +96,70 @@ run 0 "the head with seed 1" \
 run 0 "the head with seed 2" \
     "$TOOL" phantom head --dims 20x18x16 --seed 2 -o two.raw
 check "has other bytes" [ "$(cmp -s one.raw two.raw; echo $?)" -eq 1 ]
+
+# --- no note offers what was given -------------------------------------------
+
+quiet_note() { check "$NAME: no note" bash -c "! grep -q note: '$ERR'"; }
+"$TOOL" phantom:cube --dims 8x8x8 -q -s 8x8 -c viridis \
+    -o colours.png
+run 0 "colours" "$TOOL" info colours.png
+says "note: channel 0 of 4 .counted from 0. is used; --channel N selects another"
+for channel in 0 2; do
+    run 0 "channel $channel" "$TOOL" info colours.png --channel $channel
+    quiet_note
+done
+
+if command -v python3 >/dev/null; then
+    python3 - <<'END'
+import os, struct
+
+def tiff(path, pages, text):
+    """Pages of 4x3 bytes, 4 pixels a unit, with a description."""
+    out = bytearray(b"II*\0\0\0\0\0")
+    link = 4
+    for page in range(pages):
+        text_at = len(out)
+        out += text.encode() + b"\0" * (2 - len(text) % 2)
+        pixels_at = len(out)
+        out += bytes(range(12 * page, 12 * page + 12))
+        ratio_at = len(out)
+        out += struct.pack("<II", 4, 1)
+        out[link:link + 4] = struct.pack("<I", len(out))
+        rows = [(256, 3, 1, 4), (257, 3, 1, 3), (258, 3, 1, 8), (259, 3, 1, 1),
+                (262, 3, 1, 1), (270, 2, len(text) + 1, text_at),
+                (273, 4, 1, pixels_at), (277, 3, 1, 1), (278, 3, 1, 3),
+                (279, 4, 1, 12), (282, 5, 1, ratio_at), (283, 5, 1, ratio_at),
+                (296, 3, 1, 1)]
+        out += struct.pack("<H", len(rows))
+        for row in rows:
+            out += struct.pack("<HHII", *row)
+        link = len(out)
+        out += bytes(4)
+    with open(path, "wb") as file:
+        file.write(out)
+
+head = "ImageJ=1.53t\nimages=3\nslices=3\nunit=um\n"
+tiff("flat.tif", 3, head)
+tiff("deep.tif", 3, head + "spacing=2\n")
+os.mkdir("flat")
+for z in range(3):
+    tiff(f"flat/{z}.tif", 1, "ImageJ=1.53t\nunit=um\n")
+END
+fi
+if [ -d flat ] && "$TOOL" info -q flat.tif >/dev/null 2>&1; then
+    for input in flat.tif flat; do
+        run 0 "slices of $input without a distance" "$TOOL" info $input
+        prints "^spacing  *0.25 x 0.25 x 0.25 um"
+        says "note: .*the distance of the slices is taken to be the width of a pixel, 0.25; --spacing sets another"
+        run 0 "and with one that is given" \
+            "$TOOL" info $input --spacing 0.25x0.25x1
+        prints "^spacing  *0.25 x 0.25 x 1 "
+        quiet_note
+    done
+    run 0 "slices with a distance" "$TOOL" info deep.tif
+    prints "^spacing  *0.25 x 0.25 x 2 um"
+    quiet_note
+else
+    skipped "distances of TIFF slices" "there is no python3 or no libtiff"
+fi
 finish
