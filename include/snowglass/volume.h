@@ -83,6 +83,7 @@ typedef struct snow_volume_options {
     const char *labels; /* of the mask (snow_labels_parse); NULL: all but 0 */
     double clip[SNOW_CLIPS_MAX][4]; /* planes (snow_volume_clip) */
     bool each_time, channel_given; /* no warning of other steps or channels */
+    bool allow_gaps; /* DICOM: missing and cut slices are NaN, with a warning */
 } snow_volume_options;
 SNOW_RECORD(snow_volume_options);
 

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #define ROWS 16  /* bins of the histogram as text: half a screen */
 #define BINS 256 /* bins of the histogram as JSON */
@@ -246,6 +247,32 @@ static int report_text(const facts *f) {
     return finish_stdout();
 }
 
+static bool is_folder(const char *path) {
+    struct stat what;
+    return stat(path, &what) == 0 && S_ISDIR(what.st_mode);
+}
+
+/* Describes also a DICOM folder that is opened only with gaps. */
+static int open_to_list(snow_context *context, const options *opts,
+                        snow_volume **out) {
+    char fault[1024];
+    const char *path = opts->operands[0];
+    snow_volume_options data = data_options(opts);
+    snow_status status = snow_volume_open(context, path, &data, out);
+    if (status != SNOW_STATUS_BAD_INPUT || data.allow_gaps || !is_folder(path))
+        return status == SNOW_STATUS_OK ? CONTINUE
+                                        : fail_status(context, status);
+    snprintf(fault, sizeof fault, "%s", snow_context_message(context));
+    data.allow_gaps = true;
+    if (snow_volume_open(context, path, &data, out) != SNOW_STATUS_OK) {
+        say("%s", fault);
+        return (int)status;
+    }
+    if (opts->verbosity >= 0)
+        say("note: %s: other verbs need --allow-gaps to open it", path);
+    return CONTINUE;
+}
+
 /* No picture is made, but the sparse ratio needs the transfer function. */
 int cmd_info(const options *opts) {
     snow_context *context = NULL;
@@ -255,7 +282,7 @@ int cmd_info(const options *opts) {
     if (done == CONTINUE)
         done = open_context(opts, &context);
     if (done == CONTINUE)
-        done = open_input(context, opts, opts->operands[0], &volume);
+        done = open_to_list(context, opts, &volume);
     if (done == CONTINUE)
         done = open_look(context, opts, volume, &transfer);
     if (done == CONTINUE) {

@@ -18,6 +18,7 @@ snow_volume_options data_options(const options *opts) {
                                 .each_time = opts->each_time,
                                 .channel = opts->channel,
                                 .channel_given = options_given(opts, "channel"),
+                                .allow_gaps = opts->allow_gaps,
                                 .dataset = opts->dataset,
                                 .series = opts->series,
                                 .mask = opts->mask,

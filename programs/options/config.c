@@ -193,6 +193,7 @@ static void fill_data(const options *opts, snow_recipe *out) {
     data->channel = opts->channel;
     data->dataset = opts->dataset;
     data->series = opts->series;
+    data->allow_gaps = opts->allow_gaps;
     data->mask = opts->mask;
     memcpy(data->clip, opts->clip, sizeof data->clip);
     data->labels = opts->labels;

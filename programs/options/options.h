@@ -97,6 +97,7 @@ typedef struct options {
     int64_t channel;
     const char *dataset;            /* NULL: not given */
     const char *series;             /* NULL: not given */
+    bool allow_gaps;
     int64_t crop[3][2];             /* 0: the end */
     double clip[SNOW_CLIPS_MAX][4]; /* zeros: none */
     const char *mask, *labels;      /* NULL: not given */

@@ -133,6 +133,7 @@ const recipe_key recipe_keys[] = {
     MADE("channel", long, data.channel, 0, 9e15, 0),
     TEXT("dataset", data.dataset),
     TEXT("series", data.series),
+    MADE("allow-gaps", flag, data.allow_gaps, 0, 0, 0),
     TEXT("mask", data.mask),
     MADE("labels", labels, data.labels, 0, 0, 0),
     MADE("clip", clip, data.clip, 0, 0, 4),

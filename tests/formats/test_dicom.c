@@ -46,7 +46,7 @@ static void stack_up(dicom_frame *frames, const double *heights, size_t count) {
 static dicom_stack stacked(snow_context *context, dicom_frame *frames,
                            size_t count) {
     dicom_stack stack;
-    assert_int_equal(snow_dicom_stack(context, frames, count, &stack),
+    assert_int_equal(snow_dicom_stack(context, frames, count, false, &stack),
                      SNOW_STATUS_OK);
     return stack;
 }
@@ -54,7 +54,7 @@ static dicom_stack stacked(snow_context *context, dicom_frame *frames,
 static void refuse_stack(dicom_frame *frames, size_t count, const char *part) {
     snow_context *context = support_context();
     dicom_stack stack;
-    assert_int_equal(snow_dicom_stack(context, frames, count, &stack),
+    assert_int_equal(snow_dicom_stack(context, frames, count, false, &stack),
                      SNOW_STATUS_BAD_INPUT);
     assert_non_null(strstr(snow_context_message(context), part));
     assert_int_equal(snow_context_bytes(context), 0);
@@ -110,6 +110,31 @@ static void a_missing_slice_is_named(void **state) {
                  "slice (frames 2 and 3)");
     stack_up(frames, two, 6);
     refuse_stack(frames, 6, "2 of its slices are missing");
+}
+
+static void a_missing_slice_is_a_gap_where_it_may_be(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    dicom_frame frames[6];
+    dicom_stack stack;
+    const double heights[] = {0, 1, 2, 5, 6, 7};
+    stack_up(frames, heights, 6);
+    assert_int_equal(snow_dicom_stack(context, frames, 6, true, &stack),
+                     SNOW_STATUS_OK);
+    assert_int_equal(stack.slice_count, 8);
+    assert_int_equal(stack.missing, 2);
+    assert_true(stack.matrix[2][2] == 1 && stack.gap == 1);
+    for (size_t z = 0, place = 0; z < 8; z++) {
+        const dicom_slice *slice = &stack.slices[z];
+        if (z == 3 || z == 4)
+            assert_true(isnan(slice->weight) && slice->low == 2 &&
+                        slice->high == 3);
+        else
+            assert_true(slice->weight == 0 && slice->low == place++);
+    }
+    snow_dicom_stack_free(&stack);
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
 }
 
 static void uneven_slices_are_made_even(void **state) {
@@ -584,6 +609,7 @@ int main(void) {
         cmocka_unit_test(slices_are_ordered_along_their_normal),
         cmocka_unit_test(a_tilt_is_a_shear_in_the_matrix),
         cmocka_unit_test(a_missing_slice_is_named),
+        cmocka_unit_test(a_missing_slice_is_a_gap_where_it_may_be),
         cmocka_unit_test(uneven_slices_are_made_even),
         cmocka_unit_test(slices_beside_one_another_are_refused),
         cmocka_unit_test(several_at_each_place_are_times),

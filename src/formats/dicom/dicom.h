@@ -62,6 +62,7 @@ typedef struct dicom_frame {
     bool measured;   /* they are given */
     bool guessed;  /* depth is needed to place frames but missing; 1 is used */
     bool unscaled; /* a slope of 0 was ignored */
+    bool lost;     /* its pixels are cut; they count as NaN */
     double depth;  /* given mm from slice to slice, signed; 0: none */
     double thickness;
     double slope, intercept;
@@ -127,6 +128,7 @@ typedef struct dicom_reader {
     bool big_endian;
     bool packed;          /* the pixels are fragments */
     bool has_pixels;      /* if they were not requested: they follow */
+    bool cut;             /* but the file ends before they do */
     uint32_t pixel_bytes; /* then, for plain ones */
     const dicom_element *frames, *shared; /* functional groups, or NULL */
     size_t last_item; /* groups of the last requested frame; 0: none */
@@ -140,7 +142,8 @@ typedef struct dicom_reader {
     snow_seekable *inner_store;
 } dicom_reader;
 
-/* Parses a file up to its pixels, or including those of an image.  Errors:
+/* Parses a file up to its pixels, or including those of an image.  In the first
+ * case pixels that are cut are no error, but its message is there.  Errors:
  * SNOW_STATUS_BAD_INPUT (a value longer than the file, too deeply nested
  * sequences, compressed pixels without an end), SNOW_STATUS_NO_MEMORY. */
 snow_status snow_dicom_open(snow_context *context, snow_seekable *store,
@@ -199,7 +202,7 @@ size_t snow_dicom_group(dicom_frame *frames, size_t count, dicom_group *groups);
 /* Slice z of the volume lies between two of its positions. */
 typedef struct dicom_slice {
     size_t low, high; /* positions */
-    double weight;    /* of the high one */
+    double weight;    /* of the high one; NaN: the slice is missing */
 } dicom_slice;
 
 /* How the frames of a group form a volume: `places` of `times` frames each, in
@@ -211,7 +214,10 @@ typedef struct dicom_stack {
     size_t places, times;
     dicom_slice *slices; /* NULL: one at each position */
     size_t slice_count;
-    bool placed; /* the matrix refers to a patient */
+    bool gaps;      /* missing slices are allowed */
+    size_t missing; /* of the slices */
+    bool placed;    /* the matrix refers to a patient */
+    double normal[3];
     double matrix[4][4];
     double gap_least, gap_most, gap; /* mm between positions; between slices */
     bool given;                      /* gap is given */
@@ -228,12 +234,13 @@ double snow_dicom_distance(const double a[3], const double b[3]);
  * between them if they are not on an even grid.  Errors: as below. */
 snow_status snow_dicom_space_slices(dicom_stack *stack, const double normal[3]);
 
-/* Orders the frames of a group and finds the positions of its slices.  Gives no
- * warnings.  Free with snow_dicom_stack_free.  Errors: SNOW_STATUS_BAD_INPUT (a
- * missing slice, too many images at a position, slices that lie beside one
- * another), SNOW_STATUS_NO_MEMORY. */
+/* Orders the frames of a group and finds the positions of its slices, of which
+ * some may be missing if `gaps` are allowed.  Gives no warnings.  Free with
+ * snow_dicom_stack_free.  Errors: SNOW_STATUS_BAD_INPUT (a missing slice, too
+ * many images at a position, slices that lie beside one another),
+ * SNOW_STATUS_NO_MEMORY. */
 snow_status snow_dicom_stack(snow_context *context, dicom_frame *frames,
-                             size_t count, dicom_stack *out);
+                             size_t count, bool gaps, dicom_stack *out);
 void snow_dicom_stack_free(dicom_stack *stack);
 
 /* --- files.c -------------------------------------------------------- */
@@ -258,6 +265,11 @@ snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
 /* Describes one of its frames. */
 void snow_dicom_read_frame(dicom_reader *reader, const dicom_image *image,
                            int64_t number, dicom_frame *out);
+
+/* Finds whether the file of an open reader ends before the image's pixels do;
+ * that of compressed ones shows only when they are looked through. */
+snow_status snow_dicom_find_cut(const dicom_reader *reader,
+                                const dicom_image *image, bool *cut);
 
 /* --- pixels.c ------------------------------------------------------------- */
 

@@ -52,6 +52,7 @@ typedef struct collection {
     size_t image_count, image_room;
     dicom_frame *frames;
     size_t frame_count, frame_room;
+    bool gaps;         /* slices may be missing or cut */
     size_t copies;     /* files with the same image as another */
     size_t scraps;     /* files too short for DICOM that may have been slices */
     const char *scrap; /* the first of them */
@@ -86,6 +87,8 @@ static snow_status add_frames(collection *c, dicom_reader *reader,
 static snow_status add_image(collection *c, dicom_reader *reader, char *path,
                              const char *series) {
     dicom_image image;
+    if (reader->cut && (!c->gaps || !path))
+        return SNOW_STATUS_BAD_INPUT; /* the message is there */
     SNOW_TRY(snow_dicom_read_image(c->context, reader, &image));
     if (!image.rows || (series && strcmp(image.series, series) != 0))
         return SNOW_STATUS_OK;
@@ -102,7 +105,14 @@ static snow_status add_image(collection *c, dicom_reader *reader, char *path,
     *kept = image;
     kept->path = path;
     c->images[c->image_count++] = kept;
-    return add_frames(c, reader, kept);
+    bool lost = reader->cut;
+    size_t first = c->frame_count;
+    if (c->gaps && path)
+        SNOW_TRY(snow_dicom_find_cut(reader, kept, &lost));
+    SNOW_TRY(add_frames(c, reader, kept));
+    for (size_t i = first; i < c->frame_count; i++)
+        c->frames[i].lost = lost;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status add_store(collection *c, snow_seekable *store, char *path,
@@ -155,12 +165,18 @@ static snow_status add_scrap(collection *c, const char *path,
     return SNOW_STATUS_OK;
 }
 
-/* Adds the images of a file, if there are any. */
+/* Adds the images of a file, if there are any.  One that cannot be read is left
+ * out where slices may be missing. */
 static snow_status add_file(collection *c, char *path, const char *series) {
     bool is;
     size_t bytes;
     snow_status status = probe(c->context, path, &is, &bytes);
-    return is ? add_path(c, path, series) : add_scrap(c, path, status, bytes);
+    status = is ? add_path(c, path, series) : add_scrap(c, path, status, bytes);
+    if (!c->gaps || status != SNOW_STATUS_BAD_INPUT)
+        return status;
+    snow_notify(c->context, "%.200s; it is left out",
+                snow_context_message(c->context));
+    return SNOW_STATUS_OK;
 }
 
 static void warn_scraps(const collection *c) {
@@ -265,7 +281,7 @@ static snow_status read_chosen(collection *c, snow_seekable *store,
     if (status == SNOW_STATUS_OK)
         status =
             snow_dicom_stack(c->context, c->frames + all.groups[taken].first,
-                             all.groups[taken].count, &stack);
+                             all.groups[taken].count, c->gaps, &stack);
     if (status == SNOW_STATUS_OK) {
         status = snow_dicom_read_stack(&input, &stack, options, info, out);
         snow_dicom_stack_free(&stack);
@@ -277,7 +293,7 @@ static snow_status read_chosen(collection *c, snow_seekable *store,
 snow_status snow_dicom_read_files(snow_context *context, snow_folder *files,
                                   const snow_volume_options *options,
                                   snow_volume_info *info, snow_volume **out) {
-    collection c = {.context = context};
+    collection c = {.context = context, .gaps = options->allow_gaps};
     snow_status status = SNOW_STATUS_OK;
     for (size_t i = 0; i < files->count && status == SNOW_STATUS_OK; i++) {
         snow_monitor_report(context->monitor, SNOW_STAGE_READ, (double)i,
@@ -369,8 +385,8 @@ static bool gather_stack(collection *c, dicom_stack *out) {
     size_t count = snow_dicom_group(c->frames, c->frame_count, groups);
     for (size_t i = 0; i < count && !made; i++) {
         dicom_frame *frames = c->frames + groups[i].first;
-        if (snow_dicom_stack(c->context, frames, groups[i].count, out) !=
-            SNOW_STATUS_OK)
+        if (snow_dicom_stack(c->context, frames, groups[i].count, c->gaps,
+                             out) != SNOW_STATUS_OK)
             continue;
         made = keep_its_time(out, frames);
         if (!made)
@@ -421,7 +437,7 @@ static snow_status read_dicom(snow_source *source,
                               const snow_volume_options *options,
                               snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
-    collection c = {.context = context};
+    collection c = {.context = context, .gaps = options->allow_gaps};
     snow_seekable *store;
     SNOW_TRY(snow_seekable_open(source, &store));
     bool done = false;

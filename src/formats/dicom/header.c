@@ -433,3 +433,17 @@ void snow_dicom_read_frame(dicom_reader *reader, const dicom_image *image,
         numbers(reader, &key_fields[i], frame_number, &frame.keys[i], 1);
     *out = frame;
 }
+
+snow_status snow_dicom_find_cut(const dicom_reader *reader,
+                                const dicom_image *image, bool *cut) {
+    dicom_reader whole;
+    *cut = reader->cut;
+    if (reader->cut || !reader->packed)
+        return SNOW_STATUS_OK;
+    snow_status status =
+        snow_dicom_open(reader->context, reader->store, image, &whole);
+    *cut = status == SNOW_STATUS_BAD_INPUT;
+    if (status == SNOW_STATUS_OK)
+        snow_dicom_close(&whole);
+    return *cut ? SNOW_STATUS_OK : status;
+}

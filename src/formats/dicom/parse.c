@@ -340,7 +340,10 @@ static snow_status walk_set(walk *w, coding how, uint64_t end, int depth) {
             w->reader->has_pixels = true;
             w->reader->packed = h.length == UNDEFINED;
             w->reader->pixel_bytes = w->reader->packed ? 0 : h.length;
-            return w->reader->packed ? SNOW_STATUS_OK : check_length(w, &h);
+            snow_status status =
+                w->reader->packed ? SNOW_STATUS_OK : check_length(w, &h);
+            w->reader->cut = status == SNOW_STATUS_BAD_INPUT;
+            return w->reader->cut ? SNOW_STATUS_OK : status;
         }
         SNOW_TRY(walk_element(w, how, &h, depth));
         if (depth == 0 && h.tag == DICOM_TAG_PIXELS)

@@ -146,6 +146,7 @@ static snow_status lay_stack(dicom_stack *s, dicom_frame *frames, ranked *all,
     for (size_t i = 0; i < count; i++)
         all[i].frame = frames[i];
     cross(frames[0].row, frames[0].column, normal);
+    memcpy(s->normal, normal, sizeof normal);
     order_frames(all, count, normal);
     s->placed = frames[0].placed;
     s->times = 1;
@@ -165,8 +166,8 @@ static snow_status lay_stack(dicom_stack *s, dicom_frame *frames, ranked *all,
 }
 
 snow_status snow_dicom_stack(snow_context *context, dicom_frame *frames,
-                             size_t count, dicom_stack *out) {
-    dicom_stack stack = {.context = context};
+                             size_t count, bool gaps, dicom_stack *out) {
+    dicom_stack stack = {.context = context, .gaps = gaps};
     ranked *all = snow_allocate_array(context, count, sizeof *all);
     if (!all)
         return SNOW_STATUS_NO_MEMORY;

@@ -50,23 +50,29 @@ static double multiple(double gap, double usual) {
     return fabs(gap - times * usual) <= SAME_GAP * usual ? times : 0;
 }
 
-/* A single gap of twice or three times the usual one between usual ones is a
- * missing slice; two in a row are how the slices were acquired. */
-static snow_status refuse_missing(const dicom_stack *s,
-                                  const double normal[3]) {
-    double usual, before = 1;
-    size_t found = s->places;
-    SNOW_TRY(usual_gap(s, normal, &usual));
-    for (size_t i = 0; i + 1 < s->places; i++) {
-        double times = multiple(gap_at(s, normal, i), usual);
-        if (times < 1 || (times > 1 && before > 1))
+/* Finds a single gap of twice or three times the usual one between usual ones:
+ * a missing slice; two in a row are how the slices were acquired.  `*found` is
+ * the number of places if there is none. */
+static snow_status find_missing(const dicom_stack *s, const double normal[3],
+                                double *usual, size_t *found) {
+    double before = 1;
+    *found = s->places;
+    SNOW_TRY(usual_gap(s, normal, usual));
+    for (size_t i = 0; i + 1 < s->places && s->places >= 4; i++) {
+        double times = multiple(gap_at(s, normal, i), *usual);
+        if (times < 1 || (times > 1 && before > 1)) {
+            *found = s->places;
             return SNOW_STATUS_OK;
-        if (times > 1 && found == s->places)
-            found = i;
+        }
+        if (times > 1 && *found == s->places)
+            *found = i;
         before = times;
     }
-    if (found == s->places || s->places < 4)
-        return SNOW_STATUS_OK;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status refuse_missing(const dicom_stack *s, const double normal[3],
+                                  double usual, size_t found) {
     double gap = gap_at(s, normal, found);
     double lost = multiple(gap, usual) - 1;
     const dicom_frame *low = &s->frames[found * s->times];
@@ -74,10 +80,57 @@ static snow_status refuse_missing(const dicom_stack *s,
     return snow_fail(
         s->context, SNOW_STATUS_BAD_INPUT,
         "%.0f of its slices %s missing between %s and %s (frames %lld and "
-        "%lld), which lie %g mm apart while others lie %g; add %s",
+        "%lld), which lie %g mm apart while others lie %g; add %s, or give "
+        "--allow-gaps",
         lost, lost > 1 ? "are" : "is", snow_dicom_name(low),
         snow_dicom_name(high), (long long)low->number, (long long)high->number,
         gap, usual, lost > 1 ? "them" : "it");
+}
+
+/* The number of slices if the missing ones were there, 0 if the others then did
+ * not lie on an even grid, or if it is too large. */
+static size_t full_count(const dicom_stack *s, const double normal[3],
+                         double usual) {
+    double first = snow_dicom_dot(snow_dicom_position(s, 0), normal);
+    double all =
+        snow_dicom_dot(snow_dicom_position(s, s->places - 1), normal) - first;
+    double steps = 0, at = 0;
+    for (size_t i = 0; i + 1 < s->places; i++)
+        steps += multiple(gap_at(s, normal, i), usual);
+    if (steps >= (double)MOST_FINER * (double)s->places)
+        return 0;
+    for (size_t i = 0; i + 1 < s->places; i++) {
+        double off = snow_dicom_dot(snow_dicom_position(s, i), normal) - first -
+                     at * all / steps;
+        if (fabs(off) > SAME_GAP * all / steps)
+            return 0;
+        at += multiple(gap_at(s, normal, i), usual);
+    }
+    return (size_t)steps + 1;
+}
+
+/* Makes a slice of each position, and one without values where one is
+ * missing: what lies there is not known. */
+static snow_status leave_gaps(dicom_stack *s, const double normal[3],
+                              double usual, size_t found) {
+    size_t count = full_count(s, normal, usual), n = 0;
+    if (!count)
+        return refuse_missing(s, normal, usual, found);
+    s->slices = snow_allocate_array(s->context, count, sizeof *s->slices);
+    if (!s->slices)
+        return SNOW_STATUS_NO_MEMORY;
+    for (size_t i = 0; i < s->places; i++) {
+        size_t next = i + 1 < s->places
+                          ? (size_t)multiple(gap_at(s, normal, i), usual)
+                          : 1;
+        s->slices[n++] = (dicom_slice){i, i, 0};
+        while (--next)
+            s->slices[n++] = (dicom_slice){i, i + 1, NAN};
+    }
+    s->gap *= (double)(s->places - 1) / (double)(count - 1);
+    s->missing = count - s->places;
+    s->slice_count = count;
+    return SNOW_STATUS_OK;
 }
 
 /* The largest snow_dicom_distance of a position from its place on the line from
@@ -158,6 +211,11 @@ snow_status snow_dicom_space_slices(dicom_stack *s, const double normal[3]) {
                          "its slices are not aligned: one is %g mm off the "
                          "line from the first to the last; open a part of them",
                          beside);
-    SNOW_TRY(refuse_missing(s, normal));
-    return even_out(s, normal);
+    double usual;
+    size_t found;
+    SNOW_TRY(find_missing(s, normal, &usual, &found));
+    if (found == s->places)
+        return even_out(s, normal);
+    return s->gaps ? leave_gaps(s, normal, usual, found)
+                   : refuse_missing(s, normal, usual, found);
 }

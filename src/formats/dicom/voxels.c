@@ -5,8 +5,8 @@
  * 16 or 32 (PS3.5, 8.1.1); other bits, such as old overlays, are dropped.
  * Values stay as stored, with one scale for all.  They become floats if there
  * is padding, which becomes NaN, if slices differ in scale, and if slices are
- * interpolated. Palette colours are replaced by their brightness; of YBR_FULL
- * the first sample is the brightness.
+ * interpolated, missing or cut. Palette colours are replaced by their
+ * brightness; of YBR_FULL the first sample is the brightness.
  *
  * A file stays open until another is needed. */
 #include "formats/dicom/dicom.h"
@@ -160,8 +160,12 @@ static snow_status take_words(decoder *d, const dicom_frame *frame) {
 
 static snow_status take_frame(decoder *d, const dicom_frame *frame,
                               double *out) {
-    SNOW_TRY(take_words(d, frame));
     const snow_region *w = d->window;
+    for (int64_t i = 0; frame->lost && i < w->count[0] * w->count[1]; i++)
+        out[i] = NAN;
+    if (frame->lost)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(take_words(d, frame));
     const dicom_image *image = frame->image;
     size_t size = (size_t)d->words.size;
     size_t samples = (size_t)image->samples, columns = (size_t)image->columns;
@@ -254,7 +258,9 @@ static snow_status fill_slice(decoder *d, const dicom_stack *stack, int64_t z,
         SNOW_TRY(fetch(d, frames + slice.low * stack->times, &low));
     if (slice.weight > 0)
         SNOW_TRY(fetch(d, frames + slice.high * stack->times, &high));
-    values = low ? low : high;
+    values = low ? low : high ? high : mixed;
+    for (size_t i = 0; values == mixed && i < count; i++)
+        mixed[i] = NAN; /* the slice is missing */
     if (low && high) {
         blend(low, high, slice.weight, count, mixed);
         values = mixed;
@@ -302,7 +308,7 @@ static void survey(const dicom_stack *stack, bool *scales, bool *pads) {
         const dicom_frame *frame = &stack->frames[i];
         *scales |= frame->slope != stack->frames[0].slope ||
                    frame->intercept != stack->frames[0].intercept;
-        *pads |= frame->image->pads;
+        *pads |= frame->image->pads || frame->lost;
     }
 }
 
@@ -329,6 +335,67 @@ static snow_status stored_type(snow_context *context, const dicom_image *image,
     return SNOW_STATUS_OK;
 }
 
+/* The most gaps that notes name one by one. */
+#define MOST_NAMED 8
+
+/* A frame's place along the normal, in mm, as in SliceLocation. */
+static double height(const dicom_stack *stack, const dicom_frame *frame) {
+    return snow_dicom_dot(frame->position, stack->normal);
+}
+
+/* Names each gap by the slices around it. */
+static void remark_missing(snow_context *context, const dicom_stack *stack) {
+    size_t named = 0;
+    for (size_t z = 0; stack->missing && z < stack->slice_count; z++) {
+        const dicom_slice *slice = &stack->slices[z];
+        size_t lost = 0;
+        while (isnan(stack->slices[z].weight) &&
+               stack->slices[z].low == slice->low) {
+            lost++;
+            z++;
+        }
+        if (!lost || ++named > MOST_NAMED)
+            continue;
+        const dicom_frame *low = &stack->frames[slice->low * stack->times];
+        const dicom_frame *high = &stack->frames[slice->high * stack->times];
+        snow_notify(context,
+                    "%zu slice%s missing between %s (frame %lld, at %g mm) and "
+                    "%s (frame %lld, at %g mm); the gap is left transparent",
+                    lost, lost > 1 ? "s are" : " is", snow_dicom_name(low),
+                    (long long)low->number, height(stack, low),
+                    snow_dicom_name(high), (long long)high->number,
+                    height(stack, high));
+    }
+    if (named > MOST_NAMED)
+        snow_notify(context, "in all %zu slices are missing in %zu gaps",
+                    stack->missing, named);
+}
+
+/* Names each slice whose file is cut; refuses a volume without others. */
+static snow_status remark_lost(snow_context *context,
+                               const dicom_stack *stack) {
+    size_t lost = 0, named = 0, count = stack->places * stack->times;
+    for (size_t i = 0; i < count; i++)
+        lost += stack->frames[i].lost;
+    if (lost == count)
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "all of its slices are cut; get their files again");
+    for (size_t i = 0; i < count && named < MOST_NAMED; i++) {
+        const dicom_frame *frame = &stack->frames[i];
+        if (!frame->lost)
+            continue;
+        named++;
+        snow_notify(context,
+                    "%s is cut: its slice (frame %lld, at %g mm) is left "
+                    "transparent",
+                    snow_dicom_name(frame), (long long)frame->number,
+                    height(stack, frame));
+    }
+    if (lost > named)
+        snow_notify(context, "in all %zu slices are cut", lost);
+    return SNOW_STATUS_OK;
+}
+
 /* Gives all warnings about a volume, each once. */
 static void remark(snow_context *context, const dicom_stack *stack,
                    bool spacing_given) {
@@ -345,13 +412,14 @@ static void remark(snow_context *context, const dicom_stack *stack,
                     "the distance of the slices is missing; %g mm is used, "
                     "--spacing sets another",
                     stack->gap);
-    if (stack->slices)
+    remark_missing(context, stack);
+    if (stack->slices && !stack->missing)
         snow_notify(context,
                     "its %zu slices lie %g to %g mm apart; they are resampled "
                     "to %zu, one every %g mm",
                     stack->places, stack->gap_least, stack->gap_most,
                     stack->slice_count, stack->gap);
-    else if (stack->placed &&
+    else if (stack->placed && !stack->missing &&
              stack->gap_most - stack->gap_least > 1e-3 * stack->gap)
         snow_notify(context,
                     "its slices lie %g to %g mm apart; their mean distance, %g "
@@ -414,6 +482,7 @@ static snow_status describe_stack(const dicom_input *input,
     info->medical = stack->placed;
     memcpy(info->unit, "mm", 3);
     memcpy(info->matrix, stack->matrix, sizeof info->matrix);
+    SNOW_TRY(remark_lost(context, stack));
     remark(context, stack, snow_spacing_given(options));
     SNOW_TRY(snow_volume_pick_channel(context, options, image->samples,
                                       &d->channel));

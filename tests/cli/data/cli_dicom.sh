@@ -1,0 +1,143 @@
+#!/bin/bash
+# DICOM folders in which slices are missing or cut: refused, listed by info, and
+# opened with --allow-gaps, when what is not known is NaN and nothing is made up.
+. "$(dirname "$0")/../../support/shell.sh"
+
+command -v python3 >/dev/null || {
+    skipped all "there is no python3"
+    exit 77
+}
+cat >tools.py <<'END'
+import math
+import os
+import struct
+import sys
+
+SIDE, COUNT = 5, 9
+
+
+def element(group, number, kind, value):
+    if isinstance(value, str):
+        value = value.encode() + (b"" if len(value) % 2 == 0 else
+                                  b"\0" if kind == "UI" else b" ")
+    elif isinstance(value, int):
+        value = struct.pack("<H", value)
+    head = struct.pack("<HH", group, number) + kind.encode()
+    if kind == "OW":
+        return head + struct.pack("<HI", 0, len(value)) + value
+    return head + struct.pack("<H", len(value)) + value
+
+
+def voxel(z, i):
+    return 100 * (z + 1) + i
+
+
+def slice_file(z):
+    pixels = struct.pack("<25H", *(voxel(z, i) for i in range(SIDE * SIDE)))
+    meta = element(2, 0x10, "UI", "1.2.840.10008.1.2.1")
+    meta = element(2, 0, "UL", struct.pack("<I", len(meta))) + meta
+    return bytes(128) + b"DICM" + meta + b"".join([
+        element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.2"),
+        element(8, 0x18, "UI", f"1.2.3.{z + 1}"),
+        element(8, 0x60, "CS", "CT"), element(0x20, 0x0E, "UI", "1.2.3"),
+        element(0x20, 0x13, "IS", str(z + 1)),
+        element(0x20, 0x32, "DS", f"0\\0\\{2 * z - 6}"),
+        element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0"),
+        element(0x28, 2, "US", 1), element(0x28, 4, "CS", "MONOCHROME2"),
+        element(0x28, 0x10, "US", SIDE), element(0x28, 0x11, "US", SIDE),
+        element(0x28, 0x30, "DS", "2\\2"), element(0x28, 0x100, "US", 16),
+        element(0x28, 0x101, "US", 16), element(0x28, 0x102, "US", 15),
+        element(0x28, 0x103, "US", 0), element(0x7FE0, 0x10, "OW", pixels)])
+
+
+def folder(name, left_out=(), cut=()):
+    """Slices but some; of others all but some last bytes."""
+    os.mkdir(name)
+    for z in range(COUNT):
+        data = slice_file(z)
+        if z in cut:
+            data = data[:len(data) - cut[z]]
+        if z not in left_out:
+            with open(f"{name}/s_{z}.dcm", "wb") as file:
+                file.write(data)
+
+
+def same(path, lost):
+    """A .npy holds all voxels, and NaN where slices are lost."""
+    with open(path, "rb") as file:
+        data = file.read()
+    begin = 10 + struct.unpack("<H", data[8:10])[0]
+    assert b"'<f4'" in data[:begin], data[:begin]
+    values = struct.unpack(f"<{(len(data) - begin) // 4}f", data[begin:])
+    assert len(values) == COUNT * SIDE * SIDE, len(values)
+    for at, value in enumerate(values):
+        z, i = divmod(at, SIDE * SIDE)
+        right = math.isnan(value) if z in lost else value == voxel(z, i)
+        assert right, (z, i, value)
+
+
+if __name__ == "__main__":
+    same(sys.argv[1], [int(z) for z in sys.argv[2:]])
+else:
+    folder("whole")
+    folder("gap", [4])
+    folder("two", [3, 4])
+    folder("gaps", [2, 6])
+    folder("cut", cut={4: 10})
+    folder("torn", cut={4: 140})
+    folder("none", cut=dict.fromkeys(range(COUNT), 4))
+END
+python3 -c "import tools"
+
+run 0 "info of a whole folder" "$TOOL" info whole
+cp "$OUT" whole.txt
+run 0 "with gaps allowed" "$TOOL" info whole --allow-gaps
+check "is the same" cmp -s "$OUT" whole.txt
+check "and nothing is said" [ ! -s "$ERR" ]
+
+# opens NAME PATTERN LOST...: refused, listed, and opened with gaps.
+opens() {
+    local name=$1 fault=$2 note=$3
+    shift 3
+    refused 3 "$name is not opened" "$fault" "$TOOL" $name -o z.png
+    run 0 "$name is listed" "$TOOL" info $name
+    prints "^dims  *5 x 5 x 9 "
+    prints "^type  *float32$"
+    prints "^spacing  *2 x 2 x 2 mm"
+    prints "^finite  *$((25 * (9 - $#))) of 225 "
+    says "$note"
+    says "note: $name: other verbs need --allow-gaps to open it"
+    run 0 "$name is listed as JSON, quiet" "$TOOL" info -q --json $name
+    check "nothing is said" [ ! -s "$ERR" ]
+    run 0 "$name with gaps" "$TOOL" convert $name --allow-gaps -o $name.npy
+    says "$note"
+    check "has its voxels and no others" python3 tools.py $name.npy "$@"
+    run 0 "$name as a picture" "$TOOL" $name --allow-gaps -o $name.png -s 40x40 \
+        --save-config $name.json
+    says "$note"
+    run 0 "$name by its configuration" "$TOOL" --config $name.json -q \
+        -o again.png -y
+    check "is the same picture" cmp -s $name.png again.png
+}
+opens gap "1 of its slices is missing between s_3.dcm and s_5.dcm .*; add it, or give --allow-gaps" \
+    "1 slice is missing between s_3.dcm .frame 0, at 0 mm. and s_5.dcm .frame 0, at 4 mm.; the gap is left transparent" 4
+opens two "2 of its slices are missing between s_2.dcm and s_5.dcm" \
+    "2 slices are missing between s_2.dcm .frame 0, at -2 mm. and s_5.dcm .frame 0, at 4 mm." 3 4
+opens gaps "1 of its slices is missing between s_1.dcm and s_3.dcm" \
+    "1 slice is missing between s_5.dcm .frame 0, at 4 mm. and s_7.dcm .frame 0, at 8 mm." 2 6
+opens cut "s_4.dcm: is truncated or damaged" \
+    "s_4.dcm is cut: its slice .frame 0, at 2 mm. is left transparent" 4
+opens torn "s_4.dcm: is truncated or damaged" \
+    "s_4.dcm: is truncated or damaged: .*; it is left out" 4
+
+
+refused 3 "a folder of cut slices" "all of its slices are cut" \
+    "$TOOL" none --allow-gaps -o z.png
+refused 3 "even to info" "s_0.dcm: is truncated or damaged" "$TOOL" info none
+run 0 "a slice beside a gap" "$TOOL" info gap/s_1.dcm
+says "is used alone"
+run 0 "and with gaps" "$TOOL" info gap/s_1.dcm --allow-gaps
+prints "^dims  *5 x 5 x 9 "
+refused 2 "what reads no volume" "allow-gaps: is not an option of" \
+    "$TOOL" compare a.png b.png --allow-gaps
+finish
