@@ -146,7 +146,8 @@ static int refuse_word(const char *word) {
     guess near;
     guess_begin(&near, word + strspn(word, "-"));
     for (const verb_row *row = verb_table; row->name; row++)
-        guess_offer(&near, row->name);
+        if (row->bit)
+            guess_offer(&near, row->name);
     for (int i = 0; topic_table[i].name; i++) {
         if (!topic_is_here((topic)i))
             continue;

@@ -70,8 +70,9 @@ static void guess_choice(const char *choices, const char *text, char *out,
     snprintf(words, sizeof words, "%s", choices);
     for (char *rest = words, *word; (word = strtok_r(rest, "| ", &rest));)
         guess_offer(&nearest, word);
-    bool any = guess_write(&nearest, "", near, sizeof near);
-    snprintf(out, size, any ? " (did you mean %s?)" : "", near);
+    out[0] = '\0';
+    if (guess_write(&nearest, "", near, sizeof near))
+        snprintf(out, size, " (did you mean %s?)", near);
 }
 
 /* A planned choice is not unknown: its user has read a manual and need not look
