@@ -225,6 +225,33 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
     snow_context_free(context);
 }
 
+static void other_spellings_mean_the_same(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_recipe a = {.size = sizeof a}, b = {.size = sizeof b};
+    assert_int_equal(parse(context,
+                           "{\"size\": 40, \"window\": [300, 120],"
+                           " \"mode\": \"MIP\", \"quality\": \"HIGH\","
+                           " \"fit\": \"Volume\", \"type\": \"UINT8\","
+                           " \"light\": \"Head\"}",
+                           &a),
+                     SNOW_STATUS_OK);
+    assert_int_equal(parse(context,
+                           "{\"size\": [40, 40], \"range\": [-30, 270],"
+                           " \"mode\": \"mip\", \"quality\": \"high\","
+                           " \"fit\": \"volume\", \"type\": \"uint8\","
+                           " \"light\": \"head\"}",
+                           &b),
+                     SNOW_STATUS_OK);
+    char *one = write_text(context, &a), *other = write_text(context, &b);
+    assert_string_equal(one, other);
+    free(one);
+    free(other);
+    snow_recipe_clear(&a);
+    snow_recipe_clear(&b);
+    snow_context_free(context);
+}
+
 static void a_view_without_a_name_is_the_usual_one_turned(void **state) {
     (void)state;
     snow_context *context = support_context();
@@ -286,6 +313,7 @@ int main(void) {
         cmocka_unit_test(what_is_written_reads_as_it_was),
         cmocka_unit_test(an_empty_recipe_is_the_defaults),
         cmocka_unit_test(a_wrong_recipe_is_refused_by_its_key),
+        cmocka_unit_test(other_spellings_mean_the_same),
         cmocka_unit_test(a_view_without_a_name_is_the_usual_one_turned),
         cmocka_unit_test(opacities_per_millimetre_follow_the_unit),
     };
