@@ -117,7 +117,7 @@ static int run_command(const verb_row *verb, bool named, int argc,
     double begin = seconds_now();
     done = run_verb(verb, &opts);
     if (done == SNOW_STATUS_OK || done == EXIT_EMPTY) {
-        int saved = config_save(&opts);
+        int saved = config_save(&opts, verb);
         done = saved == SNOW_STATUS_OK ? done : saved;
     }
     look_unload(&opts);
@@ -141,7 +141,7 @@ static int dispatch(int argc, char **argv) {
     }
     const verb_row *verb = verb_named(argv[1]);
     if (!verb)
-        return run_command(verb_of(VERB_RENDER), false, argc, argv);
+        return run_command(config_verb(argc, argv), false, argc, argv);
     if (!verb->bit)
         return fail_usage("%s is not built yet; %s", verb->name, verb->text);
     if (verb->bit == VERB_BENCH) /* of MPI: mpi_main.c */

@@ -1,11 +1,8 @@
-/* snowglass/recipe.h - a whole render as a text: the same for the command line,
- * for programs, and for pictures of a running simulation.
+/* snowglass/recipe.h - a render as a text, for the tool, programs, simulations.
  *
  * A recipe is one JSON object. Its keys are the long options of the tool:
- *   {"input": "head.nii.gz", "output": "head_%04d.png", "size": [640, 480],
- *    "colormap": "viridis", "range": [10, 200], "background": [1, 1, 1]}
- * A key that is absent has its default, an unknown one is an error. In
- * libsnowglass-recipe, which needs jansson. */
+ *   {"input": "head.nii.gz", "size": [640, 480], "range": [10, 200]}
+ * In libsnowglass-recipe, which needs jansson. */
 #ifndef SNOWGLASS_RECIPE_H
 #define SNOWGLASS_RECIPE_H
 
@@ -16,8 +13,7 @@
 /* By default texts are NULL; points of the camera are NaN: not given. */
 typedef struct snow_recipe {
     size_t size;
-    const char *input;             /* path; not used in situ */
-    const char *output;            /* path, or a movie's pattern */
+    const char *input, *output;    /* paths; in situ only a movie's pattern */
     snow_volume_options data;      /* how to open the input */
     const char *preset, *colormap; /* the look, as in snow_look */
     snow_range range;
@@ -29,8 +25,7 @@ typedef struct snow_recipe {
     int width, height;                      /* (512, 512) */
     double azimuth, elevation, roll, zoom, fov; /* as in snow_view */
     double position[3], target[3], up[3];       /* of the camera: snow_view */
-    bool no_labels;                             /* no letters of orientation */
-    bool legend, time_label;       /* bars; the number of the step */
+    bool no_labels, legend, time_label; /* letters; bars; number of the step */
     snow_settings settings;        /* opacity_length stays 0 */
     snow_image_options image;      /* of the file */
     void *owned;                   /* the texts; NULL: the caller's */
@@ -39,7 +34,9 @@ typedef struct snow_recipe {
     const char *tf;    /* file of the look's base (look_file.h), or NULL */
     bool log;          /* as in snow_look */
     const char *depth; /* path of the depths, or NULL */
-    int fit;           /* of the tool: 1 visible, 2 volume */
+    int fit, frames;   /* of the tool: 1 visible, 2 volume; in a turn, or 0 */
+    double shift, fps; /* as in snow_look; of the tool (25) */
+    const char *verb, *version; /* of the tool that wrote it, or NULL */
 } snow_recipe;
 SNOW_RECORD(snow_recipe);
 

@@ -3,8 +3,7 @@
  *
  * Colour (straight, linear as stored) and opacity, of one reference length
  * (snow_settings), are piecewise linear between control points in data units,
- * constant beyond the ends. A value that repeats is a step, and belongs to the
- * later point. A gradient opacity can multiply the opacity. */
+ * constant beyond. A repeated value is a step, of the later point. */
 #ifndef SNOWGLASS_TRANSFER_H
 #define SNOWGLASS_TRANSFER_H
 
@@ -51,8 +50,7 @@ typedef enum snow_range {
 typedef enum snow_domain {
     SNOW_DOMAIN_DATA = 0, /* data values */
     SNOW_DOMAIN_RANGE,    /* shares 0 to 1, of smallest to largest value */
-    SNOW_DOMAIN_OBJECT    /* shares 0 to 1, of the background's end to the
-                             brightest, both by the histogram */
+    SNOW_DOMAIN_OBJECT    /* shares, of the background's end to the brightest */
 } snow_domain;
 
 /* What a transfer function is made of, before there is a volume; by default all
@@ -78,6 +76,7 @@ typedef struct snow_look {
     size_t opacity_count;
     const snow_opacity_point *gradient_opacities;
     size_t gradient_opacity_count;
+    double shift; /* added to all values but those of `opacities` */
 } snow_look;
 SNOW_RECORD(snow_look);
 
@@ -88,12 +87,15 @@ SNOW_API snow_status snow_transfer_new_for_volume(
     const snow_volume *volume, const snow_look *look, snow_transfer **out);
 
 /* "grey 72..213; opacity 0 at 72, 0.4 at 213 (from the histogram)"; straight
- * colour and opacity of a data value, zeros for NaN; values of both ends. */
+ * colour and opacity of a data value, zeros for NaN; values of both ends; the
+ * points in use, in data units, which stay the function's. */
 SNOW_API const char *snow_transfer_description(const snow_transfer *transfer);
 SNOW_API void snow_transfer_evaluate(
     const snow_transfer *transfer, double value, double rgba[4]);
 SNOW_API void snow_transfer_domain(
     const snow_transfer *transfer, double *low, double *high);
+SNOW_API snow_status snow_transfer_get_look(
+    const snow_transfer *transfer, snow_look *out);
 
 /* Whether all colours are grey, and pictures have two channels; whether it was
  * chosen for a volume without surfaces, better drawn unshaded. */

@@ -302,6 +302,7 @@ static void report_choices(const work *w) {
     if (w->state.opts->verbosity >= 0)
         say("%s%s", text, w->painted.words);
     warn_picture(&w->state, w->image);
+    render_state_note(&w->state);
 }
 
 /* Refuses what can be refused before anything is read; the rank that writes

@@ -120,6 +120,7 @@ snow_look look_options(const options *opts) {
                       .low = opts->range.low,
                       .high = opts->range.high,
                       .log = opts->log,
+                      .shift = opts->shift,
                       .base = opts->loaded ? snow_look_file_look(opts->loaded)
                                            : NULL};
     /* The projections are grey over the full range by default, as usual. */

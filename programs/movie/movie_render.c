@@ -80,6 +80,7 @@ static void report_choices(const shot_renderer *shots, snow_image *image) {
      * warns. */
     warn_picture(&shots->state, shots->state.turns ? image : NULL);
     annotations_report(opts);
+    render_state_note(&shots->state);
 }
 
 static int begin(void *self, const movie_shot *shot) {

@@ -1,23 +1,19 @@
-/* config.c - converts between recipe files and options.
+/* config.c - converts recipe files to options.
  *
  * A recipe is validated first and then turned into the texts that would stand
  * on the command line.  So each option has one reader, and the record of an
  * interrupted movie covers the options of a recipe too. */
 #include "options/config.h"
-#include "commands/commands.h"
-#include "picture/outputs.h"
+#include "options/config_paths.h"
 #include "run/log.h"
 #include "run/start.h"
 
-#include <inttypes.h>
 #include <jansson.h>
 #include <math.h>
 #include <snowglass/recipe.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* --- reading -------------------------------------------------------------- */
 
 /* Appends to the texts of the configuration; returns false if they are full. */
 static bool add_text(options *out, const char *text) {
@@ -30,6 +26,16 @@ static bool add_text(options *out, const char *text) {
 }
 
 static bool add_value(options *out, const char *key, const json_t *value);
+
+/* With as few digits as bring the number back, but no "4e+01". */
+static void spell_real(double value, char text[40]) {
+    for (int digits = 6; digits <= 17; digits++) {
+        snprintf(text, 40, "%.*g", digits, value);
+        double again = strtod(text, NULL);
+        if (again <= value && again >= value)
+            return;
+    }
+}
 
 /* Writes a list as text: "640x480", "0,1", "10:0,20:0.5".  A colon separates
  * the numbers of a list within a list, except for clip planes.  An empty end of
@@ -66,12 +72,11 @@ static bool add_value(options *out, const char *key, const json_t *value) {
         snprintf(number, sizeof number, "%" JSON_INTEGER_FORMAT,
                  json_integer_value(value));
     else
-        snprintf(number, sizeof number, "%.17g", json_real_value(value));
+        spell_real(json_real_value(value), number);
     return add_text(out, number);
 }
 
-/* The text of a value; NULL if there is no more room. */
-static char *text_of(options *out, const char *key, const json_t *value) {
+char *config_text(options *out, const char *key, const json_t *value) {
     char *text = out->texts + out->text_bytes;
     if (!add_value(out, key, value))
         return NULL;
@@ -99,15 +104,39 @@ static bool gives_way(const options *out, const char *key) {
            options_given(out, "range");
 }
 
+/* The inputs of a movie, unless some stand on the command line.  They stay
+ * until the process ends, as argv does. */
+static int take_inputs(options *out, const json_t *list) {
+    static char **inputs;
+    size_t count = json_array_size(list);
+    if (out->operand_count > 0 || inputs || count == 0)
+        return CONTINUE;
+    inputs = calloc(count, sizeof *inputs);
+    for (size_t i = 0; inputs && i < count; i++) {
+        inputs[i] = strdup(json_string_value(json_array_get(list, i)));
+        if (!inputs[i])
+            return fail_usage("out of memory for the names of %zu inputs; "
+                              "close other programs",
+                              count);
+    }
+    out->operands = inputs;
+    out->operand_count = inputs ? (int)count : 0;
+    return CONTINUE;
+}
+
 static int take_key(options *out, const verb_row *verb, const char *key,
                     const json_t *value) {
-    bool nothing = json_is_false(value) || (strcmp(key, "perspective") == 0 &&
-                                            json_number_value(value) == 0);
+    bool nothing =
+        json_is_false(value) || strcmp(key, "version") == 0 ||
+        strcmp(key, "verb") == 0 ||
+        (strcmp(key, "perspective") == 0 && json_number_value(value) == 0);
     if (nothing || gives_way(out, key))
         return CONTINUE;
     if (json_is_true(value))
         return options_take(out, verb, key, NULL);
-    char *text = text_of(out, key, value);
+    if (json_is_array(value) && strcmp(key, "input") == 0)
+        return take_inputs(out, value);
+    char *text = config_text(out, key, value);
     if (!text)
         return fail_usage("--config: %s is too long; use fewer points",
                           out->config);
@@ -165,6 +194,7 @@ static int take_file(options *out, const verb_row *verb) {
     if (done != CONTINUE)
         return done;
     json_t *tree = json_load_file(out->config, 0, &error);
+    config_paths_read(tree, out->config);
     fit_depth(out, verb, tree);
     json_object_foreach(tree, key, value) {
         done = take_key(out, verb, key, value);
@@ -180,144 +210,28 @@ int config_take(options *out, const verb_row *verb) {
     return out->config ? process_agree(take_file(out, verb)) : CONTINUE;
 }
 
-/* --- writing -------------------------------------------------------------- */
-
-static void fill_data(const options *opts, snow_recipe *out) {
-    snow_volume_options *data = &out->data;
-    memcpy(data->dims, opts->dims, sizeof data->dims);
-    memcpy(data->spacing, opts->spacing, sizeof data->spacing);
-    memcpy(data->crop, opts->crop, sizeof data->crop);
-    data->type = opts->type;
-    data->offset = opts->offset;
-    data->time = opts->time;
-    data->channel = opts->channel;
-    data->dataset = opts->dataset;
-    data->series = opts->series;
-    data->allow_gaps = opts->allow_gaps;
-    data->mask = opts->mask;
-    memcpy(data->clip, opts->clip, sizeof data->clip);
-    data->labels = opts->labels;
-    if (opts->endian)
-        data->endian = strcmp(opts->endian, "big") == 0 ? SNOW_ENDIAN_BIG
-                                                        : SNOW_ENDIAN_LITTLE;
-}
-
-static void fill_look(const options *opts, snow_recipe *out) {
-    out->preset = opts->preset;
-    out->colormap = opts->colormap;
-    out->tf = opts->tf;
-    out->log = opts->log;
-    out->range = opts->range.kind;
-    out->low = opts->range.low;
-    out->high = opts->range.high;
-    if (!isnan(opts->window)) {
-        out->range = SNOW_RANGE_VALUES;
-        out->low = opts->level - opts->window / 2;
-        out->high = opts->level + opts->window / 2;
+/* The value of --config among the words, NULL if it is not there. */
+static const char *config_among(int argc, char **argv) {
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
+        if (strncmp(argv[i], "--config=", 9) == 0)
+            return argv[i] + 9;
+        if (strcmp(argv[i], "--config") == 0)
+            return argv[i + 1];
     }
-    out->opacity_count = opts->opacities.count;
-    memcpy(out->opacities, opts->opacities.points,
-           opts->opacities.count * sizeof *out->opacities);
-    out->gradient_opacity_count = opts->gradient_opacities.count;
-    memcpy(out->gradient_opacities, opts->gradient_opacities.points,
-           opts->gradient_opacities.count * sizeof *out->gradient_opacities);
-    out->opacity_per_mm = strcmp(opts->opacity_unit, "mm") == 0;
-    out->opacity_per_voxel =
-        !out->opacity_per_mm && options_given(opts, "opacity-unit");
+    return NULL;
 }
 
-static void fill_place(const place_value *place, double out[3]) {
-    if (place->given)
-        memcpy(out, place->at, sizeof place->at);
-}
-
-static void fill_view(const options *opts, snow_recipe *out) {
-    out->view = opts->view;
-    out->width = (int)opts->size[0];
-    out->height = (int)opts->size[1];
-    out->azimuth = opts->azimuth;
-    out->elevation = opts->elevation;
-    out->roll = opts->roll;
-    out->zoom = opts->zoom;
-    out->fov = opts->fov;
-    out->fit = strcmp(opts->fit, "volume") ? 1 : 2;
-    fill_place(&opts->position, out->position);
-    fill_place(&opts->target, out->target);
-    fill_place(&opts->up, out->up);
-}
-
-/* A movie of many files has no single input. */
-static void fill_recipe(const options *opts, snow_recipe *out) {
-    snow_recipe_init(out);
-    if (opts->operand_count == 1 && strcmp(opts->operands[0], "-") != 0)
-        out->input = opts->operands[0];
-    out->output = opts->output;
-    out->depth = opts->depth;
-    out->image.flatten = opts->background.given;
-    memcpy(out->image.background, opts->background.rgb,
-           sizeof out->image.background);
-    if (opts->bits)
-        out->image.bits = opts->bits[0] == '8' ? 8 : 16;
-    fill_data(opts, out);
-    fill_look(opts, out);
-    fill_view(opts, out);
-    out->no_labels = opts->no_labels;
-    out->legend = opts->legend;
-    out->time_label = opts->time_label;
-    fill_settings(opts, &out->settings);
-}
-
-static int check_place(const options *opts) {
-    static const char *const names[] = {"output", "depth", "stats"};
-    const char *const paths[] = {opts->output, opts->depth, opts->stats};
-    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
-        if (paths[i] && (strcmp(opts->save_config, paths[i]) == 0 ||
-                         same_place(opts->save_config, paths[i])))
-            return fail_usage(
-                "--save-config: is the same file as --%s; name two files",
-                names[i]);
-    int done = check_input_first(opts, &opts->save_config, 1);
-    return done == CONTINUE
-               ? check_stats_path(opts->save_config, opts->overwrite)
-               : done;
-}
-
-int config_check(const options *opts) {
-    if (!opts->save_config)
-        return CONTINUE;
-    return process_agree(process_talks() ? check_place(opts) : CONTINUE);
-}
-
-/* The recipe as a JSON tree; the library writes it as text. */
-static json_t *recipe_tree(snow_context *context, const snow_recipe *recipe) {
-    size_t length = 0;
-    json_error_t error;
-    json_t *tree = NULL;
-    if (snow_recipe_write(context, recipe, NULL, 0, &length) != SNOW_STATUS_OK)
-        return NULL;
-    char *text = malloc(length + 1);
-    if (text && snow_recipe_write(context, recipe, text, length + 1, &length) ==
-                    SNOW_STATUS_OK)
-        tree = json_loadb(text, length, 0, &error);
-    free(text);
-    return tree;
-}
-
-int config_save(const options *opts) {
-    snow_context *context = NULL;
-    snow_recipe recipe = {.size = sizeof recipe};
-    json_t *tree = NULL;
-    if (!opts->save_config || !process_talks())
-        return SNOW_STATUS_OK;
-    fill_recipe(opts, &recipe);
-    if (snow_context_new(NULL, &context) == SNOW_STATUS_OK)
-        tree = recipe_tree(context, &recipe);
-    snow_context_free(context);
-    if (!tree)
-        return fail_output(
-            "%s: out of memory for its text; close other programs",
-            opts->save_config);
-    if (!options_given(opts, "shade")) /* otherwise the look decides */
-        json_object_del(tree, "shade");
-    return write_json(tree, opts->save_config, opts->overwrite);
+/* A file that cannot be read is refused later, with the reason. */
+const verb_row *config_verb(int argc, char **argv) {
+    const char *path = config_among(argc, argv);
+    const verb_row *verb = NULL;
+    if (path && config_is_file(path)) {
+        json_t *tree = json_load_file(path, 0, NULL);
+        const char *name = json_string_value(json_object_get(tree, "verb"));
+        verb = name ? verb_named(name) : NULL;
+        json_decref(tree);
+    }
+    return verb && verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE)
+               ? verb
+               : verb_of(VERB_RENDER);
 }

@@ -1,19 +1,35 @@
 /* config.h - reads options from a file and writes them to one.  The files are
- * recipes (snowglass/recipe.h), which in situ rendering uses too. */
+ * recipes (snowglass/recipe.h), which in situ rendering uses too.  Paths in
+ * them are relative to the folder of the file. */
 #ifndef CONFIG_H
 #define CONFIG_H
 
 #include "options/options.h"
 
+#include <jansson.h>
+
 /* Applies the options of the --config file, if one is given, except those that
  * stand on the command line.  Returns CONTINUE or an exit code. */
 int config_take(options *out, const verb_row *verb);
+
+/* The verb for words without one: that of the --config file among them, or
+ * render. */
+const verb_row *config_verb(int argc, char **argv);
+
+/* The value of a key as it stands on the command line, among the texts of the
+ * options; NULL if there is no more room. */
+char *config_text(options *out, const char *key, const json_t *value);
 
 /* Refuses a --save-config file that cannot be written, before rendering.
  * Returns CONTINUE or an exit code. */
 int config_check(const options *opts);
 
-/* Writes the --save-config file, if one is given.  Returns an exit code. */
-int config_save(const options *opts);
+/* Notes what a picture was made with, for config_save. */
+void config_note(const options *opts, const snow_transfer *transfer,
+                 snow_shade shade, const char *view);
+
+/* Writes the --save-config file, if one is given, and prints the command with
+ * -v.  Returns an exit code. */
+int config_save(const options *opts, const verb_row *verb);
 
 #endif

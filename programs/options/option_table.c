@@ -120,6 +120,9 @@ const option_row option_table[] = {
      "finite voxels, or all values (default: from the histogram, or the "
      "preset's or file's own). With convert: two values or full, spread over "
      "the type of --as"},
+    {"shift", 0, "N", TOPIC_LOOK, LOOKED, read_real, FIELD(shift), 0, 0, "",
+     "move the look by N data units: a preset keeps its shape, which --window "
+     "and --range would stretch or squeeze (default 0)"},
     {"opacity-unit", 0, "voxel|mm", TOPIC_LOOK, RENDER, read_choice,
      FIELD(opacity_unit), 0, 0, "",
      "length over which an opacity applies: the smallest voxel spacing or one "

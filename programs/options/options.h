@@ -76,6 +76,7 @@ typedef struct options {
     bool log;
     point_list opacities, gradient_opacities;
     double window, level; /* NaN: not given */
+    double shift;         /* of the look, in data units */
     range_value range;
     const char *opacity_unit, *shade;
     light_value light;

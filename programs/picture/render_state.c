@@ -2,6 +2,7 @@
  * of the volume, and the first gets the pictures (snowglass/ranks.h). */
 #include "picture/render_state.h"
 #include "commands/commands.h"
+#include "options/config.h"
 #include "picture/warnings.h"
 #include "run/interrupt.h"
 #include "run/log.h"
@@ -452,6 +453,30 @@ render_report render_state_report(const render_state *s) {
                            .times = &s->times};
 }
 
+void render_state_note(const render_state *s) {
+    const char *view = s->opts->view;
+    config_note(s->opts, s->transfer, s->settings.shade,
+                view ? view : snow_view_default_name(&s->drawn.whole));
+}
+
+/* A range stretches a preset of data values with its opacities, which few
+ * expect of a window. */
+static void describe_squeeze(const options *opts, char out[160]) {
+    int preset = opts->preset ? snow_preset_from_name(opts->preset) : -1;
+    const snow_look *look =
+        preset < 0 ? NULL : snow_preset_look((size_t)preset);
+    bool ranged = opts->range.kind != SNOW_RANGE_AUTO || !isnan(opts->window);
+    *out = 0;
+    if (ranged && look && look->domain == SNOW_DOMAIN_DATA)
+        snprintf(
+            out, 160,
+            "; the range squeezes or stretches the preset's own %g..%g and "
+            "its opacities, --shift N would move them",
+            fmin(look->colors[0].value, look->opacities[0].value),
+            fmax(look->colors[look->color_count - 1].value,
+                 look->opacities[look->opacity_count - 1].value));
+}
+
 void render_state_choices(const render_state *s, char *out, size_t size) {
     const double *from = s->opts->position.at;
     const char *view = s->opts->view
@@ -464,21 +489,23 @@ void render_state_choices(const render_state *s, char *out, size_t size) {
         view = place;
     }
     bool encoded = s->stats.encoding != SNOW_ENCODING_AUTO;
-    char volume[256];
+    char volume[256], squeeze[160];
+    describe_squeeze(s->opts, squeeze);
     describe_volume(&s->drawn.whole, volume, sizeof volume);
     bool over = s->settings.mode == SNOW_MODE_OVER;
-    snprintf(
-        out, size, "%s: %s; %s%s%s%s; view %s; %s%s%smethod %s%s%s",
-        name_of_input(s->drawn.path), volume,
-        snow_transfer_description(s->transfer), over ? "; opacity per " : "",
-        !over                            ? ""
-        : s->settings.opacity_length > 0 ? "mm"
-                                         : "voxel",
-        over && s->settings.shade == SNOW_SHADE_NONE ? "; not shaded" : "",
-        view, over ? "" : "mode ", over ? "" : snow_mode_name(s->settings.mode),
-        over                        ? ""
-        : s->settings.threshold > 0 ? " of all voxels (no threshold), "
-                                    : " of all voxels, ",
-        snow_method_name(s->stats.method), encoded ? ", encoding " : "",
-        encoded ? snow_encoding_name(s->stats.encoding) : "");
+    snprintf(out, size, "%s: %s; %s%s%s%s%s; view %s; %s%s%smethod %s%s%s",
+             name_of_input(s->drawn.path), volume,
+             snow_transfer_description(s->transfer), squeeze,
+             over ? "; opacity per " : "",
+             !over                            ? ""
+             : s->settings.opacity_length > 0 ? "mm"
+                                              : "voxel",
+             over && s->settings.shade == SNOW_SHADE_NONE ? "; not shaded" : "",
+             view, over ? "" : "mode ",
+             over ? "" : snow_mode_name(s->settings.mode),
+             over                        ? ""
+             : s->settings.threshold > 0 ? " of all voxels (no threshold), "
+                                         : " of all voxels, ",
+             snow_method_name(s->stats.method), encoded ? ", encoding " : "",
+             encoded ? snow_encoding_name(s->stats.encoding) : "");
 }

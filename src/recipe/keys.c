@@ -77,7 +77,7 @@ static const char *fit_name(int value) {
 
 /* clang-format off */
 const recipe_key recipe_keys[] = {
-    TEXT("input", input),
+    MADE("input", input, input, 0, 0, 0),
     TEXT("output", output),
     TEXT("depth", depth),
     MADE("overwrite", flag, image.overwrite, 0, 0, 0),
@@ -98,6 +98,7 @@ const recipe_key recipe_keys[] = {
     MADE("opacity", points, opacity_count, 0, 0, 0),
     MADE("gradient-opacity", points, gradient_opacity_count, 0, 0, 0),
     MADE("range", range, range, 0, 0, 0),
+    REAL("shift", shift, 0, 0),
     MADE("opacity-unit", unit, opacity_per_mm, 0, 0, 0),
     NAME("shade", settings.shade, shade_name, NULL),
     MADE("light", light, settings, 0, 0, 2),
@@ -138,6 +139,10 @@ const recipe_key recipe_keys[] = {
     MADE("labels", labels, data.labels, 0, 0, 0),
     MADE("clip", clip, data.clip, 0, 0, 4),
     MADE("time", long, data.time, 0, 9e15, 0),
+    MADE("frames", int, frames, 1, 1000000, 0),
+    REAL("fps", fps, 0.01, 1000),
+    TEXT("verb", verb),
+    TEXT("version", version),
     {NULL, NULL, 0, 0, 0, 0, NULL, NULL},
 };
 /* clang-format on */

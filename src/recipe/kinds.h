@@ -13,10 +13,10 @@ extern const recipe_kind recipe_real, recipe_int, recipe_long, recipe_flag;
 extern const recipe_kind recipe_reals, recipe_given_reals, recipe_point,
     recipe_longs, recipe_crop, recipe_clip, recipe_size;
 
-/* Texts: any, labels of a mask, a known name. Names of values: always written,
- * and omitted if they are 0. */
-extern const recipe_kind recipe_text, recipe_labels, recipe_known, recipe_name,
-    recipe_given_name;
+/* Texts: any, a path or a list of paths (the first is kept), labels of a mask,
+ * a known name. Names of values: always written, and omitted if they are 0. */
+extern const recipe_kind recipe_text, recipe_input, recipe_labels, recipe_known,
+    recipe_name, recipe_given_name;
 
 extern const recipe_kind recipe_unit, recipe_iso, recipe_range, recipe_points,
     recipe_color, recipe_bits, recipe_light;

@@ -21,6 +21,16 @@ static json_t *write_text(const recipe_key *key, const void *field) {
     return text ? json_string(text) : NULL;
 }
 
+/* A movie has several inputs; the record has room for the first. */
+static bool read_input(const recipe_key *key, const json_t *value, void *field,
+                       char wrong[WRONG_BYTES]) {
+    for (size_t i = 0; i < json_array_size(value); i++)
+        if (!json_is_string(json_array_get(value, i)))
+            return recipe_refuse(wrong, "a text or a list of texts");
+    const json_t *first = json_array_get(value, 0);
+    return read_text(key, first ? first : value, field, wrong);
+}
+
 /* Labels of a mask, stored as text. */
 static bool read_labels(const recipe_key *key, const json_t *value, void *field,
                         char wrong[WRONG_BYTES]) {
@@ -86,6 +96,7 @@ static json_t *write_told_name(const recipe_key *key, const void *field) {
 }
 
 const recipe_kind recipe_text = {read_text, write_text};
+const recipe_kind recipe_input = {read_input, write_text};
 const recipe_kind recipe_labels = {read_labels, write_text};
 const recipe_kind recipe_known = {read_known, write_text};
 const recipe_kind recipe_name = {read_name, write_name};

@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 void snow_recipe_init_sized(snow_recipe *recipe, size_t size) {
-    snow_recipe defaults = {.width = 512, .height = 512, .zoom = 1};
+    snow_recipe defaults = {.width = 512, .height = 512, .zoom = 1, .fps = 25};
     for (int i = 0; i < 3; i++)
         defaults.position[i] = defaults.target[i] = defaults.up[i] = NAN;
     snow_volume_options_init(&defaults.data);
@@ -179,7 +179,8 @@ snow_status snow_recipe_get_look(snow_context *context,
                       .range = recipe->range,
                       .low = recipe->low,
                       .high = recipe->high,
-                      .log = recipe->log};
+                      .log = recipe->log,
+                      .shift = recipe->shift};
     if (recipe->opacity_count) {
         look.opacities = recipe->opacities;
         look.opacity_count = recipe->opacity_count;

@@ -55,9 +55,9 @@
 #define VEIL_OBJECT 0.4
 #define VEIL_MOST 0.2
 
-/* The grey where opacity starts: below it, shading would make skin look
- * black. */
-#define DARKEST 0.65
+/* The grey where opacity starts, as in the colour map light-grey: below it,
+ * shading would make skin look black. */
+#define DARKEST (0xa6 / 255.0)
 
 typedef struct split {
     double at;           /* the threshold, in bins */
@@ -190,7 +190,7 @@ static void add_opacity(snow_transfer_builder *builder, double value,
 
 static void build_grey(snow_transfer_builder *builder, double low,
                        double high) {
-    builder->name = "grey";
+    builder->name = "light-grey";
     builder->low = low;
     builder->high = high;
     builder->color_count = 2;
@@ -203,6 +203,7 @@ static void build_grey(snow_transfer_builder *builder, double low,
 static void build_solid(const snow_histogram_split *p, bool slice, bool log,
                         snow_transfer_builder *builder) {
     build_grey(builder, p->low, p->high);
+    builder->name = "grey";
     builder->colors[0].red = builder->colors[0].green =
         builder->colors[0].blue = 0;
     builder->unshaded = true;

@@ -7,6 +7,8 @@
 #include "transfer/look.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static double between(double low, double high, double share) {
@@ -132,4 +134,39 @@ snow_status snow_transfer_builder_points(const snow_look *points,
                points->gradient_opacity_count *
                    sizeof *points->gradient_opacities);
     return SNOW_STATUS_OK;
+}
+
+/* What is reported is used: a chosen value has five digits, and as many more as
+ * its range needs to be told apart. */
+static double rounded(const snow_transfer_builder *builder, double value) {
+    double span = builder->high - builder->low;
+    double most = fmax(fabs(builder->low), fabs(builder->high));
+    char text[40];
+    int digits = 5;
+    for (; span > 0 && span < most && digits < 17; digits++)
+        span *= 10;
+    snprintf(text, sizeof text, "%.*g", digits, value);
+    double again = strtod(text, NULL);
+    return isfinite(again) ? again : value;
+}
+
+void snow_transfer_builder_round(snow_transfer_builder *builder) {
+    double low = rounded(builder, builder->low);
+    double high = rounded(builder, builder->high);
+    for (size_t i = 0; i < builder->color_count; i++)
+        builder->colors[i].value = rounded(builder, builder->colors[i].value);
+    for (size_t i = 0; i < builder->opacity_count; i++)
+        builder->opacities[i].value =
+            rounded(builder, builder->opacities[i].value);
+    builder->low = low;
+    builder->high = high;
+}
+
+void snow_transfer_builder_shift(snow_transfer_builder *builder, double shift) {
+    for (size_t i = 0; i < builder->color_count; i++)
+        builder->colors[i].value += shift;
+    for (size_t i = 0; i < builder->opacity_count; i++)
+        builder->opacities[i].value += shift;
+    builder->low += shift;
+    builder->high += shift;
 }

@@ -11,6 +11,7 @@
  *              visualization", ISVC 2009: computed by its formula from
  *              (59, 76, 192) to (180, 4, 38)
  *   hot        black over red and yellow to white, as matplotlib's
+ *   light-grey  the upper part of grey, of looks made from the histogram
  *   tab10      ten colours for categories, Tableau's of 2016 (matplotlib)
  * A new map needs a table here and a line in `maps`. */
 #include "transfer/look.h"
@@ -24,6 +25,7 @@ typedef struct map_point {
 #define MAP_END 510
 
 static const map_point grey[] = {{0, 0x000000}, {510, 0xffffff}};
+static const map_point light_grey[] = {{0, 0xa6a6a6}, {510, 0xffffff}};
 
 static const map_point hot[] = {
     {0, 0x0b0000}, {186, 0xff0000}, {380, 0xffff00}, {510, 0xffffff}};
@@ -89,11 +91,17 @@ static const struct {
     const map_point *points;
     size_t count;
 } maps[] = {
-    MAP("grey", grey),       MAP("viridis", viridis),
-    MAP("inferno", inferno), MAP("cool-warm", cool_warm),
-    MAP("turbo", turbo),     MAP("magma", magma),
-    MAP("plasma", plasma),   MAP("cividis", cividis),
-    MAP("hot", hot),         MAP("tab10", category),
+    MAP("grey", grey),
+    MAP("viridis", viridis),
+    MAP("inferno", inferno),
+    MAP("cool-warm", cool_warm),
+    MAP("turbo", turbo),
+    MAP("magma", magma),
+    MAP("plasma", plasma),
+    MAP("cividis", cividis),
+    MAP("hot", hot),
+    MAP("tab10", category),
+    MAP("light-grey", light_grey),
 };
 
 static const size_t map_count = sizeof maps / sizeof *maps;
@@ -105,6 +113,8 @@ const char *snow_colormap_name(size_t index) {
 int snow_colormap_from_name(const char *name) {
     if (snow_same_name(name, "gray"))
         name = "grey";
+    if (snow_same_name(name, "light-gray"))
+        name = "light-grey";
     for (size_t i = 0; i < map_count; i++)
         if (snow_same_name(name, maps[i].name))
             return (int)i;

@@ -112,6 +112,11 @@ snow_status snow_transfer_builder_points(const snow_look *points,
                                          const snow_histogram *histogram,
                                          snow_transfer_builder *builder);
 
+/* Rounds all values to what a line reports; adds to all values, so that a preset
+ * suits data with another offset. */
+void snow_transfer_builder_round(snow_transfer_builder *builder);
+void snow_transfer_builder_shift(snow_transfer_builder *builder, double shift);
+
 /* Smallest to largest finite value, separated if they are equal; above 0 on a
  * logarithmic scale. */
 void snow_full_range(const snow_histogram *histogram, double *low,

@@ -11,6 +11,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 SNOW_RECORD_OF_ZEROS(snow_look);
@@ -159,10 +160,11 @@ static snow_status check_values(const snow_histogram *histogram,
                          "%.64s has values of 0 and below, which a logarithmic "
                          "scale cannot show; give a range too",
                          points->name);
-    if (!look->base && histogram->min >= 0)
+    if (!look->base && look->shift == 0 && histogram->min >= 0)
         snow_notify(histogram->volume->context,
                     "%s is for Hounsfield units, but the smallest value is %g: "
-                    "if the values have an offset, give a range",
+                    "if the values have an offset, give it as a shift, such as "
+                    "1024",
                     look->preset, histogram->min);
     return SNOW_STATUS_OK;
 }
@@ -208,6 +210,7 @@ static snow_status fill_builder(const snow_histogram *histogram,
     if (need_of(look) == SNOW_NEED_COUNTS &&
         (!points || !points->color_count || !points->opacity_count))
         SNOW_TRY(snow_transfer_builder_automatic(histogram, builder));
+    snow_transfer_builder_round(builder);
     if (!points)
         return SNOW_STATUS_OK;
     builder->reason = look->base ? reason_of(look) : look->preset;
@@ -250,6 +253,7 @@ static snow_status build_look(const snow_histogram *histogram,
                              low);
         stretch(builder, data ? points->log : builder->log, low, high);
     }
+    snow_transfer_builder_shift(builder, look->shift);
     if (look->colormap)
         snow_transfer_builder_colormap(builder,
                                        snow_colormap_from_name(look->colormap),
@@ -263,9 +267,25 @@ static void set_reason(const snow_transfer_builder *builder,
                        const snow_look *look, char *text, size_t room) {
     bool all_asked =
         look->opacities && look->range != SNOW_RANGE_AUTO && !look->preset;
-    snprintf(text, room, " (%s%s)",
-             all_asked ? "as requested" : builder->reason,
+    char shift[40] = "";
+    if (look->shift < 0 || look->shift > 0)
+        snprintf(shift, sizeof shift, " shifted by %.9g", look->shift);
+    snprintf(text, room, " (%s%s%s)",
+             all_asked ? "as requested" : builder->reason, shift,
              look->opacities && !all_asked ? "; opacities as requested" : "");
+}
+
+/* Writes a value so that reading it gives the same, if twelve digits do; then
+ * it was chosen or given.  Others are rounded. */
+static const char *spell(double value, char text[40]) {
+    for (int digits = 5; digits <= 12; digits++) {
+        snprintf(text, 40, "%.*g", digits, value);
+        double again = strtod(text, NULL);
+        if (again <= value && again >= value)
+            return text;
+    }
+    snprintf(text, 40, "%.5g", value);
+    return text;
 }
 
 /* "grey 72..213; opacity 0 at 72, 0.4 at 213 (from the histogram)" */
@@ -274,8 +294,10 @@ static void describe_look(snow_transfer *transfer,
                           const snow_look *look) {
     char text[SNOW_TRANSFER_TEXT_BYTES / 2]; /* the rest is for the gradients */
     size_t room = sizeof text, used;
-    snprintf(text, room, "%.64s %.5g..%.5g%s; opacity", builder->name,
-             builder->low, builder->high, builder->log ? " logarithmic" : "");
+    char low[40], value[40], opacity[40];
+    snprintf(text, room, "%.64s %s..%s%s; opacity", builder->name,
+             spell(builder->low, low), spell(builder->high, value),
+             builder->log ? " logarithmic" : "");
     for (size_t i = 0; i < transfer->opacity_count; i++) {
         used = strlen(text);
         /* The end is reserved for the reason. */
@@ -283,8 +305,9 @@ static void describe_look(snow_transfer *transfer,
             snprintf(text + used, room - used, ", ...");
             break;
         }
-        snprintf(text + used, room - used, "%s %.4g at %.5g", i ? "," : "",
-                 transfer->opacities[i].opacity, transfer->opacities[i].value);
+        snprintf(text + used, room - used, "%s %s at %s", i ? "," : "",
+                 spell(transfer->opacities[i].opacity, opacity),
+                 spell(transfer->opacities[i].value, value));
     }
     used = strlen(text);
     set_reason(builder, look, text + used, room - used);

@@ -2,6 +2,8 @@
  * text. */
 #include "transfer/transfer.h"
 
+#include "base/record.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -170,6 +172,21 @@ void snow_transfer_domain(const snow_transfer *transfer, double *low,
                           double *high) {
     *low = transfer->colors[0].value;
     *high = transfer->colors[transfer->color_count - 1].value;
+}
+
+snow_status snow_transfer_get_look(const snow_transfer *transfer,
+                                   snow_look *out) {
+    const snow_look look = {
+        .size = sizeof look,
+        .log = transfer->log,
+        .colors = transfer->colors,
+        .color_count = transfer->color_count,
+        .opacities = transfer->opacities,
+        .opacity_count = transfer->opacity_count,
+        .gradient_opacities = transfer->gradients,
+        .gradient_opacity_count = transfer->gradient_count,
+    };
+    return SNOW_RECORD_FILL(transfer->context, snow_look, &look, out);
 }
 
 bool snow_transfer_is_grey(const snow_transfer *transfer) {

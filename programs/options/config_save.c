@@ -1,0 +1,335 @@
+/* config_save.c - converts options to a recipe file, and to the command that
+ * makes the same picture.
+ *
+ * What was chosen automatically is written as if it had been given, so that a
+ * configuration gives the same look for the next volume, and in later
+ * versions. */
+#include "commands/commands.h"
+#include "options/config.h"
+#include "options/config_paths.h"
+#include "picture/outputs.h"
+#include "run/log.h"
+#include "run/start.h"
+
+#include <math.h>
+#include <snowglass/recipe.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void fill_data(const options *opts, snow_recipe *out) {
+    snow_volume_options *data = &out->data;
+    memcpy(data->dims, opts->dims, sizeof data->dims);
+    memcpy(data->spacing, opts->spacing, sizeof data->spacing);
+    memcpy(data->crop, opts->crop, sizeof data->crop);
+    data->type = opts->type;
+    data->offset = opts->offset;
+    data->time = opts->time;
+    data->channel = opts->channel;
+    data->dataset = opts->dataset;
+    data->series = opts->series;
+    data->allow_gaps = opts->allow_gaps;
+    data->mask = opts->mask;
+    memcpy(data->clip, opts->clip, sizeof data->clip);
+    data->labels = opts->labels;
+    if (opts->endian)
+        data->endian = strcmp(opts->endian, "big") == 0 ? SNOW_ENDIAN_BIG
+                                                        : SNOW_ENDIAN_LITTLE;
+}
+
+static void fill_look(const options *opts, snow_recipe *out) {
+    out->preset = opts->preset;
+    out->colormap = opts->colormap;
+    out->tf = opts->tf;
+    out->log = opts->log;
+    out->range = opts->range.kind;
+    out->low = opts->range.low;
+    out->high = opts->range.high;
+    if (!isnan(opts->window)) {
+        out->range = SNOW_RANGE_VALUES;
+        out->low = opts->level - opts->window / 2;
+        out->high = opts->level + opts->window / 2;
+    }
+    out->opacity_count = opts->opacities.count;
+    memcpy(out->opacities, opts->opacities.points,
+           opts->opacities.count * sizeof *out->opacities);
+    out->gradient_opacity_count = opts->gradient_opacities.count;
+    memcpy(out->gradient_opacities, opts->gradient_opacities.points,
+           opts->gradient_opacities.count * sizeof *out->gradient_opacities);
+    out->opacity_per_mm = strcmp(opts->opacity_unit, "mm") == 0;
+    out->opacity_per_voxel =
+        !out->opacity_per_mm && options_given(opts, "opacity-unit");
+}
+
+static void fill_place(const place_value *place, double out[3]) {
+    if (place->given)
+        memcpy(out, place->at, sizeof place->at);
+}
+
+static void fill_view(const options *opts, snow_recipe *out) {
+    out->view = opts->view;
+    out->width = (int)opts->size[0];
+    out->height = (int)opts->size[1];
+    out->azimuth = opts->azimuth;
+    out->elevation = opts->elevation;
+    out->roll = opts->roll;
+    out->zoom = opts->zoom;
+    out->fov = opts->fov;
+    out->fit = strcmp(opts->fit, "volume") ? 1 : 2;
+    fill_place(&opts->position, out->position);
+    fill_place(&opts->target, out->target);
+    fill_place(&opts->up, out->up);
+}
+
+static void fill_recipe(const options *opts, const verb_row *verb,
+                        snow_recipe *out) {
+    snow_recipe_init(out);
+    if (opts->operand_count >= 1 && strcmp(opts->operands[0], "-") != 0)
+        out->input = opts->operands[0];
+    out->verb = verb->name;
+    out->version = snow_version();
+    if (verb->bit == VERB_TURNTABLE)
+        out->frames = (int)opts->frames;
+    out->fps = opts->fps;
+    out->shift = opts->shift;
+    out->output = opts->output;
+    out->depth = opts->depth;
+    out->image.flatten = opts->background.given;
+    memcpy(out->image.background, opts->background.rgb,
+           sizeof out->image.background);
+    if (opts->bits)
+        out->image.bits = opts->bits[0] == '8' ? 8 : 16;
+    fill_data(opts, out);
+    fill_look(opts, out);
+    fill_view(opts, out);
+    out->no_labels = opts->no_labels;
+    out->legend = opts->legend;
+    out->time_label = opts->time_label;
+    fill_settings(opts, &out->settings);
+}
+
+static int check_place(const options *opts) {
+    static const char *const names[] = {"output", "depth", "stats"};
+    const char *const paths[] = {opts->output, opts->depth, opts->stats};
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
+        if (paths[i] && (strcmp(opts->save_config, paths[i]) == 0 ||
+                         same_place(opts->save_config, paths[i])))
+            return fail_usage(
+                "--save-config: is the same file as --%s; name two files",
+                names[i]);
+    int done = check_input_first(opts, &opts->save_config, 1);
+    return done == CONTINUE
+               ? check_stats_path(opts->save_config, opts->overwrite)
+               : done;
+}
+
+int config_check(const options *opts) {
+    if (!opts->save_config)
+        return CONTINUE;
+    return process_agree(process_talks() ? check_place(opts) : CONTINUE);
+}
+
+/* The recipe as a JSON tree; the library writes it as text. */
+static json_t *recipe_tree(snow_context *context, const snow_recipe *recipe) {
+    size_t length = 0;
+    json_error_t error;
+    json_t *tree = NULL;
+    if (snow_recipe_write(context, recipe, NULL, 0, &length) != SNOW_STATUS_OK)
+        return NULL;
+    char *text = malloc(length + 1);
+    if (text && snow_recipe_write(context, recipe, text, length + 1, &length) ==
+                    SNOW_STATUS_OK)
+        tree = json_loadb(text, length, 0, &error);
+    free(text);
+    return tree;
+}
+
+/* --- what was chosen ------------------------------------------------------ */
+
+/* What a look of the histogram and the default view came to. */
+static struct chosen {
+    json_t *colormap, *range, *opacity, *shade, *view;
+} chosen;
+
+/* Whether the transfer function has the colours of a map over its range. */
+static bool has_colors_of(const snow_look *look, size_t map) {
+    snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
+    size_t count = snow_colormap_points(map, points, SNOW_COLORMAP_POINTS_MAX);
+    if (count != 2 || look->color_count != 2)
+        return false;
+    for (size_t i = 0; i < count; i++)
+        points[i].value = look->colors[i].value;
+    return memcmp(points, look->colors, sizeof *points * count) == 0;
+}
+
+static const char *map_of(const options *opts, const snow_look *look) {
+    if (opts->colormap)
+        return opts->colormap;
+    for (size_t i = 0; snow_colormap_name(i); i++)
+        if (has_colors_of(look, i))
+            return snow_colormap_name(i);
+    return NULL;
+}
+
+/* Shapes of opacity and colour that no option can give are left to be chosen
+ * again, from the same values in the same way. */
+static void note_look(const options *opts, const snow_transfer *transfer) {
+    snow_look look = {.size = sizeof look};
+    if (snow_transfer_get_look(transfer, &look) != SNOW_STATUS_OK ||
+        !map_of(opts, &look) || look.opacity_count > SNOW_RECIPE_POINTS_MAX)
+        return;
+    chosen.colormap = json_string(map_of(opts, &look));
+    if (opts->range.kind == SNOW_RANGE_AUTO && isnan(opts->window)) {
+        double ends[2];
+        snow_transfer_domain(transfer, &ends[0], &ends[1]);
+        chosen.range = json_vector(ends, 2);
+    }
+    chosen.opacity = json_array();
+    for (size_t i = 0; i < look.opacity_count; i++) {
+        const double point[2] = {look.opacities[i].value,
+                                 look.opacities[i].opacity};
+        json_array_append_new(chosen.opacity, json_vector(point, 2));
+    }
+}
+
+void config_note(const options *opts, const snow_transfer *transfer,
+                 snow_shade shade, const char *view) {
+    bool over = strcmp(opts->mode, "over") == 0;
+    bool asked = opts->preset || opts->tf || opts->shift < 0 || opts->shift > 0;
+    if (!asked && (over || strcmp(opts->mode, "iso") == 0))
+        note_look(opts, transfer);
+    if (chosen.opacity && !options_given(opts, "shade"))
+        chosen.shade = json_string(shade == SNOW_SHADE_NONE ? "none" : "phong");
+    if (!opts->position.given)
+        chosen.view = json_string(view);
+}
+
+static void set_chosen(json_t *tree) {
+    const struct {
+        const char *key;
+        json_t **value;
+    } rows[] = {{"colormap", &chosen.colormap},
+                {"range", &chosen.range},
+                {"opacity", &chosen.opacity},
+                {"shade", &chosen.shade},
+                {"view", &chosen.view}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (*rows[i].value)
+            json_object_set_new(tree, rows[i].key, *rows[i].value);
+        *rows[i].value = NULL;
+    }
+}
+
+/* --- the file and the command --------------------------------------------- */
+
+/* A movie of several files. */
+static void set_inputs(const options *opts, json_t *tree) {
+    json_t *list = json_array();
+    for (int i = 0; i < opts->operand_count; i++)
+        json_array_append_new(list, json_string(opts->operands[i]));
+    if (opts->operand_count > 1)
+        json_object_set(tree, "input", list);
+    json_decref(list);
+}
+
+static json_t *make_tree(const options *opts, const verb_row *verb) {
+    snow_context *context = NULL;
+    snow_recipe recipe = {.size = sizeof recipe};
+    json_t *tree = NULL;
+    fill_recipe(opts, verb, &recipe);
+    if (snow_context_new(NULL, &context) == SNOW_STATUS_OK)
+        tree = recipe_tree(context, &recipe);
+    snow_context_free(context);
+    if (!tree)
+        return NULL;
+    if (!options_given(opts, "shade")) /* otherwise the look decides */
+        json_object_del(tree, "shade");
+    if (verb->bit == VERB_RENDER)
+        json_object_del(tree, "fps");
+    set_inputs(opts, tree);
+    set_chosen(tree);
+    return tree;
+}
+
+/* Appends a word to a command as a shell reads it. */
+static void add_word(FILE *out, const char *word) {
+    bool plain = *word && !word[strspn(word, "abcdefghijklmnopqrstuvwxyz"
+                                             "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                             "0123456789_./:,=+%@#-")];
+    fputs(plain && *word != '#' ? " " : " '", out);
+    for (const char *at = word; *at; at++)
+        fputs(*at == '\'' && !plain ? "'\\''" : (char[]){*at, '\0'}, out);
+    if (!plain || *word == '#')
+        fputc('\'', out);
+}
+
+static void add_option(FILE *out, const char *key, const json_t *value) {
+    static options scratch; /* for its texts */
+    char name[64];
+    scratch.text_bytes = 0;
+    snprintf(name, sizeof name, "--%s", key);
+    add_word(out, name);
+    if (json_is_true(value))
+        return;
+    const char *text = config_text(&scratch, key, value);
+    add_word(out, text ? text : "");
+}
+
+/* All options that differ from their defaults. */
+static void write_command(FILE *out, const options *opts, const verb_row *verb,
+                          const json_t *tree, json_t *usual) {
+    const char *key;
+    json_t *value;
+    fprintf(out, "snowglass %s", verb->name);
+    for (int i = 0; i < opts->operand_count; i++)
+        add_word(out, opts->operands[i]);
+    json_object_foreach((json_t *)tree, key, value) {
+        bool told = strcmp(key, "input") == 0 || strcmp(key, "verb") == 0 ||
+                    strcmp(key, "version") == 0;
+        const json_t *other = json_object_get(usual, key);
+        if (!told && !(other && json_equal(value, other)))
+            add_option(out, key, value);
+    }
+}
+
+/* Prints the command that makes the same picture, with what was chosen. */
+static void print_command(const options *opts, const verb_row *verb,
+                          const json_t *tree) {
+    snow_context *context = NULL;
+    snow_recipe recipe = {.size = sizeof recipe};
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    snow_recipe_init(&recipe);
+    recipe.fit = 1;
+    if (out && snow_context_new(NULL, &context) == SNOW_STATUS_OK) {
+        json_t *usual = recipe_tree(context, &recipe);
+        json_object_del(usual, "shade"); /* the default depends on the look */
+        write_command(out, opts, verb, tree, usual);
+        json_decref(usual);
+    }
+    snow_context_free(context);
+    if (out && fclose(out) == 0)
+        say("again: %s", text);
+    free(text);
+}
+
+int config_save(const options *opts, const verb_row *verb) {
+    bool rendered = (verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE));
+    bool prints = opts->verbosity > 0 && rendered;
+    if ((!opts->save_config && !prints) || !process_talks())
+        return SNOW_STATUS_OK;
+    json_t *tree = make_tree(opts, verb);
+    if (!tree)
+        return fail_output(
+            "%s: out of memory for its text; close other programs",
+            opts->save_config ? opts->save_config : "the command");
+    if (prints)
+        print_command(opts, verb, tree);
+    if (!opts->save_config) {
+        json_decref(tree);
+        return SNOW_STATUS_OK;
+    }
+    config_paths_write(tree, opts->save_config);
+    return write_json(tree, opts->save_config, opts->overwrite);
+}
