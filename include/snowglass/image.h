@@ -27,20 +27,21 @@ SNOW_API uint64_t snow_image_checksum(const snow_image *image);
 
 typedef struct snow_image_options {
     size_t size;
-    bool flatten;         /* PNG, WebP: lay the picture on `background` */
+    bool flatten;         /* PNG, WebP, JPEG: lay it on `background` */
     double background[3]; /* red, green, blue, 0 to 1 */
     int bits;             /* PNG: 8 or 16 bits a channel; 0 means 8 */
     bool overwrite;       /* replace an existing file */
-    const snow_overlay *overlay; /* PNG, WebP: drawn over the picture, of its
-                                    size; NULL: nothing */
+    const snow_overlay *overlay; /* PNG, WebP, JPEG: drawn over the picture,
+                                    of its size; NULL: nothing */
     const snow_image *depth;     /* EXR: channel Z; NULL: none */
 } snow_image_options;
 SNOW_RECORD(snow_image_options);
 
-/* Writes .png, .webp (levels), .npy, .pfm, .exr, .tif, .tiff (floats), or "-",
- * a PNG to standard output (docs/output.md), whole or not at all. `options` may
- * be NULL. Errors: BAD_OUTPUT (an existing file, unless options->overwrite),
- * BAD_USAGE (unknown suffix, options that the format cannot hold). */
+/* Writes .png, .webp, .jpg, .jpeg (levels; JPEG on black without `flatten`),
+ * .npy, .pfm, .exr, .tif, .tiff (floats), or "-", a PNG to standard output
+ * (docs/output.md), whole or not at all. `options` may be NULL. Errors:
+ * BAD_OUTPUT (an existing file, unless options->overwrite), BAD_USAGE (unknown
+ * suffix, options that the format cannot hold). */
 SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
     const snow_image_options *options);
 
@@ -64,14 +65,14 @@ SNOW_API void snow_image_to_rgb8(
 SNOW_API snow_status snow_image_to_rgb8_with(const snow_image *image,
     const snow_image_options *options, unsigned char *rgb);
 
-/* Reads PNG, WebP, NPY, PFM, EXR, TIFF, from a file or bytes, to four channels;
- * alpha is 1 where there is none. Errors: BAD_INPUT. */
+/* Reads PNG, WebP, JPEG, NPY, PFM, EXR, TIFF, from a file or bytes, to four
+ * channels; alpha is 1 where there is none. Errors: BAD_INPUT. */
 SNOW_API snow_status snow_image_load(
     snow_context *context, const char *path, snow_image **out);
 SNOW_API snow_status snow_image_load_memory(snow_context *context,
     const char *name, const void *bytes, size_t size, snow_image **out);
 
-/* Over four premultiplied channels, three where one is of a PFM file. */
+/* Over four premultiplied channels, three where one is of PFM or JPEG. */
 typedef struct snow_image_difference {
     size_t size;
     double largest, mean; /* absolute difference; 0 when equal */

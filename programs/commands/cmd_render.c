@@ -88,8 +88,8 @@ static int check_combination(const options *opts) {
         return fail_usage("no output file given; add -o OUT.png");
     if (snow_image_format_bits(opts->output) == 0 &&
         (opts->background.given || opts->bits))
-        return fail_usage("%s: --background and --bits work only for PNG and "
-                          "WebP; remove them or name a .png",
+        return fail_usage("%s: --background and --bits work only for PNG, "
+                          "WebP and JPEG; remove them or name a .png",
                           opts->output);
     if (opts->stats && (strcmp(opts->stats, opts->output) == 0 ||
                         same_place(opts->stats, opts->output)))

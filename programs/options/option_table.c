@@ -37,17 +37,17 @@ const option_row option_table[] = {
     {"output", 'o', "FILE", TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT | TF,
      read_text,
      FIELD(output), 0, 0, "",
-     "output file. Picture: .png or .webp; .npy, .exr, .tif or .pfm for float "
-     "pixels; - writes PNG to stdout. Movie: .mp4, .webm, .gif or .webp, or a "
+     "output file. Picture: .png, .jpg or .webp; .npy, .exr, .tif or .pfm for "
+     "float pixels; - writes PNG to stdout. Movie: .mp4, .webm, .gif or .webp, or a "
      "pattern such as f_%04d.png for single frames. Volume: .nrrd, .nii, "
      ".nii.gz, .mha, .npy, .raw or .raw.gz"},
     {"size", 's', "WxH|N", TOPIC_OUTPUT, RENDER, read_size, FIELD(size), 0, 0, "",
      "picture size in pixels; N is NxN (default 512x512)"},
     {"background", 0, "COLOR|none", TOPIC_OUTPUT, RENDER, read_color,
      FIELD(background), 0, 0, "",
-     "background colour of a PNG, WebP or movie: a name, #rgb, #rrggbb, or "
-     "r,g,b from 0 to 1 (default none: transparent, but black in movies by "
-     "ffmpeg)"},
+     "background colour of a PNG, WebP, JPEG or movie: a name, #rgb, #rrggbb, "
+     "or r,g,b from 0 to 1 (default none: transparent, but black in JPEG and "
+     "movies by ffmpeg)"},
     {"bits", 0, "8|16", TOPIC_OUTPUT, RENDER, read_choice, FIELD(bits), 0, 0,
      "", "bits per channel of a PNG (default 8)"},
     {"overwrite", 'y', NULL, TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT | TF,

@@ -15,6 +15,7 @@ static const struct {
     {"OpenEXR", SNOW_VERSION_EXR, "OpenEXR pictures", SNOW_HAVE_EXR, NULL},
     {"libwebp", SNOW_VERSION_WEBP, "WebP pictures and movies", SNOW_HAVE_WEBP,
      NULL},
+    {"libjpeg", SNOW_VERSION_JPEG, "JPEG pictures", SNOW_HAVE_JPEG, NULL},
     {"blosc", SNOW_VERSION_BLOSC, "compressed Zarr", SNOW_HAVE_BLOSC, "blosc"},
     {"zstd", SNOW_VERSION_ZSTD, "compressed Zarr", SNOW_HAVE_ZSTD, NULL},
     {"lz4", SNOW_VERSION_LZ4, "compressed Zarr", SNOW_HAVE_LZ4, NULL},

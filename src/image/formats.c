@@ -15,7 +15,7 @@
 /* The first is used for standard output. */
 static const snow_image_format *const formats[] = {
     &snow_image_png, &snow_image_npy,  &snow_image_pfm,
-    &snow_image_exr, &snow_image_tiff, &snow_image_webp,
+    &snow_image_exr, &snow_image_tiff, &snow_image_webp, &snow_image_jpeg,
 };
 
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
@@ -79,7 +79,7 @@ static snow_status choose_format(snow_context *context, const char *path,
         return SNOW_STATUS_OK;
     }
     return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                     "%s: has no suffix of a picture format; use .png, .webp, "
+                     "%s: has no suffix of a picture format; use .png, .jpg, .webp, "
                      ".npy, .exr, .tif or .pfm",
                      path);
 }
@@ -245,9 +245,9 @@ static snow_status probe_source(snow_source *source,
     return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
                      "%s: %s", snow_source_name(source),
                      got ? "is not a picture of a known format; give a PNG, "
-                           "WebP, NPY, EXR, TIFF or PFM file"
-                         : "is empty; give a PNG, WebP, NPY, EXR, TIFF or PFM "
-                           "file");
+                           "JPEG, WebP, NPY, EXR, TIFF or PFM file"
+                         : "is empty; give a PNG, JPEG, WebP, NPY, EXR, TIFF "
+                           "or PFM file");
 }
 
 /* Reads the picture that an open source holds, to its end: the trailer that

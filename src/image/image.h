@@ -66,7 +66,7 @@ typedef struct snow_image_format {
 } snow_image_format;
 
 extern const snow_image_format snow_image_png, snow_image_npy, snow_image_pfm,
-    snow_image_exr, snow_image_tiff, snow_image_webp;
+    snow_image_exr, snow_image_tiff, snow_image_webp, snow_image_jpeg;
 
 /* Rows of a picture as files of 8 and 16 bits hold them: with the overlay,
  * placed on the background or with straight alpha, rounded. */

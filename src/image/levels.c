@@ -1,5 +1,5 @@
 /* image/levels.c - rows of a picture as integers of 8 and 16 bits, with the
- * overlay: the contents of PNG and WebP files and of movies' frames. */
+ * overlay: the contents of PNG, WebP and JPEG files and of movies' frames. */
 #include "image/image.h"
 
 #include "base/record.h"

@@ -1,6 +1,6 @@
-/* tests/image/test_pictures.c - EXR, TIFF and WebP: what is written is read
- * again, and what is damaged is refused; where this build lacks a library both
- * are refused in words. */
+/* tests/image/test_pictures.c - EXR, TIFF, WebP and JPEG: what is written is
+ * read again, and what is damaged is refused; where this build lacks a library
+ * both are refused in words. */
 #include "support/image.h"
 
 #include <math.h>
@@ -37,14 +37,16 @@ static bool is_built(const char *wanted) {
 static void a_build_without_a_library_says_so(void **state) {
     static const char *const names[][2] = {{".exr", "libopenexr-dev"},
                                            {".tif", "libtiff-dev"},
-                                           {".webp", "libwebp-dev"}};
-    static const char magic[][13] = {"\x76\x2f\x31\x01", "II*", "RIFF1234WEBP"};
+                                           {".webp", "libwebp-dev"},
+                                           {".jpg", "libjpeg62-turbo-dev"}};
+    static const char magic[][13] = {"\x76\x2f\x31\x01", "II*", "RIFF1234WEBP",
+                                     "\xff\xd8\xff\xe0"};
     image_fixture *f = *state;
-    for (size_t n = 0; n < 3; n++) {
+    for (size_t n = 0; n < 4; n++) {
         snow_image *image = support_picture(f->context, 5, 4, 4, 1);
         char name[8];
         snprintf(name, sizeof name, "a%s", names[n][0]);
-        assert_int_equal(snow_image_format_bits(name), n == 2 ? 8 : 0);
+        assert_int_equal(snow_image_format_bits(name), n >= 2 ? 8 : 0);
         snow_image *read = NULL;
         snow_status status = snow_image_load_memory(f->context, "it", magic[n],
                                                     sizeof magic[n], &read);
@@ -176,6 +178,56 @@ static void webp_holds_what_png_holds(void **state) {
         }
 }
 
+/* Smooth enough that a lossy file stays near: half is transparent. */
+static snow_image *slope(snow_context *context, int channels) {
+    snow_image *image = NULL;
+    assert_int_equal(snow_image_new(context, 60, 44, channels, &image),
+                     SNOW_STATUS_OK);
+    float *at = snow_image_pixels(image);
+    for (int i = 0; i < 60 * 44; i++, at += channels) {
+        float alpha = i % 60 < 30 ? 0.5f : 0.9f;
+        for (int c = 0; c + 1 < channels; c++)
+            at[c] = alpha * (float)(i / 60 + 4 * c) / 60;
+        at[channels - 1] = alpha;
+    }
+    return image;
+}
+
+/* Bounds for lossy files: four levels in the mean would be seen. */
+static void jpeg_is_laid_on_the_background(void **state) {
+    image_fixture *f = *state;
+    if (!is_built(".jpg"))
+        skip();
+    for (int n = 0; n < 6; n++) {
+        snow_image *image = slope(f->context, n % 2 ? 2 : 4);
+        snow_image *png = NULL, *jpeg = NULL;
+        snow_image_options options = {
+            .size = sizeof options,
+            .flatten = true,
+            .background = {n / 2 ? 0.2 : 0, n / 2 == 1 ? 0.2 : 0, 0}};
+        const char *path = support_image_path(f, "a.png");
+        assert_int_equal(snow_image_save(image, path, &options),
+                         SNOW_STATUS_OK);
+        assert_int_equal(snow_image_load(f->context, path, &png),
+                         SNOW_STATUS_OK);
+        remove(path);
+        path = support_image_path(f, n % 2 ? "a.jpg" : "a.jpeg");
+        assert_int_equal(snow_image_save(image, path, n / 2 ? &options : NULL),
+                         SNOW_STATUS_OK);
+        assert_int_equal(snow_image_load(f->context, path, &jpeg),
+                         SNOW_STATUS_OK);
+        remove(path);
+        snow_image_difference difference = {.size = sizeof difference};
+        assert_int_equal(snow_image_compare(png, jpeg, &difference),
+                         SNOW_STATUS_OK);
+        assert_true(difference.mean < 1 / 255.0);
+        assert_true(difference.largest < 12 / 255.0);
+        snow_image_free(png);
+        snow_image_free(jpeg);
+        snow_image_free(image);
+    }
+}
+
 static void what_a_format_cannot_hold_is_refused(void **state) {
     image_fixture *f = *state;
     const snow_image_options deep = {.size = sizeof deep, .bits = 16},
@@ -205,10 +257,10 @@ static void what_a_format_cannot_hold_is_refused(void **state) {
 /* Cut anywhere, and changed anywhere: refused in one line or read, never worse.
  */
 static void damaged_files_are_refused_or_read(void **state) {
-    static const char *const names[] = {".exr", ".tif", ".webp"};
+    static const char *const names[] = {".exr", ".tif", ".webp", ".jpg"};
     image_fixture *f = *state;
     uint64_t random = 9;
-    for (size_t n = 0; n < 3; n++) {
+    for (size_t n = 0; n < 4; n++) {
         char name[8];
         snprintf(name, sizeof name, "a%s", names[n]);
         if (!is_built(names[n]))
@@ -254,9 +306,9 @@ static void damaged_files_are_refused_or_read(void **state) {
 }
 
 static void they_fail_cleanly_without_memory(void **state) {
-    static const char *const names[] = {".exr", ".tif", ".webp"};
+    static const char *const names[] = {".exr", ".tif", ".webp", ".jpg"};
     image_fixture *f = *state;
-    for (size_t n = 0; n < 3; n++) {
+    for (size_t n = 0; n < 4; n++) {
         char name[8];
         snprintf(name, sizeof name, "a%s", names[n]);
         if (!is_built(names[n]))
@@ -331,6 +383,7 @@ int main(void) {
         HERE(exr_ends_when_openexr_has_no_memory),
 #endif
         HERE(webp_holds_what_png_holds),
+        HERE(jpeg_is_laid_on_the_background),
         HERE(what_a_format_cannot_hold_is_refused),
         HERE(damaged_files_are_refused_or_read),
         HERE(they_fail_cleanly_without_memory),

@@ -44,7 +44,7 @@ find src -name '*.c' ! -path 'src/formats/*' ! -path 'src/files/*' \
     ! -path 'src/mpi/*' ! -path 'src/modules/*' ! -path 'src/recipe/*' \
     ! -path 'src/insitu/*' ! -path 'src/io/*' \
     ! -path 'src/transfer/formats/*' ! -name png.c ! -name webp.c \
-    ! -name exr.c ! -name tiff.c -print0 |
+    ! -name exr.c ! -name jpeg.c ! -name tiff.c -print0 |
     xargs -0 -P "$(nproc)" -I{} bash -c \
         'source=$1 out=$2 && shift 2 && "$@" -c "$source" -o "$out/${source//\//_}.o"' \
         _ {} "$out" "${compiler[@]}" "${flags[@]}" || exit 1

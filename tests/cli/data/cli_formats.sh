@@ -33,6 +33,27 @@ for suffix in .exr .tif .tiff .webp; do
     fi
 done
 refused 2 "an unknown suffix" 'has no suffix of a picture' render -o a.bmp
+if has .jpg; then
+    for name in a.jpg a.jpeg A.JPG; do
+        run 0 "$name is written" render -o "$name"
+        refused 4 "$name is kept" 'exists' render -o "$name"
+        check "$name is a JPEG" [ "$(od -An -tx1 -N3 "$name")" = " ff d8 ff" ]
+    done
+    check "by both suffixes the same" cmp -s a.jpg a.jpeg
+    run 0 "on a background" render -o white.jpg --background white
+    run 0 "as a PNG" render -o white.png --background white
+    run 6 "which is near" "$TOOL" compare white.jpg white.png --tolerance 0.004
+    prints 'mean +0\.00[0-9]'
+    refused 2 "16 bits in JPEG" 'JPEG has 8 bits' render -o b.jpg --bits 16
+    refused 2 "no depth in it" 'cannot hold depths' \
+        render -o b.png --depth b.jpg
+    run 0 "frames" "$TOOL" turntable -q phantom:head --dims 32x32x32 -s 90x80 \
+        --frames 2 -o 'j_%d.jpg'
+    check "two of them" [ -s j_1.jpg ]
+else
+    refused 2 "JPEG is not in this build" 'install libjpeg62-turbo-dev' \
+        render -o a.jpg
+fi
 if has .exr; then
     refused 2 "a background of EXR" '\-\-background and --bits' \
         render -o b.exr --background white

@@ -30,7 +30,7 @@ render -o z.png|give snowglass render INPUT -o OUT
 compare a.png|give snowglass compare A B
 phantom:cube|no output file given; add -o OUT.png
 phantom cube|no output file given
-phantom:cube -o x.jpg|x.jpg
+phantom:cube -o x.bmp|x.bmp
 phantom snowman -o x.nrrd|snowman
 phantom cube -o x.txt|x.txt
 turntable -o y.mp4|give snowglass turntable INPUT -o OUT
@@ -177,8 +177,8 @@ info nope.nii --preset foo|--preset: 'foo' is unknown
 phantom --seed -1 cube|whole number of 0 or more
 compare --tolerance 2 a b|is not a difference
 compare --tolerance 1/0 a b|is not a difference
-x -o y.npy --background white|work only for PNG and WebP
-x -o y.pfm --bits 16|work only for PNG and WebP
+x -o y.npy --background white|work only for PNG, WebP and JPEG
+x -o y.pfm --bits 16|work only for PNG, WebP and JPEG
 END
 
 # These need a volume to be found wrong.
