@@ -169,6 +169,16 @@ def says(name, path, part, *options):
         oracle.fail(name, f"exit {status}, {errors!r} lacks {part!r}")
 
 
+def closed(path, part):
+    """Only info opens it without --allow-gaps."""
+    oracle.checked += 1
+    done = subprocess.run([oracle.TOOL, "convert", path, "-o", "closed.nrrd"],
+                          capture_output=True, text=True)
+    if done.returncode != 3 or part not in done.stderr:
+        oracle.fail(path, f"exit {done.returncode}, {done.stderr!r} lacks "
+                    f"{part!r}")
+
+
 def silent(name, path):
     """There are no remarks."""
     oracle.checked += 1
@@ -211,12 +221,12 @@ cut = image(small[0])
 for name in ("Rows", "Columns", "PixelData"):
     delattr(cut, name)
 write("lacking/IMcut", cut)
-oracle.refuse("lacking", "lacking/IMcut: is truncated or damaged: it claims to be")
+closed("lacking", "lacking/IMcut: is truncated or damaged: it claims to be")
 for size in (0, 50, 131):
     os.rename("lacking/IMcut" if not size else "lacking/cut.dcm",
               "lacking/cut.dcm")
     os.truncate("lacking/cut.dcm", size)
-    oracle.refuse("lacking", "lacking/cut.dcm: is named like DICOM but is")
+    closed("lacking", "lacking/cut.dcm: is named like DICOM but is")
 os.remove("lacking/cut.dcm")
 legacy = "1.2.840.10008.5.1.4.1.1.2.2"
 for name, sop, refused in (("CT", legacy, True),
@@ -225,7 +235,7 @@ for name, sop, refused in (("CT", legacy, True),
     cut.SOPClassUID = sop
     write("lacking/" + name, cut)
     if refused:
-        oracle.refuse("lacking", f"lacking/{name}: is truncated or damaged: it claims")
+        closed("lacking", f"lacking/{name}: is truncated or damaged: it claims")
     else:
         oracle.expect("lacking", small, wanted, name=f"a {name} beside it")
     os.remove("lacking/" + name)
@@ -309,7 +319,11 @@ oracle.expect("nearly", small[:5], grid((0.5, 0.75, 2.5), (0, 0, 0)),
               name="nearly even")
 says("nearly", "nearly", "their mean distance, 2.5 mm")
 series("gap", small[:8], [r for i, r in enumerate(rising) if i != 4])
-oracle.refuse("gap", "1 of its slices is missing between s_3.dcm and s_4.dcm")
+closed("gap", "1 of its slices is missing between s_3.dcm and s_4.dcm")
+holed = np.insert(small[:8].astype("f4"), 4, np.nan, axis=0)
+for options in ([], ["--allow-gaps"]):
+    oracle.expect("gap", holed, wanted, options,
+                  name=f"a missing slice {options}")
 says("a slice whose others are not all there", "gap/s_1.dcm", "used alone")
 series("beside", small, [(30 * (i == 4), 0, i) for i in range(9)])
 oracle.refuse("beside", "are not aligned")
@@ -591,9 +605,28 @@ with open("broken/s_4.dcm", "rb") as file:
 for size in (len(whole) - 10, 300):
     with open("broken/s_4.dcm", "wb") as file:
         file.write(whole[:size])
-    oracle.refuse("broken", "s_4.dcm: is truncated or damaged")
+    closed("broken", "s_4.dcm: is truncated or damaged")
+    holed = small[:9].astype("f4")
+    holed[4] = np.nan
+    oracle.expect("broken", holed, wanted, ["--allow-gaps"],
+                  name=f"a slice cut to {size} bytes")
     says("a slice beside one that is cut", "broken/s_0.dcm",
          "1 file beside it cannot be read (s_4.dcm); slices of the volume may be missing")
+series("packed", small, rising)
+for i in range(9):
+    data = opened(f"packed/s_{i}.dcm")
+    data.file_meta.TransferSyntaxUID = RLELossless
+    data.PixelData = encapsulate([rle_encode_frame(small[i])])
+    data["PixelData"].is_undefined_length = True
+    write(f"packed/s_{i}.dcm", data)
+oracle.expect("packed", small, wanted, ["--allow-gaps"],
+              name="run lengths, whole with gaps allowed")
+os.truncate("packed/s_4.dcm", os.path.getsize("packed/s_4.dcm") - 20)
+closed("packed", "packed/s_4.dcm: ")
+for options in ([], ["--allow-gaps"]):
+    oracle.expect("packed", holed, wanted, options,
+                  name=f"run lengths that are cut {options}")
+says("run lengths that are cut", "packed", "s_4.dcm is cut", "--allow-gaps")
 with open("broken/s_3.dcm", "wb") as file:
     file.write(whole[:300])
 says("a slice beside two that are cut", "broken/s_0.dcm",

@@ -199,6 +199,7 @@ for relative in ("microscopy/hemisphere_l_211tif.tar.gz",
             for i, tag in enumerate(("XResolution", "YResolution")):
                 if file.is_imagej and tag in tags:
                     step[i] = tags[tag].value[1] / tags[tag].value[0]
+            step[2] = step[0]  # nothing tells the distance of the files
         oracle.expect(f"real/{name}", voxels, oracle.image(step))
         shutil.rmtree("real")
 oracle.finish()
