@@ -142,7 +142,7 @@ check "with both keys" grep -q '"labels": "1,2-3"' j.json
 run 0 "and taken" render --config j.json -o k.npy
 check "gives the same" cmp -s j.npy k.npy
 run 0 "other labels count more" render --config j.json -o l.npy --labels 2-3
-run 0 "than those of the file" render two.npy -o b.npy -y
+run 0 "than those of the file" render --config j.json two.npy -o b.npy -y
 check "and are heeded" cmp -s l.npy b.npy
 
 # --- refused ------------------------------------------------------------------

@@ -86,7 +86,7 @@ x.png|cannot hold many frames
 %.png|a % without a number
 %%.png|has no number
 %d/f.png|a folder's name
-f_%04d.jpg|f_0000.jpg
+f_%04d.bmp|f_0000.bmp
 f_%04d.mp4|a movie is one file
 x.avi|cannot hold many frames
 -|cannot hold many frames
