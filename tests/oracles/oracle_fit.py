@@ -29,13 +29,13 @@ def scene():
     np.save("a.npy", voxels)
 
 
-def draw(*options, out="b.npy", verb="render"):
+def draw(*options, out="b.npy", verb="render", status=0):
     done = subprocess.run(
         [oracle.TOOL, verb, "-q", "a.npy", "-y", "-o", out, "-s",
          f"{SIDE}x{SIDE}", "--no-labels", "--opacity", "0:0,99:0,100:1",
          "--spacing", "1x1.2x0.9", *options], capture_output=True, text=True)
-    if done.returncode:
-        oracle.fail(" ".join(options), done.stderr.strip())
+    if done.returncode != status:
+        oracle.fail(" ".join(options), f"exit {done.returncode}: {done.stderr.strip()}")
         return np.zeros((SIDE, SIDE, 4))
     return np.load(out) if "%" not in out else None
 
@@ -80,7 +80,7 @@ expect("a surface of less",
 # Projections show the box.
 expect("a projection", edges(draw("--mode", "mip", "--view", "iso")))
 # Nothing to be seen: the box, too.
-draw("--opacity", "0:0,250:0,251:1")
+draw("--opacity", "0:0,250:0,251:1", status=7)
 # Zoom multiplies.
 near, far = edges(draw()), edges(draw("--zoom", "0.5"))
 oracle.checked += 1
