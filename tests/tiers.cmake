@@ -15,7 +15,8 @@
 #            double, or looks at timing and memory of processes
 # The sanitized builds of the long tier run all but `long` and `plain`.
 set(SNOW_LABEL_long cli_large isa_neon isa_wasm simulate mpi_bench mpi_combine mpi_fail mpi_hosts
-    mpi_insitu mpi_kill mpi_modes mpi_other mpi_stall)
+    mpi_insitu mpi_kill mpi_modes mpi_other mpi_stall package_abi package_cmake
+    package_layout package_pkgconfig package_within)
 set(SNOW_LABEL_late catalyst cli_balance cli_bench cli_figures cli_measurements
     mpi_comm oracle_vtk test_model_raycast test_value_model test_value_truth
     test_value_views)
@@ -48,7 +49,7 @@ set(SNOW_COSTS
     test_model_raycast 37 cli_stream 87 test_ranks 62 test_stream 57
     cli_figures 52 oracle_zarr 46 test_modes 44
     cli_turntable 41 oracle_vtk 40 cli_render 39 test_stop 37
-    example_installed 37 test_combine 35 cli_bench 34 cli_interrupt 34
+    test_combine 35 cli_bench 34 cli_interrupt 34
     cli_documents 31 test_raycast 31 cli_matrix 31
     oracle_dicom 31 cli_frame 30 test_pipeline 28 cli_measurements 28
     test_ranks_open 28 test_value 27 test_insitu 26
@@ -98,7 +99,7 @@ foreach(n RANGE ${last})
   list(GET SNOW_COSTS ${next} cost)
   if(test IN_LIST tests)
     set_tests_properties(${test} PROPERTIES COST ${cost})
-  elseif(NOT test MATCHES "^(simulate|isa_neon|isa_wasm|example_installed)$" AND
+  elseif(NOT test MATCHES "^(simulate|isa_neon|isa_wasm)$" AND
          NOT sources MATCHES "/${test}[.](c|sh|py)(;|$)")
     message(FATAL_ERROR "tests/tiers.cmake: there is no test '${test}'")
   endif()

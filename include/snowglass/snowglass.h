@@ -1,9 +1,7 @@
 /* snowglass/snowglass.h - volumes to pictures, in one process.
  *
- * Includes status, context, volume, transfer, view, render, image, overlay.
  * Not included: ranks and comm (many processors), insitu (running simulations),
- * mpi, look_file and recipe (files of looks and of whole renders, in
- * libsnowglass-recipe), extend (for libraries over this one).
+ * mpi, extend, look_file and recipe (files, in libsnowglass-recipe).
  *
  *   snow_context *context = NULL;
  *   snow_image *image = NULL;
@@ -17,9 +15,8 @@
  *   snow_image_free(image);
  *   snow_context_free(context);
  *
- * For more than one picture: a volume (snow_volume_open), a transfer function
- * for it (snow_transfer_new_for_volume), a view (snow_view_default), a frame;
- * then pictures (snow_frame_render). Free all in any order, the context last.
+ * For more than one picture: snow_volume_open, snow_transfer_new_for_volume,
+ * snow_view_default, a frame, snow_frame_render. Free the context last.
  * Until version 1.0 each minor version may change interface and soname. */
 #ifndef SNOWGLASS_SNOWGLASS_H
 #define SNOWGLASS_SNOWGLASS_H
@@ -33,8 +30,11 @@
 #include <snowglass/view.h>
 #include <snowglass/volume.h>
 
-/* Version of the linked library, "0.1.0"; instruction sets of this machine that
- * it knows, best last, separated by spaces, and the one that it uses. */
+/* Version of these headers, for #if; snow_version: of the library, "0.1.0".
+ * Instruction sets that this machine has, best last, and the one in use. */
+#define SNOWGLASS_VERSION_MAJOR 0
+#define SNOWGLASS_VERSION_MINOR 1
+#define SNOWGLASS_VERSION_PATCH 0
 SNOW_API const char *snow_version(void);
 SNOW_API const char *snow_isa_found(void);
 SNOW_API const char *snow_isa_used(void);
