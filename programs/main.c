@@ -6,6 +6,7 @@
  * and 130 (options.h). */
 #include "commands/commands.h"
 #include "options/config.h"
+#include "picture/default_name.h"
 #include "run/interrupt.h"
 #include "run/launcher.h"
 #include "run/log.h"
@@ -103,7 +104,10 @@ static int run_command(const verb_row *verb, bool named, int argc,
         silence_others();
     if (process_ranks() > 1 && is_for_all(verb))
         snow_comm_set_timeout(process_comm(), opts.timeout);
-    done = config_check(&opts);
+    if (verb->bit == VERB_RENDER)
+        done = process_agree(default_name(&opts));
+    if (done == CONTINUE)
+        done = config_check(&opts);
     if (done == CONTINUE)
         done = look_load(&opts); /* on every rank: the file is small */
     if (is_for_all(verb))

@@ -19,6 +19,13 @@ static int check_movie(const options *opts) {
     return movie_check(opts);
 }
 
+/* People who ask for a movie of one volume often mean a turntable. */
+static void remark_still(const options *opts, const shot_list *list) {
+    if (list->count == 1 && opts->verbosity >= 0)
+        say("note: this is one time step, so the movie is a still; for a movie "
+            "around the volume use turntable, for a picture render");
+}
+
 /* Lists the steps.  The rank that writes also checks the output. */
 static int prepare_movie(const options *opts, shot_renderer *shots,
                          step_files *files, shot_list *list, movie **s) {
@@ -31,6 +38,8 @@ static int prepare_movie(const options *opts, shot_renderer *shots,
     if (done != CONTINUE)
         return done;
     done = steps_list(files, shots, list);
+    if (done == CONTINUE)
+        remark_still(opts, list);
     if (done == CONTINUE && process_talks())
         done = movie_open(opts, list, s);
     return process_agree(done);

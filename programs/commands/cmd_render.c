@@ -84,8 +84,6 @@ static int check_depth(const options *opts) {
 
 /* These checks need no file, so they come before everything else. */
 static int check_combination(const options *opts) {
-    if (!opts->output)
-        return fail_usage("no output file given; add -o OUT.png");
     if (snow_image_format_bits(opts->output) == 0 &&
         (opts->background.given || opts->bits))
         return fail_usage("%s: --background and --bits work only for PNG, "
@@ -300,7 +298,9 @@ static void report_choices(const work *w) {
     char text[1024];
     render_state_choices(&w->state, text, sizeof text);
     if (w->state.opts->verbosity >= 0)
-        say("%s%s", text, w->painted.words);
+        say("%s%s%s%s", text, w->painted.words,
+            w->state.opts->named ? "; to " : "",
+            w->state.opts->named ? w->state.opts->output : "");
     warn_picture(&w->state, w->image);
     render_state_note(&w->state);
 }

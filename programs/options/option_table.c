@@ -40,7 +40,8 @@ const option_row option_table[] = {
      "output file. Picture: .png, .jpg or .webp; .npy, .exr, .tif or .pfm for "
      "float pixels; - writes PNG to stdout. Movie: .mp4, .webm, .gif or .webp, or a "
      "pattern such as f_%04d.png for single frames. Volume: .nrrd, .nii, "
-     ".nii.gz, .mha, .npy, .raw or .raw.gz"},
+     ".nii.gz, .mha, .npy, .raw or .raw.gz. A picture without -o is NAME.png in "
+     "the working folder, after the input, and replaces no file"},
     {"size", 's', "WxH|N", TOPIC_OUTPUT, RENDER, read_size, FIELD(size), 0, 0, "",
      "picture size in pixels; N is NxN (default 512x512)"},
     {"background", 0, "COLOR|none", TOPIC_OUTPUT, RENDER, read_color,
@@ -339,7 +340,7 @@ const option_row option_table[] = {
 /* A verb without a bit is planned but not built; its last text is the
  * advice. */
 const verb_row verb_table[] = {
-    {"render", VERB_RENDER, 1, "INPUT -o OUT",
+    {"render", VERB_RENDER, 1, "INPUT [-o OUT]",
      "make one picture; the default verb"},
     {"turntable", VERB_TURNTABLE, 1, "INPUT -o OUT [--frames N]",
      "make a movie around the volume"},

@@ -57,6 +57,7 @@ typedef enum topic {
 /* All options.  Texts point into argv or, for a configuration, into `texts`. */
 typedef struct options {
     const char *output; /* NULL: not given */
+    bool named;         /* the output after the input, as none was given */
     int64_t size[2];    /* width, height */
     color_value background;
     const char *bits; /* NULL: not given */

@@ -76,6 +76,14 @@ check "are frames" same_bytes "$(echo t*.png)" "$(echo f_00.png f_02.png f_04.pn
 # shellcheck disable=SC2086
 run 0 "one of them" movie times.nrrd --time 1 -o 'u%d.png' $look
 check "is that frame" same_bytes "$(echo u*.png)" "f_02.png"
+# shellcheck disable=SC2086
+run 0 "one of them, aloud" "$TOOL" movie times.nrrd --time 1 -o 'alone%d.png' -s 9x9
+says 'note: this is one time step, so the movie is a still; .* turntable'
+run 0 "two steps" "$TOOL" movie run/s_0000.nrrd run/s_0020.nrrd -o 'pair%d.png' -s 9x9
+check "are none" bash -c "! grep -q still '$ERR'"
+run 0 "several volumes of one step, quietly" "$TOOL" movie -q run/s_0000.nrrd \
+    -o 'quiet%d.png' -s 9x9
+check "no word" [ ! -s "$ERR" ]
 refused 3 "several files of several steps" "times.nrrd: holds 3 time steps" \
     movie times.nrrd times.nrrd -o 'x%d.png'
 run 0 "are possible with --time" movie times.nrrd times.nrrd --time 2 -o 'w%d.png'

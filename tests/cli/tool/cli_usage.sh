@@ -26,10 +26,10 @@ trun-table x -o y.mp4|trun-table: is not a verb; did you mean turntable\?
 Inof x|Inof: is not a verb; did you mean info\?
 render view F|F: is one word too many for render
 x.nii y -o z.png|y: is one word too many for render
-render -o z.png|give snowglass render INPUT -o OUT
+render -o z.png|give snowglass render INPUT \[-o OUT\]
 compare a.png|give snowglass compare A B
-phantom:cube|no output file given; add -o OUT.png
 phantom cube|no output file given
+-|no output file given; add -o OUT.png
 phantom:cube -o x.bmp|x.bmp
 phantom snowman -o x.nrrd|snowman
 phantom cube -o x.txt|x.txt

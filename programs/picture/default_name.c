@@ -1,0 +1,73 @@
+/* default_name.c - implements default_name.h. */
+#define _XOPEN_SOURCE 700
+#include "picture/default_name.h"
+#include "commands/commands.h"
+#include "run/log.h"
+#include "run/start.h"
+
+#include <ctype.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* The last part of a path; for "." and "..", of the folder that they mean. */
+static void take_name(const char *path, char out[NAME_MAX + 1]) {
+    char real[PATH_MAX];
+    size_t length = strlen(path);
+    while (length > 1 && path[length - 1] == '/')
+        length--;
+    const char *end = path + length, *name = end;
+    while (name > path && name[-1] != '/')
+        name--;
+    if (strspn(name, "./") >= (size_t)(end - name) && realpath(path, real)) {
+        name = strrchr(real, '/') + 1;
+        end = name + strlen(name);
+    }
+    snprintf(out, NAME_MAX + 1, "%.*s", (int)(end - name), name);
+}
+
+/* Removes a suffix such as .nrrd; that of a number, as in 1.2.840, is none. */
+static void drop_suffix(char *name) {
+    char *dot = strrchr(name, '.');
+    if (dot && dot > name && isalpha((unsigned char)dot[1]))
+        *dot = '\0';
+}
+
+/* "head" for scans/head.nii.gz, phantom:head, and a folder of that name. */
+static void name_of(const char *path, char out[NAME_MAX + 1]) {
+    struct stat what;
+    bool phantom = strncmp(path, "phantom:", 8) == 0;
+    take_name(phantom ? path + 8 : path, out);
+    char *dot = strrchr(out, '.');
+    bool folder = stat(path, &what) == 0 && S_ISDIR(what.st_mode) &&
+                  !(dot && strcmp(dot, ".zarr") == 0);
+    if (phantom || folder)
+        return;
+    if (dot && (strcmp(dot, ".gz") == 0 || strcmp(dot, ".zip") == 0))
+        *dot = '\0';
+    drop_suffix(out);
+}
+
+int default_name(options *opts) {
+    static char path[NAME_MAX + 8];
+    char name[NAME_MAX + 1];
+    struct stat what;
+    if (opts->output || opts->operand_count != 1)
+        return CONTINUE;
+    if (strcmp(opts->operands[0], "-") == 0)
+        return fail_usage("no output file given; add -o OUT.png");
+    name_of(opts->operands[0], name);
+    snprintf(path, sizeof path, "%s.png", name);
+    opts->output = path;
+    opts->named = true;
+    if (!process_talks() || lstat(path, &what) != 0)
+        return CONTINUE;
+    int done = check_input_first(opts, &opts->output, 1);
+    return done == CONTINUE
+               ? fail_output("%s: exists, and is replaced only where it is "
+                             "named; give another name with -o, or -o %s -y",
+                             path, path)
+               : done;
+}
