@@ -1,6 +1,7 @@
 /* cmd_info.c - the verb info: geometry, type, statistics and histogram of a
  * volume, and the share of voxels that a threshold leaves out. */
 #include "commands/commands.h"
+#include "commands/info_list.h"
 #include "run/log.h"
 
 #include <inttypes.h>
@@ -164,7 +165,7 @@ static void print_histogram(const facts *f) {
 
 /* Scripts rely on the keys: dims has x first, matrix maps index to world, row
  * by row. */
-static void set_geometry(json_t *object, const snow_volume_info *info) {
+void info_set_geometry(json_t *object, const snow_volume_info *info) {
     json_t *matrix = json_array();
     for (int i = 0; i < 4; i++)
         json_array_append_new(matrix, json_vector(info->matrix[i], 4));
@@ -229,7 +230,7 @@ static json_t *sparse_json(const facts *f) {
 
 static int report_json(const facts *f) {
     json_t *object = json_object();
-    set_geometry(object, f->info);
+    info_set_geometry(object, f->info);
     if (f->patient)
         json_object_set_new(object, "patient", json_string(f->patient));
     set_values(object, &f->measures);
@@ -278,6 +279,11 @@ int cmd_info(const options *opts) {
     snow_context *context = NULL;
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL;
+    if (opts->operand_count == 0)
+        return fail_usage("info: an operand is missing; give snowglass info "
+                          "INPUT...");
+    if (info_is_list(opts))
+        return info_list(opts);
     int done = check_look(opts);
     if (done == CONTINUE)
         done = open_context(opts, &context);

@@ -321,7 +321,8 @@ const option_row option_table[] = {
      "the rank; 0 waits forever (default 300)"},
 
     {"json", 0, NULL, TOPIC_MORE, INFO | COMPARE | DOCTOR | TF, read_flag,
-     FIELD(json), 0, 0, "", "print one JSON object"},
+     FIELD(json), 0, 0, "",
+     "print one JSON object; of several inputs of info a list of them"},
     {"patient", 0, NULL, TOPIC_MORE, INFO, read_flag, FIELD(patient), 0, 0, "",
      "also print the patient's name, if the file has one"},
     {"seed", 0, "N", TOPIC_MORE, PHANTOM, read_count, FIELD(seed), 0, 0, "",
@@ -346,7 +347,7 @@ const verb_row verb_table[] = {
      "make a movie around the volume"},
     {"movie", VERB_MOVIE, -1, "INPUT...|run_%04d.nrrd -o OUT",
      "make a movie over time steps"},
-    {"info", VERB_INFO, 1, "INPUT [--json]",
+    {"info", VERB_INFO, -1, "INPUT... [--json]",
      "print geometry, type, range, histogram and sparse ratio"},
     {"phantom", VERB_PHANTOM, 1, "NAME -o OUT", "write a built-in test volume"},
     {"convert", VERB_CONVERT, 1, "IN -o OUT [--as TYPE] [--crop ...]",

@@ -162,4 +162,38 @@ if [ -d flat ] && "$TOOL" info -q flat.tif >/dev/null 2>&1; then
 else
     skipped "distances of TIFF slices" "there is no python3 or no libtiff"
 fi
+# --- several inputs and folders -------------------------------------------------
+mkdir -p many/deep
+"$TOOL" convert -q phantom:cube --dims 9x8x7 -o many/b.nrrd
+"$TOOL" convert -q phantom:cube --dims 6x5x4 -o many/a.nii.gz
+"$TOOL" convert -q phantom:cube --dims 3x3x3 -o many/deep/c.nrrd
+echo "no volume" >many/read.me
+run 0 "two inputs" "$TOOL" info many/b.nrrd many/a.nii.gz
+prints '^many/b.nrrd: nrrd 9x8x7 uint8, spacing '
+prints '^many/a.nii.gz: nifti 6x5x4 uint8, spacing '
+check "in their order" [ "$(cut -d: -f1 "$OUT" | tr '\n' ' ')" = \
+    "many/b.nrrd many/a.nii.gz " ]
+run 3 "one that is missing does not end the list" "$TOOL" info many/b.nrrd \
+    many/none.nrrd phantom:head
+prints '^many/b.nrrd: nrrd'
+prints '^phantom:head: phantom 256'
+says '^snowglass: many/none.nrrd: '
+check "one line of an error" [ "$(wc -l <"$ERR")" = 1 ]
+run 3 "as JSON" "$TOOL" info --json many/b.nrrd many/read.me many/a.nii.gz
+prints '^\[\{"path": "many/b.nrrd", "format": "nrrd", "dims": \[9, 8, 7\]'
+check "is a list of what can be read" python3 -c '
+import json, sys
+rows = json.load(open(sys.argv[1]))
+assert [r["path"] for r in rows] == ["many/b.nrrd", "many/a.nii.gz"]' "$OUT"
+run 0 "a folder" "$TOOL" info many
+check "is listed by name" [ "$(cut -d: -f1 "$OUT" | tr '\n' ' ')" = \
+    "many/a.nii.gz many/b.nrrd " ]
+says '^snowglass: many/read.me: has an unknown format'
+run 0 "a folder and a file" "$TOOL" info many/deep/ phantom:cube
+prints '^many/deep/c.nrrd: '
+prints '^phantom:cube: '
+mkdir empty
+run 3 "a folder without volumes is refused as it was" "$TOOL" info empty
+run 2 "no input" "$TOOL" info
+says 'info: an operand is missing; give snowglass info INPUT'
 finish
