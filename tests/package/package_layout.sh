@@ -17,7 +17,7 @@ component() {
 }
 install_project
 (cd first && find . ! -type d | sort) >all.files
-for name in runtime dev mpi doc; do component $name; done
+for name in runtime dev mpi python doc; do component $name; done
 has() { grep -Eq "$2" "$1.files"; }
 lacks() { ! has "$@"; }
 check "runtime has the tool" has runtime '/bin/snowglass$'
@@ -34,9 +34,9 @@ check "doc has an example" has doc '/examples/minimal[.]c$'
 check "mpi has all that is of MPI" \
     [ "$(grep -E -- '/mpi[.]h$|-mpi' all.files)" = "$(cat mpi.files)" ]
 check "each file belongs to one component" \
-    [ "$(cat runtime.files dev.files mpi.files doc.files | sort)" = \
+    [ "$(cat {runtime,dev,mpi,python,doc}.files | sort)" = \
     "$(cat all.files)" ]
-rm -rf first runtime dev mpi doc
+rm -rf first runtime dev mpi python doc
 
 # --- where they find one another ----------------------------------------------
 

@@ -6,7 +6,7 @@
 . "$HERE/package/stranger.sh"
 mkdir snowglass
 cp -r "$SOURCE"/{CMakeLists.txt,README.md,LICENSE,CHANGELOG.md,CONTRIBUTING.md} \
-    "$SOURCE"/{bench,bindings,cmake,docs,examples,fuzz,include,programs,scripts,src} \
+    "$SOURCE"/{bench,bindings,cmake,docs,examples,fuzz,include,programs,python,scripts,src} \
     snowglass
 hide_project tests/package/within examples/minimal.c examples/array.c
 
