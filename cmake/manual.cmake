@@ -1,0 +1,58 @@
+# Manual pages, completions and the schema of recipes, made at build time from
+# the tool's table of options by a program that is not installed.  A build for
+# another machine takes the program of a native build: -DSNOW_MANUAL=PATH.
+set(default ON)
+if(CMAKE_CROSSCOMPILING OR SNOW_SANITIZE)
+  set(default OFF)
+endif()
+set(SNOW_MANUAL ${default} CACHE STRING
+    "manual pages and completions: ON, OFF, or the program that writes them")
+if(NOT SNOW_MANUAL)
+  return()
+endif()
+
+set(program ${SNOW_MANUAL})
+if(NOT EXISTS "${SNOW_MANUAL}")
+  file(GLOB sources CONFIGURE_DEPENDS programs/manual/*.c)
+  snow_tool(snowglass_manual snowglass-manual ${sources})
+  set(program snowglass_manual)
+endif()
+
+set(SNOW_MANUAL_FILES "")
+# snow_manual(COMPONENT FOLDER FILE WORD...): what these words write is installed
+# in the folder.
+function(snow_manual component folder file)
+  set(out ${PROJECT_BINARY_DIR}/manual/${folder}/${file})
+  get_filename_component(place ${out} DIRECTORY)
+  file(MAKE_DIRECTORY ${place})
+  add_custom_command(OUTPUT ${out} COMMAND ${program} ${ARGN} > ${out}
+                     DEPENDS ${program} VERBATIM)
+  set(SNOW_MANUAL_FILES ${SNOW_MANUAL_FILES} ${out} PARENT_SCOPE)
+  if(SNOW_INSTALL)
+    install(FILES ${out} DESTINATION ${folder} COMPONENT ${component})
+  endif()
+endfunction()
+
+set(pages ${CMAKE_INSTALL_MANDIR}/man1)
+set(bash ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+set(zsh ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+set(fish ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+snow_manual(snowglass_runtime ${pages} snowglass.1 man)
+file(STRINGS programs/options/option_table.c verbs REGEX "^    {\"[a-z]+\", VERB_")
+foreach(verb ${verbs})
+  string(REGEX REPLACE "^    {\"([a-z]+)\".*" "\\1" verb "${verb}")
+  snow_manual(snowglass_runtime ${pages} snowglass-${verb}.1 man ${verb})
+endforeach()
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+             ${PROJECT_SOURCE_DIR}/programs/options/option_table.c)
+snow_manual(snowglass_runtime ${bash} snowglass bash)
+snow_manual(snowglass_runtime ${zsh} _snowglass zsh)
+snow_manual(snowglass_runtime ${fish} snowglass.fish fish)
+snow_manual(snowglass_runtime ${CMAKE_INSTALL_DATADIR}/snowglass
+            recipe.schema.json json)
+if(TARGET snowglass_mpi_tool)
+  snow_manual(snowglass_mpi ${pages} snowglass-mpi.1 man mpi)
+  snow_manual(snowglass_mpi ${bash} snowglass-mpi bash)
+  snow_manual(snowglass_mpi ${fish} snowglass-mpi.fish fish-mpi)
+endif()
+add_custom_target(snowglass_manual_files ALL DEPENDS ${SNOW_MANUAL_FILES})

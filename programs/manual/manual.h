@@ -1,0 +1,46 @@
+/* manual.h - what snowglass-manual writes: manual pages, completions of shells
+ * and the JSON schema of recipes, all from the table of options.
+ *
+ * It is a program of the build and is not installed (cmake/manual.cmake). */
+#ifndef MANUAL_H
+#define MANUAL_H
+
+#include "options/parse.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define WORD_BYTES 64
+
+/* The words that an option's argument can be, or that begin it: its choices, or
+ * names of the library's lists.  NULL from the end on; may lie in `room`. */
+const char *option_word(const option_row *row, size_t index,
+                        char room[WORD_BYTES]);
+
+/* The same of the first operand of a verb, taken from its usage. */
+const char *verb_word(const verb_row *verb, size_t index,
+                      char room[WORD_BYTES]);
+
+/* Whether the next word is the option's argument; one in brackets follows an
+ * equals sign. */
+bool option_takes_word(const option_row *row);
+bool option_takes_file(const option_row *row);
+
+/* Whether an option is built, and taken by the verb; that it is of the program
+ * with MPI alone. */
+bool verb_takes(const verb_row *verb, const option_row *row);
+bool option_is_of_ranks(const option_row *row);
+
+/* The first clause of a help text. */
+#define BRIEF_BYTES 96
+const char *brief(const char *text, char room[BRIEF_BYTES]);
+
+/* Print to standard output.  `name` of a page is a verb, "mpi", or NULL for the
+ * overview; false: there is no such page. */
+bool print_page(const char *name);
+void print_bash(void);
+void print_zsh(void);
+void print_fish(bool mpi);
+int print_schema(void); /* an exit code */
+
+#endif

@@ -1,0 +1,267 @@
+/* page.c - manual pages, in the macros man(7), which every reader of manual
+ * pages knows. */
+#include "manual/manual.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define LINE 76
+
+/* --- text ----------------------------------------------------------------- */
+
+/* A hyphen that is typed stays one when it is copied: that of an option or of a
+ * name. */
+static void print_roff(const char *text, size_t length, bool typed) {
+    for (size_t i = 0; i < length; i++) {
+        if (i == 0 && text[i] == '-')
+            typed = true;
+        if (text[i] == '\\')
+            fputs("\\e", stdout);
+        else if (text[i] == '-' && typed)
+            fputs("\\-", stdout);
+        else
+            putchar(text[i]);
+    }
+}
+
+static bool ends_sentence(const char *word, size_t length) {
+    size_t last = length - (length > 1 && word[length - 1] == ')');
+    return last > 1 && strchr(".!?", word[last - 1]) &&
+           !(last > 3 && strncmp(word, "e.g.", 4) == 0);
+}
+
+/* A paragraph: words on lines, each sentence on a line of its own. */
+static void print_text(const char *text) {
+    size_t at = 0;
+    while (*text) {
+        size_t length = strcspn(text, " ");
+        if (at && at + 1 + length > LINE) {
+            putchar('\n');
+            at = 0;
+        }
+        if (at)
+            putchar(' ');
+        else if (*text == '.' || *text == '\'')
+            fputs("\\&", stdout);
+        print_roff(text, length, strchr("([", *text) && text[1] == '-');
+        at += length + 1;
+        if (ends_sentence(text, length) && text[length]) {
+            putchar('\n');
+            at = 0;
+        }
+        text += length + (text[length] == ' ');
+    }
+    putchar('\n');
+}
+
+/* A line of a macro, whose argument is one text. */
+static void print_macro(const char *macro, const char *text) {
+    printf("%s ", macro);
+    print_roff(text, strlen(text), true);
+    putchar('\n');
+}
+
+static void print_item(const char *name, const char *text) {
+    puts(".TP");
+    print_macro(".B", name);
+    print_text(text);
+}
+
+/* --- parts of pages ------------------------------------------------------- */
+
+/* The day that the build names, so that two builds are equal. */
+static void print_head(const char *title, const char *name, const char *text) {
+    char day[32] = "";
+    const char *epoch = getenv("SOURCE_DATE_EPOCH");
+    time_t now = epoch ? (time_t)strtoll(epoch, NULL, 10) : time(NULL);
+    struct tm parts;
+    if (gmtime_r(&now, &parts))
+        strftime(day, sizeof day, "%Y-%m-%d", &parts);
+    puts(".\\\" made by snowglass-manual from the table of options");
+    printf(".TH ");
+    for (; *title; title++)
+        putchar(toupper((unsigned char)*title));
+    printf(" 1 %s \"Snowglass %s\"\n.SH NAME\n", day, snow_version());
+    print_roff(name, strlen(name), true);
+    fputs(" \\- ", stdout);
+    print_text(text);
+}
+
+static void print_option(const option_row *row) {
+    printf(".TP\n\\fB");
+    if (row->letter)
+        printf("\\-%c\\fR, \\fB", row->letter);
+    printf("\\-\\-");
+    print_roff(row->name, strlen(row->name), true);
+    printf("\\fR");
+    if (row->argument) {
+        printf(option_takes_word(row) ? " \\fI" : "\\fI");
+        print_roff(row->argument, strlen(row->argument), true);
+        printf("\\fR");
+    }
+    putchar('\n');
+    print_text(row->text);
+}
+
+/* The options of a topic that a verb takes, NULL: any. */
+static void print_topic(const verb_row *verb, topic which) {
+    bool first = true;
+    for (const option_row *row = option_table; row->name; row++) {
+        if (row->topic != which || !row->read ||
+            (verb && !verb_takes(verb, row)))
+            continue;
+        if (first) {
+            char title[128];
+            snprintf(title, sizeof title, "%s: %s%s", topic_table[which].name,
+                     topic_table[which].text,
+                     option_is_of_ranks(row) ? " (snowglass-mpi)" : "");
+            print_macro(".SS", title);
+        }
+        first = false;
+        print_option(row);
+    }
+}
+
+static void print_names(const char *title, const char *(*name)(size_t),
+                        const char *(*text)(size_t)) {
+    print_macro(".SS", title);
+    if (!text) {
+        for (size_t i = 0; name(i); i++) {
+            print_roff(name(i), strlen(name(i)), true);
+            puts(name(i + 1) ? "," : ".");
+        }
+    }
+    for (size_t i = 0; text && name(i); i++)
+        print_item(name(i), text(i));
+}
+
+static void print_see_also(void) {
+    puts(".SH SEE ALSO\n.BR snowglass (1)");
+    print_text("and the documents in the folder share/doc/snowglass.");
+}
+
+/* --- pages ---------------------------------------------------------------- */
+
+static void print_verb(const verb_row *verb) {
+    char name[WORD_BYTES];
+    snprintf(name, sizeof name, "snowglass-%s", verb->name);
+    print_head(name, name, verb->text);
+    printf(".SH SYNOPSIS\n.B snowglass %s\n", verb->name);
+    print_text(verb->usage);
+    puts(".SH DESCRIPTION");
+    if (verb->bit == VERB_BENCH) {
+        print_text("It has options of its own, which "
+                   "\"snowglass bench --help\" prints.");
+    } else {
+        char text[160];
+        snprintf(text, sizeof text, "Verb of the tool: %s.", verb->text);
+        print_text(text);
+        puts(".SH OPTIONS");
+        for (int i = 0; topic_table[i].name; i++)
+            print_topic(verb, (topic)i);
+    }
+    if (verb->bit == VERB_PHANTOM)
+        print_names("Phantoms", snow_phantom_name, snow_phantom_description);
+    print_see_also();
+}
+
+static void print_mpi(void) {
+    print_head("snowglass-mpi", "snowglass-mpi",
+               "volume rendering on many processes of MPI");
+    puts(".SH SYNOPSIS\n.B mpirun \\-n\n.I N\n.B snowglass\\-mpi\nVERB ...");
+    puts(".SH DESCRIPTION");
+    print_text("The tool snowglass under MPI: N processes make the same "
+               "picture, each of its part of the volume. Verbs and options are "
+               "those of snowglass, and those below. Start it with the "
+               "launcher of the MPI that it was built with.");
+    puts(".SH OPTIONS");
+    print_topic(NULL, TOPIC_RANKS);
+    print_see_also();
+}
+
+static void print_statuses(void) {
+    static const snow_status all[] = {
+#define STATUS(name, value, text) SNOW_STATUS_##name,
+        SNOW_STATUS_MAP(STATUS)
+#undef STATUS
+    };
+    puts(".SH EXIT STATUS");
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        char number[16], text[160];
+        snprintf(number, sizeof number, "%d", (int)all[i]);
+        snprintf(text, sizeof text, "%s.", snow_status_description(all[i]));
+        text[0] = (char)toupper((unsigned char)text[0]);
+        print_item(number, text);
+    }
+}
+
+static void print_environment(void) {
+    puts(".SH ENVIRONMENT");
+    print_item("SLURM_CPUS_PER_TASK, SLURM_CPUS_ON_NODE",
+               "processors that Slurm assigned; no more threads are started.");
+    print_item("PATH", "where ffmpeg, which encodes movies, is searched.");
+    print_item("TERM", "whether progress is a status line.");
+    puts(".SH FILES");
+    print_item("share/snowglass/recipe.schema.json",
+               "JSON schema of the files of --config and --save-config.");
+    print_item("lib/snowglass-*/",
+               "modules for formats, beside the library or the tool's folder.");
+}
+
+static void print_examples(void) {
+    static const char *const lines[] = {
+        "snowglass phantom:engine -o engine.png --azimuth 30 --elevation 20",
+        "snowglass head.nii.gz -o head.png --preset ct-bone -s 1024x1024",
+        "snowglass turntable head.nii.gz -o head.webp --frames 60",
+        "snowglass info volume.nrrd --json"};
+    puts(".SH EXAMPLES\n.EX");
+    for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+        print_roff(lines[i], strlen(lines[i]), true);
+        putchar('\n');
+    }
+    puts(".EE");
+}
+
+static void print_overview(void) {
+    print_head("snowglass", "snowglass",
+               "volume rendering by sparse splatting");
+    puts(".SH SYNOPSIS\n.B snowglass\n.I INPUT\n.B \\-o\n.I OUT.png\n[OPTIONS]"
+         "\n.br\n.B snowglass\n.I VERB\n\\&... [OPTIONS]\n.SH DESCRIPTION");
+    print_text("INPUT is a volume file, phantom:NAME, or - for standard input. "
+               "Each verb has a manual page, such as snowglass-render(1), with "
+               "its options. \"snowglass help TOPIC\" prints the options of a "
+               "topic.");
+    puts(".SH VERBS");
+    for (const verb_row *verb = verb_table; verb->name; verb++)
+        if (verb->bit)
+            print_item(verb->name, verb->text);
+    puts(".SH TOPICS");
+    for (const topic_row *row = topic_table; row->name; row++)
+        print_item(row->name, row->text);
+    puts(".SH NAMES");
+    print_names("Presets", snow_preset_name, snow_preset_description);
+    print_names("Colour maps", snow_colormap_name, NULL);
+    print_names("Views", snow_view_name, NULL);
+    print_names("Formats", snow_format_name, snow_format_description);
+    print_names("Phantoms", snow_phantom_name, snow_phantom_description);
+    print_statuses();
+    print_environment();
+    print_examples();
+    print_see_also();
+}
+
+bool print_page(const char *name) {
+    const verb_row *verb = name ? verb_named(name) : NULL;
+    if (!name)
+        print_overview();
+    else if (verb && verb->bit)
+        print_verb(verb);
+    else if (strcmp(name, "mpi") == 0)
+        print_mpi();
+    else
+        return false;
+    return true;
+}

@@ -1,0 +1,153 @@
+#!/usr/bin/env bash
+# tests/package/package_manual.sh - `script TOOL BUILD SOURCE`: manual pages,
+# completions and the schema of recipes say what the tool does.
+. "$(dirname "$0")/../support/shell.sh"
+MADE=$2/manual
+[ -d "$MADE" ] || { echo "built with -DSNOW_MANUAL=OFF" && exit 77; }
+place() { find "$MADE" -path "*/$1"; }
+page() { place "man1/snowglass$1.1"; }
+bash_file=$(place completions/snowglass)
+zsh_file=$(place site-functions/_snowglass)
+fish_file=$(place vendor_completions.d/snowglass.fish)
+fish_mpi=$(place vendor_completions.d/snowglass-mpi.fish)
+have() { command -v "$1" >/dev/null; }
+
+# --- each verb and option of the help is everywhere ---------------------------
+
+options_of() { "$TOOL" help "$1" | sed -nE 's/^  (-., |    )--([a-z-]+).*/\2/p'; }
+verbs=$("$TOOL" help | sed -n '/^verbs:/,/^$/s/^  \([a-z]*\) .*/\1/p')
+check "the help has verbs" [ "$(wc -w <<<"$verbs")" -gt 9 ]
+lacking=
+for verb in $verbs; do
+    file=$(page "-$verb")
+    [ -n "$file" ] || lacking+=" page:$verb"
+    [ "$verb" != bench ] || continue
+    said=$(sed -n "/^        $verb)/,/;;/p" "$bash_file")
+    zshed=$(sed -n "/^    $verb)/,/;;/p" "$zsh_file")
+    for option in $(options_of "$verb"); do
+        roff=$(sed 's/-/\\\\-/g' <<<"--$option")
+        grep -q "$roff\\\\fR" "$file" || lacking+=" $verb.1:$option"
+        grep -q -- "--$option " <<<"$said" || lacking+=" bash:$verb:$option"
+        grep -qE -- "--${option}[=[}]" <<<"$zshed" || lacking+=" zsh:$verb:$option"
+        grep -E -- "-n '__snowglass_takes [a-z ]*\\b$verb\\b.* -l $option " \
+            "$fish_file" >/dev/null || lacking+=" fish:$verb:$option"
+    done
+done
+check "all is in pages and completions${lacking:+, not$lacking}" [ -z "$lacking" ]
+
+# --- manual pages -------------------------------------------------------------
+
+if have mandoc; then
+    mandoc -Tlint "$(dirname "$(page "")")"/*.1 >lint 2>&1
+    cat lint
+    check "mandoc finds nothing" [ ! -s lint ]
+else
+    skipped "pages" "there is no mandoc"
+fi
+if have man && have groff; then
+    for file in "$(dirname "$(page "")")"/*.1; do
+        man --warnings -E UTF-8 -l "$file" 2>>warned >/dev/null
+    done
+    check "groff finds nothing" [ ! -s warned ]
+fi
+
+# --- bash ---------------------------------------------------------------------
+
+# completes WORDS... gives the words offered for the last one, as bash splits them.
+completes() {
+    bash -c '. "$0"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1))
+        _snowglass; printf "%s " "${COMPREPLY[@]}"' "$bash_file" "$@" 2>said
+    cat said >&2
+}
+offers() { # WHAT WORDS...
+    local what=$1 got
+    shift
+    got=$(completes "$@" 2>&1)
+    [ "${got% }" = "$what" ] || { echo "$*: '$got', not '$what'" && return 1; }
+}
+: >some.nrrd
+check "bash: a verb" offers turntable snowglass turn
+check "bash: an option" offers --encoding snowglass render --enc
+check "bash: an option of the first verb" offers --encoding snowglass a.nrrd --enc
+check "bash: not of another verb" offers "" snowglass info a.nrrd --enc
+check "bash: choices" offers "auto crs bitmap rle" snowglass render --encoding ''
+check "bash: choices behind =" offers "bitmap" snowglass render --encoding = b
+check "bash: all of them" offers "auto crs bitmap rle" snowglass --encoding =
+check "bash: a preset" offers ct-bones snowglass a.nrrd --preset ct-bones
+check "bash: a type" offers "uint8 uint16 uint32 uint64" snowglass a.raw --type ui
+check "bash: a topic" offers camera snowglass help cam
+check "bash: a phantom" offers engine snowglass phantom : en
+check "bash: a file" offers some.nrrd snowglass render so
+check "bash: an option without value is none's" offers some.nrrd \
+    snowglass render --legend so
+check "bash: nothing for a number" offers "" snowglass a.nrrd --zoom ''
+check "bash: of MPI alone" offers "" snowglass a.nrrd --radi
+check "bash: for MPI" offers --radix snowglass-mpi a.nrrd --radi
+
+# --- zsh and fish -------------------------------------------------------------
+
+# In a terminal of its own, as zsh completes nowhere else.
+zsh_types() { # TEXT: what stands on the line after a tab
+    zsh -f <<END
+zmodload zsh/zpty
+zpty shell zsh -f -i
+zpty -w shell "PROMPT= ; fpath=('$(dirname "$zsh_file")' \\\$fpath); \\
+autoload -U compinit; compinit -u -d '$WORK/dump'; \\
+show() { print -r -- \"<\\\$BUFFER>\"; BUFFER= ; zle accept-line }; zle -N show; \\
+bindkey '^X' show; print REA\\DY"
+zpty -r -m shell line '*READY*'
+zpty -w -n shell "$1"\$'\t\x18'
+zpty -r -m shell line '*<*>*'
+print -r -- "\${line##*<}"
+zpty -d shell
+END
+}
+zsh_gives() { # WANT TEXT
+    local got
+    got=$(timeout 60 bash -c "$(declare -f zsh_types); zsh_types '$2'")
+    [[ $got == "$1"* ]] || { echo "'$2': '$got', not '$1'" && return 1; }
+}
+export zsh_file WORK
+if have zsh; then
+    check "zsh: a verb" zsh_gives 'snowglass turntable ' 'snowglass turn'
+    check "zsh: an option" zsh_gives 'snowglass render a --encoding' \
+        'snowglass render a --enc'
+    check "zsh: a choice" zsh_gives 'snowglass a --encoding bitmap ' \
+        'snowglass a --encoding bi'
+    check "zsh: an option of its verb alone" zsh_gives 'snowglass info a --enc>' \
+        'snowglass info a --enc'
+else
+    skipped "zsh" "it is not there"
+fi
+
+fish_offers() { # WHAT TEXT
+    local got
+    got=$(HOME=$WORK fish --no-config -c "source $fish_file; source $fish_mpi
+        complete -C '$2'" | cut -f1 | tr '\n' ' ')
+    [ "${got% }" = "$1" ] || { echo "'$2': '$got', not '$1'" && return 1; }
+}
+if have fish; then
+    check "fish: a verb" fish_offers turntable 'snowglass turn'
+    check "fish: an option" fish_offers --encoding 'snowglass render a --enc'
+    check "fish: choices" fish_offers 'auto bitmap crs rle' \
+        'snowglass a --encoding '
+    check "fish: an option of its verb alone" fish_offers "" \
+        'snowglass info a --enc'
+    [ -z "$fish_mpi" ] ||
+        check "fish: for MPI" fish_offers --radix 'snowglass-mpi a --radi'
+else
+    skipped "fish" "it is not there"
+fi
+
+# --- the schema of recipes ----------------------------------------------------
+
+python=$(command -v /usr/bin/python3 || command -v python3)
+schema=$(place recipe.schema.json)
+if [ -n "$python" ] && "$python" -c 'import jsonschema' 2>/dev/null; then
+    run 0 "the schema takes and refuses what the tool does" "$python" -B \
+        "$HERE/package/schema.py" "$TOOL" "$schema"
+    cat "$OUT"
+else
+    skipped "the schema" "there is no jsonschema for Python"
+fi
+finish
