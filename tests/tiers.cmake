@@ -15,7 +15,7 @@
 #            double, or looks at timing and memory of processes
 # The sanitized builds of the long tier run all but `long` and `plain`.
 set(SNOW_LABEL_long cli_large isa_neon isa_wasm simulate mpi_bench mpi_combine mpi_fail mpi_hosts
-    mpi_insitu mpi_kill mpi_modes mpi_other mpi_stall package_abi package_cmake
+    mpi_insitu mpi_kill mpi_modes mpi_other mpi_stall package_cmake
     package_layout package_pkgconfig package_within)
 set(SNOW_LABEL_late catalyst cli_balance cli_bench cli_figures cli_measurements
     mpi_comm oracle_vtk test_model_raycast test_value_model test_value_truth

@@ -1,3 +1,4 @@
+#!/bin/bash
 # tests/package/stranger.sh - sourced by package_*.sh after a line of `. shell.sh`:
 # the library is installed aside and moved, and the folders of its sources and its
 # build are hidden, so that the rest of the script is a stranger to both.
@@ -26,7 +27,7 @@ if [ -z "${SNOW_HIDES-}" ]; then
 fi
 
 install_project() {
-    cmake --install "$BUILD" --prefix "$WORK/first" "$@" >"$WORK/log" 2>&1 ||
+    cmake --install "$BUILD" --prefix "$WORK/first" >"$WORK/log" 2>&1 ||
         { cat "$WORK/log" && exit 1; }
 }
 
