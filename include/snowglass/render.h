@@ -40,7 +40,7 @@ typedef enum snow_kernel {
 typedef enum snow_quality {
     SNOW_QUALITY_NORMAL = 0, /* one to four intermediate pixels a voxel; 1/4 */
     SNOW_QUALITY_DRAFT,      /* one; 1/2 */
-    SNOW_QUALITY_HIGH        /* four or more, a slice between each two; 1/16 */
+    SNOW_QUALITY_HIGH        /* four or more, sheets between slices; 1/16 */
 } snow_quality;
 
 /* Of kernels. avx2 and avx512 give the same bits, others differ by rounding. */

@@ -39,7 +39,7 @@ static void warn_method(const render_state *s) {
     if (!opts || s->stats.method == SNOW_METHOD_SHEAR_WARP)
         return;
     say("note: method %s is used in place of shear-warp, which takes kernels "
-        "tent of 2 voxels and bspline of 4, slices at most 24 times as far "
+        "tent of 2 voxels and bspline of 4, slices at most 384 times as far "
         "apart as voxels, and no eye beside the slices or near to them",
         snow_method_name(s->stats.method));
 }

@@ -142,8 +142,7 @@ static void ask_placement(const question *q, const snow_placement *p,
                           int64_t layers[3]) {
     const int64_t *dims = q->whole->dims;
     const int axes[2] = {p->u_axis, p->v_axis};
-    const ways by =
-        ways_of(q, snow_value_fits(q->whole, p, q->settings->kernel));
+    const ways by = ways_of(q, snow_value_fits(q->whole, p, q->settings));
     double width[2], slope[2];
     double ratio = p->perspective ? snow_perspective_shear_ratio(p) : 1;
     widest_pixel(p, width);

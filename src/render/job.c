@@ -71,7 +71,7 @@ static void choose_method(snow_job *job, const snow_volume_info *whole) {
     snow_settings *s = &job->settings;
     const bool iso = s->mode == SNOW_MODE_ISO;
     if (s->method == SNOW_METHOD_SHEAR_WARP &&
-        !snow_value_fits(whole, &job->placement, s->kernel))
+        !snow_value_fits(whole, &job->placement, s))
         s->method = iso ? SNOW_METHOD_RAYCAST : SNOW_METHOD_FOOTPRINT;
 }
 

@@ -27,19 +27,17 @@ static void to_index(const snow_volume_info *info, const double plane[4],
     }
 }
 
-/* Slices are at most so many times as far apart as their voxels for method
- * value (SNOW_VALUE_REACH_MOST). */
-#define APART_MOST 24
+/* The most voxels that a ray of shear-warp moves aside between two sheets
+ * (SNOW_VALUE_REACH_MOST). */
+#define ASIDE_MOST 24
 
-/* A ray moves as far aside between two slices as they are apart, in perspective
- * often twice as far; values there and gradients look two voxels on.  Where
- * slices are farther apart only raycast takes these values, from voxel to
- * voxel. */
+/* A ray moves no farther aside between two sheets than slices are apart, in
+ * perspective twice as far; values there and gradients look two voxels on. */
 static void find_reach(const snow_volume_info *info, double reach[3]) {
     const double *s = info->spacing;
     for (int axis = 0; axis < 3; axis++) {
         double ratio = fmax(s[0], fmax(s[1], s[2])) / s[axis];
-        reach[axis] = ratio <= APART_MOST ? 2 + ceil(2 * ratio) : 3;
+        reach[axis] = 2 + ceil(2 * fmin(ratio, ASIDE_MOST));
     }
 }
 

@@ -632,7 +632,7 @@ static void sweep(const char *title, int scenes, double fov) {
         assert_int_equal(
             snow_placement_make(s.context, &s.whole->info, &s.scene.view, &p),
             SNOW_STATUS_OK);
-        if (snow_value_fits(&s.whole->info, &p, s.settings.kernel)) {
+        if (snow_value_fits(&s.whole->info, &p, &s.settings)) {
             flat whole = splat(&s, s.whole);
             for (int how = n % 2; how < CUTS; how += 2) {
                 cut(&s, how);

@@ -179,8 +179,8 @@ static void slices_far_apart_are_left_to_others(void **state) {
     model_stage stage = model_open();
     reference_scene s = value_picture_scene(10);
     for (int n = 0; n < 3; n++)
-        s.info.matrix[n][2] *= 50;
-    s.info.spacing[2] *= 50;
+        s.info.matrix[n][2] *= 500;
+    s.info.spacing[2] *= 500;
     model_look(&s, (double[]){0, 0, 1}, (double[]){0, 1, 0});
     model_turn(&s, 0, 0, 0, 1);
     free(model_picture(&stage, &s));

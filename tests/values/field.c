@@ -174,7 +174,7 @@ static value_part any_voxel(const value_field *field, int64_t i, int64_t j,
     return border;
 }
 
-/* Of a slice, or half way between two. */
+/* Of a slice; half way between two, or from there toward the nearer one. */
 value_part value_voxel(const value_field *field, int sheet, int64_t i,
                        int64_t j) {
     int64_t k[2];
@@ -183,12 +183,15 @@ value_part value_voxel(const value_field *field, int sheet, int64_t i,
     for (int n = 0; n < 2; n++)
         part[n] = any_voxel(field, i, j, k[n]);
     double p = value_sheet_at(field->plan, sheet), t = p - floor(p);
-    double way = (double)(part[1].value - part[0].value);
     if (k[0] == k[1])
         return part[0];
-    part[0].value += (int64_t)floor(t * way + 0.5);
-    part[0].weight = (part[0].weight + part[1].weight) / 2;
-    return part[0];
+    value_part *to = &part[t > 0.5], half;
+    half.value = divide_down(part[0].value + part[1].value + 1, 2);
+    half.weight = (part[0].weight + part[1].weight) / 2;
+    double w = 32768 * fabs(2 * t - 1); /* a whole number */
+    half.value = value_between((int)half.value, (int)to->value, (int)w);
+    half.weight = value_between((int)half.weight, (int)to->weight, (int)w);
+    return half;
 }
 
 /* --- sheets --------------------------------------------------------------- */

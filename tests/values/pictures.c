@@ -47,6 +47,13 @@ static const struct {
              {bands, COUNT(bands)},
              {steep, COUNT(steep)}};
 
+/* Slices so far apart that there are many sheets between them. */
+static void thicken(reference_scene *s, int axis, double times) {
+    for (int row = 0; row < 3; row++)
+        s->info.matrix[row][axis] *= times;
+    s->info.spacing[axis] *= times;
+}
+
 reference_scene value_picture_scene(int n) {
     static const int64_t sizes[][3] = {{23, 19, 21}, {40, 9, 12}, {1, 14, 17},
                                        {13, 1, 9},   {12, 15, 1}, {9, 12, 2}};
@@ -54,6 +61,7 @@ reference_scene value_picture_scene(int n) {
                                       {0, 0, -1}, {0, -1, 0}, {-1, 0, 0}};
     static const double ups[][3] = {{0, 1, 0}, {0, 0, 1}, {0, 0, 1}};
     static const double zooms[] = {1.1, 2.6, 0.35, 5};
+    static const double apart[] = {2.7, 5.5, 11, 21};
     reference_scene s =
         model_scene(sizes[n / 5 % 9 < 6 ? 0 : n % 6], types[n % 5], n / 2 % 2,
                     matrices[n / 7 % 4], (uint64_t)n);
@@ -76,6 +84,8 @@ reference_scene value_picture_scene(int n) {
         s.settings.threshold = 40;
     s.opacities = looks[(size_t)n / 3 % COUNT(looks)].points;
     s.opacity_count = looks[(size_t)n / 3 % COUNT(looks)].count;
+    if (n % 7 == 3)
+        thicken(&s, 2 - n / 2 % 3, apart[n / 7 % 4]);
     model_look(&s, backs[n / 2 % 6], ups[n / 2 % 3]);
     model_turn(&s, n % 2 ? 25 : -33, n * 37 % 70 - 35, n % 4 ? 0 : 15,
                zooms[n / 9 % 4]);

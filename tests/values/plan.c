@@ -7,7 +7,7 @@
 #include <math.h>
 
 double value_sheet_at(const value_plan *plan, int sheet) {
-    return plan->first + plan->direction * (double)sheet / plan->halves;
+    return plan->first + plan->direction * (double)sheet / plan->per_slice;
 }
 
 /* --- the lattice ---------------------------------------------------------- */
@@ -50,7 +50,7 @@ value_ray value_ray_of(const value_plan *plan, double front_u, double front_v) {
                                          : plan->slope[n];
     double step[3] = {ray.slope[0], ray.slope[1], 1};
     double length = world_length(plan, step);
-    ray.path = length / plan->halves;
+    ray.path = length / plan->per_slice;
     for (int n = 0; n < 3; n++)
         ray.eye[n] = -plan->direction * step[n] / length;
     return ray;
@@ -58,7 +58,7 @@ value_ray value_ray_of(const value_plan *plan, double front_u, double front_v) {
 
 void value_ray_at(const value_plan *plan, const value_ray *ray, double sheet,
                   double at[3]) {
-    double p = plan->direction * sheet / plan->halves;
+    double p = plan->direction * sheet / plan->per_slice;
     at[0] = ray->front[0] + p * ray->slope[0];
     at[1] = ray->front[1] + p * ray->slope[1];
     at[2] = plan->first + p;
@@ -167,22 +167,32 @@ double value_plan_path(const value_plan *plan) {
     return value_ray_of(plan, front[0], front[1]).path;
 }
 
-void value_plan_sheets(value_plan *plan, int halves) {
+void value_plan_sheets(value_plan *plan, int per_slice) {
     bool single = plan->dims[2] == 1;
-    plan->halves = single ? 1 : halves;
-    plan->sheets = single ? 2 : (int)(plan->dims[2] - 1) * halves + 1;
+    plan->per_slice = single ? 1 : per_slice;
+    plan->sheets = single ? 2 : (int)(plan->dims[2] - 1) * per_slice + 1;
     plan->first = single                ? -plan->direction / 2.0
                   : plan->direction > 0 ? 0
                                         : (double)plan->dims[2] - 1;
     plan->path = value_plan_path(plan);
 }
 
+/* As few sheets a slice as are no farther apart than they may be. */
+static int sheets_per_slice(const value_plan *plan) {
+    snow_quality quality = plan->scene->base.settings.quality;
+    double ratio = plan->length[2] / fmin(plan->length[0], plan->length[1]);
+    double most = quality == SNOW_QUALITY_DRAFT ? 12 : 1.5;
+    int least = 1;
+    if (quality == SNOW_QUALITY_HIGH ||
+        (quality == SNOW_QUALITY_NORMAL && pixels_a_voxel(plan) >= 4 - 1e-6))
+        least = 2;
+    for (int n = least; n < 16; n *= 2)
+        if (ratio / n <= most * (1 + 1e-9))
+            return n;
+    return 16;
+}
+
 static bool choose_sheets(value_plan *plan) {
-    const snow_settings *settings = &plan->scene->base.settings;
-    double fine = fmin(plan->length[0], plan->length[1]);
-    bool apart = plan->length[2] > 1.5 * fine * (1 + 1e-9);
-    bool halves = settings->quality == SNOW_QUALITY_HIGH ||
-                  (settings->quality == SNOW_QUALITY_NORMAL && apart);
     reference_ray ray = reference_ray_at(&plan->scene->base, &plan->camera,
                                          plan->scene->base.view.width / 2.0,
                                          plan->scene->base.view.height / 2.0);
@@ -198,7 +208,7 @@ static bool choose_sheets(value_plan *plan) {
     if (plan->perspective && plan->eye[2] >= -reach - 1e-6 &&
         plan->eye[2] <= (double)plan->dims[2] - 1 + reach + 1e-6)
         return false;
-    value_plan_sheets(plan, halves ? 2 : 1);
+    value_plan_sheets(plan, sheets_per_slice(plan));
     return true;
 }
 

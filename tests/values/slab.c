@@ -46,6 +46,16 @@ static int slope_in_plane(const value_field *field, const value_ray *ray,
     return m == 1 ? twice : value_saturate((int64_t)floor(twice / far + 0.5));
 }
 
+/* The slices that a sheet lies between; of a slice the sheets half way to those
+ * beside it. */
+static void near_sheets(const value_plan *plan, int sheet, int *before,
+                        int *after) {
+    int count = plan->per_slice, past = sheet % count;
+    int front = past > 0 ? sheet - past : sheet - count / 2;
+    *before = plan->direction > 0 ? front : front + count;
+    *after = plan->direction > 0 ? front + count : front;
+}
+
 /* The difference of two sheets at a place in the plane, as a sheet is
  * interpolated: of voxels that are all there; false where one is not. */
 static bool difference_at(const value_field *field, int before, int after,
@@ -73,15 +83,14 @@ static bool difference_at(const value_field *field, int before, int after,
 static bool slope_in_place(const value_field *field, const value_ray *ray,
                            int sheet, int *slope) {
     const value_plan *plan = field->plan;
-    int step = plan->direction * plan->halves, times = 1;
+    int step = plan->direction * plan->per_slice, times = 1;
     int before = sheet - step, after = sheet + step;
     double at[3];
     bool lacks[2] = {before < 0 || before >= plan->sheets,
                      after < 0 || after >= plan->sheets};
     value_ray_at(plan, ray, sheet, at);
-    if (lacks[0] && lacks[1] && plan->halves == 2) {
-        before = sheet - step / 2;
-        after = sheet + step / 2;
+    if (lacks[0] && lacks[1]) {
+        near_sheets(plan, sheet, &before, &after);
         times = 2;
     } else if (lacks[0] || lacks[1]) {
         before = lacks[0] ? sheet : before;
@@ -102,7 +111,7 @@ static int beside(const value_field *field, int sheet, const double at[3]) {
 static int slope_across(const value_field *field, const value_ray *ray,
                         int sheet) {
     const value_plan *plan = field->plan;
-    int step = plan->direction * plan->halves, slope;
+    int step = plan->direction * plan->per_slice, slope;
     double at[3];
     if (plan->dims[2] == 1)
         return 0;
@@ -111,10 +120,11 @@ static int slope_across(const value_field *field, const value_ray *ray,
     value_ray_at(plan, ray, sheet, at);
     int before = beside(field, sheet - step, at);
     int after = beside(field, sheet + step, at);
-    if (before == VALUE_HOLE && after == VALUE_HOLE && plan->halves == 2) {
-        /* Half way between two slices that have no others: these two. */
-        before = beside(field, sheet - step / 2, at);
-        after = beside(field, sheet + step / 2, at);
+    if (before == VALUE_HOLE && after == VALUE_HOLE && plan->per_slice > 1) {
+        int near[2];
+        near_sheets(plan, sheet, &near[0], &near[1]);
+        before = beside(field, near[0], at);
+        after = beside(field, near[1], at);
         if (before != VALUE_HOLE && after != VALUE_HOLE)
             return value_saturate(2 * ((int64_t)after - before));
         return 0;

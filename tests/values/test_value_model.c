@@ -126,6 +126,7 @@ static void an_entry_of_one_value_is_a_slab_of_it(void **state) {
     (void)state;
     value_scene made = value_scene_of((int64_t[]){4, 4, 4}, linear, 0);
     value_scene scene = made;
+    scene.base.view.zoom = 0.5; /* a slab is a whole slice */
     const snow_opacity_point points[] = {{0, 0.3}, {6, 0.3}, {6, 1}};
     const snow_color_point colors[] = {{6, 1, 0, 0}, {6, 0, 1, 0}};
     scene.base.opacities = points;

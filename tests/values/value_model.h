@@ -44,7 +44,7 @@ typedef struct value_plan {
     int direction;    /* 1: p grows away from the eye; -1: it falls */
     double first;     /* p of the front sheet */
     int sheets;       /* from 0, the nearest to the eye */
-    int halves; /* sheets a slice: 1, or 2 with half slices; tests try more */
+    int per_slice;    /* sheets: 1, or an even number */
     bool perspective;
     double slope[2];  /* parallel: u, v per p along a ray */
     double eye[3];    /* perspective: index position */
@@ -68,7 +68,7 @@ typedef struct value_plan {
 bool value_plan_of(const value_scene *scene, value_plan *plan);
 
 /* The choices that depend on others, after a change of sheets or low, high. */
-void value_plan_sheets(value_plan *plan, int halves);
+void value_plan_sheets(value_plan *plan, int per_slice);
 double value_plan_path(const value_plan *plan);
 
 /* How integers become numbers: V of step n is (t weight + 2^14) / 2^15, rounded

@@ -38,14 +38,14 @@ static double slope_of(const snow_placement *p) {
     return fmax(snow_value_eye_slope(p, 0), snow_value_eye_slope(p, 1));
 }
 
-bool snow_value_eye_fits(const snow_placement *p) {
+bool snow_value_eye_fits(const snow_placement *p, int per_slice) {
     double heights[2];
     heights_of(p, heights);
     double near = fmin(fabs(heights[0]), fabs(heights[1]));
     double spread = fmax(fabs(heights[0]), fabs(heights[1])) / near;
     return heights[0] * heights[1] > 0 && near > 1e-6 &&
            spread <= SNOW_VALUE_SPREAD_MOST &&
-           ceil(slope_of(p)) + fmax(2, ceil(spread)) - 1 <=
+           ceil(slope_of(p) / per_slice) + fmax(2, ceil(spread)) - 1 <=
                SNOW_VALUE_REACH_MOST;
 }
 
@@ -125,7 +125,7 @@ double snow_value_eye_reach(const snow_value_lattice *l,
             wide = fmax(wide,
                         apart_of(l->cells[axis], step) * step / l->cells[axis]);
     }
-    double most = slope_of(p) / l->halves;
+    double most = slope_of(p) / l->per_slice;
     return ceil(most * (1 - 1e-9)) + ceil(wide * (1 - 1e-9)) - 1;
 }
 

@@ -35,7 +35,7 @@ static void measure_ways(const snow_value_path *path, const snow_placement *p,
     for (int n = 0; n < 6; n++)
         rays->metric[n] =
             (float)(p->eye.metric[pairs[n][0]][pairs[n][1]] * (n < 3 ? 1 : 2));
-    rays->usual = (float)(1 / (path->lattice.path * path->lattice.halves));
+    rays->usual = (float)(1 / (path->lattice.path * path->lattice.per_slice));
 }
 
 /* The way's part along the light that is fixed to the camera. */

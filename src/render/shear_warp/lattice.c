@@ -2,10 +2,18 @@
 #include "render/shear_warp/lattice.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Sheets and their phases are counted in an int. */
 #define SLICES_MOST (1 << 22)
-#include <string.h>
+
+/* How far apart sheets may be, of the finer in-plane spacing; and from how many
+ * pixels a voxel on normal has more sheets than slices in any case. */
+#define APART_MOST 1.5
+#define DRAFT_APART_MOST (SNOW_VALUE_REACH_MOST / 2)
+#define WIDE 4
+/* Sheets a slice at most: powers of 2 have exact weights. */
+#define PER_SLICE_MOST 16
 
 /* World length of a step along an axis. */
 static double length_of(const snow_volume_info *info, int axis) {
@@ -53,19 +61,34 @@ static void choose_cells(const snow_volume_info *info, const snow_placement *p,
 
 /* --- sheets --------------------------------------------------------------- */
 
-static void choose_sheets(const snow_volume_info *info, const snow_placement *p,
-                          snow_quality quality, snow_value_lattice *l) {
+/* Sheets a slice, where a voxel is so many pixels wide. */
+static int sheets_per_slice(const snow_volume_info *info,
+                            const snow_placement *p, snow_quality quality,
+                            double pixels) {
+    const bool draft = quality == SNOW_QUALITY_DRAFT;
     double fine = fmin(length_of(info, p->u_axis), length_of(info, p->v_axis));
-    bool apart = length_of(info, p->slice_axis) > 1.5 * fine * (1 + 1e-9);
-    bool halves = quality == SNOW_QUALITY_HIGH ||
-                  (quality == SNOW_QUALITY_NORMAL && apart);
-    l->halves = halves && p->slices > 1 ? 2 : 1;
-    l->sheet_count = p->slices == 1 ? 2 : (int)(p->slices - 1) * l->halves + 1;
-    l->path = p->path / l->halves;
+    double ratio = length_of(info, p->slice_axis) / fine / (1 + 1e-9);
+    bool wide = quality == SNOW_QUALITY_HIGH ||
+                (quality == SNOW_QUALITY_NORMAL && pixels >= WIDE - 1e-6);
+    int count = wide && p->slices > 1 ? 2 : 1;
+    while (ratio > count * (draft ? DRAFT_APART_MOST : APART_MOST) &&
+           p->slices > 1 && count < PER_SLICE_MOST &&
+           p->slices * count <= SLICES_MOST)
+        count *= 2;
+    return count;
+}
+
+static void choose_sheets(const snow_volume_info *info, const snow_placement *p,
+                          snow_quality quality, double pixels,
+                          snow_value_lattice *l) {
+    l->per_slice = sheets_per_slice(info, p, quality, pixels);
+    l->sheet_count =
+        p->slices == 1 ? 2 : (int)(p->slices - 1) * l->per_slice + 1;
+    l->path = p->path / l->per_slice;
 }
 
 double snow_value_lattice_reach(const snow_volume_info *info,
-                                const snow_placement *p, int halves) {
+                                const snow_placement *p, int per_slice) {
     double most = 0;
     const int axes[2] = {p->u_axis, p->v_axis};
     for (int n = 0; n < 2; n++) {
@@ -75,15 +98,16 @@ double snow_value_lattice_reach(const snow_volume_info *info,
             length_of(info, p->slice_axis) / length_of(info, axes[n]);
         most = fmax(most, fmax(fabs(slope), ratio * (1 + 1e-6)));
     }
-    return most / halves;
+    return most / per_slice;
 }
 
 bool snow_value_fits(const snow_volume_info *info, const snow_placement *p,
-                     snow_kernel kernel) {
+                     const snow_settings *s) {
+    int per_slice = sheets_per_slice(info, p, s->quality, 0);
     if (p->perspective)
-        return snow_value_eye_fits(p);
-    return ceil(snow_value_lattice_reach(info, p, 1)) +
-               (kernel == SNOW_KERNEL_BSPLINE) <=
+        return snow_value_eye_fits(p, per_slice);
+    return ceil(snow_value_lattice_reach(info, p, per_slice)) +
+               (s->kernel == SNOW_KERNEL_BSPLINE) <=
            SNOW_VALUE_REACH_MOST;
 }
 
@@ -94,20 +118,24 @@ void snow_value_lattice_sheets(const snow_value_lattice *l,
     for (int n = 0; n < l->sheet_count; n++) {
         int at = l->nearest_first ? n : l->sheet_count - 1 - n;
         snow_value_sheet *s = &sheets[n];
-        *s = (snow_value_sheet){.at = (double)at / l->halves,
-                                .slice = at / l->halves,
-                                .half = at % l->halves != 0};
-        int64_t last = p->slices - 1 - s->half;
+        const int part = at % l->per_slice;
+        *s = (snow_value_sheet){.at = (double)at / l->per_slice,
+                                .slice = at / l->per_slice,
+                                .between = part != 0};
+        if (s->between)
+            s->toward =
+                (int16_t)(32768 * (2 * part - l->per_slice) / l->per_slice);
+        int64_t last = p->slices - 1 - s->between;
         if (p->slices == 1) { /* one spacing thick, and constant */
             s->at = at - 0.5;
             s->slice = s->before = s->after = 0;
-        } else if (last == 0 && s->half) { /* between the only two */
+        } else if (last == 0 && s->between) { /* between the only two */
             s->after = 1;
             s->one_sided = true;
         } else {
             s->before = s->slice > 0 ? s->slice - 1 : 0;
             s->after = s->slice < last ? s->slice + 1 : last;
-            s->half_across = s->half;
+            s->between_across = s->between;
             s->one_sided = s->after - s->before == 1;
         }
         for (int phase = 0; places && phase < l->phases; phase++) {
@@ -240,7 +268,7 @@ snow_value_lattice_make(snow_context *context, const snow_volume_info *info,
                          (long long)p->slices, SLICES_MOST);
     SNOW_TRY(measure_density(context, info, view, p, &pixels));
     choose_cells(info, p, quality, pixels, &l);
-    choose_sheets(info, p, quality, &l);
+    choose_sheets(info, p, quality, pixels, &l);
     place_front(p, &l);
     SNOW_TRY(p->perspective ? place_eye_image(context, p, &l)
                             : place_image(context, info, p, &l));

@@ -22,7 +22,7 @@ typedef struct snow_value_lattice {
     bool nearest_first; /* slice 0 is the nearest to the eye */
     bool perspective;
     double eye[3]; /* perspective: position along u, v and slices */
-    int halves;    /* sheets a slice: 1 or 2 */
+    int per_slice; /* sheets: 1, or an even number */
     int sheet_count;
     double path; /* world length of a ray between two sheets */
     /* The image. */
@@ -46,7 +46,7 @@ snow_value_lattice_make(snow_context *context, const snow_volume_info *info,
  * view; more than SNOW_VALUE_REACH_MOST where spacings differ too much.  In
  * perspective those of a view. */
 double snow_value_lattice_reach(const snow_volume_info *info,
-                                const snow_placement *placement, int halves);
+                                const snow_placement *placement, int per_slice);
 
 /* Moves the image by pixels along an axis. */
 void snow_value_lattice_move(snow_value_lattice *lattice, int axis, double by);
@@ -55,16 +55,17 @@ void snow_value_lattice_move(snow_value_lattice *lattice, int axis, double by);
 
 /* Whether the eye is outside of the slices, and not too near: samples of the
  * last sheet and rays are as far apart as encodings provide for. */
-bool snow_value_eye_fits(const snow_placement *placement);
+bool snow_value_eye_fits(const snow_placement *placement, int per_slice);
 
 /* The most voxels along u or v that rays move aside from one slice to the next
  * where they meet the volume. */
 double snow_value_eye_slope(const snow_placement *placement, int axis);
 
-/* Whether rays move aside by no more voxels from one slice to the next than
+/* Whether rays move aside by no more voxels from one sheet to the next than
  * encodings provide for, whatever the view; in perspective, as above. */
 bool snow_value_fits(const snow_volume_info *info,
-                     const snow_placement *placement, snow_kernel kernel);
+                     const snow_placement *placement,
+                     const snow_settings *settings);
 
 /* The image, of so many phases a voxel along u and v.  Errors:
  * SNOW_STATUS_BAD_USAGE (too large). */

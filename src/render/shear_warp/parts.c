@@ -54,8 +54,8 @@ snow_value_splat snow_value_splat_of(const snow_value_drawing *d,
     int64_t first = slices.first, last = l->sheet_count - 1;
     if (!l->nearest_first)
         first = p->slices - first - slices.count;
-    int64_t end = (first + slices.count) * l->halves;
-    splat.slabs[0] = (int)(first * l->halves);
+    int64_t end = (first + slices.count) * l->per_slice;
+    splat.slabs[0] = (int)(first * l->per_slice);
     splat.slabs[1] = (int)(end < last ? end : last);
     return splat;
 }

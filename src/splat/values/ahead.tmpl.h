@@ -64,14 +64,14 @@ static inline void NAME(ask)(const snow_value_splat *p, int n, int phase,
     const snow_value_place *place = p->places + n * p->phases + phase;
     int64_t column = value_tile_column(p, tile[0]) + place->whole[0];
     int64_t first = value_tile_row(p, tile[1]) + place->whole[1] - 1;
-    if (sheet->slice < 0 || sheet->slice + sheet->half >= s->slices)
+    if (sheet->slice < 0 || sheet->slice + sheet->between >= s->slices)
         return; /* of another part */
     if (asked->sheet != n)
         *asked = (value_asked){.sheet = n};
     rows &= ~asked->rows;
     asked->rows |= rows;
-    for (int half = 0; half <= sheet->half; half++)
-        value_ask_rows(s, sheet->slice + half, first, column, rows);
+    for (int on = 0; on <= sheet->between; on++)
+        value_ask_rows(s, sheet->slice + on, first, column, rows);
 }
 
 /* Asks for the masks of the second sheet of slab `n`. */
@@ -109,7 +109,8 @@ TARGET VALUE_INLINE void NAME(look_ahead)(const snow_value_splat *p, int n,
         any |= slab->rows;
     }
     uint64_t here = (uint64_t)any << 1;
-    int beside = sloped ? 1 + (p->sheets[n].half | p->sheets[n + 1].half) : 0;
+    int beside =
+        sloped ? 1 + (p->sheets[n].between | p->sheets[n + 1].between) : 0;
     if (!any)
         return;
     for (int m = n - beside; m <= n + 1 + beside; m++) {

@@ -41,14 +41,14 @@ TARGET VALUE_INLINE void NAME(mix_parts_along)(const NAME(part) parts[4],
 /* Row `row` of voxels, mixed along u. */
 TARGET VALUE_INLINE void NAME(mix_line)(const NAME(source) * s, int64_t row,
                                         float (*u)[32], bool weigh,
-                                        const bool half, NAME(lines) * out) {
+                                        const bool between, NAME(lines) * out) {
     NAME(part) parts[4];
     int at = (int)(row & 3);
     if (out->row[at] == row)
         return;
     out->row[at] = row;
     for (int x = 0; x < 4; x++)
-        parts[x] = NAME(parts)(s, row, x - 1, half);
+        parts[x] = NAME(parts)(s, row, x - 1, between);
     NAME(mix_parts_along)(parts, u, weigh, at, out);
 }
 
@@ -80,7 +80,8 @@ TARGET VALUE_INLINE void NAME(mix_row)(NAME(lines) * lines, int64_t at,
 TARGET static void NAME(fill_cubic)(const NAME(source) * s, int64_t first,
                                     uint64_t rows,
                                     const snow_value_place *place,
-                                    int16_t (*out)[32], bool weigh, bool half) {
+                                    int16_t (*out)[32], bool weigh,
+                                    bool between) {
     NAME(lines) lines;
     float one[4], u[4][32], v[4];
     NAME(spline)(place->at[0], one);
@@ -94,7 +95,7 @@ TARGET static void NAME(fill_cubic)(const NAME(source) * s, int64_t first,
         int row = __builtin_ctzll(rows);
         int64_t at = first + row;
         for (int y = -1; y < 3; y++)
-            NAME(mix_line)(s, at + y, u, weigh, half, &lines);
+            NAME(mix_line)(s, at + y, u, weigh, between, &lines);
         NAME(mix_row)(&lines, at, v, weigh, out[row]);
     }
 }

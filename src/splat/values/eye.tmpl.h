@@ -68,7 +68,7 @@ TARGET static void NAME(find_cells)(const snow_value_store *s,
     uint64_t within = (UINT64_C(1) << to) - (UINT64_C(1) << from);
     for (int run = 0; run < s->run_count; run++) {
         out->any[run] = false;
-        for (int n = 0; n <= sheet->half && from < to; n++) {
+        for (int n = 0; n <= sheet->between && from < to; n++) {
             if (!NAME(any_cells)(s, run, sheet->slice + n, u,
                                  first + v->at[from + 1], first + v->at[to]))
                 continue;
@@ -160,11 +160,11 @@ static inline void NAME(clip_eye)(const snow_value_splat *p, int n, int phase,
 
 /* --- sheets --------------------------------------------------------------- */
 
-/* Voxels of a row on both sides of the lanes: of a slice, half way to the next
- * one, or the difference of two of them. */
+/* Voxels of a row on both sides of the lanes: of a slice, between it and the
+ * next one, or the difference of two of them. */
 TARGET VALUE_INLINE void NAME(voxels_under)(const NAME(source) * s,
                                             const snow_value_lanes *u,
-                                            int64_t row, const bool half,
+                                            int64_t row, const bool between,
                                             const bool difference,
                                             V(row) out[2]) {
     int16_t room[LINE_NUMBERS];
@@ -173,12 +173,12 @@ TARGET VALUE_INLINE void NAME(voxels_under)(const NAME(source) * s,
         V(row) here[2], next[2];
         V(row_pairs)
         (NAME(line)(s, end, 0, row, u->first, span, room), u->at, span, here);
-        if (half) {
+        if (between) {
             V(row_pairs)
             (NAME(line)(s, end, 1, row, u->first, span, room), u->at, span,
              next);
-            here[0] = V(row_avg)(here[0], next[0]);
-            here[1] = V(row_avg)(here[1], next[1]);
+            here[0] = NAME(toward)(here[0], next[0], s->toward);
+            here[1] = NAME(toward)(here[1], next[1], s->toward);
         }
         for (int n = 0; n < 2; n++)
             out[n] = end ? V(row_subs)(here[n], out[n]) : here[n];
@@ -190,9 +190,9 @@ TARGET VALUE_INLINE void NAME(voxels_under)(const NAME(source) * s,
 
 TARGET VALUE_INLINE V(row)
     NAME(along_lanes)(const NAME(source) * s, const snow_value_lanes *u,
-                      int64_t row, const bool half, const bool difference) {
+                      int64_t row, const bool between, const bool difference) {
     V(row) ends[2];
-    NAME(voxels_under)(s, u, row, half, difference, ends);
+    NAME(voxels_under)(s, u, row, between, difference, ends);
     return NAME(mix)(ends[0], ends[1], V(row_load)(u->weight));
 }
 
@@ -208,7 +208,7 @@ static inline int64_t NAME(voxel_row)(const snow_value_store *s,
 TARGET VALUE_INLINE void
 NAME(fill_eye)(const NAME(source) * s, const snow_value_store *store,
                const snow_value_lanes *u, const snow_value_lanes *v, int first,
-               uint64_t rows, int16_t (*out)[32], const bool half,
+               uint64_t rows, int16_t (*out)[32], const bool between,
                const bool difference) {
     int64_t last = INT64_MIN;
     V(row) below = V(row_set1)(0);
@@ -218,8 +218,8 @@ NAME(fill_eye)(const NAME(source) * s, const snow_value_store *store,
         V(row)
         above = row == last + 1
                     ? below
-                    : NAME(along_lanes)(s, u, row, half, difference);
-        below = NAME(along_lanes)(s, u, row + 1, half, difference);
+                    : NAME(along_lanes)(s, u, row, between, difference);
+        below = NAME(along_lanes)(s, u, row + 1, between, difference);
         V(row_store)
         (out[n], NAME(mix)(above, below, V(row_set1)(v->weight[first + n])));
         last = row;
@@ -233,9 +233,9 @@ static inline bool NAME(near_holes_eye)(const snow_value_store *s,
                                         const snow_value_sheet *sheet,
                                         const snow_value_lanes *u,
                                         const snow_value_lanes *v) {
-    const int64_t slices[5] = {sheet->slice, sheet->slice + sheet->half,
+    const int64_t slices[5] = {sheet->slice, sheet->slice + sheet->between,
                                sheet->before, sheet->after,
-                               sheet->after + sheet->half_across};
+                               sheet->after + sheet->between_across};
     int64_t first = NAME(mask_row)(s, v);
     bool any = false;
     for (int n = 0; s->holes && !any && n < 5; n++)
@@ -248,21 +248,21 @@ static inline bool NAME(near_holes_eye)(const snow_value_store *s,
 /* As NAME(parts_along). */
 TARGET VALUE_INLINE NAME(part)
     NAME(parts_under)(const NAME(source) * s, const snow_value_lanes *u,
-                      int64_t row, bool half) {
+                      int64_t row, bool between) {
     const int16_t *values = s->values + u->first;
     V(row) here[2], next[2], weight = V(row_load)(u->weight);
     NAME(part) ends[2];
     V(row_pairs)(values + s->slice[row], u->at, u->at[31] + 2, here);
-    if (half)
+    if (between)
         V(row_pairs)
     (values + s->slice[row + s->next], u->at, u->at[31] + 2, next);
     for (int n = 0; n < 2; n++) {
         ends[n] = NAME(part_of)(here[n]);
-        if (!half)
+        if (!between)
             continue;
         NAME(part) on = NAME(part_of)(next[n]);
-        ends[n].value = V(row_avg)(ends[n].value, on.value);
-        ends[n].weight = V(row_avg)(ends[n].weight, on.weight);
+        ends[n].value = NAME(toward)(ends[n].value, on.value, s->toward);
+        ends[n].weight = NAME(toward)(ends[n].weight, on.weight, s->toward);
     }
     return (NAME(part)){NAME(mix)(ends[0].value, ends[1].value, weight),
                         NAME(mix)(ends[0].weight, ends[1].weight, weight)};
@@ -274,12 +274,12 @@ TARGET static void NAME(fill_holes_eye)(const NAME(source) * s,
                                         const snow_value_lanes *u,
                                         const snow_value_lanes *v, int first,
                                         uint64_t rows, int16_t (*out)[32],
-                                        uint32_t *partial, bool half) {
+                                        uint32_t *partial, bool between) {
     for (; rows; rows &= rows - 1) {
         int n = __builtin_ctzll(rows);
         int64_t row = NAME(voxel_row)(store, v, first + n);
-        partial[n] = NAME(mix_parts)(NAME(parts_under)(s, u, row, half),
-                                     NAME(parts_under)(s, u, row + 1, half),
+        partial[n] = NAME(mix_parts)(NAME(parts_under)(s, u, row, between),
+                                     NAME(parts_under)(s, u, row + 1, between),
                                      V(row_set1)(v->weight[first + n]), out[n]);
     }
 }
@@ -290,7 +290,7 @@ TARGET static void NAME(fill_holes_eye)(const NAME(source) * s,
 TARGET VALUE_INLINE void NAME(mix_line_eye)(const NAME(source) * s,
                                             const snow_value_lanes *lanes,
                                             int64_t row, float (*u)[32],
-                                            bool weigh, const bool half,
+                                            bool weigh, const bool between,
                                             NAME(lines) * out) {
     const int16_t *values = s->values + lanes->first - 1;
     int span = lanes->at[31] + 2, at = (int)(row & 3);
@@ -301,27 +301,26 @@ TARGET VALUE_INLINE void NAME(mix_line_eye)(const NAME(source) * s,
     out->row[at] = row;
     for (int x = 0; x < 4; x += 2) {
         V(row_pairs)(values + s->slice[row] + x, lanes->at, span, here + x);
-        if (half)
+        if (between)
             V(row_pairs)
         (values + s->slice[row + s->next] + x, lanes->at, span, next + x);
     }
     for (int x = 0; x < 4; x++) {
         parts[x] = NAME(part_of)(here[x]);
-        if (!half)
+        if (!between)
             continue;
         NAME(part) on = NAME(part_of)(next[x]);
-        parts[x].value = V(row_avg)(parts[x].value, on.value);
-        parts[x].weight = V(row_avg)(parts[x].weight, on.weight);
+        parts[x].value = NAME(toward)(parts[x].value, on.value, s->toward);
+        parts[x].weight = NAME(toward)(parts[x].weight, on.weight, s->toward);
     }
     NAME(mix_parts_along)(parts, u, weigh, at, out);
 }
 
 /* As NAME(fill_cubic); bit 0 of `rows` is lane `first` of v. */
-TARGET static void
-NAME(fill_cubic_eye)(const NAME(source) * s, const snow_value_store *store,
-                     const snow_value_lanes *across,
-                     const snow_value_lanes *down, double step, int first,
-                     uint64_t rows, int16_t (*out)[32], bool weigh, bool half) {
+TARGET static void NAME(fill_cubic_eye)(
+    const NAME(source) * s, const snow_value_store *store,
+    const snow_value_lanes *across, const snow_value_lanes *down, double step,
+    int first, uint64_t rows, int16_t (*out)[32], bool weigh, bool between) {
     NAME(lines) lines;
     const int64_t low = 1 - store->margin;
     const int64_t high = store->rows + store->margin - 3;
@@ -339,7 +338,7 @@ NAME(fill_cubic_eye)(const NAME(source) * s, const snow_value_store *store,
         row = row > low ? row : low;
         row = row < high ? row : high;
         for (int y = -1; y < 3; y++)
-            NAME(mix_line_eye)(s, across, row + y, u, weigh, half, &lines);
+            NAME(mix_line_eye)(s, across, row + y, u, weigh, between, &lines);
         NAME(spline)(value_lane_part(down, step, first + n), v);
         NAME(mix_row)(&lines, row, v, weigh, out[n]);
     }
@@ -362,9 +361,9 @@ TARGET static void NAME(cross_holes_eye)(const snow_value_splat *p, int n,
         if (s->cubic)
             NAME(fill_cubic_eye)
         (&from, s, u, v, step, 1, across, beside[side], out->holes,
-         sheet->half_across);
+         sheet->between_across);
         else NAME(fill_holes_eye)(&from, s, u, v, 1, across, beside[side],
-                                  partial[side], sheet->half_across);
+                                  partial[side], sheet->between_across);
     }
     for (; across; across &= across - 1) {
         int r = __builtin_ctz(across);
@@ -409,10 +408,10 @@ TARGET VALUE_INLINE void NAME(sample_eye)(const snow_value_splat *p, int n,
     if (s->cubic)
         NAME(fill_cubic_eye)
     (&from, s, u, v, p->rays->sheets[n].step, 0, rows, out->values, out->holes,
-     sheet->half);
+     sheet->between);
     else if (out->holes) NAME(fill_holes_eye)(
-        &from, s, u, v, 0, rows, out->values, partial, sheet->half);
-    else if (sheet->half)
+        &from, s, u, v, 0, rows, out->values, partial, sheet->between);
+    else if (sheet->between)
         NAME(fill_eye)(&from, s, u, v, 0, rows, out->values, true, false);
     else NAME(fill_eye)(&from, s, u, v, 0, rows, out->values, false, false);
     if (!across)
@@ -420,7 +419,7 @@ TARGET VALUE_INLINE void NAME(sample_eye)(const snow_value_splat *p, int n,
     NAME(begin_across)(sheet, &from);
     if (s->cubic)
         ;
-    else if (sheet->half_across)
+    else if (sheet->between_across)
         NAME(fill_eye)(&from, s, u, v, 1, across, out->across, true, true);
     else
         NAME(fill_eye)(&from, s, u, v, 1, across, out->across, false, true);
@@ -461,7 +460,7 @@ static inline void NAME(ask_eye)(const snow_value_splat *p, int n, int phase,
     const snow_value_lanes *u = value_lanes_of(p->rays, n, phase, 0, tile[0]);
     const snow_value_lanes *v = value_lanes_of(p->rays, n, phase, 1, tile[1]);
     const snow_value_sheet *sheet = p->sheets + n;
-    if (sheet->slice < 0 || sheet->slice + sheet->half >= s->slices)
+    if (sheet->slice < 0 || sheet->slice + sheet->between >= s->slices)
         return; /* of another part */
     if (asked->sheet != n)
         *asked = (value_asked){.sheet = n};
@@ -469,9 +468,9 @@ static inline void NAME(ask_eye)(const snow_value_splat *p, int n, int phase,
     asked->rows |= rows;
     for (; rows; rows &= rows - 1) {
         int64_t row = NAME(voxel_row)(s, v, __builtin_ctzll(rows));
-        for (int half = 0; half <= sheet->half; half++)
+        for (int on = 0; on <= sheet->between; on++)
             for (int at = 0; at < u->at[31] + 32; at += 64)
-                value_ask_rows(s, sheet->slice + half, row, u->first + at, 3);
+                value_ask_rows(s, sheet->slice + on, row, u->first + at, 3);
     }
 }
 

@@ -18,25 +18,25 @@ TARGET VALUE_INLINE NAME(part) NAME(part_of)(V(row) voxels) {
     return part;
 }
 
-/* As NAME(voxels) of a slice or half way to the next one. */
+/* As NAME(pair) of a slice or between it and the next one, and weights. */
 TARGET VALUE_INLINE NAME(part)
-    NAME(parts)(const NAME(source) * s, int64_t row, int by, bool half) {
+    NAME(parts)(const NAME(source) * s, int64_t row, int by, bool between) {
     const int16_t *values = s->values + s->column + by;
     NAME(part) here = NAME(part_of)(V(row_load)(values + s->slice[row]));
-    if (half) {
+    if (between) {
         NAME(part)
         next = NAME(part_of)(V(row_load)(values + s->slice[row + s->next]));
-        here.value = V(row_avg)(here.value, next.value);
-        here.weight = V(row_avg)(here.weight, next.weight);
+        here.value = NAME(toward)(here.value, next.value, s->toward);
+        here.weight = NAME(toward)(here.weight, next.weight, s->toward);
     }
     return here;
 }
 
 TARGET VALUE_INLINE NAME(part)
     NAME(parts_along)(const NAME(source) * s, int64_t row, V(row) weight,
-                      bool half) {
-    NAME(part) a = NAME(parts)(s, row, 0, half);
-    NAME(part) b = NAME(parts)(s, row, 1, half);
+                      bool between) {
+    NAME(part) a = NAME(parts)(s, row, 0, between);
+    NAME(part) b = NAME(parts)(s, row, 1, between);
     return (NAME(part)){NAME(mix)(a.value, b.value, weight),
                         NAME(mix)(a.weight, b.weight, weight)};
 }
@@ -62,13 +62,13 @@ TARGET static void NAME(fill_holes)(const NAME(source) * s, int64_t first,
                                     uint64_t rows,
                                     const snow_value_place *place,
                                     int16_t (*out)[32], uint32_t *partial,
-                                    bool half) {
+                                    bool between) {
     const V(row) u = V(row_set1)(place->weight[0]);
     const V(row) v = V(row_set1)(place->weight[1]);
     for (; rows; rows &= rows - 1) {
         int row = __builtin_ctzll(rows);
-        NAME(part) above = NAME(parts_along)(s, first + row, u, half);
-        NAME(part) below = NAME(parts_along)(s, first + row + 1, u, half);
+        NAME(part) above = NAME(parts_along)(s, first + row, u, between);
+        NAME(part) below = NAME(parts_along)(s, first + row + 1, u, between);
         partial[row] = NAME(mix_parts)(above, below, v, out[row]);
     }
 }
@@ -91,9 +91,9 @@ TARGET static void NAME(cross_holes)(const snow_value_splat *p, int n,
         if (p->store->cubic)
             NAME(fill_cubic)
         (&from, row, across, place, beside[side], out->holes,
-         sheet->half_across);
+         sheet->between_across);
         else NAME(fill_holes)(&from, row, across, place, beside[side],
-                              partial[side], sheet->half_across);
+                              partial[side], sheet->between_across);
     }
     for (; across; across &= across - 1) {
         int r = __builtin_ctz(across);

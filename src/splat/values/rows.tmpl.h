@@ -10,7 +10,8 @@ typedef struct NAME(source) {
     int64_t next;                 /* places to the next slice */
     int64_t begin[2];             /* in place: of row 0 of both */
     int64_t column;
-    bool twice; /* of a difference */
+    bool twice;     /* of a difference */
+    int16_t toward; /* of what is between two slices: snow_value_sheet */
 } NAME(source);
 
 /* Sets the slices that are read; `after` may be the same. */
@@ -36,13 +37,13 @@ static inline NAME(source)
 }
 
 /* Where a row of stored values begins: of the slice, or of `after` where `end`
- * is 1, or of the next one of either where `half` is 1. */
+ * is 1, or of the next one of either where `on` is 1. */
 TARGET VALUE_INLINE int64_t NAME(place_of)(const NAME(source) * s, int end,
-                                           int half, int64_t row) {
+                                           int on, int64_t row) {
     const snow_value_store *store = s->store;
     if (store->in_place)
-        return s->begin[end] + half * store->slice_step + row * store->row_step;
-    return (end ? s->after : s->slice)[row + half * s->next];
+        return s->begin[end] + on * store->slice_step + row * store->row_step;
+    return (end ? s->after : s->slice)[row + on * s->next];
 }
 
 TARGET VALUE_INLINE V(row) NAME(load_stored)(const unsigned char *stored,
@@ -126,17 +127,17 @@ TARGET VALUE_INLINE void NAME(pair_inside)(const snow_value_store *s,
 
 /* The same of a row above the first or below the last one, which is odd within
  * the columns, and beyond them as the row at the side. */
-TARGET static void NAME(pair_beyond)(const NAME(source) * from, int end,
-                                     int half, int64_t row, int64_t column,
-                                     int kind, V(row) out[2]) {
+TARGET static void NAME(pair_beyond)(const NAME(source) * from, int end, int on,
+                                     int64_t row, int64_t column, int kind,
+                                     V(row) out[2]) {
     const snow_value_store *s = from->store;
     const int64_t last = s->rows - 1;
-    int64_t side = NAME(place_of)(from, end, half, row < 0 ? 0 : last);
+    int64_t side = NAME(place_of)(from, end, on, row < 0 ? 0 : last);
     int64_t next = row < 0 ? 1 : last - 1;
     NAME(pair_inside)(s, side, column, kind, out);
     if (last == 0)
         return;
-    next = NAME(place_of)(from, end, half, next);
+    next = NAME(place_of)(from, end, on, next);
     for (int n = 0; n < 2; n++) {
         V(row) inner = NAME(row_inside)(s, next, column + n, kind);
         V(row) odd = V(row_add)(out[n], V(row_subs)(out[n], inner));
@@ -150,22 +151,22 @@ TARGET static void NAME(pair_beyond)(const NAME(source) * from, int end,
 
 /* 32 numbers of a row from `column` on, and from the next one on, wherever they
  * are; `sided`: some may be beyond a side. */
-TARGET VALUE_INLINE void NAME(pair)(const NAME(source) * s, int end, int half,
+TARGET VALUE_INLINE void NAME(pair)(const NAME(source) * s, int end, int on,
                                     int64_t row, int64_t column, const int kind,
                                     const bool sided, V(row) out[2]) {
     if (kind == SNOW_VALUE_NUMBERS) {
         const int16_t *at = s->values +
-                            (end ? s->after : s->slice)[row + half * s->next] +
+                            (end ? s->after : s->slice)[row + on * s->next] +
                             column;
         out[0] = V(row_load)(at);
         out[1] = V(row_load)(at + 1);
     } else if (sided && (row < 0 || row >= s->store->rows)) {
-        NAME(pair_beyond)(s, end, half, row, column, kind, out);
+        NAME(pair_beyond)(s, end, on, row, column, kind, out);
     } else if (sided) {
         NAME(pair_inside)
-        (s->store, NAME(place_of)(s, end, half, row), column, kind, out);
+        (s->store, NAME(place_of)(s, end, on, row), column, kind, out);
     } else {
-        int64_t place = NAME(place_of)(s, end, half, row) + column;
+        int64_t place = NAME(place_of)(s, end, on, row) + column;
         for (int n = 0; n < 2; n++)
             out[n] = NAME(by_rule)(
                 NAME(load_stored)(s->store->stored, place + n, kind),
@@ -177,19 +178,19 @@ TARGET VALUE_INLINE void NAME(pair)(const NAME(source) * s, int end, int half,
 #define LINE_NUMBERS (32 * SNOW_VALUE_SPREAD_MOST + 128)
 
 /* `count` numbers of a row from `column` on: where they are, or in `room`. */
-TARGET static const int16_t *NAME(line)(const NAME(source) * s, int end,
-                                        int half, int64_t row, int64_t column,
-                                        int count, int16_t *room) {
+TARGET static const int16_t *NAME(line)(const NAME(source) * s, int end, int on,
+                                        int64_t row, int64_t column, int count,
+                                        int16_t *room) {
     const int kind = s->store->kind;
     if (kind == SNOW_VALUE_NUMBERS)
-        return s->values + (end ? s->after : s->slice)[row + half * s->next] +
+        return s->values + (end ? s->after : s->slice)[row + on * s->next] +
                column;
     for (int n = 0; n < count; n += 32) {
         V(row) both[2];
         if (kind == SNOW_VALUE_BYTES)
             NAME(pair)
-        (s, end, half, row, column + n, SNOW_VALUE_BYTES, true, both);
-        else NAME(pair)(s, end, half, row, column + n, SNOW_VALUE_WORDS, true,
+        (s, end, on, row, column + n, SNOW_VALUE_BYTES, true, both);
+        else NAME(pair)(s, end, on, row, column + n, SNOW_VALUE_WORDS, true,
                         both);
         V(row_store)(room + n, both[0]);
     }

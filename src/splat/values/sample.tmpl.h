@@ -11,7 +11,7 @@ TARGET VALUE_INLINE void NAME(add_cells)(const snow_value_store *s, int run,
                             snow_value_mask_at(s, run, sheet->slice) +
                             w.word * s->mask_rows + w.row;
     V(rows_window)(masks, masks + s->mask_rows, w.shift, out);
-    if (sheet->half) {
+    if (sheet->between) {
         masks += s->mask_words * s->mask_rows;
         V(rows_window)(masks, masks + s->mask_rows, w.shift, out);
     }
@@ -82,22 +82,31 @@ TARGET VALUE_INLINE V(row) NAME(mix)(V(row) a, V(row) b, V(row) weight) {
     return V(row_add)(a, V(row_mulhrs)(V(row_subs)(b, a), weight));
 }
 
+/* As value_toward. */
+TARGET VALUE_INLINE V(row) NAME(toward)(V(row) a, V(row) b, int16_t toward) {
+    V(row) middle = V(row_avg)(a, b);
+    if (!toward)
+        return middle;
+    return NAME(mix)(middle, toward > 0 ? b : a,
+                     V(row_set1)((int16_t)abs(toward)));
+}
+
 #include "splat/values/rows.tmpl.h"
 
-/* One row of voxels, mixed along u: of a slice or half way to the next one; or
- * the difference of two of them. */
+/* One row of voxels, mixed along u: of a slice or between it and the next one;
+ * or the difference of two of them. */
 TARGET VALUE_INLINE V(row)
     NAME(along)(const NAME(source) * s, int64_t row, V(row) weight,
-                const bool half, const bool difference, const int kind,
+                const bool between, const bool difference, const int kind,
                 const bool sided) {
     V(row) ends[2][2], next[2];
     for (int end = 0; end <= difference; end++) {
         NAME(pair)(s, end, 0, row, s->column, kind, sided, ends[end]);
-        if (!half)
+        if (!between)
             continue;
         NAME(pair)(s, end, 1, row, s->column, kind, sided, next);
         for (int n = 0; n < 2; n++)
-            ends[end][n] = V(row_avg)(ends[end][n], next[n]);
+            ends[end][n] = NAME(toward)(ends[end][n], next[n], s->toward);
     }
     for (int n = 0; n < 2 && difference; n++) {
         ends[0][n] = V(row_subs)(ends[1][n], ends[0][n]);
@@ -110,7 +119,7 @@ TARGET VALUE_INLINE V(row)
 TARGET VALUE_INLINE void NAME(fill_rows)(const NAME(source) * from,
                                          int64_t first, uint64_t rows,
                                          const snow_value_place *place,
-                                         int16_t (*out)[32], const bool half,
+                                         int16_t (*out)[32], const bool between,
                                          const bool difference, const int kind,
                                          const bool sided) {
     const NAME(source) s = *from;
@@ -119,11 +128,12 @@ TARGET VALUE_INLINE void NAME(fill_rows)(const NAME(source) * from,
     while (rows) {
         int row = __builtin_ctzll(rows);
         V(row)
-        above = NAME(along)(&s, first + row, u, half, difference, kind, sided);
+        above =
+            NAME(along)(&s, first + row, u, between, difference, kind, sided);
         for (; rows >> row & 1; row++) {
             V(row)
-            below = NAME(along)(&s, first + row + 1, u, half, difference, kind,
-                                sided);
+            below = NAME(along)(&s, first + row + 1, u, between, difference,
+                                kind, sided);
             V(row_store)(out[row], NAME(mix)(above, below, v));
             above = below;
             rows &= rows - 1;
@@ -258,13 +268,13 @@ static inline bool NAME(readable)(const NAME(source) * s, int64_t first,
 #define VALUE_FILL(word, kind, sides)                                        \
     TARGET static void NAME(fill_##word)(                                    \
         const NAME(source) * s, int64_t first, uint64_t rows,                \
-        const snow_value_place *place, int16_t(*out)[32], bool half,         \
+        const snow_value_place *place, int16_t(*out)[32], bool between,      \
         bool difference) {                                                   \
-        if (half && difference)                                              \
+        if (between && difference)                                           \
             NAME(fill_rows)                                                  \
         (s, first, rows, place, out, true, true, kind, sides);               \
-        else if (half) NAME(fill_rows)(s, first, rows, place, out, true,     \
-                                       false, kind, sides);                  \
+        else if (between) NAME(fill_rows)(s, first, rows, place, out, true,  \
+                                          false, kind, sides);               \
         else if (difference) NAME(fill_rows)(s, first, rows, place, out,     \
                                              false, true, kind, sides);      \
         else NAME(fill_rows)(s, first, rows, place, out, false, false, kind, \
@@ -280,16 +290,17 @@ VALUE_FILL(sided_words, SNOW_VALUE_WORDS, true)
 /* Rows of a sheet, a bit each from row `first` on, into `out`. */
 TARGET static void NAME(fill)(const NAME(source) * s, int64_t first,
                               uint64_t rows, const snow_value_place *place,
-                              int16_t (*out)[32], bool half, bool difference) {
+                              int16_t (*out)[32], bool between,
+                              bool difference) {
     const snow_value_store *store = s->store;
     const bool bytes = store->kind == SNOW_VALUE_BYTES;
     if (store->kind == SNOW_VALUE_NUMBERS) {
-        NAME(fill_numbers)(s, first, rows, place, out, half, difference);
+        NAME(fill_numbers)(s, first, rows, place, out, between, difference);
         return;
     }
     const bool within = s->column >= 0 && s->column + 33 <= store->columns;
     uint64_t inside = rows & value_rows_within(first, store->rows - 1);
-    if (inside && bytes && store->in_place && !half && !s->twice &&
+    if (inside && bytes && store->in_place && !between && !s->twice &&
         (within || NAME(readable)(s, first, inside)))
         (within ? (difference ? NAME(fill_difference) : NAME(fill_bytes))
                 : (difference ? NAME(fill_difference_sided)
@@ -297,12 +308,12 @@ TARGET static void NAME(fill)(const NAME(source) * s, int64_t first,
                                                          place, out);
     else if (within && inside)
         (bytes ? NAME(fill_any_bytes) : NAME(fill_words))(
-            s, first, inside, place, out, half, difference);
+            s, first, inside, place, out, between, difference);
     else
         inside = 0;
     if (rows != inside)
         (bytes ? NAME(fill_sided_bytes) : NAME(fill_sided_words))(
-            s, first, rows & ~inside, place, out, half, difference);
+            s, first, rows & ~inside, place, out, between, difference);
 }
 
 #include "splat/values/holes.tmpl.h"
@@ -315,10 +326,10 @@ static inline bool NAME(near_holes)(const snow_value_store *s,
         return false;
     value_window w = value_window_of(s, column, row);
     return value_has_holes(s, sheet->slice, w) ||
-           value_has_holes(s, sheet->slice + sheet->half, w) ||
+           value_has_holes(s, sheet->slice + sheet->between, w) ||
            value_has_holes(s, sheet->before, w) ||
            value_has_holes(s, sheet->after, w) ||
-           value_has_holes(s, sheet->after + sheet->half_across, w);
+           value_has_holes(s, sheet->after + sheet->between_across, w);
 }
 
 /* What of a sheet's rows is not there yet, and what it is made of. */
@@ -331,6 +342,7 @@ TARGET VALUE_INLINE void NAME(begin)(const snow_value_store *s,
     out->has |= *rows;
     out->has_across |= *across;
     *from = NAME(source_of)(s, sheet->slice);
+    from->toward = sheet->toward;
 }
 
 TARGET VALUE_INLINE void NAME(begin_across)(const snow_value_sheet *sheet,
@@ -363,17 +375,17 @@ TARGET VALUE_INLINE void NAME(sample_all)(const snow_value_splat *p, int n,
     uint32_t partial[SHEET_ROWS];
     if (s->cubic)
         NAME(fill_cubic)
-    (&from, first - 1, rows, place, out->values, out->holes, sheet->half);
+    (&from, first - 1, rows, place, out->values, out->holes, sheet->between);
     else if (out->holes) NAME(fill_holes)(&from, first - 1, rows, place,
-                                          out->values, partial, sheet->half);
-    else NAME(fill)(&from, first - 1, rows, place, out->values, sheet->half,
+                                          out->values, partial, sheet->between);
+    else NAME(fill)(&from, first - 1, rows, place, out->values, sheet->between,
                     false);
     if (!across)
         return;
     NAME(begin_across)(sheet, &from);
     if (!s->cubic)
         NAME(fill)
-    (&from, first, across, place, out->across, sheet->half_across, true);
+    (&from, first, across, place, out->across, sheet->between_across, true);
     if (out->holes || s->cubic)
         NAME(cross_holes)(p, n, from, first, across, place, out);
 }

@@ -45,14 +45,13 @@ void snow_value_slopes(const int16_t *before, const int16_t *here,
 /* A voxel of a row of a sheet: its value by its weight, and the weight. */
 static void voxel_at(const snow_value_store *s, const snow_value_sheet *sheet,
                      int64_t column, int64_t row, int *value, int *weight) {
-    int64_t next = sheet->half ? s->rows + 2 * s->margin : 0;
+    int64_t next = sheet->between ? s->rows + 2 * s->margin : 0;
     const int64_t *rows = snow_value_at(s, sheet->slice) + row;
     int a = s->values[rows[0] + column], b = s->values[rows[next] + column];
-    *weight =
-        SNOW_VALUE_FULL / 2 * ((a != SNOW_VALUE_HOLE) + (b != SNOW_VALUE_HOLE));
-    a = a == SNOW_VALUE_HOLE ? 0 : a;
-    b = b == SNOW_VALUE_HOLE ? 0 : b;
-    *value = (a + b + 1) >> 1;
+    const bool has[2] = {a != SNOW_VALUE_HOLE, b != SNOW_VALUE_HOLE};
+    *weight = value_toward(has[0] ? SNOW_VALUE_FULL : 0,
+                           has[1] ? SNOW_VALUE_FULL : 0, sheet->toward);
+    *value = value_toward(has[0] ? a : 0, has[1] ? b : 0, sheet->toward);
 }
 
 static void spline(double at, double out[4]) {
@@ -101,14 +100,15 @@ static int16_t value_at(const value_sides *s, int n, int lane) {
                    value_between(weight[0], weight[1], s->weights[1]));
 }
 
-/* Between the sheets in front and behind, where slices have nothing. */
+/* Between the slices in front and behind, of a slice between the sheets half
+ * way to those beside it, which have nothing. */
 static int16_t near_difference(const value_sides *s, int lane) {
-    const snow_value_sheet *sheet = s->splat->sheets + s->sheet;
-    int rising = s->sheet + 1 < s->splat->sheet_count
-                     ? (sheet[1].at > sheet->at ? 1 : -1)
-                     : (sheet->at > sheet[-1].at ? 1 : -1);
-    int before = value_at(s, s->sheet - rising, lane);
-    int after = value_at(s, s->sheet + rising, lane);
+    const snow_value_sheet *sheets = s->splat->sheets;
+    const double step = sheets[1].at - sheets[0].at;
+    const int count = (int)rint(1 / fabs(step)), past = s->sheet % count;
+    int front = s->sheet - (past ? past : count / 2), back = front + count;
+    int before = value_at(s, step > 0 ? front : back, lane);
+    int after = value_at(s, step > 0 ? back : front, lane);
     if (before == SNOW_VALUE_HOLE || after == SNOW_VALUE_HOLE)
         return 0;
     return (int16_t)value_saturate(2 * (after - before));
@@ -116,7 +116,7 @@ static int16_t near_difference(const value_sides *s, int lane) {
 
 void snow_value_bridge(const value_sides *s, uint32_t lanes, int16_t *across) {
     const snow_value_sheet *sheet = s->splat->sheets + s->sheet;
-    bool lone = sheet->half != sheet->half_across;
+    bool lone = sheet->between != sheet->between_across;
     bool first = lone || sheet->before == sheet->slice;
     bool last = lone || sheet->after == sheet->slice;
     if (sheet->before == sheet->after) /* the only slice */

@@ -91,9 +91,11 @@ static int slice_member(const snow_value_store *s, int label, int64_t i,
 }
 
 static int voxel_member(const snow_value_store *s, int label, int64_t i,
-                        int64_t j, int64_t k, bool half) {
+                        int64_t j, int64_t k, bool between, int toward) {
     int here = slice_member(s, label, i, j, k);
-    return half ? (here + slice_member(s, label, i, j, k + 1) + 1) >> 1 : here;
+    return between
+               ? value_toward(here, slice_member(s, label, i, j, k + 1), toward)
+               : here;
 }
 
 static int member_at(const snow_value_store *s, int label, const spot *at) {
@@ -101,8 +103,9 @@ static int member_at(const snow_value_store *s, int label, const spot *at) {
     for (int y = 0; y < 2; y++) {
         int ends[2];
         for (int x = 0; x < 2; x++)
-            ends[x] = voxel_member(s, label, at->i + x, at->j + y,
-                                   at->sheet->slice, at->sheet->half);
+            ends[x] =
+                voxel_member(s, label, at->i + x, at->j + y, at->sheet->slice,
+                             at->sheet->between, at->sheet->toward);
         row[y] = value_between(ends[0], ends[1], at->wu);
     }
     return value_between(row[0], row[1], at->wv);
@@ -119,9 +122,10 @@ static int across(const snow_value_store *s, int label, const spot *at) {
         for (int x = 0; x < 2; x++) {
             int64_t i = at->i + x, j = at->j + y;
             int way = value_saturate(
-                voxel_member(s, label, i, j, sheet->after, sheet->half_across) -
+                voxel_member(s, label, i, j, sheet->after,
+                             sheet->between_across, sheet->toward) -
                 voxel_member(s, label, i, j, sheet->before,
-                             sheet->half_across));
+                             sheet->between_across, sheet->toward));
             ends[x] = sheet->one_sided ? value_saturate(2 * way) : way;
         }
         row[y] = value_between(ends[0], ends[1], at->wu);
@@ -177,7 +181,7 @@ static void find_labels(label_slab *slab) {
     slab->count = 0;
     for (int end = 0; end < 2; end++) {
         const spot *at = &slab->ends[end];
-        for (int n = 0; n < (at->sheet->half ? 8 : 4) && !draft; n++)
+        for (int n = 0; n < (at->sheet->between ? 8 : 4) && !draft; n++)
             add_label(slab, code_of(s, clamp(at->i + n % 2, s->columns),
                                     clamp(at->j + n / 2 % 2, s->rows),
                                     at->sheet->slice + n / 4));

@@ -6,6 +6,7 @@
 #include "splat/values/value_splat.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Constants that are handed on make each kind of tile's loops short.  That is a
@@ -242,6 +243,11 @@ static inline int value_saturate(int x) {
 
 static inline int value_between(int a, int b, int weight) {
     return a + ((value_saturate(b - a) * weight + 0x4000) >> 15);
+}
+
+/* Between two slices: half way, or from there toward one of them. */
+static inline int value_toward(int a, int b, int toward) {
+    return value_between((a + b + 1) >> 1, toward > 0 ? b : a, abs(toward));
 }
 
 /* --- labels --------------------------------------------------------------- */

@@ -64,14 +64,14 @@ static bool has_any(const snow_value_store *s, const uint64_t *coarse,
 }
 
 /* A bit for each run with cells that it does not hide, in a slice (of every
- * slice, or of each eight) and, for half sheets, in the next one. */
+ * slice, or of each eight) and, for sheets between, in the next one. */
 static unsigned runs_of(const snow_value_store *s, const uint64_t *coarse,
-                        int64_t slices, int64_t slice, bool half,
+                        int64_t slices, int64_t slice, bool between,
                         const box *b) {
     size_t size = s->mask_words * s->coarse_words;
     unsigned runs = 0;
     for (int run = 0; run < s->run_count; run++)
-        for (int64_t k = slice; k <= slice + half && k < slices; k++)
+        for (int64_t k = slice; k <= slice + between && k < slices; k++)
             if (has_any(s, coarse + (size_t)(run * slices + k) * size, b))
                 runs |= 1U << run;
     return runs;
@@ -102,14 +102,14 @@ int value_list_slabs(const snow_value_splat *p, int first, int end,
         cover(p, last, first, end, tile, &b);
         bool some = runs_of(s, s->eights, s->eight_count,
                             sheet->slice / SNOW_VALUE_EIGHT,
-                            sheet->half || p->sheets[last].half, &b) != 0;
+                            sheet->between || p->sheets[last].between, &b) != 0;
         for (int m = n; m <= last; m++, sheet++) {
             unsigned here = 0;
             if (some || !all) {
                 b = nothing;
                 cover(p, m, first, end, tile, &b);
                 here = runs_of(s, s->coarse, s->slices, sheet->slice,
-                               sheet->half, &b);
+                               sheet->between, &b);
             }
             if (m > p->slabs[0] && (before | here) == all)
                 out[count++] = m - 1;

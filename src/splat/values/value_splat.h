@@ -21,12 +21,14 @@
 #define SNOW_VALUE_COLUMNS 30 /* of a tile; 32 lanes with those beside */
 #define SNOW_VALUE_PHASES 128 /* the most in a cell */
 
-/* Where a sheet is: a slice, or half way between it and the next one. */
+/* Where a sheet is: a slice, or between it and the next one. */
 typedef struct snow_value_sheet {
     double at;                    /* slices */
     int64_t slice, before, after; /* the latter for differences */
-    bool half, half_across;       /* of the slice; of those two */
+    bool between, between_across; /* of the slice; of those two */
     bool one_sided;               /* the difference is of one step, not two */
+    int16_t toward; /* from half way on to the next slice, of 32768; below 0
+                       back to this one */
 } snow_value_sheet;
 
 /* A phase of the cells on a sheet: cell i has its sample at i + at, that is
