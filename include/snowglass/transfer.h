@@ -43,7 +43,8 @@ typedef enum snow_range {
     SNOW_RANGE_AUTO = 0,   /* chosen from the histogram */
     SNOW_RANGE_FULL,       /* smallest to largest finite value */
     SNOW_RANGE_VALUES,     /* low to high, data values */
-    SNOW_RANGE_PERCENTILES /* low to high, percent of the finite voxels */
+    SNOW_RANGE_PERCENTILES, /* low to high, percent of the finite voxels */
+    SNOW_RANGE_ROBUST       /* the file's window, else FULL but far outliers */
 } snow_range;
 
 /* What the values of control points mean. */

@@ -49,6 +49,8 @@ typedef struct snow_volume_info {
     const char *format; /* constant: "raw", "nrrd", ..., "phantom", "memory" */
     int64_t times, time; /* steps in the file; the one read, from 0 */
     char storage[160];   /* for people: level, axes, chunks, packing; or "" */
+    char modality[17], description[65]; /* of a DICOM series; or "" */
+    double window[2];    /* data values that the file would show; 0s: none */
 } snow_volume_info;
 SNOW_RECORD(snow_volume_info);
 
@@ -114,8 +116,8 @@ SNOW_API snow_status snow_volume_open_memory(snow_context *context,
     const snow_volume_options *options, snow_volume **out);
 
 /* A volume over the caller's voxels, not copied, which must outlive it. Of
- * `info` dims, type, matrix (zeros: identity), slope (0: 1), intercept, medical
- * and unit count. */
+ * `info` dims, type, matrix (0s: identity), slope (0: 1), intercept, medical,
+ * unit, modality and window count. */
 SNOW_API snow_status snow_volume_wrap(snow_context *context,
     const snow_volume_info *info, const void *voxels, snow_volume **out);
 
@@ -148,8 +150,7 @@ SNOW_API snow_status snow_volume_set_extent(
 SNOW_API snow_status snow_volume_get_extent(
     const snow_volume *volume, snow_extent *out);
 
-/* The patient's name is UTF-8, or "", and never written. The voxels are NULL
- * where they stay in a file. */
+/* The patient's name: UTF-8 or "", never written. Voxels: NULL in a file. */
 SNOW_API const snow_volume_info *snow_volume_get_info(const snow_volume *);
 SNOW_API const char *snow_volume_patient(const snow_volume *volume);
 SNOW_API const void *snow_volume_voxels(const snow_volume *volume);

@@ -114,6 +114,15 @@ static void print_geometry(const facts *f) {
                info->intercept);
     if (*info->storage)
         printf("%-14s%s\n", "storage", info->storage);
+    if (*info->modality)
+        printf("%-14s%s\n", "modality", info->modality);
+    if (*info->description)
+        printf("%-14s%s\n", "series", info->description);
+    if (info->window[0] < info->window[1])
+        printf("%-14s%g at level %g (%g .. %g)\n", "window",
+               info->window[1] - info->window[0],
+               (info->window[0] + info->window[1]) / 2, info->window[0],
+               info->window[1]);
     if (f->patient)
         printf("%-14s%s\n", "patient", f->patient);
 }
@@ -188,6 +197,13 @@ void info_set_geometry(json_t *object, const snow_volume_info *info) {
     json_object_set_new(object, "time", json_integer(info->time));
     if (*info->storage)
         json_object_set_new(object, "storage", json_string(info->storage));
+    if (*info->modality)
+        json_object_set_new(object, "modality", json_string(info->modality));
+    if (*info->description)
+        json_object_set_new(object, "series_description",
+                            json_string(info->description));
+    if (info->window[0] < info->window[1])
+        json_object_set_new(object, "window", json_vector(info->window, 2));
 }
 
 /* min and max are null if no voxel is finite. */

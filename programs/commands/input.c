@@ -123,10 +123,14 @@ snow_look look_options(const options *opts) {
                       .shift = opts->shift,
                       .base = opts->loaded ? snow_look_file_look(opts->loaded)
                                            : NULL};
-    /* The projections are grey over the full range by default, as usual. */
+    /* Projections are grey by default, over the file's window or all values but
+     * a few far off. */
     if (strcmp(opts->mode, "over") != 0 && strcmp(opts->mode, "iso") != 0 &&
-        !look.preset && !look.base)
+        !look.preset && !look.base) {
         look.preset = "linear";
+        if (look.range == SNOW_RANGE_AUTO)
+            look.range = SNOW_RANGE_ROBUST;
+    }
     if (!isnan(opts->window)) { /* --window and --level give the range */
         look.range = SNOW_RANGE_VALUES;
         look.low = opts->level - opts->window / 2;

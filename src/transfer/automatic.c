@@ -15,6 +15,8 @@
  *     all values, and unshaded.  The same holds for volumes of one slice.
  *     Values that reach as far below 0 as above are densities about a mean (of
  *     proteins), whose upper part is what matters.
+ *   - A CT in Hounsfield units gets the preset for bone or for soft tissue: its
+ *     values say what they are.  A slice is shown over its file's own window.
  *   - Structure below the threshold (leaves, lung vessels, smoke) is kept as a
  *     faint veil, from Otsu's threshold of the lower part on, if it is sparse;
  *     otherwise it would be fog.
@@ -27,6 +29,7 @@
 #include "transfer/look.h"
 
 #include <math.h>
+#include <string.h>
 
 #define BINS 1024
 
@@ -58,6 +61,10 @@
 /* The grey where opacity starts, as in the colour map light-grey: below it,
  * shading would make skin look black. */
 #define DARKEST (0xa6 / 255.0)
+
+/* White without light on it, as in the colour map dim-grey: below 250 of 255.
+ */
+#define LIGHTEST (0xf7 / 255.0)
 
 typedef struct split {
     double at;           /* the threshold, in bins */
@@ -188,28 +195,26 @@ static void add_opacity(snow_transfer_builder *builder, double value,
     builder->opacities[n] = (snow_opacity_point){value, opacity};
 }
 
-static void build_grey(snow_transfer_builder *builder, double low,
-                       double high) {
-    builder->name = "light-grey";
+static void build_grey(snow_transfer_builder *builder, const char *name,
+                       double low, double high, double dark, double light) {
+    builder->name = name;
     builder->low = low;
     builder->high = high;
     builder->color_count = 2;
-    builder->colors[0] = (snow_color_point){low, DARKEST, DARKEST, DARKEST};
-    builder->colors[1] = (snow_color_point){high, 1, 1, 1};
+    builder->colors[0] = (snow_color_point){low, dark, dark, dark};
+    builder->colors[1] = (snow_color_point){high, light, light, light};
 }
 
 /* One slice is drawn as a picture that shows everything but its darkest values.
  * Several slices are solid but let some light through. */
 static void build_solid(const snow_histogram_split *p, bool slice, bool log,
                         snow_transfer_builder *builder) {
-    build_grey(builder, p->low, p->high);
-    builder->name = "grey";
-    builder->colors[0].red = builder->colors[0].green =
-        builder->colors[0].blue = 0;
+    build_grey(builder, "dim-grey", p->low, p->high, 0, LIGHTEST);
     builder->unshaded = true;
     add_opacity(builder, p->low, 0);
     if (slice) {
-        add_opacity(builder, snow_between_on(log, p->low, p->high, 0.05), 1);
+        add_opacity(builder, snow_between_on(log, p->low, p->high, 0.05), 0);
+        add_opacity(builder, snow_between_on(log, p->low, p->high, 0.06), 1);
         return;
     }
     add_opacity(builder, snow_between_on(log, p->low, p->high, 0.15), 0);
@@ -229,11 +234,38 @@ static void build_constant(const snow_histogram *histogram,
                            snow_transfer_builder *builder) {
     double low, high;
     snow_full_range(histogram, &low, &high);
-    build_grey(builder, low, high);
+    build_grey(builder, "dim-grey", low, high, 0, LIGHTEST);
+    builder->unshaded = true;
     add_opacity(builder, low, 0);
     add_opacity(builder, high, 0.8);
     builder->reason = "one value only";
-    builder->unshaded = true;
+}
+
+/* Bins of 100 Hounsfield units, from -1100 on. */
+#define BINS_HU 40
+#define BIN_HU(value) (((value) + 1100) / 100)
+
+/* The preset for a CT in Hounsfield units: for bone, if that is 0.5 % of the
+ * body, else for soft tissue; -1 for other volumes.  What names no modality is
+ * CT if it is a patient's, has more than 8 bits, begins at air or at a padding
+ * below, and 2 % of it are air. */
+static snow_status hounsfield_preset(const snow_histogram *histogram,
+                                     int *preset) {
+    const snow_volume_info *info = &histogram->volume->info;
+    const bool ct = !strcmp(info->modality, "CT");
+    uint64_t counts[BINS_HU], all;
+    if (histogram->log || !info->medical || (*info->modality && !ct) ||
+        snow_type_size(info->type) == 1 || !(histogram->min >= -4096) ||
+        !(histogram->min < (ct ? 0 : -900)) || !(histogram->max < 32768))
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_count_bins(histogram, -1100, 2900, BINS_HU, counts, &all));
+    double air = share_of(counts, 0, BIN_HU(-900), all);
+    double body = share_of(counts, BIN_HU(-200), BINS_HU, all);
+    double bone = share_of(counts, BIN_HU(300), BINS_HU, all);
+    if (body > 0 && (ct || air >= 0.02))
+        *preset =
+            snow_preset_from_name(bone >= 0.005 * body ? "ct-bone" : "ct-soft");
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
@@ -247,8 +279,20 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
         build_constant(histogram, builder);
         return SNOW_STATUS_OK;
     }
-    if (p.fills_volume || axes_of_one(histogram) == 1) {
-        build_solid(&p, axes_of_one(histogram) == 1, log, builder);
+    bool slice = axes_of_one(histogram) == 1;
+    int preset = -1;
+    if (slice)
+        snow_window_of(histogram, builder, &p.low, &p.high);
+    else
+        SNOW_TRY(hounsfield_preset(histogram, &preset));
+    if (preset >= 0) {
+        builder->reason = snow_preset_name((size_t)preset);
+        strcpy(builder->range_note, ", for Hounsfield units");
+        return snow_transfer_builder_points(snow_preset_look((size_t)preset),
+                                            histogram, builder);
+    }
+    if (slice || p.fills_volume) {
+        build_solid(&p, slice, log, builder);
         return SNOW_STATUS_OK;
     }
     builder->unshaded = axes_of_one(histogram) > 1;
@@ -262,7 +306,8 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
                 0.25);
     add_opacity(builder, p.object, 0.4);
     add_opacity(builder, p.top, 0.8);
-    build_grey(builder, start,
-               builder->opacities[builder->opacity_count - 1].value);
+    build_grey(builder, "light-grey", start,
+               builder->opacities[builder->opacity_count - 1].value, DARKEST,
+               1);
     return SNOW_STATUS_OK;
 }

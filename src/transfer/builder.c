@@ -55,12 +55,48 @@ void snow_full_range(const snow_histogram *histogram, double *low,
         *high = *low < 0 ? 0 : 1;
 }
 
+bool snow_window_of(const snow_histogram *histogram,
+                    snow_transfer_builder *builder, double *low, double *high) {
+    const double *window = histogram->volume->info.window;
+    if (histogram->log || !(window[0] < window[1]) ||
+        !(window[0] < histogram->max && window[1] > histogram->min))
+        return false;
+    *low = window[0];
+    *high = window[1];
+    strcpy(builder->range_note, "; the file's own window");
+    return true;
+}
+
+/* So much is left out at an end where that halves the range or more. */
+#define FEW 0.0001
+
+snow_status snow_robust_range(const snow_histogram *histogram, double *low,
+                              double *high, snow_transfer_builder *builder) {
+    const double shares[2] = {FEW, 1 - FEW}, full[2] = {*low, *high};
+    const double half = (full[1] - full[0]) / 2;
+    double ends[2];
+    if (snow_window_of(histogram, builder, low, high) || histogram->log ||
+        !histogram->finite)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(
+        snow_quantiles(histogram, SNOW_HISTOGRAM_SAMPLED, shares, 2, ends));
+    if (!(ends[0] < ends[1]))
+        return SNOW_STATUS_OK;
+    if (ends[1] - full[0] < half)
+        *high = ends[1];
+    if (full[1] - ends[0] < half)
+        *low = ends[0];
+    if (*low > full[0] || *high < full[1])
+        snprintf(builder->range_note, sizeof builder->range_note,
+                 "; few values, from %.5g to %.5g, are cut off", full[0],
+                 full[1]);
+    return SNOW_STATUS_OK;
+}
+
 /* --- points --------------------------------------------------------------- */
 
-/* The range from the end of the background to the brightest value of the
- * object. */
-static snow_status object_range(const snow_histogram *histogram, double *low,
-                                double *high) {
+snow_status snow_object_range(const snow_histogram *histogram, double *low,
+                              double *high) {
     snow_histogram_split p;
     SNOW_TRY(snow_histogram_split_at(histogram, &p));
     snow_full_range(histogram, low, high);
@@ -119,7 +155,7 @@ snow_status snow_transfer_builder_points(const snow_look *points,
                                          snow_transfer_builder *builder) {
     double low, high;
     if (points->domain == SNOW_DOMAIN_OBJECT)
-        SNOW_TRY(object_range(histogram, &low, &high));
+        SNOW_TRY(snow_object_range(histogram, &low, &high));
     else if (points->domain == SNOW_DOMAIN_RANGE)
         snow_full_range(histogram, &low, &high);
     else

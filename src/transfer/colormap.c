@@ -11,7 +11,7 @@
  *              visualization", ISVC 2009: computed by its formula from
  *              (59, 76, 192) to (180, 4, 38)
  *   hot        black over red and yellow to white, as matplotlib's
- *   light-grey  the upper part of grey, of looks made from the histogram
+ *   light-grey, dim-grey  parts of grey, of looks made from the histogram
  *   tab10      ten colours for categories, Tableau's of 2016 (matplotlib)
  * A new map needs a table here and a line in `maps`. */
 #include "transfer/look.h"
@@ -25,6 +25,7 @@ typedef struct map_point {
 #define MAP_END 510
 
 static const map_point grey[] = {{0, 0x000000}, {510, 0xffffff}};
+static const map_point dim_grey[] = {{0, 0x000000}, {510, 0xf7f7f7}};
 static const map_point light_grey[] = {{0, 0xa6a6a6}, {510, 0xffffff}};
 
 static const map_point hot[] = {
@@ -102,6 +103,7 @@ static const struct {
     MAP("hot", hot),
     MAP("tab10", category),
     MAP("light-grey", light_grey),
+    MAP("dim-grey", dim_grey),
 };
 
 static const size_t map_count = sizeof maps / sizeof *maps;

@@ -13,11 +13,12 @@
 /* A transfer function under construction, in data values.  There is memory for
  * SNOW_TRANSFER_BUILDER_POINTS points, or as many as the source has. */
 typedef struct snow_transfer_builder {
-    const char *name;   /* of the colours, for messages */
-    const char *reason; /* why these values, for messages */
-    double low, high;   /* the range of data values */
-    bool unshaded;      /* for pictures without shading */
-    bool log;           /* logarithmic scale */
+    const char *name;    /* of the colours, for messages */
+    const char *reason;  /* why these values, for messages */
+    char range_note[64]; /* how the range was chosen, for messages; or "" */
+    double low, high;    /* the range of data values */
+    bool unshaded;       /* for pictures without shading */
+    bool log;            /* logarithmic scale */
     snow_color_point *colors;
     size_t color_count;
     snow_opacity_point *opacities;
@@ -112,8 +113,8 @@ snow_status snow_transfer_builder_points(const snow_look *points,
                                          const snow_histogram *histogram,
                                          snow_transfer_builder *builder);
 
-/* Rounds all values to what a line reports; adds to all values, so that a preset
- * suits data with another offset. */
+/* Rounds all values to what a line reports; adds to all values, so that a
+ * preset suits data with another offset. */
 void snow_transfer_builder_round(snow_transfer_builder *builder);
 void snow_transfer_builder_shift(snow_transfer_builder *builder, double shift);
 
@@ -133,6 +134,17 @@ snow_status snow_transfer_new_for_ranks(snow_comm *comm,
 /* Whether a look (NULL allowed) has a gradient opacity; false if its preset
  * does not exist. */
 bool snow_look_has_gradient_opacity(const snow_look *look);
+
+/* From the end of the background to the brightest value of the object. */
+snow_status snow_object_range(const snow_histogram *histogram, double *low,
+                              double *high);
+
+/* The window of the file; false if it has none, or none for these values.  Else
+ * all values of low..high but a few far off.  Both leave a note. */
+bool snow_window_of(const snow_histogram *histogram,
+                    snow_transfer_builder *builder, double *low, double *high);
+snow_status snow_robust_range(const snow_histogram *histogram, double *low,
+                              double *high, snow_transfer_builder *builder);
 
 /* Replaces the colours by a map over low..high. */
 void snow_transfer_builder_colormap(snow_transfer_builder *builder,

@@ -64,12 +64,14 @@ static snow_status check_look(snow_context *context, const snow_look *look) {
 /* The data values of the requested range. */
 static snow_status resolve_range(const snow_histogram *histogram,
                                  const snow_look *look, double *low,
-                                 double *high) {
+                                 double *high, snow_transfer_builder *builder) {
     snow_full_range(histogram, low, high);
     if (look->range == SNOW_RANGE_VALUES) {
         *low = look->low;
         *high = look->high;
     }
+    if (look->range == SNOW_RANGE_ROBUST)
+        return snow_robust_range(histogram, low, high, builder);
     if (look->range != SNOW_RANGE_PERCENTILES || !histogram->finite)
         return SNOW_STATUS_OK;
     const double shares[2] = {look->low / 100, look->high / 100};
@@ -149,41 +151,60 @@ static snow_status begin_builder(snow_context *context, const snow_look *look,
     return SNOW_STATUS_OK;
 }
 
-/* Checks that the values suit those of a preset or a file. */
-static snow_status check_values(const snow_histogram *histogram,
-                                const snow_look *look, const snow_look *points,
-                                const snow_transfer_builder *builder) {
+/* Checks that the values suit those of a preset or a file.  Values of 8 bits
+ * are no Hounsfield units: presets for these are spread over the object's. */
+static snow_status fit_values(const snow_histogram *histogram,
+                              const snow_look *look, const snow_look *points,
+                              snow_transfer_builder *builder) {
+    snow_context *context = histogram->volume->context;
+    double low, high;
     if (points->domain != SNOW_DOMAIN_DATA || look->range != SNOW_RANGE_AUTO)
         return SNOW_STATUS_OK;
     if (builder->log && !(builder->low > 0))
-        return snow_fail(histogram->volume->context, SNOW_STATUS_BAD_USAGE,
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "%.64s has values of 0 and below, which a logarithmic "
                          "scale cannot show; give a range too",
                          points->name);
-    if (!look->base && look->shift == 0 && histogram->min >= 0)
-        snow_notify(histogram->volume->context,
+    if (look->base || look->shift != 0 || !(histogram->min >= 0))
+        return SNOW_STATUS_OK;
+    if (snow_type_size(histogram->volume->info.type) > 1 || builder->log ||
+        histogram->max > 255) {
+        snow_notify(context,
                     "%s is for Hounsfield units, but the smallest value is %g: "
                     "if the values have an offset, give it as a shift, such as "
                     "1024",
                     look->preset, histogram->min);
+        return SNOW_STATUS_OK;
+    }
+    SNOW_TRY(snow_object_range(histogram, &low, &high));
+    stretch(builder, false, low, high);
+    snow_notify(context,
+                "%s is for Hounsfield units, and the values are of 8 bits: it "
+                "is spread over the object's, %g to %g; --range sets others",
+                look->preset, low, high);
     return SNOW_STATUS_OK;
 }
 
 /* What has to be known of the values where no colour and no opacity is to be
  * guessed. */
-static snow_histogram_need need_of_range(const snow_look *look,
+static snow_histogram_need need_of_range(const snow_volume *volume,
+                                         const snow_look *look,
                                          const snow_look *points) {
     snow_domain values = points ? points->domain : SNOW_DOMAIN_DATA;
-    if (look->range == SNOW_RANGE_PERCENTILES || values == SNOW_DOMAIN_OBJECT)
+    if (look->range == SNOW_RANGE_PERCENTILES ||
+        look->range == SNOW_RANGE_ROBUST || values == SNOW_DOMAIN_OBJECT)
         return SNOW_NEED_COUNTS;
     if (look->range == SNOW_RANGE_FULL || values == SNOW_DOMAIN_RANGE)
         return SNOW_NEED_RANGE;
-    /* Hounsfield units (check_values). */
+    /* Hounsfield units (fit_values). */
     bool preset = look->range == SNOW_RANGE_AUTO && !look->base;
+    if (preset && snow_type_size(volume->info.type) == 1)
+        return SNOW_NEED_COUNTS;
     return preset ? SNOW_NEED_SIGN : SNOW_NEED_NOTHING;
 }
 
-static snow_histogram_need need_of(const snow_look *look) {
+static snow_histogram_need need_of(const snow_volume *volume,
+                                   const snow_look *look) {
     const snow_look *points = points_of(look);
     bool colors = look->colormap || (points && points->color_count);
     bool opacities = look->opacities || (points && points->opacity_count);
@@ -193,7 +214,7 @@ static snow_histogram_need need_of(const snow_look *look) {
         return SNOW_NEED_COUNTS;
     if (points && !points->opacity_count && points->domain != SNOW_DOMAIN_DATA)
         return SNOW_NEED_COUNTS;
-    return need_of_range(look, points);
+    return need_of_range(volume, look, points);
 }
 
 static const char *reason_of(const snow_look *look) {
@@ -207,7 +228,7 @@ static snow_status fill_builder(const snow_histogram *histogram,
                                 snow_transfer_builder *builder) {
     const snow_look *points = points_of(look);
     builder->high = 1; /* without points, until it is stretched */
-    if (need_of(look) == SNOW_NEED_COUNTS &&
+    if (need_of(histogram->volume, look) == SNOW_NEED_COUNTS &&
         (!points || !points->color_count || !points->opacity_count))
         SNOW_TRY(snow_transfer_builder_automatic(histogram, builder));
     snow_transfer_builder_round(builder);
@@ -217,6 +238,7 @@ static snow_status fill_builder(const snow_histogram *histogram,
     double low = builder->low, high = builder->high;
     SNOW_TRY(snow_transfer_builder_points(points, histogram, builder));
     builder->unshaded = builder->unshaded && !points->opacity_count;
+    builder->range_note[0] = 0;
     /* Colours without values and opacities use the range of the histogram. */
     if (!points->opacity_count && points->domain != SNOW_DOMAIN_DATA) {
         for (size_t i = 0; i < builder->color_count; i++)
@@ -225,7 +247,7 @@ static snow_status fill_builder(const snow_histogram *histogram,
         builder->low = low;
         builder->high = high;
     }
-    return check_values(histogram, look, points, builder);
+    return fit_values(histogram, look, points, builder);
 }
 
 /* Rounding of logarithms may have made values decrease. */
@@ -246,7 +268,7 @@ static snow_status build_look(const snow_histogram *histogram,
     if (look->range != SNOW_RANGE_AUTO) {
         double low, high;
         bool data = points && points->domain == SNOW_DOMAIN_DATA;
-        SNOW_TRY(resolve_range(histogram, look, &low, &high));
+        SNOW_TRY(resolve_range(histogram, look, &low, &high, builder));
         if (builder->log && !(low > 0))
             return snow_fail(histogram->volume->context, SNOW_STATUS_BAD_USAGE,
                              "a range from %g has no logarithm; begin above 0",
@@ -270,8 +292,9 @@ static void set_reason(const snow_transfer_builder *builder,
     char shift[40] = "";
     if (look->shift < 0 || look->shift > 0)
         snprintf(shift, sizeof shift, " shifted by %.9g", look->shift);
-    snprintf(text, room, " (%s%s%s)",
+    snprintf(text, room, " (%s%s%s%s)",
              all_asked ? "as requested" : builder->reason, shift,
+             builder->range_note,
              look->opacities && !all_asked ? "; opacities as requested" : "");
 }
 
@@ -301,7 +324,7 @@ static void describe_look(snow_transfer *transfer,
     for (size_t i = 0; i < transfer->opacity_count; i++) {
         used = strlen(text);
         /* The end is reserved for the reason. */
-        if (used + 64 > room) {
+        if (used + 120 > room) {
             snprintf(text + used, room - used, ", ...");
             break;
         }
@@ -410,8 +433,8 @@ static snow_status make_among(snow_comm *comm, const snow_volume *volume,
     if (comm)
         status = snow_comm_agree_status(comm, status);
     if (status == SNOW_STATUS_OK)
-        status = snow_histogram_new(volume, comm, builder.log, need_of(look),
-                                    &histogram);
+        status = snow_histogram_new(volume, comm, builder.log,
+                                    need_of(volume, look), &histogram);
     if (status == SNOW_STATUS_OK) {
         status = build_look(&histogram, look, &builder);
         snow_histogram_free(&histogram);

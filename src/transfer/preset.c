@@ -182,9 +182,10 @@ static const opacity lung_opacities[] = {
     {-930, 0},    {-820, 0.015}, {-700, 0.03}, {-560, 0.16},
     {-400, 0.24}, {-250, 0.06},  {-150, 0}};
 
-/* A linear ramp, for maximum intensity projection. */
+/* A linear ramp, for maximum intensity projection; what it shows black is left
+ * out of other pictures. */
 static const color ct_mip_colors[] = {{-200, 0, 0, 0}, {900, 1, 1, 1}};
-static const opacity ct_mip_opacities[] = {{-200, 0}, {100, 0.05}, {900, 0.9}};
+static const opacity ct_mip_opacities[] = {{50, 0}, {150, 0.05}, {900, 0.9}};
 
 /* --- MR: over 0..1, from the end of the background to the brightest value ---
  */

@@ -266,6 +266,8 @@ snow_status snow_volume_wrap(snow_context *context,
     own.medical = info.medical;
     memcpy(own.unit, info.unit, sizeof own.unit);
     own.unit[sizeof own.unit - 1] = 0;
+    memcpy(own.modality, info.modality, sizeof own.modality - 1);
+    memcpy(own.window, info.window, sizeof own.window);
     snow_status status = snow_volume_info_check(context, &own);
     if (status != SNOW_STATUS_OK)
         return SNOW_STATUS_BAD_USAGE; /* the caller's, not a file's */

@@ -314,6 +314,45 @@ static void a_folder_is_a_volume_whatever_its_names(void **state) {
     support_files_end(&files);
 }
 
+static void a_file_says_how_to_show_it(void **state) {
+    (void)state;
+    static const struct {
+        const char *photometric, *level, *width;
+        double low, high;
+    } rows[] = {
+        {"MONOCHROME2", "40\\-600", "400\\1500", -160, 240},
+        {"MONOCHROME2", "40", "0", 0, 0},
+        {"MONOCHROME2", "40", "many", 0, 0},
+        {"MONOCHROME1", "100", "50", 65535 - 125, 65535 - 75},
+    };
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        unsigned char words[16] = {0};
+        support_files files;
+        file f;
+        support_files_begin(&files);
+        begin(&f, explicit_little, 0);
+        text(&f, 0x00080060, "CS", "CT");
+        text(&f, 0x0008103e, "LO", "Thorax  1mm");
+        text(&f, 0x00281050, "DS", rows[n].level);
+        text(&f, 0x00281051, "DS", rows[n].width);
+        unsigned char *tag = f.bytes;
+        while (memcmp(tag, "\x28\0\x04\0CS", 6) != 0)
+            tag++;
+        tag[8 + 10] = (unsigned char)rows[n].photometric[10];
+        element(&f, 0x7fe00010, "OW", words, sizeof words);
+        support_write(&files, "s.dcm", f.bytes, f.size);
+        snow_volume *volume =
+            support_opened(&files, support_path(&files, "s.dcm"), NULL);
+        const snow_volume_info *info = snow_volume_get_info(volume);
+        assert_string_equal(info->modality, "CT");
+        assert_string_equal(info->description, "Thorax  1mm");
+        assert_true(info->window[0] == rows[n].low);
+        assert_true(info->window[1] == rows[n].high);
+        snow_volume_close(volume);
+        support_files_end(&files);
+    }
+}
+
 static void a_slice_tells_that_those_beside_it_are_damaged(void **state) {
     (void)state;
     static const char *const names[] = {"0", "1", "2", "3"};
@@ -615,6 +654,7 @@ int main(void) {
         cmocka_unit_test(several_at_each_place_are_times),
         cmocka_unit_test(frames_that_are_not_alike_are_groups),
         cmocka_unit_test(a_folder_is_a_volume_whatever_its_names),
+        cmocka_unit_test(a_file_says_how_to_show_it),
         cmocka_unit_test(a_slice_tells_that_those_beside_it_are_damaged),
         cmocka_unit_test(a_slice_without_a_number_is_there_once),
         cmocka_unit_test(a_file_says_nothing_of_the_patient),

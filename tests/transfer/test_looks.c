@@ -391,6 +391,94 @@ static void one_heap_of_values_is_a_solid_block(void **state) {
     snow_context_free(context);
 }
 
+/* --- what a volume says of itself ----------------------------------------- */
+
+static snow_transfer *look_at_patient(snow_context *context, const void *voxels,
+                                      snow_volume_info info, snow_look look) {
+    snow_volume *volume = NULL;
+    info.size = sizeof info;
+    look.size = sizeof look;
+    info.dims[0] = info.dims[1] = 20;
+    info.dims[2] = info.dims[2] ? info.dims[2] : 20;
+    assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
+                     SNOW_STATUS_OK);
+    snow_transfer *transfer = support_look(volume, look);
+    snow_volume_close(volume);
+    return transfer;
+}
+
+static bool says(snow_transfer *transfer, const char *words) {
+    bool found = strstr(snow_transfer_description(transfer), words) != NULL;
+    snow_transfer_free(transfer);
+    return found;
+}
+
+static void ct_in_hounsfield_units_has_a_look_of_ct(void **state) {
+    (void)state;
+    static int16_t ct[8000], soft[8000], shifted[8000];
+    static uint8_t bytes[8000];
+    const snow_look any = {.log = false};
+    const snow_volume_info patient = {.type = SNOW_TYPE_INT16, .medical = true};
+    snow_volume_info named = patient, thing = patient;
+    snow_volume_info eight = {.type = SNOW_TYPE_UINT8, .medical = true};
+    snow_context *context = support_context();
+    for (int i = 0; i < 8000; i++) {
+        ct[i] = (int16_t)(i % 2 ? i % 30 - 1000 : i % 3 ? 40 : 700);
+        soft[i] = (int16_t)(i % 2 ? i % 30 - 1000 : i % 60);
+        shifted[i] = (int16_t)(ct[i] + 1024);
+        bytes[i] = (uint8_t)(i % 2 ? i % 9 : 200);
+    }
+    assert_true(
+        says(look_at_patient(context, ct, patient, any), "(ct-bone, for Houn"));
+    assert_true(says(look_at_patient(context, soft, patient, any),
+                     "(ct-soft, for Houn"));
+    assert_true(says(look_at_patient(context, shifted, patient, any),
+                     "from the histogram"));
+    assert_true(says(look_at_patient(context, bytes, eight, any),
+                     "from the histogram"));
+    thing.medical = false;
+    assert_true(
+        says(look_at_patient(context, ct, thing, any), "from the histogram"));
+    memcpy(named.modality, "MR", 3);
+    assert_true(
+        says(look_at_patient(context, ct, named, any), "from the histogram"));
+    /* Values of 8 bits are none of those units: the object's are used. */
+    snow_transfer *transfer = look_at_patient(context, bytes, eight,
+                                              (snow_look){.preset = "ct-bone"});
+    assert_true(opacity_at(transfer, 8) == 0);
+    assert_true(near(opacity_at(transfer, 200), 0.85));
+    snow_transfer_free(transfer);
+    snow_context_free(context);
+}
+
+static void a_projection_survives_a_hot_voxel(void **state) {
+    (void)state;
+    static uint16_t voxels[8000 * 5];
+    snow_context *context = support_context();
+    snow_volume_info info = {.type = SNOW_TYPE_UINT16, .dims = {0, 0, 100}};
+    const snow_look look = {.preset = "linear", .range = SNOW_RANGE_ROBUST};
+    for (int i = 0; i < 40000; i++)
+        voxels[i] = (uint16_t)(i % 301);
+    snow_transfer *transfer = look_at_patient(context, voxels, info, look);
+    assert_true(near(opacity_at(transfer, 300), 1)); /* nothing is cut */
+    assert_true(says(transfer, "(linear)"));
+    voxels[777] = 60000;
+    transfer = look_at_patient(context, voxels, info, look);
+    assert_true(near(opacity_at(transfer, 300), 1));
+    assert_true(near(opacity_at(transfer, 150), 0.5));
+    assert_true(says(transfer, "few values, from 0 to 60000, are cut off"));
+    info.window[0] = 100, info.window[1] = 200;
+    transfer = look_at_patient(context, voxels, info, look);
+    assert_true(near(opacity_at(transfer, 150), 0.5));
+    assert_true(near(opacity_at(transfer, 200), 1));
+    assert_true(says(transfer, "the file's own window"));
+    info.dims[2] = 1; /* a slice takes it by itself */
+    transfer = look_at_patient(context, voxels, info, (snow_look){.low = 0});
+    assert_true(red_at(transfer, 100) == 0 && red_at(transfer, 200) > 0.9);
+    assert_true(says(transfer, "the file's own window"));
+    snow_context_free(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(linear_over_decades_is_linear_in_decades),
@@ -404,6 +492,8 @@ int main(void) {
         cmocka_unit_test(hundreds_of_points_are_taken),
         cmocka_unit_test(presets_and_colour_maps_are_data),
         cmocka_unit_test(categories_are_not_mixed),
+        cmocka_unit_test(ct_in_hounsfield_units_has_a_look_of_ct),
+        cmocka_unit_test(a_projection_survives_a_hot_voxel),
         cmocka_unit_test(one_heap_of_values_is_a_solid_block),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

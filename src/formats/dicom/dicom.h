@@ -42,7 +42,7 @@ enum {
 typedef struct dicom_image {
     char *path; /* in the list of files; NULL for the file that was given */
     char series[65], instance[65], photometric[17], modality[17];
-    char patient[256]; /* UTF-8; "" if missing */
+    char patient[256], description[65]; /* UTF-8; "" if missing */
     int64_t columns, rows, frames;
     int64_t series_number;
     int samples, allocated, stored, high;
@@ -66,6 +66,7 @@ typedef struct dicom_frame {
     double depth;  /* given mm from slice to slice, signed; 0: none */
     double thickness;
     double slope, intercept;
+    double window[2]; /* data values; equal: none */
     double keys[DICOM_KEYS];
 } dicom_frame;
 

@@ -37,6 +37,11 @@ static const number_field slope_field = {0x00289145, 0x00281053, TEXT,
 static const number_field intercept_field = {0x00289145, 0x00281052, TEXT,
                                              0x00281052, TEXT};
 
+static const number_field level_field = {0x00289132, 0x00281050, TEXT,
+                                         0x00281050, TEXT};
+static const number_field width_field = {0x00289132, 0x00281051, TEXT,
+                                         0x00281051, TEXT};
+
 static const number_field key_fields[DICOM_KEYS] = {
     [DICOM_KEY_TIME] = {0x00209111, 0x00209128, LONGS, 0x00200100, TEXT},
     [DICOM_KEY_TRIGGER] = {0x00189118, 0x00209153, DOUBLES, 0x00181060, TEXT},
@@ -137,13 +142,13 @@ static void text(dicom_reader *reader, uint32_t tag, char *out, size_t room) {
             length - (blanks < length ? blanks : length) + 1);
 }
 
-/* Names in UTF-8 if the file declares UTF-8 or Latin 1, as most do; otherwise
- * '?' replaces characters outside ASCII. */
-static void patient(dicom_reader *reader, char *out, size_t room) {
+/* Text for people in UTF-8 if the file declares UTF-8 or Latin 1, as most do;
+ * otherwise '?' replaces characters outside ASCII. */
+static void words(dicom_reader *reader, uint32_t tag, char *out, size_t room) {
     char set[65], raw[128];
     size_t used = 0;
     text(reader, 0x00080005, set, sizeof set);
-    text(reader, 0x00100010, raw, sizeof raw);
+    text(reader, tag, raw, sizeof raw);
     bool utf8 = !strcmp(set, "ISO_IR 192"), latin = !strcmp(set, "ISO_IR 100");
     for (const char *at = raw; *at && used + 3 < room; at++) {
         unsigned char c = (unsigned char)*at;
@@ -275,7 +280,8 @@ snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
     text(reader, 0x00080018, image.instance, sizeof image.instance);
     text(reader, 0x00280004, image.photometric, sizeof image.photometric);
     text(reader, 0x00080060, image.modality, sizeof image.modality);
-    patient(reader, image.patient, sizeof image.patient);
+    words(reader, 0x00100010, image.patient, sizeof image.patient);
+    words(reader, 0x0008103e, image.description, sizeof image.description);
     read_padding(reader, &image);
     SNOW_TRY(check_sizes(context, reader, &image));
     *out = image;
@@ -421,6 +427,23 @@ static void read_scale(dicom_reader *reader, const dicom_image *image,
     frame->intercept = intercept;
 }
 
+/* The first window, if there are several.  It refers to values after the
+ * rescale that the file has, but before an inversion that it only implies. */
+static void read_window(dicom_reader *reader, const dicom_image *image,
+                        dicom_frame *frame) {
+    double level, width, middle;
+    if (image->samples != 1 || strncmp(image->photometric, "MONO", 4) != 0 ||
+        numbers(reader, &level_field, frame->number, &level, 1) != 1 ||
+        numbers(reader, &width_field, frame->number, &width, 1) != 1 ||
+        !(width > 0))
+        return;
+    bool inverted =
+        !strcmp(image->photometric, "MONOCHROME1") && frame->slope == -1;
+    middle = inverted ? frame->intercept - level : level;
+    frame->window[0] = middle - width / 2;
+    frame->window[1] = middle + width / 2;
+}
+
 void snow_dicom_read_frame(dicom_reader *reader, const dicom_image *image,
                            int64_t frame_number, dicom_frame *out) {
     dicom_frame frame = {.image = image, .number = frame_number};
@@ -429,6 +452,7 @@ void snow_dicom_read_frame(dicom_reader *reader, const dicom_image *image,
     read_place(reader, image, &frame);
     read_pixel(reader, &frame);
     read_scale(reader, image, &frame);
+    read_window(reader, image, &frame);
     for (int i = 0; i < DICOM_KEYS; i++)
         numbers(reader, &key_fields[i], frame_number, &frame.keys[i], 1);
     *out = frame;

@@ -482,6 +482,10 @@ static snow_status describe_stack(const dicom_input *input,
     info->medical = stack->placed;
     memcpy(info->unit, "mm", 3);
     memcpy(info->matrix, stack->matrix, sizeof info->matrix);
+    memcpy(info->modality, image->modality, sizeof info->modality);
+    memcpy(info->description, image->description, sizeof info->description);
+    memcpy(info->window, first[stack->places / 2 * stack->times].window,
+           sizeof info->window);
     SNOW_TRY(remark_lost(context, stack));
     remark(context, stack, snow_spacing_given(options));
     SNOW_TRY(snow_volume_pick_channel(context, options, image->samples,
