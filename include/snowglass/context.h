@@ -27,8 +27,7 @@
 
 typedef struct snow_context snow_context;
 
-/* Memory aligned as malloc's, or NULL. Threads that render call it, but never
- * two at once. */
+/* Memory aligned as malloc's, or NULL. Threads that render call it in turn. */
 typedef struct snow_allocator {
     void *(*allocate)(void *user, size_t bytes);
     void (*release)(void *user, void *block);

@@ -172,8 +172,7 @@ SNOW_API snow_status snow_volume_histogram(const snow_volume *volume, double lo,
 
 /* New volumes, independent of the given ones. Data values in another type
  * (NONE: the smallest that holds them), rounded for integers, or with `range`
- * spread over an integer type of up to 32 bits. Errors: BAD_USAGE (a value that
- * does not fit). */
+ * spread over an integer type of up to 32 bits. Errors: BAD_USAGE (no fit). */
 SNOW_API snow_status snow_volume_convert(const snow_volume *volume,
     snow_type type, const double range[2], snow_volume **out);
 
