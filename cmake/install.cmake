@@ -3,6 +3,7 @@
 #   snowglass_runtime  programs, shared libraries, modules, manual, completions
 #   snowglass_dev      headers, archives, pkg-config, CMake package, Fortran
 #   snowglass_mpi      all that needs MPI: program, library, header, packages
+#   snowglass_python   the Python package (python/CMakeLists.txt)
 #   snowglass_doc      documents and examples
 #
 # All may be moved afterwards: no file tells where it lies.

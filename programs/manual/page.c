@@ -195,6 +195,8 @@ static void print_statuses(void) {
         snprintf(text, sizeof text, "%s.", snow_status_description(all[i]));
         text[0] = (char)toupper((unsigned char)text[0]);
         print_item(number, text);
+        if (all[i] == SNOW_STATUS_DIFFERENT) /* the tool's own is the next */
+            print_item("7", "The picture is written, but it is empty.");
     }
 }
 

@@ -28,8 +28,12 @@ static const struct {
     {read_fov, "{'type': 'number'}"},
     {read_integer, "{'type': 'integer'}"},
     {read_count, "{'type': 'integer', 'minimum': 0}"},
-    {read_size, "{'type': 'array', 'minItems': 2, 'maxItems': 2, 'items':"
-                "{'type': 'integer', 'minimum': 1, 'maximum': 32768}}"},
+    {read_size,
+     "{'anyOf': [{'type': 'integer', 'minimum': 1, 'maximum': 32768},"
+     "{'type': 'array', 'minItems': 2, 'maxItems': 2, 'items':"
+     "{'type': 'integer', 'minimum': 1, 'maximum': 32768}}]}"},
+    {read_window, "{'anyOf': [{'type': 'number'}, {'type': 'array', 'minItems':"
+                  "2, 'maxItems': 2, 'items': {'type': 'number'}}]}"},
     {read_dims, "{'type': 'array', 'minItems': 3, 'maxItems': 3, 'items':"
                 "{'type': 'integer', 'minimum': 1}}"},
     {read_spacing, "{'type': 'array', 'minItems': 3, 'maxItems': 3, 'items':"
@@ -72,6 +76,13 @@ static bool is_key(snow_context *context, const char *name) {
 }
 
 /* The texts above have single quotes, for they are easier to read. */
+static json_t *parse(const char *schema) {
+    char text[512] = "";
+    for (size_t i = 0; schema && schema[i] && i + 1 < sizeof text; i++)
+        text[i] = schema[i] == '\'' ? '"' : schema[i];
+    return json_loads(text, 0, NULL);
+}
+
 static json_t *type_of(option_read *read) {
     const char *schema = NULL;
     if (read == read_gradient_points)
@@ -79,10 +90,7 @@ static json_t *type_of(option_read *read) {
     for (size_t i = 0; i < sizeof types / sizeof *types && !schema; i++)
         if (types[i].read == read)
             schema = types[i].schema;
-    char text[512] = "";
-    for (size_t i = 0; schema && schema[i] && i + 1 < sizeof text; i++)
-        text[i] = schema[i] == '\'' ? '"' : schema[i];
-    return json_loads(text, 0, NULL);
+    return parse(schema);
 }
 
 static bool is_number(const char *word) {
@@ -129,12 +137,26 @@ static json_t *property(const option_row *row) {
     return type;
 }
 
+/* Keys that are no options, or mean something else there. */
+static void add_others(json_t *properties) {
+    json_object_set_new(
+        properties, "input",
+        parse("{'anyOf': [{'type': 'string'}, {'type': 'array', 'items':"
+              "{'type': 'string'}}], 'description':"
+              "'volume file, or phantom:NAME; of a movie a list'}"));
+    json_object_set_new(properties, "verb",
+                        parse("{'type': 'string', 'description':"
+                              "'the verb that wrote the file'}"));
+    json_object_set_new(properties, "version",
+                        parse("{'type': 'string', 'description':"
+                              "'the version that wrote the file'}"));
+}
+
 static int add_properties(snow_context *context, json_t *properties) {
-    json_object_set_new(properties, "input",
-                        json_pack("{s:s,s:s}", "type", "string", "description",
-                                  "volume file, or phantom:NAME"));
+    add_others(properties);
     for (const option_row *row = option_table; row->name; row++) {
-        if (!row->read || !is_key(context, row->name))
+        if (!row->read || json_object_get(properties, row->name) ||
+            !is_key(context, row->name))
             continue;
         json_t *made = property(row);
         if (!made)

@@ -13,7 +13,8 @@ cp "$conduit" .
 component() {
     cmake --install "$BUILD" --prefix "$WORK/$1" --component "snowglass_$1" \
         >"$WORK/log" 2>&1 || cat "$WORK/log"
-    (cd "$WORK/$1" && find . ! -type d | sort) >"$1.files" 2>/dev/null
+    mkdir -p "$WORK/$1" # not everything is built
+    (cd "$WORK/$1" && find . ! -type d | sort) >"$1.files"
 }
 install_project
 (cd first && find . ! -type d | sort) >all.files

@@ -37,6 +37,7 @@ if archives png z m c | grep -qv /; then
 else
     run 0 "the core is configured" cmake -S snowglass -B core \
         -DSNOW_FORMATS=OFF -DBUILD_TESTING=OFF -DSNOW_MPI=OFF \
+        -DSNOW_PYTHON=OFF \
         -DCMAKE_BUILD_TYPE=None -DCMAKE_C_FLAGS="-O0 -w"
     run 0 "the core is built" cmake --build core -j 2
     run 0 "the core is installed" cmake --install core --prefix "$WORK/fourth"
