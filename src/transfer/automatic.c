@@ -283,7 +283,7 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
     int preset = -1;
     if (slice)
         snow_window_of(histogram, builder, &p.low, &p.high);
-    else
+    else if (!p.fills_volume)
         SNOW_TRY(hounsfield_preset(histogram, &preset));
     if (preset >= 0) {
         builder->reason = snow_preset_name((size_t)preset);

@@ -34,8 +34,8 @@ for file in ct.vp diverging.json niivue.json own.json points.csv rgba.pal; do
     check "$file: one picture" cmp -s a.png b.png
 done
 run 0 "a preset to a table" "$TOOL" tf convert ct-bone -o bone.csv
-run 0 "as a preset" small -q --preset ct-bone -o a.png -y
-run 0 "and as a table" small -q --tf bone.csv -o b.png -y
+run 0 "as a preset" small -q --preset ct-bone --range 150,1500 -o a.png -y
+run 0 "and as a table" small -q --tf bone.csv --range 150,1500 -o b.png -y
 check "one picture" cmp -s a.png b.png
 run 0 "a table loses gradients" "$TOOL" tf convert ct-cardiac -o heart.csv
 says 'heart.csv: a table cannot hold the gradient opacity'
