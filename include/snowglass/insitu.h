@@ -91,11 +91,11 @@ SNOW_API snow_status snow_insitu_set_ranks(
     snow_insitu *insitu, const snow_ranks_options *how);
 
 /* Where a step writes, with one %d (or %04d) for its number; what it draws over
- * pictures: colour and scale bar; that number. */
+ * pictures: colour and scale bar; the latter alone; that number. */
 SNOW_API snow_status snow_insitu_set_output(snow_insitu *insitu,
     const char *pattern, const snow_image_options *options);
 SNOW_API snow_status snow_insitu_set_annotations(
-    snow_insitu *insitu, bool legend, bool step);
+    snow_insitu *insitu, bool legend, bool scale_bar, bool step);
 
 /* What pictures may cost (docs/insitu.md, Cost): mean `seconds` a step, `bytes`
  * of each rank's context; 0: no limit. Pictures are lowered or left out. */

@@ -1,6 +1,6 @@
 /* snowglass/overlay.h - what is drawn over a picture as it is written, white
- * with a dark border: a list of shapes, which never touches the picture's
- * floats. Files of 8 and 16 bits a channel show it (snow_image_options). */
+ * with a dark border or, on a light background, the reverse: a list of shapes,
+ * which never touches the picture's floats; files of levels show it. */
 #ifndef SNOWGLASS_OVERLAY_H
 #define SNOWGLASS_OVERLAY_H
 
@@ -12,15 +12,16 @@
 SNOW_API snow_status snow_overlay_new(
     snow_context *context, int width, int height, snow_overlay **out);
 SNOW_API void snow_overlay_free(snow_overlay *overlay);
+/* Letters and bars keep off those before them, always, and where there is room
+ * off alpha above 1/2 of this picture (NULL: none), which must live as long. */
+SNOW_API void snow_overlay_keep_off(snow_overlay *, const snow_image *);
 
 /* Pixels of a capital letter that suits pictures of its size. */
 SNOW_API double snow_overlay_text_height(const snow_overlay *overlay);
-
-/* A line of ASCII text, capitals `height` pixels high. (x, y) is the place of
- * (share_x, share_y) in its box, whose upper left corner is (0, 0). */
+/* A line of ASCII and micro signs, capitals `height` pixels high. (x, y) is the
+ * place of (share_x, share_y) in its box, whose upper left corner is (0, 0). */
 SNOW_API snow_status snow_overlay_text(snow_overlay *overlay, double x,
     double y, double share_x, double share_y, double height, const char *text);
-
 /* The patient's side (R L A P S I) nearest to the left, right, top and bottom
  * edge; two letters where it is over 25 degrees off; "" unless info->medical.
  * Draws them, on pictures with sides of at least 64 pixels. */
@@ -34,13 +35,10 @@ SNOW_API snow_status snow_overlay_orientation(
  * values of the first and the last colour; else NULL. */
 SNOW_API snow_status snow_overlay_color_bar(snow_overlay *overlay,
     const snow_transfer *transfer, const char *unit, const double range[2]);
-
 /* Lower left, sides of at least 128 pixels, not in perspective: a length. */
 SNOW_API snow_status snow_overlay_scale_bar(
     snow_overlay *overlay, const snow_volume_info *info, const snow_view *view);
-
-/* Draws a line of text, upper left; sides of at least 64 pixels. */
-SNOW_API snow_status snow_overlay_title(
-    snow_overlay *overlay, const char *text);
+/* A line of text, upper left; sides of at least 64 pixels. */
+SNOW_API snow_status snow_overlay_title(snow_overlay *, const char *text);
 
 #endif

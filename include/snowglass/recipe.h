@@ -37,6 +37,7 @@ typedef struct snow_recipe {
     int fit, frames;   /* of the tool: 1 visible, 2 volume; in a turn, or 0 */
     double shift, fps; /* as in snow_look; of the tool (25) */
     const char *verb, *version; /* of the tool that wrote it, or NULL */
+    bool scale_bar; /* without the colour bar of `legend` */
 } snow_recipe;
 SNOW_RECORD(snow_recipe);
 

@@ -105,10 +105,9 @@ static int check_combination(const options *opts) {
 snow_image_options picture_form(const options *opts) {
     snow_image_options form = {
         .size = sizeof form,
-        .flatten = opts->background.given,
         .bits = opts->bits ? (opts->bits[0] == '8' ? 8 : 16) : 0,
         .overwrite = opts->overwrite};
-    memcpy(form.background, opts->background.rgb, sizeof form.background);
+    paint_background(opts, &form);
     return form;
 }
 
@@ -243,8 +242,8 @@ static snow_status make_annotations(const work *w, snow_overlay **out) {
         s->transfer,
         {w->painted.range[0], w->painted.range[1]}};
     annotations_report(s->opts);
-    return annotations_make(&annotations, s->opts->azimuth, -1, s->context,
-                            out);
+    return annotations_make(&annotations, s->opts->azimuth, -1, w->image,
+                            s->context, out);
 }
 
 /* A pipe is written directly and may block, so an interruption there does not

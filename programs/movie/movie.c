@@ -134,8 +134,9 @@ static snow_status make_frame(const movie *s, frame_slot *slot) {
     snow_overlay *overlay = NULL;
     snow_image_options form = s->form;
     char path[PATH_MAX];
-    snow_status status = annotations_make(&s->annotations, shot->azimuth,
-                                          shot->step, slot->context, &overlay);
+    snow_status status =
+        annotations_make(&s->annotations, shot->azimuth, shot->step,
+                         slot->image, slot->context, &overlay);
     form.overlay = overlay;
     form.depth = slot->depth;
     place_aside(&s->place, slot->index, path, sizeof path);
@@ -205,14 +206,12 @@ static void release(void *user, frame_slot *slot) {
 
 /* --- the beginning -------------------------------------------------------- */
 
-/* A movie by ffmpeg has no transparency: its background is black unless another
- * is requested.  Its frames are kept as the encoder gets them. */
+/* A movie by ffmpeg has no transparency: without a background it is black.  Its
+ * frames are kept as the encoder gets them. */
 static void set_form(movie *s) {
     snow_image_options_init(&s->form);
-    const color_value *color = &s->opts->background;
-    if (color->given)
-        memcpy(s->form.background, color->rgb, sizeof s->form.background);
-    s->form.flatten = color->given || needs_encoder(s);
+    paint_background(s->opts, &s->form);
+    s->form.flatten |= needs_encoder(s);
     s->form.bits = s->opts->bits ? (s->opts->bits[0] == '8' ? 8 : 16) : 0;
     s->form.overwrite = true; /* of unfinished files */
 }

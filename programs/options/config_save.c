@@ -104,6 +104,7 @@ static void fill_recipe(const options *opts, const verb_row *verb,
     fill_view(opts, out);
     out->no_labels = opts->no_labels;
     out->legend = opts->legend;
+    out->scale_bar = opts->scale_bar;
     out->time_label = opts->time_label;
     fill_settings(opts, &out->settings);
 }
@@ -244,6 +245,8 @@ static json_t *make_tree(const options *opts, const verb_row *verb) {
         return NULL;
     if (!options_given(opts, "shade")) /* otherwise the look decides */
         json_object_del(tree, "shade");
+    if (!opts->background.given && !opts->background.automatic)
+        json_object_set_new(tree, "background", json_string("none"));
     if (verb->bit == VERB_RENDER)
         json_object_del(tree, "fps");
     set_inputs(opts, tree);

@@ -44,11 +44,12 @@ const option_row option_table[] = {
      "the working folder, after the input, and replaces no file"},
     {"size", 's', "WxH|N", TOPIC_OUTPUT, RENDER, read_size, FIELD(size), 0, 0, "",
      "picture size in pixels; N is NxN (default 512x512)"},
-    {"background", 0, "COLOR|none", TOPIC_OUTPUT, RENDER, read_color,
+    {"background", 0, "COLOR|auto|none", TOPIC_OUTPUT, RENDER, read_color,
      FIELD(background), 0, 0, "",
      "background colour of a PNG, WebP, JPEG or movie: a name, #rgb, #rrggbb, "
-     "or r,g,b from 0 to 1 (default none: transparent, but black in JPEG and "
-     "movies by ffmpeg)"},
+     "or r,g,b from 0 to 1; auto, dark: #141414 in modes over and iso, black in "
+     "the others; or none, transparent, but black in JPEG and movies by ffmpeg "
+     "(default auto)"},
     {"bits", 0, "8|16", TOPIC_OUTPUT, RENDER, read_choice, FIELD(bits), 0, 0,
      "", "bits per channel of a PNG (default 8)"},
     {"overwrite", 'y', NULL, TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT | TF,
@@ -207,6 +208,9 @@ const option_row option_table[] = {
      "",
      "draw a colour bar with values and the opacity curve, and in a parallel "
      "projection a scale bar"},
+    {"scale-bar", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(scale_bar), 0,
+     0, "",
+     "draw the scale bar without the colour bar, in a parallel projection"},
     {"time-label", 0, NULL, TOPIC_LABELS, MOVIE, read_flag, FIELD(time_label),
      0, 0, "",
      "draw the number of the time step, from the file's name or in the file"},

@@ -185,6 +185,7 @@ static const struct {
 
 static void set_color(color_value *out, unsigned rgb) {
     out->given = true;
+    out->automatic = false;
     out->rgb[0] = (rgb >> 16 & 255) / 255.0;
     out->rgb[1] = (rgb >> 8 & 255) / 255.0;
     out->rgb[2] = (rgb & 255) / 255.0;
@@ -207,8 +208,9 @@ static bool hex_color(const char *digits, color_value *out) {
 /* The common notations of colours, but without transparency: a background must
  * be opaque. */
 bool value_color(const char *text, color_value *out) {
-    if (strcasecmp(text, "none") == 0) {
-        *out = (color_value){.given = false};
+    bool automatic = strcasecmp(text, "auto") == 0;
+    if (automatic || strcasecmp(text, "none") == 0) {
+        *out = (color_value){.automatic = automatic};
         return true;
     }
     if (text[0] == '#')
@@ -226,7 +228,7 @@ bool value_color(const char *text, color_value *out) {
         if (rgb[i] < 0 || rgb[i] > 1)
             return false;
     }
-    *out = (color_value){true, {rgb[0], rgb[1], rgb[2]}};
+    *out = (color_value){true, false, {rgb[0], rgb[1], rgb[2]}};
     return true;
 }
 

@@ -36,7 +36,8 @@ typedef struct light_value {
 } light_value;
 
 typedef struct color_value {
-    bool given; /* false: transparent */
+    bool given;     /* false: transparent, or */
+    bool automatic; /* dark where the output shows a background */
     double rgb[3];
 } color_value;
 
@@ -63,7 +64,7 @@ bool value_integers(const char *text, char separator, int count, int64_t *out);
  * volume. first < end if both are given. */
 bool value_crop(const char *text, int64_t out[3][2]);
 
-/* "none", a name, #rgb, #rrggbb, or red,green,blue from 0 to 1. */
+/* "auto", "none", a name, #rgb, #rrggbb, or red,green,blue from 0 to 1. */
 bool value_color(const char *text, color_value *out);
 
 /* The names of colours, separated by blanks. */

@@ -29,6 +29,7 @@ void options_init(options *out) {
     snow_settings_init(&settings);
     *out = (options){
         .size = {512, 512},
+        .background = {.automatic = true},
         .threshold = -1,
         .encoding = snow_encoding_name(settings.encoding),
         .method = snow_method_name(settings.method),

@@ -122,7 +122,7 @@ typedef struct options {
     int64_t radix;  /* 0: automatic */
     double timeout; /* seconds; 0: none */
     bool deterministic;
-    bool no_labels, legend, time_label;
+    bool no_labels, legend, scale_bar, time_label;
     int verbosity; /* -1 quiet, 0, 1 verbose; the last one counts */
 
     bool version, help;

@@ -368,7 +368,8 @@ bool read_color(const option_row *row, const char *text, void *field,
     char names[128];
     value_color_names(names, sizeof names);
     snprintf(wrong, WRONG_BYTES,
-             "is not a colour; give none, #rgb, #rrggbb, red,green,blue from 0 "
+             "is not a colour; give auto, none, #rgb, #rrggbb, red,green,blue "
+             "from 0 "
              "to 1, or a name: %s",
              names);
     return false;

@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#define DARK (20 / 255.0)
+
 /* Whether a file of this name holds values, not colours. */
 static bool keeps_values(const char *path) {
     return !movie_format_of(path) && snow_image_format_bits(path) == 0;
@@ -22,6 +24,22 @@ int paint_check(const options *opts, bool movie) {
         return CONTINUE;
     return fail_usage("--mode sum: all frames of a movie need the same range; "
                       "give --range LO,HI, or write frames as .npy");
+}
+
+/* Around projections black is expected: it is the colour of their lowest value
+ * in most maps.  The dark sides of a shaded object still stand out from a
+ * background that is a little lighter.  Both are grey, so that a grey picture
+ * stays a grey file. */
+void paint_background(const options *opts, snow_image_options *form) {
+    const color_value *color = &opts->background;
+    bool shaded =
+        strcmp(opts->mode, "over") == 0 || strcmp(opts->mode, "iso") == 0;
+    form->flatten =
+        color->given || (color->automatic && !keeps_values(opts->output));
+    for (int i = 0; i < 3; i++)
+        form->background[i] = color->given                 ? color->rgb[i]
+                              : color->automatic && shaded ? DARK
+                                                           : 0;
 }
 
 int paint_values(const options *opts, snow_context *context,

@@ -18,6 +18,10 @@ typedef struct paint_given {
  * exit code. */
 int paint_check(const options *opts, bool movie);
 
+/* Sets the background of a file: the requested one; by default a dark one in
+ * formats that show it, and none in files of values. */
+void paint_background(const options *opts, snow_image_options *form);
+
 /* Replaces a picture of values by one of colours, unless the output holds
  * values. The look's colours are spread over the requested range; otherwise, in
  * a movie of means, over the look's own, or over the values of the picture.

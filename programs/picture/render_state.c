@@ -3,6 +3,7 @@
 #include "picture/render_state.h"
 #include "commands/commands.h"
 #include "options/config.h"
+#include "picture/annotations.h"
 #include "picture/warnings.h"
 #include "run/interrupt.h"
 #include "run/log.h"
@@ -291,7 +292,10 @@ int render_state_open(render_state *s, const char *path, int64_t time) {
     s->path = path;
     snow_volume_close(s->volume);
     s->volume = NULL;
-    return process_ranks() > 1 ? open_part(s, &step) : open_alone(s, &step);
+    int done = process_ranks() > 1 ? open_part(s, &step) : open_alone(s, &step);
+    if (done == CONTINUE)
+        annotations_find_unit(s->opts, s->volume, &s->whole);
+    return done;
 }
 
 /* --- a picture ------------------------------------------------------------ */

@@ -16,7 +16,7 @@
 #define BAR_SIDE_LEAST 128
 #define NOTE_SIDE_LEAST 64
 
-/* Widths of strokes and of their dark borders, relative to the letters'
+/* Widths of strokes and of their borders, relative to the letters'
  * height. */
 #define STROKE 0.062
 #define BORDER 0.08
@@ -58,8 +58,11 @@ snow_status snow_overlay_title(snow_overlay *overlay, const char *text) {
     double height = snow_overlay_text_height(overlay);
     if (shorter_side(overlay) < NOTE_SIDE_LEAST)
         return SNOW_STATUS_OK;
-    return snow_overlay_text(overlay, 0.8 * height, 0.8 * height, 0, 0, height,
-                             text);
+    size_t first = overlay->shape_count;
+    SNOW_TRY(snow_overlay_text(overlay, 0.8 * height, 0.8 * height, 0, 0,
+                               height, text));
+    snow_overlay_settle_mirrored(overlay, first, true);
+    return SNOW_STATUS_OK;
 }
 
 /* The largest number of the form 1, 2 or 5 times a power of ten that is not
@@ -84,8 +87,8 @@ static double round_above(double length) {
 /* Uses the unit of a family of units that makes the number 1 to below 1000. */
 static void write_length(double length, const char *unit, char *out,
                          size_t size) {
-    static const char *const units[] = {"nm", "um", "mm", "m"};
-    int at = -1;
+    static const char *const units[] = {"nm", "\xc2\xb5m", "mm", "m"};
+    int at = strcmp(unit, "um") == 0 ? 1 : -1;
     for (int i = 0; i < 4; i++)
         if (strcmp(unit, units[i]) == 0)
             at = i;
@@ -115,6 +118,7 @@ snow_status snow_overlay_scale_bar(snow_overlay *overlay,
     double left = floor(height) + 0.5, right = left + length / camera.pitch;
     double y = floor(overlay->height - 1.2 * height) + 0.5,
            tick = 0.35 * height;
+    size_t first = overlay->shape_count;
     write_length(length, volume.unit, text, sizeof text);
     SNOW_TRY(begin_strokes(overlay, height));
     SNOW_TRY(snow_overlay_stroke(overlay, left, y, right, y));
@@ -122,8 +126,10 @@ snow_status snow_overlay_scale_bar(snow_overlay *overlay,
     SNOW_TRY(snow_overlay_stroke(overlay, right, y - tick, right, y + tick));
     /* Above the middle, but within the picture. */
     double half = height * snow_font_width(text) / 2;
-    return snow_overlay_text(overlay, fmax((left + right) / 2, left + half),
-                             y - 0.8 * height, 0.5, 1, height, text);
+    SNOW_TRY(snow_overlay_text(overlay, fmax((left + right) / 2, left + half),
+                               y - 0.8 * height, 0.5, 1, height, text));
+    snow_overlay_settle_mirrored(overlay, first, true);
+    return SNOW_STATUS_OK;
 }
 
 /* --- the colour bar ------------------------------------------------------- */
@@ -278,10 +284,13 @@ snow_status snow_overlay_color_bar(snow_overlay *overlay,
         bar.low = range[0];
         bar.high = range[1];
     }
+    size_t first = overlay->shape_count;
     SNOW_TRY(draw_colors(overlay, transfer, &bar));
     if (!range)
         SNOW_TRY(draw_opacity(overlay, transfer, &bar));
     SNOW_TRY(draw_ticks(overlay, &bar));
-    return snow_overlay_text(overlay, bar.x1, bar.y0 - 0.8 * height, 1, 1,
-                             height, unit ? unit : "");
+    SNOW_TRY(snow_overlay_text(overlay, bar.x1, bar.y0 - 0.8 * height, 1, 1,
+                               height, unit ? unit : ""));
+    snow_overlay_settle_mirrored(overlay, first, false);
+    return SNOW_STATUS_OK;
 }

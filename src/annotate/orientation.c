@@ -20,6 +20,9 @@
  * has the same letters in every quadrant. */
 #define TIE 1e-6
 
+/* How many places a letter has along its edge. */
+#define ROW 41
+
 /* The letters of a direction in the world: those of its largest and second
  * largest component. */
 static void name_direction(const double direction[3], double sign,
@@ -62,6 +65,26 @@ snow_status snow_view_orientation(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
+/* Draws a letter at the middle of its edge, or as near to it as there is room:
+ * up to a tenth of the edge from a corner, or as far in two more rows. */
+static snow_status draw_letter(snow_overlay *overlay, const double place[2],
+                               const double share[2], const char *letter) {
+    size_t first = overlay->shape_count;
+    double offsets[3 * ROW][2] = {{0, 0}};
+    bool level = share[0] == 0.5; /* an edge at the top or the bottom */
+    int edge = level ? overlay->width : overlay->height;
+    double height = snow_overlay_text_height(overlay);
+    SNOW_TRY(snow_overlay_text(overlay, place[0], place[1], share[0], share[1],
+                               height, letter));
+    for (int n = 0; n < 3 * ROW; n++) {
+        int step = (n % ROW + 1) / 2 * (n % 2 ? 1 : -1);
+        offsets[n][!level] = floor(0.8 / (ROW - 1) * edge * step);
+        offsets[n][level] = floor(n / ROW * 5 * height * (0.5 - share[level]));
+    }
+    snow_overlay_settle(overlay, first, (const double(*)[2])offsets, 3 * ROW);
+    return SNOW_STATUS_OK;
+}
+
 snow_status snow_overlay_orientation(snow_overlay *overlay,
                                      const snow_volume_info *info,
                                      const snow_view *view) {
@@ -72,13 +95,12 @@ snow_status snow_overlay_orientation(snow_overlay *overlay,
     SNOW_TRY(snow_view_orientation(overlay->context, info, view, letters));
     if (overlay->width < 64 || overlay->height < 64)
         return SNOW_STATUS_OK;
-    double height = snow_overlay_text_height(overlay);
-    double margin = 0.6 * height;
+    double margin = 0.6 * snow_overlay_text_height(overlay);
     for (int n = 0; n < 4; n++) {
-        double x = margin + shares[n][0] * (overlay->width - 2 * margin);
-        double y = margin + shares[n][1] * (overlay->height - 2 * margin);
-        SNOW_TRY(snow_overlay_text(overlay, x, y, shares[n][0], shares[n][1],
-                                   height, letters[n]));
+        const double place[2] = {
+            margin + shares[n][0] * (overlay->width - 2 * margin),
+            margin + shares[n][1] * (overlay->height - 2 * margin)};
+        SNOW_TRY(draw_letter(overlay, place, shares[n], letters[n]));
     }
     return SNOW_STATUS_OK;
 }

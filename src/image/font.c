@@ -18,6 +18,7 @@
 #include "image/font.h"
 
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 #define CAPITAL 12.0 /* units */
@@ -62,12 +63,20 @@ static const char *const glyphs[] = {
 static_assert(sizeof glyphs / sizeof *glyphs == 127 - ' ',
               "a glyph for each character");
 
-/* For bytes outside ASCII. */
+/* The micro sign, and other bytes outside ASCII. */
+static const char micro[] = "-080w~08026062-6860";
 static const char box[] = "-000c7c7000";
 
 static const char *glyph_of(char letter) {
     unsigned char code = (unsigned char)letter;
+    if (code == 0xb5)
+        return micro;
     return code >= 32 && code < 127 ? glyphs[code - 32] : box;
+}
+
+/* Passes the first of the two bytes that UTF-8 has for the micro sign. */
+static const char *next_letter(const char *text) {
+    return text + (text[0] == '\xc2' && text[1] == '\xb5');
 }
 
 static double column(char digit) {
@@ -100,9 +109,9 @@ static double glyph_width(const char *glyph) {
 
 double snow_font_width(const char *text) {
     double width = 0;
-    for (const char *at = text; *at; at++)
-        width += glyph_width(glyph_of(*at)) + (at > text ? SPACE : 0);
-    return width / CAPITAL;
+    for (const char *at = next_letter(text); *at; at = next_letter(at + 1))
+        width += glyph_width(glyph_of(*at)) + SPACE;
+    return fmax(width - SPACE, 0) / CAPITAL;
 }
 
 /* The position at which a glyph is drawn. */
@@ -198,7 +207,7 @@ static snow_status draw_glyph(pen *p, const char *glyph) {
 snow_status snow_font_draw(snow_overlay *overlay, double x, double y,
                            double height, const char *text) {
     pen p = {.overlay = overlay, .x = x, .y = y, .unit = height / CAPITAL};
-    for (; *text; text++) {
+    for (text = next_letter(text); *text; text = next_letter(text + 1)) {
         const char *glyph = glyph_of(*text);
         SNOW_TRY(draw_glyph(&p, glyph));
         p.x += (glyph_width(glyph) + SPACE) * p.unit;

@@ -49,9 +49,16 @@ void snow_levels_end(snow_levels *levels) {
     snow_release(context, levels->row);
 }
 
+/* Whether dark letters are read better than white ones: by the luma of BT.709.
+ */
+static bool is_light(const double *b) {
+    return b && 0.2126 * b[0] + 0.7152 * b[1] + 0.0722 * b[2] > 0.5;
+}
+
 /* Converts some pixels from (x, y) on, with the shapes over them. */
 static void draw_some(const snow_image *image, const snow_overlay *overlay,
-                      int y, int x, int count, int channels, float *out) {
+                      bool light, int y, int x, int count, int channels,
+                      float *out) {
     size_t first = (size_t)y * (size_t)image->width + (size_t)x;
     if (channels == image->channels)
         memcpy(out, image->pixels + first * (size_t)channels,
@@ -60,13 +67,14 @@ static void draw_some(const snow_image *image, const snow_overlay *overlay,
         for (int i = 0; i < count; i++)
             snow_image_rgba(image, first + (size_t)i, out + 4 * i);
     if (overlay)
-        snow_overlay_draw(overlay, y, x, count, channels, out);
+        snow_overlay_draw(overlay, light, y, x, count, channels, out);
 }
 
 const unsigned char *snow_levels_row(snow_levels *l, int y) {
     int width = l->image->width;
     size_t count = (size_t)width * (size_t)l->samples;
-    draw_some(l->image, l->overlay, y, 0, width, l->channels, l->drawn);
+    draw_some(l->image, l->overlay, is_light(l->background), y, 0, width,
+              l->channels, l->drawn);
     if (l->background)
         snow_flatten_row(l->drawn, width, l->channels, l->background,
                          l->samples, l->row);
@@ -93,7 +101,8 @@ snow_status snow_image_to_rgb8_with(const snow_image *image,
     for (int y = 0; y < image->height; y++)
         for (int x = 0; x < image->width; x += SOME) {
             int some = image->width - x < SOME ? image->width - x : SOME;
-            draw_some(image, options.overlay, y, x, some, 4, drawn);
+            draw_some(image, options.overlay, is_light(background), y, x, some,
+                      4, drawn);
             snow_flatten_row(drawn, some, 4, background, 3, samples);
             snow_quantise_8(samples, 3 * (size_t)some, rgb);
             rgb += 3 * some;

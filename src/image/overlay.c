@@ -3,9 +3,9 @@
  *
  * A stroke covers the points within its radius of its line; over one pixel at
  * the border the coverage falls from 1 to 0.  Where strokes of one shape
- * overlap the nearest counts, so joints are invisible.  The dark border of a
- * shape lies below all of its strokes.  Shapes are composited with Porter and
- * Duff's over. */
+ * overlap the nearest counts, so joints are invisible.  The border of a shape,
+ * dark around white and white around dark, lies below all of its strokes.
+ * Shapes are composited with Porter and Duff's over. */
 #include "image/overlay.h"
 #include "image/image.h"
 
@@ -19,7 +19,10 @@
 
 #define WHITE 1.0f
 #define DARK 0.0f
-#define DARK_OPACITY 0.8f
+#define BORDER_OPACITY 0.8f
+
+/* Between shapes at least, of a picture's shorter side. */
+#define GAP 0.025
 
 snow_status snow_overlay_new(snow_context *context, int width, int height,
                              snow_overlay **out) {
@@ -104,6 +107,84 @@ snow_status snow_overlay_rows(snow_overlay *overlay, int x0, int y0, int x1,
     return add_shape(overlay, &shape);
 }
 
+/* --- places --------------------------------------------------------------- */
+
+void snow_overlay_keep_off(snow_overlay *overlay, const snow_image *image) {
+    overlay->below = image;
+}
+
+static void bounds_of(const snow_overlay *overlay, size_t first,
+                      const double offset[2], double box[4]) {
+    for (int i = 0; i < 4; i++) {
+        box[i] = i < 2 ? INFINITY : -INFINITY;
+        for (size_t n = first; n < overlay->shape_count; n++) {
+            double at = overlay->shapes[n].box[i];
+            box[i] = i < 2 ? fmin(box[i], at) : fmax(box[i], at);
+        }
+        box[i] += offset[i % 2];
+    }
+}
+
+/* 0: a box covers an earlier shape; 1: the object of the picture; 2: none. */
+static int room_at(const snow_overlay *overlay, size_t first,
+                   const double box[4]) {
+    const snow_image *below = overlay->below;
+    int channels = below ? below->channels : 0;
+    double gap = GAP * fmin(overlay->width, overlay->height);
+    for (size_t n = 0; n < first; n++) {
+        const double *other = overlay->shapes[n].box;
+        if (box[0] - gap < other[2] && other[0] < box[2] + gap &&
+            box[1] - gap < other[3] && other[1] < box[3] + gap)
+            return 0;
+    }
+    for (int y = (int)fmax(box[1], 0);
+         channels > 1 && y < fmin(box[3], below->height); y++)
+        for (int x = (int)fmax(box[0], 0); x < fmin(box[2], below->width); x++)
+            if (below->pixels[((size_t)y * (size_t)below->width + (size_t)x) *
+                                  (size_t)channels +
+                              (size_t)channels - 1] > 0.5f)
+                return 1;
+    return 2;
+}
+
+static void move_shape(snow_overlay *overlay, snow_shape *shape,
+                       const double offset[2]) {
+    float *numbers = overlay->numbers + shape->first;
+    for (int i = 0; i < 4; i++)
+        shape->box[i] += offset[i % 2];
+    for (size_t n = 0; !shape->filled && n < 4 * shape->count; n++)
+        numbers[n] += (float)offset[n % 2];
+}
+
+void snow_overlay_settle(snow_overlay *overlay, size_t first,
+                         const double (*offsets)[2], int count) {
+    int best = 0, most = 0;
+    if (first == overlay->shape_count)
+        return;
+    for (int n = 0; n < count && most < 2; n++) {
+        double box[4];
+        bounds_of(overlay, first, offsets[n], box);
+        int room = room_at(overlay, first, box);
+        best = room > most ? n : best;
+        most = room > most ? room : most;
+    }
+    if (!most)
+        overlay->shape_count = first;
+    for (size_t n = first; n < overlay->shape_count; n++)
+        move_shape(overlay, &overlay->shapes[n], offsets[best]);
+}
+
+void snow_overlay_settle_mirrored(snow_overlay *overlay, size_t first,
+                                  bool sideways) {
+    double box[4], offsets[4][2] = {{0, 0}};
+    bounds_of(overlay, first, offsets[0], box);
+    double x = floor(overlay->width - box[0] - box[2]);
+    double y = floor(overlay->height - box[1] - box[3]);
+    offsets[sideways ? 1 : 2][0] = offsets[3][0] = x;
+    offsets[sideways ? 2 : 1][1] = offsets[3][1] = y;
+    snow_overlay_settle(overlay, first, (const double(*)[2])offsets, 4);
+}
+
 /* --- drawing -------------------------------------------------------------- */
 
 /* Composites a colour over a pixel. */
@@ -163,9 +244,9 @@ static float cover_of(double radius, float distance) {
 }
 
 static void draw_strokes(const snow_overlay *overlay, const snow_shape *shape,
-                         int y, int x, int count, int channels, float *pixels) {
-    static const float white[3] = {WHITE, WHITE, WHITE};
-    static const float dark[3] = {DARK, DARK, DARK};
+                         bool light, int y, int x, int count, int channels,
+                         float *pixels) {
+    static const float inks[2][3] = {{WHITE, WHITE, WHITE}, {DARK, DARK, DARK}};
     float squares[SOME], far = (float)shape->halo + 1;
     for (int i = 0; i < count; i++)
         squares[i] = far * far;
@@ -175,14 +256,15 @@ static void draw_strokes(const snow_overlay *overlay, const snow_shape *shape,
         float border = cover_of(shape->halo, distance);
         if (!(border > 0))
             continue;
-        composite_pixel(pixel, channels, dark, DARK_OPACITY * border);
-        composite_pixel(pixel, channels, white,
+        composite_pixel(pixel, channels, inks[!light], BORDER_OPACITY * border);
+        composite_pixel(pixel, channels, inks[light],
                         cover_of(shape->radius, distance));
     }
 }
 
 static void draw_shape(const snow_overlay *overlay, const snow_shape *shape,
-                       int y, int x, int count, int channels, float *pixels) {
+                       bool light, int y, int x, int count, int channels,
+                       float *pixels) {
     int range[2];
     if (y + 0.5 < shape->box[1] || y + 0.5 > shape->box[3])
         return;
@@ -193,7 +275,7 @@ static void draw_shape(const snow_overlay *overlay, const snow_shape *shape,
     count = range[1] - range[0];
     pixels += range[0] * channels;
     if (!shape->filled) {
-        draw_strokes(overlay, shape, y, x, count, channels, pixels);
+        draw_strokes(overlay, shape, light, y, x, count, channels, pixels);
         return;
     }
     const float *color =
@@ -202,12 +284,12 @@ static void draw_shape(const snow_overlay *overlay, const snow_shape *shape,
         composite_pixel(pixels + i * channels, channels, color, 1);
 }
 
-void snow_overlay_draw(const snow_overlay *overlay, int y, int x, int count,
-                       int channels, float *pixels) {
+void snow_overlay_draw(const snow_overlay *overlay, bool light, int y, int x,
+                       int count, int channels, float *pixels) {
     for (int at = 0; at < count; at += SOME) {
         int some = count - at < SOME ? count - at : SOME;
         for (size_t n = 0; n < overlay->shape_count; n++)
-            draw_shape(overlay, &overlay->shapes[n], y, x + at, some, channels,
-                       pixels + at * channels);
+            draw_shape(overlay, &overlay->shapes[n], light, y, x + at, some,
+                       channels, pixels + at * channels);
     }
 }

@@ -20,7 +20,8 @@ typedef struct snow_shape {
 struct snow_overlay {
     snow_context *context;
     int width, height;
-    bool grey; /* no shape has a colour */
+    bool grey;               /* no shape has a colour */
+    const snow_image *below; /* the picture that shapes keep off, or NULL */
     snow_shape *shapes;
     size_t shape_count, shape_room;
     float *numbers;
@@ -38,9 +39,20 @@ snow_status snow_overlay_stroke(snow_overlay *overlay, double x0, double y0,
 snow_status snow_overlay_rows(snow_overlay *overlay, int x0, int y0, int x1,
                               int y1, const float *colors);
 
+/* Moves the shapes from `first` on by the first of some offsets at which they
+ * cover no earlier one, and if it is possible nothing of the picture below.
+ * Without such an offset they are removed. */
+void snow_overlay_settle(snow_overlay *overlay, size_t first,
+                         const double (*offsets)[2], int count);
+
+/* The same with the four places that mirror the present one: beside it first
+ * if `sideways`, otherwise above or below it. */
+void snow_overlay_settle_mirrored(snow_overlay *overlay, size_t first,
+                                  bool sideways);
+
 /* Draws the shapes on `count` pixels from (x, y) on: premultiplied, 2 or 4
- * channels.  NaN becomes a number where a shape covers it. */
-void snow_overlay_draw(const snow_overlay *overlay, int y, int x, int count,
-                       int channels, float *pixels);
+ * channels; dark on `light`.  NaN becomes a number where a shape covers it. */
+void snow_overlay_draw(const snow_overlay *overlay, bool light, int y, int x,
+                       int count, int channels, float *pixels);
 
 #endif

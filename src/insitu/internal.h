@@ -81,7 +81,7 @@ struct snow_insitu {
     snow_ranks_options how;
     char *pattern; /* NULL: no output */
     snow_image_options form;
-    bool legend, step_label; /* drawn over them */
+    bool legend, scale_bar, step_label; /* drawn over them */
     double limit_seconds;
     uint64_t limit_bytes, outer_bytes; /* the latter the context's own */
 

@@ -50,8 +50,9 @@ snow_status snow_insitu_set_output(snow_insitu *insitu, const char *pattern,
 }
 
 snow_status snow_insitu_set_annotations(snow_insitu *insitu, bool legend,
-                                        bool step) {
+                                        bool scale_bar, bool step) {
     insitu->legend = legend;
+    insitu->scale_bar = legend || scale_bar;
     insitu->step_label = step;
     return SNOW_STATUS_OK;
 }
@@ -75,11 +76,11 @@ static snow_status add_marks(snow_insitu *insitu, int64_t step,
                              const double range[2], snow_overlay *overlay) {
     snow_view view = snow_insitu_view(insitu);
     char text[40];
-    if (insitu->legend) {
+    if (insitu->legend)
         INSITU_TRY(
             snow_overlay_color_bar(overlay, insitu->transfer, NULL, range));
+    if (insitu->scale_bar)
         INSITU_TRY(snow_overlay_scale_bar(overlay, &insitu->whole, &view));
-    }
     if (!insitu->step_label)
         return SNOW_STATUS_OK;
     snprintf(text, sizeof text, "step %" PRId64, step);
@@ -91,7 +92,7 @@ static snow_status save_colors(snow_insitu *insitu, int64_t step,
                                const double range[2]) {
     snow_image_options form = insitu->form;
     snow_overlay *overlay = NULL;
-    bool marked = insitu->legend || insitu->step_label;
+    bool marked = insitu->scale_bar || insitu->step_label;
     if (!marked || form.overlay || snow_image_format_bits(path) <= 0)
         return snow_image_save(image, path, &form);
     INSITU_TRY(snow_overlay_new(insitu->context, snow_image_width(image),

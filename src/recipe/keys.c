@@ -121,6 +121,7 @@ const recipe_key recipe_keys[] = {
     MADE("up", point, up, 0, 0, 3),
     MADE("no-labels", flag, no_labels, 0, 0, 0),
     MADE("legend", flag, legend, 0, 0, 0),
+    MADE("scale-bar", flag, scale_bar, 0, 0, 0),
     MADE("time-label", flag, time_label, 0, 0, 0),
     MADE("threads", int, settings.threads, 1, 4096, 0),
     MADE("deterministic", flag, settings.deterministic, 0, 0, 0),

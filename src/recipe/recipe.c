@@ -287,8 +287,8 @@ snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
     if (status == SNOW_STATUS_OK)
         status = snow_insitu_set_settings(insitu, &settings);
     if (status == SNOW_STATUS_OK)
-        status = snow_insitu_set_annotations(insitu, recipe->legend,
-                                             recipe->time_label);
+        status = snow_insitu_set_annotations(
+            insitu, recipe->legend, recipe->scale_bar, recipe->time_label);
     if (status == SNOW_STATUS_OK && recipe->output)
         status = snow_insitu_set_output(insitu, recipe->output, &recipe->image);
     return status;

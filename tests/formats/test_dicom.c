@@ -371,6 +371,40 @@ static void a_slice_tells_that_those_beside_it_are_damaged(void **state) {
     support_files_end(&files);
 }
 
+/* The unit of values: of a CT with a rescale, unless another one is named. */
+static void hounsfield_units_are_those_of_a_ct(void **state) {
+    static const struct {
+        const char *modality, *intercept, *type;
+        bool hounsfield;
+    } table[] = {{"CT", "-1024", NULL, true}, {"CT", "-1024", "HU", true},
+                 {"CT", "0", "HU", true},     {"CT", "-1024", "US", false},
+                 {"CT", NULL, NULL, false},   {"MR", "-1024", NULL, false},
+                 {NULL, "-1024", NULL, false}};
+    (void)state;
+    for (size_t n = 0; n < sizeof table / sizeof *table; n++) {
+        support_files files;
+        support_files_begin(&files);
+        file f;
+        const unsigned char words[16] = {1};
+        begin(&f, explicit_little, 0);
+        if (table[n].intercept) {
+            text(&f, 0x00281052, "DS", table[n].intercept);
+            text(&f, 0x00281053, "DS", "1");
+        }
+        if (table[n].type)
+            text(&f, 0x00281054, "LO", table[n].type);
+        if (table[n].modality)
+            text(&f, 0x00080060, "CS", table[n].modality);
+        element(&f, 0x7fe00010, "OW", words, sizeof words);
+        const char *path = support_write(&files, "a.dcm", f.bytes, f.size);
+        snow_volume *volume = support_opened(&files, path, NULL);
+        assert_true(snow_volume_get_info(volume)->hounsfield ==
+                    table[n].hounsfield);
+        snow_volume_close(volume);
+        support_files_end(&files);
+    }
+}
+
 /* Without numbers of their own files are not copies, but the given one is. */
 static void a_slice_without_a_number_is_there_once(void **state) {
     (void)state;
@@ -656,6 +690,7 @@ int main(void) {
         cmocka_unit_test(a_folder_is_a_volume_whatever_its_names),
         cmocka_unit_test(a_file_says_how_to_show_it),
         cmocka_unit_test(a_slice_tells_that_those_beside_it_are_damaged),
+        cmocka_unit_test(hounsfield_units_are_those_of_a_ct),
         cmocka_unit_test(a_slice_without_a_number_is_there_once),
         cmocka_unit_test(a_file_says_nothing_of_the_patient),
         cmocka_unit_test(a_file_cut_anywhere_is_refused),

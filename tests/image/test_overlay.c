@@ -172,7 +172,7 @@ static float *draw_alone(const snow_overlay *overlay, int piece) {
     assert_non_null(pixels);
     for (int y = 0; y < overlay->height; y++)
         for (int x = 0; x < width; x += piece)
-            snow_overlay_draw(overlay, y, x,
+            snow_overlay_draw(overlay, false, y, x,
                               width - x < piece ? width - x : piece, 4,
                               pixels + 4 * (y * width + x));
     return pixels;
@@ -252,11 +252,13 @@ static void pieces_of_rows_are_the_row(void **state) {
     snow_overlay_free(overlay);
 }
 
-/* White inside and dark around it: on any grey the one or the other is seen. */
+/* White inside and dark around it, or the reverse: on any grey the one or the
+ * other is seen. */
 static void letters_stand_out_on_any_background(void **state) {
     image_fixture *f = *state;
     for (int side = 128; side <= 4096; side *= 2)
-        for (int grey = 0; grey <= 10; grey++) {
+        for (int grey = 0; grey <= 21; grey++) {
+            bool light = grey > 10;
             snow_overlay *overlay = overlay_of(f->context, side, 64);
             double height = fmax(9, 0.036 * side);
             assert_int_equal(
@@ -265,9 +267,9 @@ static void letters_stand_out_on_any_background(void **state) {
             float low = 1, high = 0, row[4 * 512];
             for (int y = 0; y < 64; y++) {
                 for (int i = 0; i < 4 * 512; i++)
-                    row[i] = i % 4 == 3 ? 1 : (float)grey / 10;
-                snow_overlay_draw(overlay, y, 0, side < 512 ? side : 512, 4,
-                                  row);
+                    row[i] = i % 4 == 3 ? 1 : (float)(grey % 11) / 10;
+                snow_overlay_draw(overlay, false, y, 0, side < 512 ? side : 512,
+                                  4, row);
                 for (int i = 0; i < 4 * (side < 512 ? side : 512); i += 4) {
                     low = fminf(low, row[i]);
                     high = fmaxf(high, row[i]);
@@ -276,6 +278,56 @@ static void letters_stand_out_on_any_background(void **state) {
             assert_true(high - low > 0.75f);
             snow_overlay_free(overlay);
         }
+}
+
+/* The darkest and the lightest red of a file with a letter, on a background. */
+static void draw_on(image_fixture *f, double grey, bool flat, float *dark,
+                    float *bright) {
+    snow_image *image = NULL, *read = NULL;
+    snow_overlay *overlay = overlay_of(f->context, 60, 60);
+    assert_int_equal(snow_image_new(f->context, 60, 60, 2, &image),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_overlay_text(overlay, 30, 30, 0.5, 0.5, 30, "S"),
+                     SNOW_STATUS_OK);
+    const snow_image_options options = {.size = sizeof options,
+                                        .overlay = overlay,
+                                        .overwrite = true,
+                                        .flatten = flat,
+                                        .background = {grey, grey, grey}};
+    const char *path = support_image_path(f, "a.png");
+    unsigned char *bytes = malloc(60 * 60 * 3);
+    assert_int_equal(snow_image_save(image, path, &options), SNOW_STATUS_OK);
+    assert_int_equal(snow_image_load(f->context, path, &read), SNOW_STATUS_OK);
+    snow_image_to_rgb8_with(image, &options, bytes);
+    *dark = 1;
+    *bright = 0;
+    for (size_t i = 0; i < 60 * 60; i++) {
+        float red = snow_image_pixels(read)[4 * i];
+        *dark = fminf(*dark, red);
+        *bright = fmaxf(*bright, red);
+        if (flat)
+            assert_near(bytes[3 * i] / 255.0, (double)red, 1e-6);
+    }
+    free(bytes);
+    snow_image_free(read);
+    snow_image_free(image);
+    snow_overlay_free(overlay);
+}
+
+/* Without a background they are white: it is not known what lies below. */
+static void letters_are_dark_on_light_backgrounds(void **state) {
+    image_fixture *f = *state;
+    float dark, bright;
+    for (int n = 0; n <= 10; n++) {
+        draw_on(f, n / 10.0, true, &dark, &bright);
+        assert_true(n > 5 ? dark < 0.01f : bright > 0.99f);
+        if (n == 10)
+            assert_true(bright > 0.99f);
+        if (n == 0)
+            assert_true(dark < 0.01f);
+    }
+    draw_on(f, 1, false, &dark, &bright);
+    assert_true(bright > 0.99f);
 }
 
 /* --- bars ----------------------------------------------------------------- */
@@ -308,6 +360,30 @@ static void the_scale_bar_is_as_long_as_it_says(void **state) {
         assert_true(overlay->numbers[2] - overlay->numbers[0] > 0.1f * 512);
         snow_overlay_free(overlay);
     }
+}
+
+/* "um" is what formats call it; u and the micro sign are different letters. */
+static void micrometres_have_their_sign(void **state) {
+    static const char *const texts[] = {"um", "\xc2\xb5m"};
+    image_fixture *f = *state;
+    snow_volume_info info = patient();
+    snow_view view = view_of(f->context, "anterior");
+    float *drawn[4];
+    for (int n = 0; n < 4; n++) {
+        snow_overlay *overlay = overlay_of(f->context, 512, 512);
+        snprintf(info.unit, sizeof info.unit, "%s", texts[n % 2]);
+        assert_int_equal(
+            n < 2 ? snow_overlay_scale_bar(overlay, &info, &view)
+                  : snow_overlay_text(overlay, 99, 99, 0, 0, 20, texts[n % 2]),
+            SNOW_STATUS_OK);
+        drawn[n] = draw_alone(overlay, 512);
+        snow_overlay_free(overlay);
+    }
+    assert_memory_equal(drawn[0], drawn[1], 512 * 512 * 4 * sizeof **drawn);
+    assert_memory_not_equal(drawn[2], drawn[3], 512 * 512 * 4 * sizeof **drawn);
+    assert_near(snow_font_width("\xc2\xb5"), snow_font_width("u"), 1e-12);
+    for (int n = 0; n < 4; n++)
+        free(drawn[n]);
 }
 
 static void a_perspective_view_has_no_scale_bar(void **state) {
@@ -504,7 +580,9 @@ int main(void) {
         HERE(letters_are_told_apart),
         HERE(pieces_of_rows_are_the_row),
         HERE(letters_stand_out_on_any_background),
+        HERE(letters_are_dark_on_light_backgrounds),
         HERE(the_scale_bar_is_as_long_as_it_says),
+        HERE(micrometres_have_their_sign),
         HERE(a_perspective_view_has_no_scale_bar),
         HERE(the_color_bar_has_the_transfer_functions_colors),
         HERE(any_range_has_ticks),

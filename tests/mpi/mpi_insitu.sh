@@ -18,7 +18,7 @@ for ranks in $COUNTS; do
     check "two frames" test -s v_0300.png -a -s v_0600.png
     run 0 "the tool draws its field" "$TOOL" render v.raw --dims 40x40x40 \
         --type float64 -o tool.png -y -q --preset linear -c viridis \
-        --range 0.05,0.35 --opacity 0.08:0,0.15:0.15,0.3:0.6 --view iso --fit volume
+        --range 0.05,0.35 --opacity 0.08:0,0.15:0.15,0.3:0.6 --view iso --fit volume --background none
     check "something is seen" test "$(wc -c <v_0600.png)" -gt 8000
     run 0 "$ranks ranks: frame and picture differ by rounding" \
         "$TOOL" compare v_0600.png tool.png --tolerance $STEPS
@@ -64,7 +64,7 @@ for way in vertex element ghosts multi empty; do
         "$TESTS/catalyst/catalyst_driver" "$PLUGIN" look.json $way field.raw
     run 0 "the tool draws its field" "$TOOL" render field.raw \
         --dims 30x26x22 --type float64 --spacing 0.2x0.2x0.25 -o tool.png -y \
-        -q -s 200x160 -c viridis --range 0,100 --opacity 20:0,90:0.8 --view iso --fit volume
+        -q -s 200x160 -c viridis --range 0,100 --opacity 20:0,90:0.8 --view iso --fit volume --background none
     run 0 "$way: picture and picture differ by rounding" \
         "$TOOL" compare f_01.png tool.png --tolerance $STEP
 done
@@ -80,7 +80,7 @@ END
     # shellcheck disable=SC2086
     run 0 "the tool draws its field" "$TOOL" render field.raw \
         --dims 30x26x22 --type float64 --spacing 0.2x0.2x0.25 -o tool.png -y \
-        -q -s 200x160 -c viridis --range 0,100 --mode $mode --view iso --fit volume
+        -q -s 200x160 -c viridis --range 0,100 --mode $mode --view iso --fit volume --background none
     run 0 "mode $name: picture and picture differ by rounding" \
         "$TOOL" compare m_01.png tool.png --tolerance $STEP
 done

@@ -113,7 +113,7 @@ for look in ([], ["-c", "inferno"], ["--perspective", "-c", "hot"]):
         planes = np.frombuffer(raw, "<f4").reshape(4, 131, 150)
         same(f"EXR {look}", np.stack([planes[i] for i in (2, 0, 1, 3)], -1),
              floats)
-    for back in ([], ["--background", "navy"]):
+    for back in (["--background", "none"], [], ["--background", "navy"]):
         if ".webp" not in outputs or not features.check("webp"):
             continue
         render("a.png", "-y", *look, *back)
@@ -125,7 +125,7 @@ for look in ([], ["-c", "inferno"], ["--perspective", "-c", "hot"]):
 
 if ".webp" in outputs and features.check("webp_anim"):
     turn = ["--frames", "7", "--fps", "24", "-c", "hot", "--legend"]
-    for back in ([], ["--background", "navy"]):
+    for back in (["--background", "none"], [], ["--background", "navy"]):
         render("t.webp", *turn, *back, "-y", verb="turntable")
         render("t_%d.png", *turn, *back, "-y", verb="turntable")
         movie = Image.open("t.webp")

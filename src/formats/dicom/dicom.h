@@ -41,7 +41,8 @@ enum {
 /* One file with an image, as described by its header. */
 typedef struct dicom_image {
     char *path; /* in the list of files; NULL for the file that was given */
-    char series[65], instance[65], photometric[17], modality[17];
+    char series[65], instance[65], photometric[17], modality[17],
+        rescale_type[17];
     char patient[256], description[65]; /* UTF-8; "" if missing */
     int64_t columns, rows, frames;
     int64_t series_number;

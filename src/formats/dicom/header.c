@@ -282,6 +282,7 @@ snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
     text(reader, 0x00080060, image.modality, sizeof image.modality);
     words(reader, 0x00100010, image.patient, sizeof image.patient);
     words(reader, 0x0008103e, image.description, sizeof image.description);
+    text(reader, 0x00281054, image.rescale_type, sizeof image.rescale_type);
     read_padding(reader, &image);
     SNOW_TRY(check_sizes(context, reader, &image));
     *out = image;

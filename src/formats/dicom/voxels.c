@@ -480,6 +480,12 @@ static snow_status describe_stack(const dicom_input *input,
     info->slope = plain ? 1 : first->slope;
     info->intercept = plain ? 0 : first->intercept;
     info->medical = stack->placed;
+    /* A CT's rescale leads to them unless it names another unit (PS3.3,
+     * C.8.2.1). */
+    info->hounsfield =
+        !strcmp(image->rescale_type, "HU") ||
+        (!strcmp(image->modality, "CT") && !*image->rescale_type &&
+         (d->scales || first->intercept != 0));
     memcpy(info->unit, "mm", 3);
     memcpy(info->matrix, stack->matrix, sizeof info->matrix);
     memcpy(info->modality, image->modality, sizeof info->modality);

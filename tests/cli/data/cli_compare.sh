@@ -37,7 +37,7 @@ run 0 "NaN and NaN" "$TOOL" compare nan.pfm nan.pfm
 # A PFM has no alpha, whatever the picture had.
 for type in png pfm npy; do
     run 0 "a picture with transparent pixels as $type" "$TOOL" phantom:cube \
-        --dims 9x9x9 -s 20x20 -q -o "cube.$type"
+        --dims 9x9x9 -s 20x20 -q -o "cube.$type" --background none
 done
 run 0 "PNG and PFM" "$TOOL" compare cube.png cube.pfm --tolerance 0.005
 run 0 "PFM and NPY" "$TOOL" compare cube.pfm cube.npy

@@ -30,6 +30,20 @@ run 6 "is drawn" "$TOOL" compare g.png h.png
 check "of the same check sum" [ "$(checksum g.json)" = "$(checksum h.json)" ]
 run 0 "in perspective" head_of render -o i.png --legend --perspective
 says 'the scale bar is left out'
+run 0 "a scale bar" head_of render -q -o sb.png --scale-bar -c viridis \
+    --save-config sb.json
+run 6 "is drawn" "$TOOL" compare sb.png h.png
+run 6 "without the colour bar" "$TOOL" compare sb.png g.png
+run 0 "it is kept" "$TOOL" render -q --config sb.json -o sc.png
+check "in the same picture" cmp -s sb.png sc.png
+run 0 "beside a legend" head_of render -q -o sd.png --scale-bar --legend \
+    -c viridis
+check "it is there once" cmp -s sd.png g.png
+run 0 "a scale bar in perspective" head_of render -o se.png --scale-bar \
+    --perspective
+says '^snowglass: --scale-bar: the scale bar is left out'
+refused 2 "a scale bar in floats" '--scale-bar cannot be drawn' \
+    head_of render -o x.npy --scale-bar
 refused 2 "a legend in floats" 'remove it or name a .png' \
     head_of render -o x.npy --legend
 refused 2 "in frames of floats" 'remove it or name a .png' \

@@ -176,12 +176,12 @@ for dims in 1x1x1 1x1x100 1x100x1 100x1x1; do
 done
 
 # Streams and formats.
-run 0 "the picture to standard output" render -q -o -
+run 0 "the picture to standard output" render -q -o - --background none
 check "is a PNG" is_png "$OUT"
 cp "$OUT" stream.png
-run 0 "the same to a file" render -q -o stream_file.png
+run 0 "the same to a file" render -q -o stream_file.png --background none
 check "is the same, byte for byte" cmp -s stream.png stream_file.png
-run 0 "16 bits" render -q -o deep.png --bits 16
+run 0 "16 bits" render -q -o deep.png --bits 16 --background none
 run 0 "16 bits are near the floats" \
     "$TOOL" compare base.npy deep.png --tolerance 0.001
 run 0 "8 bits are near the floats" \
