@@ -9,6 +9,7 @@
 #include "picture/paint.h"
 #include "picture/render_state.h"
 #include "picture/render_stats.h"
+#include "picture/show.h"
 #include "picture/warnings.h"
 #include "run/interrupt.h"
 #include "run/log.h"
@@ -93,7 +94,9 @@ static int check_combination(const options *opts) {
                         same_place(opts->stats, opts->output)))
         return fail_usage(
             "--stats: is the same file as --output; name two files");
-    if (is_stream(opts->output) && isatty(STDOUT_FILENO))
+    if (show_check(opts) != CONTINUE)
+        return SNOW_STATUS_BAD_USAGE;
+    if (is_stream(opts->output) && !opts->show && isatty(STDOUT_FILENO))
         return fail_usage("--output: standard output is a terminal; send it to "
                           "a pipe or a file");
     int done = render_state_check(opts);
@@ -265,14 +268,19 @@ static int write_picture(work *w, const options *opts) {
     progress_begin(opts, "writing");
     form.overlay = overlay;
     form.depth = beside ? depth : NULL;
-    if (status == SNOW_STATUS_OK)
+    if (status == SNOW_STATUS_OK && !(opts->show && is_stream(opts->output)))
         status = snow_image_save(w->image, opts->output, &form);
     if (status == SNOW_STATUS_OK && opts->depth && !beside)
         status = snow_image_save(depth, opts->depth, &plain);
+    progress_end(opts);
+    int done = CONTINUE;
+    if (status != SNOW_STATUS_OK)
+        done = fail_status(w->state.context, status);
+    else if (opts->show)
+        done = show_picture(w->image, &form);
     snow_overlay_free(overlay);
     w->state.times.write = seconds_now() - begin;
-    return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_status(w->state.context, status);
+    return done;
 }
 
 /* Comes after the picture is written, since the figures include the writing. */

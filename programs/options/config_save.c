@@ -92,7 +92,8 @@ static void fill_recipe(const options *opts, const verb_row *verb,
         out->frames = (int)opts->frames;
     out->fps = opts->fps;
     out->shift = opts->shift;
-    out->output = opts->output;
+    out->output =
+        opts->show && strcmp(opts->output, "-") == 0 ? NULL : opts->output;
     out->depth = opts->depth;
     out->image.flatten = opts->background.given;
     memcpy(out->image.background, opts->background.rgb,

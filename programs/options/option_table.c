@@ -57,6 +57,10 @@ const option_row option_table[] = {
      FIELD(overwrite), 0, 0, "",
      "replace existing files of --output, --depth and --stats (default: "
      "refuse)"},
+    {"show", 0, NULL, TOPIC_OUTPUT, VERB_RENDER, read_flag, FIELD(show), 0, 0, "",
+     "show the picture in the terminal, and write a file only if --output is "
+     "given: by kitty's graphics protocol (kitty, Ghostty, WezTerm), elsewhere "
+     "by half blocks in 24-bit colour"},
     {"depth", 0, "FILE", TOPIC_OUTPUT, RENDER, read_text, FIELD(depth), 0,
      0, "",
      "file for the depth of modes over and iso: .npy, .pfm, .exr or .tif. "

@@ -61,6 +61,7 @@ typedef struct options {
     int64_t size[2];    /* width, height */
     color_value background;
     const char *bits; /* NULL: not given */
+    bool show;        /* in the terminal */
     bool overwrite;
 
     double threshold; /* below 0: not given */
@@ -97,8 +98,8 @@ typedef struct options {
     uint64_t offset;
     int64_t time;
     int64_t channel;
-    const char *dataset;            /* NULL: not given */
-    const char *series;             /* NULL: not given */
+    const char *dataset; /* NULL: not given */
+    const char *series;  /* NULL: not given */
     bool allow_gaps;
     int64_t crop[3][2];             /* 0: the end */
     double clip[SNOW_CLIPS_MAX][4]; /* zeros: none */

@@ -56,6 +56,10 @@ int default_name(options *opts) {
     struct stat what;
     if (opts->output || opts->operand_count != 1)
         return CONTINUE;
+    if (opts->show) { /* shown only, and not written */
+        opts->output = "-";
+        return CONTINUE;
+    }
     if (strcmp(opts->operands[0], "-") == 0)
         return fail_usage("no output file given; add -o OUT.png");
     name_of(opts->operands[0], name);
