@@ -52,6 +52,8 @@ typedef struct snow_volume_info {
     char modality[17], description[65]; /* of a DICOM series; or "" */
     double window[2];    /* data values that the file would show; 0s: none */
     bool hounsfield;     /* the file says that data values are in HU */
+    int64_t components;  /* of a vector in the file; else 0 or 1 */
+    bool magnitude;      /* the values are the length of that vector */
 } snow_volume_info;
 SNOW_RECORD(snow_volume_info);
 
@@ -87,6 +89,7 @@ typedef struct snow_volume_options {
     double clip[SNOW_CLIPS_MAX][4]; /* planes (snow_volume_clip) */
     bool each_time, channel_given; /* no warning of other steps or channels */
     bool allow_gaps; /* DICOM: missing and cut slices are NaN, with a warning */
+    const char *component; /* "x", "magnitude", ... or NULL (docs/formats.md) */
 } snow_volume_options;
 SNOW_RECORD(snow_volume_options);
 
@@ -99,9 +102,8 @@ SNOW_API snow_status snow_volume_open(snow_context *context, const char *path,
     const snow_volume_options *options, snow_volume **out);
 SNOW_API void snow_volume_close(snow_volume *volume);
 
-/* Out of core (docs/larger.md): voxels stay in the file, which must not change,
- * and are read in slabs of up to `slab_bytes` (0: 64 MiB). Looks and pictures
- * are the same; all else that needs voxels is BAD_USAGE. Seconds of reading. */
+/* Out of core (docs/larger.md): slabs of `slab_bytes` (0: 64 MiB) are read of a
+ * file that must not change, for looks and pictures only. Seconds reading. */
 SNOW_API snow_status snow_volume_open_streamed(snow_context *context,
     const char *path, const snow_volume_options *options, uint64_t slab_bytes,
     snow_volume **out);
@@ -125,8 +127,7 @@ SNOW_API snow_status snow_volume_wrap(snow_context *context,
 /* Promises that wrapped voxels stay, until called again: encodings are kept. */
 SNOW_API void snow_volume_freeze(snow_volume *volume);
 
-/* A test volume, the same bytes on every machine. `dims` NULL or 0s: its
- * default size; `seed` moves what is random. */
+/* A test volume. `dims` NULL or 0s: its own size; `seed` moves random parts. */
 SNOW_API snow_status snow_volume_open_phantom(snow_context *context,
     const char *name, const int64_t dims[3], uint64_t seed, snow_volume **out);
 

@@ -19,6 +19,7 @@ snow_volume_options data_options(const options *opts) {
                                 .channel = opts->channel,
                                 .channel_given = options_given(opts, "channel"),
                                 .allow_gaps = opts->allow_gaps,
+                                .component = opts->component,
                                 .dataset = opts->dataset,
                                 .series = opts->series,
                                 .mask = opts->mask,

@@ -26,6 +26,9 @@ static void fill_data(const options *opts, snow_recipe *out) {
     data->offset = opts->offset;
     data->time = opts->time;
     data->channel = opts->channel;
+    data->component = opts->component;
+    if (!opts->component && !opts->channel && options_given(opts, "channel"))
+        data->component = "0"; /* a recipe has no channel 0 */
     data->dataset = opts->dataset;
     data->series = opts->series;
     data->allow_gaps = opts->allow_gaps;

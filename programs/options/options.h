@@ -98,8 +98,9 @@ typedef struct options {
     uint64_t offset;
     int64_t time;
     int64_t channel;
-    const char *dataset; /* NULL: not given */
-    const char *series;  /* NULL: not given */
+    const char *component;          /* NULL: not given */
+    const char *dataset;            /* NULL: not given */
+    const char *series;             /* NULL: not given */
     bool allow_gaps;
     int64_t crop[3][2];             /* 0: the end */
     double clip[SNOW_CLIPS_MAX][4]; /* zeros: none */

@@ -89,6 +89,11 @@ static uint64_t native_bytes(snow_context *context, const char *path,
            snow_type_size(info.type);
 }
 
+/* For the magnitude, a component beside the result. */
+static uint64_t component_bytes(const snow_volume_info *info, uint64_t voxels) {
+    return info->magnitude ? voxels : 0;
+}
+
 /* The mask, and the volume before masking or clipping, are in memory together
  * with the result. */
 static uint64_t masking_bytes(snow_context *context, const char *path,
@@ -137,6 +142,7 @@ static bool measure(const options *opts, const char *path,
         s.masking = masking_bytes(context, path, data);
         s.need = memory_needed(opts, &s.info);
         s.voxels = s.need.least - s.picture;
+        s.masking += component_bytes(&s.info, s.voxels);
         if (s.voxels + s.masking > s.need.least)
             s.need.least = s.voxels + s.masking;
         if (s.need.least > s.need.most)

@@ -57,6 +57,17 @@ bool snow_array_steps(const int64_t *sizes, int rank, uint64_t value,
     return true;
 }
 
+void snow_array_place(const snow_axes *roles, const uint64_t *steps,
+                      int64_t channel, const snow_volume_info *info,
+                      snow_array *array) {
+    for (int i = 0; i < 3; i++)
+        array->step[i] = roles->space[i] < 0 ? 0 : steps[roles->space[i]];
+    if (roles->time >= 0)
+        array->first += (uint64_t)info->time * steps[roles->time];
+    if (roles->channel >= 0)
+        array->first += (uint64_t)channel * steps[roles->channel];
+}
+
 /* Ten bits of fraction, five of exponent; a float can hold every value. */
 float snow_half_to_float(uint16_t half) {
     uint32_t sign = (uint32_t)(half & 0x8000) << 16;
@@ -408,22 +419,5 @@ snow_status snow_array_read_text(snow_source *source,
         return status;
     }
     *out = volume;
-    return SNOW_STATUS_OK;
-}
-
-snow_status snow_volume_pick_channel(snow_context *context,
-                                     const snow_volume_options *options,
-                                     int64_t channels, int64_t *out) {
-    if (options->channel < 0 || options->channel >= channels)
-        return snow_fail(
-            context, SNOW_STATUS_BAD_USAGE,
-            "channel %lld does not exist; the voxels have %lld, counted from 0",
-            (long long)options->channel, (long long)channels);
-    *out = options->channel;
-    if (channels > 1 && !options->channel && !options->channel_given)
-        snow_notify(context,
-                    "channel %lld of %lld (counted from 0) is used; --channel "
-                    "N selects another",
-                    (long long)*out, (long long)channels);
     return SNOW_STATUS_OK;
 }

@@ -11,6 +11,7 @@
 #ifndef SNOW_FORMATS_ARRAY_H
 #define SNOW_FORMATS_ARRAY_H
 
+#include "formats/axes.h"
 #include "formats/format.h"
 
 /* How one value is stored.  A type that the library lacks becomes the next
@@ -61,11 +62,35 @@ snow_status snow_array_read_text(snow_source *source,
 /* Converts an IEEE 754 binary16 number; exact. */
 float snow_half_to_float(uint16_t half);
 
-/* For readers of voxels with several values: selects the options' channel,
- * which must be below `channels`, and reports the choice if there are several.
- * Errors: SNOW_STATUS_BAD_USAGE if the channel does not exist. */
+/* For readers of voxels with several values: selects the options' channel or
+ * component, which must be below `channels`, and reports the choice if there
+ * are several.  Errors: SNOW_STATUS_BAD_USAGE if it does not exist, or is the
+ * magnitude. */
 snow_status snow_volume_pick_channel(snow_context *context,
                                      const snow_volume_options *options,
                                      int64_t channels, int64_t *out);
+
+/* The same for values that lie next to each other and may be a vector.  Sets
+ * info->components, and info->magnitude if the options ask for the magnitude of
+ * all, or for nothing, and they are 2 or 3 floats; then *out is the first one,
+ * and the others are asked for one by one (formats/components.h).  info->type
+ * is set already. */
+snow_status snow_volume_pick_component(snow_context *context,
+                                       const snow_volume_options *options,
+                                       int64_t count, snow_volume_info *info,
+                                       int64_t *out);
+
+/* For readers of arrays: takes sizes and number of steps from the axes, then
+ * selects channel or component, and time step.  info->type is set already. */
+snow_status snow_volume_pick_axes(snow_context *context,
+                                  const snow_volume_options *options,
+                                  const snow_axes *roles, const int64_t *sizes,
+                                  snow_volume_info *info, int64_t *channel);
+
+/* The voxels of an array of nested axes with these strides, at the channel and
+ * info->time. */
+void snow_array_place(const snow_axes *roles, const uint64_t *steps,
+                      int64_t channel, const snow_volume_info *info,
+                      snow_array *array);
 
 #endif

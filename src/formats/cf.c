@@ -21,6 +21,40 @@ static void take_unit(const char *text, char unit[64]) {
     unit[length] = 0;
 }
 
+static bool is_same(const char *a, const char *b) {
+    for (; *a && *b; a++, b++)
+        if ((*a | 32) != (*b | 32))
+            return false;
+    return *a == *b;
+}
+
+static bool is_any_of(const char *text, const char *const *list) {
+    for (; *list; list++)
+        if (is_same(text, *list))
+            return true;
+    return false;
+}
+
+snow_axis_hint snow_cf_hint(const cf_words *words) {
+    static const char *const spaces[] = {"x", "y", "z", NULL};
+    static const char *const lines[] = {"x", "lon", "longitude", "rlon", NULL};
+    static const char *const times[] = {
+        "s",    "sec",   "secs",   "second", "seconds", "ms",    "us",
+        "ns",   "ps",    "fs",     "min",    "minute",  "mins",  "minutes",
+        "h",    "hr",    "hrs",    "hour",   "hours",   "d",     "day",
+        "days", "month", "months", "yr",     "year",    "years", NULL};
+    snow_axis_hint hint = {0};
+    bool in_space = is_any_of(words->axis, spaces);
+    hint.time = is_same(words->axis, "t") ||
+                (!in_space && (is_same(words->standard_name, "time") ||
+                               strstr(words->units, " since ") ||
+                               is_same(words->name, "time")));
+    hint.duration = !in_space && is_any_of(words->units, times);
+    hint.space = in_space || is_any_of(words->name, lines) ||
+                 (*words->units && !is_same(words->units, "1"));
+    return hint;
+}
+
 void snow_cf_measure(const double *coordinates, int64_t count,
                      const char *units, cf_axis *out) {
     *out = (cf_axis){.even = true};

@@ -4,6 +4,7 @@
 #ifndef SNOW_FORMATS_CF_H
 #define SNOW_FORMATS_CF_H
 
+#include "formats/axes.h"
 #include "formats/format.h"
 
 /* More coordinates than any drawable axis has: all are held at once. */
@@ -26,6 +27,15 @@ typedef struct cf_values {
 } cf_values;
 
 cf_values snow_cf_values_default(void);
+
+/* What a dimension is by its name, and by attributes of its coordinates
+ * (sections 4 and 4.4): time by axis "T", standard_name "time", units "...
+ * since
+ * ...", or the name "time".  Texts may be "". */
+typedef struct cf_words {
+    const char *name, *units, *axis, *standard_name;
+} cf_words;
+snow_axis_hint snow_cf_hint(const cf_words *words);
 
 /* Measures an axis of `count` coordinates, which may fall; `given` stays false
  * if they are not finite or all equal. */

@@ -7,6 +7,7 @@
 #include "formats/image_series.h"
 
 #include "base/record.h"
+#include "formats/components.h"
 #include "formats/masked.h"
 #include "formats/zarr/zarr.h"
 #include "io/folder.h"
@@ -55,7 +56,7 @@ static snow_status check_options(snow_context *context,
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "time step %lld is invalid; they count from 0",
                          (long long)options->time);
-    return SNOW_STATUS_OK;
+    return snow_component_check(context, options);
 }
 
 /* Scales the columns of the matrix to the spacing that the user gave. */
@@ -145,6 +146,12 @@ static snow_status check_choice(snow_context *context,
                          "channel %lld does not exist; files of the format %s "
                          "have one value per voxel, so remove --channel",
                          (long long)options->channel, format->name);
+    if (options->component && strcmp(options->component, "0") != 0 &&
+        !format->channels)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--component %.64s: files of the format %s have one "
+                         "value per voxel; remove the option",
+                         options->component, format->name);
     if (options->series && !format->series)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "--series %.64s: files of the format %s have no "
@@ -233,11 +240,13 @@ static snow_status open_phantom(snow_context *context, const char *name,
                                 snow_volume_info *info, snow_volume **out) {
     SNOW_TRY(check_options(context, options));
     if (options->type || options->endian || options->offset || options->time ||
-        options->channel || options->dataset || options->series)
+        options->channel || options->dataset || options->series ||
+        options->component)
         return snow_fail(
             context, SNOW_STATUS_BAD_USAGE,
             PHANTOM "%s: a phantom has its own type; remove --type, --endian, "
-                    "--offset, --time, --channel, --dataset and --series",
+                    "--offset, --time, --channel, --component, --dataset and "
+                    "--series",
             name);
     snow_volume *volume = NULL;
     snow_volume_info given;
@@ -308,9 +317,9 @@ static const char *data_set_in(const char *path) {
     return found + 1;
 }
 
-static snow_status open_path(snow_context *context, const char *path,
-                             const snow_volume_options *options,
-                             snow_volume_info *info, snow_volume **out);
+static snow_status open_one(snow_context *context, const char *path,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, snow_volume **out);
 
 static snow_status open_inside(snow_context *context, const char *path,
                                const char *inside,
@@ -329,16 +338,16 @@ static snow_status open_inside(snow_context *context, const char *path,
         return SNOW_STATUS_NO_MEMORY;
     memcpy(file, path, length);
     file[length] = 0;
-    snow_status status = open_path(context, file, &own, info, out);
+    snow_status status = open_one(context, file, &own, info, out);
     snow_release(context, file);
     return status;
 }
 
 /* The prefix has priority over a file of that name: "./phantom:x" still opens
  * one. */
-static snow_status open_path(snow_context *context, const char *path,
-                             const snow_volume_options *options,
-                             snow_volume_info *info, snow_volume **out) {
+static snow_status open_one(snow_context *context, const char *path,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, snow_volume **out) {
     if (!strncmp(path, PHANTOM, strlen(PHANTOM)))
         return open_phantom(context, path + strlen(PHANTOM), options, info,
                             out);
@@ -353,6 +362,36 @@ static snow_status open_path(snow_context *context, const char *path,
         return name_failure(context, status,
                             strcmp(path, "-") ? path : "standard input");
     return open_source(source, options, info, out);
+}
+
+/* A volume on the way to be opened, component by component. */
+typedef struct input {
+    snow_context *context;
+    const char *path;
+    const void *bytes; /* in memory; NULL: a file */
+    size_t size;
+} input;
+
+static snow_status read_input(void *user, const snow_volume_options *options,
+                              snow_volume_info *info, snow_volume **out) {
+    const input *in = user;
+    snow_source *source;
+    if (!in->bytes)
+        return open_one(in->context, in->path, options, info, out);
+    snow_status status = snow_source_open_memory(in->context, in->path,
+                                                 in->bytes, in->size, &source);
+    return status == SNOW_STATUS_OK
+               ? open_source(source, options, info, out)
+               : name_failure(in->context, status, in->path);
+}
+
+static snow_status open_path(snow_context *context, const char *path,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    input in = {.context = context, .path = path};
+    return snow_components_read(context, read_input, &in,
+                                snow_source_is_stream(path), options, info,
+                                out);
 }
 
 static snow_status open_any(snow_context *context, const char *path,
@@ -395,7 +434,7 @@ snow_status snow_volume_open_memory(snow_context *context, const char *name,
                                     const snow_volume_options *given,
                                     snow_volume **out) {
     snow_monitor monitor;
-    snow_source *source;
+    input in = {context, name, bytes, size};
     snow_volume_info info;
     snow_volume_options options;
     SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_options, given, &options));
@@ -406,11 +445,7 @@ snow_status snow_volume_open_memory(snow_context *context, const char *name,
                          "snow_volume_clip",
                          name);
     snow_monitor_begin_reading(context, &monitor);
-    snow_status status =
-        snow_source_open_memory(context, name, bytes, size, &source);
-    if (status != SNOW_STATUS_OK)
-        status = name_failure(context, status, name);
-    else
-        status = open_source(source, &options, &info, out);
-    return snow_monitor_end(&monitor, status);
+    return snow_monitor_end(&monitor,
+                            snow_components_read(context, read_input, &in,
+                                                 false, &options, &info, out));
 }

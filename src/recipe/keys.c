@@ -133,6 +133,7 @@ const recipe_key recipe_keys[] = {
     MADE("offset", long, data.offset, 0, 9e15, 0),
     MADE("crop", crop, data.crop, 0, 9e15, 2),
     MADE("channel", long, data.channel, 0, 9e15, 0),
+    TEXT("component", data.component),
     TEXT("dataset", data.dataset),
     TEXT("series", data.series),
     MADE("allow-gaps", flag, data.allow_gaps, 0, 0, 0),

@@ -21,7 +21,8 @@ snow_volume_info snow_volume_info_default(const char *format) {
                              .spacing = {1, 1, 1},
                              .slope = 1,
                              .format = format,
-                             .times = 1};
+                             .times = 1,
+                             .components = 1};
     for (int i = 0; i < 4; i++)
         info.matrix[i][i] = 1;
     return info;

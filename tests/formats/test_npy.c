@@ -74,8 +74,44 @@ static void time_comes_before_channel_before_z(void **state) {
     const uint8_t *voxels = snow_volume_voxels(volume);
     assert_int_equal(snow_volume_get_info(volume)->times, 2);
     assert_int_equal(voxels[0], (3 + 2) * 8);
+    assert_int_equal(files.warnings, 1); /* of the step: a channel was given */
+    snow_volume_close(volume);
+    support_files_end(&files);
+}
+
+/* Voxel i has the bytes 3 i, 3 i + 1 and 3 i + 2. */
+static void a_short_last_axis_holds_components(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    const char *path = write_npy(&files, "|u1", "False", "(2, 3, 5, 3)", 90);
+    snow_volume_options options = {.size = sizeof options};
+    snow_volume *volume = support_opened(&files, path, &options);
+    const snow_volume_info *info = snow_volume_get_info(volume);
+    assert_true(info->dims[0] == 5 && info->dims[1] == 3 && info->dims[2] == 2);
+    assert_true(info->times == 1 && info->components == 3 && !info->magnitude);
+    assert_int_equal(((const uint8_t *)snow_volume_voxels(volume))[7], 21);
     assert_int_equal(files.warnings, 1);
     snow_volume_close(volume);
+    options.component = "z";
+    volume = support_opened(&files, path, &options);
+    assert_int_equal(((const uint8_t *)snow_volume_voxels(volume))[7], 23);
+    assert_int_equal(files.warnings, 1);
+    snow_volume_close(volume);
+    options.component = "magnitude";
+    volume = support_opened(&files, path, &options);
+    info = snow_volume_get_info(volume);
+    assert_true(info->type == SNOW_TYPE_FLOAT32 && info->magnitude);
+    const float *lengths = snow_volume_voxels(volume);
+    for (int i = 0; i < 30; i++) {
+        double x = 3 * i, y = x + 1, z = x + 2;
+        assert_true(fabs((double)lengths[i] - sqrt(x * x + y * y + z * z)) <
+                    1e-5);
+    }
+    snow_volume_close(volume);
+    options.component = "w";
+    support_refused(&files, path, &options, SNOW_STATUS_BAD_USAGE,
+                    "component 3 does not exist", MOST);
     support_files_end(&files);
 }
 
@@ -193,6 +229,7 @@ int main(void) {
         cmocka_unit_test(the_last_index_is_x),
         cmocka_unit_test(fortran_order_is_the_same_array),
         cmocka_unit_test(time_comes_before_channel_before_z),
+        cmocka_unit_test(a_short_last_axis_holds_components),
         cmocka_unit_test(halves_become_the_same_floats),
         cmocka_unit_test(truth_is_one),
         cmocka_unit_test(a_box_costs_little_more_than_its_bytes),

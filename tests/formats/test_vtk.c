@@ -79,7 +79,7 @@ static void an_array_is_chosen_by_name_and_channel(void **state) {
     const snow_volume_options options = {
         .size = sizeof options, .dataset = "the one", .channel = 1};
     expect_counting(opened(&files, text, &options));
-    assert_int_equal(files.warnings, 0); /* the channel is given */
+    assert_int_equal(files.warnings, 0); /* the channel was given */
     const snow_volume_options wrong = {.size = sizeof wrong,
                                        .dataset = "other"};
     support_refused(&files, support_write_text(&files, "b.vtk", text), &wrong,

@@ -64,6 +64,15 @@ def figures(voxels):
             "scale": np.abs(values).sum() * 1009}
 
 
+def magnitude(voxels):
+    """The length of vectors along the last axis, rounded after each one."""
+    total = np.abs(voxels[..., 0])
+    for i in range(1, voxels.shape[-1]):
+        total = np.hypot(total.astype("f8"), voxels[..., i].astype("f8"))
+        total = total.astype(voxels.dtype.newbyteorder("="))
+    return total
+
+
 def near(a, b, scale):
     return abs(a - b) <= 1e-12 * scale + 1e-300
 

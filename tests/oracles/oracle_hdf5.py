@@ -72,6 +72,76 @@ for time in range(3):
                       options=["--time", time, "--channel", channel])
 oracle.expect("e.h5:/flat", t[0, 0, :1])
 
+# A last axis of 2 to 4 holds components; more are an axis of space.
+for kind in ("<f4", "<f8", "<u2"):
+    for count in (2, 3, 4):
+        v = oracle.sample(kind, (6, 7, 8, count))
+        with h5py.File("v.h5", "w") as file:
+            file["v"] = v
+        vector = count < 4 and kind != "<u2"
+        oracle.expect("v.h5", oracle.magnitude(v) if vector else v[..., 0],
+                      name=f"{kind} {count} by default")
+        if kind != "<u2":
+            oracle.expect("v.h5", oracle.magnitude(v),
+                          options=["--component", "magnitude"],
+                          name=f"{kind} {count} magnitude")
+        for number in range(count):
+            for option in (("--component", "xyzw"[number]),
+                           ("--component", number), ("--channel", number)):
+                oracle.expect("v.h5", v[..., number], options=option,
+                              name=f"{kind} {count} {option}")
+        oracle.refuse("v.h5", f"component {count} does not exist",
+                      ["--component", count], 2)
+v = oracle.sample("<u2", (6, 7, 8, 3))
+with h5py.File("v.h5", "w") as file:
+    file["v"] = v
+length = np.abs(v[..., 0].astype("f4"))
+for i in (1, 2):
+    length = np.hypot(length.astype("f8"), v[..., i]).astype("f4")
+oracle.expect("v.h5", length, options=["--component", "magnitude"])
+t = oracle.sample("<f4", (5, 6, 7, 8, 3))
+five = oracle.sample("<f4", (6, 7, 8, 5))
+colours = oracle.sample("u1", (7, 8, 3))
+with h5py.File("v.h5", "w") as file:
+    file["t"] = t
+    file["five"] = five
+    file["colours"] = colours
+    file["thin"] = colours
+    file["colours"].attrs["CLASS"] = np.bytes_("IMAGE")
+    file["colours"].attrs["IMAGE_SUBCLASS"] = np.bytes_("IMAGE_TRUECOLOR")
+    file["colours"].attrs["INTERLACE_MODE"] = np.bytes_("INTERLACE_PIXEL")
+for time in (0, 4):
+    oracle.expect("v.h5:/t", t[time, ..., 1],
+                  options=["--time", time, "--component", "y"])
+oracle.expect("v.h5:/t", oracle.magnitude(t[2]), options=["--time", 2])
+oracle.expect("v.h5:/five", five[3], options=["--time", 3])
+oracle.expect("v.h5:/colours", colours[None, ..., 2],
+              options=["--component", "z"])
+oracle.expect("v.h5:/thin", colours)
+oracle.refuse("v.h5:/thin", "have one value", ["--component", "magnitude"], 2)
+oracle.refuse("v.h5:/t", "not a component", ["--component", "radius"], 2)
+oracle.refuse("v.h5:/t", "give one of them",
+              ["--component", "x", "--channel", 1], 2)
+
+# openPMD: labels, spacing and offset follow the order of the indices.
+m = oracle.sample("<f4", (4, 5, 6))
+with h5py.File("p.h5", "w") as file:
+    for order in "CF":
+        mesh = file.create_group(order)
+        labels = ("z", "y", "x") if order == "C" else ("x", "y", "z")
+        mesh.attrs["axisLabels"] = np.array(labels, "S1")
+        mesh.attrs["dataOrder"] = np.bytes_(order)
+        step = {"x": 1.5, "y": 2.0, "z": 3.0}
+        mesh.attrs["gridSpacing"] = [step[name] for name in labels]
+        mesh.attrs["gridGlobalOffset"] = [10 * step[name] for name in labels]
+        mesh.attrs["gridUnitSI"] = 1.0
+        mesh["rho"] = m
+        mesh["rho"].attrs["position"] = [0.5 if name == "x" else 0
+                                         for name in labels]
+for order in "CF":
+    oracle.expect(f"p.h5:/{order}/rho", m,
+                  oracle.affine((1.5, 2, 3), (15.75, 20, 30)), unit="m")
+
 # Attributes that give a place.
 with h5py.File("f.h5", "w") as file:
     for name, values in (("element_size_um", (2, 1, 0.5)),

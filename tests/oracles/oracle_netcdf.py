@@ -63,11 +63,69 @@ for form in FORMATS:
                               options=["--dataset", f"v{kind}", "--time",
                                        time], name=f"{form} {kinds} {kind}")
             if len(kinds) > 1:
-                oracle.expect("b.nc", oracle.sample(kind, (4, 5, 7), 2),
-                              options=["--dataset", f"w{kind}"],
-                              name=f"{form} {kinds} {kind} time as z")
+                oracle.expect("b.nc", oracle.sample(kind, (4, 5, 7), 2)[3:],
+                              options=["--dataset", f"w{kind}", "--time", 3],
+                              name=f"{form} {kinds} {kind} without z")
         oracle.expect("b.nc", oracle.sample("f4", (3, 5, 7)),
                       options=["--dataset", "fixed"], name=form)
+
+# Time is what says so, wherever it stands: by unit, axis, standard name or
+# name.  Others are not: a height, an axis "Z", pictures of two axes.
+SINCE = {"units": "days since 2000-01-01"}
+STEPS = (
+    ("t", ("t", "y", "x"), SINCE, 0),
+    ("t", ("y", "t", "x"), SINCE, 1),
+    ("t", ("y", "x", "t"), {"axis": "T"}, 2),
+    ("t", ("z", "t", "y", "x"), {"standard_name": "time"}, 1),
+    ("t", ("t", "z", "y", "x"), SINCE, 0),
+    ("Time", ("z", "y", "x", "Time"), {}, 3),
+    ("t", ("t", "y", "x"), {"units": "s"}, 0),
+    ("t", ("y", "t", "x"), {"units": "s"}, None),
+    ("t", ("t", "y", "x"), {"units": "m"}, None),
+    ("t", ("t", "y", "x"), {"units": "days", "axis": "Z"}, None),
+    ("t", ("t", "x"), SINCE, None))
+LENGTHS = {"t": 5, "Time": 5, "z": 6, "y": 7, "x": 8, "m": 3}
+for form in FORMATS:
+    for which, (t, names, attributes, at) in enumerate(STEPS):
+        a = oracle.sample("f4", [LENGTHS[name] for name in names])
+        with netCDF4.Dataset("t.nc", "w", format=form) as file:
+            for name in names:
+                file.createDimension(name, LENGTHS[name])
+            c = file.createVariable(t, "f8", (t,))
+            c[:] = np.arange(5)
+            c.setncatts(attributes)
+            file.createVariable("v", "f4", names, fill_value=False)[:] = a
+        for time in (0, 4) if at is not None else ():
+            part = a.take(time, axis=at)
+            oracle.expect("t.nc", part[(None,) * (3 - part.ndim)],
+                          options=["--dataset", "v", "--time", time],
+                          name=f"{form} {names} {attributes} {time}")
+        if at is None:
+            oracle.expect("t.nc", a[(None,) * (3 - a.ndim)],
+                          options=["--dataset", "v"],
+                          name=f"{form} {names} {attributes}")
+            oracle.refuse("t.nc", "the file has 1",
+                          ["--dataset", "v", "--time", 1], 2)
+
+# Members of an ensemble are channels; the last axis may be components.
+a = oracle.sample("f4", (3, 5, 6, 7, 8))
+v = oracle.sample("f4", (6, 7, 8, 3))
+with netCDF4.Dataset("t.nc", "w", format="NETCDF3_CLASSIC") as file:
+    for name, size in LENGTHS.items():
+        file.createDimension(name, size)
+    file.createVariable("t", "f8", ("t",))[:] = np.arange(5)
+    file["t"].units = "hours since 1900-01-01 00:00:00"
+    file.createVariable("a", "f4", ("m", "t", "z", "y", "x"),
+                        fill_value=False)[:] = a
+    file.createVariable("v", "f4", ("z", "y", "x", "m"),
+                        fill_value=False)[:] = v
+oracle.expect("t.nc", a[2, 4], options=["--dataset", "a", "--time", 4,
+                                        "--channel", 2], name="members")
+oracle.expect("t.nc", oracle.magnitude(v), options=["--dataset", "v"],
+              name="the magnitude")
+for number, name in enumerate("xyz"):
+    oracle.expect("t.nc", v[..., number],
+                  options=["--dataset", "v", "--component", name])
 
 # Coordinates, packed and missing values; a gzip stream around them.
 for form in FORMATS:
@@ -117,8 +175,11 @@ if path:
     with gzip.open(path) as file:
         data = netCDF4.Dataset("tos", memory=file.read())
     tos = data["tos"][:].filled(np.nan)
-    oracle.expect(path, tos, oracle.affine((2, 1, 2), (1, -79.5, 0)),
-                  unit="degrees")
+    for time in (0, 23):
+        oracle.expect(path, tos[time:time + 1],
+                      oracle.affine((2, 1, 2), (1, -79.5, 0)),
+                      ["--time", time], unit="degrees")
+    oracle.refuse(path, "the file has 24", ["--time", 24], 2)
 path = oracle.data("formats/minc/minc1_4d.mnc")
 if path:
     oracle.refuse(path, "MINC")

@@ -39,6 +39,12 @@ for order in "CF":
                           options=["--time", time, "--channel", channel])
 oracle.refuse("a.npy", "no time step 3", ["--time", 3], 2)
 oracle.refuse("b.npy", "channel 2 does not exist", ["--channel", 2], 2)
+v = oracle.sample("<f8", (5, 6, 7, 3))
+for order in "CF":
+    np.save("v.npy", np.array(v, order=order))
+    oracle.expect("v.npy", oracle.magnitude(v), name=f"vectors {order}")
+    for number, name in enumerate("xyz"):
+        oracle.expect("v.npy", v[..., number], options=["--component", name])
 np.savez("c.npz", a)
 oracle.refuse("c.npz", "unzip")
 np.save("d.npy", a.astype(complex))

@@ -121,6 +121,8 @@ for mode in ("ascii", "binary", "appended raw"):
     for channel in range(3):
         oracle.expect("a.vti", a[..., channel], matrix_of(grid),
                       ["--channel", channel])
+    oracle.expect("a.vti", oracle.magnitude(a), matrix_of(grid),
+                  name=f"{mode} magnitude")
     oracle.expect("a.vti", c, matrix_of(grid, True), ["--dataset", "c"])
     grid = image()
     add(grid, "c", c, cells=True)

@@ -25,7 +25,8 @@ static const char all_keys[] =
     " \"threads\": 3, \"deterministic\": true, \"isa\": \"scalar\","
     " \"dims\": [5, 6, 7], \"type\": \"int16\", \"spacing\": [1, 2, 0.1],"
     " \"endian\": \"big\", \"offset\": 352, \"time\": 2,"
-    " \"channel\": 1, \"dataset\": \"/a/b\", \"series\": \"1.2\","
+    " \"channel\": 1, \"component\": \"y\","
+    " \"dataset\": \"/a/b\", \"series\": \"1.2\","
     " \"mask\": \"m.nrrd\", \"labels\": \"1,4-7\","
     " \"clip\": [[1, 0, 0.5, -3], [0, -1, 0, 2]], \"crop\": "
     "[[1, 5], [0, 0], [3, "
@@ -99,6 +100,7 @@ static void every_key_reaches_its_field(void **state) {
     assert_true(r.data.channel == 1);
     assert_string_equal(r.data.dataset, "/a/b");
     assert_string_equal(r.data.series, "1.2");
+    assert_string_equal(r.data.component, "y");
     assert_string_equal(r.data.mask, "m.nrrd");
     assert_string_equal(r.data.labels, "1,4-7");
     assert_true(r.data.clip[0][2] == 0.5 && r.data.clip[1][1] == -1);
@@ -136,7 +138,9 @@ static void what_is_written_reads_as_it_was(void **state) {
         assert_int_equal(a.data.dataset == NULL, b.data.dataset == NULL);
         assert_int_equal(a.data.series == NULL, b.data.series == NULL);
         assert_int_equal(a.depth == NULL, b.depth == NULL);
+        assert_int_equal(a.data.component == NULL, b.data.component == NULL);
         a.data.dataset = b.data.dataset = NULL;
+        a.data.component = b.data.component = NULL;
         a.data.series = b.data.series = NULL;
         assert_int_equal(a.data.mask == NULL, b.data.mask == NULL);
         assert_int_equal(a.data.labels == NULL, b.data.labels == NULL);

@@ -5,6 +5,8 @@
  *     voxel_size, spacing the same, without a unit
  *     resolution, offset  the same and the first voxel, in nanometres
  *     openPMD             gridSpacing and others of the group, by axisLabels
+ *                         and dataOrder
+ *     HDF5 images         IMAGE_SUBCLASS and INTERLACE_MODE: colours
  *     NetCDF-4            coordinates by dimension scales, units; scale_factor,
  *                         add_offset and _FillValue of the values
  *
@@ -127,10 +129,20 @@ static bool read_labels(hid_t group, int order[3]) {
     return right && seen == 7;
 }
 
+/* Whether the labels, and all in their order, begin with the fastest axis: the
+ * array was written by a program that counts indices as Fortran does. */
+static bool is_fortran(hid_t object) {
+    char text[4];
+    double code = 0;
+    read_text(object, "dataOrder", text, sizeof text);
+    return *text == 'F' ||
+           (read_numbers(object, "dataOrder", 1, &code) == 1 && code == 'F');
+}
+
 /* openPMD (openpmd.org, 1.1.0): the group of a mesh, or the data set itself,
  * has spacing and offset in the order of the labels.  That is the order of the
- * array, with the fastest axis last.  The labels assign x, y and z of the
- * world. */
+ * array, with the fastest axis last, or by dataOrder "F" first.  The labels
+ * assign x, y and z of the world. */
 static bool place_by_mesh(hid_t object, const hdf5_set *set,
                           snow_volume_info *info) {
     int order[3];
@@ -142,9 +154,12 @@ static bool place_by_mesh(hid_t object, const hdf5_set *set,
     read_numbers(set->id, "position", 3, position);
     if (read_numbers(object, "gridUnitSI", 1, &unit) == 1 && unit == 1)
         memcpy(info->unit, "m", 2);
-    for (int a = 0; a < 3; a++)
-        for (int b = 0; b < 3; b++)
-            info->matrix[a][b] = order[2 - b] == a ? spacing[2 - b] : 0;
+    bool fortran = is_fortran(object);
+    for (int b = 0; b < 3; b++) {
+        int label = fortran ? b : 2 - b; /* of x, y and z of the array */
+        for (int a = 0; a < 3; a++)
+            info->matrix[a][b] = order[label] == a ? spacing[label] : 0;
+    }
     for (int b = 0; b < 3; b++) {
         double first = offset[b] + position[b] * spacing[b];
         info->matrix[order[b]][3] = isfinite(first) ? first : 0;
@@ -181,7 +196,8 @@ typedef struct scales {
     const hdf5_set *set;
     haddr_t address;    /* address of the data set */
     snow_status status; /* the walk ends if memory does */
-    cf_axis axes[3];
+    snow_axis_hint hints[HDF5_MOST_AXES];
+    cf_axis *axes;
 } scales;
 
 /* An entry of a scale's REFERENCE_LIST: the data set and axis that use it. */
@@ -190,16 +206,28 @@ typedef struct scale_use {
     int axis;
 } scale_use;
 
+/* What an axis is, by its scale's name in the file and its attributes. */
+static snow_axis_hint hint_of(hid_t scale, const char *path) {
+    char units[64], axis[64], standard_name[64];
+    const char *slash = strrchr(path, '/');
+    const cf_words words = {slash ? slash + 1 : path, units, axis,
+                            standard_name};
+    read_text(scale, "units", units, sizeof units);
+    read_text(scale, "axis", axis, sizeof axis);
+    read_text(scale, "standard_name", standard_name, sizeof standard_name);
+    return snow_cf_hint(&words);
+}
+
 /* Assigns the scale to the axes of the data set that use it. */
-static void use_scale(scales *s, hid_t scale, const scale_use *uses,
-                      hssize_t count) {
+static void use_scale(scales *s, hid_t scale, const char *path,
+                      const scale_use *uses, hssize_t count) {
     for (hssize_t i = 0; i < count && s->status == SNOW_STATUS_OK; i++) {
         int from_end = s->set->axes - 1 - uses[i].axis;
-        if (uses[i].set == s->address && uses[i].axis >= 0 && from_end >= 0 &&
-            from_end < 3)
-            s->status =
-                read_scale(s->context, scale, s->set->sizes[uses[i].axis],
-                           &s->axes[from_end]);
+        if (uses[i].set != s->address || uses[i].axis < 0 || from_end < 0)
+            continue;
+        s->hints[from_end] = hint_of(scale, path);
+        s->status = read_scale(s->context, scale, s->set->sizes[uses[i].axis],
+                               &s->axes[from_end]);
     }
 }
 
@@ -223,7 +251,7 @@ static bool is_use(hid_t type) {
     return true;
 }
 
-static void read_uses(scales *s, hid_t scale) {
+static void read_uses(scales *s, hid_t scale, const char *path) {
     hid_t attribute = H5Aopen(scale, "REFERENCE_LIST", H5P_DEFAULT);
     if (attribute < 0)
         return;
@@ -238,7 +266,7 @@ static void read_uses(scales *s, hid_t scale) {
         if (!uses)
             s->status = SNOW_STATUS_NO_MEMORY;
         else if (H5Aread(attribute, type, uses) >= 0)
-            use_scale(s, scale, uses, count);
+            use_scale(s, scale, path, uses, count);
         snow_release(s->context, uses);
     }
     H5Tclose(type);
@@ -258,7 +286,7 @@ static herr_t look_at_scale(hid_t file, const char *name,
         return 0;
     read_text(id, "CLASS", kind, sizeof kind);
     if (!strcmp(kind, "DIMENSION_SCALE") && H5Aexists(id, "REFERENCE_LIST") > 0)
-        read_uses(s, id);
+        read_uses(s, id, name);
     H5Dclose(id);
     return s->status != SNOW_STATUS_OK;
 }
@@ -266,21 +294,55 @@ static herr_t look_at_scale(hid_t file, const char *name,
 /* NetCDF-4 and h5py: axes and scales refer to each other.  The references of
  * the scales are read, because those of the axes are in the global heap, where
  * libhdf5 crashes if it is damaged. */
-static snow_status place_by_scales(snow_context *context, hid_t file,
-                                   const hdf5_set *set,
-                                   const snow_volume_options *options,
-                                   snow_volume_info *info) {
-    scales s = {.context = context, .set = set};
+static snow_status read_scales(hid_t file, scales *s) {
     H5O_info_t about;
-    if (H5Aexists(set->id, "DIMENSION_LIST") <= 0 ||
-        H5Oget_info2(set->id, &about, H5O_INFO_BASIC) < 0)
+    if (H5Aexists(s->set->id, "DIMENSION_LIST") <= 0 ||
+        H5Oget_info2(s->set->id, &about, H5O_INFO_BASIC) < 0)
         return SNOW_STATUS_OK;
-    s.address = about.addr;
-    SNOW_TRY(snow_hdf5_visit(context, file, look_at_scale, &s));
-    SNOW_TRY(s.status);
-    if (s.axes[0].given || s.axes[1].given || s.axes[2].given)
-        snow_cf_place(context, s.axes, options, info);
-    return SNOW_STATUS_OK;
+    s->address = about.addr;
+    SNOW_TRY(snow_hdf5_visit(s->context, file, look_at_scale, s));
+    return s->status;
+}
+
+/* HDF5's own convention for images: colours are the last axis. */
+static bool is_coloured(hid_t set) {
+    char kind[32], colours[32], order[32];
+    read_text(set, "CLASS", kind, sizeof kind);
+    read_text(set, "IMAGE_SUBCLASS", colours, sizeof colours);
+    read_text(set, "INTERLACE_MODE", order, sizeof order);
+    return !strcmp(kind, "IMAGE") && !strcmp(colours, "IMAGE_TRUECOLOR") &&
+           (!*order || !strcmp(order, "INTERLACE_PIXEL"));
+}
+
+snow_status snow_hdf5_read_axes(snow_context *context, hid_t file,
+                                const hdf5_set *set, hdf5_axes *out) {
+    scales s = {.context = context, .set = set, .axes = out->scales};
+    int64_t sizes[HDF5_MOST_AXES];
+    memset(out, 0, sizeof *out);
+    SNOW_TRY(read_scales(file, &s));
+    for (int i = 0; i < HDF5_MOST_AXES; i++)
+        sizes[i] = i < set->axes ? (int64_t)set->sizes[set->axes - 1 - i] : 1;
+    s.hints[0].components = is_coloured(set->id);
+    if (snow_axes_assign(set->axes, sizes, s.hints, &out->roles))
+        return SNOW_STATUS_OK;
+    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                     "%.200s has more than three axes beside time and "
+                     "components; write one with fewer",
+                     set->path);
+}
+
+static void place_by_scales(snow_context *context, const hdf5_axes *axes,
+                            const snow_volume_options *options,
+                            snow_volume_info *info) {
+    cf_axis space[3] = {{0}};
+    bool any = false;
+    for (int i = 0; i < 3; i++) {
+        if (axes->roles.space[i] >= 0)
+            space[i] = axes->scales[axes->roles.space[i]];
+        any |= space[i].given;
+    }
+    if (any)
+        snow_cf_place(context, space, options, info);
 }
 
 static void read_values(const hdf5_set *set, cf_values *out) {
@@ -297,15 +359,14 @@ static void read_values(const hdf5_set *set, cf_values *out) {
             out->fill[out->fills++] = value;
 }
 
-snow_status snow_hdf5_place(snow_context *context, hid_t file,
-                            const hdf5_set *set,
-                            const snow_volume_options *options,
-                            snow_volume_info *info, cf_values *values) {
+void snow_hdf5_place(snow_context *context, hid_t file, const hdf5_set *set,
+                     const hdf5_axes *axes, const snow_volume_options *options,
+                     snow_volume_info *info, cf_values *values) {
     char group[HDF5_NAME_BYTES];
     *values = snow_cf_values_default();
     read_values(set, values);
     if (place_by_size(set, info) || place_by_mesh(set->id, set, info))
-        return SNOW_STATUS_OK;
+        return;
     memcpy(group, set->path, sizeof group);
     char *slash = strrchr(group, '/');
     slash[slash == group] = 0;
@@ -313,8 +374,8 @@ snow_status snow_hdf5_place(snow_context *context, hid_t file,
     bool placed = parent >= 0 && place_by_mesh(parent, set, info);
     if (parent >= 0)
         H5Oclose(parent);
-    return placed ? SNOW_STATUS_OK
-                  : place_by_scales(context, file, set, options, info);
+    if (!placed)
+        place_by_scales(context, axes, options, info);
 }
 
 #endif

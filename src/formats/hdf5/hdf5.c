@@ -1,7 +1,8 @@
 /* formats/hdf5/hdf5.c - data sets of HDF5 files, including NetCDF-4.
  *
- * The last axis is x, the ones before y and z, then channel and time, as with
- * NumPy.  For a box libhdf5 reads only the chunks that it touches. */
+ * The last axis is x, the ones before y and z, then channel and time, unless
+ * the file or the sizes say otherwise (formats/axes.h).  For a box libhdf5
+ * reads only the chunks that it touches. */
 #include "formats/hdf5/hdf5.h"
 #include "formats/array.h"
 #include "formats/features.h"
@@ -88,41 +89,42 @@ static snow_status refuse_minc(snow_context *context, hid_t file) {
                      "convert it with mnc2nii");
 }
 
-/* The meaning of each axis, and the requested channel and time. */
+/* The sizes, and the requested channel or component and time. */
 static snow_status pick(snow_context *context, const hdf5_set *set,
+                        const snow_axes *roles,
                         const snow_volume_options *options,
                         snow_volume_info *info, hsize_t start[HDF5_MOST_AXES]) {
-    int64_t size[HDF5_MOST_AXES], channel;
-    for (int i = 0; i < HDF5_MOST_AXES; i++) {
-        size[i] = i < set->axes ? (int64_t)set->sizes[set->axes - 1 - i] : 1;
-        if (size[i] < 1)
+    int64_t sizes[HDF5_MOST_AXES], channel;
+    for (int i = 0; i < set->axes; i++) {
+        sizes[i] = (int64_t)set->sizes[set->axes - 1 - i];
+        if (sizes[i] < 1)
             return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                              "%.200s is empty; choose another with --dataset",
                              set->path);
     }
-    bool channels = set->axes == 5;
-    memcpy(info->dims, size, sizeof info->dims);
     info->type = set->type;
-    info->times = channels ? size[4] : size[3];
-    SNOW_TRY(snow_volume_pick_channel(context, options, channels ? size[3] : 1,
-                                      &channel));
-    SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
+    SNOW_TRY(
+        snow_volume_pick_axes(context, options, roles, sizes, info, &channel));
     memset(start, 0, HDF5_MOST_AXES * sizeof *start);
-    if (set->axes >= 4)
-        start[0] = (hsize_t)info->time;
-    if (channels)
-        start[1] = (hsize_t)channel;
+    if (roles->time >= 0)
+        start[set->axes - 1 - roles->time] = (hsize_t)info->time;
+    if (roles->channel >= 0)
+        start[set->axes - 1 - roles->channel] = (hsize_t)channel;
     return SNOW_STATUS_OK;
 }
 
 /* Reads the box as a hyperslab of the data set. */
-static snow_status read_slab(const hdf5_set *set, const snow_region *region,
+static snow_status read_slab(const hdf5_set *set, const snow_axes *roles,
+                             const snow_region *region,
                              hsize_t start[HDF5_MOST_AXES],
                              snow_volume *volume) {
     hsize_t count[HDF5_MOST_AXES] = {1, 1, 1, 1, 1};
-    for (int i = 0; i < 3 && i < set->axes; i++) {
-        start[set->axes - 1 - i] = (hsize_t)region->first[i];
-        count[set->axes - 1 - i] = (hsize_t)region->count[i];
+    for (int i = 0; i < 3; i++) {
+        int at = set->axes - 1 - roles->space[i];
+        if (roles->space[i] < 0)
+            continue;
+        start[at] = (hsize_t)region->first[i];
+        count[at] = (hsize_t)region->count[i];
     }
     hid_t space = H5Dget_space(set->id);
     hid_t memory = H5Screate_simple(set->axes, count, NULL);
@@ -162,16 +164,19 @@ static snow_status read_set(snow_context *context, const hdf5_file *file,
     hsize_t start[HDF5_MOST_AXES];
     snow_region region;
     cf_values values;
+    hdf5_axes axes;
     SNOW_TRY(check_storage(context, set->id));
-    SNOW_TRY(pick(context, set, options, info, start));
-    SNOW_TRY(snow_hdf5_place(context, snow_hdf5_id(file), set, options, info,
-                             &values));
+    SNOW_TRY(snow_hdf5_read_axes(context, snow_hdf5_id(file), set, &axes));
+    SNOW_TRY(pick(context, set, &axes.roles, options, info, start));
+    snow_hdf5_place(context, snow_hdf5_id(file), set, &axes, options, info,
+                    &values);
     SNOW_TRY(snow_region_lay_out(context, options, info, &region));
     SNOW_TRY(check_size(context, file, &region));
     snow_volume *volume = NULL;
     if (out) {
         SNOW_TRY(snow_volume_new(context, info, &volume));
-        snow_status status = read_slab(set, &region, start, volume);
+        snow_status status =
+            read_slab(set, &axes.roles, &region, start, volume);
         if (status != SNOW_STATUS_OK) {
             snow_volume_close(volume);
             return status;

@@ -57,12 +57,21 @@ snow_status snow_hdf5_visit(snow_context *context, hid_t file,
 snow_status snow_hdf5_find(snow_context *context, hid_t file, const char *asked,
                            hdf5_set *out);
 
-/* Sets matrix and unit of info, and how values are stored.  Errors:
- * SNOW_STATUS_NO_MEMORY. */
-snow_status snow_hdf5_place(snow_context *context, hid_t file,
-                            const hdf5_set *set,
-                            const snow_volume_options *options,
-                            snow_volume_info *info, cf_values *values);
+/* The axes of a data set, counted from the last one. */
+typedef struct hdf5_axes {
+    cf_axis scales[HDF5_MOST_AXES]; /* coordinates by dimension scales */
+    snow_axes roles;
+} hdf5_axes;
+
+/* Finds the meaning of each axis.  Errors: SNOW_STATUS_BAD_INPUT (too many
+ * axes of space), SNOW_STATUS_NO_MEMORY. */
+snow_status snow_hdf5_read_axes(snow_context *context, hid_t file,
+                                const hdf5_set *set, hdf5_axes *out);
+
+/* Sets matrix and unit of info, and how values are stored. */
+void snow_hdf5_place(snow_context *context, hid_t file, const hdf5_set *set,
+                     const hdf5_axes *axes, const snow_volume_options *options,
+                     snow_volume_info *info, cf_values *values);
 
 #endif
 #endif

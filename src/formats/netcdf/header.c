@@ -162,6 +162,10 @@ static void keep_attribute(cursor *c, const char *name, uint64_t type,
         c->at = begin;
         if (!strcmp(name, "units"))
             memcpy(v->units, text, sizeof text);
+        if (!strcmp(name, "standard_name"))
+            memcpy(v->standard_name, text, sizeof text);
+        if (!strcmp(name, "axis"))
+            memcpy(v->axis_name, text, sizeof text);
         /* Version 1 has no unsigned bytes; they are marked this way. */
         if (!strcmp(name, "_Unsigned") && !strcmp(text, "true"))
             v->is_unsigned = true;

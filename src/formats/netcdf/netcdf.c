@@ -2,7 +2,8 @@
  * files are HDF5, and read as such.
  *
  * The last dimension is x, the ones before y and z, then channel and time, as
- * with HDF5.  Coordinates and missing values follow the Climate and Forecast
+ * with HDF5, unless coordinates or sizes say otherwise (formats/axes.h).
+ * Coordinates and missing values follow the Climate and Forecast
  * conventions. */
 #include "formats/netcdf/netcdf.h"
 #include "formats/array.h"
@@ -172,6 +173,31 @@ static snow_status read_axis(const netcdf_header *header, snow_seekable *bytes,
     return values ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
 }
 
+/* The meaning of each axis. */
+static snow_status assign_axes(const netcdf_header *header,
+                               const netcdf_variable *v,
+                               int64_t sizes[NETCDF_MOST_AXES],
+                               snow_axes *out) {
+    snow_axis_hint hints[NETCDF_MOST_AXES] = {{0}};
+    for (int i = 0; i < NETCDF_MOST_AXES; i++) {
+        sizes[i] = size_of(header, v, i);
+        if (i >= v->axes)
+            continue;
+        int64_t dimension = v->axis[v->axes - 1 - i];
+        const netcdf_variable *c = coordinates_of(header, dimension);
+        const cf_words words = {header->dimensions[dimension].name,
+                                c ? c->units : "", c ? c->axis_name : "",
+                                c ? c->standard_name : ""};
+        hints[i] = snow_cf_hint(&words);
+    }
+    if (snow_axes_assign((int)v->axes, sizes, hints, out))
+        return SNOW_STATUS_OK;
+    return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
+                     "%.100s has more than three dimensions beside time and "
+                     "components; write one with fewer",
+                     v->name);
+}
+
 /* Fills info, and finds where the voxels are. */
 static snow_status
 describe_variable(const netcdf_header *header, const netcdf_variable *v,
@@ -179,30 +205,24 @@ describe_variable(const netcdf_header *header, const netcdf_variable *v,
                   snow_volume_info *info, snow_array *array) {
     uint64_t steps[NETCDF_MOST_AXES];
     cf_axis axes[3] = {{0}};
-    int64_t channel;
+    int64_t sizes[NETCDF_MOST_AXES], channel;
+    snow_axes roles;
     if (!lay_out(header, v, steps, &array->all))
         return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
                          "%.100s is empty or too large for any file; choose "
                          "another with --dataset",
                          v->name);
-    bool channels = v->axes == 5;
-    for (int i = 0; i < 3; i++) {
-        info->dims[i] = size_of(header, v, i);
-        array->step[i] = steps[i];
-        if (i < v->axes)
-            SNOW_TRY(
-                read_axis(header, bytes, v->axis[v->axes - 1 - i], &axes[i]));
-    }
+    SNOW_TRY(assign_axes(header, v, sizes, &roles));
+    for (int i = 0; i < 3; i++)
+        if (roles.space[i] >= 0)
+            SNOW_TRY(read_axis(header, bytes,
+                               v->axis[v->axes - 1 - roles.space[i]],
+                               &axes[i]));
     info->type = v->type;
-    info->times = size_of(header, v, channels ? 4 : 3);
-    SNOW_TRY(snow_volume_pick_channel(header->context, options,
-                                      channels ? size_of(header, v, 3) : 1,
-                                      &channel));
-    SNOW_TRY(
-        snow_volume_pick_time(header->context, "time step", options, info));
-    array->first = v->begin + (uint64_t)info->time * steps[channels ? 4 : 3];
-    if (channels)
-        array->first += (uint64_t)channel * steps[3];
+    SNOW_TRY(snow_volume_pick_axes(header->context, options, &roles, sizes,
+                                   info, &channel));
+    array->first = v->begin;
+    snow_array_place(&roles, steps, channel, info, array);
     array->big_endian = true;
     array->more = true;
     if (axes[0].given || axes[1].given || axes[2].given)

@@ -86,20 +86,18 @@ static snow_status refuse_archive(snow_source *source) {
                      ".npy files");
 }
 
-/* Finds the requested channel and time step. */
+/* Finds x, y and z, and the requested component or channel and time step. */
 static snow_status pick(snow_context *context,
                         const snow_volume_options *options, int axes,
                         const layout *lay, snow_volume_info *info,
                         snow_array *array) {
+    static const snow_axis_hint none[NPY_MOST_AXES];
     int64_t channel;
-    int time = axes == NPY_MOST_AXES ? 4 : 3;
-    info->times = lay->size[time];
-    SNOW_TRY(snow_volume_pick_channel(context, options,
-                                      time == 4 ? lay->size[3] : 1, &channel));
-    SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
-    array->first = (uint64_t)info->time * lay->step[time];
-    if (time == 4)
-        array->first += (uint64_t)channel * lay->step[3];
+    snow_axes roles;
+    snow_axes_assign(axes, lay->size, none, &roles);
+    SNOW_TRY(snow_volume_pick_axes(context, options, &roles, lay->size, info,
+                                   &channel));
+    snow_array_place(&roles, lay->step, channel, info, array);
     return SNOW_STATUS_OK;
 }
 
@@ -127,8 +125,6 @@ static snow_status read_npy(snow_source *source,
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "its shape is empty or too large for any file; save "
                          "the array again");
-    memcpy(info->dims, lay.size, sizeof info->dims);
-    memcpy(array.step, lay.step, sizeof array.step);
     array.all = lay.all;
     SNOW_TRY(pick(context, options, header.axes, &lay, info, &array));
     return snow_array_read(source, options, &array, info, out);

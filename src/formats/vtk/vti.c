@@ -13,8 +13,8 @@ static snow_status read_vti(snow_source *source,
     *info = snow_volume_info_default("vti");
     SNOW_TRY(snow_vti_read_header(source, options, &header));
     SNOW_TRY(snow_vtk_describe(context, &header.grid, &header.array, info));
-    SNOW_TRY(snow_volume_pick_channel(context, options, header.array.channels,
-                                      &channel));
+    SNOW_TRY(snow_volume_pick_component(context, options, header.array.channels,
+                                        info, &channel));
     SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
     snow_volume *volume = NULL;
     SNOW_TRY(snow_vti_read_data(source, &header, options, channel, info,

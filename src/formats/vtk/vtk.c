@@ -238,8 +238,11 @@ static snow_status take_array(vtk_reader *reader, const char *name,
                          "correct the sizes",
                          array.name, (long long)tuples, (long long)voxels,
                          array.cells ? "cells" : "points");
-    SNOW_TRY(snow_volume_pick_channel(reader->context, reader->options,
-                                      channels, &channel));
+    SNOW_TRY(reader->shares
+                 ? snow_volume_pick_channel(reader->context, reader->options,
+                                            channels, &channel)
+                 : snow_volume_pick_component(reader->context, reader->options,
+                                              channels, info, &channel));
     SNOW_TRY(snow_volume_pick_time(reader->context, "time step",
                                    reader->options, info));
     reader->found = true;

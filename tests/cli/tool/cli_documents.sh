@@ -29,6 +29,13 @@ for suffix in png npy; do
     done
 done
 
+# Vectors of three bytes.
+{
+    printf '\223NUMPY\1\0\166\0%-117s\n' \
+        "{'descr': '|u1', 'fortran_order': False, 'shape': (16, 16, 16, 3), }"
+    gzip -dc engine.raw.gz | tail -c +3000000 | head -c $((3 * 16 * 16 * 16))
+} >flow.npy
+
 mkdir slices
 head -c 4096 /dev/zero >slices/notes.txt
 for i in 0001 0002 0003; do

@@ -1,0 +1,257 @@
+/* formats/components.c - voxels with several values: one of them, or the
+ * magnitude of all.
+ *
+ * Readers give one component at a time.  The magnitude takes as many readings,
+ * with two volumes in memory at once. */
+#include "formats/components.h"
+#include "formats/array.h"
+#include "volume/mask.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define MAGNITUDE "magnitude"
+
+/* Voxels that are converted at once. */
+#define RUN ((int64_t)1024)
+
+/* The number of a component, -1 for the magnitude and for other texts. */
+static int64_t number_of(const char *text) {
+    static const char letters[] = "xyzw";
+    const char *at = *text && !text[1] ? strchr(letters, *text) : NULL;
+    int64_t number;
+    if (at)
+        return at - letters;
+    return snow_parse_int64(text, &number) && number >= 0 ? number : -1;
+}
+
+snow_status snow_component_check(snow_context *context,
+                                 const snow_volume_options *options) {
+    const char *text = options->component;
+    if (text && strcmp(text, MAGNITUDE) != 0 && number_of(text) < 0)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--component %.64s: not a component; give x, y, z, w, "
+                         "a number from 0, or magnitude",
+                         text);
+    if (text && options->channel)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--component and --channel name the same; give one "
+                         "of them");
+    return SNOW_STATUS_OK;
+}
+
+static snow_status refuse_magnitude(snow_context *context, int64_t count) {
+    if (count == 1)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--component " MAGNITUDE ": the voxels have one "
+                         "value; remove the option");
+    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                     "--component " MAGNITUDE ": the %lld values of a voxel "
+                     "are channels, not components of a vector; give a number",
+                     (long long)count);
+}
+
+snow_status snow_volume_pick_channel(snow_context *context,
+                                     const snow_volume_options *options,
+                                     int64_t channels, int64_t *out) {
+    const char *text = options->component;
+    const char *what = text && strcmp(text, "0") != 0 ? "component" : "channel";
+    if (text && !strcmp(text, MAGNITUDE))
+        return refuse_magnitude(context, channels);
+    *out = text ? number_of(text) : options->channel;
+    if (*out < 0 || *out >= channels)
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            "%s %lld does not exist; the voxels have %lld, counted from 0",
+            what, (long long)*out, (long long)channels);
+    if (channels > 1 && !text && !options->channel && !options->channel_given)
+        snow_notify(context,
+                    "channel 0 of %lld (counted from 0) is used; --channel N "
+                    "selects another",
+                    (long long)channels);
+    return SNOW_STATUS_OK;
+}
+
+/* As ParaView shows vectors: by their length.  Four components may be anything,
+ * and whole numbers are most often colours. */
+static bool is_vector(int64_t count, snow_type type) {
+    return (count == 2 || count == 3) &&
+           (type == SNOW_TYPE_FLOAT32 || type == SNOW_TYPE_FLOAT64);
+}
+
+snow_status snow_volume_pick_component(snow_context *context,
+                                       const snow_volume_options *options,
+                                       int64_t count, snow_volume_info *info,
+                                       int64_t *out) {
+    info->components = count;
+    bool named = options->component && !strcmp(options->component, MAGNITUDE);
+    if (named && count < 2)
+        return refuse_magnitude(context, count);
+    bool usual =
+        !options->component && !options->channel && !options->channel_given;
+    info->magnitude = named || (usual && is_vector(count, info->type));
+    if (!info->magnitude)
+        return snow_volume_pick_channel(context, options, count, out);
+    *out = 0;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_volume_pick_axes(snow_context *context,
+                                  const snow_volume_options *options,
+                                  const snow_axes *roles, const int64_t *sizes,
+                                  snow_volume_info *info, int64_t *channel) {
+    const int c = roles->channel, t = roles->time;
+    for (int i = 0; i < 3; i++)
+        info->dims[i] = roles->space[i] < 0 ? 1 : sizes[roles->space[i]];
+    info->times = t < 0 ? 1 : sizes[t];
+    SNOW_TRY(roles->interleaved
+                 ? snow_volume_pick_component(context, options, sizes[c], info,
+                                              channel)
+                 : snow_volume_pick_channel(context, options,
+                                            c < 0 ? 1 : sizes[c], channel));
+    return snow_volume_pick_time(context, "time step", options, info);
+}
+
+/* --- the magnitude -------------------------------------------------------- */
+
+/* Squares of floats cannot overflow in double precision; those of doubles
+ * can. */
+static double longer(double length, double value, snow_type type) {
+    return type == SNOW_TYPE_FLOAT32 ? sqrt(length * length + value * value)
+                                     : hypot(length, value);
+}
+
+/* Adds a component to the lengths so far.  Of the first one those are its own
+ * absolute values, which may take its place. */
+static void add_component(const snow_volume *from, bool first,
+                          snow_volume *to) {
+    const snow_volume_info *info = &from->info;
+    const snow_type type = to->info.type;
+    int64_t all = info->dims[0] * info->dims[1] * info->dims[2];
+    double values[RUN];
+    for (int64_t begin = 0; begin < all; begin += RUN) {
+        int64_t count = all - begin < RUN ? all - begin : RUN;
+        snow_volume_stored(from, begin, (size_t)count, values);
+        for (int64_t i = 0; i < count; i++) {
+            double value = info->slope * values[i] + info->intercept;
+            if (type == SNOW_TYPE_FLOAT32) {
+                float *at = (float *)to->owned + begin + i;
+                *at = (float)longer(first ? 0 : (double)*at, value, type);
+            } else {
+                double *at = (double *)to->owned + begin + i;
+                *at = longer(first ? 0 : *at, value, type);
+            }
+        }
+    }
+}
+
+/* The magnitude has a type of its own. */
+static void describe(snow_volume_info *info) {
+    info->type = snow_masked_type(info->type);
+    info->slope = 1;
+    info->intercept = 0;
+}
+
+/* Replaces the first component by its absolute values. */
+static snow_status begin_lengths(snow_context *context, snow_volume **volume) {
+    snow_volume *first = *volume, *made = first;
+    snow_volume_info info = first->info;
+    describe(&info);
+    if (info.type != first->info.type) {
+        snow_status status = snow_volume_new(context, &info, &made);
+        if (status != SNOW_STATUS_OK)
+            return status;
+    }
+    add_component(first, true, made);
+    made->info = info;
+    if (made != first)
+        snow_volume_close(first);
+    *volume = made;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status add_next(snow_context *context, snow_component_fn *read,
+                            void *user, const snow_volume_options *options,
+                            int64_t number, snow_volume *sum) {
+    char text[24];
+    snow_volume_options own = *options;
+    snow_volume_info info;
+    snow_volume *next = NULL;
+    snprintf(text, sizeof text, "%lld", (long long)number);
+    own.component = text;
+    SNOW_TRY(read(user, &own, &info, &next));
+    snow_status status = SNOW_STATUS_OK;
+    if (memcmp(next->info.dims, sum->info.dims, sizeof sum->info.dims) != 0)
+        status = snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                           "changed while it was read; try again");
+    else
+        add_component(next, false, sum);
+    snow_volume_close(next);
+    return status;
+}
+
+/* Remarks of the first reading hold for all. */
+static snow_status add_others(snow_context *context, snow_component_fn *read,
+                              void *user, const snow_volume_options *options,
+                              int64_t count, snow_volume **volume) {
+    SNOW_TRY(begin_lengths(context, volume));
+    snow_warning_fn *warning = context->warning;
+    snow_status status = SNOW_STATUS_OK;
+    context->warning = NULL;
+    for (int64_t i = 1; i < count && status == SNOW_STATUS_OK; i++)
+        status = add_next(context, read, user, options, i, *volume);
+    context->warning = warning;
+    return status;
+}
+
+/* An input that is gone shows what was read of it. */
+static snow_status keep_first(snow_context *context,
+                              const snow_volume_options *options,
+                              snow_volume_info *info) {
+    if (options->component)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--component " MAGNITUDE ": the input is read once "
+                         "for each component; write it to a file");
+    snow_notify(context,
+                "component 0 of %lld is used, as the input cannot be read "
+                "again for the magnitude; --component N selects another",
+                (long long)info->components);
+    info->magnitude = false;
+    return SNOW_STATUS_OK;
+}
+
+static void note_magnitude(snow_context *context, const snow_volume_info *info,
+                           const snow_volume_options *options) {
+    if (!options->component && !options->each_time)
+        snow_notify(context,
+                    "the magnitude of the %lld components is used; "
+                    "--component N selects one (from 0, or x, y, z)",
+                    (long long)info->components);
+}
+
+snow_status snow_components_read(snow_context *context, snow_component_fn *read,
+                                 void *user, bool once,
+                                 const snow_volume_options *options,
+                                 snow_volume_info *info, snow_volume **out) {
+    snow_volume *volume = NULL;
+    snow_status status = read(user, options, info, out ? &volume : NULL);
+    if (status == SNOW_STATUS_OK && info->magnitude && once)
+        status = keep_first(context, options, info);
+    if (status == SNOW_STATUS_OK && info->magnitude) {
+        note_magnitude(context, info, options);
+        if (out)
+            status = add_others(context, read, user, options, info->components,
+                                &volume);
+        describe(info);
+    }
+    if (status != SNOW_STATUS_OK) {
+        snow_volume_close(volume);
+        return status;
+    }
+    if (out) {
+        volume->info = *info;
+        *out = volume;
+    }
+    return SNOW_STATUS_OK;
+}
