@@ -1,8 +1,7 @@
 /* snowglass/look_file.h - looks from files, and into them: snowglass (our
  * JSON), slicer-vp, slicer-xml, paraview, niivue, pal, csv (docs/looks.md). The
  * content decides what a file is, and its name where that leaves two readings.
- * Content that is ignored is a warning. In libsnowglass-recipe, which needs
- * jansson. */
+ * Content that is ignored is a warning. In libsnowglass-recipe. */
 #ifndef SNOWGLASS_LOOK_FILE_H
 #define SNOWGLASS_LOOK_FILE_H
 

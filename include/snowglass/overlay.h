@@ -12,6 +12,7 @@
 SNOW_API snow_status snow_overlay_new(
     snow_context *context, int width, int height, snow_overlay **out);
 SNOW_API void snow_overlay_free(snow_overlay *overlay);
+
 /* Letters and bars keep off those before them, always, and where there is room
  * off alpha above 1/2 of this picture (NULL: none), which must live as long. */
 SNOW_API void snow_overlay_keep_off(snow_overlay *, const snow_image *);

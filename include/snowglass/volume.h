@@ -51,9 +51,8 @@ typedef struct snow_volume_info {
     char storage[160];   /* for people: level, axes, chunks, packing; or "" */
     char modality[17], description[65]; /* of a DICOM series; or "" */
     double window[2];    /* data values that the file would show; 0s: none */
-    bool hounsfield;     /* the file says that data values are in HU */
     int64_t components;  /* of a vector in the file; else 0 or 1 */
-    bool magnitude;      /* the values are the length of that vector */
+    bool hounsfield, magnitude; /* values are HU; lengths of that vector */
 } snow_volume_info;
 SNOW_RECORD(snow_volume_info);
 

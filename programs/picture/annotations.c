@@ -53,7 +53,8 @@ void annotations_find_unit(const options *opts, const snow_volume *volume,
     snow_volume_statistics of;
     snow_volume_statistics_init(&of);
     double ends[2] = {INFINITY, INFINITY}; /* lowest, -highest */
-    if (!opts->legend || whole->hounsfield || !whole->medical)
+    if (!opts->legend || whole->hounsfield || !whole->medical ||
+        *whole->modality)
         return;
     if (snow_volume_get_statistics(volume, &of) == SNOW_STATUS_OK &&
         of.finite > 0) {

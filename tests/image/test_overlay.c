@@ -268,7 +268,7 @@ static void letters_stand_out_on_any_background(void **state) {
             for (int y = 0; y < 64; y++) {
                 for (int i = 0; i < 4 * 512; i++)
                     row[i] = i % 4 == 3 ? 1 : (float)(grey % 11) / 10;
-                snow_overlay_draw(overlay, false, y, 0, side < 512 ? side : 512,
+                snow_overlay_draw(overlay, light, y, 0, side < 512 ? side : 512,
                                   4, row);
                 for (int i = 0; i < 4 * (side < 512 ? side : 512); i += 4) {
                     low = fminf(low, row[i]);
