@@ -61,6 +61,22 @@ static bool path_in(const char *folder, const char *name, char out[PATH_MAX]) {
            PATH_MAX;
 }
 
+static bool ends_with(const char *path, const char *end) {
+    size_t length = strlen(path), wanted = strlen(end);
+    return length >= wanted && strcmp(path + length - wanted, end) == 0;
+}
+
+/* Whether what a folder holds is a volume by itself, and no part of one that
+ * the folder should be: a slice, or an array of a Zarr group. */
+static bool stands_alone(const char *path, const snow_volume_info *info) {
+    if (strcmp(info->format, "dicom") == 0)
+        return is_folder(path);
+    if (strcmp(info->format, "zarr") == 0)
+        return ends_with(path, ".zarr");
+    return strcmp(info->format, "png") != 0 &&
+           (strcmp(info->format, "tiff") != 0 || info->dims[2] > 1);
+}
+
 static bool holds_volumes(const options *opts, const char *folder) {
     struct dirent **entries = NULL;
     snow_volume_info info = {.size = sizeof info};
@@ -69,7 +85,8 @@ static bool holds_volumes(const options *opts, const char *folder) {
     int count = entries_of(folder, &entries);
     for (int i = 0; i < count && !found; i++)
         found = path_in(folder, entries[i]->d_name, path) &&
-                inspect(opts, path, true, &info) == CONTINUE;
+                inspect(opts, path, true, &info) == CONTINUE &&
+                stands_alone(path, &info);
     free_entries(entries, count);
     return found;
 }
@@ -79,7 +96,8 @@ bool info_is_list(const options *opts) {
     if (opts->operand_count != 1)
         return opts->operand_count > 1;
     const char *path = opts->operands[0];
-    return is_folder(path) && inspect(opts, path, true, &info) != CONTINUE &&
+    return !opts->series && !opts->dataset && is_folder(path) &&
+           inspect(opts, path, true, &info) != CONTINUE &&
            holds_volumes(opts, path);
 }
 

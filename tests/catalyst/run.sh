@@ -12,7 +12,7 @@ cat >look.json <<'END'
 END
 
 tool_picture() {
-    "$TOOL" render field.raw --fit volume --dims 30x26x22 --type float64 \
+    "$TOOL" render field.raw --fit volume --background none --dims 30x26x22 --type float64 \
         --spacing 0.2x0.2x0.25 -o "$1" -y -q -s 200x160 -c viridis \
         --range 0,100 --opacity 20:0,90:0.8 --view iso
 }

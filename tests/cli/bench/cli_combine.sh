@@ -26,7 +26,7 @@ run 2 "a check without pixels" "$TOOL" bench combine --check --sizes-only
 for slab in 0 1 2; do
     run 0 "the picture of slab $slab" "$TOOL" render phantom:engine \
         --dims 24x24x24 --crop ":,:,$((8 * slab)):$((8 * slab + 8))" \
-        --size 40x30 --threshold 10 --azimuth 20 -o "slab_0$slab.png"
+        --background none --size 40x30 --threshold 10 --azimuth 20 -o "slab_0$slab.png"
 done
 run 0 "slabs in files" "$TOOL" bench combine --ranks 3 --runs 1 --check \
     --pattern slab_%02d.png

@@ -100,7 +100,7 @@ check "has other bytes" [ "$(cmp -s one.raw two.raw; echo $?)" -eq 1 ]
 # --- no note offers what was given -------------------------------------------
 
 quiet_note() { check "$NAME: no note" bash -c "! grep -q note: '$ERR'"; }
-"$TOOL" phantom:cube --dims 8x8x8 -q -s 8x8 -c viridis \
+"$TOOL" phantom:cube --dims 8x8x8 -q -s 8x8 -c viridis --background none \
     -o colours.png
 run 0 "colours" "$TOOL" info colours.png
 says "note: channel 0 of 4 .counted from 0. is used; --channel N selects another"

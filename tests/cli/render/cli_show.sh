@@ -28,12 +28,12 @@ sys.exit(child.wait())
 END
 unset KITTY_WINDOW_ID TERM_PROGRAM
 export TERM=xterm-256color
-picture="phantom:head --dims 40x40x40 -s 90x60 -q -c hot"
-run 0 "the picture as a file" "$TOOL" $picture -o a.png --background black
+picture="phantom:head --dims 40x40x40 -s 90x60 -q -c hot --background black"
+run 0 "the picture as a file" "$TOOL" $picture -o a.png
 run 0 "in a plain terminal" python3 terminal.py blocks "$TOOL" $picture --show
 check "no file is written" absent head.png
 run 0 "with an output" python3 terminal.py again "$TOOL" $picture --show \
-    -o b.png --background black
+    -o b.png
 check "the file is written too" cmp -s a.png b.png
 check "and the same is shown" cmp -s blocks again
 export KITTY_WINDOW_ID=1
