@@ -84,8 +84,9 @@ reference_scene value_picture_scene(int n) {
         s.settings.threshold = 40;
     s.opacities = looks[(size_t)n / 3 % COUNT(looks)].points;
     s.opacity_count = looks[(size_t)n / 3 % COUNT(looks)].count;
-    if (n % 7 == 3)
-        thicken(&s, 2 - n / 2 % 3, apart[n / 7 % 4]);
+    /* Of those that short sweeps draw, some at least are thick. */
+    if (n % 7 == 3 || n % 20 == 1 || n % 20 == 2)
+        thicken(&s, 2 - n / 2 % 3, apart[n % 4]);
     model_look(&s, backs[n / 2 % 6], ups[n / 2 % 3]);
     model_turn(&s, n % 2 ? 25 : -33, n * 37 % 70 - 35, n % 4 ? 0 : 15,
                zooms[n / 9 % 4]);
