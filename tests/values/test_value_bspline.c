@@ -13,7 +13,8 @@ static value_scene smoothed(int n) {
 
 static void pictures_are_the_references(void **state) {
     (void)state;
-    value_pictures_check(1, 8 * (int)support_stride(12), smoothed);
+    value_pictures_check((int)support_sweep(3, 59), 8 * (int)support_stride(12),
+                         smoothed);
 }
 
 static value_scene punched(int n) {

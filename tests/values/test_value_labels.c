@@ -76,7 +76,8 @@ static bool has_labels(int n) {
 static void pictures_are_the_references(void **state) {
     (void)state;
     model_stage stage = model_open();
-    for (int n = 1; n < VALUE_PICTURES; n += 8 * (int)support_stride(10)) {
+    for (int n = (int)support_sweep(1, 10); n < VALUE_PICTURES;
+         n += 8 * (int)support_stride(10)) {
         value_scene scene;
         if (!has_labels(n))
             continue;
