@@ -199,12 +199,12 @@ for way in "render mask.nrrd -o x.png" "render mask.nrrd -o x.png --cut equal" \
     "movie step0.nrrd step1.nrrd step2.nrrd -o x_%d.png"; do
     for ranks in 2 "$MOST"; do
         # shellcheck disable=SC2086
-        run 0 "$way by $ranks" launch "$ranks" "$MPI_TOOL" $way -y -s 32x32 \
+        run 7 "$way by $ranks" launch "$ranks" "$MPI_TOOL" $way -y -s 32x32 \
             --clip 0,0,1,-1000
         check "is told once" test "$(grep -c 'no voxel is left' "$ERR")" = 1
     done
 done
-run 0 "a mask of nothing" launch 3 "$MPI_TOOL" phantom:head --dims 40x36x44 \
+run 7 "a mask of nothing" launch 3 "$MPI_TOOL" phantom:head --dims 40x36x44 \
     -s 32x32 --mask mask.nrrd --labels 300 -y -o x.png
 says 'mask.nrrd: no voxel is left inside this mask, whose values are 0 to 220'
 run 0 "a mask of something" launch 3 "$MPI_TOOL" mask.nrrd -y -o x.png \

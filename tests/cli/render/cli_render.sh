@@ -238,6 +238,7 @@ check "PNG and JSON keep apart" grep -q '"checksum"' figures.json
 
 # Interruption: no picture, nothing aside, 130.
 for signal in TERM INT; do
+    rm -f stages
     set -m # else a job would ignore SIGINT
     "$TOOL" phantom:head --dims 200x200x200 -s 4000x4000 --progress always \
         --method original --footprint 9 -o late.png 2>stages &
@@ -251,6 +252,7 @@ for signal in TERM INT; do
 done
 
 # While the file is written the signal is let go: the picture becomes whole.
+rm stages
 "$TOOL" phantom:cube --dims 8x8x8 -s 4000x4000 --bits 16 --progress always \
     -o large.png 2>stages &
 job=$!
@@ -261,6 +263,7 @@ check "SIGTERM while writing ends as usual" [ $? -eq 0 ]
 check "with a whole picture" is_png large.png
 # Where this script comes too late, the picture is whole: then once more.
 for _ in $(seq 20); do
+    rm -f stages # or its last one is taken for the new one
     "$TOOL" phantom:cube --dims 8x8x8 -s 4000x4000 --bits 16 -y \
         --progress always -o second.png 2>stages &
     job=$!
@@ -276,6 +279,7 @@ check "a second signal ends the writing at once" [ $code -eq 130 ]
 check "and leaves no picture" absent second.png
 rm -f .second.png.snow-*
 mkfifo pipe.png
+rm stages
 "$TOOL" phantom:cube --dims 8x8x8 -s 9x9 --progress always -o pipe.png 2>stages &
 job=$!
 await writing stages

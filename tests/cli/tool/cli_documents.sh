@@ -1,6 +1,7 @@
 # tests/cli/tool/cli_documents.sh - every command that README and guides show works as
 # it stands: `script TOOL DATA`.  Stand-ins of the files that they name are made
-# from phantoms; the bench is left out, since it takes long.
+# from phantoms; the bench is left out, since it takes long, and what is shown in
+# a terminal.
 set -uo pipefail
 tool=$(realpath "$1")
 root=$(realpath "$(dirname "$0")/../../..")
@@ -13,6 +14,10 @@ for name in head.nii.gz ct.nii.gz mra.nii.gz brain.nii.gz organs.nii.gz ct.nrrd 
     sim.nrrd volume.mha scan.mha; do
     "$tool" phantom head --dims 32x32x32 -q -o "$name" || exit 1
 done
+# With values of Hounsfield units, and more.
+"$tool" convert head.nii.gz -q -y --type int16 --range 0,255 -o ct.nii.gz || exit 1
+mkdir scans
+cp head.nii.gz ct.nrrd scans
 "$tool" phantom engine -q -o engine.raw.gz || exit 1
 echo '{"input": "sim.nrrd", "output": "sim.png"}' >look.json
 "$tool" tf convert ct-bone -q -o bone.json || exit 1
@@ -66,7 +71,7 @@ commands() {
     sed -e ':a' -e '/\\$/N; s/\\\n *//; ta' "$root/README.md" \
         "$root"/docs/*.md "$root"/docs/measurements/*.md |
         sed -n 's/^    \(snowglass .*\)/\1/p' |
-        grep -v 'snowglass bench' | grep -Ev "$without" | sort -u
+        grep -Ev 'snowglass bench|--show' | grep -Ev "$without" | sort -u
 }
 
 # The short tier takes one in six.
