@@ -14,12 +14,14 @@
 #   plain    not run under sanitizers: it compares numbers with a reference in
 #            double, or looks at timing and memory of processes
 # The sanitized builds of the long tier run all but `long` and `plain`.
-set(SNOW_LABEL_long cli_large isa_neon isa_wasm simulate mpi_bench mpi_combine mpi_fail mpi_hosts
+set(SNOW_LABEL_long cli_documents cli_large cli_matrix cli_stream cli_turntable
+    isa_neon isa_wasm simulate mpi_bench mpi_combine mpi_fail mpi_hosts
     mpi_insitu mpi_kill mpi_modes mpi_other mpi_stall package_cmake
-    package_layout package_pkgconfig package_within)
-set(SNOW_LABEL_late catalyst cli_balance cli_bench cli_figures cli_measurements
-    mpi_comm oracle_vtk test_model_raycast test_value_model test_value_truth
-    test_value_views)
+    package_layout package_manual package_pkgconfig package_within)
+set(SNOW_LABEL_late catalyst cli_again cli_balance cli_bench cli_figures
+    cli_interrupt cli_measurements cli_shear_warp mpi_comm oracle_hdf5
+    oracle_vtk oracle_zarr test_comm test_model_raycast test_value_model
+    test_value_truth test_value_views)
 file(GLOB formats CONFIGURE_DEPENDS formats/test_*.c)
 list(TRANSFORM formats REPLACE ".*/(.*)[.]c$" "\\1")
 set(SNOW_LABEL_surface ${formats} test_base test_compare test_convert test_image
