@@ -367,5 +367,3 @@ def _files_of(pattern: str) -> list[tuple[int, str]]:
     if not found:
         raise FileNotFoundError(f"{pattern}: there is no such file")
     return sorted(found)
-
-
