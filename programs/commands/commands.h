@@ -28,10 +28,10 @@ snow_look look_options(const options *opts);
 int open_input(snow_context *context, const options *opts, const char *path,
                snow_volume **out);
 
-/* Tells the fault of the input's header, if it has one, before that of an
+/* Reports the fault of the input's header, if it has one, before that of an
  * output, since a user mends the input first; the second function reads it only
- * if one of `outputs`, which may be NULL, stands in the way.  Return CONTINUE or
- * an exit code. */
+ * if one of `outputs`, which may be NULL, stands in the way.  Return CONTINUE
+ * or an exit code. */
 int check_input(const options *opts);
 int check_input_first(const options *opts, const char *const *outputs,
                       size_t count);

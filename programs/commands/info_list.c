@@ -120,7 +120,7 @@ static void print_row(const char *path, const snow_volume_info *info,
     printf("\n");
 }
 
-/* Lists one volume; a fault is told, and the list goes on. */
+/* Lists one volume; a fault is printed, and the list goes on. */
 static int list_file(const options *opts, const char *path, json_t *list) {
     snow_volume_info info = {.size = sizeof info};
     int done = inspect(opts, path, false, &info);

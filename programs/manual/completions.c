@@ -1,4 +1,4 @@
-/* completions.c - completions for bash, zsh and fish.  Each shell is told the
+/* completions.c - completions for bash, zsh and fish.  Each shell gets the
  * verbs, the options that each verb takes and the words that their arguments
  * can be; other arguments are files or nothing. */
 #include "manual/manual.h"

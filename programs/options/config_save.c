@@ -291,10 +291,10 @@ static void write_command(FILE *out, const options *opts, const verb_row *verb,
     for (int i = 0; i < opts->operand_count; i++)
         add_word(out, opts->operands[i]);
     json_object_foreach((json_t *)tree, key, value) {
-        bool told = strcmp(key, "input") == 0 || strcmp(key, "verb") == 0 ||
-                    strcmp(key, "version") == 0;
+        bool always = strcmp(key, "input") == 0 || strcmp(key, "verb") == 0 ||
+                      strcmp(key, "version") == 0;
         const json_t *other = json_object_get(usual, key);
-        if (!told && !(other && json_equal(value, other)))
+        if (!always && !(other && json_equal(value, other)))
             add_option(out, key, value);
     }
 }

@@ -89,7 +89,7 @@ static int print_topic_page(topic which) {
 static int print_verb_page(const verb_row *row) {
     if (!row->bit)
         return fail_usage("%s is not built yet; %s", row->name, row->text);
-    if (row->bit == VERB_BENCH) { /* it reads and tells its own options */
+    if (row->bit == VERB_BENCH) { /* it reads and describes its own options */
         char *words[] = {NULL, "--help", NULL};
         return sibling_run("snowglass-bench", words);
     }

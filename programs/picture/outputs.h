@@ -19,7 +19,7 @@ bool same_place(const char *a, const char *b);
 int check_no_folder(const char *path);
 
 /* Whether nothing stands in the way of a new file of this name, as far as a
- * look at its folder tells. */
+ * look at its folder shows. */
 bool is_free(const char *path, bool overwrite);
 
 /* Checks before rendering whether the file of --stats can be written.  Returns

@@ -15,7 +15,7 @@
 static atomic_int held, movie, mute, pending;
 
 /* Where messages go. */
-static atomic_int told = STDERR_FILENO;
+static atomic_int message_fd = STDERR_FILENO;
 
 /* Whether the library asks; what SIGALRM did before. */
 static atomic_int guarded;
@@ -48,14 +48,14 @@ static void leave(int signal_number) {
     bool again = (held || guarded) && atomic_exchange(&pending, 1);
     if (again || !held) {
         if (!mute && !(again && guarded))
-            given = write(told, text, sizeof text - 1);
+            given = write(message_fd, text, sizeof text - 1);
         (void)given;
         if (again || !guarded)
             _exit(EXIT_INTERRUPTED);
         set_timer(INTERRUPT_SECONDS);
     }
     if (held && movie && !mute)
-        given = write(told, later, sizeof later - 1);
+        given = write(message_fd, later, sizeof later - 1);
     (void)given;
     errno = number;
 }
@@ -114,7 +114,7 @@ bool interrupt_seen(void) {
 }
 
 void interrupt_tell(int descriptor) {
-    told = descriptor;
+    message_fd = descriptor;
 }
 
 void interrupt_mute(void) {

@@ -57,7 +57,7 @@ static inline bool snow_spacing_given(const snow_volume_options *options) {
     return options->spacing[0] > 0;
 }
 
-/* The note about images that tell the size of a pixel but not the distance of
+/* The note about images that give the size of a pixel but not the distance of
  * their slices. */
 #define SNOW_WIDTH_IS_DISTANCE                                             \
     "the distance of the slices is taken to be the width of a pixel, %g; " \

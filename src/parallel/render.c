@@ -34,7 +34,7 @@
 
 /* Whether a picture has one pass, whose method leaves its local image to be
  * drawn, and needs no word of others first.  Ranks that have failed, or have a
- * new volume alone, may differ: synchronize_all tells. */
+ * new volume alone, may differ: synchronize_all finds out. */
 static bool is_ahead(const snow_in_flight *f) {
     const snow_picture *p = &f->picture;
     return p->job.settings.mode == SNOW_MODE_OVER && p->pass_count == 1 &&

@@ -173,7 +173,7 @@ snow_status snow_transfer_builder_points(const snow_look *points,
 }
 
 /* What is reported is used: a chosen value has five digits, and as many more as
- * its range needs to be told apart. */
+ * its range needs to be distinguished. */
 static double rounded(const snow_transfer_builder *builder, double value) {
     double span = builder->high - builder->low;
     double most = fmax(fabs(builder->low), fabs(builder->high));

@@ -17,8 +17,8 @@
 #define HDF5_NAME_BYTES 512
 
 /* The most objects of a file that a search visits, and groups within groups.
- * libhdf5 tells a group that it has seen by a count in the file; if that is
- * wrong, a link back to the root leads on without end. */
+ * libhdf5 recognises a group that it has seen by a count in the file; if that
+ * is wrong, a link back to the root leads on without end. */
 #define HDF5_MOST_OBJECTS 100000
 #define HDF5_MOST_DEPTH 64
 

@@ -143,11 +143,11 @@ static void add_header(advice *a, const snow_volume_options *options) {
 
 /* --- the name ------------------------------------------------------------- */
 
-/* What the words of a name tell; 0 where they do not. */
+/* What the words of a name say; 0 where they do not. */
 typedef struct hint {
     int64_t dims[3];
     snow_type type;
-    uint64_t size; /* bytes of a voxel, if the type is not told */
+    uint64_t size; /* bytes of a voxel, if the type is not given */
 } hint;
 
 /* A number of at most nine digits that is the whole word, else 0. */
@@ -192,7 +192,7 @@ static void read_hint(const char *name, hint *out) {
     }
 }
 
-/* Whether the name tells anything beyond what is known. */
+/* Whether the name says anything beyond what is known. */
 static bool is_news(const hint *h, const snow_volume_options *options) {
     if (h->dims[0] && memcmp(h->dims, options->dims, sizeof h->dims) != 0)
         return true;
@@ -202,7 +202,7 @@ static bool is_news(const hint *h, const snow_volume_options *options) {
            (!options->type || snow_type_size(options->type) != h->size);
 }
 
-/* Whether what the name tells, and else what is known, holds the bytes. */
+/* Whether what the name says, and else what is known, holds the bytes. */
 static bool hint_fits(const hint *h, uint64_t bytes,
                       const snow_volume_options *options) {
     uint64_t size = h->type ? snow_type_size(h->type) : h->size, all;

@@ -138,7 +138,7 @@ static void share_images(snow_context *context, tiff_plan *plan) {
 }
 
 /* ImageJ stores pixels per unit of length where others store those per inch on
- * paper, which have no meaning here.  Slices whose distance is not told are as
+ * paper, which have no meaning here.  Slices whose distance is not given are as
  * far apart as pixels. */
 static void set_spacing(snow_tiff *file, tiff_plan *plan,
                         snow_volume_info *info) {

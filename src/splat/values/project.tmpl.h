@@ -3,7 +3,7 @@
  * Included by tile.tmpl.h.
  *
  * Slabs whose values are all in an invisible run add nothing but that the ray
- * is there, and how long it is; where no voxel is a hole the geometry tells
+ * is there, and how long it is; where no voxel is a hole the geometry says
  * that. */
 
 /* Twice the mean of a slab's ends, in the sums of a row. */
