@@ -67,9 +67,6 @@ static int check_depth(const options *opts) {
     int done = check_depth_mode(opts);
     if (!path || done != CONTINUE)
         return done;
-    done = check_no_folder(path);
-    if (done != CONTINUE)
-        return done;
     if (snow_image_format_bits(path) != 0)
         return fail_usage("--depth: %s cannot hold depths; use a name that "
                           "ends in .npy, .pfm, .exr or .tif",
@@ -122,6 +119,12 @@ static int check_paths(snow_context *context, const options *opts) {
     int done = check_input_first(opts, paths, sizeof paths / sizeof *paths);
     if (done == CONTINUE)
         done = check_no_folder(opts->output);
+    if (done == CONTINUE && opts->depth)
+        done = check_no_folder(opts->depth);
+    if (done == CONTINUE && !is_stream(opts->output) &&
+        same_output(opts->output, opts->operands[0]))
+        return fail_usage("--output: is the input, which would be lost; name "
+                          "another file");
     if (done != CONTINUE)
         return done;
     snow_status status = snow_image_check(

@@ -77,16 +77,31 @@ static bool stands_alone(const char *path, const snow_volume_info *info) {
            (strcmp(info->format, "tiff") != 0 || info->dims[2] > 1);
 }
 
+/* The suffix of a name; "" also for numbers, as in slice.001. */
+static const char *suffix_of(const char *name) {
+    const char *dot = strrchr(name, '.');
+    return dot && dot[1 + strspn(dot + 1, "0123456789")] ? dot : "";
+}
+
+/* Of names with one suffix no more are read than up to the first slice: each
+ * slice of a series reads the headers of all others. */
 static bool holds_volumes(const options *opts, const char *folder) {
     struct dirent **entries = NULL;
     snow_volume_info info = {.size = sizeof info};
     char path[PATH_MAX];
+    const char *slices = NULL;
     bool found = false;
     int count = entries_of(folder, &entries);
-    for (int i = 0; i < count && !found; i++)
-        found = path_in(folder, entries[i]->d_name, path) &&
-                inspect(opts, path, true, &info) == CONTINUE &&
-                stands_alone(path, &info);
+    for (int i = 0; i < count && !found; i++) {
+        const char *suffix = suffix_of(entries[i]->d_name);
+        if (!path_in(folder, entries[i]->d_name, path) ||
+            (slices && strcmp(slices, suffix) == 0 && !is_folder(path)) ||
+            inspect(opts, path, true, &info) != CONTINUE)
+            continue;
+        found = stands_alone(path, &info);
+        if (!found)
+            slices = suffix;
+    }
     free_entries(entries, count);
     return found;
 }
@@ -96,9 +111,14 @@ bool info_is_list(const options *opts) {
     if (opts->operand_count != 1)
         return opts->operand_count > 1;
     const char *path = opts->operands[0];
-    return !opts->series && !opts->dataset && is_folder(path) &&
-           inspect(opts, path, true, &info) != CONTINUE &&
-           holds_volumes(opts, path);
+    if (opts->series || opts->dataset || !is_folder(path))
+        return false;
+    /* Slices among volumes of their own are no reason to hide these. */
+    if (inspect(opts, path, true, &info) == CONTINUE &&
+        strcmp(info.format, "dicom") != 0 && strcmp(info.format, "png") != 0 &&
+        strcmp(info.format, "tiff") != 0)
+        return false;
+    return holds_volumes(opts, path);
 }
 
 /* --- the list ------------------------------------------------------------- */

@@ -5,6 +5,7 @@
 #include "options/config_paths.h"
 
 #include <limits.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -71,11 +72,20 @@ static bool convert_write(const char *folder, const char *path,
                     to + (common > 1 ? common : 0)) < (int)(PATH_MAX - used);
 }
 
+/* The path of a file, without that of a dataset in it (run.h5:/density). */
 static void convert_text(json_t *text, const char *folder, convert *how) {
     char path[PATH_MAX];
     const char *given = json_string_value(text);
-    if (given && how(folder, given, path))
-        json_string_set(text, path);
+    const char *within = given ? strstr(given, ":/") : NULL;
+    char file[PATH_MAX], whole[2 * PATH_MAX];
+    if (!given)
+        return;
+    snprintf(file, sizeof file, "%.*s",
+             (int)(within ? within - given : (ptrdiff_t)strlen(given)), given);
+    if (!how(folder, file, path))
+        return;
+    snprintf(whole, sizeof whole, "%s%s", path, within ? within : "");
+    json_string_set(text, whole);
 }
 
 static void convert_tree(json_t *tree, const char *config, convert *how) {

@@ -2,11 +2,13 @@
 #define _XOPEN_SOURCE 700
 #include "picture/default_name.h"
 #include "commands/commands.h"
+#include "picture/outputs.h"
 #include "run/log.h"
 #include "run/start.h"
 
 #include <ctype.h>
 #include <limits.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,17 +30,22 @@ static void take_name(const char *path, char out[NAME_MAX + 1]) {
     snprintf(out, NAME_MAX + 1, "%.*s", (int)(end - name), name);
 }
 
-/* Removes a suffix such as .nrrd; that of a number, as in 1.2.840, is none. */
+/* Removes a suffix such as .nrrd; 1.2.840 has no suffix. */
 static void drop_suffix(char *name) {
     char *dot = strrchr(name, '.');
     if (dot && dot > name && isalpha((unsigned char)dot[1]))
         *dot = '\0';
 }
 
-/* "head" for scans/head.nii.gz, phantom:head, and a folder of that name. */
-static void name_of(const char *path, char out[NAME_MAX + 1]) {
+/* "head" for scans/head.nii.gz, head.h5:/a/b, phantom:head, and a folder of
+ * that name. */
+static void name_of(const char *given, char out[NAME_MAX + 1]) {
     struct stat what;
-    bool phantom = strncmp(path, "phantom:", 8) == 0;
+    bool phantom = strncmp(given, "phantom:", 8) == 0;
+    const char *within = strstr(given, ":/"); /* a dataset of a file */
+    char path[PATH_MAX];
+    snprintf(path, sizeof path, "%.*s",
+             (int)(within ? within - given : (ptrdiff_t)strlen(given)), given);
     take_name(phantom ? path + 8 : path, out);
     char *dot = strrchr(out, '.');
     bool folder = stat(path, &what) == 0 && S_ISDIR(what.st_mode) &&
@@ -62,6 +69,10 @@ int default_name(options *opts) {
     }
     if (strcmp(opts->operands[0], "-") == 0)
         return fail_usage("no output file given; add -o OUT.png");
+    if (strpbrk(opts->operands[0], "*?[%"))
+        return fail_usage("%s: a pattern gives the picture no name; add "
+                          "-o OUT.png",
+                          opts->operands[0]);
     name_of(opts->operands[0], name);
     snprintf(path, sizeof path, "%s.png", name);
     opts->output = path;
@@ -69,9 +80,11 @@ int default_name(options *opts) {
     if (!process_talks() || lstat(path, &what) != 0)
         return CONTINUE;
     int done = check_input_first(opts, &opts->output, 1);
-    return done == CONTINUE
-               ? fail_output("%s: exists, and is replaced only where it is "
-                             "named; give another name with -o, or -o %s -y",
-                             path, path)
-               : done;
+    if (done != CONTINUE)
+        return done;
+    if (same_place(path, opts->operands[0]))
+        return fail_output("%s: is the input; give another name with -o", path);
+    return fail_output("%s: exists, and is replaced only where it is named; "
+                       "give another name with -o, or -o %s -y",
+                       path, path);
 }

@@ -458,8 +458,9 @@ render_report render_state_report(const render_state *s) {
 }
 
 void render_state_note(const render_state *s) {
+    const char *view = s->opts->view;
     config_note(s->opts, s->transfer, s->settings.shade,
-                snow_view_name_for(&s->drawn.whole, s->opts->view));
+                view ? view : snow_view_name_for(&s->drawn.whole, NULL));
 }
 
 /* A range stretches a preset of data values with its opacities, which few
