@@ -67,6 +67,9 @@ static int check_depth(const options *opts) {
     int done = check_depth_mode(opts);
     if (!path || done != CONTINUE)
         return done;
+    done = check_no_folder(path);
+    if (done != CONTINUE)
+        return done;
     if (snow_image_format_bits(path) != 0)
         return fail_usage("--depth: %s cannot hold depths; use a name that "
                           "ends in .npy, .pfm, .exr or .tif",

@@ -153,7 +153,7 @@ static json_t *recipe_tree(snow_context *context, const snow_recipe *recipe) {
 
 /* What a look of the histogram and the default view came to. */
 static struct chosen {
-    json_t *colormap, *range, *opacity, *shade, *view;
+    json_t *preset, *colormap, *range, *opacity, *shade, *view;
 } chosen;
 
 /* Whether the transfer function has the colours of a map over its range. */
@@ -180,8 +180,13 @@ static const char *map_of(const options *opts, const snow_look *look) {
  * again, from the same values in the same way. */
 static void note_look(const options *opts, const snow_transfer *transfer) {
     snow_look look = {.size = sizeof look};
-    if (snow_transfer_get_look(transfer, &look) != SNOW_STATUS_OK ||
-        !map_of(opts, &look) || look.opacity_count > SNOW_RECIPE_POINTS_MAX)
+    if (snow_transfer_get_look(transfer, &look) != SNOW_STATUS_OK)
+        return;
+    if (look.preset) {
+        chosen.preset = json_string(look.preset);
+        return;
+    }
+    if (!map_of(opts, &look) || look.opacity_count > SNOW_RECIPE_POINTS_MAX)
         return;
     chosen.colormap = json_string(map_of(opts, &look));
     if (opts->range.kind == SNOW_RANGE_AUTO && isnan(opts->window)) {
@@ -213,7 +218,8 @@ static void set_chosen(json_t *tree) {
     const struct {
         const char *key;
         json_t **value;
-    } rows[] = {{"colormap", &chosen.colormap},
+    } rows[] = {{"preset", &chosen.preset},
+                {"colormap", &chosen.colormap},
                 {"range", &chosen.range},
                 {"opacity", &chosen.opacity},
                 {"shade", &chosen.shade},

@@ -269,6 +269,7 @@ static snow_status hounsfield_preset(const snow_histogram *histogram,
 }
 
 snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
+                                            bool any_range,
                                             snow_transfer_builder *builder) {
     bool log = histogram->log;
     snow_histogram_split p;
@@ -283,10 +284,10 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
     int preset = -1;
     if (slice)
         snow_window_of(histogram, builder, &p.low, &p.high);
-    else if (!p.fills_volume)
+    else if (any_range && !p.fills_volume)
         SNOW_TRY(hounsfield_preset(histogram, &preset));
     if (preset >= 0) {
-        builder->reason = snow_preset_name((size_t)preset);
+        builder->reason = builder->preset = snow_preset_name((size_t)preset);
         strcpy(builder->range_note, ", for Hounsfield units");
         return snow_transfer_builder_points(snow_preset_look((size_t)preset),
                                             histogram, builder);

@@ -88,7 +88,7 @@ snow_status snow_robust_range(const snow_histogram *histogram, double *low,
         *low = ends[0];
     if (*low > full[0] || *high < full[1])
         snprintf(builder->range_note, sizeof builder->range_note,
-                 "; few values, from %.5g to %.5g, are cut off", full[0],
+                 "; few values outside, the data are %.5g..%.5g", full[0],
                  full[1]);
     return SNOW_STATUS_OK;
 }

@@ -15,6 +15,7 @@
 typedef struct snow_transfer_builder {
     const char *name;    /* of the colours, for messages */
     const char *reason;  /* why these values, for messages */
+    const char *preset;  /* that was chosen; NULL: none */
     char range_note[64]; /* how the range was chosen, for messages; or "" */
     double low, high;    /* the range of data values */
     bool unshaded;       /* for pictures without shading */
@@ -103,8 +104,10 @@ typedef struct snow_histogram_split {
 snow_status snow_histogram_split_at(const snow_histogram *histogram,
                                     snow_histogram_split *out);
 
-/* The automatic look, without any request.  Errors: SNOW_STATUS_NO_MEMORY. */
+/* The automatic look; over values of its own only if these may have any range.
+ * Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
+                                            bool any_range,
                                             snow_transfer_builder *builder);
 
 /* Builds from points; if they lack colours or opacities, the builder's stay.

@@ -230,11 +230,13 @@ static snow_status fill_builder(const snow_histogram *histogram,
     builder->high = 1; /* without points, until it is stretched */
     if (need_of(histogram->volume, look) == SNOW_NEED_COUNTS &&
         (!points || !points->color_count || !points->opacity_count))
-        SNOW_TRY(snow_transfer_builder_automatic(histogram, builder));
+        SNOW_TRY(snow_transfer_builder_automatic(
+            histogram, look->range == SNOW_RANGE_AUTO, builder));
     snow_transfer_builder_round(builder);
     if (!points)
         return SNOW_STATUS_OK;
     builder->reason = look->base ? reason_of(look) : look->preset;
+    builder->preset = NULL;
     double low = builder->low, high = builder->high;
     SNOW_TRY(snow_transfer_builder_points(points, histogram, builder));
     builder->unshaded = builder->unshaded && !points->opacity_count;
@@ -353,6 +355,7 @@ static snow_status build(const snow_volume *volume,
         transfer, own ? look->gradient_opacities : builder->gradients,
         own ? look->gradient_opacity_count : builder->gradient_count);
     transfer->unshaded = builder->unshaded && !look->opacities;
+    transfer->preset = builder->preset;
     if (status == SNOW_STATUS_OK && builder->log)
         status = snow_transfer_set_log(transfer);
     if (status != SNOW_STATUS_OK) {

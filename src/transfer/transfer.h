@@ -14,8 +14,9 @@ struct snow_transfer {
     size_t color_count;       /* at least 1 */
     snow_opacity_point *opacities;
     size_t opacity_count;
-    bool unshaded; /* made for pictures without shading */
-    bool log;      /* interpolated in the logarithm of values, all above 0 */
+    const char *preset; /* that was chosen for a volume; NULL: none */
+    bool unshaded;      /* made for pictures without shading */
+    bool log; /* interpolated in the logarithm of values, all above 0 */
     snow_opacity_point *gradients;       /* factors by gradient magnitude */
     size_t gradient_count;               /* 0: no gradient opacity */
     bool grey;                           /* red = green = blue everywhere */
