@@ -52,7 +52,7 @@ typedef struct snow_volume_info {
     char modality[17], description[65]; /* of a DICOM series; or "" */
     double window[2];    /* data values that the file would show; 0s: none */
     int64_t components;  /* of a vector in the file; else 0 or 1 */
-    bool hounsfield, magnitude; /* values are HU; lengths of that vector */
+    bool hounsfield, magnitude, eight_bits; /* HU; lengths; bytes, masked */
 } snow_volume_info;
 SNOW_RECORD(snow_volume_info);
 
@@ -119,7 +119,7 @@ SNOW_API snow_status snow_volume_open_memory(snow_context *context,
 
 /* A volume over the caller's voxels, not copied, which must outlive it. Of
  * `info` dims, type, matrix (0s: identity), slope (0: 1), intercept, medical,
- * unit, modality and window count. */
+ * unit, modality, window, hounsfield and eight_bits count. */
 SNOW_API snow_status snow_volume_wrap(snow_context *context,
     const snow_volume_info *info, const void *voxels, snow_volume **out);
 

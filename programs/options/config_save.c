@@ -182,8 +182,8 @@ static void note_look(const options *opts, const snow_transfer *transfer) {
     snow_look look = {.size = sizeof look};
     if (snow_transfer_get_look(transfer, &look) != SNOW_STATUS_OK)
         return;
-    if (look.preset) {
-        chosen.preset = json_string(look.preset);
+    if (look.name) {
+        chosen.preset = json_string(look.name);
         return;
     }
     if (!map_of(opts, &look) || look.opacity_count > SNOW_RECIPE_POINTS_MAX)

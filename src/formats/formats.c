@@ -368,7 +368,8 @@ static snow_status open_one(snow_context *context, const char *path,
 typedef struct input {
     snow_context *context;
     const char *path;
-    const void *bytes; /* in memory; NULL: a file */
+    bool is_file;
+    const void *bytes; /* else, in memory */
     size_t size;
 } input;
 
@@ -376,7 +377,7 @@ static snow_status read_input(void *user, const snow_volume_options *options,
                               snow_volume_info *info, snow_volume **out) {
     const input *in = user;
     snow_source *source;
-    if (!in->bytes)
+    if (in->is_file)
         return open_one(in->context, in->path, options, info, out);
     snow_status status = snow_source_open_memory(in->context, in->path,
                                                  in->bytes, in->size, &source);
@@ -388,7 +389,7 @@ static snow_status read_input(void *user, const snow_volume_options *options,
 static snow_status open_path(snow_context *context, const char *path,
                              const snow_volume_options *options,
                              snow_volume_info *info, snow_volume **out) {
-    input in = {.context = context, .path = path};
+    input in = {.context = context, .path = path, .is_file = true};
     return snow_components_read(context, read_input, &in,
                                 snow_source_is_stream(path), options, info,
                                 out);
@@ -434,7 +435,7 @@ snow_status snow_volume_open_memory(snow_context *context, const char *name,
                                     const snow_volume_options *given,
                                     snow_volume **out) {
     snow_monitor monitor;
-    input in = {context, name, bytes, size};
+    input in = {context, name, false, bytes, size};
     snow_volume_info info;
     snow_volume_options options;
     SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_options, given, &options));

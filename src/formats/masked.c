@@ -162,7 +162,7 @@ static snow_status open_both(opening *o, snow_volume_info *info,
         SNOW_TRY(look_at_both(o));
     if (!out) {
         SNOW_TRY(o->open(o->context, o->path, &o->options, info, NULL));
-        info->type = snow_masked_type(info->type);
+        snow_mask_info(info);
         return SNOW_STATUS_OK;
     }
     SNOW_TRY(o->open(o->context, o->path, &o->options, &whole, &volume));

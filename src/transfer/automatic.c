@@ -255,7 +255,7 @@ static snow_status hounsfield_preset(const snow_histogram *histogram,
     const bool ct = !strcmp(info->modality, "CT");
     uint64_t counts[BINS_HU], all;
     if (histogram->log || !info->medical || (*info->modality && !ct) ||
-        snow_type_size(info->type) == 1 || !(histogram->min >= -4096) ||
+        snow_has_8_bits(info) || !(histogram->min >= -4096) ||
         !(histogram->min < (ct ? 0 : -900)) || !(histogram->max < 32768))
         return SNOW_STATUS_OK;
     SNOW_TRY(snow_count_bins(histogram, -1100, 2900, BINS_HU, counts, &all));

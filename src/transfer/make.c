@@ -167,7 +167,7 @@ static snow_status fit_values(const snow_histogram *histogram,
                          points->name);
     if (look->base || look->shift != 0 || !(histogram->min >= 0))
         return SNOW_STATUS_OK;
-    if (snow_type_size(histogram->volume->info.type) > 1 || builder->log ||
+    if (!snow_has_8_bits(&histogram->volume->info) || builder->log ||
         histogram->max > 255) {
         snow_notify(context,
                     "%s is for Hounsfield units, but the smallest value is %g: "
@@ -198,7 +198,7 @@ static snow_histogram_need need_of_range(const snow_volume *volume,
         return SNOW_NEED_RANGE;
     /* Hounsfield units (fit_values). */
     bool preset = look->range == SNOW_RANGE_AUTO && !look->base;
-    if (preset && snow_type_size(volume->info.type) == 1)
+    if (preset && snow_has_8_bits(&volume->info))
         return SNOW_NEED_COUNTS;
     return preset ? SNOW_NEED_SIGN : SNOW_NEED_NOTHING;
 }

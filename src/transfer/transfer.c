@@ -178,7 +178,7 @@ snow_status snow_transfer_get_look(const snow_transfer *transfer,
                                    snow_look *out) {
     const snow_look look = {
         .size = sizeof look,
-        .preset = transfer->preset,
+        .name = transfer->preset,
         .log = transfer->log,
         .colors = transfer->colors,
         .color_count = transfer->color_count,

@@ -177,9 +177,13 @@ snow_status snow_volume_convert(const snow_volume *volume, snow_type type,
     if (!type)
         c.type = exact_type(volume);
     set_limits(&c);
-    if (range)
+    if (range) {
         SNOW_TRY(set_range(volume, range, &c));
+        info.hounsfield = false;
+        memset(info.window, 0, sizeof info.window);
+    }
     info.type = c.type;
+    info.eight_bits = false;
     info.slope = 1;
     info.intercept = 0;
     SNOW_TRY(snow_volume_new(volume->context, &info, &made));

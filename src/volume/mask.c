@@ -165,6 +165,11 @@ snow_type snow_masked_type(snow_type type) {
                : SNOW_TYPE_FLOAT64;
 }
 
+void snow_mask_info(snow_volume_info *info) {
+    info->eight_bits |= snow_type_size(info->type) == 1;
+    info->type = snow_masked_type(info->type);
+}
+
 /* Which of a mask's values are inside. */
 typedef struct inside {
     const snow_label_range *labels;
@@ -252,7 +257,7 @@ snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
     inside in = {.labels = by->labels, .count = by->label_count, .last = NAN};
     snow_volume_info info = volume->info;
     snow_volume *made;
-    info.type = snow_masked_type(info.type);
+    snow_mask_info(&info);
     SNOW_TRY(snow_volume_new(volume->context, &info, &made));
     made->is_part = volume->is_part;
     made->lost_clip = volume->lost_clip;

@@ -19,6 +19,9 @@ typedef struct snow_cuts {
 /* The type that holds all values of another, and NaN. */
 snow_type snow_masked_type(snow_type type);
 
+/* Gives a volume that type. */
+void snow_mask_info(snow_volume_info *info);
+
 /* Whether mask and volume have the same voxels.  Errors: SNOW_STATUS_BAD_INPUT
  * (other sizes, another place). */
 snow_status snow_mask_check_grid(snow_context *context,

@@ -63,7 +63,8 @@ static snow_status new_stream(snow_context *context, const char *path,
                               uint64_t slab_bytes, snow_stream **out) {
     size_t bytes = sizeof **out + text_bytes(path) +
                    text_bytes(options->dataset) + text_bytes(options->series) +
-                   text_bytes(options->mask) + text_bytes(options->labels);
+                   text_bytes(options->component) + text_bytes(options->mask) +
+                   text_bytes(options->labels);
     snow_stream *stream = snow_allocate_clear(context, bytes);
     if (!stream)
         return SNOW_STATUS_NO_MEMORY;
@@ -71,6 +72,7 @@ static snow_status new_stream(snow_context *context, const char *path,
     stream->options = *options;
     stream->options.dataset = keep(options->dataset, &at);
     stream->options.series = keep(options->series, &at);
+    stream->options.component = keep(options->component, &at);
     stream->options.mask = keep(options->mask, &at);
     stream->options.labels = keep(options->labels, &at);
     stream->path = at;

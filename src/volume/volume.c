@@ -265,6 +265,8 @@ snow_status snow_volume_wrap(snow_context *context,
     own.slope = info.slope == 0 ? 1 : info.slope;
     own.intercept = info.intercept;
     own.medical = info.medical;
+    own.hounsfield = info.hounsfield;
+    own.eight_bits = info.eight_bits;
     memcpy(own.unit, info.unit, sizeof own.unit);
     own.unit[sizeof own.unit - 1] = 0;
     memcpy(own.modality, info.modality, sizeof own.modality - 1);

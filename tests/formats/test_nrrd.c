@@ -882,6 +882,10 @@ static void memory_has_no_other_files(void **state) {
                      SNOW_STATUS_BAD_INPUT);
     assert_non_null(strstr(snow_context_message(files.context),
                            "cannot be opened from here"));
+    /* Nor is a name one, where there are no bytes. */
+    assert_int_equal(snow_volume_open_memory(files.context, "phantom:head",
+                                             NULL, 0, NULL, &volume),
+                     SNOW_STATUS_BAD_INPUT);
     support_files_end(&files);
 }
 

@@ -12,7 +12,8 @@ typedef struct scene {
     snow_type type;
     snow_settings settings;
     double fov;
-    double step; /* degrees from picture to picture */
+    double first, step; /* degrees, and from picture to picture */
+    double thick;       /* how much farther apart slices are */
 } scene;
 
 typedef struct stage {
@@ -30,6 +31,9 @@ static void open_volume(stage *s, const char *name) {
         snow_volume_open_phantom(s->context, name, dims, 0, &volume),
         SNOW_STATUS_OK);
     s->volume = volume;
+    for (int row = 0; row < 3; row++)
+        volume->info.matrix[row][2] *= s->scene->thick;
+    snow_volume_info_measure(&volume->info);
     if (s->scene->type == SNOW_TYPE_UINT8)
         return;
     assert_int_equal(
@@ -89,7 +93,7 @@ static const snow_stats *check(const stage *s, double azimuth) {
 }
 
 static scene scene_of(const char *name, snow_type type, double step) {
-    scene s = {.name = name, .type = type, .step = step};
+    scene s = {.name = name, .type = type, .step = step, .thick = 1};
     snow_settings_init(&s.settings);
     s.settings.quality = SNOW_QUALITY_DRAFT;
     s.settings.threads = 2;
@@ -102,7 +106,8 @@ static void turn(const scene *what) {
     stage s;
     int encoded = 0, changes = 0, axis = -1;
     stage_begin(what, &s);
-    for (double azimuth = 0; azimuth < 360; azimuth += what->step) {
+    for (double azimuth = what->first; azimuth < what->first + 360;
+         azimuth += what->step) {
         const snow_stats *stats = check(&s, azimuth);
         encoded += stats->encoded;
         changes += axis >= 0 && stats->slice_axis != axis;
@@ -122,11 +127,18 @@ static void a_turn_encodes_for_its_first_picture_only(void **state) {
         scene_of("shells", SNOW_TYPE_FLOAT32, 11),
         scene_of("head", SNOW_TYPE_UINT8, 5),
         scene_of("engine", SNOW_TYPE_UINT8, 8),
+        scene_of("engine", SNOW_TYPE_UINT8, 6),
+        scene_of("shells", SNOW_TYPE_UINT16, 7),
     };
     scenes[1].settings.shade = SNOW_SHADE_NONE;
     scenes[3].settings.encoding = SNOW_ENCODING_CRS;
     scenes[4].fov = 30;
-    for (size_t n = support_start(0, 3); n < 5; n += support_stride(3))
+    for (int n = 5; n < 7; n++) { /* sheets are more along z than along x */
+        scenes[n].first = 90;
+        scenes[n].thick = n == 5 ? 9 : 40;
+        scenes[n].settings.quality = SNOW_QUALITY_NORMAL;
+    }
+    for (size_t n = support_start(0, 3); n < 7; n += support_stride(3))
         turn(&scenes[n]);
 }
 

@@ -448,6 +448,44 @@ static void ct_in_hounsfield_units_has_a_look_of_ct(void **state) {
     assert_true(opacity_at(transfer, 8) == 0);
     assert_true(near(opacity_at(transfer, 200), 0.85));
     snow_transfer_free(transfer);
+    /* So are those that a mask has left. */
+    static float floats[8000];
+    for (int i = 0; i < 8000; i++)
+        floats[i] = bytes[i];
+    eight.type = SNOW_TYPE_FLOAT32;
+    eight.eight_bits = true;
+    transfer = look_at_patient(context, floats, eight,
+                               (snow_look){.preset = "ct-bone"});
+    assert_true(near(opacity_at(transfer, 200), 0.85));
+    snow_transfer_free(transfer);
+    snow_context_free(context);
+}
+
+/* A range that is asked for is that of a grey look, and the look that was found
+ * makes the same one. */
+static void what_is_known_of_an_automatic_look_makes_it_again(void **state) {
+    (void)state;
+    static int16_t ct[8000];
+    const snow_volume_info patient = {.type = SNOW_TYPE_INT16, .medical = true};
+    snow_context *context = support_context();
+    for (int i = 0; i < 8000; i++)
+        ct[i] = (int16_t)(i % 2 ? i % 30 - 1000 : i % 3 ? 40 : 700);
+    assert_true(says(
+        look_at_patient(
+            context, ct, patient,
+            (snow_look){.range = SNOW_RANGE_VALUES, .low = 0, .high = 800}),
+        "from the histogram"));
+    snow_transfer *found =
+        look_at_patient(context, ct, patient, (snow_look){.low = 0});
+    snow_look look = {.size = sizeof look};
+    assert_int_equal(snow_transfer_get_look(found, &look), SNOW_STATUS_OK);
+    assert_string_equal(look.name, "ct-bone");
+    snow_transfer *again = look_at_patient(context, ct, patient, look);
+    for (double value = -1000; value < 800; value += 50)
+        assert_true(opacity_at(found, value) == opacity_at(again, value) &&
+                    red_at(found, value) == red_at(again, value));
+    snow_transfer_free(found);
+    snow_transfer_free(again);
     snow_context_free(context);
 }
 
@@ -493,6 +531,7 @@ int main(void) {
         cmocka_unit_test(presets_and_colour_maps_are_data),
         cmocka_unit_test(categories_are_not_mixed),
         cmocka_unit_test(ct_in_hounsfield_units_has_a_look_of_ct),
+        cmocka_unit_test(what_is_known_of_an_automatic_look_makes_it_again),
         cmocka_unit_test(a_projection_survives_a_hot_voxel),
         cmocka_unit_test(one_heap_of_values_is_a_solid_block),
     };

@@ -141,6 +141,24 @@ static void a_range_is_spread_over_the_type(void **state) {
             SNOW_TYPE_UINT8, range, "nan do not fit uint8");
 }
 
+/* What a file says of its values is not of those that were spread. */
+static void what_is_known_of_values_goes_with_them(void **state) {
+    support_place *place = *state;
+    static const int16_t from[] = {-1000, 0, 3000};
+    static const double range[] = {-1000, 3000};
+    for (int spread = 0; spread < 2; spread++) {
+        snow_volume *volume = shared(place, SNOW_TYPE_INT16, 3, from, 1, 0);
+        volume->info.hounsfield = true;
+        volume->info.window[0] = -160;
+        volume->info.window[1] = 240;
+        snow_volume *out =
+            converted(place, volume, SNOW_TYPE_INT32, spread ? range : NULL);
+        assert_int_equal(out->info.hounsfield, !spread);
+        assert_true(out->info.window[1] == (spread ? 0 : 240));
+        snow_volume_close(out);
+    }
+}
+
 static void a_scaling_goes_into_the_least_type_that_holds_it(void **state) {
     support_place *place = *state;
     static const uint8_t from[] = {0, 1, 200};
@@ -174,6 +192,7 @@ int main(void) {
         IN_A_PLACE(what_does_not_fit_is_refused),
         IN_A_PLACE(what_is_not_finite_stays_so_in_floats),
         IN_A_PLACE(a_range_is_spread_over_the_type),
+        IN_A_PLACE(what_is_known_of_values_goes_with_them),
         IN_A_PLACE(a_scaling_goes_into_the_least_type_that_holds_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

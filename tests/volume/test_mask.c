@@ -111,6 +111,11 @@ static void what_is_known_of_the_volume_stays(void **state) {
     snow_volume_statistics m = {.size = sizeof m};
     snow_volume_get_statistics(made, &m);
     assert_true(m.finite == 1 && m.min == -2.5 && m.max == -2.5);
+    assert_false(made->info.eight_bits);
+    snow_volume_close(made);
+    made = masked(place, row(place, SNOW_TYPE_UINT8, 2, mask),
+                  row(place, SNOW_TYPE_UINT8, 2, mask), NULL, 0);
+    assert_true(made->info.eight_bits);
     snow_volume_close(made);
 }
 

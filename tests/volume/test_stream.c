@@ -850,6 +850,33 @@ static void a_file_that_goes_away_or_changes_is_an_error(void **state) {
     }
 }
 
+/* Texts of options may go when the volume is open. */
+static void options_are_copied(void **state) {
+    support_place *place = *state;
+    char file[128 + 60], component[] = "y";
+    snow_volume_options options = {.size = sizeof options,
+                                   .component = component};
+    memcpy(file, "\x93NUMPY\1\0v\0", 10);
+    snprintf(file + 10, 119, "%-117s\n",
+             "{'descr': '|u1', 'fortran_order': False, "
+             "'shape': (2, 2, 5, 3)}");
+    for (int n = 0; n < 60; n++)
+        file[128 + n] = (char)n;
+    const char *path = support_place_put(place, "v.npy", file, sizeof file);
+    snow_volume *volume = stream_of(place, path, &options, 0);
+    memset(component, 'z', 1);
+    const snow_look look = {
+        .size = sizeof look, .preset = "linear", .range = SNOW_RANGE_FULL};
+    snow_transfer *transfer = NULL;
+    assert_int_equal(snow_transfer_new_for_volume(volume, &look, &transfer),
+                     SNOW_STATUS_OK);
+    double low, high;
+    snow_transfer_domain(transfer, &low, &high);
+    assert_true(low == 1 && high == 58);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+}
+
 static void streams_that_cannot_be_read_twice_are_refused(void **state) {
     support_place *place = *state;
     snow_volume *volume;
@@ -889,6 +916,7 @@ int main(void) {
         TEST(pictures_that_look_at_voxels_are_refused),
         TEST(all_else_that_looks_at_voxels_is_refused),
         TEST(a_file_that_goes_away_or_changes_is_an_error),
+        TEST(options_are_copied),
         TEST(streams_that_cannot_be_read_twice_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

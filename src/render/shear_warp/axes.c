@@ -177,6 +177,7 @@ void snow_value_prepare_axis(snow_value_path *path,
     ahead.placement = ahead.stored = &next;
     int pictures = find_next(params, from, axes->camera, &next);
     if (!pictures ||
+        !snow_value_fits(&params->volume->info, &next, params->settings) ||
         snow_value_order_make(path, &ahead, true, &order) != SNOW_STATUS_OK)
         return;
     snow_value_encoding *kept = &axes->kept[next.slice_axis];

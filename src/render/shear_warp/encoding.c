@@ -68,7 +68,7 @@ static int find_reach(const snow_value_path *path,
     if (path->lattice.perspective)
         return eye_reach(path, params) + is_cubic(path, params);
     double most = snow_value_lattice_reach(
-        &params->volume->info, params->placement, path->lattice.per_slice);
+        &params->volume->info, params->placement, params->settings->quality);
     /* snow_value_fits: not too much; of a cubic kernel voxels are one farther
      * away */
     return (int)ceil(most * (1 - 1e-5)) + is_cubic(path, params);

@@ -88,7 +88,7 @@ static void choose_sheets(const snow_volume_info *info, const snow_placement *p,
 }
 
 double snow_value_lattice_reach(const snow_volume_info *info,
-                                const snow_placement *p, int per_slice) {
+                                const snow_placement *p, snow_quality quality) {
     double most = 0;
     const int axes[2] = {p->u_axis, p->v_axis};
     for (int n = 0; n < 2; n++) {
@@ -98,15 +98,14 @@ double snow_value_lattice_reach(const snow_volume_info *info,
             length_of(info, p->slice_axis) / length_of(info, axes[n]);
         most = fmax(most, fmax(fabs(slope), ratio * (1 + 1e-6)));
     }
-    return most / per_slice;
+    return most / sheets_per_slice(info, p, quality, 0);
 }
 
 bool snow_value_fits(const snow_volume_info *info, const snow_placement *p,
                      const snow_settings *s) {
-    int per_slice = sheets_per_slice(info, p, s->quality, 0);
     if (p->perspective)
-        return snow_value_eye_fits(p, per_slice);
-    return ceil(snow_value_lattice_reach(info, p, per_slice)) +
+        return snow_value_eye_fits(p, sheets_per_slice(info, p, s->quality, 0));
+    return ceil(snow_value_lattice_reach(info, p, s->quality)) +
                (s->kernel == SNOW_KERNEL_BSPLINE) <=
            SNOW_VALUE_REACH_MOST;
 }

@@ -42,11 +42,12 @@ snow_value_lattice_make(snow_context *context, const snow_volume_info *info,
                         const snow_view *view, const snow_placement *placement,
                         snow_quality quality, snow_value_lattice *out);
 
-/* How many voxels a ray moves aside from one sheet to the next, whatever the
- * view; more than SNOW_VALUE_REACH_MOST where spacings differ too much.  In
- * perspective those of a view. */
+/* The most voxels that a ray moves aside from one sheet to the next, whatever
+ * the size of a voxel in the picture; more than SNOW_VALUE_REACH_MOST where
+ * spacings differ too much. */
 double snow_value_lattice_reach(const snow_volume_info *info,
-                                const snow_placement *placement, int per_slice);
+                                const snow_placement *placement,
+                                snow_quality quality);
 
 /* Moves the image by pixels along an axis. */
 void snow_value_lattice_move(snow_value_lattice *lattice, int axis, double by);
