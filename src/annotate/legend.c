@@ -172,10 +172,8 @@ static snow_status draw_colors(snow_overlay *overlay, const snow_transfer *t,
     const double left = bar->x0, right = bar->x1, top = bar->y0;
     const double bottom = bar->y1;
     int rows = bar->y1 - bar->y0;
-    float *colors = snow_allocate_array(overlay->context, (uint64_t)rows,
-                                        3 * sizeof(float));
-    if (!colors)
-        return SNOW_STATUS_NO_MEMORY;
+    float *colors = NULL;
+    SNOW_TRY(SNOW_RESERVE(overlay->context, colors, 0, 3 * rows));
     for (int n = 0; n < rows; n++) {
         double rgba[4];
         snow_transfer_evaluate(t, value_at(bar, bar->y0 + n + 0.5), rgba);

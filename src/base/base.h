@@ -41,7 +41,6 @@ struct snow_context {
     double progress_due; /* time of its next call */
     void *spare;         /* a block that the next volume may use for its voxels
                             (volume/stream.c); NULL: none */
-    size_t spare_bytes;
     bool leaves_clipped; /* a volume is opened for whom values next to clip
                             planes are nothing */
     char message[SNOW_MESSAGE_BYTES];
@@ -74,18 +73,39 @@ void *snow_allocate_clear(snow_context *context, size_t bytes);
 /* The same for an array; its size is checked for overflow. */
 void *snow_allocate_array(snow_context *context, uint64_t count, size_t size);
 
-/* Makes `*block` hold at least `bytes`, growing by half so that a sequence of
- * appends costs linear time; its first `keep` bytes are preserved. `*capacity`
- * is the block's size in bytes, 0 with a NULL block. On failure nothing
- * changes. */
+/* Makes a block of items, whose pointer `*block_pointer` is, hold at least
+ * `count`, growing by half so that a sequence of appends costs linear time; its
+ * first `keep` items are preserved. A NULL pointer gets a new block. On failure
+ * nothing changes. */
 snow_status snow_reserve(snow_context *context, void *block_pointer,
-                         size_t *capacity, size_t keep, size_t bytes);
+                         uint64_t keep, uint64_t count, size_t size);
+
+#define SNOW_RESERVE(context, block, keep, count)                        \
+    snow_reserve(context, &(block), (uint64_t)(keep), (uint64_t)(count), \
+                 sizeof *(block))
+
+/* The size of a block; 0 for NULL. */
+size_t snow_block_bytes(const void *block);
+
+/* Releases a block and forgets it. */
+#define SNOW_DROP(context, block) \
+    (snow_release(context, block), (void)((block) = NULL))
 
 /* --- checked sizes -------------------------------------------------------- */
 
 /* a * b or a + b into *out; false when it does not fit. */
 bool snow_mul_u64(uint64_t a, uint64_t b, uint64_t *out);
 bool snow_add_u64(uint64_t a, uint64_t b, uint64_t *out);
+
+/* --- records ------------------------------------------------------------- */
+
+/* Defines the initialiser of a record that grows at its end
+ * (snowglass/extend.h) and whose defaults are zeros. */
+#define SNOW_RECORD_OF_ZEROS(record)                      \
+    void record##_init_sized(record *made, size_t size) { \
+        snow_record_init(made, size, NULL, sizeof *made); \
+    }                                                     \
+    struct record
 
 /* --- time ----------------------------------------------------------------- */
 

@@ -15,8 +15,7 @@ static void draw_item(void *of, int64_t item, int worker) {
 
 snow_status snow_line_batch_begin(snow_context *context, snow_line_batch *b,
                                   const snow_line_batch_params *params) {
-    SNOW_TRY(snow_reserve(context, &b->finished, &b->finished_capacity, 0,
-                          (size_t)params->lines * sizeof *b->finished));
+    SNOW_TRY(SNOW_RESERVE(context, b->finished, 0, params->lines));
     for (int64_t line = 0; line < params->lines; line++)
         atomic_init(&b->finished[line], 0);
     b->context = context;

@@ -20,8 +20,7 @@ typedef struct snow_line_batch {
     void *job;
     int64_t lines, width, first; /* width: items of a line */
     bool whole;
-    atomic_int *finished;     /* items of each line */
-    size_t finished_capacity; /* bytes */
+    atomic_int *finished; /* items of each line */
 } snow_line_batch;
 
 /* What is drawn: item n is in line n / width.  `begin_at`, 0 to below 1, is the

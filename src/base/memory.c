@@ -1,7 +1,8 @@
 /* base/memory.c - all allocation.
  *
  * Every block is preceded by a header of one alignment unit, so that its size
- * is known when it is freed and the context can count its memory:
+ * is known: whoever lets it grow asks for it, and the context counts its
+ * memory:
  *
  *   raw ... | header { raw, bytes } pad | block, aligned to 64 ...
  */
@@ -21,8 +22,8 @@ typedef struct block_header {
 
 static_assert(sizeof(block_header) <= ALIGNMENT, "the header fits its unit");
 
-static block_header *header_of(void *block) {
-    return (block_header *)(void *)((char *)block - ALIGNMENT);
+static block_header *header_of(const void *block) {
+    return (block_header *)((uintptr_t)block - ALIGNMENT);
 }
 
 /* Whether so many bytes more are allowed; the context is locked. */
@@ -77,34 +78,38 @@ void *snow_allocate_clear(snow_context *context, size_t bytes) {
 }
 
 void *snow_allocate_array(snow_context *context, uint64_t count, size_t size) {
-    uint64_t bytes;
-    if (!snow_mul_u64(count, size, &bytes) || bytes > SIZE_MAX) {
-        snow_fail(context, SNOW_STATUS_NO_MEMORY,
-                  "%llu times %zu bytes exceed the address space; use a "
-                  "smaller volume or picture",
-                  (unsigned long long)count, size);
-        return NULL;
-    }
-    return snow_allocate(context, (size_t)bytes);
+    void *block = NULL;
+    (void)snow_reserve(context, &block, 0, count, size);
+    return block;
+}
+
+size_t snow_block_bytes(const void *block) {
+    return block ? header_of(block)->bytes : 0;
 }
 
 snow_status snow_reserve(snow_context *context, void *block_pointer,
-                         size_t *capacity, size_t keep, size_t bytes) {
-    if (bytes <= *capacity)
+                         uint64_t keep, uint64_t count, size_t size) {
+    uint64_t bytes;
+    if (!snow_mul_u64(count, size, &bytes) || bytes > SIZE_MAX)
+        return snow_fail(context, SNOW_STATUS_NO_MEMORY,
+                         "%llu times %zu bytes exceed the address space; use a "
+                         "smaller volume or picture",
+                         (unsigned long long)count, size);
+    void *old;
+    memcpy(&old, block_pointer, sizeof old);
+    size_t capacity = snow_block_bytes(old);
+    if (old && bytes <= capacity)
         return SNOW_STATUS_OK;
-    size_t wanted = *capacity + *capacity / 2;
+    size_t wanted = capacity + capacity / 2;
     if (wanted < bytes)
-        wanted = bytes;
+        wanted = (size_t)bytes;
     void *grown = snow_allocate(context, wanted);
     if (!grown)
         return SNOW_STATUS_NO_MEMORY;
-    void *old;
-    memcpy(&old, block_pointer, sizeof old);
     if (keep)
-        memcpy(grown, old, keep);
+        memcpy(grown, old, (size_t)keep * size);
     snow_release(context, old);
     memcpy(block_pointer, &grown, sizeof grown);
-    *capacity = wanted;
     return SNOW_STATUS_OK;
 }
 

@@ -9,8 +9,6 @@
 
 #include "base/exp_log.h"
 
-#include <string.h>
-
 #define TEMPLATE "classify/classify_row.tmpl.h"
 #include "volume/each_type.h"
 
@@ -62,9 +60,8 @@ bool snow_classify_value(const snow_classifier *c, double native,
 static snow_status make_table(snow_context *context, snow_classifier *c,
                               const struct type_row *row) {
     size_t values = (size_t)row->values, channels = (size_t)c->channels;
-    SNOW_TRY(snow_reserve(context, &c->keep, &c->keep_capacity, 0, values));
-    SNOW_TRY(snow_reserve(context, &c->table, &c->table_capacity, 0,
-                          values * channels * sizeof(float)));
+    SNOW_TRY(SNOW_RESERVE(context, c->keep, 0, values));
+    SNOW_TRY(SNOW_RESERVE(context, c->table, 0, values * channels));
     for (size_t i = 0; i < values; i++) {
         double native = (double)row->lowest + (double)i;
         c->keep[i] = snow_classify_value(c, native, c->table + i * channels) ||

@@ -25,7 +25,6 @@ typedef struct snow_row_block {
     uint32_t *columns; /* per entry */
     float *samples;    /* per entry: (grey, a) or (r, g, b, a) */
     int64_t room_rows; /* rows of the buffers; set by snow_row_block_make */
-    size_t row_end_capacity, columns_capacity, samples_capacity; /* bytes */
 } snow_row_block;
 
 /* Allocates a row block for slices of this placement, or reuses its memory
@@ -65,7 +64,6 @@ struct snow_classifier {
     snow_gradient_opacity gradient_opacity;
     bool gradient_opacity_premultiply;
     double gradient_opacity_exponent;
-    size_t keep_capacity, table_capacity; /* bytes */
 };
 
 /* Options of a classifier. */

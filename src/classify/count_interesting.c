@@ -128,10 +128,7 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
     counting c = {.block_counts = block_counts};
     snow_extent part;
     snow_volume_find_extent(volume, &part);
-    c.columns = snow_allocate_array(volume->context, (uint64_t)part.dims[0],
-                                    sizeof *c.columns);
-    if (!c.columns)
-        return SNOW_STATUS_NO_MEMORY;
+    SNOW_TRY(SNOW_RESERVE(volume->context, c.columns, 0, part.dims[0]));
     for (int64_t x = 0; x < part.dims[0]; x++)
         c.columns[x] = snow_block_counts_find(block_counts, 0, x);
     const snow_interesting_walk walk = {.volume = volume,

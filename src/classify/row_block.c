@@ -21,15 +21,10 @@ snow_status snow_row_block_make(snow_context *context,
         rows = 1;
     uint64_t voxels = (uint64_t)rows * (uint64_t)placement->columns;
     row_block->room_rows = rows;
-    SNOW_TRY(snow_reserve(context, &row_block->row_end,
-                          &row_block->row_end_capacity, 0,
-                          (size_t)rows * sizeof *row_block->row_end));
-    SNOW_TRY(snow_reserve(context, &row_block->columns,
-                          &row_block->columns_capacity, 0,
-                          (size_t)voxels * sizeof *row_block->columns));
-    return snow_reserve(
-        context, &row_block->samples, &row_block->samples_capacity, 0,
-        (size_t)voxels * (size_t)channels * sizeof *row_block->samples);
+    SNOW_TRY(SNOW_RESERVE(context, row_block->row_end, 0, rows));
+    SNOW_TRY(SNOW_RESERVE(context, row_block->columns, 0, voxels));
+    return SNOW_RESERVE(context, row_block->samples, 0,
+                        (size_t)voxels * (size_t)channels);
 }
 
 void snow_row_block_free(snow_context *context, snow_row_block *row_block) {

@@ -31,21 +31,15 @@ static void drop_buffers(snow_combiner *combiner) {
             *both[k] = (snow_traffic){0};
         }
     }
-    snow_release(context, combiner->rounds.shares);
-    snow_release(context, combiner->lines);
-    snow_release(context, combiner->ranks);
-    snow_release(context, combiner->table);
-    snow_release(context, combiner->layers);
-    snow_release(context, combiner->parts);
-    snow_release(context, combiner->words);
-    snow_release(context, combiner->part);
-    snow_release(context, combiner->region);
-    combiner->rounds.shares = NULL;
-    combiner->lines = combiner->ranks = combiner->table = NULL;
-    combiner->layers = NULL;
-    combiner->parts = NULL;
-    combiner->words = combiner->part = NULL;
-    combiner->region = NULL;
+    SNOW_DROP(context, combiner->rounds.shares);
+    SNOW_DROP(context, combiner->lines);
+    SNOW_DROP(context, combiner->ranks);
+    SNOW_DROP(context, combiner->table);
+    SNOW_DROP(context, combiner->layers);
+    SNOW_DROP(context, combiner->parts);
+    SNOW_DROP(context, combiner->words);
+    SNOW_DROP(context, combiner->part);
+    SNOW_DROP(context, combiner->region);
     combiner->needs = (snow_exchange_needs){0};
     combiner->shape = (snow_exchange_shape){0};
 }
@@ -128,37 +122,23 @@ static snow_status allocate_lists(snow_combiner *combiner) {
     snow_context *context = combiner->comm->context;
     const size_t rank_order = (size_t)combiner->comm->ranks;
     size_t peers = 8;
-    bool fine = true;
     for (int i = 0; i < combiner->rounds.count; i++)
         peers = more(peers, peers_in(&combiner->rounds, i));
     for (int i = 0; i < 2; i++) {
-        snow_traffic *in = &combiner->in[i], *out = &combiner->out[i];
-        fine = fine &&
-               (in->messages = snow_allocate_array(context, peers,
-                                                   sizeof *in->messages)) &&
-               (out->messages =
-                    snow_allocate_array(context, peers, sizeof *out->messages));
+        SNOW_TRY(SNOW_RESERVE(context, combiner->in[i].messages, 0, peers));
+        SNOW_TRY(SNOW_RESERVE(context, combiner->out[i].messages, 0, peers));
     }
-    fine =
-        fine &&
-        (combiner->rounds.shares =
-             snow_allocate_array(context, snow_rounds_room(&combiner->rounds),
-                                 sizeof(snow_share))) &&
-        (combiner->ranks =
-             snow_allocate_array(context, rank_order, sizeof(int))) &&
-        (combiner->table =
-             snow_allocate_array(context, rank_order, sizeof(int))) &&
-        (combiner->layers =
-             snow_allocate_array(context, peers, sizeof(snow_active))) &&
-        (combiner->parts =
-             snow_allocate_array(context, peers, sizeof(snow_part_to_send))) &&
-        (combiner->part = snow_allocate_array(
-             context, (uint64_t)most_held(combiner, 0) / 64 + 2,
-             sizeof(uint64_t)));
-    if (fine && combiner->shape.regions == SNOW_IMAGE_PARTITION_INTERLACED)
-        fine = (combiner->lines = snow_allocate_array(
-                    context, (uint64_t)combiner->shape.height, sizeof(int)));
-    return fine ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+    SNOW_TRY(SNOW_RESERVE(context, combiner->rounds.shares, 0,
+                          snow_rounds_room(&combiner->rounds)));
+    SNOW_TRY(SNOW_RESERVE(context, combiner->ranks, 0, rank_order));
+    SNOW_TRY(SNOW_RESERVE(context, combiner->table, 0, rank_order));
+    SNOW_TRY(SNOW_RESERVE(context, combiner->layers, 0, peers));
+    SNOW_TRY(SNOW_RESERVE(context, combiner->parts, 0, peers));
+    if (combiner->shape.regions == SNOW_IMAGE_PARTITION_INTERLACED)
+        SNOW_TRY(
+            SNOW_RESERVE(context, combiner->lines, 0, combiner->shape.height));
+    return SNOW_RESERVE(context, combiner->part, 0,
+                        most_held(combiner, 0) / 64 + 2);
 }
 
 /* Replaces a block by one of another size; its contents are lost. */

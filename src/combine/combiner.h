@@ -78,10 +78,8 @@ typedef struct snow_gather_state {
     int *children;           /* ranks that send to this one */
     int child_count, parent; /* parent -1: the display processor */
     unsigned char *bytes; /* blocks, this rank's first; NULL without children */
-    size_t capacity;
-    unsigned char *own; /* this rank's block in bytes; initially NULL */
-    size_t own_capacity;
-    unsigned char *slots;   /* the beginning of each child's message */
+    unsigned char *own;   /* this rank's block in bytes; initially NULL */
+    unsigned char *slots; /* the beginning of each child's message */
     snow_message *messages; /* of each child: its beginning, its rest */
     size_t *places;         /* offset of each child's blocks in bytes */
     int *queue;             /* children with long messages, in order */

@@ -41,12 +41,7 @@ static void drop_buffers(snow_combiner *combiner) {
     snow_release(context, state->messages);
     snow_release(context, state->places);
     snow_release(context, state->queue);
-    state->children = NULL;
-    state->bytes = state->slots = NULL;
-    state->messages = NULL;
-    state->places = NULL;
-    state->queue = NULL;
-    state->width = 0;
+    *state = (snow_gather_state){.radix = state->radix, .own = state->own};
 }
 
 void snow_gather_free(snow_combiner *combiner) {
@@ -118,20 +113,16 @@ static snow_status allocate_buffers(snow_combiner *combiner) {
     const int ranks = combiner->comm->ranks;
     int count = walk_tree(combiner->comm->rank, ranks, state->used_radix, NULL,
                           &state->parent);
-    const size_t some = (size_t)count + 1;
-    state->capacity = count ? most_bytes(state, ranks) : 0;
-    bool fine =
-        (state->children = snow_allocate_array(context, some, sizeof(int))) &&
-        (!count || (state->bytes = snow_allocate(context, state->capacity))) &&
-        snow_reserve(context, &state->own, &state->own_capacity, 0, EMPTY) ==
-            SNOW_STATUS_OK &&
-        (state->slots = snow_allocate_array(context, some, SLOT)) &&
-        (state->messages =
-             snow_allocate_array(context, 2 * some, sizeof(snow_message))) &&
-        (state->places = snow_allocate_array(context, some, sizeof(size_t))) &&
-        (state->queue = snow_allocate_array(context, some, sizeof(int)));
-    if (!fine)
-        return SNOW_STATUS_NO_MEMORY;
+    const int some = count + 1;
+    SNOW_TRY(SNOW_RESERVE(context, state->children, 0, some));
+    if (count)
+        SNOW_TRY(
+            SNOW_RESERVE(context, state->bytes, 0, most_bytes(state, ranks)));
+    SNOW_TRY(SNOW_RESERVE(context, state->own, 0, EMPTY));
+    SNOW_TRY(snow_reserve(context, &state->slots, 0, (uint64_t)some, SLOT));
+    SNOW_TRY(SNOW_RESERVE(context, state->messages, 0, 2 * some));
+    SNOW_TRY(SNOW_RESERVE(context, state->places, 0, some));
+    SNOW_TRY(SNOW_RESERVE(context, state->queue, 0, some));
     state->child_count =
         walk_tree(combiner->comm->rank, ranks, state->used_radix,
                   state->children, &state->parent);
@@ -185,8 +176,7 @@ snow_status snow_gather_reserve(snow_combiner *combiner, int width, int height,
         return SNOW_STATUS_OK;
     size_t bytes =
         EMPTY + run_count * SNOW_RUN_BYTES + (size_t)pixels * pixel_bytes;
-    return snow_reserve(combiner->comm->context, &state->own,
-                        &state->own_capacity, 0, bytes);
+    return SNOW_RESERVE(combiner->comm->context, state->own, 0, bytes);
 }
 
 /* Whether the gap before a run is shorter than the cost of the run. */
@@ -321,7 +311,7 @@ static snow_status append_beginning(snow_combiner *combiner, int child,
     const size_t here = state->messages[child].bytes;
     const uint64_t length = here >= HEAD ? message_length(state, child) : 0;
     if (here < HEAD || length < here - HEAD ||
-        length > state->capacity - in->used)
+        length > snow_block_bytes(state->bytes) - in->used)
         return snow_fail(combiner->comm->context, SNOW_STATUS_FAILED,
                          "rank %d sent more pixels than the picture has: runs "
                          "of different ranks must not overlap",

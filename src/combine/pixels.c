@@ -2,8 +2,6 @@
  * choice of one. */
 #include "combine/active.h"
 
-#include <string.h>
-
 #define TEMPLATE "combine/pixels_isa.h"
 #include "simd/each_isa.h"
 

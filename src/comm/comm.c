@@ -6,7 +6,6 @@
  * left. */
 #include "comm/comm.h"
 
-#include "base/record.h"
 SNOW_RECORD_OF_ZEROS(snow_comm_ops);
 
 snow_status snow_comm_new(snow_context *context, const snow_comm_ops *given,

@@ -1,5 +1,5 @@
 /* decompose/box.c - see snowglass/extend.h. */
-#include "decompose/box.h"
+#include <snowglass/extend.h>
 
 bool snow_box_intersect(const snow_box *a, const snow_box *b, snow_box *out) {
     snow_box shared;

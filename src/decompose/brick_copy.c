@@ -1,6 +1,6 @@
 /* decompose/brick_copy.c - copies a box of voxels between memories of any
  * strides. */
-#include "decompose/box.h"
+#include <snowglass/extend.h>
 
 #include <string.h>
 

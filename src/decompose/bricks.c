@@ -190,9 +190,7 @@ snow_status snow_partition_bricks(snow_context *context,
     tree t = {.counts = counts, .boxes = boxes};
     uint64_t corners = (uint64_t)(blocks[0] + 1) * (uint64_t)(blocks[1] + 1) *
                        (uint64_t)(blocks[2] + 1);
-    t.sums = snow_allocate_array(context, corners, sizeof *t.sums);
-    if (!t.sums)
-        return SNOW_STATUS_NO_MEMORY;
+    SNOW_TRY(SNOW_RESERVE(context, t.sums, 0, corners));
     sum_up(&t);
     node root = {.ranks = ranks};
     memcpy(root.end, blocks, sizeof root.end);

@@ -16,8 +16,6 @@
 
 #include "decompose/slab.h"
 
-#include <stdbool.h>
-
 #define SNOW_GROUP_RANKS 5
 #define SNOW_GROUPS (1 << SNOW_GROUP_RANKS)
 

@@ -94,9 +94,9 @@ static int take_boxes(const snow_box *boxes, int count,
 
 snow_status snow_order_boxes(snow_context *context, const snow_box *boxes,
                              int count, const snow_viewer *viewer, int *order) {
-    int *work = snow_allocate_array(context, (uint64_t)count * 2, sizeof *work);
-    if (!work)
-        return SNOW_STATUS_NO_MEMORY;
+    int *work = NULL;
+    SNOW_TRY(
+        snow_reserve(context, &work, 0, (uint64_t)count, 2 * sizeof *work));
     int *before = work, *found = work + count;
     memset(work, 0, (size_t)count * 2 * sizeof *work);
     snow_status status = SNOW_STATUS_OK;

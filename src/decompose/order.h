@@ -5,7 +5,6 @@
 #define SNOW_ORDER_H
 
 #include "base/base.h"
-#include "decompose/box.h"
 
 /* The viewer of the grid, in index space. */
 typedef struct snow_viewer {

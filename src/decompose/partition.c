@@ -185,10 +185,8 @@ snow_status snow_partition_counted(snow_context *context,
                                    int ranks, snow_box *boxes) {
     int axis = block_counts->grid.axis;
     int64_t items = block_counts->blocks[axis], all = 0;
-    int64_t *sums = snow_allocate_array(
-        context, (uint64_t)items + 1 + (uint64_t)ranks + 1, sizeof *sums);
-    if (!sums)
-        return SNOW_STATUS_NO_MEMORY;
+    int64_t *sums = NULL;
+    SNOW_TRY(SNOW_RESERVE(context, sums, 0, items + 1 + ranks + 1));
     for (int64_t i = 0; i < items; i++)
         all += block_counts->counts[i];
     sums[0] = 0;

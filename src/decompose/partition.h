@@ -10,7 +10,6 @@
 #define SNOW_DECOMPOSE_PARTITION_H
 
 #include "base/base.h"
-#include "decompose/box.h"
 
 /* What is partitioned, and where: along `axis`, the slices' axis, only before
  * voxels borders[0] = 0, borders[1], ... borders[count] = dims[axis], which

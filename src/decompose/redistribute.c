@@ -20,7 +20,6 @@
  * fastest. The work of a rank grows with its own boxes times ranks, plus the
  * boxes of all. */
 #include "comm/comm.h"
-#include "decompose/box.h"
 
 #include <string.h>
 
@@ -41,12 +40,11 @@ typedef struct block_message {
 /* All that is sent, received, or kept. */
 typedef struct traffic {
     portion *portions;
-    size_t portion_count, portion_bytes;
+    size_t portion_count;
     block_message *block_messages;
-    size_t block_message_count, block_message_bytes;
+    size_t block_message_count;
     int64_t voxels;
     char *buffer;
-    size_t buffer_bytes;
 } traffic;
 
 struct snow_voxels {
@@ -55,7 +53,6 @@ struct snow_voxels {
     snow_box wanted;
     traffic sent, received, kept;
     snow_message *messages; /* those received, then those sent */
-    size_t message_bytes;
     size_t ready; /* bytes of a value that buffers and messages fit; the same on
                      all ranks */
 };
@@ -120,13 +117,9 @@ static void free_box_table(snow_context *context, box_table *c) {
 }
 
 static snow_status make_box_table(snow_context *context, box_table *c) {
-    uint64_t boxes;
-    if (!snow_mul_u64((uint64_t)c->ranks, (uint64_t)c->most, &boxes))
-        boxes = UINT64_MAX;
-    c->wanted =
-        snow_allocate_array(context, (uint64_t)c->ranks, sizeof *c->wanted);
-    c->held = snow_allocate_array(context, boxes, sizeof *c->held);
-    return c->wanted && c->held ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+    SNOW_TRY(SNOW_RESERVE(context, c->wanted, 0, c->ranks));
+    return snow_reserve(context, &c->held, 0, (uint64_t)c->ranks,
+                        (size_t)c->most * sizeof *c->held);
 }
 
 /* Collective. Shares all boxes. Ranks with fewer than the maximum send empty
@@ -157,9 +150,8 @@ static snow_status take_box_table(snow_comm *comm, const snow_box *held,
 
 static snow_status add_portion(snow_context *context, traffic *t, int brick,
                                const snow_box *box) {
-    size_t size = sizeof *t->portions, n = t->portion_count;
-    SNOW_TRY(snow_reserve(context, &t->portions, &t->portion_bytes, n * size,
-                          (n + 1) * size));
+    SNOW_TRY(SNOW_RESERVE(context, t->portions, t->portion_count,
+                          t->portion_count + 1));
     t->portions[t->portion_count++] = (portion){brick, *box};
     return SNOW_STATUS_OK;
 }
@@ -181,9 +173,8 @@ static snow_status add_block_message(snow_context *context, traffic *t,
     }
     if (!p.portions)
         return SNOW_STATUS_OK;
-    size_t size = sizeof *t->block_messages, n = t->block_message_count;
-    SNOW_TRY(snow_reserve(context, &t->block_messages, &t->block_message_bytes,
-                          n * size, (n + 1) * size));
+    SNOW_TRY(SNOW_RESERVE(context, t->block_messages, t->block_message_count,
+                          t->block_message_count + 1));
     t->block_messages[t->block_message_count++] = p;
     t->voxels += p.count;
     return SNOW_STATUS_OK;
@@ -251,9 +242,7 @@ static snow_status plan_alone(snow_voxels *voxels, const box_table *c) {
     SNOW_TRY(check_whole(voxels));
     size_t messages =
         voxels->sent.block_message_count + voxels->received.block_message_count;
-    return snow_reserve(voxels->context, &voxels->messages,
-                        &voxels->message_bytes, 0,
-                        messages * sizeof *voxels->messages);
+    return SNOW_RESERVE(voxels->context, voxels->messages, 0, messages);
 }
 
 snow_status snow_voxels_plan(snow_voxels *voxels, const snow_box *held,
@@ -278,11 +267,7 @@ snow_status snow_voxels_plan(snow_voxels *voxels, const snow_box *held,
 
 static snow_status reserve_buffer(snow_context *context, traffic *t,
                                   size_t value) {
-    uint64_t bytes;
-    if (!snow_mul_u64((uint64_t)t->voxels, value, &bytes))
-        bytes = UINT64_MAX;
-    return snow_reserve(context, &t->buffer, &t->buffer_bytes, 0,
-                        (size_t)bytes);
+    return snow_reserve(context, &t->buffer, 0, (uint64_t)t->voxels, value);
 }
 
 /* Collective if values are larger than any before: the size so far is the same

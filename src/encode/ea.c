@@ -3,7 +3,7 @@
 #include "encode/encode.h"
 
 snow_status snow_sparse_grow_ea(snow_sparse *s, size_t size) {
-    SNOW_TRY(snow_reserve(s->context, &s->ea, &s->ea_capacity, s->ea_bytes,
+    SNOW_TRY(SNOW_RESERVE(s->context, s->ea, s->ea_bytes,
                           s->ea_bytes + size + SNOW_EA_MARGIN));
     memset(s->ea + s->ea_bytes, 0, size + SNOW_EA_MARGIN);
     s->ea_bytes += size;

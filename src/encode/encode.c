@@ -24,34 +24,35 @@ snow_encoding snow_encoding_choose(uint64_t voxels, uint64_t interesting,
 
 /* No slice is there yet. */
 static snow_status begin(snow_sparse *s, const snow_scheme *scheme,
-                         int64_t columns, int64_t rows) {
+                         int channels, int64_t columns, int64_t rows,
+                         int64_t slices) {
+    SNOW_TRY(SNOW_RESERVE(s->context, s->pa, 0, slices + 1));
     s->scheme = scheme;
+    s->channels = channels;
     s->columns = columns;
     s->rows = rows;
     s->filled = 0;
     s->ea_bytes = s->ia_voxels = 0;
     s->pa[0] = (snow_slice_pointer){0, 0};
-    return snow_reserve(s->context, &s->mask, &s->mask_capacity, 0,
-                        snow_mask_words(s) * sizeof *s->mask);
+    return SNOW_RESERVE(s->context, s->mask, 0, snow_mask_words(s));
+}
+
+snow_status snow_slice_check(snow_context *context, const snow_placement *p) {
+    return p->columns * p->rows <= (int64_t)UINT32_MAX
+               ? SNOW_STATUS_OK
+               : snow_fail(
+                     context, SNOW_STATUS_BAD_USAGE,
+                     "slices of %lldx%lld voxels are too large to encode: "
+                     "the limit is 4294967295 voxels; render a part of "
+                     "the volume",
+                     (long long)p->columns, (long long)p->rows);
 }
 
 snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
                               const snow_placement *placement, int channels) {
-    uint64_t voxels, pointers;
-    if (!snow_mul_u64((uint64_t)placement->columns, (uint64_t)placement->rows,
-                      &voxels) ||
-        voxels > UINT32_MAX ||
-        !snow_mul_u64((uint64_t)placement->slices + 1, sizeof *s->pa,
-                      &pointers))
-        return snow_fail(
-            s->context, SNOW_STATUS_BAD_USAGE,
-            "slices of %lldx%lld voxels are too large to encode: the limit is "
-            "4294967295 voxels; render a part of the volume",
-            (long long)placement->columns, (long long)placement->rows);
-    SNOW_TRY(
-        snow_reserve(s->context, &s->pa, &s->pa_capacity, 0, (size_t)pointers));
-    s->channels = channels;
-    return begin(s, scheme, placement->columns, placement->rows);
+    SNOW_TRY(snow_slice_check(s->context, placement));
+    return begin(s, scheme, channels, placement->columns, placement->rows,
+                 placement->slices);
 }
 
 snow_status snow_sparse_begin_slice(snow_sparse *s) {
@@ -60,10 +61,9 @@ snow_status snow_sparse_begin_slice(snow_sparse *s) {
 }
 
 snow_status snow_sparse_lend(snow_sparse *s, size_t voxels, float **samples) {
-    size_t sample = (size_t)s->channels * sizeof **samples;
-    SNOW_TRY(snow_reserve(s->context, &s->ia, &s->ia_capacity,
-                          s->ia_voxels * sample,
-                          (s->ia_voxels + voxels) * sample));
+    SNOW_TRY(snow_reserve(s->context, &s->ia, s->ia_voxels,
+                          s->ia_voxels + voxels,
+                          (size_t)s->channels * sizeof **samples));
     *samples = s->ia + s->ia_voxels * (size_t)s->channels;
     return SNOW_STATUS_OK;
 }
@@ -71,15 +71,10 @@ snow_status snow_sparse_lend(snow_sparse *s, size_t voxels, float **samples) {
 /* Appends samples to IA; they may be there already. */
 static snow_status add_samples(snow_sparse *s, const float *samples,
                                size_t count) {
-    size_t sample = (size_t)s->channels * sizeof *samples;
-    size_t bytes = s->ia_voxels * sample;
-    if (!count) /* IA may be NULL */
-        return SNOW_STATUS_OK;
-    SNOW_TRY(snow_reserve(s->context, &s->ia, &s->ia_capacity, bytes,
-                          bytes + count * sample));
-    float *end = s->ia + s->ia_voxels * (size_t)s->channels;
+    float *end;
+    SNOW_TRY(snow_sparse_lend(s, count, &end));
     if (samples != end)
-        memcpy(end, samples, count * sample);
+        memcpy(end, samples, count * (size_t)s->channels * sizeof *samples);
     s->ia_voxels += count;
     return SNOW_STATUS_OK;
 }
@@ -115,10 +110,7 @@ snow_status snow_sparse_end_slice(snow_sparse *s) {
 snow_status snow_sparse_begin_band(snow_sparse *s, const snow_scheme *scheme,
                                    int64_t columns, int64_t rows,
                                    int64_t slices) {
-    SNOW_TRY(snow_reserve(s->context, &s->pa, &s->pa_capacity, 0,
-                          ((size_t)slices + 1) * sizeof *s->pa));
-    s->channels = 0;
-    return begin(s, scheme, columns, rows);
+    return begin(s, scheme, 0, columns, rows, slices);
 }
 
 snow_status snow_sparse_add_masks(snow_sparse *s, const uint64_t *masks,

@@ -42,16 +42,14 @@ typedef struct snow_sparse {
 
     int64_t filled;    /* slices ended so far */
     unsigned char *ea; /* readable beyond its end */
-    size_t ea_bytes, ea_capacity;
+    size_t ea_bytes;
     /* IA holds samples (exact method), or the numbers of a band. */
     float *ia;
     int16_t *numbers;
-    size_t ia_voxels, ia_capacity, numbers_capacity; /* capacities in bytes */
-    snow_slice_pointer *pa;                          /* one more than slices */
-    size_t pa_capacity;
-    int64_t row;    /* next row of the slice being encoded */
-    uint64_t *mask; /* of a row */
-    size_t mask_capacity;
+    size_t ia_voxels;
+    snow_slice_pointer *pa; /* one more than slices */
+    int64_t row;            /* next row of the slice being encoded */
+    uint64_t *mask;         /* of a row */
     /* RLE, while encoding: the current run, which may still grow. */
     uint64_t run;
     bool run_interesting;
@@ -97,8 +95,12 @@ const snow_scheme *snow_scheme_of(snow_encoding encoding);
 snow_encoding snow_encoding_choose(uint64_t voxels, uint64_t interesting,
                                    uint64_t runs);
 
-/* Begins a sparse volume, empty. Errors: SNOW_STATUS_BAD_USAGE (a slice of 2^32
- * voxels or more), SNOW_STATUS_NO_MEMORY. */
+/* Errors: SNOW_STATUS_BAD_USAGE (a slice of 2^32 voxels or more). */
+snow_status snow_slice_check(snow_context *context,
+                             const snow_placement *placement);
+
+/* Begins a sparse volume, empty. Errors: as snow_slice_check,
+ * SNOW_STATUS_NO_MEMORY. */
 snow_status snow_sparse_begin(snow_sparse *sparse, const snow_scheme *scheme,
                               const snow_placement *placement, int channels);
 

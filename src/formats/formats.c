@@ -6,7 +6,6 @@
  * readers need not do it. */
 #include "formats/image_series.h"
 
-#include "base/record.h"
 #include "formats/components.h"
 #include "formats/masked.h"
 #include "formats/zarr/zarr.h"

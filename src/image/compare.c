@@ -12,7 +12,6 @@
  * no similarity. */
 #include "image/image.h"
 
-#include "base/record.h"
 #include <math.h>
 
 #define WINDOW 8

@@ -6,7 +6,6 @@
 #include "image/image.h"
 
 #include "base/module.h"
-#include "base/record.h"
 #include "image/overlay.h"
 
 #include <string.h>

@@ -6,8 +6,6 @@
  * not depend on the machine. */
 #include "image/image.h"
 
-#include "base/record.h"
-
 #include <string.h>
 
 SNOW_RECORD_OF_ZEROS(snow_image_options);

@@ -2,7 +2,6 @@
  * overlay: the contents of PNG, WebP and JPEG files and of movies' frames. */
 #include "image/image.h"
 
-#include "base/record.h"
 #include "image/overlay.h"
 #include "image/samples.h"
 
@@ -35,11 +34,9 @@ snow_status snow_levels_begin(const snow_image *image,
     plan(image, options, colored, out);
     uint64_t count = (uint64_t)image->width * (uint64_t)out->samples;
     uint64_t drawn = (uint64_t)image->width * (uint64_t)out->channels;
-    out->row = snow_allocate_array(context, count, sizeof(double));
-    out->bytes = snow_allocate_array(context, count, 2);
-    out->drawn = snow_allocate_array(context, drawn, sizeof(float));
-    return out->row && out->bytes && out->drawn ? SNOW_STATUS_OK
-                                                : SNOW_STATUS_NO_MEMORY;
+    SNOW_TRY(SNOW_RESERVE(context, out->row, 0, count));
+    SNOW_TRY(SNOW_RESERVE(context, out->bytes, 0, 2 * count));
+    return SNOW_RESERVE(context, out->drawn, 0, drawn);
 }
 
 void snow_levels_end(snow_levels *levels) {

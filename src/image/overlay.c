@@ -51,20 +51,19 @@ void snow_overlay_free(snow_overlay *overlay) {
 }
 
 static snow_status add_shape(snow_overlay *overlay, const snow_shape *shape) {
-    size_t used = overlay->shape_count * sizeof *shape;
-    SNOW_TRY(snow_reserve(overlay->context, &overlay->shapes,
-                          &overlay->shape_room, used, used + sizeof *shape));
+    SNOW_TRY(SNOW_RESERVE(overlay->context, overlay->shapes,
+                          overlay->shape_count, overlay->shape_count + 1));
     overlay->shapes[overlay->shape_count++] = *shape;
     return SNOW_STATUS_OK;
 }
 
 static snow_status add_numbers(snow_overlay *overlay, const float *numbers,
                                size_t count) {
-    size_t used = overlay->number_count * sizeof *numbers;
-    size_t more = count * sizeof *numbers;
-    SNOW_TRY(snow_reserve(overlay->context, &overlay->numbers,
-                          &overlay->number_room, used, used + more));
-    memcpy(overlay->numbers + overlay->number_count, numbers, more);
+    SNOW_TRY(SNOW_RESERVE(overlay->context, overlay->numbers,
+                          overlay->number_count,
+                          overlay->number_count + count));
+    memcpy(overlay->numbers + overlay->number_count, numbers,
+           count * sizeof *numbers);
     overlay->number_count += count;
     return SNOW_STATUS_OK;
 }

@@ -23,9 +23,9 @@ struct snow_overlay {
     bool grey;               /* no shape has a colour */
     const snow_image *below; /* the picture that shapes keep off, or NULL */
     snow_shape *shapes;
-    size_t shape_count, shape_room;
+    size_t shape_count;
     float *numbers;
-    size_t number_count, number_room;
+    size_t number_count;
 };
 
 /* Begins a shape of strokes; the following strokes belong to it. */

@@ -109,14 +109,14 @@ static int compare_paths(const void *a, const void *b) {
 /* Collected names one after another, each with its NUL. */
 typedef struct names {
     char *block;
-    size_t used, capacity, count;
+    size_t used, count;
 } names;
 
 static snow_status add_name(snow_context *context, names *all,
                             const char *folder, size_t folder_length,
                             const char *name) {
     size_t length = strlen(name) + 1;
-    SNOW_TRY(snow_reserve(context, &all->block, &all->capacity, all->used,
+    SNOW_TRY(SNOW_RESERVE(context, all->block, all->used,
                           all->used + folder_length + length));
     char *path = all->block + all->used;
     memcpy(path, folder, folder_length);

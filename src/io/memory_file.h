@@ -10,7 +10,7 @@
 typedef struct snow_memory_file {
     snow_context *context;
     unsigned char *bytes;
-    size_t size, capacity;
+    size_t size;
 } snow_memory_file;
 
 /* Writes bytes at a position; a gap after the end is filled with zeros. */
@@ -22,8 +22,7 @@ static inline snow_status snow_memory_file_put(snow_memory_file *store,
                          "the file is too large for memory; write less data");
     size_t end = (size_t)at + size;
     if (end > store->size) {
-        SNOW_TRY(snow_reserve(store->context, &store->bytes, &store->capacity,
-                              store->size, end));
+        SNOW_TRY(SNOW_RESERVE(store->context, store->bytes, store->size, end));
         if (at > store->size)
             memset(store->bytes + store->size, 0, (size_t)at - store->size);
         store->size = end;

@@ -18,12 +18,12 @@ struct snow_seekable {
 /* Reads all bytes of the source into a block that grows with them, as their
  * number is known only at the end. */
 static snow_status hold_all(snow_source *source, snow_seekable *store) {
-    size_t capacity = 0, used = 0, got;
+    size_t used = 0, got;
     do {
-        SNOW_TRY(snow_reserve(store->context, &store->bytes, &capacity, used,
+        SNOW_TRY(SNOW_RESERVE(store->context, store->bytes, used,
                               used + SNOW_FILTER_BYTES));
-        SNOW_TRY(snow_source_read(source, store->bytes + used, capacity - used,
-                                  &got));
+        SNOW_TRY(snow_source_read(source, store->bytes + used,
+                                  snow_block_bytes(store->bytes) - used, &got));
         used += got;
     } while (got);
     store->size = used;

@@ -85,12 +85,10 @@ snow_status snow_layers_prepare(snow_ranks *r, const snow_local *local,
     }
     size_t region = (size_t)lines_of(r, local, r->rank).count *
                     (size_t)local->width * pixel_bytes(local);
-    SNOW_TRY(
-        snow_reserve(r->context, &r->sent, &r->sent_capacity, 0, sent + 1));
-    SNOW_TRY(
-        snow_reserve(r->context, &r->came, &r->came_capacity, 0, came + 1));
-    return snow_reserve(r->context, &r->region, &r->region_capacity, 0,
-                        (SNOW_GROUP_RANKS + 1) * region + 1);
+    SNOW_TRY(SNOW_RESERVE(r->context, r->sent, 0, sent));
+    SNOW_TRY(SNOW_RESERVE(r->context, r->came, 0, came));
+    return snow_reserve(r->context, &r->region, 0, SNOW_GROUP_RANKS + 1,
+                        region);
 }
 
 /* --- messages ------------------------------------------------------------- */

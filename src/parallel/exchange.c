@@ -104,10 +104,10 @@ static snow_composite_op composite_op_of(snow_mode mode) {
 snow_status snow_in_flight_room(snow_in_flight *f, const snow_job *job,
                                 int layers) {
     snow_ranks *r = f->ranks;
-    size_t bytes = (size_t)layers * snow_job_bytes(job);
-    SNOW_TRY(snow_reserve(job->context, &r->images, &r->images_capacity, 0,
-                          bytes + 1));
-    memset(r->images, 0, bytes);
+    size_t bytes = snow_job_bytes(job);
+    SNOW_TRY(
+        snow_reserve(job->context, &r->images, 0, (uint64_t)layers, bytes));
+    memset(r->images, 0, (size_t)layers * bytes);
     f->picture.local.pixels = r->images;
     return SNOW_STATUS_OK;
 }

@@ -4,7 +4,6 @@
  * A row's first and last interesting voxel bound the others of it, in
  * perspective too. Bounds are largest values, which do not depend on the order
  * of rows, threads and ranks. */
-#include "base/record.h"
 #include "base/vec3.h"
 #include "classify/count_interesting.h"
 #include "comm/comm.h"
@@ -241,12 +240,9 @@ static snow_status fit_view(fit *f, snow_comm *comm, const snow_volume *volume,
 }
 
 static snow_status make_room(fit *f) {
-    f->cameras = snow_allocate_array(f->context, f->count, sizeof *f->cameras);
-    f->margins = snow_allocate_array(f->context, f->count, sizeof *f->margins);
-    f->bounds = snow_allocate_array(f->context, (uint64_t)f->settings.threads,
-                                    sizeof *f->bounds);
-    return f->cameras && f->margins && f->bounds ? SNOW_STATUS_OK
-                                                 : SNOW_STATUS_NO_MEMORY;
+    SNOW_TRY(SNOW_RESERVE(f->context, f->cameras, 0, f->count));
+    SNOW_TRY(SNOW_RESERVE(f->context, f->margins, 0, f->count));
+    return SNOW_RESERVE(f->context, f->bounds, 0, f->settings.threads);
 }
 
 /* The surface of mode iso is where values begin. */

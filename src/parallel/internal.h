@@ -96,14 +96,11 @@ struct snow_ranks {
      * lines around a piece; exact methods' images of nodes. */
     char *sent, *came;
     float *region, *lines, *images;
-    size_t sent_capacity, came_capacity, region_capacity, lines_capacity,
-        images_capacity; /* bytes, as all capacities */
-    size_t *offsets;     /* in `sent` and `came`, per rank */
+    size_t *offsets; /* in `sent` and `came`, per rank */
     /* This rank's pixels of the picture: runs, and pixels packed. */
     snow_pixel_run *runs;
     unsigned char *packed;
     float *rows; /* of the threads */
-    size_t runs_capacity, packed_capacity, rows_capacity;
     size_t run_count;
 };
 

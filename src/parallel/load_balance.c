@@ -1,7 +1,6 @@
 /* parallel/load_balance.c - see load_balance.h. */
 #include "parallel/load_balance.h"
 
-#include "base/record.h"
 #include "classify/gradient_opacity.h"
 #include "parallel/internal.h"
 #include "parallel/part.h"
@@ -171,13 +170,10 @@ static snow_load_balance_message own_word(const balancing *b,
 /* Collective.  What all ranks say. */
 static snow_status ask_all(balancing *b, snow_status status) {
     const snow_load_balance_message mine = own_word(b, status);
-    b->words =
-        snow_allocate_array(b->context, (uint64_t)b->ranks, sizeof *b->words);
-    b->boxes =
-        snow_allocate_array(b->context, (uint64_t)b->ranks, sizeof *b->boxes);
-    SNOW_TRY(snow_comm_agree_status(b->comm, b->words && b->boxes
-                                                 ? SNOW_STATUS_OK
-                                                 : SNOW_STATUS_NO_MEMORY));
+    snow_status room = SNOW_RESERVE(b->context, b->words, 0, b->ranks);
+    if (room == SNOW_STATUS_OK)
+        room = SNOW_RESERVE(b->context, b->boxes, 0, b->ranks);
+    SNOW_TRY(snow_comm_agree_status(b->comm, room));
     return snow_comm_allgather(b->comm, &mine, sizeof mine, b->words);
 }
 
@@ -189,17 +185,13 @@ static snow_status know_costs(balancing *b, double **out) {
     for (int rank = 0; rank < b->ranks; rank++)
         known = known && b->words[rank].known;
     if (!known) {
-        if (!*costs)
-            *costs = snow_allocate_array(b->context, (uint64_t)slices,
-                                         sizeof **costs);
         snow_status status = snow_comm_agree_status(
-            b->comm, *costs ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY);
+            b->comm, SNOW_RESERVE(b->context, *costs, 0, slices));
         if (status == SNOW_STATUS_OK)
             status = snow_partition_count(b->comm, &b->order, *b->volume,
                                           b->transfer, *costs);
         if (status != SNOW_STATUS_OK) { /* of all ranks: nobody knows any */
-            snow_release(b->context, *costs);
-            *costs = NULL;
+            SNOW_DROP(b->context, *costs);
             return status;
         }
     }

@@ -204,8 +204,8 @@ static snow_status prepare_turn(snow_in_flight *f) {
     snow_viewer viewer;
     alphas.channels = 1;
     SNOW_TRY(snow_in_flight_room(f, &alphas, 1));
-    SNOW_TRY(snow_reserve(job->context, &frame->layer, &frame->layer_capacity,
-                          0, snow_job_bytes(job)));
+    SNOW_TRY(
+        snow_reserve(job->context, &frame->layer, 0, 1, snow_job_bytes(job)));
     SNOW_TRY(snow_image_new(job->context, p->view.width, p->view.height, 1,
                             &p->near));
     memset(frame->layer, 0, snow_job_bytes(job));

@@ -2,7 +2,6 @@
  * who cut them (snowglass/extend.h). */
 #include "decompose/deterministic.h"
 
-#include "base/record.h"
 #include "render/ghosts.h"
 #include "render/settings_resolve.h"
 #include "transfer/look.h"
@@ -54,9 +53,8 @@ snow_status snow_ranks_have_order(snow_context *context,
     records r;
     SNOW_TRY(read_records(context, whole, view, NULL, &r));
     SNOW_TRY(snow_placement_make(context, &r.whole, &r.view, &placement));
-    int *order = snow_allocate_array(context, (uint64_t)count, sizeof *order);
-    if (!order)
-        return SNOW_STATUS_NO_MEMORY;
+    int *order = NULL;
+    SNOW_TRY(SNOW_RESERVE(context, order, 0, count));
     snow_clip_viewer(&placement, &viewer);
     snow_status status =
         snow_order_boxes(context, boxes, count, &viewer, order);

@@ -14,7 +14,6 @@
  * of all ranks cover the grid and do not overlap, before and after. */
 #include "parallel/open.h"
 
-#include "base/record.h"
 #include "classify/gradient_opacity.h"
 #include "decompose/slab.h"
 #include "parallel/part.h"
@@ -196,10 +195,9 @@ static snow_status make_transfer(const opening *o, const snow_volume *read,
 static snow_status open_equal(const opening *o,
                               const snow_partition_params *order,
                               snow_volume **volume, snow_transfer **transfer) {
-    snow_box *boxes =
-        snow_allocate_array(o->context, (uint64_t)order->ranks, sizeof *boxes);
-    snow_status status = SNOW_STATUS_NO_MEMORY;
-    if (boxes) {
+    snow_box *boxes = NULL;
+    snow_status status = SNOW_RESERVE(o->context, boxes, 0, order->ranks);
+    if (status == SNOW_STATUS_OK) {
         snow_partition_equal(&order->grid, order->ranks, boxes);
         snow_part_place p = snow_part_place_of(
             &o->whole, &boxes[snow_comm_rank(o->comm)], order->layers);

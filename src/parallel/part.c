@@ -1,7 +1,6 @@
 /* parallel/part.c - a rank's part of a volume, made of what all ranks hold. */
 #include "parallel/part.h"
 
-#include "base/record.h"
 #include "classify/gradient_opacity.h"
 #include "volume/clip_planes.h"
 #include "volume/mask.h"
@@ -148,10 +147,9 @@ snow_status snow_part_cut(snow_comm *comm, const snow_volume_info *whole,
                           const snow_volume *held,
                           const snow_transfer *transfer, snow_volume **out) {
     snow_context *context = snow_comm_context(comm);
-    snow_box *boxes =
-        snow_allocate_array(context, (uint64_t)order->ranks, sizeof *boxes);
+    snow_box *boxes = NULL;
     snow_status status = snow_comm_agree_status(
-        comm, boxes ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY);
+        comm, SNOW_RESERVE(context, boxes, 0, order->ranks));
     if (status == SNOW_STATUS_OK)
         status = snow_partition_boxes(comm, order, held, transfer, boxes, NULL);
     if (status == SNOW_STATUS_OK)

@@ -2,7 +2,6 @@
 #ifndef SNOW_PARALLEL_PART_H
 #define SNOW_PARALLEL_PART_H
 
-#include "decompose/box.h"
 #include "parallel/partition.h"
 
 /* A rank's box, and with its ghosts. */

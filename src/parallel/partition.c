@@ -1,7 +1,6 @@
 /* parallel/partition.c - from a picture and a number of ranks to boxes. */
 #include "parallel/partition.h"
 
-#include "base/record.h"
 #include "classify/count_interesting.h"
 #include "render/ghosts.h"
 #include "render/settings_resolve.h"
@@ -89,10 +88,9 @@ static snow_status count_all(snow_comm *comm,
                              const snow_transfer *transfer,
                              snow_block_counts *counts) {
     size_t blocks = snow_block_counts_blocks(counts);
-    snow_status status = SNOW_STATUS_NO_MEMORY;
-    counts->counts =
-        snow_allocate_array(volume->context, blocks, sizeof *counts->counts);
-    if (counts->counts) {
+    snow_status status =
+        SNOW_RESERVE(volume->context, counts->counts, 0, blocks);
+    if (status == SNOW_STATUS_OK) {
         memset(counts->counts, 0, blocks * sizeof *counts->counts);
         status = snow_count_interesting_blocks(
             volume, transfer, order->threshold, order->isa, counts);
@@ -163,9 +161,7 @@ snow_status snow_partition_costs(snow_context *context,
     snow_block_counts counts = snow_block_counts_for_slabs(&order->grid);
     size_t slices = snow_block_counts_blocks(&counts);
     double sum = 0;
-    counts.counts = snow_allocate_array(context, slices, sizeof *counts.counts);
-    if (!counts.counts)
-        return SNOW_STATUS_NO_MEMORY;
+    SNOW_TRY(SNOW_RESERVE(context, counts.counts, 0, slices));
     for (size_t n = 0; n < slices; n++)
         sum += costs[n];
     for (size_t n = 0; n < slices; n++)
@@ -197,10 +193,8 @@ snow_status snow_ranks_partition(const snow_volume *volume,
         .threshold = threshold,
         .isa = snow_isa_resolve(SNOW_ISA_AUTO)};
     order.cut = cut ? cut : choose_partition(&order, SNOW_METHOD_SHEAR_WARP);
-    snow_box *boxes =
-        snow_allocate_array(context, (uint64_t)ranks, sizeof *boxes);
-    if (!boxes)
-        return SNOW_STATUS_NO_MEMORY;
+    snow_box *boxes = NULL;
+    SNOW_TRY(SNOW_RESERVE(context, boxes, 0, ranks));
     snow_status status =
         snow_partition_boxes(NULL, &order, volume, transfer, boxes, loads);
     if (parts && status == SNOW_STATUS_OK)

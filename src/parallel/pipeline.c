@@ -17,7 +17,6 @@
  * same in the same order. */
 #include "parallel/internal.h"
 
-#include "base/record.h"
 #include "parallel/partition.h"
 
 #include <string.h>

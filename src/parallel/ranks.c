@@ -8,8 +8,7 @@ void snow_in_flight_end(snow_in_flight *f) {
     f->picture.drawing = NULL;
     snow_image_free(f->gathered);
     f->gathered = NULL;
-    snow_release(context, f->bytes);
-    f->bytes = NULL;
+    SNOW_DROP(context, f->bytes);
 }
 
 /* Pictures that nobody has asked for end here. */
@@ -42,21 +41,15 @@ void snow_ranks_free(snow_ranks *r) {
 
 static snow_status take_arrays(snow_ranks *r) {
     snow_context *context = r->context;
-    uint64_t count = (uint64_t)r->ranks;
-    bool fine =
-        (r->parts = snow_allocate_array(context, count, sizeof *r->parts)) &&
-        (r->boxes = snow_allocate_array(context, count, sizeof *r->boxes)) &&
-        (r->order = snow_allocate_array(context, count, sizeof *r->order)) &&
-        (r->firsts = snow_allocate_array(context, count, sizeof *r->firsts)) &&
-        (r->counts = snow_allocate_array(context, count, sizeof *r->counts)) &&
-        (r->offsets =
-             snow_allocate_array(context, count, sizeof *r->offsets)) &&
-        (r->messages = snow_allocate_array(context, 4 * count + 16,
-                                           sizeof *r->messages)) &&
-        (r->pictures = snow_allocate_array(context, SNOW_PICTURES_MOST,
-                                           sizeof *r->pictures));
-    return fine ? snow_combiner_new(r->comm, &r->combiner)
-                : SNOW_STATUS_NO_MEMORY;
+    SNOW_TRY(SNOW_RESERVE(context, r->parts, 0, r->ranks));
+    SNOW_TRY(SNOW_RESERVE(context, r->boxes, 0, r->ranks));
+    SNOW_TRY(SNOW_RESERVE(context, r->order, 0, r->ranks));
+    SNOW_TRY(SNOW_RESERVE(context, r->firsts, 0, r->ranks));
+    SNOW_TRY(SNOW_RESERVE(context, r->counts, 0, r->ranks));
+    SNOW_TRY(SNOW_RESERVE(context, r->offsets, 0, r->ranks));
+    SNOW_TRY(SNOW_RESERVE(context, r->messages, 0, 4 * r->ranks + 16));
+    SNOW_TRY(SNOW_RESERVE(context, r->pictures, 0, SNOW_PICTURES_MOST));
+    return snow_combiner_new(r->comm, &r->combiner);
 }
 
 static snow_status new_ranks(snow_frame *frame, snow_comm *comm) {

@@ -49,9 +49,9 @@ snow_status snow_lines_prepare(snow_ranks *r,
                                const snow_shear_warp_image *image) {
     int lines = image->warping->before + image->warping->behind;
     lines = lines < image->height ? lines : image->height;
-    return snow_reserve(r->context, &r->lines, &r->lines_capacity, 0,
+    return SNOW_RESERVE(r->context, r->lines, 0,
                         (size_t)lines * (size_t)image->width *
-                            (size_t)image->channels * sizeof *r->lines);
+                            (size_t)image->channels);
 }
 
 /* Sends and receives lines with one other rank. */
@@ -243,12 +243,9 @@ static size_t place_pixels(const warp_job *job) {
 static snow_status reserve_pixels(snow_ranks *r, size_t pixels, size_t lines,
                                   int channels, size_t row_floats) {
     size_t bytes = (size_t)channels * sizeof(float);
-    SNOW_TRY(snow_reserve(r->context, &r->packed, &r->packed_capacity, 0,
-                          pixels * bytes + 1));
-    SNOW_TRY(snow_reserve(r->context, &r->runs, &r->runs_capacity, 0,
-                          most_runs(pixels, lines) * sizeof *r->runs));
-    return snow_reserve(r->context, &r->rows, &r->rows_capacity, 0,
-                        row_floats * sizeof *r->rows + 1);
+    SNOW_TRY(snow_reserve(r->context, &r->packed, 0, pixels, bytes));
+    SNOW_TRY(SNOW_RESERVE(r->context, r->runs, 0, most_runs(pixels, lines)));
+    return SNOW_RESERVE(r->context, r->rows, 0, row_floats);
 }
 
 static void pack_lines(const warp_job *job, int pixel_bits) {
@@ -279,9 +276,7 @@ snow_status snow_pixels_warp(snow_ranks *r, const snow_shear_warp_image *image,
     r->run_count = 0;
     if (!region->count)
         return SNOW_STATUS_OK;
-    warp.places = snow_allocate_array(job->context, height, sizeof(size_t));
-    if (!warp.places)
-        return SNOW_STATUS_NO_MEMORY;
+    SNOW_TRY(SNOW_RESERVE(job->context, warp.places, 0, height));
     size_t pixels = place_pixels(&warp);
     size_t row = width * (size_t)job->channels + image->warping->spare_floats;
     snow_status status = reserve_pixels(r, pixels, height, job->channels,

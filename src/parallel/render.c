@@ -25,7 +25,6 @@
 #include "parallel/internal.h"
 
 #include "image/image.h"
-#include "render/settings_resolve.h"
 #include "volume/volume.h"
 
 #include <string.h>

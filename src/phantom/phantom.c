@@ -89,12 +89,9 @@ static snow_status fill_phantom(const snow_phantom *phantom,
     size_t kept = (size_t)(box->count[0]) * box->value;
     bool whole = box->count[0] == box->dims[0];
     char *row = volume->owned, *wide = NULL;
-    if (!whole) {
-        wide = snow_allocate_array(volume->context, (uint64_t)box->dims[0],
-                                   box->value);
-        if (!wide)
-            return SNOW_STATUS_NO_MEMORY;
-    }
+    if (!whole)
+        SNOW_TRY(snow_reserve(volume->context, &wide, 0, (uint64_t)box->dims[0],
+                              box->value));
     for (int64_t k = 0; k < box->count[2]; k++) {
         snow_monitor_report(volume->context->monitor, SNOW_STAGE_READ,
                             (double)k, (double)box->count[2]);

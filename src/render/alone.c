@@ -4,7 +4,6 @@
  * order. */
 #include "image/image.h"
 #include "render/picture.h"
-#include "render/settings_resolve.h"
 #include "transfer/transfer.h"
 
 #include <math.h>
@@ -72,8 +71,7 @@ static snow_status new_depths(const snow_picture *p, snow_image **out) {
 /* The frame's layer, cleared for what is drawn into it. */
 static snow_status take_layer(snow_picture *p, size_t bytes, bool clear) {
     snow_frame *frame = p->frame;
-    SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,
-                          0, bytes));
+    SNOW_TRY(snow_reserve(frame->context, &frame->layer, 0, 1, bytes));
     if (clear)
         memset(frame->layer, 0, bytes);
     p->local.pixels = frame->layer;

@@ -1,7 +1,6 @@
 /* render/buffers.c - see buffers.h. */
 #include "render/buffers.h"
 
-#include "base/record.h"
 #include "image/image.h"
 #include "render/exact/exact.h"
 

@@ -1,5 +1,4 @@
 /* render/bytes.c - whether a picture can be made as bytes of the caller. */
-#include "base/record.h"
 #include "render/picture.h"
 
 snow_status snow_picture_check_bytes(snow_context *context,

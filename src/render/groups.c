@@ -53,8 +53,7 @@ static snow_status render_node(snow_picture *p, const snow_job *job,
     if (node.rank == 0)
         return render_group(p, job, first, pixels);
     float **spare = &frame->spare[node.rank - 1];
-    SNOW_TRY(snow_reserve(frame->context, spare,
-                          &frame->spare_capacity[node.rank - 1], 0, bytes));
+    SNOW_TRY(snow_reserve(frame->context, spare, 0, 1, bytes));
     memset(*spare, 0, bytes);
     bool rises = snow_group_rises(&job->placement, node);
     snow_group_node near = {node.rank - 1, 2 * node.index + !rises};

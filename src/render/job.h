@@ -8,7 +8,6 @@
 #include "composite/over.h"
 #include "decompose/slab.h"
 #include "render/modes/modes.h"
-#include "render/settings_resolve.h"
 #include "render/shear_warp/shear_warp.h"
 #include "splat/splat.h"
 #include "transform/clip.h"
@@ -28,9 +27,7 @@ struct snow_frame {
     snow_ranks_stats ranks_stats;
     snow_exact *exact;
     float *layer; /* local pixels that are not the picture's */
-    size_t layer_capacity;
-    float *spare[SNOW_GROUP_RANKS]; /* pictures of groups, to be combined */
-    size_t spare_capacity[SNOW_GROUP_RANKS];
+    float *spare[SNOW_GROUP_RANKS];  /* pictures of groups, to be combined */
     int64_t own_interesting;         /* of the part that was encoded last */
     snow_identity_transfer identity; /* of the pass; of modes but over */
     snow_mode_colors mode_colors;

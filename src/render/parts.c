@@ -4,7 +4,6 @@
 #include "classify/gradient_opacity.h"
 #include "render/ghosts.h"
 #include "render/modes/depth.h"
-#include "render/settings_resolve.h"
 
 #include <math.h>
 

@@ -2,10 +2,8 @@
  * is made in. */
 #include "render/picture.h"
 
-#include "base/record.h"
 #include "image/image.h"
 #include "render/modes/darken.h"
-#include "render/settings_resolve.h"
 
 #include <string.h>
 

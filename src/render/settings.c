@@ -1,9 +1,6 @@
 /* render/settings.c - the settings of a picture: their names and defaults.
  * settings_resolve.c finds what they mean for one volume. */
 #include "base/base.h"
-#include "base/record.h"
-
-#include <string.h>
 
 static const char *const methods[] = {
     [SNOW_METHOD_AUTO] = "auto",

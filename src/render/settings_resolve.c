@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <snowglass/snowglass.h>
-#include <string.h>
 
 /* Refuses a number outside of [low, high], or not a number. */
 static snow_status check_range(snow_context *context, const char *name,

@@ -4,7 +4,6 @@
 #define SNOW_RENDER_SETTINGS_RESOLVE_H
 
 #include "base/base.h"
-#include "base/record.h"
 
 /* Checks every setting and replaces what is 0 or AUTO by what is meant for
  * this volume, but for the encoding, which is measured later.

@@ -3,7 +3,6 @@
 #include "simd/isa.h"
 
 #include <snowglass/snowglass.h>
-#include <string.h>
 
 static const char *const names[] = {
     [SNOW_ISA_AUTO] = "auto", [SNOW_ISA_SCALAR] = "scalar",

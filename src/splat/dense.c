@@ -50,18 +50,14 @@ snow_status snow_dense_make(snow_context *context,
     if (same_shape(&d->shape, shape))
         return SNOW_STATUS_OK;
     size_t rows = (size_t)shape->rows;
-    size_t samples = row_floats(shape) * all_rows(shape) * sizeof(float);
-    size_t map_row = map_words(shape) * sizeof(uint32_t);
+    size_t samples = row_floats(shape) * all_rows(shape);
+    size_t map_row = map_words(shape);
     d->shape = (snow_dense_shape){0}; /* invalid if memory runs out */
-    SNOW_TRY(
-        snow_reserve(context, &d->samples, &d->samples_capacity, 0, samples));
-    SNOW_TRY(snow_reserve(context, &d->row_bits, &d->bits_capacity, 0,
-                          rows * map_row));
-    SNOW_TRY(snow_reserve(context, &d->reached, &d->reached_capacity, 0,
-                          map_rows(shape) * map_row));
-    SNOW_TRY(snow_reserve(context, &d->extents, &d->extents_capacity, 0,
-                          rows * sizeof *d->extents));
-    memset(d->samples, 0, samples);
+    SNOW_TRY(SNOW_RESERVE(context, d->samples, 0, samples));
+    SNOW_TRY(SNOW_RESERVE(context, d->row_bits, 0, rows * map_row));
+    SNOW_TRY(SNOW_RESERVE(context, d->reached, 0, map_rows(shape) * map_row));
+    SNOW_TRY(SNOW_RESERVE(context, d->extents, 0, rows));
+    memset(d->samples, 0, samples * sizeof *d->samples);
     memset(d->extents, 0, rows * sizeof *d->extents);
     d->stride = row_floats(shape);
     d->words = map_words(shape);

@@ -24,13 +24,12 @@ typedef struct snow_dense_shape {
 
 typedef struct snow_dense {
     snow_dense_shape shape;
-    size_t stride;      /* floats from row to row */
-    float *samples;     /* all rows, margins included */
-    size_t words;       /* 32-bit words of a row of the maps */
-    uint32_t *row_bits; /* per voxel row: windows that contain its voxels */
-    uint32_t *reached;  /* per row of windows; `words` to a row */
-    snow_span *extents; /* per voxel row: where it may be nonzero */
-    size_t samples_capacity, bits_capacity, reached_capacity, extents_capacity;
+    size_t stride;          /* floats from row to row */
+    float *samples;         /* all rows, margins included */
+    size_t words;           /* 32-bit words of a row of the maps */
+    uint32_t *row_bits;     /* per voxel row: windows that contain its voxels */
+    uint32_t *reached;      /* per row of windows; `words` to a row */
+    snow_span *extents;     /* per voxel row: where it may be nonzero */
     int64_t c0, c1, r0, r1; /* interesting voxels: columns c0 .. c1 - 1, rows r0
                                .. r1 - 1; c0 >= c1 if there are none */
     int64_t walked;         /* rows added so far */

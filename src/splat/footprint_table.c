@@ -11,7 +11,6 @@ snow_status snow_footprint_table_make(snow_context *context,
                                       const snow_scaled_kernel *scaled_kernel,
                                       int64_t voxels, int pixels,
                                       snow_footprint_table *taps) {
-    uint64_t count = (uint64_t)voxels;
     /* The most voxels that reach a pixel. */
     uint64_t reached =
         (uint64_t)fmin(ceil(2 * scaled_kernel->half) + 1, (double)voxels);
@@ -22,16 +21,11 @@ snow_status snow_footprint_table_make(snow_context *context,
                          "the footprints of %lld voxels on %d pixels need more "
                          "than 4294967295 weights; render a smaller picture",
                          (long long)voxels, pixels);
-    size_t of_ints = (size_t)count * sizeof *taps->first;
     taps->origin = NAN;
-    SNOW_TRY(
-        snow_reserve(context, &taps->first, &taps->first_capacity, 0, of_ints));
-    SNOW_TRY(
-        snow_reserve(context, &taps->count, &taps->count_capacity, 0, of_ints));
-    SNOW_TRY(snow_reserve(context, &taps->offset, &taps->offset_capacity, 0,
-                          of_ints));
-    return snow_reserve(context, &taps->weights, &taps->weights_capacity, 0,
-                        (size_t)weights * sizeof *taps->weights);
+    SNOW_TRY(SNOW_RESERVE(context, taps->first, 0, voxels));
+    SNOW_TRY(SNOW_RESERVE(context, taps->count, 0, voxels));
+    SNOW_TRY(SNOW_RESERVE(context, taps->offset, 0, voxels));
+    return SNOW_RESERVE(context, taps->weights, 0, weights);
 }
 
 void snow_footprint_table_fini(snow_context *context,

@@ -15,7 +15,6 @@ typedef struct snow_footprint_table {
     uint32_t *offset; /* per voxel: start of its weights */
     float *weights;
     double origin; /* pixel position of voxel 0 for these weights */
-    size_t first_capacity, count_capacity, offset_capacity, weights_capacity;
 } snow_footprint_table;
 
 /* Reserves memory for `voxels` voxels before `pixels` pixels, or reuses it

@@ -83,9 +83,8 @@ static snow_gather_fn *pick(snow_isa isa, int channels, int taps_u) {
 snow_status snow_places_make(snow_context *context, int width,
                              snow_places *places) {
     size_t pixels = ((size_t)width + CHUNK - 1) / CHUNK * CHUNK;
-    SNOW_TRY(snow_reserve(context, &places->window, &places->capacity, 0,
-                          13 * pixels * sizeof(int32_t) +
-                              pixels / CHUNK * sizeof(uint16_t)));
+    SNOW_TRY(snow_reserve(context, &places->window, 0, pixels / CHUNK,
+                          13 * CHUNK * sizeof(int32_t) + sizeof(uint16_t)));
     places->row_u = places->window + pixels;
     places->row_v = places->row_u + pixels;
     places->rest_u = (float *)(void *)(places->row_v + pixels);

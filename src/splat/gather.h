@@ -42,7 +42,6 @@ typedef struct snow_places {
     float *rest_u, *rest_v; /* fraction from there to the next row, 0 to 1 */
     float *u, *v;           /* or, for cubics, four weights for each pixel */
     uint16_t *reached;      /* chunk by chunk */
-    size_t capacity;        /* of the memory, which begins at `window` */
 } snow_places;
 
 /* Reserves memory for rows of `width` pixels; the record begins as zeros.

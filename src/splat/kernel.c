@@ -210,8 +210,7 @@ snow_scaled_kernel_table_make(snow_context *context,
         2 * (size_t)fmin(ceil(scaled_kernel->half * fine), HALF_CELLS_MOST);
     double scale = (double)cells / (2 * scaled_kernel->half);
     size_t all = cells + 2 * MARGIN_CELLS;
-    SNOW_TRY(snow_reserve(context, &out->cells, &out->capacity, 0,
-                          all * sizeof *out->cells));
+    SNOW_TRY(SNOW_RESERVE(context, out->cells, 0, all));
     snow_scaled_kernel_cell *table = out->cells;
     memset(table, 0, all * sizeof *table);
     /* A little inside the ends, where a half-open kernel is not 0. */

@@ -76,9 +76,8 @@ typedef struct snow_scaled_kernel_cell {
 
 typedef struct snow_scaled_kernel_table {
     snow_scaled_kernel_cell *cells;
-    float shift;     /* half the support and a margin of empty cells, voxels */
-    float scale;     /* cells per voxel */
-    size_t capacity; /* of cells, bytes */
+    float shift; /* half the support and a margin of empty cells, voxels */
+    float scale; /* cells per voxel */
     snow_scaled_kernel made_for;
 } snow_scaled_kernel_table;
 

@@ -75,8 +75,7 @@ snow_status snow_kernel_table_make(snow_context *context,
         padded = (taps + 3) / 4 * 4;
     int cells = (int)fmax(CELLS_MOST / scaled_kernel->wide, CELLS_LEAST);
     size_t row = (size_t)padded, rows = (size_t)cells + 2;
-    SNOW_TRY(snow_reserve(context, &phases->weights, &phases->capacity, 0,
-                          rows * row * sizeof *phases->weights));
+    SNOW_TRY(SNOW_RESERVE(context, phases->weights, 0, rows * row));
     memset(phases->weights, 0, rows * row * sizeof *phases->weights);
     /* Two rows at the end: phase 1, and one that is read with weight 0 when a
      * phase just below 1 is rounded up. */

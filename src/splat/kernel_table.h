@@ -21,7 +21,6 @@
 
 typedef struct snow_kernel_table {
     float *weights;     /* cells + 2 rows of `padded` floats */
-    size_t capacity;    /* bytes */
     int taps;           /* voxels in reach at most */
     int padded;         /* taps rounded up to 4; the rest have weight 0 */
     int cells;          /* phases per voxel */

@@ -31,9 +31,7 @@ snow_status snow_perspective_splatter_init(snow_context *context,
                                    .kernel = kernel,
                                    .support = support,
                                    .channels = channels};
-    s.rays = snow_allocate_array(context, pixels, sizeof *s.rays);
-    if (!s.rays)
-        return SNOW_STATUS_NO_MEMORY;
+    SNOW_TRY(SNOW_RESERVE(context, s.rays, 0, pixels));
     follow_rays(p, s.rays);
     *out = s;
     return SNOW_STATUS_OK;

@@ -208,7 +208,7 @@ snow_status snow_sheet_begin(snow_context *context, const snow_placement *image,
                              snow_sheet *sheet) {
     size_t bytes = (size_t)image->width * (size_t)(bottom - top) *
                    (size_t)channels * sizeof *sheet->pixels;
-    SNOW_TRY(snow_reserve(context, &sheet->pixels, &sheet->capacity, 0, bytes));
+    SNOW_TRY(snow_reserve(context, &sheet->pixels, 0, 1, bytes));
     memset(sheet->pixels, 0, bytes);
     sheet->width = image->width;
     sheet->height = image->height;

@@ -19,8 +19,7 @@
 typedef struct snow_sheet {
     int width, height, channels; /* of the image */
     int top, bottom;
-    float *pixels;   /* from row `top` on */
-    size_t capacity; /* of pixels, bytes */
+    float *pixels; /* from row `top` on */
     int x0, y0, x1, y1;
 } snow_sheet;
 

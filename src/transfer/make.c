@@ -6,7 +6,6 @@
  * used only if requested. */
 #include "transfer/look.h"
 
-#include "base/record.h"
 #include "volume/stream.h"
 
 #include <math.h>
@@ -142,9 +141,7 @@ static snow_status begin_builder(snow_context *context, const snow_look *look,
         bytes = UINT64_MAX;
     *builder =
         (snow_transfer_builder){.log = look->log || (points && points->log)};
-    builder->block = snow_allocate_array(context, bytes, 1);
-    if (!builder->block)
-        return SNOW_STATUS_NO_MEMORY; /* draft->block is to be freed even so */
+    SNOW_TRY(snow_reserve(context, &builder->block, 0, bytes, 1));
     builder->colors = builder->block;
     builder->opacities = (void *)(builder->colors + colors);
     builder->gradients = builder->opacities + opacities;

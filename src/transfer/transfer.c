@@ -2,8 +2,6 @@
  * text. */
 #include "transfer/transfer.h"
 
-#include "base/record.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

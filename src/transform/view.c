@@ -2,9 +2,7 @@
  *
  * In RAS world space anterior is +y, left -x, superior +z. A frame is right,
  * up, back, with back pointing from the target to the camera. */
-#include "base/vec3.h"
 
-#include "base/record.h"
 #include "transform/transform.h"
 #include "volume/volume.h"
 

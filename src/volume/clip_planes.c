@@ -138,9 +138,8 @@ static bool is_beyond(const snow_clip_planes *clip, const int64_t at[3],
 
 static snow_status keep_voxel(snow_clip_planes *clip, int64_t index,
                               double native) {
-    size_t size = sizeof *clip->voxels, used = clip->voxel_count * size;
-    SNOW_TRY(snow_reserve(clip->context, &clip->voxels, &clip->capacity, used,
-                          used + size));
+    SNOW_TRY(SNOW_RESERVE(clip->context, clip->voxels, clip->voxel_count,
+                          clip->voxel_count + 1));
     clip->voxels[clip->voxel_count++] = (snow_clipped_voxel){index, native};
     return SNOW_STATUS_OK;
 }

@@ -30,7 +30,7 @@ typedef struct snow_clip_planes {
     snow_index_plane *planes;
     size_t plane_count;
     snow_clipped_voxel *voxels; /* in order of index */
-    size_t voxel_count, capacity;
+    size_t voxel_count;
     double reach[3]; /* how far values are kept, in steps along each axis */
 } snow_clip_planes;
 

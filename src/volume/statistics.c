@@ -5,7 +5,6 @@
  * in storage order, so that sums have one order of additions on all machines.
  */
 #include "base/monitor.h"
-#include "base/record.h"
 #include "volume/stream.h"
 
 #include <math.h>

@@ -7,12 +7,9 @@
 #include "volume/stream_internal.h"
 
 #include "base/monitor.h"
-#include "base/record.h"
 #include "io/source.h"
 #include "volume/mask.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* --- opening -------------------------------------------------------------- */

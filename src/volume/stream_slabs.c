@@ -143,17 +143,13 @@ void snow_slabs_open(const snow_volume *volume, const snow_slab_cut *cut,
 static void drop_present(snow_slabs *slabs) {
     snow_context *context = slabs->volume->context;
     snow_volume *slab = slabs->slab;
-    int64_t voxels;
-    uint64_t bytes;
     if (slabs->number) /* the progress is that of the whole again */
         snow_monitor_whole(context->monitor, slabs->whole);
     slabs->slab = NULL;
     if (!slab)
         return;
-    snow_volume_count(slab->info.dims, slab->info.type, &voxels, &bytes);
     snow_release(context, context->spare);
     context->spare = slab->owned;
-    context->spare_bytes = (size_t)bytes;
     slab->owned = NULL;
     slab->voxels = NULL;
     if (!slabs->keep)
@@ -217,8 +213,7 @@ void snow_slabs_close(snow_slabs *slabs) {
     if (!slabs->volume->stream)
         return;
     drop_present(slabs);
-    snow_release(context, context->spare);
-    context->spare = NULL;
+    SNOW_DROP(context, context->spare);
 }
 
 snow_status snow_slabs_visit(const snow_volume *volume,

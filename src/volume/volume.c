@@ -4,7 +4,6 @@
  * memory: every reader goes through snow_volume_new. */
 #include "volume/volume.h"
 
-#include "base/record.h"
 #include "volume/clip_planes.h"
 
 #include <math.h>
@@ -108,9 +107,8 @@ static snow_status wrap(snow_context *context, const snow_volume_info *info,
  * cost more than reading into them. */
 static void *take_voxels(snow_context *context, uint64_t bytes) {
     void *spare = context->spare;
-    bool enough = spare && context->spare_bytes >= bytes;
     context->spare = NULL;
-    if (enough)
+    if (snow_block_bytes(spare) >= bytes)
         return spare;
     snow_release(context, spare);
     return snow_allocate_array(context, bytes, 1);

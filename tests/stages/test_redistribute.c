@@ -3,7 +3,6 @@
 #include "support/support.h"
 
 #include "comm/comm.h"
-#include "decompose/box.h"
 
 #define BOXES_MOST 80
 

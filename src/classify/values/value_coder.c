@@ -59,8 +59,7 @@ snow_status snow_value_coder_make(const snow_volume *volume,
     coder->ruled = scale->whole && !coder->names;
     if (is_wide(info->type) || coder->ruled)
         return SNOW_STATUS_OK;
-    SNOW_TRY(snow_reserve(volume->context, &coder->numbers, &coder->capacity, 0,
-                          count * sizeof *coder->numbers));
+    SNOW_TRY(SNOW_RESERVE(volume->context, coder->numbers, 0, count));
     coder->lowest = info->type == SNOW_TYPE_INT8    ? INT8_MIN
                     : info->type == SNOW_TYPE_INT16 ? INT16_MIN
                                                     : 0;

@@ -22,7 +22,6 @@ typedef struct snow_value_coder {
     int16_t *numbers;    /* of types of 8 and 16 bits: by native value */
     const double *names; /* of labels, rising: a number is a place among them */
     int name_count;
-    size_t capacity; /* bytes */
 } snow_value_coder;
 
 /* `coder` begins as zeros or was made before; its names are set by the caller.

@@ -32,11 +32,10 @@ static snow_status add_name(snow_context *context, snow_value_labels *labels,
             "the volume has too many labels for method shear-warp: the "
             "limit is %d; take method footprint",
             SNOW_VALUE_LABELS_MOST);
-    size_t size = sizeof *labels->names, used = (size_t)labels->count * size;
-    SNOW_TRY(snow_reserve(context, &labels->names, &labels->names_capacity,
-                          used, used + size));
+    SNOW_TRY(
+        SNOW_RESERVE(context, labels->names, labels->count, labels->count + 1));
     memmove(labels->names + at + 1, labels->names + at,
-            (size_t)(labels->count - at) * size);
+            (size_t)(labels->count - at) * sizeof *labels->names);
     labels->names[at] = value;
     labels->count++;
     return SNOW_STATUS_OK;
@@ -78,8 +77,7 @@ snow_status snow_value_labels_look(snow_context *context,
                                    const snow_value_look *look,
                                    snow_value_labels *labels,
                                    snow_value_table *table) {
-    SNOW_TRY(snow_reserve(context, &labels->looks, &labels->looks_capacity, 0,
-                          (size_t)labels->count * sizeof *labels->looks));
+    SNOW_TRY(SNOW_RESERVE(context, labels->looks, 0, labels->count));
     labels->steps = look->steps;
     labels->exponent = look->exponent / look->steps;
     snow_value_table_begin(look, table);

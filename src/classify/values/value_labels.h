@@ -20,7 +20,6 @@ typedef struct snow_value_labels {
     snow_label_look *looks; /* of each */
     int steps;              /* of a slab */
     double exponent;        /* length of a step, in reference lengths */
-    size_t names_capacity, looks_capacity;
 } snow_value_labels;
 
 /* Adds the labels of a volume to a set that may be empty.  Errors:

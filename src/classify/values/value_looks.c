@@ -34,10 +34,8 @@ static snow_status find_plain(snow_context *context,
                               const snow_value_look *look,
                               snow_value_table *table) {
     snow_transfer_hint hint = {0};
-    SNOW_TRY(snow_reserve(context, &table->plain, &table->plain_capacity, 0,
-                          3 * table->look_count * sizeof *table->plain));
-    SNOW_TRY(snow_reserve(context, &table->logs, &table->logs_capacity, 0,
-                          table->look_count * sizeof *table->logs));
+    SNOW_TRY(SNOW_RESERVE(context, table->plain, 0, 3 * table->look_count));
+    SNOW_TRY(SNOW_RESERVE(context, table->logs, 0, table->look_count));
     double last = -1, clear = 0;
     for (size_t n = 0; n < table->look_count; n++) {
         double rgba[4];
@@ -72,8 +70,7 @@ static void find_alphas(const snow_value_table *table, size_t first,
 static snow_status fill_looks(snow_context *context,
                               const snow_value_look *look,
                               snow_value_table *table) {
-    SNOW_TRY(snow_reserve(context, &table->looks, &table->looks_capacity, 0,
-                          4 * table->look_count * sizeof *table->looks));
+    SNOW_TRY(SNOW_RESERVE(context, table->looks, 0, 4 * table->look_count));
     for (size_t first = 0; first < table->look_count; first += ALPHAS) {
         double alphas[ALPHAS];
         size_t left = table->look_count - first;
@@ -95,10 +92,8 @@ static snow_status fill_planes(snow_context *context,
                                snow_value_table *table) {
     const size_t rows = 2 * (size_t)look->steps;
     const size_t pitch = (size_t)look->nodes + 2 * SNOW_VALUE_ENTRIES;
-    const size_t bytes = 4 * rows * pitch * sizeof *table->planes;
-    SNOW_TRY(snow_reserve(context, &table->planes, &table->planes_capacity, 0,
-                          bytes));
-    memset(table->planes, 0, bytes);
+    SNOW_TRY(SNOW_RESERVE(context, table->planes, 0, 4 * rows * pitch));
+    memset(table->planes, 0, 4 * rows * pitch * sizeof *table->planes);
     table->plane_pitch = (int)pitch;
     for (size_t n = 0; n < table->look_count; n++) {
         float *at = table->planes + n % rows * pitch + n / rows;
@@ -238,10 +233,8 @@ static snow_status place_evenly(snow_context *context,
                                 const snow_value_look *look,
                                 snow_value_table *table) {
     size_t values = SNOW_VALUE_MOST + 1;
-    SNOW_TRY(snow_reserve(context, &table->at, &table->at_capacity, 0,
-                          (SNOW_VALUE_PITCH + values) * sizeof *table->at));
-    SNOW_TRY(snow_reserve(context, &table->node_of, &table->node_of_capacity, 0,
-                          values));
+    SNOW_TRY(SNOW_RESERVE(context, table->at, 0, SNOW_VALUE_PITCH + values));
+    SNOW_TRY(SNOW_RESERVE(context, table->node_of, 0, values));
     double apart =
         look->nodes == 129 ? 128 : (double)SNOW_VALUE_MOST / (look->nodes - 1);
     for (int node = 0; node < look->nodes; node++)

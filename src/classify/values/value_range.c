@@ -153,10 +153,7 @@ snow_status snow_data_range_measure(const snow_volume *volume, bool log,
         .volume = volume, .log = log, .voxels = dims[0] * dims[1] * dims[2]};
     int64_t items = (job.voxels + ITEM - 1) / ITEM;
     threads = threads < items ? threads : (int)items;
-    job.found = snow_allocate_array(volume->context, (uint64_t)threads,
-                                    sizeof *job.found);
-    if (!job.found)
-        return SNOW_STATUS_NO_MEMORY;
+    SNOW_TRY(SNOW_RESERVE(volume->context, job.found, 0, threads));
     for (int n = 0; n < threads; n++)
         job.found[n] = (found_range){.low = INFINITY, .high = -INFINITY};
     snow_status status =

@@ -3,7 +3,6 @@
 
 #include "base/thread_pool.h"
 
-#include <math.h>
 #include <string.h>
 
 /* The largest alpha of tables whose words count smaller parts, and how often
@@ -200,8 +199,7 @@ static void find_runs(const snow_value_look *look, snow_value_table *table) {
 static snow_status take_key(snow_context *context, const snow_transfer *t,
                             snow_value_table *table, bool *same) {
     size_t count = 4 * t->color_count + 2 * t->opacity_count, n = 0;
-    SNOW_TRY(snow_reserve(context, &table->next_key, &table->next_key_capacity,
-                          0, (count + 1) * sizeof(double)));
+    SNOW_TRY(SNOW_RESERVE(context, table->next_key, 0, count + 1));
     double *key = table->next_key;
     for (size_t i = 0; i < t->color_count; i++) {
         key[n++] = t->colors[i].value;
@@ -215,11 +213,8 @@ static snow_status take_key(snow_context *context, const snow_transfer *t,
     }
     *same = table->key_count == count &&
             memcmp(key, table->key, count * sizeof *key) == 0;
-    size_t capacity = table->key_capacity;
     table->next_key = table->key;
     table->key = key;
-    table->key_capacity = table->next_key_capacity;
-    table->next_key_capacity = capacity;
     table->key_count = count;
     return SNOW_STATUS_OK;
 }
@@ -234,8 +229,7 @@ static bool same_looks(const snow_value_look *a, const snow_value_look *b) {
 snow_status snow_value_table_make(snow_context *context,
                                   const snow_value_look *look,
                                   snow_value_table *table) {
-    const size_t bytes =
-        SNOW_VALUE_PITCH * SNOW_VALUE_PITCH * sizeof *table->entries;
+    const size_t entries = SNOW_VALUE_PITCH * SNOW_VALUE_PITCH;
     bool same;
     SNOW_TRY(take_key(context, look->transfer, table, &same));
     const snow_value_look *made = &table->made;
@@ -245,10 +239,9 @@ snow_status snow_value_table_make(snow_context *context,
         return SNOW_STATUS_OK;
     bool anew = !table->entries;
     table->made.nodes = 0; /* until it is whole */
-    SNOW_TRY(snow_reserve(context, &table->entries, &table->entries_capacity, 0,
-                          bytes));
+    SNOW_TRY(SNOW_RESERVE(context, table->entries, 0, entries));
     if (anew)
-        memset(table->entries, 0, bytes);
+        memset(table->entries, 0, entries * sizeof *table->entries);
     SNOW_TRY(snow_value_looks_make(context, look, known, table));
     SNOW_TRY(fill_entries(context, look, table));
     find_runs(look, table);

@@ -54,8 +54,6 @@ typedef struct snow_value_table {
     double step; /* numbers between two of these looks */
     size_t look_count;
     int look_of[SNOW_VALUE_PITCH]; /* the place of each node among them */
-    size_t entries_capacity, node_of_capacity, at_capacity, looks_capacity;
-    size_t logs_capacity, plain_capacity, planes_capacity;
     snow_value_run runs[SNOW_VALUE_RUNS]; /* the longest ones, rising */
     int run_count;
     bool faint; /* the words count parts of 2^-15 / 2^n, for slabs show little:
@@ -64,7 +62,7 @@ typedef struct snow_value_table {
     /* What was made last. */
     snow_value_look made;
     double *key, *next_key;
-    size_t key_count, key_capacity, next_key_capacity;
+    size_t key_count;
 } snow_value_table;
 
 /* Makes the table, unless it is there already.  `table` begins as zeros or was

@@ -4,8 +4,6 @@
 
 #include "simd/rows.h"
 
-#include <string.h>
-
 #define TEMPLATE "encode/values/value_rows.tmpl.h"
 #include "simd/each_isa.h"
 

@@ -74,13 +74,9 @@ snow_status snow_value_rows_place(snow_value_store *s) {
     for (int64_t slice = 0; slice < s->slices; slice++)
         place_slice(s, slice, &end);
     size_t count = (size_t)(end + beyond(s));
-    if (count * sizeof *s->values > s->values_capacity) { /* not both at once */
-        snow_release(s->context, s->values);
-        s->values = NULL;
-        s->values_capacity = 0;
-    }
-    SNOW_TRY(snow_reserve(s->context, &s->values, &s->values_capacity, 0,
-                          count * sizeof *s->values));
+    if (count * sizeof *s->values > snow_block_bytes(s->values))
+        SNOW_DROP(s->context, s->values); /* not both at once */
+    SNOW_TRY(SNOW_RESERVE(s->context, s->values, 0, count));
     memset(s->values, 0, (size_t)beyond(s) * sizeof *s->values);
     memset(s->values + end, 0, (size_t)beyond(s) * sizeof *s->values);
     return SNOW_STATUS_OK;

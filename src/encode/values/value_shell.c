@@ -148,9 +148,8 @@ static snow_status encode_slice(snow_value_store *s, snow_sparse *band,
                                 shell_room *room) {
     size_t line = snow_value_words(s) + 2, own = ((size_t)s->columns + 31) / 32;
     size_t begin = band->ia_voxels, wide = words64(s);
-    SNOW_TRY(snow_reserve(
-        s->context, &band->numbers, &band->numbers_capacity, 2 * begin,
-        2 * (begin + (size_t)(s->columns * lines->rows)) + 64));
+    SNOW_TRY(SNOW_RESERVE(s->context, band->numbers, begin,
+                          begin + (size_t)(s->columns * lines->rows) + 32));
     int16_t *first = band->numbers + begin, *to = first;
     find_shell(s, slice, lines->first, lines->rows, room);
     for (int64_t row = 0; row < lines->rows; row++) {

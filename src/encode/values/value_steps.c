@@ -66,7 +66,7 @@ static snow_status reserve_scratch(store_job *job) {
     most = cells > most ? cells : most;
     most = shell > most ? shell : most;
     job->scratch_bytes = (most + 63) / 64 * 64;
-    return snow_reserve(s->context, &s->scratch, &s->scratch_capacity, 0,
+    return SNOW_RESERVE(s->context, s->scratch, 0,
                         job->scratch_bytes * (size_t)job->params->threads);
 }
 

@@ -10,59 +10,45 @@
 static snow_status reserve_masks(snow_value_store *s) {
     size_t slices = (size_t)snow_value_planes(s) * (size_t)s->slices;
     size_t masks = slices * s->mask_words * s->mask_rows;
-    SNOW_TRY(snow_reserve(s->context, &s->masks, &s->masks_capacity, 0,
-                          (masks + SNOW_VALUE_ROWS) * sizeof *s->masks));
+    SNOW_TRY(SNOW_RESERVE(s->context, s->masks, 0, masks + SNOW_VALUE_ROWS));
     memset(s->masks, 0, (masks + SNOW_VALUE_ROWS) * sizeof *s->masks);
-    size_t coarse = s->mask_words * s->coarse_words * sizeof *s->coarse;
-    SNOW_TRY(snow_reserve(s->context, &s->eights, &s->eights_capacity, 0,
+    size_t coarse = s->mask_words * s->coarse_words;
+    SNOW_TRY(SNOW_RESERVE(s->context, s->eights, 0,
                           (size_t)snow_value_planes(s) *
                               (size_t)s->eight_count * coarse));
-    return snow_reserve(s->context, &s->coarse, &s->coarse_capacity, 0,
-                        slices * coarse);
+    return SNOW_RESERVE(s->context, s->coarse, 0, slices * coarse);
+}
+
+/* Bands that there is memory for. */
+static size_t bands_held(const snow_value_store *s) {
+    return snow_block_bytes(s->bands) / sizeof *s->bands;
 }
 
 static snow_status reserve_bands(snow_value_store *s) {
-    size_t before = s->bands_capacity;
+    size_t before = bands_held(s);
     s->band_count = (s->rows + SNOW_VALUE_BAND - 1) / SNOW_VALUE_BAND;
-    SNOW_TRY(snow_reserve(s->context, &s->bands, &s->bands_capacity, before,
-                          (size_t)s->band_count * sizeof *s->bands));
-    for (size_t n = before / sizeof *s->bands;
-         n < s->bands_capacity / sizeof *s->bands; n++)
+    SNOW_TRY(SNOW_RESERVE(s->context, s->bands, before, s->band_count));
+    for (size_t n = before; n < bands_held(s); n++)
         s->bands[n] = (snow_sparse){.context = s->context};
-    SNOW_TRY(snow_reserve(s->context, &s->seen, &s->seen_capacity, 0,
-                          (size_t)s->band_count * sizeof *s->seen));
+    SNOW_TRY(SNOW_RESERVE(s->context, s->seen, 0, s->band_count));
     memset(s->seen, 0, (size_t)s->band_count * sizeof *s->seen);
     return SNOW_STATUS_OK;
 }
 
-static void forget_turned(snow_value_store *s) {
-    snow_release(s->context, s->copy);
-    s->copy = NULL;
-    s->copy_capacity = 0;
-}
-
 /* Gives up EA, IA, PA and rows. */
 static void forget_rows(snow_value_store *s) {
-    for (size_t n = 0; n < s->bands_capacity / sizeof *s->bands; n++)
+    for (size_t n = 0; n < bands_held(s); n++)
         snow_sparse_fini(&s->bands[n]);
-    snow_release(s->context, s->bands);
-    snow_release(s->context, s->values);
-    snow_release(s->context, s->at);
-    snow_release(s->context, s->ends);
-    s->bands = NULL;
-    s->values = NULL;
-    s->at = NULL;
-    s->ends = NULL;
-    s->bands_capacity = s->values_capacity = 0;
-    s->at_capacity = s->ends_capacity = 0;
+    SNOW_DROP(s->context, s->bands);
+    SNOW_DROP(s->context, s->values);
+    SNOW_DROP(s->context, s->at);
+    SNOW_DROP(s->context, s->ends);
 }
 
 static snow_status reserve_rows(snow_value_store *s) {
     size_t rows = (size_t)s->slices * (size_t)(s->rows + 2 * s->margin);
-    SNOW_TRY(snow_reserve(s->context, &s->at, &s->at_capacity, 0,
-                          rows * sizeof *s->at));
-    return snow_reserve(s->context, &s->ends, &s->ends_capacity, 0,
-                        rows * sizeof *s->ends);
+    SNOW_TRY(SNOW_RESERVE(s->context, s->at, 0, rows));
+    return SNOW_RESERVE(s->context, s->ends, 0, rows);
 }
 
 /* Whether rows are stored values, and where they are. */
@@ -95,8 +81,7 @@ static snow_status reserve_turned(snow_value_store *s) {
     s->row_step = (s->columns * size + 127) / 64 * 64 / size;
     s->slice_step = s->rows * s->row_step;
     s->native_count = s->slices * s->slice_step;
-    SNOW_TRY(snow_reserve(s->context, &s->copy, &s->copy_capacity, 0,
-                          (size_t)(s->native_count * size)));
+    SNOW_TRY(SNOW_RESERVE(s->context, s->copy, 0, s->native_count * size));
     s->stored = s->copy;
     return SNOW_STATUS_OK;
 }
@@ -132,12 +117,7 @@ static void describe(snow_value_store *s,
 snow_status snow_value_store_begin(snow_value_store *s,
                                    const snow_value_store_params *params) {
     const snow_placement *p = params->placement;
-    if (p->columns * p->rows > (int64_t)UINT32_MAX)
-        return snow_fail(
-            s->context, SNOW_STATUS_BAD_USAGE,
-            "slices of %lldx%lld voxels are too large to encode: the limit is "
-            "4294967295 voxels; render a part of the volume",
-            (long long)p->columns, (long long)p->rows);
+    SNOW_TRY(snow_slice_check(s->context, p));
     s->step = 0;
     s->made = 0;
     describe(s, params);
@@ -145,7 +125,7 @@ snow_status snow_value_store_begin(snow_value_store *s,
     if (s->in_place)
         forget_rows(s);
     if (!s->turned)
-        forget_turned(s);
+        SNOW_DROP(s->context, s->copy);
     SNOW_TRY(reserve_bands(s));
     if (s->turned)
         SNOW_TRY(reserve_turned(s));
@@ -201,16 +181,18 @@ uint64_t snow_value_store_expect(const snow_value_store_params *params) {
 }
 
 uint64_t snow_value_store_bytes(const snow_value_store *s) {
-    uint64_t bytes = s->masks_capacity + s->coarse_capacity +
-                     s->eights_capacity + s->bands_capacity +
-                     s->values_capacity + s->copy_capacity + s->at_capacity +
-                     s->ends_capacity + s->seen_capacity + s->scratch_capacity;
-    return s->in_place ? bytes : bytes + s->ea_bytes + s->ia_bytes;
+    const void *const blocks[] = {s->masks,  s->coarse, s->eights, s->bands,
+                                  s->values, s->copy,   s->at,     s->ends,
+                                  s->seen,   s->scratch};
+    uint64_t bytes = s->in_place ? 0 : s->ea_bytes + s->ia_bytes;
+    for (size_t n = 0; n < sizeof blocks / sizeof *blocks; n++)
+        bytes += snow_block_bytes(blocks[n]);
+    return bytes;
 }
 
 void snow_value_store_fini(snow_value_store *s) {
     forget_rows(s);
-    forget_turned(s);
+    snow_release(s->context, s->copy);
     snow_release(s->context, s->masks);
     snow_release(s->context, s->coarse);
     snow_release(s->context, s->eights);

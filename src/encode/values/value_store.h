@@ -100,9 +100,6 @@ typedef struct snow_value_store {
     unsigned char *scratch; /* of the threads, while encoding */
     int step;               /* that is under way, of those in value_store.c */
     int64_t made;           /* items of it */
-    size_t masks_capacity, coarse_capacity, eights_capacity, bands_capacity,
-        values_capacity, copy_capacity, at_capacity, ends_capacity,
-        seen_capacity, scratch_capacity;
 } snow_value_store;
 
 /* What is encoded. */

@@ -20,7 +20,6 @@ struct dicom_inflater {
     uint64_t at; /* in the packed bytes */
     z_stream stream;
     uint64_t most; /* bytes that may be inflated */
-    size_t room;
     bool ended;
     unsigned char in[READ_BYTES];
 };
@@ -57,8 +56,7 @@ void snow_dicom_inflate_end(dicom_inflater *d) {
 static snow_status inflate_piece(dicom_inflater *d, unsigned char **bytes,
                                  size_t *used) {
     z_stream *stream = &d->stream;
-    SNOW_TRY(
-        snow_reserve(d->context, bytes, &d->room, *used, *used + PIECE_BYTES));
+    SNOW_TRY(SNOW_RESERVE(d->context, *bytes, *used, *used + PIECE_BYTES));
     stream->next_out = *bytes + *used;
     stream->avail_out = (uInt)PIECE_BYTES;
     int answer = Z_OK;

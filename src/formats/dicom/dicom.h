@@ -124,7 +124,7 @@ typedef struct dicom_reader {
     snow_context *context;
     snow_seekable *store; /* outlives the reader */
     dicom_element *elements;
-    size_t count, room;
+    size_t count;
     char syntax[65];
     char class_known[65]; /* SOP class, from the file's beginning */
     bool big_endian;

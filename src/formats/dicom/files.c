@@ -49,9 +49,9 @@ bool snow_dicom_among(snow_context *context, const snow_folder *files,
 typedef struct collection {
     snow_context *context;
     dicom_image **images; /* one block each: frames point to them */
-    size_t image_count, image_room;
+    size_t image_count;
     dicom_frame *frames;
-    size_t frame_count, frame_room;
+    size_t frame_count;
     bool gaps;         /* slices may be missing or cut */
     size_t copies;     /* files with the same image as another */
     size_t scraps;     /* files too short for DICOM that may have been slices */
@@ -75,9 +75,8 @@ static bool is_copy(const collection *c, const dicom_image *image) {
 static snow_status add_frames(collection *c, dicom_reader *reader,
                               const dicom_image *image) {
     for (int64_t n = 0; n < image->frames; n++) {
-        SNOW_TRY(snow_reserve(c->context, &c->frames, &c->frame_room,
-                              c->frame_count * sizeof *c->frames,
-                              (c->frame_count + 1) * sizeof *c->frames));
+        SNOW_TRY(SNOW_RESERVE(c->context, c->frames, c->frame_count,
+                              c->frame_count + 1));
         snow_dicom_read_frame(reader, image, n, &c->frames[c->frame_count++]);
     }
     return SNOW_STATUS_OK;
@@ -96,9 +95,8 @@ static snow_status add_image(collection *c, dicom_reader *reader, char *path,
         c->copies++;
         return SNOW_STATUS_OK;
     }
-    SNOW_TRY(snow_reserve(c->context, &c->images, &c->image_room,
-                          c->image_count * sizeof *c->images,
-                          (c->image_count + 1) * sizeof *c->images));
+    SNOW_TRY(SNOW_RESERVE(c->context, c->images, c->image_count,
+                          c->image_count + 1));
     dicom_image *kept = snow_allocate(c->context, sizeof *kept);
     if (!kept)
         return SNOW_STATUS_NO_MEMORY;

@@ -217,9 +217,7 @@ static snow_status check_length(walk *w, const head *h) {
 /* Adds an element to the list; its value comes next. */
 static snow_status add_element(walk *w, const head *h, size_t *index) {
     dicom_reader *r = w->reader;
-    SNOW_TRY(snow_reserve(r->context, &r->elements, &r->room,
-                          r->count * sizeof *r->elements,
-                          (r->count + 1) * sizeof *r->elements));
+    SNOW_TRY(SNOW_RESERVE(r->context, r->elements, r->count, r->count + 1));
     *index = r->count++;
     r->elements[*index] =
         (dicom_element){.tag = h->tag,

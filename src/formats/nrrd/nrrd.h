@@ -65,7 +65,7 @@ typedef enum nrrd_field {
  * the names of the data files if the header lists them. */
 typedef struct nrrd_text {
     char *block; /* NULL while it is empty */
-    size_t used, capacity;
+    size_t used;
     size_t value[NRRD_FIELD_COUNT]; /* offset in block, 0: no such field */
     size_t list;                    /* offset of the listed names */
     uint64_t listed;                /* number of names; each is a string */

@@ -54,8 +54,8 @@ static snow_status append(snow_context *context, nrrd_text *text,
     if (length > MOST_HEADER_BYTES - text->used)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "the header is longer than 16 MiB; it is damaged");
-    SNOW_TRY(snow_reserve(context, &text->block, &text->capacity, text->used,
-                          text->used + length));
+    SNOW_TRY(
+        SNOW_RESERVE(context, text->block, text->used, text->used + length));
     memcpy(text->block + text->used, string, length);
     *offset = text->used;
     text->used += length;

@@ -37,7 +37,6 @@ typedef struct filler {
     uint64_t place[ZARR_MOST_AXES]; /* strides of voxels in the volume */
     uint64_t bytes;                 /* bytes of a chunk */
     unsigned char *packed, *values, *index;
-    size_t packed_room, values_room, index_room;
     int64_t chunks, missing;
     double all; /* bytes of the box */
 } filler;
@@ -239,14 +238,12 @@ static void fill_chunk(const filler *f, const int64_t *chunk) {
 static snow_status read_chunk(filler *f, const zarr_file *file, uint64_t first,
                               uint64_t size, const int64_t *chunk) {
     const zarr_array *array = f->box->array;
-    /* One byte more, so that memory is also allocated for an empty file. */
-    SNOW_TRY(snow_reserve(f->context, &f->packed, &f->packed_room, 0,
-                          (size_t)size + 1));
+    SNOW_TRY(SNOW_RESERVE(f->context, f->packed, 0, size));
     SNOW_TRY(snow_zarr_read(file, first, f->packed, (size_t)size));
     SNOW_TRY(snow_zarr_expect(f->context, file->name, &array->coding, f->packed,
                               (size_t)size, f->bytes));
-    SNOW_TRY(snow_reserve(f->context, &f->values, &f->values_room, 0,
-                          (size_t)snow_zarr_room(&array->coding, f->bytes)));
+    SNOW_TRY(SNOW_RESERVE(f->context, f->values, 0,
+                          snow_zarr_room(&array->coding, f->bytes)));
     SNOW_TRY(snow_zarr_unpack(f->context, file->name, array, f->packed,
                               (size_t)size, f->values, f->bytes));
     if (array->big_endian != snow_machine_big_endian())
@@ -283,8 +280,7 @@ static snow_status read_index(filler *f, const zarr_file *file) {
                          "%s: is shorter than the index of its shard; it is "
                          "truncated or damaged, copy it again",
                          file->name);
-    SNOW_TRY(
-        snow_reserve(f->context, &f->index, &f->index_room, 0, (size_t)all));
+    SNOW_TRY(SNOW_RESERVE(f->context, f->index, 0, all));
     SNOW_TRY(snow_zarr_read(file, array->index_first ? 0 : file->size - all,
                             f->index, (size_t)all));
     const unsigned char *at = f->index + bytes;

@@ -143,7 +143,7 @@ snow_status snow_zarr_read(const zarr_file *file, uint64_t first,
 
 typedef struct name_list {
     char (*names)[256];
-    size_t capacity, count;
+    size_t count;
 } name_list;
 
 static snow_status add_name(const zarr_store *store, name_list *list,
@@ -155,9 +155,8 @@ static snow_status add_name(const zarr_store *store, name_list *list,
                          "has more than %d folders in one; name an array with "
                          "--dataset",
                          MOST_NAMES);
-    SNOW_TRY(snow_reserve(store->context, &list->names, &list->capacity,
-                          list->count * sizeof *list->names,
-                          (list->count + 1) * sizeof *list->names));
+    SNOW_TRY(SNOW_RESERVE(store->context, list->names, list->count,
+                          list->count + 1));
     memcpy(list->names[list->count], name, letters);
     list->names[list->count++][letters] = 0;
     return SNOW_STATUS_OK;

@@ -38,12 +38,10 @@ typedef enum stage { CLASSIFY, SHADE, ENCODE, SPLAT, COMPOSITE, STAGES } stage;
 typedef struct worker {
     snow_row_block row_block;
     snow_span *spans; /* of one row */
-    size_t spans_capacity;
     snow_sheet sheet; /* scatter: a band; gather: only its memory is used */
     snow_splatter splatter;
     snow_perspective_splatter eye; /* in perspective: instead */
     snow_run *runs;                /* gathering: of GATHER_ROWS rows */
-    size_t runs_capacity;
     snow_places places;
     int64_t kept; /* voxels splatted of row blocks */
     snow_status status;
@@ -62,8 +60,6 @@ struct snow_exact {
     uint16_t
         *not_opaque; /* gathering: pixels that are not opaque, row by row */
     worker *workers;
-    size_t groups_capacity, dense_capacity, not_opaque_capacity,
-        workers_capacity;                           /* bytes */
     int64_t group_count, dense_count, worker_count; /* that were ever made */
     int64_t groups_used, dense_used;                /* by this picture */
     int threads, bands;
@@ -117,12 +113,11 @@ void snow_exact_free(snow_exact *exact) {
 
 /* Makes an array hold `wanted` records, new ones as zeros. */
 static snow_status more_records(snow_context *context, void *array_pointer,
-                                size_t *capacity, int64_t *made, int64_t wanted,
-                                size_t size) {
+                                int64_t *made, int64_t wanted, size_t size) {
     if (wanted <= *made)
         return SNOW_STATUS_OK;
-    SNOW_TRY(snow_reserve(context, array_pointer, capacity,
-                          (size_t)*made * size, (size_t)wanted * size));
+    SNOW_TRY(snow_reserve(context, array_pointer, (uint64_t)*made,
+                          (uint64_t)wanted, size));
     char *array;
     memcpy(&array, array_pointer, sizeof array);
     memset(array + (size_t)*made * size, 0, (size_t)(wanted - *made) * size);
@@ -186,23 +181,19 @@ static snow_status prepare_worker(snow_exact *exact, const snow_job *job,
     w->status = SNOW_STATUS_OK;
     memset(w->seconds, 0, sizeof w->seconds);
     SNOW_TRY(snow_row_block_make(context, p, job->channels, &w->row_block));
-    SNOW_TRY(snow_reserve(context, &w->spans, &w->spans_capacity, 0,
-                          ((size_t)p->columns / 2 + 1) * sizeof *w->spans));
+    SNOW_TRY(SNOW_RESERVE(context, w->spans, 0, (size_t)p->columns / 2 + 1));
     /* Here and not where a thread needs it, so that what is taken does not
      * depend on which thread does what. */
     size_t row = (size_t)p->width * (size_t)job->channels;
     if (!exact->gathers) {
         size_t rows = (size_t)parts_of(p->height, exact->bands);
-        SNOW_TRY(snow_reserve(context, &w->sheet.pixels, &w->sheet.capacity, 0,
-                              rows * row * sizeof *w->sheet.pixels));
+        SNOW_TRY(SNOW_RESERVE(context, w->sheet.pixels, 0, rows * row));
         return prepare_splatter(context, job, w);
     }
     size_t runs = (size_t)p->width / 2 + 1;
     SNOW_TRY(snow_places_make(context, p->width, &w->places));
-    SNOW_TRY(snow_reserve(context, &w->sheet.pixels, &w->sheet.capacity, 0,
-                          GATHER_ROWS * row * sizeof *w->sheet.pixels));
-    return snow_reserve(context, &w->runs, &w->runs_capacity, 0,
-                        GATHER_ROWS * runs * sizeof *w->runs);
+    SNOW_TRY(SNOW_RESERVE(context, w->sheet.pixels, 0, GATHER_ROWS * row));
+    return SNOW_RESERVE(context, w->runs, 0, GATHER_ROWS * runs);
 }
 
 static size_t open_row(const snow_job *job) {
@@ -211,11 +202,9 @@ static size_t open_row(const snow_job *job) {
 
 /* All pixels are open. */
 static snow_status find_not_opaque(snow_exact *exact, const snow_job *job) {
-    size_t bytes =
-        (size_t)job->stored.height * open_row(job) * sizeof *exact->not_opaque;
-    SNOW_TRY(snow_reserve(exact->context, &exact->not_opaque,
-                          &exact->not_opaque_capacity, 0, bytes));
-    memset(exact->not_opaque, 0xff, bytes);
+    size_t masks = (size_t)job->stored.height * open_row(job);
+    SNOW_TRY(SNOW_RESERVE(exact->context, exact->not_opaque, 0, masks));
+    memset(exact->not_opaque, 0xff, masks * sizeof *exact->not_opaque);
     return SNOW_STATUS_OK;
 }
 
@@ -253,19 +242,16 @@ static snow_status prepare(snow_exact *exact, const snow_job *job) {
         snow_shader_init(context, job->volume, p, settings, &exact->shader));
     SNOW_TRY(choose_loops(exact, job));
     cut(exact, job);
-    SNOW_TRY(more_records(context, &exact->groups, &exact->groups_capacity,
-                          &exact->group_count, exact->groups_used,
-                          sizeof *exact->groups));
+    SNOW_TRY(more_records(context, &exact->groups, &exact->group_count,
+                          exact->groups_used, sizeof *exact->groups));
     for (int64_t n = 0; n < exact->groups_used; n++)
         exact->groups[n].context = context;
-    SNOW_TRY(more_records(context, &exact->workers, &exact->workers_capacity,
-                          &exact->worker_count, exact->threads,
-                          sizeof *exact->workers));
+    SNOW_TRY(more_records(context, &exact->workers, &exact->worker_count,
+                          exact->threads, sizeof *exact->workers));
     for (int n = 0; n < exact->threads; n++)
         SNOW_TRY(prepare_worker(exact, job, &exact->workers[n]));
-    SNOW_TRY(more_records(context, &exact->dense, &exact->dense_capacity,
-                          &exact->dense_count, exact->dense_used,
-                          sizeof *exact->dense));
+    SNOW_TRY(more_records(context, &exact->dense, &exact->dense_count,
+                          exact->dense_used, sizeof *exact->dense));
     for (int64_t n = 0; n < exact->dense_used; n++)
         SNOW_TRY(
             snow_dense_make(context, &exact->gatherer.shape, &exact->dense[n]));
@@ -603,7 +589,7 @@ static void gather_slice(const pass *work, worker *w, int64_t n, int top,
     const snow_job *job = work->job;
     const snow_dense *dense = &exact->dense[n];
     int64_t slice = nth_slice(job, work->first + n);
-    size_t room = w->runs_capacity / sizeof *w->runs / GATHER_ROWS;
+    size_t room = snow_block_bytes(w->runs) / sizeof *w->runs / GATHER_ROWS;
     size_t stride = (size_t)job->stored.width * (size_t)job->channels;
     int first, end, counts[GATHER_ROWS];
     snow_gather_rows(&exact->gatherer, dense, slice, &first, &end);

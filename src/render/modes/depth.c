@@ -4,7 +4,6 @@
 #include "base/vec3.h"
 #include "volume/volume.h"
 
-#include <math.h>
 #include <string.h>
 
 void snow_depth_place(const snow_job *job, double of[4]) {

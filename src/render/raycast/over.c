@@ -6,7 +6,6 @@
 #include "base/vec3.h"
 
 #include <math.h>
-#include <string.h>
 
 /* A ray ends where less than this is left to be seen. */
 #define CLOSED 1e-6

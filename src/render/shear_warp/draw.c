@@ -83,9 +83,7 @@ static snow_status place_fade(const snow_value_params *params,
     double inverse[3][3];
     if (!count)
         return SNOW_STATUS_OK;
-    SNOW_TRY(snow_reserve(path->context, &path->curve_points,
-                          &path->curve_capacity, 0,
-                          count * sizeof *path->curve_points));
+    SNOW_TRY(SNOW_RESERVE(path->context, path->curve_points, 0, count));
     memcpy(path->curve_points, params->transfer->gradients,
            count * sizeof *path->curve_points);
     path->curve = (snow_transfer){.gradients = path->curve_points,
@@ -109,14 +107,11 @@ static snow_status place_sheets(snow_value_path *path,
                                 const snow_value_params *params) {
     const snow_value_lattice *l = &path->lattice;
     size_t sheets = (size_t)l->sheet_count;
-    SNOW_TRY(snow_reserve(path->context, &path->sheets, &path->sheets_capacity,
-                          0, sheets * sizeof *path->sheets));
+    SNOW_TRY(SNOW_RESERVE(path->context, path->sheets, 0, sheets));
     snow_value_place *places = NULL;
     if (!l->perspective) {
         size_t count = sheets * (size_t)l->phases;
-        SNOW_TRY(snow_reserve(path->context, &path->places,
-                              &path->places_capacity, 0,
-                              count * sizeof *path->places));
+        SNOW_TRY(SNOW_RESERVE(path->context, path->places, 0, count));
         places = path->places;
     }
     snow_value_lattice_sheets(l, params->placement, path->sheets, places);
@@ -133,8 +128,7 @@ static snow_status place_clips(snow_value_path *path,
     const snow_placement *p = params->placement;
     if (!clip)
         return SNOW_STATUS_OK;
-    SNOW_TRY(snow_reserve(path->context, &path->clips, &path->clips_capacity, 0,
-                          clip->plane_count * sizeof *path->clips));
+    SNOW_TRY(SNOW_RESERVE(path->context, path->clips, 0, clip->plane_count));
     for (size_t n = 0; n < clip->plane_count; n++) {
         path->clips[n][0] = clip->planes[n][p->u_axis];
         path->clips[n][1] = clip->planes[n][p->v_axis];
@@ -353,8 +347,8 @@ static snow_status place_drawing(snow_value_path *path,
     describe(job);
     if (!settings->deterministic)
         job->splat = snow_value_splat_of(job, params->slab);
-    return snow_reserve(path->context, &path->scratch, &path->scratch_capacity,
-                        0, job->scratch_bytes * (size_t)settings->threads);
+    return SNOW_RESERVE(path->context, path->scratch, 0,
+                        job->scratch_bytes * (size_t)settings->threads);
 }
 
 static snow_work_fn *work_of(const snow_value_params *params) {

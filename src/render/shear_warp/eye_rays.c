@@ -92,15 +92,12 @@ snow_status snow_value_place_rays(snow_value_path *path,
     memcpy(rays->stored, params->clip->stored, sizeof rays->stored);
     measure_ways(path, params->placement, rays);
     place_light(params, l, rays);
-    SNOW_TRY(snow_reserve(path->context, &path->spreads,
-                          &path->spreads_capacity, 0,
-                          sheets * sizeof *path->spreads));
+    SNOW_TRY(SNOW_RESERVE(path->context, path->spreads, 0, sheets));
     for (int axis = 0; axis < 2; axis++) {
         job.lanes[axis] =
             (size_t)rays->phases[axis] * (size_t)rays->tiles[axis];
-        SNOW_TRY(snow_reserve(
-            path->context, &path->lanes[axis], &path->lanes_capacity[axis], 0,
-            sheets * job.lanes[axis] * sizeof *path->lanes[axis]));
+        SNOW_TRY(SNOW_RESERVE(path->context, path->lanes[axis], 0,
+                              sheets * job.lanes[axis]));
         rays->lanes[axis] = path->lanes[axis];
     }
     rays->sheets = path->spreads;

@@ -93,20 +93,15 @@ snow_status snow_value_reserve_image(snow_value_path *path,
                          SNOW_GROUPS);
     bool keep = keep_grid(path, params, layers, &grid);
     size_t planes = layers > 1 ? (size_t)layers : 1;
-    uint64_t floats, bytes;
     size_plane(&path->lattice, &grid, image);
     image->grid.tiles[0] = 0; /* until it is cleared */
-    if (!snow_mul_u64(image->layer_floats, planes, &floats) ||
-        !snow_mul_u64(floats, sizeof *image->plane, &bytes) || bytes > SIZE_MAX)
-        return snow_fail(path->context, SNOW_STATUS_NO_MEMORY,
-                         "no memory for %zu intermediate images", planes);
-    SNOW_TRY(snow_reserve(path->context, &image->plane, &image->plane_capacity,
-                          0, (size_t)bytes));
+    const size_t bytes = image->layer_floats * sizeof *image->plane;
+    SNOW_TRY(snow_reserve(path->context, &image->plane, 0, planes, bytes));
     size_t tiles = (size_t)grid.tiles[0] * (size_t)grid.tiles[1] * planes;
-    SNOW_TRY(snow_reserve(path->context, &image->drawn, &image->drawn_capacity,
-                          keep ? tiles : 0, tiles));
+    SNOW_TRY(
+        SNOW_RESERVE(path->context, image->drawn, keep ? tiles : 0, tiles));
     if (!keep) {
-        memset(image->plane, 0, (size_t)bytes);
+        memset(image->plane, 0, planes * bytes);
         memset(image->drawn, 0, tiles);
     }
     image->grid = grid;
@@ -189,8 +184,7 @@ static snow_status describe_plane(snow_context *context, snow_value_image *of,
     memcpy(image->nodes, of->nodes, sizeof image->nodes);
     if (!l->quincunx)
         return SNOW_STATUS_OK;
-    SNOW_TRY(snow_reserve(context, &of->blocks, &of->blocks_capacity, 0,
-                          count_blocks(of)));
+    SNOW_TRY(SNOW_RESERVE(context, of->blocks, 0, count_blocks(of)));
     image->drawn = of->blocks;
     image->tile_width = image->tile_height = BLOCK;
     image->tiles = blocks;

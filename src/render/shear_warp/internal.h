@@ -40,7 +40,6 @@ typedef struct snow_value_axes {
 
 typedef struct snow_value_kept_slabs {
     snow_value_kept_slab *slabs;
-    size_t capacity; /* bytes */
     int count;
     uint64_t of;    /* the generation of the volume in its file; 0: none */
     int slice_axis; /* and of the encodings */
@@ -88,8 +87,6 @@ typedef struct snow_value_image {
     /* What means read: the same, or an image halved. */
     snow_shear_warp_warping shown;
     float *halved; /* the image made smaller */
-    size_t plane_capacity, drawn_capacity, blocks_capacity,
-        halved_capacity; /* bytes */
 } snow_value_image;
 
 /* A part's image in the making. */
@@ -137,9 +134,6 @@ struct snow_value_path {
     snow_line_batch batch;      /* of its tiles */
     float *lines;               /* of the warp */
     char *scratch;
-    size_t sheets_capacity, places_capacity, spreads_capacity,
-        lanes_capacity[2], clips_capacity, curve_capacity, lines_capacity,
-        scratch_capacity; /* bytes */
 };
 
 /* --- operators.c --- */

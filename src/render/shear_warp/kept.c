@@ -107,10 +107,9 @@ void snow_value_take_kept(snow_value_path *path, const snow_volume *slab) {
 
 static snow_value_kept_slab *add(snow_value_path *path, snow_slabs *slabs) {
     snow_value_kept_slabs *kept = &path->kept;
-    size_t used = (size_t)kept->count * sizeof *kept->slabs;
     if (!has_room(slabs->volume, &slabs->cut) ||
-        snow_reserve(path->context, &kept->slabs, &kept->capacity, used,
-                     used + sizeof *kept->slabs) != SNOW_STATUS_OK)
+        SNOW_RESERVE(path->context, kept->slabs, kept->count,
+                     kept->count + 1) != SNOW_STATUS_OK)
         return NULL;
     kept->of = slabs->volume->generation;
     kept->slice_axis = path->key.slice_axis;

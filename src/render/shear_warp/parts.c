@@ -15,8 +15,6 @@
 
 #include "render/picture.h"
 
-#include <math.h>
-
 static int64_t within(int64_t at, int64_t count) {
     return at < 0 ? 0 : at < count ? at : count - 1;
 }

@@ -7,7 +7,6 @@
 #include "volume/stream.h"
 
 #include <math.h>
-#include <string.h>
 
 snow_status snow_value_path_new(snow_context *context, snow_value_path **out) {
     if (*out)

@@ -104,9 +104,8 @@ static snow_status place_halved(snow_context *context, snow_value_image *of) {
         shrink(&of->shown, axis, (double)(first - low), (double)side);
     }
     image->stride = (size_t)image->width * (size_t)image->channels;
-    SNOW_TRY(snow_reserve(context, &of->halved, &of->halved_capacity, 0,
-                          image->stride * (size_t)(image->height + 1) *
-                              sizeof *of->halved));
+    SNOW_TRY(SNOW_RESERVE(context, of->halved, 0,
+                          image->stride * (size_t)(image->height + 1)));
     image->pixels = of->halved;
     image->drawn = &all;
     image->block_width = image->width;
@@ -236,8 +235,8 @@ snow_status snow_value_show(snow_value_path *path,
         w->made(w);
     if (job.bytes)
         job.line_floats += (size_t)(w->width * w->plane.channels);
-    SNOW_TRY(snow_reserve(path->context, &path->lines, &path->lines_capacity, 0,
-                          threads * job.line_floats * sizeof *path->lines));
+    SNOW_TRY(
+        SNOW_RESERVE(path->context, path->lines, 0, threads * job.line_floats));
     job.lines = path->lines;
     snow_monitor_next(path->context->monitor, SNOW_STAGE_RENDER, 0.9, 1);
     return snow_parallel(path->context, params->settings->threads,
