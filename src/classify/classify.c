@@ -12,23 +12,9 @@
 #define TEMPLATE "classify/classify_row.tmpl.h"
 #include "volume/each_type.h"
 
-/* Per scalar type: its row loop, and the native values that a table spans (0
- * values for types too wide for a table). */
-static const struct type_row {
-    snow_classify_row_fn *classify_row;
-    int32_t lowest, values;
-} type_rows[] = {
-    [SNOW_TYPE_INT8] = {classify_row_INT8, INT8_MIN, 256},
-    [SNOW_TYPE_UINT8] = {classify_row_UINT8, 0, 256},
-    [SNOW_TYPE_INT16] = {classify_row_INT16, INT16_MIN, 65536},
-    [SNOW_TYPE_UINT16] = {classify_row_UINT16, 0, 65536},
-    [SNOW_TYPE_INT32] = {classify_row_INT32, 0, 0},
-    [SNOW_TYPE_UINT32] = {classify_row_UINT32, 0, 0},
-    [SNOW_TYPE_INT64] = {classify_row_INT64, 0, 0},
-    [SNOW_TYPE_UINT64] = {classify_row_UINT64, 0, 0},
-    [SNOW_TYPE_FLOAT32] = {classify_row_FLOAT32, 0, 0},
-    [SNOW_TYPE_FLOAT64] = {classify_row_FLOAT64, 0, 0},
-};
+static snow_classify_row_fn *const type_rows[] = {
+#define ENTRY(name, type, text) [SNOW_TYPE_##name] = classify_row_##name,
+    SNOW_TYPE_MAP(ENTRY)};
 
 bool snow_classify_value(const snow_classifier *c, double native,
                          float *sample) {
@@ -57,13 +43,15 @@ bool snow_classify_value(const snow_classifier *c, double native,
     return interesting;
 }
 
-static snow_status make_table(snow_context *context, snow_classifier *c,
-                              const struct type_row *row) {
-    size_t values = (size_t)row->values, channels = (size_t)c->channels;
+/* What becomes of all values of a type of 8 or 16 bits. */
+static snow_status make_table(snow_context *context, snow_classifier *c) {
+    const snow_type type = c->volume->info.type;
+    size_t values = (size_t)1 << 8 * snow_type_size(type);
+    size_t channels = (size_t)c->channels;
     SNOW_TRY(SNOW_RESERVE(context, c->keep, 0, values));
     SNOW_TRY(SNOW_RESERVE(context, c->table, 0, values * channels));
     for (size_t i = 0; i < values; i++) {
-        double native = (double)row->lowest + (double)i;
+        double native = snow_type_lowest(type) + (double)i;
         c->keep[i] = snow_classify_value(c, native, c->table + i * channels) ||
                      c->keep_all;
     }
@@ -75,7 +63,6 @@ snow_status snow_classifier_make(snow_context *context,
                                  const snow_transfer *transfer,
                                  const snow_classify_options *options,
                                  snow_classifier *c) {
-    const struct type_row *row = &type_rows[volume->info.type];
     c->volume = volume;
     c->transfer = transfer;
     c->channels = transfer->grey ? 2 : 4;
@@ -83,7 +70,7 @@ snow_status snow_classifier_make(snow_context *context,
     c->premultiply = options->premultiply;
     c->threshold = options->threshold;
     c->exponent = options->opacity_exponent;
-    c->classify_row = row->classify_row;
+    c->classify_row = type_rows[volume->info.type];
     c->gradient_factors = snow_transfer_has_gradient_opacity(transfer);
     if (c->gradient_factors) {
         SNOW_TRY(snow_gradient_opacity_init(context, volume, transfer,
@@ -94,7 +81,8 @@ snow_status snow_classifier_make(snow_context *context,
         c->premultiply = false;
         c->exponent = 1;
     }
-    return row->values ? make_table(context, c, row) : SNOW_STATUS_OK;
+    return snow_type_size(volume->info.type) <= 2 ? make_table(context, c)
+                                                  : SNOW_STATUS_OK;
 }
 
 void snow_classifier_fini(snow_context *context, snow_classifier *c) {

@@ -153,7 +153,7 @@ snow_status snow_histogram_new(const snow_volume *volume, snow_comm *comm,
         *out = histogram;
         return SNOW_STATUS_OK;
     }
-    if (snow_stored_values_counted(volume->info.type))
+    if (snow_type_size(volume->info.type) <= 2)
         status = count_as_needed(&histogram);
     else {
         histogram.need = SNOW_NEED_COUNTS;

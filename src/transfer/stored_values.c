@@ -5,17 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-bool snow_stored_values_counted(snow_type type) {
-    return type == SNOW_TYPE_INT8 || type == SNOW_TYPE_UINT8 ||
-           type == SNOW_TYPE_INT16 || type == SNOW_TYPE_UINT16;
-}
-
-static int smallest_native(snow_type type) {
-    return type == SNOW_TYPE_INT8    ? INT8_MIN
-           : type == SNOW_TYPE_INT16 ? INT16_MIN
-                                     : 0;
-}
-
 /* Bytes that are compared at once. */
 #define EVEN 32
 
@@ -75,7 +64,7 @@ uint64_t snow_stored_values_nth(const snow_histogram *histogram, int n,
     const snow_volume_info *info = &histogram->volume->info;
     int place = info->slope < 0 ? SNOW_DIGITS - 1 - n : n;
     *value =
-        info->slope * (place + smallest_native(info->type)) + info->intercept;
+        info->slope * (place + snow_type_lowest(info->type)) + info->intercept;
     return histogram->log && !(*value > 0) ? 0 : histogram->counts[place];
 }
 
@@ -93,6 +82,7 @@ static void measure_counts(snow_histogram *histogram) {
         histogram->finite += count;
     }
 }
+
 snow_status snow_stored_values_count(snow_histogram *histogram) {
     SNOW_TRY(snow_histogram_new_tables(histogram, 1, &histogram->counts));
     SNOW_TRY(snow_histogram_visit(histogram, SNOW_HISTOGRAM_EXACT, count_stored,
@@ -115,6 +105,7 @@ double snow_stored_values_quantile(const snow_histogram *histogram,
     }
     return histogram->max;
 }
+
 /* --- the range alone ------------------------------------------------------ */
 
 /* The extremes of native values. */
@@ -126,39 +117,14 @@ typedef struct extremes {
 
 #define EXTREMES_BLOCK 65536
 
-static void extremes_of_run(const snow_volume *volume, int64_t first,
-                            int64_t count, int *low, int *high) {
-#define EXTREMES_TYPE(name, c_type)                                \
-    case name: {                                                   \
-        const c_type *at = (const c_type *)volume->voxels + first; \
-        c_type least = at[0], most = at[0];                        \
-        for (int64_t n = 1; n < count; n++) {                      \
-            least = at[n] < least ? at[n] : least;                 \
-            most = at[n] > most ? at[n] : most;                    \
-        }                                                          \
-        *low = least;                                              \
-        *high = most;                                              \
-        break;                                                     \
-    }
-    switch (volume->info.type) {
-        EXTREMES_TYPE(SNOW_TYPE_INT8, int8_t)
-        EXTREMES_TYPE(SNOW_TYPE_UINT8, uint8_t)
-        EXTREMES_TYPE(SNOW_TYPE_INT16, int16_t)
-        EXTREMES_TYPE(SNOW_TYPE_UINT16, uint16_t)
-    default:
-        break;
-    }
-#undef EXTREMES_TYPE
-}
-
 static double data_value(const snow_volume *volume, int native) {
     return volume->info.slope * native + volume->info.intercept;
 }
 
 static void join_extremes(const snow_volume *volume, int64_t first,
-                          int64_t count, extremes *n) {
-    int low = 0, high = 0;
-    extremes_of_run(volume, first, count, &low, &high);
+                          size_t count, extremes *n) {
+    int32_t low = 0, high = 0;
+    snow_volume_extremes(volume, first, count, &low, &high);
     n->low = n->any && n->low < low ? n->low : low;
     n->high = n->any && n->high > high ? n->high : high;
     n->any = true;
@@ -177,9 +143,8 @@ static snow_status find_extremes_of_part(const snow_volume *volume,
             uint64_t left = w.end - at;
             if (n->until_negative && n->negative)
                 return SNOW_STATUS_OK;
-            join_extremes(
-                volume, (int64_t)at + w.ahead,
-                left < EXTREMES_BLOCK ? (int64_t)left : EXTREMES_BLOCK, n);
+            join_extremes(volume, (int64_t)at + w.ahead,
+                          left < EXTREMES_BLOCK ? left : EXTREMES_BLOCK, n);
         }
     return SNOW_STATUS_OK;
 }

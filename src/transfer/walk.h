@@ -63,10 +63,7 @@ snow_status snow_histogram_new_tables(const snow_histogram *histogram,
 
 /* --- stored_values.c: 8 and 16 bit types ---
 
- * Whether values of a type are counted by their native value. */
-bool snow_stored_values_counted(snow_type type);
-
-/* Collective. Counts them, and sets the range. */
+ * Collective. Counts voxels by their native value, and sets the range. */
 snow_status snow_stored_values_count(snow_histogram *histogram);
 
 /* Finds the range alone. Data values rise or fall with stored values, so that

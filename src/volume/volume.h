@@ -92,4 +92,11 @@ double snow_volume_native(const snow_volume *volume, int64_t index);
 void snow_volume_stored(const snow_volume *volume, int64_t first, size_t count,
                         double *out);
 
+/* The smallest value of a type of 8 or 16 bits. */
+int32_t snow_type_lowest(snow_type type);
+
+/* The extremes of native values of 8 or 16 bits; false of other types. */
+bool snow_volume_extremes(const snow_volume *volume, int64_t first,
+                          size_t count, int32_t *low, int32_t *high);
+
 #endif

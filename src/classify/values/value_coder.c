@@ -60,9 +60,7 @@ snow_status snow_value_coder_make(const snow_volume *volume,
     if (is_wide(info->type) || coder->ruled)
         return SNOW_STATUS_OK;
     SNOW_TRY(SNOW_RESERVE(volume->context, coder->numbers, 0, count));
-    coder->lowest = info->type == SNOW_TYPE_INT8    ? INT8_MIN
-                    : info->type == SNOW_TYPE_INT16 ? INT16_MIN
-                                                    : 0;
+    coder->lowest = snow_type_lowest(info->type);
     for (size_t n = 0; n < count; n++)
         coder->numbers[n] =
             coded(coder, info->slope * (double)((int32_t)n + coder->lowest) +

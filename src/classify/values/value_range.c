@@ -53,26 +53,6 @@ static void take_stored(const range_job *job, double *stored, size_t count) {
     }
 }
 
-/* Native values of one or two bytes, as those of a type whose extremes vectors
- * of any machine find: with the sign bit turned over where `flip` has it. */
-#define LOOK_NARROW(name, type, vector, flip)                            \
-    static void look_at_##name(found_range *found, const type *stored,   \
-                               size_t count) {                           \
-        vector low = (vector)(stored[0] ^ (flip)), high = low;           \
-        for (size_t n = 0; n < count; n++) {                             \
-            vector here = (vector)(stored[n] ^ (flip));                  \
-            low = here < low ? here : low;                               \
-            high = here > high ? here : high;                            \
-        }                                                                \
-        type first = (type)(low ^ (flip)), last = (type)(high ^ (flip)); \
-        found->low = first < found->low ? first : found->low;            \
-        found->high = last > found->high ? last : found->high;           \
-    }
-LOOK_NARROW(int8, int8_t, uint8_t, 0x80)
-LOOK_NARROW(uint8, uint8_t, uint8_t, 0)
-LOOK_NARROW(int16, int16_t, int16_t, 0)
-LOOK_NARROW(uint16, uint16_t, int16_t, 0x8000)
-
 /* Whether all values that 8 bits have were found. */
 static bool is_full(const range_job *job, const found_range *found) {
     return snow_type_size(job->volume->info.type) == 1 && !job->log &&
@@ -82,21 +62,12 @@ static bool is_full(const range_job *job, const found_range *found) {
 /* False where the voxels have another type, or logarithms are wanted. */
 static bool look_at_narrow(const range_job *job, found_range *found,
                            int64_t first, size_t count) {
-    const unsigned char *voxels = job->volume->voxels;
-    snow_type type = job->volume->info.type;
-    const void *at = voxels + (size_t)first * snow_type_size(type);
-    if (job->log)
+    int32_t low, high;
+    if (job->log ||
+        !snow_volume_extremes(job->volume, first, count, &low, &high))
         return false;
-    if (type == SNOW_TYPE_INT8)
-        look_at_int8(found, at, count);
-    else if (type == SNOW_TYPE_UINT8)
-        look_at_uint8(found, at, count);
-    else if (type == SNOW_TYPE_INT16)
-        look_at_int16(found, at, count);
-    else if (type == SNOW_TYPE_UINT16)
-        look_at_uint16(found, at, count);
-    else
-        return false;
+    found->low = fmin(found->low, low);
+    found->high = fmax(found->high, high);
     return true;
 }
 

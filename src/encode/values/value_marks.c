@@ -32,9 +32,7 @@ snow_value_stored_range
 snow_value_stored_range_of(const snow_value_coder *coder, snow_value_run run) {
     const snow_value_rule *rule = &coder->scale.rule;
     const bool narrow = snow_type_size(coder->type) == 1;
-    const int32_t least = coder->type == SNOW_TYPE_INT8    ? INT8_MIN
-                          : coder->type == SNOW_TYPE_INT16 ? INT16_MIN
-                                                           : 0;
+    const int32_t least = snow_type_lowest(coder->type);
     int32_t from = step_of(rule, run.first), end = step_of(rule, run.last + 1);
     if (from >= end)
         return (snow_value_stored_range){.none = true};
