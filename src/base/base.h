@@ -97,6 +97,11 @@ size_t snow_block_bytes(const void *block);
 bool snow_mul_u64(uint64_t a, uint64_t b, uint64_t *out);
 bool snow_add_u64(uint64_t a, uint64_t b, uint64_t *out);
 
+/* The last of the places `low` to `high` whose number is at most `most`; `low`
+ * if none is.  Numbers rise. */
+int64_t snow_last_up_to(const int64_t *numbers, int64_t low, int64_t high,
+                        int64_t most);
+
 /* --- records ------------------------------------------------------------- */
 
 /* Defines the initialiser of a record that grows at its end

@@ -14,3 +14,15 @@ bool snow_add_u64(uint64_t a, uint64_t b, uint64_t *out) {
     *out = a + b;
     return true;
 }
+
+int64_t snow_last_up_to(const int64_t *numbers, int64_t low, int64_t high,
+                        int64_t most) {
+    while (low < high) {
+        int64_t middle = high - (high - low) / 2;
+        if (numbers[middle] <= most)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return low;
+}

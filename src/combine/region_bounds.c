@@ -1,6 +1,8 @@
 /* combine/region_bounds.c - the partition of the picture into regions. */
 #include "combine/region_bounds.h"
 
+#include "base/base.h"
+
 /* Counted regions are measured up to this number, which takes a microsecond. A
  * larger number of regions is small anyway. */
 #define REGIONS_MEASURED 64
@@ -46,14 +48,8 @@ void snow_region_bounds_count(snow_region_bounds *bounds, int64_t *counts) {
 
 /* The first pixel with `weight` before it. */
 static int64_t weighed(const snow_region_bounds *bounds, int64_t weight) {
-    int low = 0, high = bounds->bins; /* weights[low] <= weight */
-    while (high - low > 1) {
-        int middle = low + (high - low) / 2;
-        if (bounds->weights[middle] <= weight)
-            low = middle;
-        else
-            high = middle;
-    }
+    int low =
+        (int)snow_last_up_to(bounds->weights, 0, bounds->bins - 1, weight);
     int64_t first =
         (int64_t)snow_region_bounds_line(bounds, low) * bounds->width;
     int64_t end =

@@ -38,15 +38,7 @@ int64_t snow_block_counts_find(const snow_block_counts *block_counts, int axis,
     const snow_partition_grid *grid = &block_counts->grid;
     if (!grid->borders || axis != grid->axis)
         return voxel / block_counts->block[axis];
-    int64_t low = 0, high = grid->count - 1;
-    while (low < high) {
-        int64_t middle = high - (high - low) / 2;
-        if (grid->borders[middle] <= voxel)
-            low = middle;
-        else
-            high = middle - 1;
-    }
-    return low;
+    return snow_last_up_to(grid->borders, 0, grid->count - 1, voxel);
 }
 
 snow_box snow_block_counts_box(const snow_block_counts *block_counts,
@@ -92,17 +84,10 @@ typedef struct row {
 
 /* The farthest end of a run that begins at `from` and costs at most `most`. */
 static int64_t reach(const row *r, int64_t from, int64_t most) {
-    int64_t low = from, high = r->items;
-    if (high - low > r->longest)
-        high = low + r->longest;
-    while (low < high) {
-        int64_t middle = high - (high - low) / 2;
-        if (r->sums[middle] - r->sums[from] <= most)
-            low = middle;
-        else
-            high = middle - 1;
-    }
-    return low;
+    int64_t high = r->items;
+    if (high - from > r->longest)
+        high = from + r->longest;
+    return snow_last_up_to(r->sums, from, high, r->sums[from] + most);
 }
 
 /* The earliest begin of a run that ends at `end` and costs at most `most`. */
@@ -144,14 +129,7 @@ static int64_t least_cost(const row *r) {
 
 /* The border nearest to a cost. */
 static int64_t nearest(const row *r, int64_t wanted) {
-    int64_t low = 0, high = r->items;
-    while (low < high) {
-        int64_t middle = high - (high - low) / 2;
-        if (r->sums[middle] <= wanted)
-            low = middle;
-        else
-            high = middle - 1;
-    }
+    int64_t low = snow_last_up_to(r->sums, 0, r->items, wanted);
     if (low < r->items && r->sums[low + 1] - wanted < wanted - r->sums[low])
         low++;
     return low;

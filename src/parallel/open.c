@@ -44,17 +44,14 @@ static snow_status read_box(const opening *o, const snow_part_place *p,
     snow_volume_options options = o->options;
     snow_volume_info info;
     snow_volume *volume;
+    if (!snow_box_voxels(&p->owned))
+        return snow_part_new(o->context, &o->whole, p, out);
     for (int i = 0; i < 3; i++) {
         options.crop[i][0] += p->stored.first[i];
         options.crop[i][1] = options.crop[i][0] + p->stored.count[i];
     }
     SNOW_TRY(o->open(o->context, o->path, &options, &info, &volume));
-    snow_status status = snow_part_set(volume, &o->whole, p);
-    if (status == SNOW_STATUS_OK)
-        *out = volume;
-    else
-        snow_volume_close(volume);
-    return status;
+    return snow_part_set(volume, &o->whole, p, out);
 }
 
 /* Equal runs of slices, or, with more ranks than slices, of each slice's rows;
@@ -151,9 +148,7 @@ static snow_status read_share(const opening *o, bool stream,
     snow_part_place p = snow_part_place_of(&o->whole, &box, no_layers);
     snow_status status = SNOW_STATUS_OK;
     if (!*share)
-        status = snow_box_voxels(&box)
-                     ? read_box(o, &p, share)
-                     : snow_part_new(o->context, &o->whole, &p, share);
+        status = read_box(o, &p, share);
     return snow_comm_agree_status(o->comm, status);
 }
 
@@ -188,7 +183,7 @@ static snow_status make_transfer(const opening *o, const snow_volume *read,
                                  snow_transfer **out) {
     if (o->transfer)
         return SNOW_STATUS_OK;
-    return snow_transfer_new_for_ranks(o->comm, read, &o->look, out);
+    return snow_ranks_new_transfer(o->comm, read, &o->look, out);
 }
 
 /* Collective.  Equal slabs are known before anything is read. */
@@ -201,9 +196,7 @@ static snow_status open_equal(const opening *o,
         snow_partition_equal(&order->grid, order->ranks, boxes);
         snow_part_place p = snow_part_place_of(
             &o->whole, &boxes[snow_comm_rank(o->comm)], order->layers);
-        status = snow_box_voxels(&p.owned)
-                     ? read_box(o, &p, volume)
-                     : snow_part_new(o->context, &o->whole, &p, volume);
+        status = read_box(o, &p, volume);
     }
     snow_release(o->context, boxes);
     SNOW_TRY(snow_comm_agree_status(o->comm, status));
@@ -289,10 +282,4 @@ snow_status snow_ranks_open_by(snow_open_fn *open,
     *volume = part;
     *transfer = function;
     return SNOW_STATUS_OK;
-}
-
-snow_status snow_ranks_new_transfer(snow_comm *comm, const snow_volume *volume,
-                                    const snow_look *look,
-                                    snow_transfer **out) {
-    return snow_transfer_new_for_ranks(comm, volume, look, out);
 }

@@ -26,14 +26,20 @@ snow_part_place snow_part_place_of(const snow_volume_info *whole,
 }
 
 snow_status snow_part_set(snow_volume *volume, const snow_volume_info *whole,
-                          const snow_part_place *p) {
+                          const snow_part_place *p, snow_volume **out) {
     snow_extent part = {.size = sizeof part};
     memcpy(part.dims, whole->dims, sizeof part.dims);
     memcpy(part.stored, p->stored.first, sizeof part.stored);
     memcpy(part.first, p->owned.first, sizeof part.first);
     memcpy(part.count, p->owned.count, sizeof part.count);
-    SNOW_TRY(snow_volume_set_extent(volume, &part));
-    return snow_volume_set_whole(volume, whole);
+    snow_status status = snow_volume_set_extent(volume, &part);
+    if (status == SNOW_STATUS_OK)
+        status = snow_volume_set_whole(volume, whole);
+    if (status == SNOW_STATUS_OK)
+        *out = volume;
+    else
+        snow_volume_close(volume);
+    return status;
 }
 
 snow_status snow_part_new(snow_context *context, const snow_volume_info *whole,
@@ -44,12 +50,7 @@ snow_status snow_part_new(snow_context *context, const snow_volume_info *whole,
     SNOW_TRY(snow_volume_new(context, &info, &volume));
     if (!snow_box_voxels(&p->owned))
         memset(volume->owned, 0, snow_type_size(info.type));
-    snow_status status = snow_part_set(volume, whole, p);
-    if (status == SNOW_STATUS_OK)
-        *out = volume;
-    else
-        snow_volume_close(volume);
-    return status;
+    return snow_part_set(volume, whole, p, out);
 }
 
 /* --- voxels that change hands --------------------------------------------- */

@@ -14,9 +14,9 @@ snow_part_place snow_part_place_of(const snow_volume_info *whole,
                                    const snow_box *owned,
                                    const int64_t layers[3]);
 
-/* Makes a volume the part of a whole. */
+/* Makes a volume the part of a whole, and *out that; closes it on failure. */
 snow_status snow_part_set(snow_volume *volume, const snow_volume_info *whole,
-                          const snow_part_place *place);
+                          const snow_part_place *place, snow_volume **out);
 
 /* Room for a part; voxels that nobody sends are 0. */
 snow_status snow_part_new(snow_context *context, const snow_volume_info *whole,

@@ -86,37 +86,27 @@ snow_status snow_pipeline_open(snow_frame *frame, snow_comm *comm,
     return SNOW_STATUS_OK;
 }
 
-/* Its figures are found now, while there is a volume, which may go after
- * this. */
-static void begin_early(snow_in_flight *f, snow_status status) {
-    snow_picture *p = &f->picture;
+void snow_pipeline_begun(snow_picture *p, snow_status status) {
+    snow_in_flight *f = snow_in_flight_of(p);
     snow_ranks *r = f->ranks;
-    if (status == SNOW_STATUS_OK) {
+    r->in_flight++;
+    snow_monitor_leave(&p->monitor);
+    if (p->ahead && status == SNOW_STATUS_OK) {
         p->ranks_stats.cpu_splat += snow_in_flight_cpu(f) - f->drawn_cpu;
+        /* Now, while there is a volume, which may go after this. */
         status = snow_method_figures(p->pass->method, p, &p->pass->job);
     }
     keep_status(f, status);
     p->stats.seconds_frame = snow_ranks_clock(r) - f->mark;
     p->stats.cpu_frame = snow_cpu_seconds() - f->mark_cpu;
+    if (!p->ahead)
+        return;
     p->job.volume = p->pass->job.volume = NULL;
     p->job.transfer = p->pass->job.transfer = NULL;
     if (p->drawing) {
         r->drawn = f;
         snow_comm_occupy(r->comm, draw_meanwhile, r);
     }
-}
-
-void snow_pipeline_begun(snow_picture *p, snow_status status) {
-    snow_in_flight *f = snow_in_flight_of(p);
-    f->ranks->in_flight++;
-    snow_monitor_leave(&p->monitor);
-    if (p->ahead) {
-        begin_early(f, status);
-        return;
-    }
-    keep_status(f, status);
-    p->stats.seconds_frame = snow_ranks_clock(f->ranks) - f->mark;
-    p->stats.cpu_frame = snow_cpu_seconds() - f->mark_cpu;
 }
 
 snow_picture *snow_pipeline_waiting(const snow_frame *frame) {

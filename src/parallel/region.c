@@ -218,8 +218,8 @@ static void warp_lines(void *of, int64_t item, int worker) {
         snow_shear_warp_pixels_of(job->image, y, job->first, job->end, range);
         if (range[0] >= range[1])
             continue;
-        snow_shear_warp_warp(job->image, y, range[0], range[1], row + floats,
-                             row);
+        snow_shear_warp_warp(job->image->warping, y, range[0], range[1],
+                             row + floats, row);
         memcpy(job->pixels + job->places[y] * channels,
                row + (size_t)range[0] * channels,
                (size_t)(range[1] - range[0]) * channels * sizeof *row);

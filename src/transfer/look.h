@@ -131,14 +131,6 @@ void snow_transfer_builder_shift(snow_transfer_builder *builder, double shift);
 void snow_full_range(const snow_histogram *histogram, double *low,
                      double *high);
 
-/* snow_transfer_new_for_volume for a volume whose parts are the volumes of a
- * communicator's ranks; NULL: for one volume.  Collective, with errors agreed
- * on. */
-snow_status snow_transfer_new_for_ranks(snow_comm *comm,
-                                        const snow_volume *volume,
-                                        const snow_look *look,
-                                        snow_transfer **out);
-
 /* Whether a look (NULL allowed) has a gradient opacity; false if its preset
  * does not exist. */
 bool snow_look_has_gradient_opacity(const snow_look *look);

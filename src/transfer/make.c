@@ -8,6 +8,8 @@
 
 #include "volume/stream.h"
 
+#include <snowglass/ranks.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -453,10 +455,10 @@ static snow_status make_among(snow_comm *comm, const snow_volume *volume,
 }
 
 /* Slabs of a file are read for it. */
-snow_status snow_transfer_new_for_ranks(snow_comm *comm,
-                                        const snow_volume *volume,
-                                        const snow_look *look,
-                                        snow_transfer **out) {
+/* For one volume if the communicator is NULL. */
+snow_status snow_ranks_new_transfer(snow_comm *comm, const snow_volume *volume,
+                                    const snow_look *look,
+                                    snow_transfer **out) {
     snow_monitor monitor;
     snow_monitor_begin_reading(volume->context, &monitor);
     return snow_monitor_end(&monitor, make_among(comm, volume, look, out));
@@ -465,5 +467,5 @@ snow_status snow_transfer_new_for_ranks(snow_comm *comm,
 snow_status snow_transfer_new_for_volume(const snow_volume *volume,
                                          const snow_look *look,
                                          snow_transfer **out) {
-    return snow_transfer_new_for_ranks(NULL, volume, look, out);
+    return snow_ranks_new_transfer(NULL, volume, look, out);
 }

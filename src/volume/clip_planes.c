@@ -41,6 +41,23 @@ static void find_reach(const snow_volume_info *info, double reach[3]) {
     }
 }
 
+/* Room for planes; none of them is there yet. */
+static snow_status begin(snow_context *context, size_t planes,
+                         snow_clip_planes **out) {
+    snow_clip_planes *clip = snow_allocate_clear(context, sizeof *clip);
+    snow_status status = SNOW_STATUS_NO_MEMORY;
+    if (clip) {
+        clip->context = context;
+        status = SNOW_RESERVE(context, clip->planes, 0, planes);
+    }
+    if (status != SNOW_STATUS_OK) {
+        snow_clip_planes_free(clip);
+        clip = NULL;
+    }
+    *out = clip;
+    return status;
+}
+
 snow_status snow_clip_planes_new(snow_context *context,
                                  const snow_volume_info *info,
                                  const snow_clip_planes *before,
@@ -52,23 +69,15 @@ snow_status snow_clip_planes_new(snow_context *context,
         used += snow_is_plane(planes + 4 * n);
     if (!used && !before)
         return SNOW_STATUS_OK;
-    snow_clip_planes *clip = snow_allocate_clear(context, sizeof *clip);
-    if (!clip)
-        return SNOW_STATUS_NO_MEMORY;
-    clip->context = context;
+    SNOW_TRY(begin(context, most, out));
+    snow_clip_planes *clip = *out;
     find_reach(info, clip->reach);
-    clip->planes = snow_allocate_array(context, most, sizeof *clip->planes);
-    if (!clip->planes) {
-        snow_clip_planes_free(clip);
-        return SNOW_STATUS_NO_MEMORY;
-    }
     for (size_t n = 0; before && n < before->plane_count; n++)
         memcpy(clip->planes[clip->plane_count++], before->planes[n],
                sizeof *clip->planes);
     for (size_t n = 0; n < count; n++)
         if (snow_is_plane(planes + 4 * n))
             to_index(info, planes + 4 * n, clip->planes[clip->plane_count++]);
-    *out = clip;
     return SNOW_STATUS_OK;
 }
 
@@ -82,25 +91,15 @@ void snow_clip_planes_free(snow_clip_planes *clip) {
 
 snow_status snow_clip_planes_move(const snow_clip_planes *clip,
                                   const int64_t by[3], snow_clip_planes **out) {
-    snow_clip_planes *moved = snow_allocate_clear(clip->context, sizeof *moved);
-    *out = NULL;
-    if (!moved)
-        return SNOW_STATUS_NO_MEMORY;
-    moved->context = clip->context;
+    SNOW_TRY(begin(clip->context, clip->plane_count, out));
+    snow_clip_planes *moved = *out;
     memcpy(moved->reach, clip->reach, sizeof moved->reach);
-    moved->planes = snow_allocate_array(clip->context, clip->plane_count,
-                                        sizeof *moved->planes);
-    if (!moved->planes) {
-        snow_clip_planes_free(moved);
-        return SNOW_STATUS_NO_MEMORY;
-    }
     moved->plane_count = clip->plane_count;
     for (size_t n = 0; n < clip->plane_count; n++) {
         memcpy(moved->planes[n], clip->planes[n], sizeof *moved->planes);
         for (int axis = 0; axis < 3; axis++)
             moved->planes[n][3] -= moved->planes[n][axis] * (double)by[axis];
     }
-    *out = moved;
     return SNOW_STATUS_OK;
 }
 

@@ -4,6 +4,8 @@
 
 #include "transfer/look.h"
 
+#include <snowglass/ranks.h>
+
 #include <math.h>
 
 #define MOST_RANKS 33
@@ -77,7 +79,7 @@ static snow_status make_part(snow_comm *comm, void *user) {
     SNOW_TRY(snow_volume_wrap(snow_comm_context(comm), &info, voxels, &volume));
     snow_status status = snow_volume_set_extent(volume, &part);
     if (status == SNOW_STATUS_OK)
-        status = snow_transfer_new_for_ranks(comm, volume, w->look, &transfer);
+        status = snow_ranks_new_transfer(comm, volume, w->look, &transfer);
     if (status == SNOW_STATUS_OK) {
         status = compare(transfer, w->expected);
         snow_transfer_free(transfer);

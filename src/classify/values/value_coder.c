@@ -1,6 +1,7 @@
 /* classify/values/value_coder.c - see value_coder.h. */
 #include "classify/values/value_coder.h"
 
+#include "classify/values/value_labels.h"
 #include "volume/clip_planes.h"
 
 #include <math.h>
@@ -30,17 +31,9 @@ static int16_t scaled(const snow_value_scale14 *scale, double value) {
 
 /* The number of a data value, or of the label that it is. */
 static int16_t coded(const snow_value_coder *coder, double value) {
-    int low = 0, high = coder->name_count;
-    if (!coder->names)
-        return scaled(&coder->scale, value);
-    while (low < high) {
-        int middle = (low + high) / 2;
-        if (coder->names[middle] < value)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return (int16_t)low;
+    return coder->names ? (int16_t)snow_value_label_of(coder->names,
+                                                       coder->name_count, value)
+                        : scaled(&coder->scale, value);
 }
 
 static bool is_wide(snow_type type) {

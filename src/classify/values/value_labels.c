@@ -8,12 +8,11 @@
 
 /* --- names ---------------------------------------------------------------- */
 
-/* The first name that is not below a value. */
-static int place_of(const snow_value_labels *labels, double value) {
-    int low = 0, high = labels->count;
+int snow_value_label_of(const double *names, int count, double value) {
+    int low = 0, high = count;
     while (low < high) {
         int middle = (low + high) / 2;
-        if (labels->names[middle] < value)
+        if (names[middle] < value)
             low = middle + 1;
         else
             high = middle;
@@ -23,7 +22,7 @@ static int place_of(const snow_value_labels *labels, double value) {
 
 static snow_status add_name(snow_context *context, snow_value_labels *labels,
                             double value) {
-    int at = place_of(labels, value);
+    int at = snow_value_label_of(labels->names, labels->count, value);
     if (at < labels->count && labels->names[at] == value)
         return SNOW_STATUS_OK;
     if (labels->count == SNOW_VALUE_LABELS_MOST)

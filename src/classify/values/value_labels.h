@@ -22,6 +22,9 @@ typedef struct snow_value_labels {
     double exponent;        /* length of a step, in reference lengths */
 } snow_value_labels;
 
+/* The first name that is not below a value. */
+int snow_value_label_of(const double *names, int count, double value);
+
 /* Adds the labels of a volume to a set that may be empty.  Errors:
  * SNOW_STATUS_NO_MEMORY, SNOW_STATUS_BAD_USAGE (too many). */
 snow_status snow_value_labels_add(const snow_volume *volume,

@@ -47,7 +47,7 @@ void snow_shear_warp_pixels_of(const snow_shear_warp_image *image, int y,
 /* Warps the image, or what was put in its place, to pixels `from` to `to` - 1
  * of line y of the picture, whose pixel 0 is the first of `pixels`.  `spare`
  * has warping->spare_floats. */
-void snow_shear_warp_warp(const snow_shear_warp_image *image, int y, int from,
-                          int to, float *spare, float *pixels);
+void snow_shear_warp_warp(const struct snow_shear_warp_warping *warping, int y,
+                          int from, int to, float *spare, float *pixels);
 
 #endif

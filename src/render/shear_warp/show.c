@@ -116,17 +116,6 @@ static snow_status place_halved(snow_context *context, snow_value_image *of) {
 
 /* --- lines ---------------------------------------------------------------- */
 
-/* Pixels of line y of the picture, or of denser places. */
-static void show_row(const snow_shear_warp_warping *w, int y, int from, int to,
-                     float *out) {
-    if (w->perspective)
-        snow_warp_row_perspective(&w->plane, &w->scaled, w->filter, w->places,
-                                  y, from, to, out);
-    else
-        snow_warp_row(&w->plane, &w->shear, w->filter, w->warp, y, from, to,
-                      out);
-}
-
 /* The map of places `across` to the right of a pixel's middle and `down` below
  * it. */
 static snow_shear_warp_warping aside(const snow_shear_warp_warping *w,
@@ -152,7 +141,7 @@ static void show_means(const snow_shear_warp_warping *w, int y, int from,
     for (int i = 0; i < n * n; i++) {
         const snow_shear_warp_warping places = aside(
             &image->shown, (i % n + 0.5) / n - 0.5, (i / n + 0.5) / n - 0.5);
-        show_row(&places, y, from, to, one);
+        snow_shear_warp_warp(&places, y, from, to, NULL, one);
         for (int k = from * channels; k < to * channels; k++)
             out[k] += share * one[k];
     }
@@ -212,10 +201,7 @@ static void show_lines(void *of, int64_t item, int worker) {
     for (int y = first; y < end && y < w->height; y++) {
         float *out = job->bytes ? spare + w->spare_floats
                                 : job->pixels + (size_t)y * floats;
-        if (w->line)
-            w->line(w, y, 0, w->width, spare, out);
-        else
-            show_row(w, y, 0, w->width, out);
+        snow_shear_warp_warp(w, y, 0, w->width, spare, out);
         if (job->bytes)
             job->convert(out, w->width, w->plane.channels,
                          job->bytes->background, snow_bytes_row(job->bytes, y));

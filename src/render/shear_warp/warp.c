@@ -12,9 +12,8 @@
 #include <math.h>
 #include <string.h>
 
-void snow_shear_warp_warp(const snow_shear_warp_image *image, int y, int from,
+void snow_shear_warp_warp(const snow_shear_warp_warping *w, int y, int from,
                           int to, float *spare, float *pixels) {
-    const snow_shear_warp_warping *w = image->warping;
     if (w->line)
         w->line(w, y, from, to, spare, pixels);
     else if (w->perspective)
