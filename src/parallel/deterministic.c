@@ -32,7 +32,7 @@ static int nodes_of(const snow_ranks *r, const snow_placement *p, int rank,
 /* The lines of a rank's piece. */
 static snow_slab lines_of(const snow_ranks *r, const snow_local *local,
                           int rank) {
-    return snow_slab_equal(local->height, r->ranks, rank);
+    return snow_slab_equal(local->image.height, r->ranks, rank);
 }
 
 static snow_rectangle cut_lines(snow_rectangle from, snow_slab lines) {
@@ -50,7 +50,7 @@ static size_t pixels_in(snow_rectangle r) {
 }
 
 static size_t pixel_bytes(const snow_local *local) {
-    return (size_t)local->channels * sizeof(float);
+    return (size_t)local->image.channels * sizeof(float);
 }
 
 /* --- memory --------------------------------------------------------------- */
@@ -59,7 +59,7 @@ static size_t pixel_bytes(const snow_local *local) {
 static size_t message_bytes(const snow_ranks *r, const snow_local *local,
                             int rank) {
     size_t bytes = 0;
-    for (int n = 0; n < local->layers; n++)
+    for (int n = 0; n < local->image.layers; n++)
         bytes += HEAD + pixels_in(cut_lines(local->drawn[n],
                                             lines_of(r, local, rank))) *
                             pixel_bytes(local);
@@ -72,7 +72,7 @@ static size_t message_room(const snow_ranks *r, const snow_local *local,
     snow_group_node nodes[SNOW_NODES_MOST];
     size_t lines = (size_t)lines_of(r, local, r->rank).count;
     return (size_t)nodes_of(r, p, rank, nodes) *
-           (HEAD + lines * (size_t)local->width * pixel_bytes(local));
+           (HEAD + lines * (size_t)local->image.width * pixel_bytes(local));
 }
 
 snow_status snow_layers_prepare(snow_ranks *r, const snow_local *local,
@@ -84,7 +84,7 @@ snow_status snow_layers_prepare(snow_ranks *r, const snow_local *local,
         came += message_room(r, local, p, rank);
     }
     size_t region = (size_t)lines_of(r, local, r->rank).count *
-                    (size_t)local->width * pixel_bytes(local);
+                    (size_t)local->image.width * pixel_bytes(local);
     SNOW_TRY(SNOW_RESERVE(r->context, r->sent, 0, sent));
     SNOW_TRY(SNOW_RESERVE(r->context, r->came, 0, came));
     return snow_reserve(r->context, &r->region, 0, SNOW_GROUP_RANKS + 1,
@@ -96,7 +96,7 @@ snow_status snow_layers_prepare(snow_ranks *r, const snow_local *local,
 /* Writes what is `rank`'s of this rank's layers; the message's end. */
 static char *write_message(const snow_ranks *r, const snow_local *local,
                            int rank, char *at) {
-    for (int n = 0; n < local->layers; n++) {
+    for (int n = 0; n < local->image.layers; n++) {
         snow_rectangle part =
             cut_lines(local->drawn[n], lines_of(r, local, rank));
         size_t bytes = (size_t)(part.x1 - part.x0) * pixel_bytes(local);
@@ -104,9 +104,9 @@ static char *write_message(const snow_ranks *r, const snow_local *local,
         at += HEAD;
         for (int y = part.y0; y < part.y1; y++, at += bytes)
             memcpy(at,
-                   local->pixels + (size_t)n * local->layer_floats +
-                       (size_t)y * local->stride +
-                       (size_t)part.x0 * (size_t)local->channels,
+                   local->image.pixels + (size_t)n * local->image.layer_floats +
+                       (size_t)y * local->image.stride +
+                       (size_t)part.x0 * (size_t)local->image.channels,
                    bytes);
     }
     return at;
@@ -124,7 +124,7 @@ static snow_status exchange_messages(snow_ranks *r, const snow_local *local,
                                        room, rank, SNOW_TAG_LAYERS,
                                        &messages[count++]));
     }
-    for (int rank = 0; rank < r->ranks && local->layers; rank++) {
+    for (int rank = 0; rank < r->ranks && local->image.layers; rank++) {
         char *end = write_message(r, local, rank, at);
         if (rank == r->rank)
             memcpy(r->came + r->offsets[rank], at, (size_t)(end - at));
@@ -172,7 +172,7 @@ static const char *find_block(const tree_reduction *w, snow_group_node node) {
 
 /* Makes a block a piece; without one, a transparent piece. */
 static void unpack(const tree_reduction *w, const char *block, float *region) {
-    size_t channels = (size_t)w->local->channels;
+    size_t channels = (size_t)w->local->image.channels;
     snow_rectangle part;
     memset(region, 0, w->floats * sizeof *region);
     if (!block)
@@ -182,7 +182,7 @@ static void unpack(const tree_reduction *w, const char *block, float *region) {
     size_t bytes = (size_t)(part.x1 - part.x0) * pixel_bytes(w->local);
     for (int y = part.y0; y < part.y1; y++, block += bytes)
         memcpy(region + ((size_t)(y - (int)w->lines.first) *
-                             (size_t)w->local->width +
+                             (size_t)w->local->image.width +
                          (size_t)part.x0) *
                             channels,
                block, bytes);
@@ -202,8 +202,8 @@ static void reduce_tree(const tree_reduction *w, snow_group_node node,
     float *back = w->ranks->region + (size_t)node.rank * w->floats;
     reduce_tree(w, near, region);
     reduce_tree(w, far, back);
-    snow_over_row(region, back, w->floats / (size_t)w->local->channels,
-                  w->local->channels);
+    snow_over_row(region, back, w->floats / (size_t)w->local->image.channels,
+                  w->local->image.channels);
 }
 
 snow_status snow_layers_exchange(snow_ranks *r, const snow_local *local,
@@ -212,14 +212,14 @@ snow_status snow_layers_exchange(snow_ranks *r, const snow_local *local,
     const snow_group_node root = {SNOW_GROUP_RANKS, 0};
     tree_reduction w = {r, local, placement, lines_of(r, local, r->rank), 0};
     SNOW_TRY(exchange_messages(r, local, placement));
-    size_t width = (size_t)local->width;
-    w.floats = (size_t)w.lines.count * width * (size_t)local->channels;
+    size_t width = (size_t)local->image.width;
+    w.floats = (size_t)w.lines.count * width * (size_t)local->image.channels;
     if (w.floats)
         reduce_tree(&w, root, r->region);
     for (int rank = 0; rank < r->ranks; rank++) {
         snow_slab lines = lines_of(r, local, rank);
-        r->firsts[rank] = lines.first * local->width;
-        r->counts[rank] = lines.count * local->width;
+        r->firsts[rank] = lines.first * local->image.width;
+        r->counts[rank] = lines.count * local->image.width;
     }
     *out = (snow_image_region){.first = r->firsts[r->rank],
                                .count = r->counts[r->rank],

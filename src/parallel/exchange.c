@@ -54,14 +54,7 @@ static bool look_at_lines(const snow_in_flight *p, int y0, int y1,
 /* `drawn` is known only when the image is finished. */
 static snow_local sheared_local(const snow_shear_warp_image *image,
                                 bool drawing) {
-    snow_local local = {.width = image->width,
-                        .height = image->height,
-                        .channels = image->channels,
-                        .stride = image->stride,
-                        .pixels = image->pixels,
-                        .layers = image->layers,
-                        .layer_floats = image->layer_floats};
-    memcpy(local.nodes, image->nodes, sizeof local.nodes);
+    snow_local local = {.image = *image};
     for (int n = 0; image->width && n < image->layers && !drawing; n++)
         local.drawn[n] =
             drawn_part(image, n, 0, (int)image->layer_tiles / image->tiles);
@@ -71,16 +64,15 @@ static snow_local sheared_local(const snow_shear_warp_image *image,
 /* Pixels of the picture, in ranks->images. */
 static snow_local picture_local(const snow_in_flight *p, const snow_job *job) {
     const snow_view *view = job->view;
-    const snow_local_image *image = &p->picture.local;
-    snow_local local = {.width = view->width,
-                        .height = view->height,
-                        .channels = job->channels,
-                        .stride = (size_t)(view->width * job->channels),
-                        .pixels = p->ranks->images,
-                        .layers = image->layers,
-                        .layer_floats = snow_job_bytes(job) / sizeof(float)};
-    memcpy(local.nodes, image->nodes, sizeof local.nodes);
-    for (int n = 0; n < local.layers; n++)
+    snow_local local = {
+        .image = {.width = view->width,
+                  .height = view->height,
+                  .channels = job->channels,
+                  .stride = (size_t)(view->width * job->channels),
+                  .pixels = p->ranks->images,
+                  .layers = p->picture.local.layers,
+                  .layer_floats = snow_job_bytes(job) / sizeof(float)}};
+    for (int n = 0; n < local.image.layers; n++)
         local.drawn[n] = (snow_rectangle){0, 0, view->width, view->height};
     return local;
 }
@@ -171,16 +163,17 @@ static snow_status send_while_drawing(snow_in_flight *p) {
         else
             snow_ranks_drain(p->ranks);
     }
-    look_at_lines(p, 0, p->local.height, &p->local.drawn[0]);
+    look_at_lines(p, 0, p->local.image.height, &p->local.drawn[0]);
     return SNOW_STATUS_OK;
 }
 
 static snow_status exchange(snow_in_flight *p, const snow_job *job) {
     snow_ranks *r = p->ranks;
-    const snow_local *local = &p->local;
+    const snow_shear_warp_image *local = &p->local.image;
     const bool warps = p->picture.pass->method->warps;
     if (job->settings.deterministic)
-        return snow_layers_exchange(r, local, placement_of(p, job), &p->region);
+        return snow_layers_exchange(r, &p->local, placement_of(p, job),
+                                    &p->region);
     const snow_exchange_params order = {
         .width = local->width,
         .height = local->height,
@@ -190,14 +183,14 @@ static snow_status exchange(snow_in_flight *p, const snow_job *job) {
         .ranks = r->order,
         .method = p->how.combining,
         .radix = p->how.radix,
-        .composite_op = local->composite_op,
+        .composite_op = p->local.composite_op,
         .grain = warps ? local->width : 1, /* pieces of whole lines */
         .counts = p->picture.ahead ? r->group_counts : NULL,
         .count_groups = r->groups};
     SNOW_TRY(snow_exchange_begin(r->combiner, &order));
     if (p->picture.drawing)
         SNOW_TRY(send_while_drawing(p));
-    SNOW_TRY(snow_exchange_end(r->combiner, local->drawn[0], &p->region));
+    SNOW_TRY(snow_exchange_end(r->combiner, p->local.drawn[0], &p->region));
     set_rounds(p, snow_exchange_get_figures(r->combiner));
     snow_exchange_regions(r->combiner, r->firsts, r->counts);
     return SNOW_STATUS_OK;
@@ -238,15 +231,13 @@ static void keep_pixels(const snow_in_flight *p, int pixel_bits,
 
 static snow_status gather(snow_in_flight *p, const snow_job *job,
                           int pixel_bits, snow_image *image) {
-    snow_ranks_stats *stats = &p->picture.ranks_stats;
     if (p->how.scattered) {
         keep_pixels(p, pixel_bits, image);
         return SNOW_STATUS_OK;
     }
-    const snow_gather_params params = {pixel_bits, image, p->bytes, stats};
     double cpu = snow_in_flight_cpu(p);
-    snow_status status = snow_pixels_gather(p->ranks, job, &params);
-    stats->cpu_gather += snow_in_flight_cpu(p) - cpu;
+    snow_status status = snow_pixels_gather(p, job, pixel_bits, image);
+    p->picture.ranks_stats.cpu_gather += snow_in_flight_cpu(p) - cpu;
     return status;
 }
 

@@ -17,17 +17,13 @@
 #include "render/picture.h"
 #include "render/shear_warp/warping.h"
 
-/* The local image of a rank: in the sheared method an intermediate image. */
+/* The local image of a rank: in the sheared method an intermediate image; else
+ * pixels of the picture, without tiles. */
 typedef struct snow_local {
-    int width, height, channels;
-    size_t stride; /* floats from line to line */
-    const float *pixels;
-    snow_composite_op composite_op; /* of other modes than over */
-    /* Deterministic pictures have a layer for each node. */
-    int layers;
-    snow_group_node nodes[SNOW_NODES_MOST];
-    size_t layer_floats;                   /* from layer to layer */
-    snow_rectangle drawn[SNOW_NODES_MOST]; /* all else is transparent */
+    snow_shear_warp_image image;
+    snow_composite_op composite_op;        /* of other modes than over */
+    snow_rectangle drawn[SNOW_NODES_MOST]; /* of layers, and all else is
+                                              transparent */
 } snow_local;
 
 /* One picture on its way.  The driver (frame.c) knows the picture in it only,
@@ -222,16 +218,8 @@ snow_status snow_in_flight_give_turn(snow_in_flight *in_flight,
 /* Collective.  The nearest of the ranks' depths to rank 0's picture. */
 snow_status snow_in_flight_combine_depths(snow_in_flight *in_flight);
 
-/* How pixels travel to rank 0. */
-typedef struct snow_gather_params {
-    int pixel_bits;       /* 8: as bytes; 0: as floats */
-    snow_image *image;    /* of rank 0, transparent; elsewhere NULL */
-    unsigned char *bytes; /* of rank 0 where pixels are bytes, cleared */
-    snow_ranks_stats *stats;
-} snow_gather_params;
-
 /* Local work: makes room for the exchange of layers, which are this rank's
- * nodes.  `ranks->boxes` are slabs along `axis`. */
+ * nodes.  `ranks->boxes` are slabs along the slice axis. */
 snow_status snow_layers_prepare(snow_ranks *ranks, const snow_local *local,
                                 const snow_placement *placement);
 
@@ -261,8 +249,9 @@ snow_status snow_pixels_warp(snow_ranks *ranks,
 snow_status snow_pixels_copy(snow_ranks *ranks, const snow_job *job,
                              const snow_image_region *region, int pixel_bits);
 
-/* Collective.  Brings them to rank 0. */
-snow_status snow_pixels_gather(snow_ranks *ranks, const snow_job *job,
-                               const snow_gather_params *params);
+/* Collective.  Brings them to rank 0's `image`, which is transparent, as bytes
+ * (pixel_bits 8) or floats (0). */
+snow_status snow_pixels_gather(snow_in_flight *in_flight, const snow_job *job,
+                               int pixel_bits, snow_image *image);
 
 #endif

@@ -315,21 +315,22 @@ snow_status snow_pixels_copy(snow_ranks *r, const snow_job *job,
     return reserve_way(r, job, pixel_bits);
 }
 
-snow_status snow_pixels_gather(snow_ranks *r, const snow_job *job,
-                               const snow_gather_params *params) {
+snow_status snow_pixels_gather(snow_in_flight *f, const snow_job *job,
+                               int pixel_bits, snow_image *image) {
+    snow_ranks *r = f->ranks;
     const snow_view *view = job->view;
-    bool bytes = params->pixel_bits == 8;
+    bool bytes = pixel_bits == 8;
     size_t floats =
         (size_t)view->width * (size_t)view->height * (size_t)job->channels;
-    float *pixels = params->image ? params->image->pixels : NULL;
-    void *picture = bytes ? (void *)params->bytes : (void *)pixels;
+    float *pixels = image ? image->pixels : NULL;
+    void *picture = bytes ? (void *)f->bytes : (void *)pixels;
     double mark = snow_ranks_clock(r);
     SNOW_TRY(snow_gather(r->combiner, view->width, view->height, r->runs,
                          r->run_count, r->packed,
                          (size_t)job->channels * (bytes ? 1 : sizeof(float)),
                          picture));
     for (size_t n = 0; pixels && bytes && n < floats; n++)
-        pixels[n] = (float)params->bytes[n] / 255;
-    params->stats->seconds_gather += snow_ranks_clock(r) - mark;
+        pixels[n] = (float)f->bytes[n] / 255;
+    f->picture.ranks_stats.seconds_gather += snow_ranks_clock(r) - mark;
     return SNOW_STATUS_OK;
 }

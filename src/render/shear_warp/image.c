@@ -181,7 +181,6 @@ static snow_status describe_plane(snow_context *context, snow_value_image *of,
                                 .layer_floats = of->layer_floats,
                                 .layer_tiles = snow_value_tiles(of),
                                 .warping = &of->warping};
-    memcpy(image->nodes, of->nodes, sizeof image->nodes);
     if (!l->quincunx)
         return SNOW_STATUS_OK;
     SNOW_TRY(SNOW_RESERVE(context, of->blocks, 0, count_blocks(of)));

@@ -17,8 +17,7 @@ typedef struct snow_shear_warp_image {
     unsigned char *drawn; /* per tile, line of tiles by line of tiles */
     int tile_width, tile_height, tiles; /* pixels; tiles of a line */
     int layers;                         /* 1, or as many as nodes */
-    snow_group_node nodes[SNOW_NODES_MOST];
-    size_t layer_floats, layer_tiles; /* from layer to layer */
+    size_t layer_floats, layer_tiles;   /* from layer to layer */
     const struct snow_shear_warp_warping *warping;
 } snow_shear_warp_image;
 
