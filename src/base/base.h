@@ -87,6 +87,12 @@ snow_status snow_reserve(snow_context *context, void *block_pointer,
 /* The size of a block; 0 for NULL. */
 size_t snow_block_bytes(const void *block);
 
+/* The next multiple of what all blocks are aligned to. */
+#define SNOW_ALIGNMENT 64
+static inline size_t snow_align(size_t bytes) {
+    return (bytes + SNOW_ALIGNMENT - 1) / SNOW_ALIGNMENT * SNOW_ALIGNMENT;
+}
+
 /* Releases a block and forgets it. */
 #define SNOW_DROP(context, block) \
     (snow_release(context, block), (void)((block) = NULL))

@@ -13,17 +13,16 @@
 #include <assert.h>
 #include <string.h>
 
-#define ALIGNMENT 64
-
 typedef struct block_header {
     void *raw;    /* what the allocator returned */
     size_t bytes; /* asked for by the caller */
 } block_header;
 
-static_assert(sizeof(block_header) <= ALIGNMENT, "the header fits its unit");
+static_assert(sizeof(block_header) <= SNOW_ALIGNMENT,
+              "the header fits its unit");
 
 static block_header *header_of(const void *block) {
-    return (block_header *)((uintptr_t)block - ALIGNMENT);
+    return (block_header *)((uintptr_t)block - SNOW_ALIGNMENT);
 }
 
 /* Whether so many bytes more are allowed; the context is locked. */
@@ -49,7 +48,7 @@ static void *allocate_counted(snow_context *context, size_t bytes,
 }
 
 void *snow_allocate(snow_context *context, size_t bytes) {
-    size_t extra = 2 * ALIGNMENT;
+    size_t extra = 2 * SNOW_ALIGNMENT;
     uint64_t held = 0;
     char *raw = NULL;
     if (bytes <= SIZE_MAX - extra)
@@ -65,7 +64,7 @@ void *snow_allocate(snow_context *context, size_t bytes) {
                       : "close other programs or use a smaller volume");
         return NULL;
     }
-    char *block = raw + extra - (uintptr_t)raw % ALIGNMENT;
+    char *block = raw + extra - (uintptr_t)raw % SNOW_ALIGNMENT;
     *header_of(block) = (block_header){raw, bytes};
     return block;
 }

@@ -35,7 +35,6 @@ typedef struct snow_batch {
     int64_t items;
     int wanted;            /* workers, the caller included */
     int busy;              /* of the pool's threads */
-    bool whole;            /* no item is skipped */
     bool skips;            /* the items that are left after a stop */
     snow_monitor *monitor; /* that it is for, or NULL */
     atomic_int_fast64_t next;
@@ -48,8 +47,7 @@ typedef struct snow_batch {
  * left; snow_parallel_end processes all that are left, and returns when all are
  * done. A batch must not move until its end; ending it twice has no effect. If
  * a context has several batches, other threads process the first one's items
- * only. No item is
- * skipped. */
+ * only. No item is skipped. */
 void snow_parallel_begin(snow_context *context, int threads, int64_t items,
                          snow_work_fn *work, void *job, snow_batch *batch);
 bool snow_parallel_step(snow_batch *batch);

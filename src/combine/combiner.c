@@ -90,8 +90,7 @@ static void count_round(const snow_combiner *combiner, int level,
                   after = most_held(combiner, level + 1);
     const size_t peers = peers_in(rounds, level), radix = (peers - 4) / 2;
     const int parity = level & 1;
-    size_t spare =
-        peers * (SNOW_MESSAGE_ALIGNMENT + snow_active_room(0, pixel_bytes));
+    size_t spare = peers * (SNOW_ALIGNMENT + snow_active_room(0, pixel_bytes));
     size_t sent = snow_active_room(before, pixel_bytes) + spare;
     size_t came = (radix - 1) * snow_active_room(after, pixel_bytes) + spare;
     size_t words = radix * ((size_t)after / 64 + 2) + 2 * peers;
@@ -106,7 +105,7 @@ static void count_needs(const snow_combiner *combiner,
     const size_t channels = (size_t)combiner->shape.channels;
     *out = (snow_exchange_needs){0};
     if (!rounds->count) {
-        out->out[0] = snow_message_align(
+        out->out[0] = snow_align(
             snow_active_room(most_held(combiner, 0), channels * sizeof(float)));
         out->words =
             ((size_t)most_held(combiner, 0) / 64 + 2) * sizeof(uint64_t);

@@ -15,13 +15,6 @@ typedef struct snow_traffic {
     int count;
 } snow_traffic;
 
-/* Messages begin at a multiple of this many bytes. */
-#define SNOW_MESSAGE_ALIGNMENT 64
-static inline size_t snow_message_align(size_t bytes) {
-    return (bytes + SNOW_MESSAGE_ALIGNMENT - 1) / SNOW_MESSAGE_ALIGNMENT *
-           SNOW_MESSAGE_ALIGNMENT;
-}
-
 /* Pixels first .. last - 1. */
 typedef struct snow_stretch {
     int64_t first, last;

@@ -110,7 +110,7 @@ static snow_status begin_receives(snow_combiner *combiner) {
             combiner->comm, in->bytes + at, capacity,
             combiner->exchange.order.ranks[share->rank_position],
             SNOW_TAG_COMBINE, &in->messages[i]));
-        at += snow_message_align(capacity);
+        at += snow_align(capacity);
     }
     return SNOW_STATUS_OK;
 }
@@ -147,7 +147,7 @@ static snow_status send_part(snow_combiner *combiner, snow_part_to_send what) {
                              : share_at(combiner, what.share)->rank_position;
     unsigned char *message = out->bytes + run->used;
     size_t bytes = write_part(combiner, what.part, message);
-    run->used += snow_message_align(
+    run->used += snow_align(
         snow_active_room(what.part.last - what.part.first, run->pixel_bytes));
     if (position == combiner->rounds.rank_position) {
         run->own = message;
@@ -212,8 +212,8 @@ static snow_status end_receives(snow_combiner *combiner) {
             bytes = combiner->exchange.own;
             count = combiner->exchange.own_bytes;
         } else {
-            at += snow_message_align(snow_active_room(
-                part.last - part.first, combiner->exchange.pixel_bytes));
+            at += snow_align(snow_active_room(part.last - part.first,
+                                              combiner->exchange.pixel_bytes));
         }
         if ((int64_t)count > combiner->figures.receive_largest)
             combiner->figures.receive_largest = (int64_t)count;

@@ -111,17 +111,6 @@ static void clear_plan(snow_voxels *voxels) {
     voxels->ready = 0;
 }
 
-static void free_box_table(snow_context *context, box_table *c) {
-    snow_release(context, c->held);
-    snow_release(context, c->wanted);
-}
-
-static snow_status make_box_table(snow_context *context, box_table *c) {
-    SNOW_TRY(SNOW_RESERVE(context, c->wanted, 0, c->ranks));
-    return snow_reserve(context, &c->held, 0, (uint64_t)c->ranks,
-                        (size_t)c->most * sizeof *c->held);
-}
-
 /* Collective. Shares all boxes. Ranks with fewer than the maximum send empty
  * ones. */
 static snow_status take_box_table(snow_comm *comm, const snow_box *held,
@@ -133,7 +122,9 @@ static snow_status take_box_table(snow_comm *comm, const snow_box *held,
     c->ranks = snow_comm_size(comm);
     c->most = most > 0 ? (int)most : 1;
     size_t bytes = (size_t)c->most * sizeof *held;
-    snow_status status = make_box_table(context, c);
+    snow_status status = SNOW_RESERVE(context, c->wanted, 0, c->ranks);
+    if (status == SNOW_STATUS_OK)
+        status = snow_reserve(context, &c->held, 0, (uint64_t)c->ranks, bytes);
     snow_box *mine = snow_allocate_clear(context, bytes);
     if (!mine)
         status = SNOW_STATUS_NO_MEMORY;
@@ -257,7 +248,8 @@ snow_status snow_voxels_plan(snow_voxels *voxels, const snow_box *held,
             snow_comm_agree_status(voxels->comm, check_overlap(voxels, &c));
     if (status == SNOW_STATUS_OK)
         status = snow_comm_agree_status(voxels->comm, plan_alone(voxels, &c));
-    free_box_table(voxels->context, &c);
+    snow_release(voxels->context, c.held);
+    snow_release(voxels->context, c.wanted);
     if (status != SNOW_STATUS_OK)
         clear_plan(voxels);
     return status;
@@ -265,19 +257,17 @@ snow_status snow_voxels_plan(snow_voxels *voxels, const snow_box *held,
 
 /* --- moving --------------------------------------------------------------- */
 
-static snow_status reserve_buffer(snow_context *context, traffic *t,
-                                  size_t value) {
-    return snow_reserve(context, &t->buffer, 0, (uint64_t)t->voxels, value);
-}
-
 /* Collective if values are larger than any before: the size so far is the same
  * on all ranks. */
 static snow_status make_ready(snow_voxels *voxels, size_t value) {
     if (value <= voxels->ready)
         return SNOW_STATUS_OK;
-    snow_status status = reserve_buffer(voxels->context, &voxels->sent, value);
+    traffic *out = &voxels->sent, *in = &voxels->received;
+    snow_status status = snow_reserve(voxels->context, &out->buffer, 0,
+                                      (uint64_t)out->voxels, value);
     if (status == SNOW_STATUS_OK)
-        status = reserve_buffer(voxels->context, &voxels->received, value);
+        status = snow_reserve(voxels->context, &in->buffer, 0,
+                              (uint64_t)in->voxels, value);
     SNOW_TRY(snow_comm_agree_status(voxels->comm, status));
     voxels->ready = value;
     return SNOW_STATUS_OK;

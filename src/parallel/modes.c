@@ -50,14 +50,9 @@ snow_status snow_in_flight_agree_range(snow_in_flight *f) {
     SNOW_TRY(snow_comm_reduce_doubles(comm, words, COUNT, SNOW_REDUCE_MAX));
     if (!(-words[MINUS_LOW] <= words[HIGH]))
         words[MINUS_LOW] = words[HIGH] = 0;
-    snow_identity_transfer_widen(identity, -words[MINUS_LOW], words[HIGH],
-                                 words[HOLES] == 0);
-    if (isfinite(identity->high - identity->low))
-        return SNOW_STATUS_OK;
-    return snow_fail(
-        f->picture.job.context, SNOW_STATUS_BAD_INPUT,
-        "values from %g to %g exceed the range of float; use mode over",
-        identity->low, identity->high);
+    return snow_identity_transfer_widen(f->picture.job.context, identity,
+                                        -words[MINUS_LOW], words[HIGH],
+                                        words[HOLES] == 0);
 }
 
 /* A part without voxels of its own has none that count. */

@@ -90,12 +90,6 @@ static snow_status make_image(snow_picture *p) {
                           p->job.channels, &p->image);
 }
 
-/* Pairs become the image when they are shown. */
-static snow_status place_pairs(snow_picture *p) {
-    const snow_job *job = &p->pass->job;
-    return take_layer(p, snow_job_bytes(job), !p->pass->method->warps);
-}
-
 static snow_status place_over(snow_picture *p) {
     const snow_job *job = &p->pass->job;
     const snow_group_node root = {SNOW_GROUP_RANKS, 0};
@@ -121,10 +115,11 @@ static snow_status place(snow_picture *p, snow_status status) {
         p->local.depths = p->depth->pixels;
         return take_layer(p, snow_job_bytes(job), true);
     }
-    return job->settings.mode == SNOW_MODE_OVER ||
-                   job->settings.mode == SNOW_MODE_ISO
-               ? place_over(p)
-               : place_pairs(p);
+    if (job->settings.mode == SNOW_MODE_OVER ||
+        job->settings.mode == SNOW_MODE_ISO)
+        return place_over(p);
+    /* Pairs, which become the image when they are shown. */
+    return take_layer(p, snow_job_bytes(job), !p->pass->method->warps);
 }
 
 /* --- combination ---------------------------------------------------------- */

@@ -42,10 +42,6 @@ static void at_least(int64_t *layers, double wanted, int64_t most) {
         *layers = (int64_t)wanted;
 }
 
-static bool splats_values(const question *q) {
-    return q->settings->method == SNOW_METHOD_SHEAR_WARP;
-}
-
 /* How far gradients of values look in the plane: in perspective a voxel and a
  * half, and no less than the samples of the last sheet are apart, which is
  * `ratio` times as far from the eye as the first. */
@@ -60,10 +56,6 @@ static int cubic(const question *q) {
     return q->settings->kernel == SNOW_KERNEL_BSPLINE;
 }
 
-static bool finds_surfaces(const question *q) {
-    return q->settings->mode == SNOW_MODE_ISO;
-}
-
 /* How a picture is made: values are splatted where encodings provide for the
  * view; else, and for depths, footprints are, or rays of surfaces walked. */
 typedef struct ways {
@@ -71,7 +63,8 @@ typedef struct ways {
 } ways;
 
 static ways ways_of(const question *q, bool fits) {
-    bool values = splats_values(q) && fits, iso = finds_surfaces(q);
+    bool iso = q->settings->mode == SNOW_MODE_ISO;
+    bool values = fits && q->settings->method == SNOW_METHOD_SHEAR_WARP;
     bool others = !values || q->settings->depth;
     return (ways){values, others && !iso, others && iso};
 }
@@ -307,12 +300,6 @@ snow_ghosts_needed(snow_context *context, const snow_volume_info *whole,
 
 /* --- parts ---------------------------------------------------------------- */
 
-static bool is_empty(const snow_volume *volume) {
-    snow_extent part;
-    snow_volume_find_extent(volume, &part);
-    return !part.count[0] || !part.count[1] || !part.count[2];
-}
-
 static snow_status check_layers(snow_context *context,
                                 const snow_volume *volume,
                                 const int64_t layers[3]) {
@@ -345,8 +332,10 @@ snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
                               bool gradient_factors) {
     int64_t layers[3] = {0, 0, 0};
     snow_volume_info whole;
+    snow_extent part;
     snow_volume_whole(volume, &whole);
-    if (is_empty(volume))
+    snow_volume_find_extent(volume, &part);
+    if (!part.count[0] || !part.count[1] || !part.count[2])
         return SNOW_STATUS_OK;
     question q = {context, &whole, view, settings,
                   gradient_factors || settings->shade == SNOW_SHADE_PHONG};

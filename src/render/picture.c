@@ -30,12 +30,6 @@ static void add_depth(snow_picture *p) {
     pass->method = snow_method_of(&pass->job);
 }
 
-static void plan_over(snow_picture *p) {
-    const snow_render_pass *pass = add_pass(p, &p->job);
-    if (p->job.settings.depth && !pass->method->depths)
-        add_depth(p);
-}
-
 /* What fails has a pass too, for other ranks wait for this one in it. */
 snow_status snow_picture_plan_mode(snow_picture *p) {
     snow_job job = p->job;
@@ -77,8 +71,11 @@ static snow_status check_depth(const snow_job *job) {
 static snow_status plan_job(snow_picture *p, const snow_request *request) {
     SNOW_TRY(snow_job_begin(p->frame->context, request, &p->stats, &p->job));
     SNOW_TRY(check_depth(&p->job));
-    if (p->job.settings.mode == SNOW_MODE_OVER)
-        plan_over(p);
+    if (p->job.settings.mode != SNOW_MODE_OVER)
+        return SNOW_STATUS_OK;
+    const snow_render_pass *pass = add_pass(p, &p->job);
+    if (p->job.settings.depth && !pass->method->depths)
+        add_depth(p);
     return SNOW_STATUS_OK;
 }
 

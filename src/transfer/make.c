@@ -216,10 +216,6 @@ static snow_histogram_need need_of(const snow_volume *volume,
     return need_of_range(volume, look, points);
 }
 
-static const char *reason_of(const snow_look *look) {
-    return look->name ? look->name : "from the file";
-}
-
 /* The points of a preset or a file, and where they say nothing, or nothing is
  * asked, the histogram's. */
 static snow_status fill_builder(const snow_histogram *histogram,
@@ -234,7 +230,9 @@ static snow_status fill_builder(const snow_histogram *histogram,
     snow_transfer_builder_round(builder);
     if (!points)
         return SNOW_STATUS_OK;
-    builder->reason = look->base ? reason_of(look) : look->preset;
+    builder->reason = !look->base  ? look->preset
+                      : look->name ? look->name
+                                   : "from the file";
     builder->preset = NULL;
     double low = builder->low, high = builder->high;
     SNOW_TRY(snow_transfer_builder_points(points, histogram, builder));

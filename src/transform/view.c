@@ -12,7 +12,7 @@
 #define THIRD 0.57735026918962576451 /* 1 / sqrt(3) */
 #define SIXTH 0.40824829046386301637 /* 1 / sqrt(6) */
 
-static const struct named_view {
+static const struct {
     const char *name;
     double back[3], up[3];
 } views[] = {
@@ -51,19 +51,16 @@ void snow_view_init_sized(snow_view *view, size_t size) {
     snow_record_init(view, size, &defaults, sizeof defaults);
 }
 
-static snow_status fill_view(snow_context *context,
-                             const struct named_view *named, snow_view *out) {
-    snow_view view = defaults;
-    memcpy(view.back, named->back, sizeof view.back);
-    memcpy(view.up, named->up, sizeof view.up);
-    return SNOW_RECORD_FILL(context, snow_view, &view, out);
-}
-
 snow_status snow_view_from_name(snow_context *context, const char *name,
                                 snow_view *out) {
-    for (size_t i = 0; i < VIEW_COUNT; i++)
-        if (snow_same_name(name, views[i].name))
-            return fill_view(context, &views[i], out);
+    snow_view view = defaults;
+    for (size_t i = 0; i < VIEW_COUNT; i++) {
+        if (!snow_same_name(name, views[i].name))
+            continue;
+        memcpy(view.back, views[i].back, sizeof view.back);
+        memcpy(view.up, views[i].up, sizeof view.up);
+        return SNOW_RECORD_FILL(context, snow_view, &view, out);
+    }
     return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                      "unknown view '%s': must be anterior, posterior, left, "
                      "right, superior, inferior, iso, axial, coronal, "

@@ -36,10 +36,6 @@ static int16_t coded(const snow_value_coder *coder, double value) {
                         : scaled(&coder->scale, value);
 }
 
-static bool is_wide(snow_type type) {
-    return snow_type_size(type) > 2;
-}
-
 snow_status snow_value_coder_make(const snow_volume *volume,
                                   const snow_value_scale14 *scale,
                                   snow_value_coder *coder) {
@@ -50,7 +46,7 @@ snow_status snow_value_coder_make(const snow_volume *volume,
     coder->slope = info->slope;
     coder->intercept = info->intercept;
     coder->ruled = scale->whole && !coder->names;
-    if (is_wide(info->type) || coder->ruled)
+    if (snow_type_size(info->type) > 2 || coder->ruled)
         return SNOW_STATUS_OK;
     SNOW_TRY(SNOW_RESERVE(volume->context, coder->numbers, 0, count));
     coder->lowest = snow_type_lowest(info->type);

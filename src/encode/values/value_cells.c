@@ -10,11 +10,11 @@
 /* Bits of two lines, for each plane. */
 static size_t bits_bytes(const snow_value_store *s) {
     size_t words = snow_value_words(s) * 2 * (SNOW_VALUE_RUNS + 1);
-    return (words * sizeof(uint32_t) + 63) / 64 * 64;
+    return snow_align(words * sizeof(uint32_t));
 }
 
 static size_t line_bytes(const snow_value_store *s) {
-    return (32 * snow_value_words(s) * sizeof(int16_t) + 63) / 64 * 64;
+    return snow_align(32 * snow_value_words(s) * sizeof(int16_t));
 }
 
 size_t snow_value_cells_bytes(const snow_value_store *store,

@@ -17,14 +17,11 @@ static size_t line_bytes(const snow_value_store_params *params) {
            sizeof(int16_t);
 }
 
-static size_t aligned(size_t bytes) {
-    return (bytes + 63) / 64 * 64;
-}
-
 size_t snow_value_lines_bytes(const snow_value_store_params *params,
                               int64_t rows) {
     const snow_fetch_params from = fetch_params(params, 0, rows);
-    size_t one = aligned(snow_fetch_bytes(&from)) + aligned(line_bytes(params));
+    size_t one =
+        snow_align(snow_fetch_bytes(&from)) + snow_align(line_bytes(params));
     return params->cubic ? 3 * one : one;
 }
 
@@ -32,7 +29,7 @@ void snow_value_lines_begin(snow_value_lines *lines,
                             const snow_value_store_params *params,
                             int64_t first, int64_t rows, void *scratch) {
     const snow_fetch_params from = fetch_params(params, first, rows);
-    size_t line = aligned(line_bytes(params)) / sizeof(int16_t);
+    size_t line = snow_align(line_bytes(params)) / sizeof(int16_t);
     int count = params->cubic ? 3 : 1;
     int16_t *at = (int16_t *)scratch;
     *lines = (snow_value_lines){.coder = params->coder,
@@ -48,7 +45,7 @@ void snow_value_lines_begin(snow_value_lines *lines,
                                 .spare = at,
                                 .beside = {at + line, at + 2 * line}};
     unsigned char *room = (unsigned char *)(at + (size_t)count * line);
-    for (int n = 0; n < count; n++, room += aligned(snow_fetch_bytes(&from)))
+    for (int n = 0; n < count; n++, room += snow_align(snow_fetch_bytes(&from)))
         snow_fetch_begin(&lines->fetch[n], &from, room);
 }
 

@@ -12,23 +12,19 @@
 
 #define AROUND 2 /* slices */
 
-static size_t aligned(size_t bytes) {
-    return (bytes + 63) / 64 * 64;
-}
-
 /* Rows of cells around a band. */
 static size_t high_rows(const snow_value_store *s) {
     return SNOW_VALUE_BAND + 2 * (size_t)s->reach + 3;
 }
 
 static size_t tall_bytes(const snow_value_store *s) {
-    return aligned(high_rows(s) * sizeof(uint32_t));
+    return snow_align(high_rows(s) * sizeof(uint32_t));
 }
 
 /* Masks of a band of rows, a line of words each, and one word more. */
 static size_t masks_bytes(const snow_value_store *s) {
-    return aligned(SNOW_VALUE_BAND * (snow_value_words(s) + 2) *
-                   sizeof(uint32_t));
+    return snow_align(SNOW_VALUE_BAND * (snow_value_words(s) + 2) *
+                      sizeof(uint32_t));
 }
 
 static size_t words64(const snow_value_store *s) {
@@ -36,11 +32,11 @@ static size_t words64(const snow_value_store *s) {
 }
 
 static size_t ea_bytes(const snow_value_store *s) {
-    return aligned(SNOW_VALUE_BAND * words64(s) * sizeof(uint64_t));
+    return snow_align(SNOW_VALUE_BAND * words64(s) * sizeof(uint64_t));
 }
 
 static size_t line_bytes(const snow_value_store *s) {
-    return aligned((32 * snow_value_words(s) + 64) * sizeof(int16_t));
+    return snow_align((32 * snow_value_words(s) + 64) * sizeof(int16_t));
 }
 
 size_t snow_value_shell_bytes(const snow_value_store *store,

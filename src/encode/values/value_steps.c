@@ -65,7 +65,7 @@ static snow_status reserve_scratch(store_job *job) {
     size_t shell = s->in_place ? 0 : snow_value_shell_bytes(s, job->params);
     most = cells > most ? cells : most;
     most = shell > most ? shell : most;
-    job->scratch_bytes = (most + 63) / 64 * 64;
+    job->scratch_bytes = snow_align(most);
     return SNOW_RESERVE(s->context, s->scratch, 0,
                         job->scratch_bytes * (size_t)job->params->threads);
 }

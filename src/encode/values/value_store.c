@@ -45,12 +45,6 @@ static void forget_rows(snow_value_store *s) {
     SNOW_DROP(s->context, s->ends);
 }
 
-static snow_status reserve_rows(snow_value_store *s) {
-    size_t rows = (size_t)s->slices * (size_t)(s->rows + 2 * s->margin);
-    SNOW_TRY(SNOW_RESERVE(s->context, s->at, 0, rows));
-    return SNOW_RESERVE(s->context, s->ends, 0, rows);
-}
-
 /* Whether rows are stored values, and where they are. */
 static void place_stored(snow_value_store *s,
                          const snow_value_store_params *params) {
@@ -129,7 +123,11 @@ snow_status snow_value_store_begin(snow_value_store *s,
     SNOW_TRY(reserve_bands(s));
     if (s->turned)
         SNOW_TRY(reserve_turned(s));
-    return s->in_place ? SNOW_STATUS_OK : reserve_rows(s);
+    if (s->in_place)
+        return SNOW_STATUS_OK;
+    int64_t rows = s->slices * (s->rows + 2 * s->margin);
+    SNOW_TRY(SNOW_RESERVE(s->context, s->at, 0, rows));
+    return SNOW_RESERVE(s->context, s->ends, 0, rows);
 }
 
 /* --- what it takes -------------------------------------------------------- */

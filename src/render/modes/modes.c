@@ -20,21 +20,36 @@ void snow_identity_transfer_fini(snow_identity_transfer *identity) {
     *identity = (snow_identity_transfer){0};
 }
 
+snow_status snow_identity_transfer_widen(snow_context *context,
+                                         snow_identity_transfer *identity,
+                                         double low, double high, bool whole) {
+    if (identity->low != low || identity->high != high) {
+        snow_transfer_free(identity->transfer);
+        identity->transfer = NULL;
+    }
+    identity->low = low;
+    identity->high = high;
+    identity->whole = whole;
+    identity->empty = false;
+    if (isfinite(high - low))
+        return SNOW_STATUS_OK;
+    return snow_fail(
+        context, SNOW_STATUS_BAD_INPUT,
+        "values from %g to %g exceed the range of float; use mode over", low,
+        high);
+}
+
 /* The range of the finite values; 0 to 0 where there are none. */
 static snow_status measure(snow_context *context, const snow_volume *volume,
                            snow_identity_transfer *identity) {
     snow_volume_statistics figures;
     SNOW_TRY(snow_volume_range(volume, &figures));
-    identity->whole = figures.finite == figures.voxels;
-    identity->empty = !figures.finite;
-    identity->low = figures.finite ? figures.min : 0;
-    identity->high = figures.finite ? figures.max : 0;
-    if (isfinite(identity->high - identity->low))
-        return SNOW_STATUS_OK;
-    return snow_fail(
-        context, SNOW_STATUS_BAD_INPUT,
-        "values from %g to %g exceed the range of float; use mode over",
-        identity->low, identity->high);
+    const bool any = figures.finite > 0;
+    SNOW_TRY(snow_identity_transfer_widen(
+        context, identity, any ? figures.min : 0, any ? figures.max : 0,
+        figures.finite == figures.voxels));
+    identity->empty = !any;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status make_transfer(snow_context *context,
@@ -67,18 +82,6 @@ snow_status snow_identity_transfer_measure(snow_job *job,
     return SNOW_STATUS_OK;
 }
 
-void snow_identity_transfer_widen(snow_identity_transfer *identity, double low,
-                                  double high, bool whole) {
-    if (identity->low != low || identity->high != high) {
-        snow_transfer_free(identity->transfer);
-        identity->transfer = NULL;
-    }
-    identity->low = low;
-    identity->high = high;
-    identity->whole = whole;
-    identity->empty = false;
-}
-
 /* Makes the transfer function of a ramp that is measured, unless it is there
  * already. */
 static snow_status
@@ -98,7 +101,7 @@ prepare_identity_transfer(const snow_job *job,
     return SNOW_STATUS_OK;
 }
 
-/* A little below, as the pictures of iso (isosurface.c). */
+/* A little below, as the pictures of iso (raycast/modes.c). */
 snow_status snow_identity_transfer_above(snow_job *job,
                                          snow_identity_transfer *identity) {
     double margin = 2e-6 * (identity->high - identity->low) +

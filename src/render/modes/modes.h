@@ -45,9 +45,11 @@ struct snow_job;
 snow_status snow_identity_transfer_measure(struct snow_job *job,
                                            snow_identity_transfer *identity);
 
-/* Makes it that of a whole that the job's volume is a part of. */
-void snow_identity_transfer_widen(snow_identity_transfer *identity, double low,
-                                  double high, bool whole);
+/* Makes it that of a whole that the job's volume is a part of.  Errors:
+ * SNOW_STATUS_BAD_INPUT (a range beyond that of float). */
+snow_status snow_identity_transfer_widen(snow_context *context,
+                                         snow_identity_transfer *identity,
+                                         double low, double high, bool whole);
 
 /* For mode iso, when it is measured: the voxels not below its value. */
 snow_status snow_identity_transfer_above(struct snow_job *job,

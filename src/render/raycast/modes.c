@@ -30,12 +30,6 @@ static double number_of(const snow_raycast_pass *pass, double value) {
     return fmin(fmax((value - pass->from) / pass->range, 0), 1);
 }
 
-/* The largest number that a window can give. */
-static double most_of(const snow_raycast_pass *pass,
-                      const snow_field_window *window) {
-    return number_of(pass, pass->range > 0 ? window->most : window->least);
-}
-
 void snow_raycast_largest(const snow_raycast_pass *pass, const snow_ray *ray,
                           snow_raycast_eye *eye, float *pixel, float *depth) {
     double largest = -1, at[3];
@@ -45,8 +39,10 @@ void snow_raycast_largest(const snow_raycast_pass *pass, const snow_ray *ray,
         double value = value_at(pass, ray, (double)i, eye, at);
         if (!isnan(value))
             largest = fmax(largest, number_of(pass, value));
-        skip =
-            most_of(pass, &eye->near) <= largest ? snow_ray_skip(ray, at) : 1;
+        /* The largest number that the window can give. */
+        double most =
+            number_of(pass, pass->range > 0 ? eye->near.most : eye->near.least);
+        skip = most <= largest ? snow_ray_skip(ray, at) : 1;
     }
     if (largest < 0)
         return;

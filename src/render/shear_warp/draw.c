@@ -188,7 +188,7 @@ static void describe(snow_value_drawing *job) {
     job->scratch_bytes = snow_value_splat_bytes(&job->splat);
     if (params->settings->deterministic)
         job->scratch_bytes += snow_value_node_floats(job) * sizeof(float);
-    job->scratch_bytes = (job->scratch_bytes + 63) / 64 * 64;
+    job->scratch_bytes = snow_align(job->scratch_bytes);
 }
 
 /* --- tiles ---------------------------------------------------------------- */
