@@ -76,7 +76,7 @@ snow_status snow_frame_render(snow_frame *frame, const snow_volume *volume,
                               const snow_view *view,
                               const snow_settings *settings,
                               snow_image **image) {
-    const snow_request request = {volume, transfer, view, settings, 1, 0};
+    const snow_request request = {volume, transfer, view, settings};
     return snow_frame_render_alone(frame, &request, NULL, image);
 }
 
@@ -84,7 +84,7 @@ snow_status snow_frame_render_bytes(
     snow_frame *frame, const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings,
     const double background[3], unsigned char *pixels, size_t stride) {
-    const snow_request request = {volume, transfer, view, settings, 1, 0};
+    const snow_request request = {volume, transfer, view, settings};
     const snow_bytes bytes = {pixels, stride, background};
     snow_image *image = NULL;
     SNOW_TRY(snow_picture_check_bytes(frame->context, &request, &bytes));
@@ -105,7 +105,7 @@ snow_status
 snow_ranks_begin(snow_frame *frame, snow_comm *comm, const snow_volume *volume,
                  const snow_transfer *transfer, const snow_view *view,
                  const snow_settings *settings, const snow_ranks_options *how) {
-    const snow_request request = {volume, transfer, view, settings, 1, 0};
+    const snow_request request = {volume, transfer, view, settings};
     snow_picture *p, *waiting;
     SNOW_TRY(snow_pipeline_open(frame, comm, settings, how, &p));
     snow_pipeline_begun(p, begin(p, &request));

@@ -9,16 +9,14 @@
 
 #include <string.h>
 
-/* Slab `part` of `parts` of the slices that the volume answers for. */
-static void cut_slab(snow_job *job, int parts, int part) {
+/* The slices that the volume answers for. */
+static void place_slab(snow_job *job) {
     snow_clip *clip = &job->clip;
     snow_clip_make(job->volume, &job->placement, clip);
     snow_clip_placement(clip, &job->placement, &job->stored);
-    job->slab = snow_slab_equal(clip->count[2], parts, part);
+    job->slab = (snow_slab){clip->first[2], clip->count[2]};
     job->stored_slab = job->slab;
-    job->slab.first += clip->first[2];
-    job->stored_slab.first += clip->first[2] - clip->stored[2];
-    job->all = job->slab.count == clip->count[2];
+    job->stored_slab.first -= clip->stored[2];
 }
 
 /* A deterministic picture is one of whole slices. */
@@ -34,15 +32,6 @@ static snow_status check_part(const snow_job *job) {
     return snow_ghosts_check(job->context, job->volume, job->view,
                              &job->settings,
                              snow_transfer_has_gradient_opacity(job->transfer));
-}
-
-/* Voxels that stay in their file are read slab by slab (parts.c). */
-static snow_status check_stream(const snow_job *job, int parts) {
-    if (!job->volume->stream || parts == 1)
-        return SNOW_STATUS_OK;
-    return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
-                     "cannot render one slab of a streamed volume; open it "
-                     "with snow_volume_open");
 }
 
 /* Rays are walked from end to end by one process; only surfaces are met by
@@ -75,22 +64,9 @@ static void choose_method(snow_job *job, const snow_volume_info *whole) {
         s->method = iso ? SNOW_METHOD_RAYCAST : SNOW_METHOD_FOOTPRINT;
 }
 
-static snow_status place_slab(snow_job *job, int parts, int part) {
-    snow_volume_info whole;
-    snow_volume_whole(job->volume, &whole);
-    SNOW_TRY(snow_settings_resolve(job->context, &job->volume->info,
-                                   &job->settings));
-    SNOW_TRY(
-        snow_placement_make(job->context, &whole, job->view, &job->placement));
-    choose_method(job, &whole);
-    SNOW_TRY(check_stream(job, parts));
-    cut_slab(job, parts, part);
-    SNOW_TRY(check_raycast(job));
-    return check_part(job);
-}
-
 snow_status snow_job_begin(snow_context *context, const snow_request *request,
                            snow_stats *stats, snow_job *job) {
+    snow_volume_info whole;
     *stats = (snow_stats){.size = sizeof *stats};
     *job = (snow_job){
         .context = context,
@@ -101,13 +77,20 @@ snow_status snow_job_begin(snow_context *context, const snow_request *request,
         .channels = request->transfer->grey ? 2 : 4,
         .stats = stats,
     };
-    return place_slab(job, request->parts, request->part);
+    snow_volume_whole(job->volume, &whole);
+    SNOW_TRY(
+        snow_settings_resolve(context, &job->volume->info, &job->settings));
+    SNOW_TRY(snow_placement_make(context, &whole, job->view, &job->placement));
+    choose_method(job, &whole);
+    place_slab(job);
+    SNOW_TRY(check_raycast(job));
+    return check_part(job);
 }
 
 bool snow_job_whole(const snow_job *job) {
     const snow_placement *p = &job->placement;
     const int64_t *count = job->clip.count;
-    return job->all && count[0] == p->columns && count[1] == p->rows &&
+    return count[0] == p->columns && count[1] == p->rows &&
            count[2] == p->slices;
 }
 
@@ -158,7 +141,7 @@ snow_status snow_job_finish(snow_frame *frame, const snow_job *job) {
     stats->voxels = job->stored.columns * job->stored.rows * job->slab.count;
     if (stats->method == SNOW_METHOD_FOOTPRINT)
         stats->encoded = true; /* for every picture */
-    if (has_ghosts(&job->clip) && job->all)
+    if (has_ghosts(&job->clip))
         SNOW_TRY(count_own(frame, job));
     if (stats->voxels > 0)
         stats->sparse_ratio =

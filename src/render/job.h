@@ -47,7 +47,6 @@ typedef struct snow_job {
     snow_placement placement; /* of the whole that the volume is a part of */
     snow_clip clip;           /* what of it the part has and answers for */
     snow_slab slab;           /* slices of the whole that are drawn */
-    bool all;                 /* these are all that the part answers for */
     /* The same for the exact methods, which see the stored voxels only. */
     snow_placement stored;
     snow_slab stored_slab;
@@ -59,14 +58,12 @@ typedef struct snow_job {
     snow_stats *stats;
 } snow_job;
 
-/* What a picture is to be made of: slab `part` of `parts` (decompose/slab.h) of
- * the slices that the volume answers for. */
+/* What a picture is to be made of. */
 typedef struct snow_request {
     const snow_volume *volume;
     const snow_transfer *transfer;
     const snow_view *view;
     const snow_settings *settings; /* of the caller, or resolved */
-    int parts, part;
 } snow_request;
 
 /* Settings, camera and part.  Fills a job as far as it gets: method and slice
@@ -74,7 +71,7 @@ typedef struct snow_request {
 snow_status snow_job_begin(snow_context *context, const snow_request *request,
                            snow_stats *stats, snow_job *job);
 
-/* Whether the job draws all voxels that there are: one part of one is that. */
+/* Whether the job draws all voxels that there are. */
 bool snow_job_whole(const snow_job *job);
 
 /* What was chosen for the picture, and how much of it is interesting, when its

@@ -119,8 +119,7 @@ static snow_status begin_slab(snow_parts *parts, const snow_volume *volume) {
     const snow_request request = {.volume = volume,
                                   .transfer = whole->transfer,
                                   .view = whole->view,
-                                  .settings = &whole->settings,
-                                  .parts = 1};
+                                  .settings = &whole->settings};
     SNOW_TRY(
         snow_job_begin(whole->context, &request, &parts->stats, &parts->slab));
     parts->slab.channels = whole->channels;

@@ -492,8 +492,8 @@ static flat splat(const stage *s, const snow_volume *volume) {
     snow_shear_warp_image image;
     snow_stats stats;
     snow_job job;
-    const snow_request request = {volume,       s->transfer, &s->scene.view,
-                                  &s->settings, 1,           0};
+    const snow_request request = {volume, s->transfer, &s->scene.view,
+                                  &s->settings};
     snow_status status = snow_job_begin(s->context, &request, &stats, &job);
     const snow_value_params params = {.volume = volume,
                                       .transfer = s->transfer,

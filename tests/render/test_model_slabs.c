@@ -6,9 +6,11 @@
 #include "reference/model.h"
 
 #include "composite/over.h"
-#include "frame.h"
+#include "decompose/slab.h"
 
 #include <math.h>
+#include <snowglass/extend.h>
+#include <string.h>
 
 /* Combines the local images of `parts` processors, given from front to back,
  * into the first, by the paper's hierarchical scheme (lines 14 to 20 of figure
@@ -28,6 +30,22 @@ static void combine_tree(float *const *images, int parts, size_t pixels,
 /* Slabs and whole differ by no more than this, for any number of parts. */
 #define BOUND 1e-6
 
+/* Makes the volume answer for one of equal slabs of slices. */
+static void answer_for(snow_volume *volume, const reference_scene *scene,
+                       int parts, int part) {
+    reference_camera camera;
+    reference_camera_of(scene, &camera);
+    const int axis = reference_slice_axis(scene, &camera);
+    snow_extent extent;
+    snow_extent_init(&extent);
+    memcpy(extent.dims, scene->info.dims, sizeof extent.dims);
+    memcpy(extent.count, scene->info.dims, sizeof extent.count);
+    snow_slab slab = snow_slab_equal(extent.dims[axis], parts, part);
+    extent.first[axis] = slab.first;
+    extent.count[axis] = slab.count;
+    assert_int_equal(snow_volume_set_extent(volume, &extent), SNOW_STATUS_OK);
+}
+
 /* The slabs' local images, from front to back. */
 static void render_slabs(const model_stage *stage, const reference_scene *scene,
                          int parts, bool rising, snow_image **images) {
@@ -38,12 +56,11 @@ static void render_slabs(const model_stage *stage, const reference_scene *scene,
         SNOW_STATUS_OK);
     transfer = model_transfer(stage->context, scene);
     for (int n = 0; n < parts; n++) {
-        const snow_request request = {volume,       transfer,
-                                      &scene->view, &scene->settings,
-                                      parts,        rising ? n : parts - 1 - n};
-        assert_int_equal(
-            snow_frame_render_alone(stage->frame, &request, NULL, &images[n]),
-            SNOW_STATUS_OK);
+        answer_for(volume, scene, parts, rising ? n : parts - 1 - n);
+        assert_int_equal(snow_frame_render(stage->frame, volume, transfer,
+                                           &scene->view, &scene->settings,
+                                           &images[n]),
+                         SNOW_STATUS_OK);
     }
     snow_transfer_free(transfer);
     snow_volume_close(volume);

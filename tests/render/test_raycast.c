@@ -672,12 +672,12 @@ static void a_draft_of_few_pixels_is_of_the_volume(void **state) {
 
 /* The message of a picture that is refused. */
 static const char *refusal(const model_stage *stage, const snow_volume *volume,
-                           const reference_scene *scene, int parts) {
+                           const reference_scene *scene) {
     static char message[512];
     snow_transfer *transfer = model_transfer(stage->context, scene);
     snow_image *image = NULL;
-    const snow_request request = {volume,           transfer, &scene->view,
-                                  &scene->settings, parts,    0};
+    const snow_request request = {volume, transfer, &scene->view,
+                                  &scene->settings};
     snow_status status =
         snow_frame_render_alone(stage->frame, &request, NULL, &image);
     assert_int_equal(status, SNOW_STATUS_BAD_USAGE);
@@ -706,14 +706,14 @@ static void other_kernels_are_refused(void **state) {
         scene.settings.kernel = wrong[n].kernel;
         scene.settings.footprint = wrong[n].footprint;
         assert_non_null(
-            strstr(refusal(&stage, volume, &scene, 1), "for method raycast"));
+            strstr(refusal(&stage, volume, &scene), "for method raycast"));
     }
     snow_volume_close(volume);
     model_free(&scene);
     model_close(&stage);
 }
 
-static void parts_and_slabs_are_refused(void **state) {
+static void parts_are_refused(void **state) {
     static const snow_extent half = {
         sizeof half, {14, 11, 18}, {0, 0, 0}, {0, 0, 0}, {14, 11, 8}};
     (void)state;
@@ -721,12 +721,10 @@ static void parts_and_slabs_are_refused(void **state) {
     reference_scene scene = scene_of(SNOW_TYPE_UINT8, false, MODEL_PLAIN);
     const reference_cast cast = {.scene = &scene, .planes = none};
     snow_volume *volume = open_cut(stage.context, &cast);
-    assert_non_null(strstr(refusal(&stage, volume, &scene, 3),
-                           "needs the whole volume in one process"));
     assert_int_equal(snow_volume_set_extent(volume, &half), SNOW_STATUS_OK);
     for (int mode = SNOW_MODE_OVER; mode < SNOW_MODE_ISO; mode++) {
         scene.settings.mode = (snow_mode)mode;
-        assert_non_null(strstr(refusal(&stage, volume, &scene, 1),
+        assert_non_null(strstr(refusal(&stage, volume, &scene),
                                "method raycast needs the whole volume in one"));
     }
     snow_volume_close(volume);
@@ -834,7 +832,7 @@ int main(void) {
         cmocka_unit_test(threads_and_instruction_sets_change_nothing),
         cmocka_unit_test(a_draft_of_few_pixels_is_of_the_volume),
         cmocka_unit_test(other_kernels_are_refused),
-        cmocka_unit_test(parts_and_slabs_are_refused),
+        cmocka_unit_test(parts_are_refused),
         cmocka_unit_test(one_rank_makes_the_same_picture),
         cmocka_unit_test(ranks_are_refused),
     };
