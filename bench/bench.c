@@ -4,7 +4,7 @@
  * help of the tool shows its text as it stands. */
 #include "bench.h"
 #include "combine.h"
-#include "frame.h"
+#include "render/picture.h"
 #include "run/start.h"
 
 #include <errno.h>

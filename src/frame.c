@@ -1,7 +1,5 @@
 /* frame.c - one picture: figure 8 of the paper, with its line numbers in the
  * margin.  render/picture.h has its records, README.md the folder of each. */
-#include "frame.h"
-
 #include "parallel/internal.h"
 #include "render/parts.h"
 
@@ -56,10 +54,9 @@ static snow_status complete(snow_picture *p, snow_status status) {
 
 /* --- a picture of one process --------------------------------------------- */
 
-snow_status snow_frame_render_alone(snow_frame *frame,
-                                    const snow_request *request,
-                                    const snow_bytes *bytes,
-                                    snow_image **image) {
+/* Where `bytes` are wanted and the method has written them, *image is NULL. */
+static snow_status render_alone(snow_frame *frame, const snow_request *request,
+                                const snow_bytes *bytes, snow_image **image) {
     if (frame->ranks && snow_ranks_busy(frame->ranks))
         return snow_fail(frame->context, SNOW_STATUS_BAD_USAGE,
                          "this frame has a picture of several ranks in flight; "
@@ -77,7 +74,7 @@ snow_status snow_frame_render(snow_frame *frame, const snow_volume *volume,
                               const snow_settings *settings,
                               snow_image **image) {
     const snow_request request = {volume, transfer, view, settings};
-    return snow_frame_render_alone(frame, &request, NULL, image);
+    return render_alone(frame, &request, NULL, image);
 }
 
 snow_status snow_frame_render_bytes(
@@ -88,7 +85,7 @@ snow_status snow_frame_render_bytes(
     const snow_bytes bytes = {pixels, stride, background};
     snow_image *image = NULL;
     SNOW_TRY(snow_picture_check_bytes(frame->context, &request, &bytes));
-    SNOW_TRY(snow_frame_render_alone(frame, &request, &bytes, &image));
+    SNOW_TRY(render_alone(frame, &request, &bytes, &image));
     if (image) /* of a method that did not write them */
         snow_bytes_image(image, frame->stats.isa, &bytes);
     snow_image_free(image);

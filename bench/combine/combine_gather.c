@@ -117,7 +117,7 @@ snow_status combine_gather_region(snow_combiner *combiner,
                                   combine_gather *state,
                                   const snow_image_region *region, int bits,
                                   void *picture) {
-    const snow_exchange_shape *shape = &combiner->shape;
+    const snow_exchange_params *shape = &combiner->shape;
     const size_t pixel_bytes =
         (size_t)shape->channels * (bits == 8 ? 1 : sizeof(float));
     int64_t packed = 0;

@@ -8,7 +8,7 @@
 
 #include "classify/classify.h"
 #include "composite/over.h"
-#include "render/settings_resolve.h"
+#include "render/job.h"
 #include "transform/transform.h"
 
 #include <math.h>

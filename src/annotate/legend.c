@@ -1,6 +1,6 @@
 /* annotate/legend.c - explains the colours and lengths of a picture: a colour
  * bar, a scale bar, a line of text. */
-#include "image/font.h"
+#include "image/overlay.h"
 
 #include "transfer/transfer.h"
 #include "transform/transform.h"

@@ -159,6 +159,21 @@ snow_status snow_count_interesting(const snow_volume *volume,
     return SNOW_STATUS_OK;
 }
 
+/* Table 1 of the paper: the share of voxels that are not interesting. */
+snow_status snow_transfer_sparse_ratio(const snow_transfer *transfer,
+                                       const snow_volume *volume,
+                                       double threshold, double *ratio) {
+    int64_t interesting;
+    snow_extent part;
+    snow_volume_find_extent(volume, &part);
+    SNOW_TRY(snow_count_interesting(volume, transfer, threshold, SNOW_ISA_AUTO,
+                                    &interesting));
+    double voxels =
+        (double)part.count[0] * (double)part.count[1] * (double)part.count[2];
+    *ratio = voxels > 0 ? 1 - (double)interesting / voxels : 1;
+    return SNOW_STATUS_OK;
+}
+
 int snow_interesting_ranges(const snow_volume_info *info,
                             const snow_transfer *transfer, double threshold,
                             int32_t first, int32_t last, snow_native_range *out,

@@ -41,7 +41,7 @@ static void drop_buffers(snow_combiner *combiner) {
     SNOW_DROP(context, combiner->part);
     SNOW_DROP(context, combiner->region);
     combiner->needs = (snow_exchange_needs){0};
-    combiner->shape = (snow_exchange_shape){0};
+    combiner->shape = (snow_exchange_params){0};
 }
 
 void snow_combiner_free(snow_combiner *combiner) {
@@ -213,19 +213,10 @@ static snow_combine chosen_method(const snow_exchange_params *order) {
                                               : order->method;
 }
 
-static snow_exchange_shape shape_of(const snow_exchange_params *order) {
-    return (snow_exchange_shape){.width = order->width,
-                                 .height = order->height,
-                                 .channels = order->channels,
-                                 .radix = order->radix,
-                                 .grain = order->grain,
-                                 .method = order->method,
-                                 .regions = order->regions,
-                                 .whole = order->whole};
-}
-
-static bool same_shape(const snow_exchange_shape *a,
-                       const snow_exchange_shape *b) {
+/* Whether buffers of the same sizes are needed: the same on all ranks, so that
+ * all allocate at the same time and can agree on the status. */
+static bool same_shape(const snow_exchange_params *a,
+                       const snow_exchange_params *b) {
     return a->width == b->width && a->height == b->height &&
            a->channels == b->channels && a->radix == b->radix &&
            a->grain == b->grain && a->method == b->method &&
@@ -238,7 +229,7 @@ static snow_status plan_shape(snow_combiner *combiner,
     snow_comm *comm = combiner->comm;
     drop_buffers(combiner);
     combiner->filled = false;
-    combiner->shape = shape_of(order);
+    combiner->shape = *order;
     snow_region_bounds_even(&combiner->bounds, order->width, order->height,
                             order->grain);
     combiner->bounds.counted = counts_regions(order, comm->ranks);
@@ -302,9 +293,8 @@ static snow_status plan_rank_order(snow_combiner *combiner,
 
 snow_status snow_combiner_plan(snow_combiner *combiner,
                                const snow_exchange_params *order) {
-    const snow_exchange_shape shape = shape_of(order);
     SNOW_TRY(check_params(combiner, order));
-    if (!same_shape(&shape, &combiner->shape))
+    if (!same_shape(order, &combiner->shape))
         SNOW_TRY(plan_shape(combiner, order));
     combiner->loops =
         snow_pixels_pick(SNOW_ISA_AUTO, order->channels, order->composite_op);

@@ -42,15 +42,6 @@ typedef struct snow_exchange_state {
     size_t own_bytes;
 } snow_exchange_state;
 
-/* What determines the sizes of all buffers; the same on all ranks, so that all
- * allocate at the same time and can agree on the status. */
-typedef struct snow_exchange_shape {
-    int width, height, channels, radix, grain;
-    snow_combine method;
-    snow_image_partition regions;
-    bool whole;
-} snow_exchange_shape;
-
 /* Bytes that the busiest position needs: a view changes the positions of ranks,
  * which alone must not change buffers. Rounds with even and odd numbers have
  * separate buffers. */
@@ -80,8 +71,9 @@ typedef struct snow_gather_state {
 
 struct snow_combiner {
     snow_comm *comm;
-    snow_exchange_shape shape; /* width 0: no buffers */
-    snow_exchange_needs needs; /* capacities of the buffers */
+    snow_exchange_params shape; /* of the buffers; width 0: there are none.
+                                   What it points to may be gone */
+    snow_exchange_needs needs;  /* capacities of the buffers */
     const snow_pixel_loops *loops;
     snow_rounds rounds;
     bool filled; /* `rounds` has its lists, for its rank position and display */

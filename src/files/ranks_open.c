@@ -1,6 +1,6 @@
 /* files/ranks_open.c - snow_ranks_open: the ranks of parallel/open.c over the
  * readers of formats/, neither of which knows the other. */
-#include "parallel/open.h"
+#include "parallel/part.h"
 
 static snow_status open_file(snow_context *context, const char *path,
                              const snow_volume_options *options,

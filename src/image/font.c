@@ -15,7 +15,7 @@
  * glyph is as wide as its farthest point; SPACE separates two glyphs.  Strokes
  * have round ends and one width, so that letters are readable at heights from
  * 9 to a hundred pixels. */
-#include "image/font.h"
+#include "image/overlay.h"
 
 #include <assert.h>
 #include <math.h>

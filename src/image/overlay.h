@@ -50,7 +50,20 @@ void snow_overlay_settle(snow_overlay *overlay, size_t first,
 void snow_overlay_settle_mirrored(snow_overlay *overlay, size_t first,
                                   bool sideways);
 
-/* Draws the shapes on `count` pixels from (x, y) on: premultiplied, 2 or 4
+/* --- font.c: a stroke font of any size: ASCII and the micro sign ---
+
+ * Width of a line of text whose capitals are 1 high, between the middles of the
+ * outermost strokes of its first and last letter. */
+double snow_font_width(const char *text);
+
+/* Adds a line of text to the current shape: (x, y) is the beginning of its base
+ * line, y downwards. */
+snow_status snow_font_draw(snow_overlay *overlay, double x, double y,
+                           double height, const char *text);
+
+/* --- overlay.c ---
+
+ * Draws the shapes on `count` pixels from (x, y) on: premultiplied, 2 or 4
  * channels; dark on `light`.  NaN becomes a number where a shape covers it. */
 void snow_overlay_draw(const snow_overlay *overlay, bool light, int y, int x,
                        int count, int channels, float *pixels);

@@ -7,7 +7,7 @@
 #include "base/vec3.h"
 #include "classify/count_interesting.h"
 #include "comm/comm.h"
-#include "render/settings_resolve.h"
+#include "render/job.h"
 #include "volume/stream.h"
 
 #include <snowglass/ranks.h>

@@ -2,7 +2,6 @@
  * many ranks keep. */
 #include "parallel/internal.h"
 #include "parallel/load_balance.h"
-#include "render/buffers.h"
 
 snow_status snow_frame_new(snow_context *context, snow_frame **out) {
     snow_frame *frame = NULL;

@@ -3,7 +3,7 @@
 #include "decompose/deterministic.h"
 
 #include "render/ghosts.h"
-#include "render/settings_resolve.h"
+#include "render/job.h"
 #include "transfer/look.h"
 #include "transform/clip.h"
 

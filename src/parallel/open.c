@@ -12,7 +12,6 @@
  * than the largest box will be, since that has at least the mean, and so the
  * most that any rank stores does not rise for it.  Invariant: the owned boxes
  * of all ranks cover the grid and do not overlap, before and after. */
-#include "parallel/open.h"
 
 #include "classify/gradient_opacity.h"
 #include "decompose/slab.h"

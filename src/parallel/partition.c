@@ -3,7 +3,7 @@
 
 #include "classify/count_interesting.h"
 #include "render/ghosts.h"
-#include "render/settings_resolve.h"
+#include "render/job.h"
 #include "simd/isa.h"
 
 #include <string.h>

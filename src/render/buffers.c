@@ -1,5 +1,5 @@
 /* render/buffers.c - see buffers.h. */
-#include "render/buffers.h"
+#include "render/job.h"
 
 #include "image/image.h"
 #include "render/exact/exact.h"

@@ -16,7 +16,7 @@
 #include "render/ghosts.h"
 
 #include "base/vec3.h"
-#include "render/settings_resolve.h"
+#include "render/job.h"
 #include "render/shear_warp/lattice.h"
 #include "splat/kernel.h"
 #include "splat/values/value_splat.h"

@@ -4,7 +4,6 @@
 #include "classify/count_interesting.h"
 #include "classify/gradient_opacity.h"
 #include "render/ghosts.h"
-#include "render/settings_resolve.h"
 #include "transfer/transfer.h"
 
 #include <string.h>

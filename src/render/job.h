@@ -37,6 +37,11 @@ struct snow_frame {
     snow_load_balance *work; /* of the same */
 };
 
+/* A frame without what many ranks need (parallel/internal.h).  Errors:
+ * SNOW_STATUS_NO_MEMORY. */
+snow_status snow_buffers_new(snow_context *context, snow_frame **out);
+void snow_buffers_free(snow_frame *frame);
+
 /* What one picture is made from; lives as long as the call that makes it. */
 typedef struct snow_job {
     snow_context *context;
@@ -57,6 +62,13 @@ typedef struct snow_job {
         *depths; /* of its pixels (render/modes/depth.h); NULL: not asked for */
     snow_stats *stats;
 } snow_job;
+
+/* Checks every setting and replaces what is 0 or AUTO by what is meant for
+ * this volume, but for the encoding, which is measured later.
+ * Errors: SNOW_STATUS_BAD_USAGE with the setting's name and range. */
+snow_status snow_settings_resolve(snow_context *context,
+                                  const snow_volume_info *info,
+                                  snow_settings *settings);
 
 /* What a picture is to be made of. */
 typedef struct snow_request {

@@ -1,5 +1,5 @@
 /* render/settings_resolve.c - see settings_resolve.h. */
-#include "render/settings_resolve.h"
+#include "render/job.h"
 
 #include "base/thread_pool.h"
 #include "simd/isa.h"

@@ -144,3 +144,24 @@ void snow_transfer_evaluate(const snow_transfer *transfer, double value,
     snow_transfer_hint hint = {0, 0};
     snow_transfer_near(transfer, value, &hint, rgba);
 }
+
+/* --- categories ---------------------------------------------------------- */
+
+static bool same_color(const snow_color_point *a, const snow_color_point *b) {
+    return a->red == b->red && a->green == b->green && a->blue == b->blue;
+}
+
+/* Whether values are the numbers of things rather than quantities: the colours
+ * of categories have steps, and do not change in between. */
+bool snow_transfer_has_labels(const snow_transfer *transfer, snow_type type) {
+    const snow_color_point *c = transfer->colors;
+    bool steps = false;
+    for (size_t n = 1; n < transfer->color_count; n++) {
+        if (same_color(&c[n], &c[n - 1]))
+            continue;
+        if (c[n].value != c[n - 1].value)
+            return false;
+        steps = true;
+    }
+    return steps && type < SNOW_TYPE_FLOAT32;
+}

@@ -9,6 +9,11 @@
 #include <math.h>
 #include <string.h>
 
+SNOW_RECORD_OF_ZEROS(snow_volume_info);
+SNOW_RECORD_OF_ZEROS(snow_volume_options);
+SNOW_RECORD_OF_ZEROS(snow_extent);
+SNOW_RECORD_OF_ZEROS(snow_volume_statistics);
+
 /* The largest count of bytes that an int64_t can address. */
 #define MOST_BYTES ((uint64_t)INT64_MAX)
 

@@ -1,6 +1,6 @@
 /* tests/image/test_overlay.c - what is drawn over pictures as they are written.
  */
-#include "image/font.h"
+#include "image/overlay.h"
 #include "reference/model.h"
 #include "support/image.h"
 #include "transform/transform.h"

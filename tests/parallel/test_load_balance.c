@@ -3,10 +3,10 @@
  * that pictures of a turning volume stay those of one process. */
 #include "support/support.h"
 
-#include "frame.h"
 #include "image/image.h"
 #include "parallel/load_balance.h"
 #include "parallel/partition.h"
+#include "render/picture.h"
 #include "volume/volume.h"
 
 #include <math.h>

@@ -4,8 +4,8 @@
 #include "reference/model.h"
 #include "support/scenario.h"
 
-#include "frame.h"
 #include "image/image.h"
+#include "render/picture.h"
 
 #include <math.h>
 #include <snowglass/ranks.h>

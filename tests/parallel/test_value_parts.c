@@ -6,7 +6,7 @@
 #include "support/volumes.h"
 #include "values/value_model.h"
 
-#include "frame.h"
+#include "render/picture.h"
 
 #include <math.h>
 

@@ -4,9 +4,9 @@
 
 #include "composite/over.h"
 #include "decompose/order.h"
-#include "frame.h"
 #include "render/ghosts.h"
 #include "render/job.h"
+#include "render/picture.h"
 #include "transfer/transfer.h"
 #include "volume/volume.h"
 

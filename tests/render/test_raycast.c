@@ -5,7 +5,7 @@
 #include "reference/raycast.h"
 #include "volume/volume.h"
 
-#include "frame.h"
+#include "render/picture.h"
 
 #include <math.h>
 #include <snowglass/ranks.h>
@@ -676,10 +676,8 @@ static const char *refusal(const model_stage *stage, const snow_volume *volume,
     static char message[512];
     snow_transfer *transfer = model_transfer(stage->context, scene);
     snow_image *image = NULL;
-    const snow_request request = {volume, transfer, &scene->view,
-                                  &scene->settings};
-    snow_status status =
-        snow_frame_render_alone(stage->frame, &request, NULL, &image);
+    snow_status status = snow_frame_render(
+        stage->frame, volume, transfer, &scene->view, &scene->settings, &image);
     assert_int_equal(status, SNOW_STATUS_BAD_USAGE);
     assert_null(image);
     snow_transfer_free(transfer);

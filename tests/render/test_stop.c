@@ -9,8 +9,8 @@
 #include "support/support.h"
 
 #include "comm/comm.h"
-#include "frame.h"
 #include "image/image.h"
+#include "render/picture.h"
 
 #include <math.h>
 #include <snowglass/ranks.h>

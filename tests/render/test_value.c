@@ -3,8 +3,8 @@
 #include <math.h>
 
 #include "classify/values/value_range.h"
-#include "frame.h"
 #include "reference/model.h"
+#include "render/picture.h"
 #include "simd/isa.h"
 #include "values/pictures.h"
 

@@ -1,8 +1,8 @@
 /* tests/render/test_value_rows.c - rows that are read in place give the bits of
  * rows that are copied: along every axis, of 8 and 16 bits, with windows beyond
  * every side, by every instruction set. */
-#include "frame.h"
 #include "reference/model.h"
+#include "render/picture.h"
 #include "simd/isa.h"
 #include "values/pictures.h"
 #include "values/scenes.h"

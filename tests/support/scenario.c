@@ -2,9 +2,9 @@
 #include "support/scenario.h"
 
 #include "decompose/deterministic.h"
-#include "frame.h"
 #include "image/image.h"
 #include "render/ghosts.h"
+#include "render/picture.h"
 
 #include <math.h>
 

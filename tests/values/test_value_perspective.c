@@ -3,7 +3,7 @@
  * bit of its pictures. */
 #include <math.h>
 
-#include "frame.h"
+#include "render/picture.h"
 #include "values/pictures.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
