@@ -4,7 +4,7 @@
  * help of the tool shows its text as it stands. */
 #include "bench.h"
 #include "combine.h"
-#include "render/picture.h"
+#include "frame.h"
 #include "run/start.h"
 
 #include <errno.h>

@@ -1,8 +1,8 @@
 /* bench/frame/frame.c - `snowglass bench frame`: its options, and who its ranks
  * are.
  */
+#include "frame.h"
 #include "option_table.h"
-#include "render/picture.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* bench/frame/frame_print.c - what was measured as one line. */
+#include "frame.h"
 #include "line.h"
-#include "render/picture.h"
 
 #include <stdio.h>
 

@@ -4,8 +4,8 @@
  * The first picture is also encoded; the others are of the same look, as when
  * nothing but the view changes.  Each rank works on one thread, so that its
  * processor time is that of its thread, or process. */
+#include "frame.h"
 #include "hosts.h"
-#include "render/picture.h"
 
 #include <snowglass/extend.h>
 

@@ -2,7 +2,7 @@
  * turntable makes them: one after another, and each splatted while the one
  * before it is combined.  Both in turn, so that what disturbs one disturbs the
  * other; of each the fastest counts. */
-#include "render/picture.h"
+#include "frame.h"
 
 #include <string.h>
 
