@@ -3,12 +3,12 @@
 #include "commands/commands.h"
 #include "commands/info_list.h"
 #include "run/log.h"
+#include "run/paths.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #define ROWS 16  /* bins of the histogram as text: half a screen */
 #define BINS 256 /* bins of the histogram as JSON */
@@ -262,11 +262,6 @@ static int report_text(const facts *f) {
     print_values(f);
     print_histogram(f);
     return finish_stdout();
-}
-
-static bool is_folder(const char *path) {
-    struct stat what;
-    return stat(path, &what) == 0 && S_ISDIR(what.st_mode);
 }
 
 /* Describes also a DICOM folder that is opened only with gaps. */

@@ -52,8 +52,7 @@ static bool is_beside(const options *opts) {
 }
 
 int check_depth_mode(const options *opts) {
-    if (!opts->depth || strcmp(opts->mode, "over") == 0 ||
-        strcmp(opts->mode, "iso") == 0)
+    if (!opts->depth || !mode_is_projection(opts->mode))
         return CONTINUE;
     return fail_usage("--depth: mode %s has no depth; use mode over or iso",
                       opts->mode);
@@ -106,10 +105,9 @@ static int check_combination(const options *opts) {
 }
 
 snow_image_options picture_form(const options *opts) {
-    snow_image_options form = {
-        .size = sizeof form,
-        .bits = opts->bits ? (opts->bits[0] == '8' ? 8 : 16) : 0,
-        .overwrite = opts->overwrite};
+    snow_image_options form = {.size = sizeof form,
+                               .bits = options_bits(opts),
+                               .overwrite = opts->overwrite};
     paint_background(opts, &form);
     return form;
 }

@@ -4,6 +4,7 @@
 #include "picture/outputs.h"
 #include "run/interrupt.h"
 #include "run/log.h"
+#include "run/paths.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -231,11 +232,6 @@ static int show(const options *opts, const named *n) {
 }
 
 /* --- convert -------------------------------------------------------------- */
-
-static bool ends_with(const char *text, const char *suffix) {
-    size_t a = strlen(text), b = strlen(suffix);
-    return a >= b && strcmp(text + a - b, suffix) == 0;
-}
 
 /* Reports what a table cannot hold. */
 static void report_losses(const options *opts, const snow_look *p) {

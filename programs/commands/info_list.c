@@ -5,6 +5,7 @@
 #include "commands/info_list.h"
 #include "commands/commands.h"
 #include "run/log.h"
+#include "run/paths.h"
 
 #include <dirent.h>
 #include <inttypes.h>
@@ -12,12 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-static bool is_folder(const char *path) {
-    struct stat what;
-    return stat(path, &what) == 0 && S_ISDIR(what.st_mode);
-}
 
 static int is_shown(const struct dirent *entry) {
     return entry->d_name[0] != '.';
@@ -59,11 +54,6 @@ static bool path_in(const char *folder, const char *name, char out[PATH_MAX]) {
     bool slash = length && folder[length - 1] == '/';
     return snprintf(out, PATH_MAX, "%s%s%s", folder, slash ? "" : "/", name) <
            PATH_MAX;
-}
-
-static bool ends_with(const char *path, const char *end) {
-    size_t length = strlen(path), wanted = strlen(end);
-    return length >= wanted && strcmp(path + length - wanted, end) == 0;
 }
 
 /* Whether what a folder holds is a volume by itself, and no part of one that

@@ -76,8 +76,6 @@ int check_input_first(const options *opts, const char *const *outputs,
     return free ? CONTINUE : check_input(opts);
 }
 
-/* --window and --level are the radiologists' way to give a range; neither means
- * anything alone. */
 int look_load(options *opts) {
     if (!opts->tf)
         return CONTINUE;
@@ -98,6 +96,8 @@ void look_unload(options *opts) {
     opts->tf_context = NULL;
 }
 
+/* --window and --level are the radiologists' way to give a range; neither means
+ * anything alone. */
 int check_look(const options *opts) {
     bool window = !isnan(opts->window), level = !isnan(opts->level);
     if (window != level)
@@ -114,28 +114,23 @@ int check_look(const options *opts) {
 }
 
 snow_look look_options(const options *opts) {
+    const range_value range = options_range(opts);
     snow_look look = {.size = sizeof look,
                       .preset = opts->preset,
                       .colormap = opts->colormap,
-                      .range = opts->range.kind,
-                      .low = opts->range.low,
-                      .high = opts->range.high,
+                      .range = range.kind,
+                      .low = range.low,
+                      .high = range.high,
                       .log = opts->log,
                       .shift = opts->shift,
                       .base = opts->loaded ? snow_look_file_look(opts->loaded)
                                            : NULL};
     /* Projections are grey by default, over the file's window or all values but
      * a few far off. */
-    if (strcmp(opts->mode, "over") != 0 && strcmp(opts->mode, "iso") != 0 &&
-        !look.preset && !look.base) {
+    if (mode_is_projection(opts->mode) && !look.preset && !look.base) {
         look.preset = "linear";
         if (look.range == SNOW_RANGE_AUTO)
             look.range = SNOW_RANGE_ROBUST;
-    }
-    if (!isnan(opts->window)) { /* --window and --level give the range */
-        look.range = SNOW_RANGE_VALUES;
-        look.low = opts->level - opts->window / 2;
-        look.high = opts->level + opts->window / 2;
     }
     if (opts->opacities.count) {
         look.opacities = opts->opacities.points;

@@ -212,7 +212,7 @@ static void set_form(movie *s) {
     snow_image_options_init(&s->form);
     paint_background(s->opts, &s->form);
     s->form.flatten |= needs_encoder(s);
-    s->form.bits = s->opts->bits ? (s->opts->bits[0] == '8' ? 8 : 16) : 0;
+    s->form.bits = options_bits(s->opts);
     s->form.overwrite = true; /* of unfinished files */
 }
 

@@ -171,11 +171,9 @@ static bool look_is_fixed(const options *opts) {
         return false;
     const char *name =
         snow_preset_name((size_t)snow_preset_from_name(opts->preset));
-    bool values = opts->range.kind == SNOW_RANGE_VALUES ||
-                  opts->window == opts->window; /* not NaN: given */
-    bool own =
-        strncmp(name, "ct-", 3) == 0 && opts->range.kind == SNOW_RANGE_AUTO;
-    return values || own;
+    snow_range range = options_range(opts).kind;
+    return range == SNOW_RANGE_VALUES ||
+           (strncmp(name, "ct-", 3) == 0 && range == SNOW_RANGE_AUTO);
 }
 
 /* Reads what the header says about a shot's volume. */

@@ -180,8 +180,7 @@ static void fit_depth(const options *out, const verb_row *verb, json_t *tree) {
     else if (moves ||
              (depth && verb->bit != VERB_RENDER &&
               (!output || strcmp(depth, output) != 0)) ||
-             (options_given(out, "mode") && strcmp(out->mode, "over") &&
-              strcmp(out->mode, "iso")))
+             (options_given(out, "mode") && mode_is_projection(out->mode)))
         json_object_del(tree, "depth");
 }
 

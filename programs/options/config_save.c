@@ -18,26 +18,9 @@
 #include <string.h>
 
 static void fill_data(const options *opts, snow_recipe *out) {
-    snow_volume_options *data = &out->data;
-    memcpy(data->dims, opts->dims, sizeof data->dims);
-    memcpy(data->spacing, opts->spacing, sizeof data->spacing);
-    memcpy(data->crop, opts->crop, sizeof data->crop);
-    data->type = opts->type;
-    data->offset = opts->offset;
-    data->time = opts->time;
-    data->channel = opts->channel;
-    data->component = opts->component;
-    if (!opts->component && !opts->channel && options_given(opts, "channel"))
-        data->component = "0"; /* a recipe has no channel 0 */
-    data->dataset = opts->dataset;
-    data->series = opts->series;
-    data->allow_gaps = opts->allow_gaps;
-    data->mask = opts->mask;
-    memcpy(data->clip, opts->clip, sizeof data->clip);
-    data->labels = opts->labels;
-    if (opts->endian)
-        data->endian = strcmp(opts->endian, "big") == 0 ? SNOW_ENDIAN_BIG
-                                                        : SNOW_ENDIAN_LITTLE;
+    out->data = data_options(opts);
+    if (!opts->component && !opts->channel && out->data.channel_given)
+        out->data.component = "0"; /* a recipe has no channel 0 */
 }
 
 static void fill_look(const options *opts, snow_recipe *out) {
@@ -45,14 +28,10 @@ static void fill_look(const options *opts, snow_recipe *out) {
     out->colormap = opts->colormap;
     out->tf = opts->tf;
     out->log = opts->log;
-    out->range = opts->range.kind;
-    out->low = opts->range.low;
-    out->high = opts->range.high;
-    if (!isnan(opts->window)) {
-        out->range = SNOW_RANGE_VALUES;
-        out->low = opts->level - opts->window / 2;
-        out->high = opts->level + opts->window / 2;
-    }
+    const range_value range = options_range(opts);
+    out->range = range.kind;
+    out->low = range.low;
+    out->high = range.high;
     out->opacity_count = opts->opacities.count;
     memcpy(out->opacities, opts->opacities.points,
            opts->opacities.count * sizeof *out->opacities);
@@ -101,8 +80,7 @@ static void fill_recipe(const options *opts, const verb_row *verb,
     out->image.flatten = opts->background.given;
     memcpy(out->image.background, opts->background.rgb,
            sizeof out->image.background);
-    if (opts->bits)
-        out->image.bits = opts->bits[0] == '8' ? 8 : 16;
+    out->image.bits = options_bits(opts);
     fill_data(opts, out);
     fill_look(opts, out);
     fill_view(opts, out);
@@ -189,7 +167,7 @@ static void note_look(const options *opts, const snow_transfer *transfer) {
     if (!map_of(opts, &look) || look.opacity_count > SNOW_RECIPE_POINTS_MAX)
         return;
     chosen.colormap = json_string(map_of(opts, &look));
-    if (opts->range.kind == SNOW_RANGE_AUTO && isnan(opts->window)) {
+    if (options_range(opts).kind == SNOW_RANGE_AUTO) {
         double ends[2];
         snow_transfer_domain(transfer, &ends[0], &ends[1]);
         chosen.range = json_vector(ends, 2);
@@ -204,9 +182,8 @@ static void note_look(const options *opts, const snow_transfer *transfer) {
 
 void config_note(const options *opts, const snow_transfer *transfer,
                  snow_shade shade, const char *view) {
-    bool over = strcmp(opts->mode, "over") == 0;
     bool asked = opts->preset || opts->tf || opts->shift < 0 || opts->shift > 0;
-    if (!asked && (over || strcmp(opts->mode, "iso") == 0))
+    if (!asked && !mode_is_projection(opts->mode))
         note_look(opts, transfer);
     if (chosen.opacity && !options_given(opts, "shade"))
         chosen.shade = json_string(shade == SNOW_SHADE_NONE ? "none" : "phong");
@@ -218,12 +195,9 @@ static void set_chosen(json_t *tree) {
     const struct {
         const char *key;
         json_t **value;
-    } rows[] = {{"preset", &chosen.preset},
-                {"colormap", &chosen.colormap},
-                {"range", &chosen.range},
-                {"opacity", &chosen.opacity},
-                {"shade", &chosen.shade},
-                {"view", &chosen.view}};
+    } rows[] = {{"preset", &chosen.preset}, {"colormap", &chosen.colormap},
+                {"range", &chosen.range},   {"opacity", &chosen.opacity},
+                {"shade", &chosen.shade},   {"view", &chosen.view}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (*rows[i].value)
             json_object_set_new(tree, rows[i].key, *rows[i].value);

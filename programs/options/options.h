@@ -98,9 +98,9 @@ typedef struct options {
     uint64_t offset;
     int64_t time;
     int64_t channel;
-    const char *component;          /* NULL: not given */
-    const char *dataset;            /* NULL: not given */
-    const char *series;             /* NULL: not given */
+    const char *component; /* NULL: not given */
+    const char *dataset;   /* NULL: not given */
+    const char *series;    /* NULL: not given */
     bool allow_gaps;
     int64_t crop[3][2];             /* 0: the end */
     double clip[SNOW_CLIPS_MAX][4]; /* zeros: none */
@@ -215,6 +215,16 @@ bool options_given(const options *opts, const char *name);
 
 /* Whether it was given on the command line. */
 bool options_typed(const options *opts, const char *name);
+
+/* Whether a mode projects values; the others, over and iso, have surfaces and
+ * depths. */
+bool mode_is_projection(const char *mode);
+
+/* Bits per channel of a picture; 0: not given. */
+int options_bits(const options *opts);
+
+/* The range of --range, or of --window and --level. */
+range_value options_range(const options *opts);
 
 /* Prints help to standard output: `word` names a verb, a topic, an option with
  * or without dashes, or a preset; NULL means the page of `verb`, or the

@@ -4,6 +4,7 @@
 #include "commands/commands.h"
 #include "picture/outputs.h"
 #include "run/log.h"
+#include "run/paths.h"
 #include "run/start.h"
 
 #include <ctype.h>
@@ -40,7 +41,6 @@ static void drop_suffix(char *name) {
 /* "head" for scans/head.nii.gz, head.h5:/a/b, phantom:head, and a folder of
  * that name. */
 static void name_of(const char *given, char out[NAME_MAX + 1]) {
-    struct stat what;
     bool phantom = strncmp(given, "phantom:", 8) == 0;
     const char *within = strstr(given, ":/"); /* a dataset of a file */
     char path[PATH_MAX];
@@ -48,8 +48,7 @@ static void name_of(const char *given, char out[NAME_MAX + 1]) {
              (int)(within ? within - given : (ptrdiff_t)strlen(given)), given);
     take_name(phantom ? path + 8 : path, out);
     char *dot = strrchr(out, '.');
-    bool folder = stat(path, &what) == 0 && S_ISDIR(what.st_mode) &&
-                  !(dot && strcmp(dot, ".zarr") == 0);
+    bool folder = is_folder(path) && !(dot && strcmp(dot, ".zarr") == 0);
     if (phantom || folder)
         return;
     if (dot && (strcmp(dot, ".gz") == 0 || strcmp(dot, ".zip") == 0))

@@ -8,6 +8,7 @@
 #define _XOPEN_SOURCE 700 /* realpath */
 #include "picture/outputs.h"
 #include "run/log.h"
+#include "run/paths.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -62,15 +63,12 @@ static int fail_existing(const char *path) {
     return fail_output("%s: exists; use --overwrite or another name", path);
 }
 
-static bool is_folder(const char *path) {
-    struct stat what;
-    size_t length = strlen(path);
-    return (length && path[length - 1] == '/') ||
-           (stat(path, &what) == 0 && S_ISDIR(what.st_mode));
+static bool names_folder(const char *path) {
+    return ends_with(path, "/") || is_folder(path);
 }
 
 int check_no_folder(const char *path) {
-    return is_folder(path)
+    return names_folder(path)
                ? fail_output("%s: is a folder; give the name of a file in it",
                              path)
                : CONTINUE;
@@ -82,7 +80,7 @@ bool is_free(const char *path, bool overwrite) {
     folder_of(path, folder, sizeof folder);
     if (is_special(path))
         return true;
-    if (is_folder(path) || access(folder, W_OK | X_OK) != 0)
+    if (names_folder(path) || access(folder, W_OK | X_OK) != 0)
         return false;
     return overwrite || lstat(path, &what) != 0;
 }
@@ -93,7 +91,7 @@ int check_stats_path(const char *path, bool overwrite) {
     struct stat what;
     if (is_special(path))
         return CONTINUE;
-    if (is_folder(path))
+    if (names_folder(path))
         return check_no_folder(path);
     if (!overwrite && lstat(path, &what) == 0)
         return fail_existing(path);

@@ -3,7 +3,6 @@
 #include "movie/movie_encoder.h"
 #include "run/log.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -15,7 +14,7 @@ static bool keeps_values(const char *path) {
 }
 
 static bool range_is_given(const options *opts) {
-    return opts->range.kind != SNOW_RANGE_AUTO || !isnan(opts->window);
+    return options_range(opts).kind != SNOW_RANGE_AUTO;
 }
 
 int paint_check(const options *opts, bool movie) {
@@ -32,8 +31,7 @@ int paint_check(const options *opts, bool movie) {
  * stays a grey file. */
 void paint_background(const options *opts, snow_image_options *form) {
     const color_value *color = &opts->background;
-    bool shaded =
-        strcmp(opts->mode, "over") == 0 || strcmp(opts->mode, "iso") == 0;
+    bool shaded = !mode_is_projection(opts->mode);
     form->flatten =
         color->given || (color->automatic && !keeps_values(opts->output));
     for (int i = 0; i < 3; i++)

@@ -1,0 +1,23 @@
+/* option_facts.c - what several options mean together, and what a word of one
+ * stands for. */
+#include "options/options.h"
+
+#include <math.h>
+#include <string.h>
+
+bool mode_is_projection(const char *mode) {
+    return strcmp(mode, "over") != 0 && strcmp(mode, "iso") != 0;
+}
+
+int options_bits(const options *opts) {
+    if (!opts->bits)
+        return 0;
+    return opts->bits[0] == '8' ? 8 : 16;
+}
+
+range_value options_range(const options *opts) {
+    if (isnan(opts->window))
+        return opts->range;
+    return (range_value){SNOW_RANGE_VALUES, opts->level - opts->window / 2,
+                         opts->level + opts->window / 2};
+}
