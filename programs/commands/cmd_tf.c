@@ -201,7 +201,7 @@ static char *text_of(const named *n, text_writer *write, size_t *length,
     *done =
         status != SNOW_STATUS_OK ? fail_status(n->context, status) : CONTINUE;
     if (status == SNOW_STATUS_OK && !text)
-        *done = fail_output("out of memory for the text; close other programs");
+        *done = fail_memory("out of memory for the text; close other programs");
     return text;
 }
 

@@ -14,11 +14,10 @@
 static int make_shots(const options *opts, shot_list *out) {
     out->count = opts->frames;
     out->shots = calloc((size_t)out->count, sizeof *out->shots);
-    if (!out->shots) {
-        say("out of memory for a list of %lld frames; make fewer",
-            (long long)out->count);
-        return SNOW_STATUS_NO_MEMORY;
-    }
+    if (!out->shots)
+        return fail_memory("out of memory for a list of %lld frames; make "
+                           "fewer",
+                           (long long)out->count);
     for (int64_t i = 0; i < out->count; i++)
         out->shots[i] = (movie_shot){
             .path = opts->operands[0],

@@ -233,10 +233,8 @@ static int open_parts(movie *s) {
 
 int movie_open(const options *opts, const shot_list *list, movie **out) {
     movie *s = calloc(1, sizeof *s);
-    if (!s) {
-        say("out of memory at the start; close other programs");
-        return SNOW_STATUS_NO_MEMORY;
-    }
+    if (!s)
+        return fail_memory("out of memory at the start; close other programs");
     s->opts = opts;
     s->list = list;
     s->encoder.pipe = -1;
@@ -333,8 +331,8 @@ static int begin_parts(movie *s) {
         return done;
     if (frames_new(&sink, count_workers(s->opts), &s->queue) == SNOW_STATUS_OK)
         return CONTINUE;
-    say("out of memory for the queue of frames; use a smaller --size");
-    return SNOW_STATUS_NO_MEMORY;
+    return fail_memory("out of memory for the queue of frames; use a smaller "
+                       "--size");
 }
 
 /* --- the loop ------------------------------------------------------------- */

@@ -298,11 +298,10 @@ int record_open(const options *opts, const shot_list *list,
     *out = (frame_record){.file = -1, .anew = true};
     out->text = write_text(opts, list);
     out->kept = calloc((size_t)list->count, sizeof *out->kept);
-    if (!out->text || !out->kept) {
-        say("out of memory for a list of %" PRId64 " frames; make fewer",
-            list->count);
-        return SNOW_STATUS_NO_MEMORY;
-    }
+    if (!out->text || !out->kept)
+        return fail_memory("out of memory for a list of %" PRId64
+                           " frames; make fewer",
+                           list->count);
     int done = open_file(place, out);
     if (done != CONTINUE)
         return done;

@@ -17,9 +17,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static int fail_memory(void) {
-    say("out of memory for the list of time steps; make a movie of fewer");
-    return SNOW_STATUS_NO_MEMORY;
+static int fail_list(void) {
+    return fail_memory("out of memory for the list of time steps; make a movie "
+                       "of fewer");
 }
 
 /* Adds a copy of the path. */
@@ -29,13 +29,13 @@ static int add_path(step_files *files, const char *path) {
         char **paths =
             realloc(files->paths, (size_t)room * sizeof *files->paths);
         if (!paths)
-            return fail_memory();
+            return fail_list();
         files->paths = paths;
         files->room = room;
     }
     char *copy = strdup(path);
     if (!copy)
-        return fail_memory();
+        return fail_list();
     files->paths[files->count++] = copy;
     return CONTINUE;
 }
@@ -87,7 +87,7 @@ static int find_numbers(const char *pattern, const frame_names *names,
     }
     closedir(folder);
     if (!good)
-        return fail_memory();
+        return fail_list();
     if (!out->count) {
         say("%s: no file matches this pattern; correct it", pattern);
         return SNOW_STATUS_BAD_INPUT;
@@ -221,7 +221,7 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
     out->together = out->count > 1 && !look_is_fixed(opts);
     out->shots = calloc((size_t)out->count, sizeof *out->shots);
     if (!out->shots)
-        return fail_memory();
+        return fail_list();
     for (int64_t i = 0; i < out->count; i++) {
         movie_shot *shot = &out->shots[i];
         *shot = first;
@@ -502,7 +502,7 @@ int steps_look(const shot_list *list, shot_renderer *shots) {
     int64_t room = pool.quota + 2;
     pool.values =
         malloc((size_t)(room * (list->count + 1)) * sizeof *pool.values);
-    int done = process_agree(pool.values ? CONTINUE : fail_memory());
+    int done = process_agree(pool.values ? CONTINUE : fail_list());
     if (done == CONTINUE) {
         pool.step = pool.values + room * list->count;
         done = pool_steps(list, shots, &pool);

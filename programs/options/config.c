@@ -104,6 +104,12 @@ static bool gives_way(const options *out, const char *key) {
            options_given(out, "range");
 }
 
+static int fail_inputs(size_t count) {
+    return fail_memory("out of memory for the names of %zu inputs; close other "
+                       "programs",
+                       count);
+}
+
 /* The inputs of a movie, unless some stand on the command line.  They stay
  * until the process ends, as argv does. */
 static int take_inputs(options *out, const json_t *list) {
@@ -115,12 +121,12 @@ static int take_inputs(options *out, const json_t *list) {
     for (size_t i = 0; inputs && i < count; i++) {
         inputs[i] = strdup(json_string_value(json_array_get(list, i)));
         if (!inputs[i])
-            return fail_usage("out of memory for the names of %zu inputs; "
-                              "close other programs",
-                              count);
+            return fail_inputs(count);
     }
+    if (!inputs)
+        return fail_inputs(count);
     out->operands = inputs;
-    out->operand_count = inputs ? (int)count : 0;
+    out->operand_count = (int)count;
     return CONTINUE;
 }
 
@@ -156,7 +162,7 @@ static int check_recipe(const char *path) {
     snow_recipe recipe = {.size = sizeof recipe};
     snow_status status = snow_context_new(NULL, &context);
     if (status != SNOW_STATUS_OK)
-        return fail_usage("out of memory for a context; close other programs");
+        return fail_status(NULL, status);
     status = snow_recipe_load(context, path, &recipe);
     int done = CONTINUE;
     if (status == SNOW_STATUS_OK)

@@ -308,7 +308,7 @@ int config_save(const options *opts, const verb_row *verb) {
         return SNOW_STATUS_OK;
     json_t *tree = make_tree(opts, verb);
     if (!tree)
-        return fail_output(
+        return fail_memory(
             "%s: out of memory for its text; close other programs",
             opts->save_config ? opts->save_config : "the command");
     if (prints)

@@ -248,7 +248,7 @@ int write_json(json_t *object, const char *path, bool overwrite) {
         json_dumpb(object, text, room, JSON_FORM);
     json_decref(object);
     if (!text)
-        return fail_output(
+        return fail_memory(
             "%s: out of memory for its text; close other programs", path);
     text[room] = '\n';
     int done = write_text(text, room + 1, path, overwrite);

@@ -42,10 +42,9 @@ int render_state_new(const options *opts, render_state *out) {
         snow_context_set_progress(out->context, progress_hear, NULL);
         size_t ranks = (size_t)process_ranks();
         out->figures = calloc(ranks, sizeof(rank_figures));
-        if (!out->figures) {
-            say("out of memory at the start; close other programs");
-            done = SNOW_STATUS_NO_MEMORY;
-        }
+        if (!out->figures)
+            done =
+                fail_memory("out of memory at the start; close other programs");
     }
     return process_agree(done);
 }

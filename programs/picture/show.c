@@ -120,11 +120,10 @@ int show_picture(const snow_image *image, const snow_image_options *form) {
                           "a .png, or leave out -o");
     pixels p = {snow_image_width(image), snow_image_height(image), NULL};
     p.rgb = malloc(3 * (size_t)p.width * (size_t)p.height);
-    if (!p.rgb) {
-        say("out of memory to show %d x %d pixels; use a smaller --size",
-            p.width, p.height);
-        return SNOW_STATUS_NO_MEMORY;
-    }
+    if (!p.rgb)
+        return fail_memory("out of memory to show %d x %d pixels; use a "
+                           "smaller --size",
+                           p.width, p.height);
     snow_image_to_rgb8_with(image, form, p.rgb);
     if (has_kitty())
         print_kitty(&p);

@@ -116,6 +116,14 @@ int fail_output(const char *format, ...) {
     return SNOW_STATUS_BAD_OUTPUT;
 }
 
+int fail_memory(const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    say_list(format, arguments);
+    va_end(arguments);
+    return SNOW_STATUS_NO_MEMORY;
+}
+
 /* The library's message is complete: file, error, advice.  A lost rank makes
  * all frames in flight fail; it is reported once. */
 int fail_status(const snow_context *context, snow_status status) {

@@ -18,6 +18,7 @@ const char *last_said(void);
 /* Print an error and return its exit code. */
 int fail_usage(const char *format, ...) SNOW_PRINTF(1, 2);
 int fail_output(const char *format, ...) SNOW_PRINTF(1, 2);
+int fail_memory(const char *format, ...) SNOW_PRINTF(1, 2);
 int fail_status(const snow_context *context, snow_status status);
 
 /* The same for a stage that gets a volume in memory.  Its errors about the
