@@ -11,7 +11,7 @@
 #include "run/log.h"
 #include "run/start.h"
 
-#include <math.h>
+#include <limits.h>
 #include <snowglass/recipe.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -262,6 +262,14 @@ static void add_option(FILE *out, const char *key, const json_t *value) {
     add_word(out, text ? text : "");
 }
 
+/* A file whose name begins with a dash is no option. */
+static void add_input(FILE *out, const char *path) {
+    char text[PATH_MAX + 4];
+    bool dashed = *path == '-' && path[1];
+    snprintf(text, sizeof text, "%s%s", dashed ? "./" : "", path);
+    add_word(out, text);
+}
+
 /* All options that differ from their defaults. */
 static void write_command(FILE *out, const options *opts, const verb_row *verb,
                           const json_t *tree, json_t *usual) {
@@ -269,7 +277,7 @@ static void write_command(FILE *out, const options *opts, const verb_row *verb,
     json_t *value;
     fprintf(out, "snowglass %s", verb->name);
     for (int i = 0; i < opts->operand_count; i++)
-        add_word(out, opts->operands[i]);
+        add_input(out, opts->operands[i]);
     json_object_foreach((json_t *)tree, key, value) {
         bool always = strcmp(key, "input") == 0 || strcmp(key, "verb") == 0 ||
                       strcmp(key, "version") == 0;

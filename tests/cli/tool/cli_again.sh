@@ -61,6 +61,10 @@ for name in ct float tiny constant noise negative; do
     again "$name" render a.png $name.nhdr -s 60x64
 done
 again "a name with blanks" render "it's a.png" ct.nhdr -s 30x20
+cp ct.nhdr ./-ct.nhdr
+again "a name that begins with a dash" render a.png -s 30x20 ./-ct.nhdr
+run 0 "after two dashes" "$TOOL" render -v -o dash.png -s 30x20 -- -ct.nhdr
+says 'again: snowglass render ./-ct.nhdr --output'
 again "a logarithm" render a.png tiny.nhdr --log
 again "a colour map" render a.png phantom:head $small -c viridis
 again "opacities" render a.png phantom:head $small --opacity 10:0,200:0.7
