@@ -313,7 +313,7 @@ static void report_choices(const work *w) {
             w->state.opts->named ? "; to " : "",
             w->state.opts->named ? w->state.opts->output : "");
     warn_picture(&w->state, w->image);
-    render_state_note(&w->state);
+    render_state_note(&w->state, w->painted.range);
 }
 
 /* Refuses what can be refused before anything is read; the rank that writes

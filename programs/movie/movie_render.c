@@ -80,7 +80,7 @@ static void report_choices(const shot_renderer *shots, snow_image *image) {
      * warns. */
     warn_picture(&shots->state, shots->state.turns ? image : NULL);
     annotations_report(opts);
-    render_state_note(&shots->state);
+    render_state_note(&shots->state, shots->painted.range);
 }
 
 static int begin(void *self, const movie_shot *shot) {

@@ -24,9 +24,10 @@ char *config_text(options *out, const char *key, const json_t *value);
  * Returns CONTINUE or an exit code. */
 int config_check(const options *opts);
 
-/* Notes what a picture was made with, for config_save. */
+/* Notes what a picture was made with, for config_save.  `painted` is the range
+ * of values that a picture of means or sums was painted over; both 0: none. */
 void config_note(const options *opts, const snow_transfer *transfer,
-                 snow_shade shade, const char *view);
+                 snow_shade shade, const char *view, const double painted[2]);
 
 /* Writes the --save-config file, if one is given, and prints the command with
  * -v.  Returns an exit code. */

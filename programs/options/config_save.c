@@ -154,6 +154,27 @@ static const char *map_of(const options *opts, const snow_look *look) {
     return NULL;
 }
 
+static void note_range(const options *opts, const snow_transfer *transfer) {
+    double ends[2];
+    if (options_range(opts).kind != SNOW_RANGE_AUTO)
+        return;
+    snow_transfer_domain(transfer, &ends[0], &ends[1]);
+    chosen.range = json_vector(ends, 2);
+}
+
+/* Means and sums are painted over the values of the picture, and their range in
+ * files of floats means nothing.  No option gives an empty range. */
+static void note_projection(const options *opts, const snow_transfer *transfer,
+                            const double painted[2]) {
+    bool of_picture =
+        strcmp(opts->mode, "mean") == 0 || strcmp(opts->mode, "sum") == 0;
+    if (!of_picture)
+        note_range(opts, transfer);
+    else if (options_range(opts).kind == SNOW_RANGE_AUTO &&
+             painted[0] < painted[1])
+        chosen.range = json_vector(painted, 2);
+}
+
 /* Shapes of opacity and colour that no option can give are left to be chosen
  * again, from the same values in the same way. */
 static void note_look(const options *opts, const snow_transfer *transfer) {
@@ -167,11 +188,7 @@ static void note_look(const options *opts, const snow_transfer *transfer) {
     if (!map_of(opts, &look) || look.opacity_count > SNOW_RECIPE_POINTS_MAX)
         return;
     chosen.colormap = json_string(map_of(opts, &look));
-    if (options_range(opts).kind == SNOW_RANGE_AUTO) {
-        double ends[2];
-        snow_transfer_domain(transfer, &ends[0], &ends[1]);
-        chosen.range = json_vector(ends, 2);
-    }
+    note_range(opts, transfer);
     chosen.opacity = json_array();
     for (size_t i = 0; i < look.opacity_count; i++) {
         const double point[2] = {look.opacities[i].value,
@@ -181,9 +198,11 @@ static void note_look(const options *opts, const snow_transfer *transfer) {
 }
 
 void config_note(const options *opts, const snow_transfer *transfer,
-                 snow_shade shade, const char *view) {
+                 snow_shade shade, const char *view, const double painted[2]) {
     bool asked = opts->preset || opts->tf || opts->shift < 0 || opts->shift > 0;
-    if (!asked && !mode_is_projection(opts->mode))
+    if (!asked && mode_is_projection(opts->mode))
+        note_projection(opts, transfer, painted);
+    else if (!asked)
         note_look(opts, transfer);
     if (chosen.opacity && !options_given(opts, "shade"))
         chosen.shade = json_string(shade == SNOW_SHADE_NONE ? "none" : "phong");

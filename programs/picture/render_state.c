@@ -456,10 +456,11 @@ render_report render_state_report(const render_state *s) {
                            .times = &s->times};
 }
 
-void render_state_note(const render_state *s) {
+void render_state_note(const render_state *s, const double painted[2]) {
     const char *view = s->opts->view;
     config_note(s->opts, s->transfer, s->settings.shade,
-                view ? view : snow_view_name_for(&s->drawn.whole, NULL));
+                view ? view : snow_view_name_for(&s->drawn.whole, NULL),
+                painted);
 }
 
 /* A range stretches a preset of data values with its opacities, which few

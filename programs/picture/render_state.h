@@ -78,8 +78,9 @@ int render_state_finish(render_state *s, snow_image **image);
 /* The figures of the last picture, without an image. */
 render_report render_state_report(const render_state *s);
 
-/* Notes what was chosen, for a configuration and the printed command. */
-void render_state_note(const render_state *s);
+/* Notes what was chosen, for a configuration and the printed command; the range
+ * as in config_note. */
+void render_state_note(const render_state *s, const double painted[2]);
 
 /* Writes the line that reports the automatic choices, except its end. */
 void render_state_choices(const render_state *s, char *out, size_t size);

@@ -55,6 +55,8 @@ volume("float", "float", "f", [1e5 + 0.01 * random.random() + 0.02 * (r < 30)
 volume("tiny", "double", "d", [1e-7 / (3.3 + r) for r in ball])
 volume("constant", "uint8", "B", [7] * len(grid))
 volume("noise", "uint16", "H", [random.randrange(65536) for _ in grid])
+volume("spot", "uint16", "H", [65535 if n == 1234 else 100 + random.randrange(900)
+                               for n in range(len(grid))])
 volume("negative", "int8", "b", [max(-128, 100 - r) for r in ball])
 END
 for name in ct float tiny constant noise negative; do
@@ -70,6 +72,9 @@ again "a colour map" render a.png phantom:head $small -c viridis
 again "opacities" render a.png phantom:head $small --opacity 10:0,200:0.7
 again "a range" render a.png phantom:head $small --range p2,p98
 again "a window" render a.png ct.nhdr -w 400 --level 40
+again "a look that is moved" render a.png phantom:head $small --shift 3.7
+again "a look in a window" render a.png float.nhdr -w 0.017,100000.01
+again "a look over percentiles" render a.png float.nhdr --range p7,p91.5
 again "a preset" render a.png ct.nhdr --preset ct-bone
 again "a preset in a window" render a.png ct.nhdr --preset ct-soft -w 900 --level 100
 again "a preset moved" render a.png ct.nhdr --preset ct-bone --shift -60.5
@@ -77,6 +82,22 @@ again "a preset of the object" render a.png phantom:head $small --preset mr-defa
 for mode in mip minip mean sum "iso --iso 60"; do
     again "mode $mode" render a.png phantom:head $small -m $mode
 done
+# A voxel far brighter than all others; the command alone, and for another file.
+for mode in mip minip mean sum; do
+    again "mode $mode beside a hot voxel" render a.png spot.nhdr -m $mode -s 60x64
+    check "$mode: its range is saved" grep -q '"range": \[[0-9]' first.json
+done
+again "mip in colours" render a.png spot.nhdr -m mip -s 60x64 -c viridis
+again "mip, moved" render a.png spot.nhdr -m mip -s 60x64 --shift 20.5
+again "mip of percentiles" render a.png spot.nhdr -m mip -s 60x64 --range p1,p99
+again "means as floats" render a.npy spot.nhdr -m mean -s 60x64
+again "mean of one value" render a.png constant.nhdr -m mean -s 60x64
+again "a turntable of a mip" turntable 'f_%d.png' spot.nhdr -m mip -s 60x64 \
+    --frames 2
+run 0 "the range of a mip is saved" "$TOOL" render -q spot.nhdr -m mip -o m.png \
+    --save-config mip.json -s 60x64
+run 0 "for the next volume" "$TOOL" render -y noise.nhdr --config mip.json -o n.png
+says '; grey 1[0-9][0-9]\.\.[0-9][0-9][0-9];'
 again "floats" render a.npy phantom:shells $small --crop 2:30,:,: --clip 0,0,1,300
 again "a camera" render a.png phantom:shells $small --position 500,-300.5,400 \
     --target 10,8,12 --up 0,1,0.25 --perspective 20 --background '#123' --legend
