@@ -463,22 +463,41 @@ void render_state_note(const render_state *s, const double painted[2]) {
                 painted);
 }
 
-/* A range stretches a preset of data values with its opacities, which few
- * expect of a window. */
-static void describe_squeeze(const options *opts, char out[160]) {
+/* Of a range, by which rounding may move a point. */
+#define ROUNDING 1e-12
+
+/* The preset of data values that a range is for; NULL: none. */
+static const snow_look *ranged_preset(const options *opts) {
     int preset = opts->preset ? snow_preset_from_name(opts->preset) : -1;
-    const snow_look *look =
-        preset < 0 ? NULL : snow_preset_look((size_t)preset);
-    bool ranged = opts->range.kind != SNOW_RANGE_AUTO || !isnan(opts->window);
+    if (preset < 0 || options_range(opts).kind == SNOW_RANGE_AUTO)
+        return NULL;
+    const snow_look *look = snow_preset_look((size_t)preset);
+    return look->domain == SNOW_DOMAIN_DATA ? look : NULL;
+}
+
+/* A range stretches a preset of data values with its opacities, which few
+ * expect of a window.  One that is the preset's own leaves the ends of the
+ * colours where they are: those of the preset, or of a map over all of it. */
+static void describe_squeeze(const render_state *s, char out[160]) {
+    const snow_look *look = ranged_preset(s->opts);
+    double ends[2];
     *out = 0;
-    if (ranged && look && look->domain == SNOW_DOMAIN_DATA)
-        snprintf(
-            out, 160,
-            "; the range squeezes or stretches the preset's own %g..%g and "
-            "its opacities, --shift N would move them",
-            fmin(look->colors[0].value, look->opacities[0].value),
-            fmax(look->colors[look->color_count - 1].value,
-                 look->opacities[look->opacity_count - 1].value));
+    if (!look)
+        return;
+    double first = look->colors[0].value;
+    double last = look->colors[look->color_count - 1].value;
+    double low = fmin(first, look->opacities[0].value);
+    double high = fmax(last, look->opacities[look->opacity_count - 1].value);
+    bool mapped = s->opts->colormap != NULL;
+    snow_transfer_domain(s->transfer, &ends[0], &ends[1]);
+    ends[0] -= (mapped ? low : first) + s->opts->shift;
+    ends[1] -= (mapped ? high : last) + s->opts->shift;
+    if (fmax(fabs(ends[0]), fabs(ends[1])) <= ROUNDING * (high - low))
+        return;
+    snprintf(out, 160,
+             "; the range squeezes or stretches the preset's own %g..%g and "
+             "its opacities; --shift N moves them",
+             low, high);
 }
 
 void render_state_choices(const render_state *s, char *out, size_t size) {
@@ -494,7 +513,7 @@ void render_state_choices(const render_state *s, char *out, size_t size) {
     }
     bool encoded = s->stats.encoding != SNOW_ENCODING_AUTO;
     char volume[256], squeeze[160];
-    describe_squeeze(s->opts, squeeze);
+    describe_squeeze(s, squeeze);
     describe_volume(&s->drawn.whole, volume, sizeof volume);
     bool over = s->settings.mode == SNOW_MODE_OVER;
     snprintf(out, size, "%s: %s; %s%s%s%s%s; view %s; %s%s%smethod %s%s%s",

@@ -134,7 +134,28 @@ says '; grey [0-9.]*; opacity'
 run 0 "a window" "$TOOL" render ct.nhdr --preset ct-bone -w 400 --level 40 \
     -o a.png -y
 says "the range squeezes or stretches the preset's own 150..1500 and its opacities"
-says '\-\-shift'
+says 'and its opacities; --shift N moves them; opacity per voxel'
+for range in "--range 150,1500" "-w 1350,825" "--range 150,1500 -c hot" \
+    "--range 150,1500 --shift 9"; do
+    # shellcheck disable=SC2086
+    run 0 "the preset's own, $range" "$TOOL" render ct.nhdr --preset ct-bone \
+        $range -o b.png -y
+    check "$range: no word on squeezing" bash -c "! grep -q squeezes '$ERR'"
+done
+run 0 "a range that begins below the colours" "$TOOL" render ct.nhdr \
+    --preset ct-cropped-volume-bone --range 90,1400 -o b.png -y
+check "no word on squeezing" bash -c "! grep -q squeezes '$ERR'"
+run 0 "the preset alone" "$TOOL" render ct.nhdr --preset ct-bone -o a.png -y
+run 0 "and over its own range" "$TOOL" render ct.nhdr --preset ct-bone \
+    --range 150,1500 -o b.png -y
+check "is the same picture" cmp -s a.png b.png
+for range in "--range 150,1501" "--range 149,1500" "--range full" \
+    "--range 150,1400 -c hot"; do
+    # shellcheck disable=SC2086
+    run 0 "another, $range" "$TOOL" render ct.nhdr --preset ct-bone $range \
+        -o b.png -y
+    says "squeezes or stretches the preset's own 150..1500"
+done
 run 0 "a shift" "$TOOL" render ct.nhdr --preset ct-bone --shift -100 -o a.png -y
 says 'bone 50\.\.1400; opacity 0 at 50, 0\.1 at 120, .*\(ct-bone shifted by -100\)'
 check "no word on squeezing" bash -c "! grep -q squeezes '$ERR'"
