@@ -16,6 +16,8 @@ static const struct {
 } types[] = {
     {read_flag, "{'type': 'boolean'}"},
     {read_text, "{'type': 'string'}"},
+    {read_component, "{'anyOf': [{'enum': ['x', 'y', 'z', 'w', 'magnitude']},"
+                     "{'type': 'string', 'pattern': '^[0-9]+$'}]}"},
     {read_labels, "{'type': 'string'}"},
     {read_preset, "{'type': 'string'}"},
     {read_colormap, "{'type': 'string'}"},

@@ -28,6 +28,12 @@ static const char *literal(const char *text, const char *between, size_t index,
     return NULL;
 }
 
+/* Numbers are names of components too. */
+static const char *component_word(size_t index) {
+    static const char *const names[] = {"x", "y", "z", "w", "magnitude"};
+    return index < sizeof names / sizeof *names ? names[index] : NULL;
+}
+
 /* Topics, then verbs. */
 static const char *topic_word(size_t index) {
     size_t topics = 0, verbs = 0;
@@ -53,6 +59,8 @@ const char *option_word(const option_row *row, size_t index,
         return index < SNOW_TYPE_FLOAT64
                    ? snow_type_name((snow_type)(index + 1))
                    : NULL;
+    if (row->read == read_component)
+        return component_word(index);
     if (strcmp(row->name, "help") == 0)
         return topic_word(index);
     return literal(row->argument, "|", index, room);

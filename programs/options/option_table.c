@@ -242,7 +242,7 @@ const option_row option_table[] = {
      "or first one)"},
     {"channel", 0, "N", TOPIC_DATA, INPUT, read_integer, FIELD(channel), 0,
      9e15, "", "channel of voxels with several values, from 0 (default 0)"},
-    {"component", 0, "x|N|magnitude", TOPIC_DATA, INPUT, read_text,
+    {"component", 0, "x|N|magnitude", TOPIC_DATA, INPUT, read_component,
      FIELD(component), 0, 0, "",
      "component of voxels that are vectors: x, y, z, w, a number from 0, or "
      "magnitude (default: magnitude of 2 or 3 floats, else the first)"},

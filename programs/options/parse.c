@@ -31,6 +31,12 @@ bool read_text(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* The library knows which components there are. */
+bool read_component(const option_row *row, const char *text, void *field,
+                    char wrong[WRONG_BYTES]) {
+    return read_text(row, text, field, wrong);
+}
+
 /* Flags have no text; getopt has refused --flag=text already. */
 bool read_flag(const option_row *row, const char *text, void *field,
                char wrong[WRONG_BYTES]) {

@@ -20,6 +20,7 @@ option_read read_bytes;           /* uint64_t; units as in 4G or 4GiB */
 option_read read_window;          /* double, and the level beside it */
 option_read read_size;            /* int64_t[2] */
 option_read read_dims;            /* int64_t[3] */
+option_read read_component;       /* const char * */
 option_read read_labels;          /* const char * */
 option_read read_clip;            /* double[6][4] */
 option_read read_crop;            /* int64_t[3][2] */

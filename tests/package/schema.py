@@ -1,6 +1,7 @@
 """schema.py TOOL SCHEMA: the schema of recipes takes what the tool takes, and
 refuses what it refuses."""
 import json
+import struct
 import subprocess
 import sys
 
@@ -12,6 +13,18 @@ jsonschema.Draft7Validator.check_schema(schema)
 validator = jsonschema.Draft7Validator(schema)
 BASE = {"input": "phantom:shells", "output": "out.png", "overwrite": True,
         "dims": [12, 12, 12], "size": [8, 8]}
+
+# Four components a voxel; a phantom has none.
+VECTORS = {"input": "vectors.npy", "dims": None}
+
+
+def write_vectors():
+    head = "{'descr': '<f4', 'fortran_order': False, 'shape': (5, 5, 5, 4), }"
+    head += " " * (117 - len(head)) + "\n"
+    with open("vectors.npy", "wb") as file:
+        file.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)))
+        file.write(head.encode() + struct.pack("<500f", *range(500)))
+
 
 # Recipes over BASE, of which both say the same.  What the schema cannot say
 # (an order of numbers, options that exclude one another) is not here.
@@ -47,7 +60,10 @@ CASES = [
     {"crop": [[0, 8], [2, 0]]}, {"clip": [[1, 0, 0, 4]]}, {"clip": [[1, 0, 0]]},
     {"clip": []}, {"spacing": [1, 2, 0.5]}, {"spacing": [0, 1, 1]},
     {"dims": [4, 4, 0]}, {"time": 0}, {"time": -1}, {"channel": 0},
-    {"mask": 3}, {"frames": 0}, {"stats": "a.json"}, {"output": 3}]
+    {"mask": 3}, {"frames": 0}, {"stats": "a.json"}, {"output": 3},
+    *({**VECTORS, "component": name}
+      for name in ("x", "y", "w", "0", "2", "magnitude", "radius", "xy", "",
+                   "-1", 2))]
 
 
 def tool_takes(recipe):
@@ -61,8 +77,10 @@ def tool_takes(recipe):
 def main():
     wrong = 0
     taken = 0
+    write_vectors()
     for case in CASES:
-        recipe = {**BASE, **case}
+        recipe = {key: value for key, value in {**BASE, **case}.items()
+                  if value is not None}
         tool, said = tool_takes(recipe)
         mine = validator.is_valid(recipe)
         taken += tool
