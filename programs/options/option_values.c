@@ -70,7 +70,7 @@ bool value_bytes(const char *text, uint64_t *out) {
         return value_count(text, out);
     const char *rest = unit + (letter != NULL);
     if (length >= sizeof number ||
-        (*rest && strcmp(rest, "B") != 0 && strcmp(rest, "iB") != 0))
+        (*rest && strcasecmp(rest, "B") != 0 && strcasecmp(rest, "iB") != 0))
         return false;
     memcpy(number, text, length);
     number[length] = '\0';

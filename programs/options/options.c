@@ -190,12 +190,25 @@ static int refuse_foreign(const option_row *row, const verb_row *verb) {
                       verb->name);
 }
 
-/* Choices are kept in the small letters of the table: -m MIP is mip.  If there
- * is no room, the text stays, and is refused where it is used. */
-static const char *keep_choice(options *out, const option_row *row,
-                               const char *text) {
+/* Whether an option's letters have a meaning in one case only; other readers
+ * compare without regard to case, or take names of files. */
+static bool has_small_letters(const option_row *row) {
+    static option_read *const readers[] = {
+        read_choice, read_method,  read_component, read_size,
+        read_dims,   read_spacing, read_range};
+    for (size_t i = 0; i < sizeof readers / sizeof *readers; i++)
+        if (row->read == readers[i])
+            return true;
+    return false;
+}
+
+/* Such letters are kept small, as in the table: -m MIP is mip, P1,P99 is
+ * p1,p99.  If there is no room, the text stays, and is refused where it is
+ * used. */
+static const char *keep_small(options *out, const option_row *row,
+                              const char *text) {
     size_t length = text ? strlen(text) + 1 : 0;
-    if (!text || (row->read != read_choice && row->read != read_method) ||
+    if (!text || !has_small_letters(row) ||
         length > CONFIG_TEXTS_BYTES - out->text_bytes)
         return text;
     char *kept = out->texts + out->text_bytes;
@@ -217,7 +230,7 @@ static int take_option(options *out, const option_row *row,
     if (!(row->verbs & verb->bit))
         return refuse_foreign(row, verb);
     char wrong[WRONG_BYTES];
-    const char *kept = keep_choice(out, row, text);
+    const char *kept = keep_small(out, row, text);
     out->given[row - option_table] = kept ? kept : "";
     if (row->read(row, kept ? kept : "", (char *)out + row->field, wrong))
         return CONTINUE;
@@ -272,7 +285,8 @@ static bool is_plain(const char *word) {
            access(word, F_OK) != 0;
 }
 
-/* The first of several words, where no verb was written, is none. */
+/* Refuses the first of several words where no verb was written: it is not a
+ * verb. */
 static int refuse_verb(const char *word) {
     char near[128], verbs[256] = "";
     size_t used = 0;

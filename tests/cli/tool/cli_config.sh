@@ -128,6 +128,36 @@ run 0 "as is usual" render phantom:shells --dims 20x20x20 -o sb.png -m mip \
 check "is the same picture" cmp -s sa.png sb.png
 run 0 "which is kept" render --config s.json -o sc.png
 check "as it is" cmp -s sa.png sc.png
+run 0 "sizes, percentiles and types in capitals" render phantom:shells \
+    --dims 20X20X20 --spacing 1X1X2 -o ca.png -s 40X30 --range P2,P98 \
+    --memory 1GIB --background BLACK --light HEAD
+run 0 "and in small letters" render phantom:shells --dims 20x20x20 \
+    --spacing 1x1x2 -o cb.png -s 40x30 --range p2,p98 --memory 1gib \
+    --background black --light head
+check "are the same" cmp -s ca.png cb.png
+printf '\1\2\3\4\5\6\7\10' >eight.raw
+run 0 "a raw file's" "$TOOL" info eight.raw --dims 2X2X1 --type UINT16 \
+    --endian BIG --range FULL --json
+prints '"min": 258.0, "max": 1800.0'
+if command -v python3 >/dev/null; then
+    python3 -c '
+import struct
+head = "{\"descr\": \"<f4\", \"fortran_order\": False, \"shape\": (3, 3, 3, 3), }"
+head = head.replace("\"", chr(39)).ljust(117) + "\n"
+open("vectors.npy", "wb").write(b"\x93NUMPY\x01\x00" +
+    struct.pack("<H", len(head)) + head.encode() +
+    struct.pack("<81f", *range(81)))'
+    run 0 "a component" "$TOOL" info vectors.npy --component Y --json
+    prints '"min": 1.0, "max": 79.0'
+    run 0 "all of them" "$TOOL" info vectors.npy --component Magnitude
+    run 0 "a picture of one" render vectors.npy --component Y -o va.png \
+        -s 9x9 --save-config v.json
+    check "which is saved" grep -q '"component": "y"' v.json
+    run 2 "one that is none" "$TOOL" info vectors.npy --component Radius
+    says 'component radius: not a component'
+else
+    skipped "components in capitals" "there is no python3"
+fi
 echo '{"input": "phantom:shells", "dims": [20, 20, 20], "mode": "MIP",
        "size": 40, "window": [300, 120], "view": "Front",
        "quality": "HIGH"}' >spelt.json
