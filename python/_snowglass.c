@@ -417,6 +417,7 @@ static const field option_fields[] = {
     OPTION(crop, '6', NULL),        OPTION(channel, 'l', NULL),
     OPTION(dataset, 's', NULL),     OPTION(series, 's', NULL),
     OPTION(mask, 's', NULL),        OPTION(labels, 's', NULL),
+    OPTION(component, 's', NULL),   OPTION(allow_gaps, 'b', NULL),
 };
 
 #define LOOK(name, kind) FIELD(snow_look, name, kind, NULL)
@@ -700,6 +701,13 @@ static volume_object *volume_begin(PyObject *type, PyObject *like) {
     return NULL;
 }
 
+/* Whether a dictionary has an item other than None. */
+static bool is_given(PyObject *given, const char *name) {
+    PyObject *item =
+        given == Py_None ? NULL : PyDict_GetItemString(given, name);
+    return item && item != Py_None;
+}
+
 static PyObject *volume_open(PyObject *module, PyObject *args) {
     PyObject *type, *given, *clip, *progress;
     const char *path;
@@ -712,6 +720,7 @@ static PyObject *volume_open(PyObject *module, PyObject *args) {
                           &progress) ||
         !fill(given, FIELDS(option_fields), &options))
         return NULL;
+    options.channel_given = is_given(given, "channel");
     Py_ssize_t planes = clip == Py_None ? 0 : PySequence_Size(clip);
     if (planes < 0 || planes > SNOW_CLIPS_MAX)
         return PyErr_Format(PyExc_ValueError,

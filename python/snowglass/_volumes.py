@@ -56,9 +56,10 @@ class Volume(_snowglass.Volume):
     memory      the most bytes that the library may hold; 0: no limit
 
     For files: dims, type ("uint8", "int16", ...), endian, offset (raw data),
-    time, channel, crop ((x0, x1), (y0, y1), (z0, z1)), dataset, series, mask
-    (a path), labels ("1,4-7"), clip (planes (a, b, c, d): what lies where
-    a x + b y + c z > d is cut away).
+    time, channel, component ("x", "magnitude", or a number from 0), crop
+    ((x0, x1), (y0, y1), (z0, z1)), dataset, series, allow_gaps (a DICOM folder
+    in which slices are missing is opened), mask (a path), labels ("1,4-7"), clip
+    (planes (a, b, c, d): what lies where a x + b y + c z > d is cut away).
 
     A Volume may be used by several threads; they take turns.
     """
@@ -87,7 +88,7 @@ class Volume(_snowglass.Volume):
         spacing = fields.get("spacing")
         if spacing is not None and not hasattr(spacing, "__len__"):
             fields["spacing"] = (spacing,) * 3
-        for name in ("mask", "dataset", "series", "labels"):
+        for name in ("mask", "dataset", "series", "labels", "component"):
             if fields.get(name) is not None:
                 fields[name] = os.fspath(fields[name]) if name == "mask" \
                     else str(fields[name])

@@ -7,6 +7,7 @@ import gc
 import os
 import resource
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -25,6 +26,35 @@ LONG = os.environ.get("SNOW_TIER", "short") != "short"
 
 def head(**options):
     return sg.Volume("phantom:head", dims=(64, 64, 48), **options)
+
+
+def dicom_slice(z):
+    """A slice of 3 x 3 voxels of value z, at z mm."""
+    def element(group, number, kind, value):
+        if isinstance(value, str):
+            pad = b"\0" if kind == "UI" else b" "
+            value = value.encode() + pad * (len(value) % 2)
+        elif isinstance(value, int):
+            value = struct.pack("<H", value)
+        head = struct.pack("<HH", group, number) + kind.encode()
+        size = "<HI" if kind == "OW" else "<H"
+        return head + struct.pack(size, *(0, len(value))[-len(size) + 1:]) + \
+            value
+    meta = element(2, 0x10, "UI", "1.2.840.10008.1.2.1")
+    meta = element(2, 0, "UL", struct.pack("<I", len(meta))) + meta
+    return bytes(128) + b"DICM" + meta + b"".join([
+        element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.4"),
+        element(8, 0x18, "UI", f"1.2.3.{z + 1}"),
+        element(8, 0x60, "CS", "MR"), element(0x20, 0x0E, "UI", "1.2.3"),
+        element(0x20, 0x13, "IS", str(z + 1)),
+        element(0x20, 0x32, "DS", f"0\\0\\{z}"),
+        element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0"),
+        element(0x28, 2, "US", 1), element(0x28, 4, "CS", "MONOCHROME2"),
+        element(0x28, 0x10, "US", 3), element(0x28, 0x11, "US", 3),
+        element(0x28, 0x30, "DS", "1\\1"), element(0x28, 0x100, "US", 16),
+        element(0x28, 0x101, "US", 16), element(0x28, 0x102, "US", 15),
+        element(0x28, 0x103, "US", 0),
+        element(0x7FE0, 0x10, "OW", struct.pack("<9H", *[z] * 9))])
 
 
 def resident():
@@ -270,6 +300,41 @@ class Arrays(InFolder):
         self.assertEqual(volume.affine[1, 1], -0.5)
         self.assertEqual(sg.Volume(data.transpose("x", "z", "y"))
                          .info["unit"], "um")
+
+    def test_components(self):
+        vectors = numpy.random.default_rng(3).normal(
+            size=(6, 5, 4, 3)).astype(numpy.float32)
+        numpy.save(self.path("v.npy"), vectors)
+        length = numpy.sqrt((vectors.astype(float) ** 2).sum(axis=3))
+        for options, expected in [({"component": "y"}, vectors[..., 1]),
+                                  ({"component": 2}, vectors[..., 2]),
+                                  ({"channel": 0}, vectors[..., 0]),
+                                  ({"channel": 1}, vectors[..., 1]),
+                                  ({"component": "magnitude"}, length)]:
+            with self.subTest(options):
+                volume = sg.Volume(self.path("v.npy"), **options)
+                numpy.testing.assert_allclose(numpy.asarray(volume), expected,
+                                              rtol=1e-6)
+        with self.assertWarnsRegex(sg.SnowglassWarning, "magnitude of the 3"):
+            sg.Volume(self.path("v.npy"), channel=None)
+        with self.assertRaisesRegex(ValueError, "not a component"):
+            sg.Volume(self.path("v.npy"), component="radius")
+
+    def test_gaps(self):
+        os.mkdir(self.path("gap"))
+        for z in (0, 1, 2, 4, 5):
+            with open(self.path(f"gap/{z}.dcm"), "wb") as file:
+                file.write(dicom_slice(z))
+        with self.assertRaisesRegex(sg.Error, "slices is missing"):
+            sg.Volume(self.path("gap"))
+        with self.assertRaisesRegex(sg.Error, "slices is missing"):
+            sg.Volume(self.path("gap"), allow_gaps=False)
+        with self.assertWarnsRegex(sg.SnowglassWarning, "1 slice is missing"):
+            volume = sg.Volume(self.path("gap"), allow_gaps=True)
+        voxels = numpy.asarray(volume)
+        self.assertEqual(voxels.shape, (6, 3, 3))
+        self.assertTrue(numpy.isnan(voxels[3]).all())
+        self.assertEqual(float(numpy.nansum(voxels)), 9 * (0 + 1 + 2 + 4 + 5))
 
     def test_series(self):
         for n in (3, 5, 12):
