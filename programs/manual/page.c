@@ -143,6 +143,15 @@ static void print_see_also(void) {
     print_text("and the documents in the folder share/doc/snowglass.");
 }
 
+/* The page of the tool itself names those of its verbs. */
+static void print_verb_pages(void) {
+    puts(".SH SEE ALSO");
+    for (const verb_row *verb = verb_table; verb->name; verb++)
+        if (verb->bit)
+            printf(".BR snowglass\\-%s (1),\n", verb->name);
+    print_text("and the documents in the folder share/doc/snowglass.");
+}
+
 /* --- pages ---------------------------------------------------------------- */
 
 static void print_verb(const verb_row *verb) {
@@ -182,6 +191,19 @@ static void print_mpi(void) {
     print_see_also();
 }
 
+/* What a status means for the tool, where the library's words are about a
+ * call. */
+static const char *status_text(snow_status status) {
+    if (status == SNOW_STATUS_BAD_USAGE)
+        return "the command line is wrong: an unknown option or verb, a value "
+               "out of its range, or options that exclude one another";
+    if (status == SNOW_STATUS_STOPPED)
+        return "interrupted by SIGINT (Ctrl-C), SIGTERM or SIGHUP; no file is "
+               "left unfinished, and a movie keeps its finished frames for "
+               "--resume";
+    return snow_status_description(status);
+}
+
 static void print_statuses(void) {
     static const snow_status all[] = {
 #define STATUS(name, value, text) SNOW_STATUS_##name,
@@ -192,7 +214,7 @@ static void print_statuses(void) {
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         char number[16], text[160];
         snprintf(number, sizeof number, "%d", (int)all[i]);
-        snprintf(text, sizeof text, "%s.", snow_status_description(all[i]));
+        snprintf(text, sizeof text, "%s.", status_text(all[i]));
         text[0] = (char)toupper((unsigned char)text[0]);
         print_item(number, text);
         if (all[i] == SNOW_STATUS_DIFFERENT) /* the tool's own is the next */
@@ -252,7 +274,7 @@ static void print_overview(void) {
     print_statuses();
     print_environment();
     print_examples();
-    print_see_also();
+    print_verb_pages();
 }
 
 bool print_page(const char *name) {

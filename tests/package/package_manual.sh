@@ -45,6 +45,19 @@ check "pages have options" [ "$(paged "$(page -render)" | wc -l)" -gt 60 ]
 
 # --- manual pages -------------------------------------------------------------
 
+also() { sed -n '/^.SH SEE ALSO/,$p' "$1"; }
+check "the tool's page does not name itself" \
+    [ -z "$(also "$(page "")" | grep -x '.BR snowglass (1).*')" ]
+unnamed=
+for verb in $verbs; do
+    also "$(page "")" | grep -qF ".BR snowglass\\-$verb (1)," || unnamed+=" $verb"
+    also "$(page "-$verb")" | grep -qx '.BR snowglass (1)' || unnamed+=" of:$verb"
+done
+check "pages name one another${unnamed:+, not$unnamed}" [ -z "$unnamed" ]
+status() { sed -n "/^.SH EXIT STATUS/,/^.SH ENV/{/^.B $1\$/,/^.TP/p}" "$(page "")"; }
+check "status 2 is of the command line" grep -q 'command line' <(status 2)
+check "status 130 is of signals" grep -q 'SIGTERM' <(status 130)
+
 if have mandoc; then
     mandoc -Tlint "$(dirname "$(page "")")"/*.1 >lint 2>&1
     cat lint
