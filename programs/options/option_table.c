@@ -257,7 +257,7 @@ const option_row option_table[] = {
     {"allow-gaps", 0, NULL, TOPIC_DATA, INPUT, read_flag, FIELD(allow_gaps), 0,
      0, "",
      "open a DICOM folder in which slices are missing or cut: a note names each, "
-     "and its place stays transparent (default: refuse; info lists it anyhow)"},
+     "and its place stays transparent (default: refuse, except for info)"},
     {"mask", 0, "FILE", TOPIC_DATA, INPUT, read_text, FIELD(mask), 0, 0, "",
      "volume on the same grid; where it is 0 or NaN, voxels of the input are "
      "removed: neither shown nor counted (default: none)"},

@@ -113,7 +113,7 @@ bool interrupt_seen(void) {
     return pending != 0;
 }
 
-void interrupt_tell(int descriptor) {
+void interrupt_write_to(int descriptor) {
     message_fd = descriptor;
 }
 

@@ -48,6 +48,6 @@ bool interrupt_seen(void);
 void interrupt_mute(void);
 
 /* Messages go to a descriptor other than that of standard error. */
-void interrupt_tell(int descriptor);
+void interrupt_write_to(int descriptor);
 
 #endif

@@ -52,7 +52,7 @@ void silence_others(void) {
     own = kept_open >= 0 && nowhere >= 0 ? fdopen(kept_open, "w") : NULL;
     if (own) {
         setvbuf(own, NULL, _IONBF, 0);
-        interrupt_tell(kept_open);
+        interrupt_write_to(kept_open);
         (void)dup2(nowhere, STDERR_FILENO);
 #ifdef SANITIZED
         __sanitizer_set_report_fd((void *)(intptr_t)kept_open);
