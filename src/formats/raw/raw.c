@@ -131,10 +131,11 @@ static snow_status refuse_unspecified(snow_source *source,
 }
 
 /* Refuses a file with too few bytes.  One with too many is read, and a note
- * says what else it may be; that there are more is said at their end. */
+ * says what else it may be (*noted); without such advice the end of the voxels
+ * says that there are more. */
 static snow_status check_size(snow_source *source,
                               const snow_volume_options *all,
-                              const snow_volume_info *info) {
+                              const snow_volume_info *info, bool *noted) {
     char advice[RAW_ADVICE_BYTES];
     snow_context *context = snow_source_context(source);
     int64_t voxels, left = snow_source_remaining(source);
@@ -146,7 +147,8 @@ static snow_status check_size(snow_source *source,
     uint64_t here = (uint64_t)left - all->offset;
     snow_raw_advise(snow_source_name(source), here, all, advice);
     if (here > bytes) {
-        if (*advice)
+        *noted = *advice != 0;
+        if (*noted)
             snow_notify(context,
                         "%s: has %llu bytes where the voxels need %llu%s",
                         snow_source_name(source), (unsigned long long)here,
@@ -184,9 +186,15 @@ static snow_status read_raw(snow_source *source,
     memcpy(info->dims, all.dims, sizeof info->dims);
     info->type = all.type;
     SNOW_TRY(snow_volume_pick_time(context, "time step", &all, info));
-    SNOW_TRY(check_size(source, &all, info));
-    return snow_volume_read(source, &all, all.endian == SNOW_ENDIAN_BIG,
-                            all.offset, info, out);
+    bool noted = false;
+    SNOW_TRY(check_size(source, &all, info, &noted));
+    snow_warning_fn *warning = context->warning;
+    if (noted) /* once is enough */
+        context->warning = NULL;
+    snow_status status = snow_volume_read(
+        source, &all, all.endian == SNOW_ENDIAN_BIG, all.offset, info, out);
+    context->warning = warning;
+    return status;
 }
 
 /* No probe: any bytes can be raw data, so that it is never found, only left. */

@@ -225,6 +225,15 @@ zeros 64352 plain.raw
 run 0 "a raw file with a header" \
     "$TOOL" info plain.raw --dims 40x40x40 --type uint8
 says "plain.raw: has 64352 bytes where the voxels need 64000; a header of 352 bytes would be skipped by --offset 352"
+check "once" [ "$(wc -l <"$ERR")" = 1 ]
+run 7 "its picture" "$TOOL" plain.raw --dims 40x40x40 --type uint8 -s 9x9 \
+    -o long.png
+check "one note on its size" [ "$(grep -c 'plain.raw: has\|plain.raw: .* ignored' "$ERR")" = 1 ]
+zeros 64007 odd.raw
+run 0 "a raw file with some bytes more" \
+    "$TOOL" info odd.raw --dims 40x40x40 --type uint8
+says "odd.raw: 7 bytes after the data ignored"
+check "once" [ "$(wc -l <"$ERR")" = 1 ]
 
 # Libraries underneath print by themselves: -q silences them, and nothing else.
 cp "$HERE/../fuzz/corpus/dicom/jpeg_little" jpeg.dcm
