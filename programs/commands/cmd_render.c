@@ -240,17 +240,45 @@ typedef struct work {
     paint_given painted; /* how a picture of values was painted */
 } work;
 
-static snow_status make_annotations(const work *w, snow_overlay **out) {
+static snow_status make_annotations(const work *w, const options *opts,
+                                    const snow_image *image,
+                                    const paint_given *painted,
+                                    snow_overlay **out) {
     const render_state *s = &w->state;
     const picture_annotations annotations = {
-        s->opts,
+        opts,
         s->whole,
         s->view,
         s->transfer,
-        {w->painted.range[0], w->painted.range[1]}};
-    annotations_report(s->opts);
-    return annotations_make(&annotations, s->opts->azimuth, -1, w->image,
-                            s->context, out);
+        {painted->range[0], painted->range[1]}};
+    return annotations_make(&annotations, opts->azimuth, -1, image, s->context,
+                            out);
+}
+
+/* Shows what a PNG would, whatever is written. */
+static int show(const work *w, const options *opts) {
+    const render_state *s = &w->state;
+    options as_png = *opts;
+    paint_given painted = w->painted;
+    snow_image *colors = NULL;
+    snow_overlay *overlay = NULL;
+    int done = CONTINUE;
+    as_png.output = "-";
+    if (snow_image_channels(w->image) == 1)
+        done = paint_copy(&as_png, s->context, s->transfer, false, w->image,
+                          &colors, &painted);
+    const snow_image *image = colors ? colors : w->image;
+    if (done == CONTINUE) {
+        snow_image_options form = picture_form(&as_png);
+        snow_status status =
+            make_annotations(w, &as_png, image, &painted, &overlay);
+        form.overlay = overlay;
+        done = status == SNOW_STATUS_OK ? show_picture(image, &form)
+                                        : fail_status(s->context, status);
+    }
+    snow_overlay_free(overlay);
+    snow_image_free(colors);
+    return done;
 }
 
 /* A pipe is written directly and may block, so an interruption there does not
@@ -268,7 +296,9 @@ static int write_picture(work *w, const options *opts) {
                                       .overwrite = opts->overwrite};
     const snow_image *depth = snow_frame_depth(w->state.frame);
     bool beside = is_beside(opts);
-    snow_status status = make_annotations(w, &overlay);
+    annotations_report(opts);
+    snow_status status =
+        make_annotations(w, opts, w->image, &w->painted, &overlay);
     progress_begin(opts, "writing");
     form.overlay = overlay;
     form.depth = beside ? depth : NULL;
@@ -281,7 +311,7 @@ static int write_picture(work *w, const options *opts) {
     if (status != SNOW_STATUS_OK)
         done = fail_status(w->state.context, status);
     else if (opts->show)
-        done = show_picture(w->image, &form);
+        done = show(w, opts);
     snow_overlay_free(overlay);
     w->state.times.write = seconds_now() - begin;
     return done;

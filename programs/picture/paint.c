@@ -40,28 +40,38 @@ void paint_background(const options *opts, snow_image_options *form) {
                                                            : 0;
 }
 
+int paint_copy(const options *opts, snow_context *context,
+               const snow_transfer *transfer, bool movie,
+               const snow_image *image, snow_image **out, paint_given *given) {
+    double low, high;
+    if (range_is_given(opts) || movie)
+        snow_transfer_domain(transfer, &low, &high);
+    else
+        snow_image_value_range(image, &low, &high);
+    snow_status status =
+        snow_image_apply_colormap(image, transfer, low, high, out);
+    if (status != SNOW_STATUS_OK)
+        return fail_status(context, status);
+    given->range[0] = low;
+    given->range[1] = high;
+    snprintf(given->words, sizeof given->words,
+             "; %ss of %g..%g in the look's colours", opts->mode, low, high);
+    return CONTINUE;
+}
+
 int paint_values(const options *opts, snow_context *context,
                  const snow_transfer *transfer, bool movie, snow_image **image,
                  paint_given *given) {
-    double low, high;
     snow_image *painted = NULL;
     *given = (paint_given){.words = ""};
     if (!*image || snow_image_channels(*image) != 1 ||
         keeps_values(opts->output))
         return CONTINUE;
-    if (range_is_given(opts) || movie)
-        snow_transfer_domain(transfer, &low, &high);
-    else
-        snow_image_value_range(*image, &low, &high);
-    snow_status status =
-        snow_image_apply_colormap(*image, transfer, low, high, &painted);
-    if (status != SNOW_STATUS_OK)
-        return fail_status(context, status);
+    int done =
+        paint_copy(opts, context, transfer, movie, *image, &painted, given);
+    if (done != CONTINUE)
+        return done;
     snow_image_free(*image);
     *image = painted;
-    given->range[0] = low;
-    given->range[1] = high;
-    snprintf(given->words, sizeof given->words,
-             "; %ss of %g..%g in the look's colours", opts->mode, low, high);
     return CONTINUE;
 }

@@ -31,4 +31,10 @@ int paint_values(const options *opts, snow_context *context,
                  const snow_transfer *transfer, bool movie, snow_image **image,
                  paint_given *given);
 
+/* Makes the picture of colours of one of values, which stays.  Returns CONTINUE
+ * or an exit code. */
+int paint_copy(const options *opts, snow_context *context,
+               const snow_transfer *transfer, bool movie,
+               const snow_image *image, snow_image **out, paint_given *given);
+
 #endif

@@ -2,7 +2,9 @@
  *
  * By kitty's graphics protocol ("Terminal graphics protocol", K. Goyal) where
  * the environment names a terminal that has it; elsewhere by half blocks, two
- * pixels in each character cell in colours of 24 bits. */
+ * pixels in each character cell in colours of 24 bits.  tmux and screen keep
+ * the variables of the terminal that they run in, but do not pass its graphics
+ * on. */
 #define _DEFAULT_SOURCE
 #include "picture/show.h"
 #include "run/log.h"
@@ -33,7 +35,14 @@ static bool is_named(const char *variable, const char *part) {
     return value && strstr(value, part);
 }
 
+static bool is_multiplexed(void) {
+    return getenv("TMUX") || getenv("STY") || is_named("TERM", "screen") ||
+           is_named("TERM", "tmux");
+}
+
 static bool has_kitty(void) {
+    if (is_multiplexed())
+        return false;
     return getenv("KITTY_WINDOW_ID") || is_named("TERM", "kitty") ||
            is_named("TERM", "ghostty") || is_named("TERM_PROGRAM", "ghostty") ||
            is_named("TERM_PROGRAM", "WezTerm");
@@ -115,9 +124,6 @@ static void print_blocks(const pixels *p) {
 }
 
 int show_picture(const snow_image *image, const snow_image_options *form) {
-    if (snow_image_channels(image) == 1)
-        return fail_usage("--show: the picture has values, not colours; write "
-                          "a .png, or leave out -o");
     pixels p = {snow_image_width(image), snow_image_height(image), NULL};
     p.rgb = malloc(3 * (size_t)p.width * (size_t)p.height);
     if (!p.rgb)

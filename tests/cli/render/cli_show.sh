@@ -26,7 +26,7 @@ with open(sys.argv[1], "wb") as out:
         out.write(piece)
 sys.exit(child.wait())
 END
-unset KITTY_WINDOW_ID TERM_PROGRAM
+unset KITTY_WINDOW_ID TERM_PROGRAM TMUX STY
 export TERM=xterm-256color
 picture="phantom:head --dims 40x40x40 -s 90x60 -q -c hot --background black"
 run 0 "the picture as a file" "$TOOL" $picture -o a.png
@@ -38,6 +38,28 @@ check "the file is written too" cmp -s a.png b.png
 check "and the same is shown" cmp -s blocks again
 export KITTY_WINDOW_ID=1
 run 0 "in kitty" python3 terminal.py kitty "$TOOL" $picture --show
+check "by its protocol" grep -q _Ga=T kitty
+for inside in TMUX=/tmp/tmux,1,0 STY=1.pts TERM=tmux-256color TERM=screen; do
+    run 0 "in kitty, $inside" env $inside python3 terminal.py inside "$TOOL" \
+        $picture --show
+    check "$inside: half blocks are shown" cmp -s inside blocks
+done
+# Whatever is written, a PNG is shown: its background, letters and colours.
+"$TOOL" convert -q phantom:head --dims 40x40x40 -o head.nii
+for options in "" "-c hot" "-m mip" "-m mean -c viridis"; do
+    shown="head.nii -s 90x60 -q $options --show"
+    # shellcheck disable=SC2086
+    run 0 "'$options' as a PNG" python3 terminal.py as_png "$TOOL" $shown
+    # shellcheck disable=SC2086
+    run 0 "'$options' beside a file of floats" python3 terminal.py as_npy \
+        "$TOOL" $shown -y -o shown.npy
+    check "'$options': the same is shown" cmp -s as_png as_npy
+done
+run 0 "without letters" python3 terminal.py bare "$TOOL" head.nii -s 90x60 -q \
+    -m mean -c viridis --show --no-labels
+check "letters are among what is shown" [ "$(cmp -s as_npy bare; echo $?)" = 1 ]
+run 0 "what is written" "$TOOL" head.nii -s 90x60 -q -m mean -c viridis -o own.npy
+check "is as without showing" cmp -s shown.npy own.npy
 cat >compare.py <<'END'
 """What was shown beside the levels of the PNG."""
 import base64, re, struct, zlib
