@@ -224,11 +224,13 @@ static int open_alone(render_state *s, const options *step) {
 }
 
 /* Eight bits per channel suffice between ranks if the picture is placed on a
- * background and rounded to them in the end. */
+ * background that was asked for, and rounded to them in the end.  On the
+ * default background floats travel, so that no faint picture is rounded to an
+ * empty one (exit status 7). */
 static snow_ranks_options how_of(const render_state *s) {
     const options *opts = s->opts;
     bool coarse = opts->background.given && !opts->deterministic &&
-                  !(opts->bits && opts->bits[0] == '1');
+                  options_bits(opts) != 16;
     return (snow_ranks_options){
         .size = sizeof(snow_ranks_options),
         .cut = (snow_partition)option_choice("cut", opts->cut),
