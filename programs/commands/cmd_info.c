@@ -19,6 +19,7 @@ static const double paper_thresholds[] = {0, 10, 30};
 
 /* A volume and all that is printed about it. */
 typedef struct facts {
+    const options *opts;
     const snow_volume *volume;
     const snow_volume_info *info;
     const snow_transfer *transfer;
@@ -30,7 +31,8 @@ typedef struct facts {
 
 /* Everything is computed before the first line is printed, so that a failure
  * prints nothing. */
-static snow_status gather_facts(const options *opts, facts *f) {
+static snow_status gather_facts(facts *f) {
+    const options *opts = f->opts;
     f->info = snow_volume_get_info(f->volume);
     f->thresholds[0] = opts->threshold;
     f->threshold_count = 1;
@@ -83,6 +85,22 @@ static void axis_letters(const snow_volume_info *info, char letters[4]) {
 
 /* --- text ----------------------------------------------------------------- */
 
+/* How many values the vectors of a file have, and which of them these are. */
+static void print_components(const facts *f) {
+    const options *opts = f->opts;
+    char which[40];
+    if (f->info->components < 2)
+        return;
+    if (f->info->magnitude)
+        snprintf(which, sizeof which, "the magnitude");
+    else if (opts->component)
+        snprintf(which, sizeof which, "component %.20s", opts->component);
+    else
+        snprintf(which, sizeof which, "component %" PRId64, opts->channel);
+    printf("%-14s%" PRId64 " (these values: %s)\n", "components",
+           f->info->components, which);
+}
+
 /* The geometry of the file; scale and time steps only if they matter. */
 static void print_geometry(const facts *f) {
     const snow_volume_info *info = f->info;
@@ -108,6 +126,7 @@ static void print_geometry(const facts *f) {
     if (info->times > 1)
         printf("%-14s%" PRId64 " (these values: step %" PRId64 ")\n", "times",
                info->times, info->time);
+    print_components(f);
     if (info->slope < 1 || info->slope > 1 || info->intercept < 0 ||
         info->intercept > 0)
         printf("%-14svalue = %g * stored + %g\n", "scale", info->slope,
@@ -134,8 +153,9 @@ static void print_values(const facts *f) {
     printf("%-14s%" PRId64 " of %" PRId64 " voxels\n", "finite", m->finite,
            m->voxels);
     if (m->finite > 0)
-        printf("%-14s%g .. %g, mean %g\n", "values", m->min, m->max,
-               m->sum / (double)m->finite);
+        printf("%-14s%g .. %g, mean %g%s\n", "values", m->min, m->max,
+               m->sum / (double)m->finite,
+               f->info->hounsfield ? " (Hounsfield units)" : "");
     printf("%-14s%s\n", "look", snow_transfer_description(f->transfer));
     for (size_t i = 0; i < f->threshold_count; i++)
         printf("%-14s%5.1f %% at threshold %g\n", i ? "" : "sparse ratio",
@@ -195,6 +215,12 @@ void info_set_geometry(json_t *object, const snow_volume_info *info) {
     json_object_set_new(object, "intercept", json_number(info->intercept));
     json_object_set_new(object, "times", json_integer(info->times));
     json_object_set_new(object, "time", json_integer(info->time));
+    json_object_set_new(
+        object, "components",
+        json_integer(info->components > 1 ? info->components : 1));
+    json_object_set_new(object, "magnitude", json_boolean(info->magnitude));
+    if (info->hounsfield)
+        json_object_set_new(object, "value_unit", json_string("HU"));
     if (*info->storage)
         json_object_set_new(object, "storage", json_string(info->storage));
     if (*info->modality)
@@ -264,19 +290,25 @@ static int report_text(const facts *f) {
     return finish_stdout();
 }
 
-/* Describes also a DICOM folder that is opened only with gaps. */
-static int open_to_list(snow_context *context, const options *opts,
-                        snow_volume **out) {
+/* Opens a volume, or reads its header alone. */
+static snow_status open_or_inspect(snow_context *context, const char *path,
+                                   const snow_volume_options *data,
+                                   snow_volume_info *info, snow_volume **out) {
+    return out ? snow_volume_open(context, path, data, out)
+               : snow_volume_inspect(context, path, data, info);
+}
+
+int info_open(snow_context *context, const options *opts, const char *path,
+              snow_volume_info *info, snow_volume **out) {
     char fault[1024];
-    const char *path = opts->operands[0];
     snow_volume_options data = data_options(opts);
-    snow_status status = snow_volume_open(context, path, &data, out);
+    snow_status status = open_or_inspect(context, path, &data, info, out);
     if (status != SNOW_STATUS_BAD_INPUT || data.allow_gaps || !is_folder(path))
         return status == SNOW_STATUS_OK ? CONTINUE
                                         : fail_status(context, status);
     snprintf(fault, sizeof fault, "%s", snow_context_message(context));
     data.allow_gaps = true;
-    if (snow_volume_open(context, path, &data, out) != SNOW_STATUS_OK) {
+    if (open_or_inspect(context, path, &data, info, out) != SNOW_STATUS_OK) {
         say("%s", fault);
         return (int)status;
     }
@@ -293,20 +325,20 @@ int cmd_info(const options *opts) {
     if (opts->operand_count == 0)
         return fail_usage("info: an operand is missing; give snowglass info "
                           "INPUT...");
-    if (info_is_list(opts))
-        return info_list(opts);
     int done = check_look(opts);
+    if (done == CONTINUE && info_is_list(opts))
+        return info_list(opts);
     if (done == CONTINUE)
         done = open_context(opts, &context);
     if (done == CONTINUE)
-        done = open_to_list(context, opts, &volume);
+        done = info_open(context, opts, opts->operands[0], NULL, &volume);
     if (done == CONTINUE)
         done = open_look(context, opts, volume, &transfer);
     if (done == CONTINUE) {
-        facts f = {.volume = volume, .transfer = transfer};
+        facts f = {.opts = opts, .volume = volume, .transfer = transfer};
         if (opts->patient && *snow_volume_patient(volume))
             f.patient = snow_volume_patient(volume);
-        snow_status status = gather_facts(opts, &f);
+        snow_status status = gather_facts(&f);
         if (status != SNOW_STATUS_OK)
             done = fail_status(context, status);
         else

@@ -18,24 +18,29 @@ static int is_shown(const struct dirent *entry) {
     return entry->d_name[0] != '.';
 }
 
-/* Reads a header in a context of its own, whose messages are dropped if
- * `quiet`. */
-static int inspect(const options *opts, const char *path, bool quiet,
-                   snow_volume_info *out) {
+/* Whether a volume can be described by its header; nothing is printed. */
+static bool probe(const options *opts, const char *path,
+                  snow_volume_info *out) {
     snow_context *context = NULL;
-    options listed = *opts;
-    if (quiet)
-        listed.verbosity = -1;
-    listed.allow_gaps = true;
-    int done = open_context(&listed, &context);
-    if (done != CONTINUE)
-        return done;
-    snow_volume_options data = data_options(&listed);
-    snow_status status = snow_volume_inspect(context, path, &data, out);
-    if (status != SNOW_STATUS_OK)
-        done = quiet ? (int)status : fail_status(context, status);
+    snow_volume_options data = data_options(opts);
+    data.allow_gaps = true;
+    snow_status status = snow_context_new(NULL, &context);
+    if (status == SNOW_STATUS_OK)
+        status = snow_volume_inspect(context, path, &data, out);
     snow_context_free(context);
-    return done;
+    return status == SNOW_STATUS_OK;
+}
+
+/* Whether a file has the mark of DICOM (PS3.10, 7.1).  Files of old programs
+ * may lack it; they are recognised when they are opened. */
+static bool has_dicom_mark(const char *path) {
+    char head[132];
+    FILE *file = is_file(path) ? fopen(path, "rb") : NULL;
+    bool marked = file && fread(head, 1, sizeof head, file) == sizeof head &&
+                  memcmp(head + 128, "DICM", 4) == 0;
+    if (file)
+        fclose(file);
+    return marked;
 }
 
 /* The entries of a folder by name; -1 if it cannot be read. */
@@ -86,7 +91,7 @@ static bool holds_volumes(const options *opts, const char *folder) {
         const char *suffix = suffix_of(entries[i]->d_name);
         if (!path_in(folder, entries[i]->d_name, path) ||
             (slices && strcmp(slices, suffix) == 0 && !is_folder(path)) ||
-            inspect(opts, path, true, &info) != CONTINUE)
+            has_dicom_mark(path) || !probe(opts, path, &info))
             continue;
         found = stands_alone(path, &info);
         if (!found)
@@ -104,48 +109,96 @@ bool info_is_list(const options *opts) {
     if (opts->series || opts->dataset || !is_folder(path))
         return false;
     /* Slices among volumes of their own are no reason to hide these. */
-    if (inspect(opts, path, true, &info) == CONTINUE &&
-        strcmp(info.format, "dicom") != 0 && strcmp(info.format, "png") != 0 &&
-        strcmp(info.format, "tiff") != 0)
+    if (probe(opts, path, &info) && strcmp(info.format, "dicom") != 0 &&
+        strcmp(info.format, "png") != 0 && strcmp(info.format, "tiff") != 0)
         return false;
     return holds_volumes(opts, path);
 }
 
 /* --- the list ------------------------------------------------------------- */
 
-static void print_row(const char *path, const snow_volume_info *info,
-                      json_t *list) {
+typedef struct row {
+    const char *path;
+    snow_volume_info info;
+    char patient[256]; /* "": not requested, or not in the file */
+} row;
+
+static void add_row(const row *r, json_t *list) {
+    json_t *object = json_object();
+    json_object_set_new(object, "path", json_string(r->path));
+    info_set_geometry(object, &r->info);
+    if (*r->patient)
+        json_object_set_new(object, "patient", json_string(r->patient));
+    json_array_append_new(list, object);
+}
+
+static void print_row(const row *r) {
     char text[256];
-    if (list) {
-        json_t *row = json_object();
-        json_object_set_new(row, "path", json_string(path));
-        info_set_geometry(row, info);
-        json_array_append_new(list, row);
-        return;
-    }
-    describe_volume(info, text, sizeof text);
-    printf("%s: %s", path, text);
-    if (info->times > 1)
-        printf(", %" PRId64 " time steps", info->times);
+    describe_volume(&r->info, text, sizeof text);
+    printf("%s: %s", r->path, text);
+    if (r->info.components > 1)
+        printf(", %" PRId64 " components", r->info.components);
+    if (r->info.times > 1)
+        printf(", %" PRId64 " time steps", r->info.times);
+    if (*r->patient)
+        printf(", patient %s", r->patient);
     printf("\n");
+}
+
+/* The name is known to a volume only, of which one voxel is read; of the
+ * formats DICOM alone has names. */
+static void find_patient(snow_context *context, const options *opts,
+                         const char *path, row *r) {
+    snow_volume *volume = NULL;
+    options one = *opts;
+    if (!opts->patient || strcmp(r->info.format, "dicom") != 0)
+        return;
+    for (int i = 0; i < 3; i++) {
+        one.crop[i][0] = 0;
+        one.crop[i][1] = 1;
+    }
+    hear_warnings(opts, context, false);
+    snow_volume_options data = data_options(&one);
+    data.allow_gaps = true;
+    if (snow_volume_open(context, path, &data, &volume) == SNOW_STATUS_OK)
+        snprintf(r->patient, sizeof r->patient, "%s",
+                 snow_volume_patient(volume));
+    snow_volume_close(volume);
 }
 
 /* Lists one volume; a fault is printed, and the list goes on. */
 static int list_file(const options *opts, const char *path, json_t *list) {
-    snow_volume_info info = {.size = sizeof info};
-    int done = inspect(opts, path, false, &info);
+    snow_context *context = NULL;
+    row r = {name_of_input(path), {.size = sizeof r.info}, ""};
+    int done = open_context(opts, &context);
     if (done == CONTINUE)
-        print_row(name_of_input(path), &info, list);
+        done = info_open(context, opts, path, &r.info, NULL);
+    if (done == CONTINUE) {
+        find_patient(context, opts, path, &r);
+        if (list)
+            add_row(&r, list);
+        else
+            print_row(&r);
+    }
+    snow_context_free(context);
     return done;
 }
 
+/* The DICOM files of a folder are listed once, as the folder: a slice stands
+ * for its whole series, so that each would cost the headers of all. */
 static void list_folder(const options *opts, const char *folder, json_t *list) {
     struct dirent **entries = NULL;
     char path[PATH_MAX];
+    bool series = false;
     int count = entries_of(folder, &entries);
-    for (int i = 0; i < count; i++)
-        if (path_in(folder, entries[i]->d_name, path))
-            list_file(opts, path, list);
+    for (int i = 0; i < count; i++) {
+        if (!path_in(folder, entries[i]->d_name, path))
+            continue;
+        bool slice = has_dicom_mark(path);
+        if (!slice || !series)
+            list_file(opts, slice ? folder : path, list);
+        series |= slice;
+    }
     free_entries(entries, count);
 }
 

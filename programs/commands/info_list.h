@@ -16,7 +16,13 @@ bool info_is_list(const options *opts);
  * count. */
 int info_list(const options *opts);
 
-/* The geometry of a volume, for scripts (in cmd_info.c). */
+/* Both in cmd_info.c: opens a volume, or with `out` NULL reads its header
+ * alone, also that of a DICOM folder that other verbs open with --allow-gaps
+ * only. Returns CONTINUE or an exit code. */
+int info_open(snow_context *context, const options *opts, const char *path,
+              snow_volume_info *info, snow_volume **out);
+
+/* The geometry of a volume, for scripts. */
 void info_set_geometry(json_t *object, const snow_volume_info *info);
 
 #endif

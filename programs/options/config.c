@@ -6,6 +6,7 @@
 #include "options/config.h"
 #include "options/config_paths.h"
 #include "run/log.h"
+#include "run/paths.h"
 #include "run/start.h"
 
 #include <jansson.h>
@@ -230,7 +231,7 @@ static const char *config_among(int argc, char **argv) {
 const verb_row *config_verb(int argc, char **argv) {
     const char *path = config_among(argc, argv);
     const verb_row *verb = NULL;
-    if (path && config_is_file(path)) {
+    if (path && is_file(path)) {
         json_t *tree = json_load_file(path, 0, NULL);
         const char *name = json_string_value(json_object_get(tree, "verb"));
         verb = name ? verb_named(name) : NULL;

@@ -5,19 +5,14 @@
 #include "options/config_paths.h"
 
 #include <limits.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* Converts a path for a configuration in a folder; false: it stays. */
 typedef bool convert(const char *folder, const char *path, char out[PATH_MAX]);
-
-bool config_is_file(const char *path) {
-    struct stat about;
-    return stat(path, &about) == 0 && S_ISREG(about.st_mode);
-}
 
 static bool is_relative(const char *path) {
     return *path && *path != '/' && strcmp(path, "-") != 0 &&

@@ -4,10 +4,6 @@
 #define CONFIG_PATHS_H
 
 #include <jansson.h>
-#include <stdbool.h>
-
-/* Whether it is a plain file, which no one waits for. */
-bool config_is_file(const char *path);
 
 /* Makes the paths of a tree that was read from `config` relative to the working
  * folder, and those of a tree that will be written there relative to its

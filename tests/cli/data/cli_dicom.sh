@@ -32,14 +32,15 @@ def voxel(z, i):
     return 100 * (z + 1) + i
 
 
-def slice_file(z):
+def slice_file(z, intercept=None):
     pixels = struct.pack("<25H", *(voxel(z, i) for i in range(SIDE * SIDE)))
     meta = element(2, 0x10, "UI", "1.2.840.10008.1.2.1")
     meta = element(2, 0, "UL", struct.pack("<I", len(meta))) + meta
     return bytes(128) + b"DICM" + meta + b"".join([
         element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.2"),
         element(8, 0x18, "UI", f"1.2.3.{z + 1}"),
-        element(8, 0x60, "CS", "CT"), element(0x20, 0x0E, "UI", "1.2.3"),
+        element(8, 0x60, "CS", "CT"), element(0x10, 0x10, "PN", "Doe^Jane"),
+        element(0x20, 0x0E, "UI", "1.2.3"),
         element(0x20, 0x13, "IS", str(z + 1)),
         element(0x20, 0x32, "DS", f"0\\0\\{2 * z - 6}"),
         element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0"),
@@ -47,14 +48,18 @@ def slice_file(z):
         element(0x28, 0x10, "US", SIDE), element(0x28, 0x11, "US", SIDE),
         element(0x28, 0x30, "DS", "2\\2"), element(0x28, 0x100, "US", 16),
         element(0x28, 0x101, "US", 16), element(0x28, 0x102, "US", 15),
-        element(0x28, 0x103, "US", 0), element(0x7FE0, 0x10, "OW", pixels)])
+        element(0x28, 0x103, "US", 0),
+        b"" if intercept is None else
+        element(0x28, 0x1052, "DS", intercept) +
+        element(0x28, 0x1053, "DS", "1"),
+        element(0x7FE0, 0x10, "OW", pixels)])
 
 
-def folder(name, left_out=(), cut=()):
+def folder(name, left_out=(), cut=(), intercept=None):
     """Slices but some; of others all but some last bytes."""
     os.mkdir(name)
     for z in range(COUNT):
-        data = slice_file(z)
+        data = slice_file(z, intercept)
         if z in cut:
             data = data[:len(data) - cut[z]]
         if z not in left_out:
@@ -86,6 +91,7 @@ else:
     folder("cut", cut={4: 10})
     folder("torn", cut={4: 140})
     folder("none", cut=dict.fromkeys(range(COUNT), 4))
+    folder("hu", intercept="-1000")
 END
 python3 -c "import tools"
 
@@ -134,6 +140,57 @@ opens torn "s_4.dcm: is truncated or damaged" \
 refused 3 "a folder of cut slices" "all of its slices are cut" \
     "$TOOL" none --allow-gaps -o z.png
 refused 3 "even to info" "s_0.dcm: is truncated or damaged" "$TOOL" info none
+# --- lists ---------------------------------------------------------------------
+"$TOOL" convert -q phantom:cube --dims 4x4x4 -o cube.nrrd
+run 0 "a list" "$TOOL" info cube.nrrd gap
+prints '^gap: dicom 5x5x9 float32, spacing 2x2x2 mm$'
+says "1 slice is missing between s_3.dcm"
+says "note: gap: other verbs need --allow-gaps to open it"
+run 0 "a list, quiet" "$TOOL" info -q cube.nrrd gap
+check "nothing is said" [ ! -s "$ERR" ]
+run 0 "gaps allowed" "$TOOL" info cube.nrrd gap --allow-gaps
+check "no note on other verbs" bash -c "! grep -q 'other verbs' '$ERR'"
+run 3 "a folder of cut slices in a list" "$TOOL" info cube.nrrd none
+says "s_0.dcm: is truncated or damaged"
+run 0 "one patient" "$TOOL" info whole --patient
+prints '^patient  *Doe'
+name=$(sed -n 's/^patient  *//p' "$OUT")
+run 0 "a list of patients" "$TOOL" info cube.nrrd whole gap --patient
+prints "^cube.nrrd: nrrd 4x4x4 uint8, spacing 1x1x1.*[0-9a-z]$"
+check "names stand behind those that have one" \
+    [ "$(grep -c ", patient $name\$" "$OUT")" = 2 ]
+run 0 "as JSON" "$TOOL" info cube.nrrd whole --patient --json
+prints "\"path\": \"whole\".*\"patient\": \"$name\""
+run 0 "a list without that" "$TOOL" info cube.nrrd whole
+check "has no name" bash -c "! grep -q Doe '$OUT' '$ERR'"
+refused 2 "options of the look that exclude one another" '\-\-window: needs' \
+    "$TOOL" info cube.nrrd whole --window 5
+
+# Slices beside volumes of their own are listed once, as their folder; a pipe
+# there is not waited for.
+cp -r whole mixed
+cp cube.nrrd mixed/a.nrrd
+cp cube.nrrd mixed/s_5.nrrd
+mkfifo mixed/b.pipe
+run 0 "a mixed folder" timeout 20 "$TOOL" info mixed
+prints '^mixed: dicom 5x5x9 uint16, '
+prints '^mixed/a.nrrd: nrrd 4x4x4'
+prints '^mixed/s_5.nrrd: nrrd 4x4x4'
+check "has three lines" [ "$(wc -l <"$OUT")" = 3 ]
+check "no slice is mentioned" bash -c "! grep -q 's_[0-9].dcm' '$ERR'"
+if command -v strace >/dev/null; then
+    strace -f -e trace=openat -o trace "$TOOL" info mixed >/dev/null 2>&1
+    opened=$(grep -c 's_[0-9].dcm' trace)
+    check "each slice is opened a few times ($opened in all)" [ "$opened" -le 90 ]
+else
+    skipped "how often slices are opened" "there is no strace"
+fi
+run 0 "info of a CT" "$TOOL" info hu
+prints '^values  *-900 \.\. -76, mean -488 \(Hounsfield units\)$'
+run 0 "as JSON" "$TOOL" info hu --json
+prints '"value_unit": "HU"'
+run 0 "info of other values" "$TOOL" info whole
+prints '^values  *100 \.\. 924, mean 512$'
 run 0 "a slice beside a gap" "$TOOL" info gap/s_1.dcm
 says "is used alone"
 run 0 "and with gaps" "$TOOL" info gap/s_1.dcm --allow-gaps

@@ -162,6 +162,43 @@ if [ -d flat ] && "$TOOL" info -q flat.tif >/dev/null 2>&1; then
 else
     skipped "distances of TIFF slices" "there is no python3 or no libtiff"
 fi
+# --- components ----------------------------------------------------------------
+if command -v python3 >/dev/null; then
+    python3 - <<'END'
+import struct
+for name, kind, shape in (("v", "<f4", (4, 4, 4, 3)), ("c", "|u1", (5, 5, 5, 4))):
+    count = shape[0] ** 3 * shape[3]
+    head = "{'descr': '%s', 'fortran_order': False, 'shape': %s}" % (kind, shape)
+    with open(name + ".npy", "wb") as out:
+        out.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", 118))
+        out.write(head.ljust(117).encode() + b"\n")
+        out.write(struct.pack("<%d%s" % (count, "f" if name == "v" else "B"),
+                              *(n % 256 for n in range(count))))
+END
+    components() { # FILE TEXT COUNT MAGNITUDE OPTION...
+        local file=$1 text=$2 count=$3 magnitude=$4
+        shift 4
+        run 0 "components of $file $*" "$TOOL" info -q "$file" "$@"
+        prints "^components  *$text$"
+        run 0 "as JSON" "$TOOL" info -q "$file" --json "$@"
+        prints "\"components\": $count, \"magnitude\": $magnitude"
+    }
+    components v.npy "3 .these values: the magnitude." 3 true
+    components v.npy "3 .these values: component y." 3 false --component Y
+    components v.npy "3 .these values: component 0." 3 false --channel 0
+    components v.npy "3 .these values: component 2." 3 false --component 2
+    components c.npy "4 .these values: component 0." 4 false
+    components c.npy "4 .these values: component 3." 4 false --channel 3
+    run 0 "a list of vectors" "$TOOL" info -q v.npy c.npy
+    prints '^v.npy: npy 4x4x4 float32, .*, 3 components$'
+else
+    skipped "components" "there is no python3"
+fi
+run 0 "one value a voxel" "$TOOL" info phantom:cube --dims 8x8x8
+check "no word on components" bash -c "! grep -q '^components' '$OUT'"
+run 0 "as JSON" "$TOOL" info phantom:cube --dims 8x8x8 --json
+prints '"components": 1, "magnitude": false'
+
 # --- several inputs and folders -------------------------------------------------
 mkdir -p many/deep
 "$TOOL" convert -q phantom:cube --dims 9x8x7 -o many/b.nrrd
