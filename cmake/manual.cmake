@@ -1,5 +1,6 @@
 # Manual pages, completions and the schema of recipes, made at build time from
-# the tool's table of options by a program that is not installed.  A build for
+# the tool's table of options, the public headers and the documents by a program
+# that is not installed.  A build for
 # another machine takes the program of a native build: -DSNOW_MANUAL=PATH.
 set(default ON)
 if(CMAKE_CROSSCOMPILING OR SNOW_SANITIZE)
@@ -20,13 +21,16 @@ endif()
 
 set(SNOW_MANUAL_FILES "")
 # snow_manual(COMPONENT FOLDER FILE WORD...): what these words write is installed
-# in the folder.
+# in the folder.  Words may be files of the sources.
 function(snow_manual component folder file)
   set(out ${PROJECT_BINARY_DIR}/manual/${folder}/${file})
   get_filename_component(place ${out} DIRECTORY)
   file(MAKE_DIRECTORY ${place})
+  set(files ${ARGN})
+  list(FILTER files INCLUDE REGEX "[.](h|md)$")
   add_custom_command(OUTPUT ${out} COMMAND ${program} ${ARGN} > ${out}
-                     DEPENDS ${program} VERBATIM)
+                     DEPENDS ${program} ${files} VERBATIM
+                     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   set(SNOW_MANUAL_FILES ${SNOW_MANUAL_FILES} ${out} PARENT_SCOPE)
   if(SNOW_INSTALL)
     install(FILES ${out} DESTINATION ${folder} COMPONENT ${component})
@@ -50,6 +54,32 @@ snow_manual(snowglass_runtime ${zsh} _snowglass zsh)
 snow_manual(snowglass_runtime ${fish} snowglass.fish fish)
 snow_manual(snowglass_runtime ${CMAKE_INSTALL_DATADIR}/snowglass
             recipe.schema.json json)
+
+# The library, file formats, and what a picture is.
+set(mandir ${CMAKE_INSTALL_MANDIR})
+file(GLOB headers CONFIGURE_DEPENDS include/snowglass/*.h)
+foreach(header ${headers})
+  get_filename_component(name ${header} NAME_WE)
+  string(REPLACE _ - page snowglass-${name}.3)
+  set(component snowglass_dev)
+  if(name STREQUAL "mpi")
+    set(component snowglass_mpi)
+  elseif(name STREQUAL "snowglass")
+    set(page snowglass.3)
+  endif()
+  if(TARGET snowglass_mpi OR NOT name STREQUAL "mpi")
+    snow_manual(${component} ${mandir}/man3 ${page} header ${header})
+  endif()
+endforeach()
+set(docs ${PROJECT_SOURCE_DIR}/docs)
+snow_manual(snowglass_runtime ${mandir}/man5 snowglass.5 document 5
+  "recipes and files of transfer functions"
+  ${docs}/insitu.md Recipes RECIPES
+  ${docs}/looks.md Files "TRANSFER FUNCTIONS")
+snow_manual(snowglass_runtime ${mandir}/man7 snowglass.7 document 7
+  "what a picture is: grid, camera, opacity, light"
+  ${docs}/model.md "What a correct picture is" MODEL
+  ${docs}/formats.md Geometry "GEOMETRY OF FILES")
 if(TARGET snowglass_mpi_tool)
   snow_manual(snowglass_mpi ${pages} snowglass-mpi.1 man mpi)
   snow_manual(snowglass_mpi ${bash} snowglass-mpi bash)

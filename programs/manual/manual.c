@@ -1,14 +1,16 @@
-/* manual.c - snowglass-manual: `man [VERB|mpi]`, `bash`, `zsh`, `fish`,
- * `fish-mpi` or `json` to standard output. */
+/* manual.c - snowglass-manual: `man [VERB|mpi]`, `header FILE`, `document N
+ * SUMMARY (FILE HEADING TITLE)...`, `bash`, `zsh`, `fish`, `fish-mpi`, `json`
+ * or `options` (as Markdown) to standard output. */
 #include "manual/manual.h"
 
 #include <stdio.h>
 #include <string.h>
 
 static int refuse(void) {
-    fputs(
-        "usage: snowglass-manual man [VERB|mpi]|bash|zsh|fish|fish-mpi|json\n",
-        stderr);
+    fputs("usage: snowglass-manual man [VERB|mpi] | header FILE |\n"
+          "  document N SUMMARY (FILE HEADING TITLE)... |\n"
+          "  bash | zsh | fish | fish-mpi | json | options\n",
+          stderr);
     return SNOW_STATUS_BAD_USAGE;
 }
 
@@ -18,6 +20,12 @@ int main(int argc, char **argv) {
     int code = SNOW_STATUS_OK;
     if (strcmp(what, "man") == 0)
         done = print_page(argc > 2 ? argv[2] : NULL);
+    else if (argc == 3 && strcmp(what, "header") == 0)
+        done = print_header(argv[2]);
+    else if (strcmp(what, "document") == 0)
+        done = print_document(argc - 2, argv + 2);
+    else if (done && strcmp(what, "options") == 0)
+        print_options();
     else if (done && strcmp(what, "bash") == 0)
         print_bash();
     else if (done && strcmp(what, "zsh") == 0)

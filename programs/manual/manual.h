@@ -1,5 +1,6 @@
 /* manual.h - what snowglass-manual writes: manual pages, completions of shells
- * and the JSON schema of recipes, all from the table of options.
+ * and the JSON schema of recipes from the table of options; the pages of the
+ * library from its headers, those of file formats and the model from docs/.
  *
  * It is a program of the build and is not installed (cmake/manual.cmake). */
 #ifndef MANUAL_H
@@ -41,6 +42,13 @@ bool print_page(const char *name);
 void print_bash(void);
 void print_zsh(void);
 void print_fish(bool mpi);
-int print_schema(void); /* an exit code */
+void print_options(void); /* a table for each topic, as Markdown */
+int print_schema(void);   /* an exit code */
+
+/* The page of a public header, or of sections of documents: a number of the
+ * manual, a summary, then FILE, HEADING and TITLE of each.  False: there is no
+ * such file or section. */
+bool print_header(const char *path);
+bool print_document(int count, char **words);
 
 #endif

@@ -1,93 +1,18 @@
-/* page.c - manual pages, in the macros man(7), which every reader of manual
- * pages knows. */
+/* page.c - manual pages of the tool and its verbs. */
 #include "manual/manual.h"
+#include "manual/roff.h"
 
 #include <ctype.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-#define LINE 76
-
-/* --- text ----------------------------------------------------------------- */
-
-/* A hyphen that is typed stays one when it is copied: that of an option or of a
- * name. */
-static void print_roff(const char *text, size_t length, bool typed) {
-    for (size_t i = 0; i < length; i++) {
-        if (i == 0 && text[i] == '-')
-            typed = true;
-        if (text[i] == '\\')
-            fputs("\\e", stdout);
-        else if (text[i] == '-' && typed)
-            fputs("\\-", stdout);
-        else
-            putchar(text[i]);
-    }
-}
-
-static bool ends_sentence(const char *word, size_t length) {
-    size_t last = length - (length > 1 && word[length - 1] == ')');
-    return last > 1 && strchr(".!?", word[last - 1]) &&
-           !(last > 3 && strncmp(word, "e.g.", 4) == 0);
-}
-
-/* A paragraph: words on lines, each sentence on a line of its own. */
-static void print_text(const char *text) {
-    size_t at = 0;
-    while (*text) {
-        size_t length = strcspn(text, " ");
-        if (at && at + 1 + length > LINE) {
-            putchar('\n');
-            at = 0;
-        }
-        if (at)
-            putchar(' ');
-        else if (*text == '.' || *text == '\'')
-            fputs("\\&", stdout);
-        print_roff(text, length, strchr("([", *text) && text[1] == '-');
-        at += length + 1;
-        if (ends_sentence(text, length) && text[length]) {
-            putchar('\n');
-            at = 0;
-        }
-        text += length + (text[length] == ' ');
-    }
-    putchar('\n');
-}
-
-/* A line of a macro, whose argument is one text. */
-static void print_macro(const char *macro, const char *text) {
-    printf("%s ", macro);
-    print_roff(text, strlen(text), true);
-    putchar('\n');
-}
-
-static void print_item(const char *name, const char *text) {
-    puts(".TP");
-    print_macro(".B", name);
-    print_text(text);
-}
 
 /* --- parts of pages ------------------------------------------------------- */
 
-/* The day that the build names, so that two builds are equal. */
 static void print_head(const char *title, const char *name, const char *text) {
-    char day[32] = "";
-    const char *epoch = getenv("SOURCE_DATE_EPOCH");
-    time_t now = epoch ? (time_t)strtoll(epoch, NULL, 10) : time(NULL);
-    struct tm parts;
-    if (gmtime_r(&now, &parts))
-        strftime(day, sizeof day, "%Y-%m-%d", &parts);
-    puts(".\\\" made by snowglass-manual from the table of options");
-    printf(".TH ");
-    for (; *title; title++)
-        putchar(toupper((unsigned char)*title));
-    printf(" 1 %s \"Snowglass %s\"\n.SH NAME\n", day, snow_version());
-    print_roff(name, strlen(name), true);
+    roff_head(title, 1, "the table of options");
+    roff_chars(name, strlen(name), true);
     fputs(" \\- ", stdout);
-    print_text(text);
+    roff_text(text);
 }
 
 static void print_option(const option_row *row) {
@@ -95,15 +20,15 @@ static void print_option(const option_row *row) {
     if (row->letter)
         printf("\\-%c\\fR, \\fB", row->letter);
     printf("\\-\\-");
-    print_roff(row->name, strlen(row->name), true);
+    roff_chars(row->name, strlen(row->name), true);
     printf("\\fR");
     if (row->argument) {
         printf(option_takes_word(row) ? " \\fI" : "\\fI");
-        print_roff(row->argument, strlen(row->argument), true);
+        roff_chars(row->argument, strlen(row->argument), true);
         printf("\\fR");
     }
     putchar('\n');
-    print_text(row->text);
+    roff_text(row->text);
 }
 
 /* The options of a topic that a verb takes, NULL: any. */
@@ -118,7 +43,7 @@ static void print_topic(const verb_row *verb, topic which) {
             snprintf(title, sizeof title, "%s: %s%s", topic_table[which].name,
                      topic_table[which].text,
                      option_is_of_ranks(row) ? " (snowglass-mpi)" : "");
-            print_macro(".SS", title);
+            roff_macro(".SS", title);
         }
         first = false;
         print_option(row);
@@ -127,20 +52,21 @@ static void print_topic(const verb_row *verb, topic which) {
 
 static void print_names(const char *title, const char *(*name)(size_t),
                         const char *(*text)(size_t)) {
-    print_macro(".SS", title);
+    roff_macro(".SS", title);
     if (!text) {
         for (size_t i = 0; name(i); i++) {
-            print_roff(name(i), strlen(name(i)), true);
+            roff_chars(name(i), strlen(name(i)), true);
             puts(name(i + 1) ? "," : ".");
         }
     }
     for (size_t i = 0; text && name(i); i++)
-        print_item(name(i), text(i));
+        roff_item(name(i), text(i));
 }
 
 static void print_see_also(void) {
-    puts(".SH SEE ALSO\n.BR snowglass (1)");
-    print_text("and the documents in the folder share/doc/snowglass.");
+    puts(".SH SEE ALSO\n.BR snowglass (1),\n.BR snowglass (3),\n"
+         ".BR snowglass (5),\n.BR snowglass (7)");
+    roff_text("and the documents in the folder share/doc/snowglass.");
 }
 
 /* The page of the tool itself names those of its verbs. */
@@ -159,15 +85,15 @@ static void print_verb(const verb_row *verb) {
     snprintf(name, sizeof name, "snowglass-%s", verb->name);
     print_head(name, name, verb->text);
     printf(".SH SYNOPSIS\n.B snowglass %s\n", verb->name);
-    print_text(verb->usage);
+    roff_text(verb->usage);
     puts(".SH DESCRIPTION");
     if (verb->bit == VERB_BENCH) {
-        print_text("It has options of its own, which "
-                   "\"snowglass bench --help\" prints.");
+        roff_text("It has options of its own, which "
+                  "\"snowglass bench --help\" prints.");
     } else {
         char text[160];
         snprintf(text, sizeof text, "Verb of the tool: %s.", verb->text);
-        print_text(text);
+        roff_text(text);
         puts(".SH OPTIONS");
         for (int i = 0; topic_table[i].name; i++)
             print_topic(verb, (topic)i);
@@ -182,10 +108,10 @@ static void print_mpi(void) {
                "volume rendering on many processes of MPI");
     puts(".SH SYNOPSIS\n.B mpirun \\-n\n.I N\n.B snowglass\\-mpi\nVERB ...");
     puts(".SH DESCRIPTION");
-    print_text("The tool snowglass under MPI: N processes make the same "
-               "picture, each of its part of the volume. Verbs and options are "
-               "those of snowglass, and those below. Start it with the "
-               "launcher of the MPI that it was built with.");
+    roff_text("The tool snowglass under MPI: N processes make the same "
+              "picture, each of its part of the volume. Verbs and options are "
+              "those of snowglass, and those below. Start it with the "
+              "launcher of the MPI that it was built with.");
     puts(".SH OPTIONS");
     print_topic(NULL, TOPIC_RANKS);
     print_see_also();
@@ -216,23 +142,23 @@ static void print_statuses(void) {
         snprintf(number, sizeof number, "%d", (int)all[i]);
         snprintf(text, sizeof text, "%s.", status_text(all[i]));
         text[0] = (char)toupper((unsigned char)text[0]);
-        print_item(number, text);
+        roff_item(number, text);
         if (all[i] == SNOW_STATUS_DIFFERENT) /* the tool's own is the next */
-            print_item("7", "The picture is written, but it is empty.");
+            roff_item("7", "The picture is written, but it is empty.");
     }
 }
 
 static void print_environment(void) {
     puts(".SH ENVIRONMENT");
-    print_item("SLURM_CPUS_PER_TASK, SLURM_CPUS_ON_NODE",
-               "processors that Slurm assigned; no more threads are started.");
-    print_item("PATH", "where ffmpeg, which encodes movies, is searched.");
-    print_item("TERM", "whether progress is a status line.");
+    roff_item("SLURM_CPUS_PER_TASK, SLURM_CPUS_ON_NODE",
+              "processors that Slurm assigned; no more threads are started.");
+    roff_item("PATH", "where ffmpeg, which encodes movies, is searched.");
+    roff_item("TERM", "whether progress is a status line.");
     puts(".SH FILES");
-    print_item("share/snowglass/recipe.schema.json",
-               "JSON schema of the files of --config and --save-config.");
-    print_item("lib/snowglass-*/",
-               "modules for formats, beside the library or the tool's folder.");
+    roff_item("share/snowglass/recipe.schema.json",
+              "JSON schema of the files of --config and --save-config.");
+    roff_item("lib/snowglass-*/",
+              "modules for formats, beside the library or the tool's folder.");
 }
 
 static void print_examples(void) {
@@ -243,7 +169,7 @@ static void print_examples(void) {
         "snowglass info volume.nrrd --json"};
     puts(".SH EXAMPLES\n.EX");
     for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
-        print_roff(lines[i], strlen(lines[i]), true);
+        roff_chars(lines[i], strlen(lines[i]), true);
         putchar('\n');
     }
     puts(".EE");
@@ -254,17 +180,17 @@ static void print_overview(void) {
                "volume rendering by sparse splatting");
     puts(".SH SYNOPSIS\n.B snowglass\n.I INPUT\n.B \\-o\n.I OUT.png\n[OPTIONS]"
          "\n.br\n.B snowglass\n.I VERB\n\\&... [OPTIONS]\n.SH DESCRIPTION");
-    print_text("INPUT is a volume file, phantom:NAME, or - for standard input. "
-               "Each verb has a manual page, such as snowglass-render(1), with "
-               "its options. \"snowglass help TOPIC\" prints the options of a "
-               "topic.");
+    roff_text("INPUT is a volume file, phantom:NAME, or - for standard input. "
+              "Each verb has a manual page, such as snowglass-render(1), with "
+              "its options. \"snowglass help TOPIC\" prints the options of a "
+              "topic.");
     puts(".SH VERBS");
     for (const verb_row *verb = verb_table; verb->name; verb++)
         if (verb->bit)
-            print_item(verb->name, verb->text);
+            roff_item(verb->name, verb->text);
     puts(".SH TOPICS");
     for (const topic_row *row = topic_table; row->name; row++)
-        print_item(row->name, row->text);
+        roff_item(row->name, row->text);
     puts(".SH NAMES");
     print_names("Presets", snow_preset_name, snow_preset_description);
     print_names("Colour maps", snow_colormap_name, NULL);

@@ -58,15 +58,47 @@ status() { sed -n "/^.SH EXIT STATUS/,/^.SH ENV/{/^.B $1\$/,/^.TP/p}" "$(page ""
 check "status 2 is of the command line" grep -q 'command line' <(status 2)
 check "status 130 is of signals" grep -q 'SIGTERM' <(status 130)
 
+# Each function of the headers is named and declared, each key of a recipe is
+# there, and the model has its sections.
+declared() { sed -nE 's/^SNOW_API [^(]*\b(snow_[a-z0-9_]+)\(.*/\1/p' "$1"; }
+lacking='' functions=0
+for header in "$3"/include/snowglass/*.h; do
+    name=$(basename "$header" .h)
+    [ "$name" != snowglass ] && name=-${name//_/-} || name=
+    file=$(place "man3/snowglass$name.3")
+    [ -n "$file" ] || { lacking+=" snowglass$name.3" && continue; }
+    for function in $(declared "$header"); do
+        functions=$((functions + 1))
+        [ "$(grep -cE "(^|[ *])$function([(,]|$)" "$file")" -ge 2 ] ||
+            lacking+=" $function"
+    done
+done
+[ -n "$(place man1/snowglass-mpi.1)" ] || lacking=${lacking/ snowglass-mpi.3/}
+check "all functions have pages${lacking:+, not$lacking}" [ -z "$lacking" ]
+check "there are many" [ "$functions" -gt 150 ]
+formats=$(place man5/snowglass.5)
+lacking=
+for key in $("$TOOL" phantom:shells --dims 8x8x8 -s 8x8 -q -o t.png \
+    --save-config t.json && grep -o '^ *"[a-z-]*"' t.json | tr -d ' "'); do
+    grep -qE "\\fB([^\\]|\\\\-)*${key//-/\\\\-}\\\\fR" "$formats" || lacking+=" $key"
+done
+check "a saved recipe has known keys${lacking:+, not$lacking}" [ -z "$lacking" ]
+for section in Grid Camera Classification Shading Output GEOMETRY; do
+    check "the model: $section" grep -qE "^[.]S[HS] .*$section" \
+        "$(place man7/snowglass.7)"
+done
+
+pages=("$MADE"/*/man/man[1357]/*)
+check "there are pages of four kinds" [ "${#pages[@]}" -gt 25 ]
 if have mandoc; then
-    mandoc -Tlint "$(dirname "$(page "")")"/*.1 >lint 2>&1
+    mandoc -Tlint "${pages[@]}" >lint 2>&1
     cat lint
     check "mandoc finds nothing" [ ! -s lint ]
 else
     skipped "pages" "there is no mandoc"
 fi
 if have man && have groff; then
-    for file in "$(dirname "$(page "")")"/*.1; do
+    for file in "${pages[@]}"; do
         man --warnings -E UTF-8 -l "$file" 2>>warned >/dev/null
     done
     check "groff finds nothing" [ ! -s warned ]
