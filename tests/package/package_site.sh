@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# tests/package/package_site.sh - `script TOOL BUILD SOURCE`: the site of the
+# documents is made, its links lead somewhere, and its references are whole.
+. "$(dirname "$0")/../support/shell.sh"
+MANUAL=$2/snowglass-manual SOURCE=$3
+[ -x "$MANUAL" ] || { echo "skip   built with -DSNOW_MANUAL=OFF" && exit 77; }
+PYTHON=/usr/bin/python3
+"$PYTHON" -c 'import markdown' 2>/dev/null ||
+    { echo "skip   there is no python3-markdown" && exit 77; }
+
+# A copy, since documents are spoilt below.
+(cd "$SOURCE" && cp -r --parents ./*.md LICENSE docs include examples/minimal.c \
+    python/snowglass src/README.md bench/peers/README.md scripts/site "$WORK")
+make_site() { "$PYTHON" -B scripts/site "$MANUAL" "$WORK/site"; }
+run 0 "the site is made" make_site
+prints '^site: [0-9]{2} pages, [0-9]{4} links, 0 faults$'
+page() { cat "site/$1"; }
+check "it begins with the README" grep -q '<h1 id="snowglass">' site/index.html
+check "pictures are copied" cmp docs/gallery/engine.png site/docs/gallery/engine.png
+check "there are no scripts" [ -z "$(grep -rliE '<script|javascript:' site)" ]
+check "it has a dark form" grep -q 'prefers-color-scheme: dark' site/site.css
+check "the chart is of the table" grep -qE \
+    'Engine, shaded</text><text[^>]*>Snowglass, draft</text><rect[^>]*><text[^>]*>[0-9.]+<' \
+    site/docs/measurements/peers.html
+
+lacking=
+for option in $("$MANUAL" man render | sed -nE 's/^\\fB.*\\-\\-([a-z\\-]+)\\fR.*/\1/p' |
+    tr -d '\\'); do
+    grep -q -- "--$option" site/docs/options.html || lacking+=" --$option"
+done
+for function in $(sed -nE 's/^SNOW_API [^(]*\b(snow_[a-z0-9_]+)\(.*/\1/p' include/snowglass/*.h); do
+    grep -q "id=\"$function\"" site/docs/c-api.html || lacking+=" $function"
+done
+for name in Volume.render Look Image.save compare series; do
+    grep -q "<h[23] id=\"$(tr -d . <<<"${name,,}")\"" site/docs/python-api.html ||
+        lacking+=" $name"
+done
+check "references are whole${lacking:+, but for$lacking}" [ -z "$lacking" ]
+
+if command -v tidy >/dev/null; then
+    find site -name '*.html' -exec tidy -q -e {} + 2>&1 |
+        grep -v 'proprietary attribute\|<a> anchor .* already defined' >tidied
+    check "tidy finds nothing" [ ! -s tidied ]
+    head -5 tidied
+else
+    skipped "the pages' HTML" "there is no tidy"
+fi
+
+# What is broken is found.
+echo 'See [nothing](docs/nothing.md), [no part](docs/usage.md#no-part).' >>README.md
+echo '<img src="https://example.org/a.png" alt="">' >>docs/zarr.md
+run 1 "broken links are found" make_site
+says 'index.html links to docs/nothing.html, which is not there'
+says 'index.html links to docs/usage.html#no-part, an anchor'
+says 'zarr.html takes https://example.org/a.png from elsewhere'
+mkdir other && touch other/mine
+run 1 "a folder of other files is left alone" "$PYTHON" -B scripts/site \
+    "$MANUAL" other
+check "all of it" [ -e other/mine ]
+finish
