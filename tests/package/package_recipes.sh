@@ -1,0 +1,137 @@
+#!/usr/bin/env bash
+# tests/package/package_recipes.sh - `script TOOL BUILD SOURCE`: what packaging/
+# says agrees with the sources: versions, options of the build, and that each
+# installed file has its place in one of Debian's packages.
+. "$(dirname "$0")/../support/shell.sh"
+BUILD=$2 PACKAGING=$3/packaging CMAKE_FILES=("$3/CMakeLists.txt" "$3"/*/CMakeLists.txt "$3"/cmake/*.cmake)
+version=$("$TOOL" --version | grep -oE '[0-9]+[.][0-9]+[.][0-9]+')
+series=${version%.*}
+for file in spack/package.py conda/meta.yaml container/Containerfile debian/changelog; do
+    check "$file is of this version" grep -q "$version" "$PACKAGING/$file"
+done
+
+# Options that are given to CMake exist.
+known() { grep -qE "\b$1\b|snow_optional\(${1#SNOW_} " "${CMAKE_FILES[@]}"; }
+lacking=
+for option in $(grep -ohE -- '-DSNOW_[A-Z0-9_]+' "$PACKAGING/debian/rules" \
+    "$PACKAGING/conda/build.sh" | sed 's/-D//' | sort -u); do
+    known "$option" || lacking+=" $option"
+done
+check "options exist${lacking:+, but for$lacking}" [ -z "$lacking" ]
+
+# --- Spack and conda ----------------------------------------------------------
+
+# The recipe is run with a stand-in for Spack's own module.
+python=$(command -v /usr/bin/python3 || command -v python3)
+cat >stand_in.py <<'END'
+import re
+import sys
+import types
+
+seen = {"variants": [], "needs": [], "versions": []}
+
+
+class CMakePackage:
+    run_tests = False
+
+    def define(self, name, value):
+        return f"-D{name}={'ON' if value else 'OFF'}"
+
+    def define_from_variant(self, name, variant):
+        assert variant in seen["variants"], variant
+        return self.define(name, True)
+
+
+module = types.ModuleType("spack.package")
+module.CMakePackage = CMakePackage
+module.license = lambda name: None
+module.version = lambda name, **more: seen["versions"].append(name)
+module.variant = lambda name, **more: seen["variants"].append(name)
+module.depends_on = lambda name, when="", type=None: seen["needs"].append(when)
+sys.modules["spack"] = types.ModuleType("spack")
+sys.modules["spack.package"] = module
+spec = {}
+exec(compile(open(sys.argv[1]).read(), sys.argv[1], "exec"), spec)
+for word in spec["Snowglass"]().cmake_args():
+    print(re.match("-D([A-Z0-9_]+)=", word)[1])
+for when in seen["needs"]:
+    assert not when or when[1:] in seen["variants"], when
+for name in seen["variants"]:
+    assert f"+{name}" in seen["needs"], f"{name} needs nothing"
+END
+if [ -n "$python" ]; then
+    run 0 "Spack's recipe runs" "$python" -B stand_in.py "$PACKAGING/spack/package.py"
+    lacking=
+    while read -r option; do
+        [ "$option" = BUILD_TESTING ] || known "$option" || lacking+=" $option"
+    done <"$OUT"
+    check "and its options exist${lacking:+, but for$lacking}" [ -z "$lacking" ]
+    check "all of them" [ "$(grep -c SNOW_ "$OUT")" -ge 12 ]
+fi
+if [ -n "$python" ] && "$python" -c 'import yaml' 2>/dev/null; then
+    sed -e '/^{%/d' -e "s/{{ version }}/$version/; s/{{ \([a-z]*\)('\([a-z]*\)') }}/\1_\2/" \
+        "$PACKAGING/conda/meta.yaml" >meta.yaml
+    run 0 "conda's recipe is YAML" "$python" -c \
+        'import yaml; m = yaml.safe_load(open("meta.yaml"))
+print(m["package"]["version"], len(m["requirements"]["host"]))'
+    prints "^$version 14$"
+else
+    skipped "conda's recipe" "there is no yaml for Python"
+fi
+check "conda's script is of bash" bash -n "$PACKAGING/conda/build.sh"
+check "packaging/make is of bash" bash -n "$PACKAGING/make"
+
+# --- Debian -------------------------------------------------------------------
+
+# As debian/rules installs, but for folders of the system; then each file must
+# be in the list of just one package.
+cmake --install "$BUILD" --prefix "$WORK/usr" >log 2>&1 || cat log
+rm -f usr/share/doc/snowglass/LICENSE
+libdir=$(dirname "$(dirname "$(find usr -name snowglass.pc)")")
+check "modules are in the folder of the series" [ -d "$libdir/snowglass-$series" ]
+for list in "$PACKAGING"/debian/*.install "$PACKAGING"/debian/*.manpages; do
+    while read -r pattern _; do
+        [[ $pattern != \#* ]] || continue
+        pattern=${pattern#debian/tmp/}
+        # A folder of libraries may be deeper; pages are what CMake installs.
+        pattern=${pattern/usr\/lib\/\*/$libdir}
+        pattern=${pattern/usr\/lib\/python3\*\/dist-packages/usr/lib/python3*/*-packages}
+        # shellcheck disable=SC2086  # patterns
+        files=$(find $pattern ! -type d 2>/dev/null)
+        [ -n "$files" ] || echo "${list##*/}: $pattern" >>idle
+        echo "$files" >>listed
+    done <"$list"
+done
+[ -e "$(find usr -name 'snowglass-mpi.pc')" ] || sed -i '/mpi/d' idle 2>/dev/null
+[ -d usr/lib/python3* ] || sed -i '/python3/d' idle 2>/dev/null
+check "each line of the lists names a file" [ ! -s idle ]
+cat idle 2>/dev/null
+find usr ! -type d | sort >installed
+check "each file is in a list" diff <(sort -u listed | sed '/^$/d') installed
+check "and in one only" [ -z "$(sort listed | sed '/^$/d' | uniq -d)" ]
+
+for package in $(sed -n 's/^Package: //p' "$PACKAGING/debian/control"); do
+    [ -e "$PACKAGING/debian/$package.install" ] || fail "$package has no list"
+done
+for name in $(sed -n 's/^Tests: //p' "$PACKAGING/debian/tests/control"); do
+    check "debian/tests/$name can be run" [ -x "$PACKAGING/debian/tests/$name" ]
+    check "and read" sh -n "$PACKAGING/debian/tests/$name"
+done
+for library in libsnowglass0.1 libsnowglass-mpi0.1; do
+    file=$PACKAGING/debian/$library.symbols
+    for so in "$libdir"/libsnowglass*.so."$series"; do
+        case $library-$so in
+        libsnowglass0.1-*-mpi.so*) continue ;;
+        libsnowglass-mpi0.1-*-mpi.so*) ;;
+        libsnowglass-mpi0.1-*) continue ;;
+        esac
+        lacking=
+        for symbol in $(nm -D --defined-only "$so" | awk '$2 == "T" { print $3 }' |
+            sed 's/@@.*//'); do
+            grep -q "^ $symbol@" "$file" || lacking+=" $symbol"
+        done
+        check "$library.symbols has ${so##*/}${lacking:+, but not$lacking}" \
+            [ -z "$lacking" ]
+    done
+done
+finish
