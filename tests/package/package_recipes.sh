@@ -115,7 +115,7 @@ for package in $(sed -n 's/^Package: //p' "$PACKAGING/debian/control"); do
 done
 for name in $(sed -n 's/^Tests: //p' "$PACKAGING/debian/tests/control"); do
     check "debian/tests/$name can be run" [ -x "$PACKAGING/debian/tests/$name" ]
-    check "and read" sh -n "$PACKAGING/debian/tests/$name"
+    check "and read" bash -n "$PACKAGING/debian/tests/$name"
 done
 for library in libsnowglass0.1 libsnowglass-mpi0.1; do
     file=$PACKAGING/debian/$library.symbols
