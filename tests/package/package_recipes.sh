@@ -103,7 +103,7 @@ for list in "$PACKAGING"/debian/*.install "$PACKAGING"/debian/*.manpages; do
     done <"$list"
 done
 [ -e "$(find usr -name 'snowglass-mpi.pc')" ] || sed -i '/mpi/d' idle 2>/dev/null
-[ -d usr/lib/python3* ] || sed -i '/python3/d' idle 2>/dev/null
+[ -n "$(find usr -name '_snowglass*.so')" ] || sed -i '/python3/d' idle 2>/dev/null
 check "each line of the lists names a file" [ ! -s idle ]
 cat idle 2>/dev/null
 find usr ! -type d | sort >installed
