@@ -6,7 +6,7 @@
 PAGE=$HERE/../docs/clusters.md
 mkdir bin files
 ln -s "$TOOL" bin/snowglass
-ln -s "$MPI_TOOL" bin/snowglass-mpi
+ln -s "$(realpath "$MPI_TOOL")" bin/snowglass-mpi
 printf '#!/bin/sh\nexec timeout -k 5 120 "%s" "$@"\n' "$(command -v "$MPIEXEC")" \
     >bin/mpirun
 # As many ranks as the script asks for; options of srun itself are none here.
@@ -24,11 +24,11 @@ done
 cd "$WORK" || exit 1
 
 # in_copy COMMAND...: in a folder with nothing but the files.
-in_copy() {
+in_copy() (
     rm -rf "$WORK/run"
     cp -r "$WORK/files" "$WORK/run"
     cd "$WORK/run" && "$@"
-}
+)
 
 # Lines with mpirun.  Binding is spelt in another way by each launcher.
 count=0
@@ -37,7 +37,7 @@ while read -r line; do
     count=$((count + 1))
     run 0 "$line" in_copy sh -c "$line"
     case $line in
-    *doctor*) prints 'ranks?' ;;
+    *doctor*) prints '^mpi .*, 2 ranks' ;;
     *' -o big.png'*) run 0 "is the same picture" "$TOOL" compare run/big.png \
         want.png --tolerance 1/255 ;;
     *turn_%04d*) check "has all frames" [ -s run/turn_0003.png ] ;;
