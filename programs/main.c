@@ -48,6 +48,8 @@ static int run_verb(const verb_row *verb, const options *opts) {
         return cmd_render(opts);
     case VERB_TURNTABLE:
         return cmd_turntable(opts);
+    case VERB_SLICE:
+        return cmd_slice(opts);
     case VERB_MOVIE:
         return cmd_movie(opts);
     case VERB_INFO:
@@ -106,6 +108,8 @@ static int run_command(const verb_row *verb, bool named, int argc,
         snow_comm_set_timeout(process_comm(), opts.timeout);
     if (verb->bit == VERB_RENDER)
         done = process_agree(default_name(&opts));
+    else if (verb->bit == VERB_SLICE)
+        done = default_name(&opts);
     if (done == CONTINUE)
         done = config_check(&opts);
     if (done == CONTINUE)

@@ -51,10 +51,9 @@ SNOW_API snow_status snow_insitu_set_brick(snow_insitu *insitu, int id,
 SNOW_API snow_status snow_insitu_set_voxels(snow_insitu *insitu, int id,
     snow_type type, const void *voxels, const int64_t stride[3]);
 
-/* A brick by its place in the world. */
-typedef struct snow_world_brick {
-    double origin[3]; /* of its first voxel, behind the halo */
-    int64_t count[3]; /* voxels; 0: none */
+typedef struct snow_world_brick { /* a brick by its place in the world */
+    double origin[3];             /* of its first voxel, behind the halo */
+    int64_t count[3];             /* voxels; 0: none */
     snow_halo halo;
 } snow_world_brick;
 
@@ -64,14 +63,12 @@ typedef struct snow_world_brick {
 SNOW_API snow_status snow_insitu_place_bricks(snow_insitu *insitu,
     const snow_world_brick *bricks, int count, const double spacing[3]);
 
-/* Where ghost voxels come from. */
-typedef enum snow_ghosts {
-    SNOW_GHOSTS_AUTO = 0, /* the bricks' halos, else from their owners */
-    SNOW_GHOSTS_NONE      /* outermost voxels are repeated: faint seams */
+typedef enum snow_ghosts { /* where ghost voxels come from */
+    SNOW_GHOSTS_AUTO = 0,  /* the bricks' halos, else from their owners */
+    SNOW_GHOSTS_NONE       /* outermost voxels are repeated: faint seams */
 } snow_ghosts;
 
-/* Where the work is done. */
-typedef enum snow_balance {
+typedef enum snow_balance {    /* where the work is done */
     SNOW_BALANCE_IN_PLACE = 0, /* where the voxels are, if the method can */
     SNOW_BALANCE_REPARTITION   /* voxels move to ranks with equal parts */
 } snow_balance;
@@ -113,13 +110,11 @@ SNOW_API snow_status snow_insitu_render(
 /* Collective. Updates, renders, writes on rank 0; means and sums as colours. */
 SNOW_API snow_status snow_insitu_step(snow_insitu *insitu, int64_t step);
 
-/* Over the ranks. */
-typedef struct snow_spread {
+typedef struct snow_spread { /* over the ranks */
     double least, mean, most;
 } snow_spread;
 
-/* How far a picture was lowered to keep a limit. */
-typedef enum snow_degradation {
+typedef enum snow_degradation { /* of a picture, to keep a limit */
     SNOW_DEGRADATION_NONE = 0,
     SNOW_DEGRADATION_DRAFT,   /* draft quality */
     SNOW_DEGRADATION_HALF,    /* and half the width and height */
@@ -127,7 +122,7 @@ typedef enum snow_degradation {
     SNOW_DEGRADATION_SKIPPED  /* left out */
 } snow_degradation;
 
-/* Figures of the last picture, and of all so far. */
+/* Figures of the last picture, and of all so far; collective. */
 typedef struct snow_insitu_stats {
     size_t size;
     snow_spread seconds_update, seconds_look;   /* voxels; transfer function */
@@ -143,8 +138,6 @@ typedef struct snow_insitu_stats {
     snow_degradation lowering; /* of the last picture */
 } snow_insitu_stats;
 SNOW_RECORD(snow_insitu_stats);
-
-/* Collective. */
 SNOW_API snow_status snow_insitu_get_stats(
     snow_insitu *insitu, snow_insitu_stats *out);
 

@@ -10,22 +10,20 @@
 #include <snowglass/comm.h>
 #include <snowglass/render.h>
 
-/* How the volume is partitioned. */
-typedef enum snow_partition {
-    SNOW_PARTITION_AUTO = 0, /* counted; bricks where slabs would be thin */
-    SNOW_PARTITION_EQUAL,    /* the paper's slabs: as equal as can be */
+typedef enum snow_partition { /* how the volume is partitioned */
+    SNOW_PARTITION_AUTO = 0,  /* counted; bricks where slabs would be thin */
+    SNOW_PARTITION_EQUAL,     /* the paper's slabs: as equal as can be */
     SNOW_PARTITION_COUNTED, /* slabs of about equally many interesting voxels */
     SNOW_PARTITION_BRICKS,  /* boxes of about equally many interesting voxels */
     SNOW_PARTITION_MEASURED /* auto, later by the time that pictures took */
 } snow_partition;
 
-/* How local images are combined. */
-typedef enum snow_combine {
-    SNOW_COMBINE_AUTO = 0, /* by the number of ranks and the image's size */
-    SNOW_COMBINE_TREE,     /* the paper's hierarchy */
-    SNOW_COMBINE_SWAP,     /* binary swap */
-    SNOW_COMBINE_DIRECT,   /* direct send */
-    SNOW_COMBINE_RADIX     /* radix-k */
+typedef enum snow_combine { /* how local images are combined */
+    SNOW_COMBINE_AUTO = 0,  /* by the number of ranks and the image's size */
+    SNOW_COMBINE_TREE,      /* the paper's hierarchy */
+    SNOW_COMBINE_SWAP,      /* binary swap */
+    SNOW_COMBINE_DIRECT,    /* direct send */
+    SNOW_COMBINE_RADIX      /* radix-k */
 } snow_combine;
 
 typedef struct snow_ranks_options {
@@ -103,7 +101,7 @@ SNOW_API snow_status snow_ranks_begin(snow_frame *frame, snow_comm *comm,
     const snow_ranks_options *how);
 SNOW_API snow_status snow_ranks_finish(snow_frame *frame, snow_image **image);
 
-/* What the last picture by several ranks took on this one, besides snow_stats;
+/* Not collective: what the last picture by several ranks took on this one, with
  * processor time of the calling thread (threads 1) or of the process. */
 typedef struct snow_ranks_stats {
     size_t size;
@@ -117,7 +115,6 @@ typedef struct snow_ranks_stats {
     uint64_t bytes_early;    /* of it, sent while the rest was still drawn */
 } snow_ranks_stats;
 SNOW_RECORD(snow_ranks_stats);
-/* Not collective. */
 SNOW_API const snow_ranks_stats *snow_frame_ranks_stats(const snow_frame *);
 
 #endif

@@ -9,8 +9,7 @@
 
 typedef struct snow_frame snow_frame;
 
-/* How voxels reach the picture (docs/fast.md). */
-typedef enum snow_method {
+typedef enum snow_method { /* how voxels reach the picture (docs/fast.md) */
     SNOW_METHOD_AUTO = 0,
     SNOW_METHOD_ORIGINAL,   /* every voxel, no sparse matrix: the baseline */
     SNOW_METHOD_TESTED,     /* the same, voxels tested against the threshold */
@@ -19,17 +18,15 @@ typedef enum snow_method {
     SNOW_METHOD_RAYCAST     /* rays through interpolated values: slow truth */
 } snow_method;
 
-/* How the places of interesting voxels are written: section 3.2. */
-typedef enum snow_encoding {
-    SNOW_ENCODING_AUTO = 0, /* by measured density and run length */
+typedef enum snow_encoding { /* how their places are written: section 3.2 */
+    SNOW_ENCODING_AUTO = 0,  /* by measured density and run length */
     SNOW_ENCODING_CRS,
     SNOW_ENCODING_BITMAP,
     SNOW_ENCODING_RLE
 } snow_encoding;
 
-/* The reconstruction kernel along one grid axis (docs/model.md, section 7). */
-typedef enum snow_kernel {
-    SNOW_KERNEL_AUTO = 0, /* tent; bspline by original and footprint */
+typedef enum snow_kernel { /* along a grid axis (docs/model.md, section 7) */
+    SNOW_KERNEL_AUTO = 0,  /* tent; bspline by original and footprint */
     SNOW_KERNEL_BSPLINE,
     SNOW_KERNEL_TENT,
     SNOW_KERNEL_GAUSS, /* by footprint and original only, as is box */
@@ -55,12 +52,11 @@ typedef enum snow_isa {
 
 typedef enum snow_shade { SNOW_SHADE_PHONG = 0, SNOW_SHADE_NONE } snow_shade;
 
-/* Where the light comes from (docs/model.md, section 4). */
-typedef enum snow_light {
-    SNOW_LIGHT_AUTO = 0, /* key; a direction where angles are not 0 */
-    SNOW_LIGHT_KEY,      /* 0.65 from 25 degrees left, 35 up; 0.35 head */
-    SNOW_LIGHT_HEAD,     /* from the viewer */
-    SNOW_LIGHT_DIRECTION /* from light_azimuth and light_elevation */
+typedef enum snow_light { /* from where (docs/model.md, section 4) */
+    SNOW_LIGHT_AUTO = 0,  /* key; a direction where angles are not 0 */
+    SNOW_LIGHT_KEY,       /* 0.65 from 25 degrees left, 35 up; 0.35 head */
+    SNOW_LIGHT_HEAD,      /* from the viewer */
+    SNOW_LIGHT_DIRECTION  /* from light_azimuth and light_elevation */
 } snow_light;
 
 /* How the sheets that a ray meets make a pixel (docs/modes.md). All but over
@@ -145,6 +141,21 @@ SNOW_API snow_status snow_frame_render_bytes(snow_frame *frame,
  * may be NULL. Errors: of snow_volume_open, snow_frame_render. */
 SNOW_API snow_status snow_render_file(snow_context *context, const char *path,
     const snow_view *view, const snow_settings *settings, snow_image **image);
+
+/* The view straight on the slices across a grid axis: "x", "y", "z", or the one
+ * that faces the view "axial", "coronal" or "sagittal" most; *found gets it. A
+ * slice fills a picture of the view's size or, where a side is 0, of its own,
+ * in pixels of its smaller spacing. */
+SNOW_API snow_status snow_slice_view(snow_context *context,
+    const snow_volume_info *info, const char *axis, snow_view *view,
+    int *found);
+
+/* Slice `index` across the axis that a view faces, between whose own voxels all
+ * is linear; nearest of labels and by kernel box. Opaque colours or, `transfer`
+ * NULL, data values, NaN where there are none. `settings` may be NULL. */
+SNOW_API snow_status snow_slice_render(const snow_volume *volume, int64_t index,
+    const snow_transfer *transfer, const snow_view *view,
+    const snow_settings *settings, snow_image **image);
 
 /* Owned by the frame until its next picture. Depths, or NULL: world distance
  * from the target's plane to where opacity passes 1/2, or the surface. */

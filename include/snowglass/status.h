@@ -22,7 +22,7 @@
 #define SNOW_PRINTF(text, first)
 #endif
 
-/* One list makes the enum, the names and the texts. */
+/* One list makes the enum, the names and the texts (never NULL). */
 #define SNOW_STATUS_MAP(X)                                               \
     X(OK, 0, "done")                                                     \
     X(FAILED, 1, "rendering failed")                                     \
@@ -39,7 +39,6 @@ typedef enum snow_status {
 #undef SNOW_STATUS_ENUM
 } snow_status;
 
-/* Never NULL. */
 SNOW_API const char *snow_status_description(snow_status status);
 
 #endif

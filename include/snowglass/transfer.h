@@ -47,11 +47,10 @@ typedef enum snow_range {
     SNOW_RANGE_ROBUST       /* the file's window, else FULL but far outliers */
 } snow_range;
 
-/* What the values of control points mean. */
-typedef enum snow_domain {
-    SNOW_DOMAIN_DATA = 0, /* data values */
-    SNOW_DOMAIN_RANGE,    /* shares 0 to 1, of smallest to largest value */
-    SNOW_DOMAIN_OBJECT    /* shares, of the background's end to the brightest */
+typedef enum snow_domain { /* what the values of control points mean */
+    SNOW_DOMAIN_DATA = 0,  /* data values */
+    SNOW_DOMAIN_RANGE,     /* shares 0 to 1, of smallest to largest value */
+    SNOW_DOMAIN_OBJECT /* shares, of the background's end to the brightest */
 } snow_domain;
 
 /* What a transfer function is made of, before there is a volume; by default all

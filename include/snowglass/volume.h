@@ -56,8 +56,7 @@ typedef struct snow_volume_info {
 } snow_volume_info;
 SNOW_RECORD(snow_volume_info);
 
-/* Byte order of raw data. */
-typedef enum snow_endian {
+typedef enum snow_endian {   /* byte order of raw data */
     SNOW_ENDIAN_DEFAULT = 0, /* little */
     SNOW_ENDIAN_LITTLE,
     SNOW_ENDIAN_BIG

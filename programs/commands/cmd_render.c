@@ -83,7 +83,7 @@ static int check_depth(const options *opts) {
 }
 
 /* These checks need no file, so they come before everything else. */
-static int check_combination(const options *opts) {
+int check_picture(const options *opts) {
     if (snow_image_format_bits(opts->output) == 0 &&
         (opts->background.given || opts->bits))
         return fail_usage("%s: --background and --bits work only for PNG, "
@@ -98,9 +98,7 @@ static int check_combination(const options *opts) {
     if (is_stream(opts->output) && !opts->show && isatty(STDOUT_FILENO))
         return fail_usage("--output: standard output is a terminal; send it to "
                           "a pipe or a file");
-    int done = render_state_check(opts);
-    if (done == CONTINUE)
-        done = check_depth(opts);
+    int done = check_depth(opts);
     return done == CONTINUE ? check_settings(opts) : done;
 }
 
@@ -114,7 +112,7 @@ snow_image_options picture_form(const options *opts) {
 
 /* A long rendering must not end at an output that could have been refused at
  * the start. */
-static int check_paths(snow_context *context, const options *opts) {
+int check_picture_paths(snow_context *context, const options *opts) {
     const char *const paths[] = {opts->output, opts->depth, opts->stats};
     snow_image_options form = picture_form(opts);
     int done = check_input_first(opts, paths, sizeof paths / sizeof *paths);
@@ -129,7 +127,8 @@ static int check_paths(snow_context *context, const options *opts) {
     if (done != CONTINUE)
         return done;
     snow_status status = snow_image_check(
-        context, opts->output, (int)opts->size[0], (int)opts->size[1], &form);
+        context, opts->output, (int)(opts->size[0] ? opts->size[0] : 1),
+        (int)(opts->size[1] ? opts->size[1] : 1), &form);
     if (status == SNOW_STATUS_OK && opts->depth && !is_beside(opts))
         status = snow_image_check_path(context, opts->depth, opts->overwrite);
     if (status != SNOW_STATUS_OK)
@@ -349,12 +348,15 @@ static void report_choices(const work *w) {
 /* Refuses what can be refused before anything is read; the rank that writes
  * checks the outputs. */
 static int check_request(work *w, const options *opts) {
-    int done = process_agree(check_combination(opts));
+    int done = check_picture(opts);
+    if (done == CONTINUE)
+        done = render_state_check(opts);
+    done = process_agree(done);
     if (done == CONTINUE)
         done = render_state_new(opts, &w->state);
     if (done != CONTINUE || !process_talks())
         return done;
-    return check_paths(w->state.context, opts);
+    return check_picture_paths(w->state.context, opts);
 }
 
 /* Up to the picture in memory. */

@@ -8,6 +8,7 @@
 int cmd_render(const options *opts);
 int cmd_turntable(const options *opts);
 int cmd_movie(const options *opts);
+int cmd_slice(const options *opts);
 int cmd_info(const options *opts);
 int cmd_phantom(const options *opts);
 int cmd_convert(const options *opts);
@@ -74,6 +75,12 @@ snow_image_options picture_form(const options *opts);
 /* Refuses settings that contradict each other, before a volume is read.
  * Returns CONTINUE or an exit code. */
 int check_settings(const options *opts);
+
+/* Refuses options of one picture that contradict each other, and outputs that
+ * cannot be written, before anything is read.  Return CONTINUE or an exit
+ * code. */
+int check_picture(const options *opts);
+int check_picture_paths(snow_context *context, const options *opts);
 
 /* "raw 256x256x110 uint8, spacing 1x1x1 mm". */
 void describe_volume(const snow_volume_info *info, char *out, size_t size);

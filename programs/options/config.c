@@ -237,7 +237,8 @@ const verb_row *config_verb(int argc, char **argv) {
         verb = name ? verb_named(name) : NULL;
         json_decref(tree);
     }
-    return verb && verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE)
+    return verb && verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE |
+                                VERB_SLICE)
                ? verb
                : verb_of(VERB_RENDER);
 }

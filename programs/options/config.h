@@ -29,6 +29,10 @@ int config_check(const options *opts);
 void config_note(const options *opts, const snow_transfer *transfer,
                  snow_shade shade, const char *view, const double painted[2]);
 
+/* The same for a slice across an axis; `transfer` NULL: no colours. */
+void config_note_slice(const options *opts, const snow_transfer *transfer,
+                       const char *axis, int64_t index);
+
 /* Writes the --save-config file, if one is given, and prints the command with
  * -v.  Returns an exit code. */
 int config_save(const options *opts, const verb_row *verb);

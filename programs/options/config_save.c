@@ -11,7 +11,9 @@
 #include "run/log.h"
 #include "run/start.h"
 
+#include <inttypes.h>
 #include <limits.h>
+#include <math.h>
 #include <snowglass/recipe.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -131,7 +133,7 @@ static json_t *recipe_tree(snow_context *context, const snow_recipe *recipe) {
 
 /* What a look of the histogram and the default view came to. */
 static struct chosen {
-    json_t *preset, *colormap, *range, *opacity, *shade, *view;
+    json_t *preset, *colormap, *range, *opacity, *shade, *view, *axis, *at;
 } chosen;
 
 /* Whether the transfer function has the colours of a map over its range. */
@@ -210,13 +212,29 @@ void config_note(const options *opts, const snow_transfer *transfer,
         chosen.view = json_string(view);
 }
 
+void config_note_slice(const options *opts, const snow_transfer *transfer,
+                       const char *axis, int64_t index) {
+    char at[24];
+    snprintf(at, sizeof at, "%" PRId64, index);
+    chosen.axis = json_string(axis);
+    chosen.at = json_string(opts->at ? opts->at : at);
+    if (!transfer || opts->preset || opts->tf || opts->shift < 0 ||
+        opts->shift > 0 || opts->range.kind != SNOW_RANGE_AUTO ||
+        !isnan(opts->window))
+        return;
+    double ends[2];
+    snow_transfer_domain(transfer, &ends[0], &ends[1]);
+    chosen.range = json_vector(ends, 2);
+}
+
 static void set_chosen(json_t *tree) {
     const struct {
         const char *key;
         json_t **value;
     } rows[] = {{"preset", &chosen.preset}, {"colormap", &chosen.colormap},
                 {"range", &chosen.range},   {"opacity", &chosen.opacity},
-                {"shade", &chosen.shade},   {"view", &chosen.view}};
+                {"shade", &chosen.shade},   {"view", &chosen.view},
+                {"axis", &chosen.axis},     {"at", &chosen.at}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (*rows[i].value)
             json_object_set_new(tree, rows[i].key, *rows[i].value);
@@ -236,6 +254,16 @@ static void set_inputs(const options *opts, json_t *tree) {
     json_decref(list);
 }
 
+/* A recipe has all keys; those of options that a slice lacks are removed, and
+ * its own size. */
+static void keep_slice(const options *opts, json_t *tree) {
+    if (!options_given(opts, "size"))
+        json_object_del(tree, "size");
+    for (const option_row *row = option_table; row->name; row++)
+        if (!(row->verbs & VERB_SLICE))
+            json_object_del(tree, row->name);
+}
+
 static json_t *make_tree(const options *opts, const verb_row *verb) {
     snow_context *context = NULL;
     snow_recipe recipe = {.size = sizeof recipe};
@@ -252,6 +280,8 @@ static json_t *make_tree(const options *opts, const verb_row *verb) {
         json_object_set_new(tree, "background", json_string("none"));
     if (verb->bit == VERB_RENDER)
         json_object_del(tree, "fps");
+    if (verb->bit == VERB_SLICE)
+        keep_slice(opts, tree);
     set_inputs(opts, tree);
     set_chosen(tree);
     return tree;
@@ -319,6 +349,8 @@ static void print_command(const options *opts, const verb_row *verb,
     if (out && snow_context_new(NULL, &context) == SNOW_STATUS_OK) {
         json_t *usual = recipe_tree(context, &recipe);
         json_object_del(usual, "shade"); /* the default depends on the look */
+        if (verb->bit == VERB_SLICE)
+            json_object_del(usual, "size"); /* or on the slice */
         write_command(out, opts, verb, tree, usual);
         json_decref(usual);
     }
@@ -329,7 +361,8 @@ static void print_command(const options *opts, const verb_row *verb,
 }
 
 int config_save(const options *opts, const verb_row *verb) {
-    bool rendered = (verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE));
+    bool rendered =
+        (verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE | VERB_SLICE));
     bool prints = opts->verbosity > 0 && rendered;
     if ((!opts->save_config && !prints) || !process_talks())
         return SNOW_STATUS_OK;

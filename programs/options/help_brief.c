@@ -1,13 +1,16 @@
-/* help_brief.c - the short page of a verb that renders: its own options first,
- * then those that are used most, examples, and the topics of all the others. */
+/* help_brief.c - the short page of a verb that makes pictures: its own options
+ * first, then those that are used most, examples, and the topics of all the
+ * others. */
 #include "options/help.h"
 
 #include <stdio.h>
 #include <string.h>
 
 enum {
-    STILL = VERB_RENDER,
+    RENDER = VERB_RENDER,
+    STILL = VERB_RENDER | VERB_SLICE,
     MOVIES = VERB_TURNTABLE | VERB_MOVIE,
+    TURNED = RENDER | MOVIES,
     ANY = STILL | MOVIES
 };
 
@@ -20,17 +23,18 @@ static const struct {
     {MOVIES, "output",
      "the movie, such as turn.mp4, or single frames: f_%04d.png"},
     {ANY, "overwrite", "replace the file if it exists"},
-    {ANY, "size", "size in pixels (default 512x512)"},
+    {TURNED, "size", "size in pixels (default 512x512)"},
+    {VERB_SLICE, "size", "size in pixels (default: that of the slice)"},
     {ANY, "preset", "look for a kind of data: ct-bone; help preset lists all"},
     {ANY, "colormap", "colours: viridis; help colormap lists all"},
     {ANY, "window", "show W data values around L: -w 400,40"},
-    {ANY, "mode",
+    {TURNED, "mode",
      "over: matter with its opacity; mip: the largest value of each ray; help "
      "mode lists all"},
-    {ANY, "view", "side or plane: left, axial, +z; help view lists all"},
-    {ANY, "azimuth", "move the camera to its right around the volume"},
-    {ANY, "elevation", "then move it up"},
-    {ANY, "zoom", "magnify"},
+    {TURNED, "view", "side or plane: left, axial, +z; help view lists all"},
+    {TURNED, "azimuth", "move the camera to its right around the volume"},
+    {TURNED, "elevation", "then move it up"},
+    {TURNED, "zoom", "magnify"},
     {ANY, "legend", "draw a colour bar and a scale bar"},
 };
 
@@ -43,6 +47,10 @@ static const struct {
       "snowglass render ct.nrrd -o bone.png --preset ct-bone --view left -s "
       "1024",
       "snowglass render mra.nii.gz -o mip.png --mode mip --legend"}},
+    {VERB_SLICE,
+     {"snowglass slice head.nii.gz -o middle.png",
+      "snowglass slice ct.nrrd --axis coronal --at -12.5mm -w 400,40 -o c.png",
+      "snowglass slice cells.tif --axis z --at 30 -s 1024 -o z30.png"}},
     {VERB_TURNTABLE,
      {"snowglass turntable head.nii.gz -o head.mp4",
       "snowglass turntable ct.nrrd -o bone.gif --preset ct-bone --frames 60",

@@ -27,14 +27,16 @@ enum {
     DOCTOR = VERB_DOCTOR,
     CONVERT = VERB_CONVERT,
     TF = VERB_TF,
-    LOOKED = RENDER | VERB_INFO, /* all verbs that use a look */
-    INPUT = LOOKED | CONVERT,    /* all verbs that read a volume */
+    SLICE = VERB_SLICE,
+    PICTURE = RENDER | SLICE,     /* all verbs that make pictures */
+    LOOKED = PICTURE | VERB_INFO, /* all verbs that use a look */
+    INPUT = LOOKED | CONVERT,     /* all verbs that read a volume */
     EVERY = INPUT | VERB_PHANTOM | VERB_COMPARE | VERB_DOCTOR | VERB_HELP | TF
 };
 
 /* clang-format off */
 const option_row option_table[] = {
-    {"output", 'o', "FILE", TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT | TF,
+    {"output", 'o', "FILE", TOPIC_OUTPUT, PICTURE | PHANTOM | CONVERT | TF,
      read_text,
      FIELD(output), 0, 0, "",
      "output file. Picture: .png, .jpg or .webp; .npy, .exr, .tif or .pfm for "
@@ -42,22 +44,23 @@ const option_row option_table[] = {
      "pattern such as f_%04d.png for single frames. Volume: .nrrd, .nii, "
      ".nii.gz, .mha, .npy, .raw or .raw.gz. A picture without -o is NAME.png in "
      "the working folder, after the input, and replaces no file"},
-    {"size", 's', "WxH|N", TOPIC_OUTPUT, RENDER, read_size, FIELD(size), 0, 0, "",
-     "picture size in pixels; N is NxN (default 512x512)"},
-    {"background", 0, "COLOR|auto|none", TOPIC_OUTPUT, RENDER, read_color,
+    {"size", 's', "WxH|N", TOPIC_OUTPUT, PICTURE, read_size, FIELD(size), 0, 0, "",
+     "picture size in pixels; N is NxN (default 512x512; of a slice its own, a "
+     "pixel for each voxel or, where they are not square, for its shorter side)"},
+    {"background", 0, "COLOR|auto|none", TOPIC_OUTPUT, PICTURE, read_color,
      FIELD(background), 0, 0, "",
      "background colour of a PNG, WebP, JPEG or movie: a name, #rgb, #rrggbb, "
      "or r,g,b from 0 to 1; auto, dark: #141414 in modes over and iso, black in "
-     "the others; or none, transparent, but black in JPEG and movies by ffmpeg "
+     "the others and around slices; or none, transparent, but black in JPEG and movies by ffmpeg "
      "(default auto)"},
-    {"bits", 0, "8|16", TOPIC_OUTPUT, RENDER, read_choice, FIELD(bits), 0, 0,
+    {"bits", 0, "8|16", TOPIC_OUTPUT, PICTURE, read_choice, FIELD(bits), 0, 0,
      "", "bits per channel of a PNG (default 8)"},
-    {"overwrite", 'y', NULL, TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT | TF,
+    {"overwrite", 'y', NULL, TOPIC_OUTPUT, PICTURE | PHANTOM | CONVERT | TF,
      read_flag,
      FIELD(overwrite), 0, 0, "",
      "replace existing files of --output, --depth and --stats (default: "
      "refuse)"},
-    {"show", 0, NULL, TOPIC_OUTPUT, VERB_RENDER, read_flag, FIELD(show), 0, 0, "",
+    {"show", 0, NULL, TOPIC_OUTPUT, VERB_RENDER | SLICE, read_flag, FIELD(show), 0, 0, "",
      "show the picture in the terminal, and write a file only if --output is "
      "given: by kitty's graphics protocol (kitty, Ghostty, WezTerm), elsewhere "
      "by half blocks in 24-bit colour"},
@@ -79,7 +82,7 @@ const option_row option_table[] = {
     {"iso", 0, "VALUE", TOPIC_MODE, RENDER, read_real, FIELD(iso), 0, 0, "",
      "data value of the surface in mode iso"},
 
-    {"threshold", 0, "T", TOPIC_SPARSE, LOOKED, read_real, FIELD(threshold), 0,
+    {"threshold", 0, "T", TOPIC_SPARSE, RENDER | INFO, read_real, FIELD(threshold), 0,
      255, "",
      "skip voxels with an opacity of T or less, from 0 to 255; the others are "
      "interesting (default 0; info lists 0, 10 and 30)"},
@@ -94,10 +97,11 @@ const option_row option_table[] = {
      "interesting voxels straight onto the picture, as the paper does; "
      "original: the same with every voxel (default auto: shear-warp)"},
 
-    {"kernel", 0, "auto|tent|gauss|bspline|box", TOPIC_KERNEL, RENDER, read_choice,
+    {"kernel", 0, "auto|tent|gauss|bspline|box", TOPIC_KERNEL, PICTURE, read_choice,
      FIELD(kernel), 0, 0, "", "reconstruction kernel. shear-warp and raycast support tent and bspline; "
      "with gauss and box, footprint makes the picture (default auto: tent; "
-     "bspline with footprint and original)"},
+     "bspline with footprint and original). Slices are linear between their "
+     "voxels (tent), or show the nearest one (box)"},
     {"footprint", 0, "K", TOPIC_KERNEL, RENDER, read_integer, FIELD(footprint),
      2, 9, "",
      "support of the kernel in voxels, 2 to 9 (default 2 for tent and box, "
@@ -204,15 +208,15 @@ const option_row option_table[] = {
      "direction that is up in the picture (default: the view's; for a "
      "--position 0,0,1, or 0,1,0 when looking along z)"},
 
-    {"no-labels", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(no_labels), 0,
+    {"no-labels", 0, NULL, TOPIC_LABELS, PICTURE, read_flag, FIELD(no_labels), 0,
      0, "",
      "omit the orientation letters R L A P S I at the edges (default: drawn if "
      "the file has a medical orientation, but never into float files)"},
-    {"legend", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(legend), 0, 0,
+    {"legend", 0, NULL, TOPIC_LABELS, PICTURE, read_flag, FIELD(legend), 0, 0,
      "",
      "draw a colour bar with values and the opacity curve, and in a parallel "
      "projection a scale bar"},
-    {"scale-bar", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(scale_bar), 0,
+    {"scale-bar", 0, NULL, TOPIC_LABELS, PICTURE, read_flag, FIELD(scale_bar), 0,
      0, "",
      "draw the scale bar without the colour bar, in a parallel projection"},
     {"time-label", 0, NULL, TOPIC_LABELS, MOVIE, read_flag, FIELD(time_label),
@@ -269,7 +273,7 @@ const option_row option_table[] = {
      "remove the voxels beyond a plane in world coordinates, where A x + B y + "
      "C z > D; up to six planes, in one list (default: none)"},
 
-    {"threads", 'j', "N", TOPIC_RUN, RENDER, read_integer, FIELD(threads), 1,
+    {"threads", 'j', "N", TOPIC_RUN, PICTURE, read_integer, FIELD(threads), 1,
      4096, "",
      "number of threads; the picture does not depend on it (default: all "
      "processors available to the process)"},
@@ -280,12 +284,12 @@ const option_row option_table[] = {
     {"isa", 0, "auto|scalar|avx2|avx512|neon|wasm", TOPIC_RUN, RENDER, read_choice,
      FIELD(isa), 0, 0, "",
      "instruction set to use (default auto: the best of this machine)"},
-    {"progress", 0, "auto|always|never", TOPIC_RUN, RENDER, read_choice,
+    {"progress", 0, "auto|always|never", TOPIC_RUN, PICTURE, read_choice,
      FIELD(progress), 0, 0, "",
      "progress on stderr. auto: a status line or bar on a terminal, otherwise "
      "a line every 10 s; always: without a terminal also a line for each "
      "stage; never: none (default auto)"},
-    {"stats", 0, "FILE", TOPIC_RUN, RENDER, read_text, FIELD(stats), 0, 0, "",
+    {"stats", 0, "FILE", TOPIC_RUN, PICTURE, read_text, FIELD(stats), 0, 0, "",
      "write timings and other figures as JSON; - is stdout; replacing a file "
      "needs --overwrite"},
     {"verbose", 'v', NULL, TOPIC_RUN, EVERY, read_constant, FIELD(verbosity), 1,
@@ -293,7 +297,7 @@ const option_row option_table[] = {
      "print timings; render also prints bytes and the time of each stage"},
     {"quiet", 'q', NULL, TOPIC_RUN, EVERY, read_constant, FIELD(verbosity), -1,
      0, "", "print errors only"},
-    {"memory", 0, "SIZE", TOPIC_RUN, RENDER, read_bytes, FIELD(memory), 0, 0,
+    {"memory", 0, "SIZE", TOPIC_RUN, PICTURE, read_bytes, FIELD(memory), 0, 0,
      "",
      "memory limit of a process for voxels, encodings and pictures, such as "
      "800M or 4G. A larger volume stays in its file and is read in slabs; if "
@@ -302,12 +306,21 @@ const option_row option_table[] = {
     {"config", 0, "FILE", TOPIC_RUN, LOOKED, read_text, FIELD(config), 0, 0, "",
      "read options from a JSON file whose keys are long option names, and "
      "input; options on the command line have priority"},
-    {"save-config", 0, "FILE", TOPIC_RUN, RENDER, read_text,
+    {"save-config", 0, "FILE", TOPIC_RUN, PICTURE, read_text,
      FIELD(save_config), 0, 0, "",
      "write the options to a JSON file that gives the same picture with "
      "--config; --depth is included, --stats and other reports are not; - is "
      "stdout; replacing a file needs --overwrite"},
 
+    {"axis", 0, "x|y|z|axial|coronal|sagittal", TOPIC_MORE, SLICE, read_choice,
+     FIELD(axis), 0, 0, "",
+     "axis that the slice lies across: x, y or z of the grid; or axial, coronal "
+     "or sagittal, the axis of the grid that is nearest to that of the patient "
+     "(default axial)"},
+    {"at", 0, "INDEX|POSITION", TOPIC_MORE, SLICE, read_text, FIELD(at), 0, 0,
+     "",
+     "slice: its number from 0, or a position in the world with its unit, such "
+     "as 12.5mm, for the slice nearest to it (default: the middle one)"},
     {"frames", 0, "N", TOPIC_MORE, TURNTABLE, read_integer, FIELD(frames), 1,
      1000000, "", "number of frames in one turn (default 120)"},
     {"fps", 0, "N", TOPIC_MORE, MOVIES, read_real, FIELD(fps), 0.01, 1000, "",
@@ -359,6 +372,8 @@ const verb_row verb_table[] = {
      "make a movie around the volume"},
     {"movie", VERB_MOVIE, -1, "INPUT...|run_%04d.nrrd -o OUT",
      "make a movie over time steps"},
+    {"slice", VERB_SLICE, 1, "INPUT [--axis A] [--at N] [-o OUT]",
+     "make a picture of one slice"},
     {"info", VERB_INFO, -1, "INPUT... [--json]",
      "print geometry, type, range, histogram and sparse ratio"},
     {"phantom", VERB_PHANTOM, 1, "NAME -o OUT", "write a built-in test volume"},

@@ -30,7 +30,8 @@ enum {
     VERB_TURNTABLE = 1 << 7,
     VERB_MOVIE = 1 << 8,
     VERB_CONVERT = 1 << 9,
-    VERB_TF = 1 << 10
+    VERB_TF = 1 << 10,
+    VERB_SLICE = 1 << 11
 };
 
 typedef enum topic {
@@ -108,6 +109,8 @@ typedef struct options {
     uint64_t seed;
 
     bool each_time; /* `time` is one of all steps, which are opened in turn */
+
+    const char *axis, *at; /* of a slice; NULL: not given */
 
     int64_t frames; /* in a turn */
     double fps;

@@ -49,7 +49,7 @@ static bool are_hounsfield(double lowest, double highest) {
 
 /* A volume that stays in its file has no figures: its unit is not known. */
 void annotations_find_unit(const options *opts, const snow_volume *volume,
-                           snow_volume_info *whole) {
+                           bool parts, snow_volume_info *whole) {
     snow_volume_statistics of;
     snow_volume_statistics_init(&of);
     double ends[2] = {INFINITY, INFINITY}; /* lowest, -highest */
@@ -61,7 +61,7 @@ void annotations_find_unit(const options *opts, const snow_volume *volume,
         ends[0] = of.min;
         ends[1] = -of.max;
     }
-    if (process_ranks() > 1 &&
+    if (parts &&
         snow_comm_reduce_doubles(process_comm(), ends, 2, SNOW_REDUCE_MIN) !=
             SNOW_STATUS_OK)
         return;

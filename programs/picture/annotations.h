@@ -22,17 +22,19 @@ typedef struct picture_annotations {
 int annotations_check(const options *opts);
 
 /* Makes the overlay for a picture from an azimuth; NULL if nothing is drawn.
- * `step` is a time step, or -1; the image must outlive the overlay.  Error
- * messages go to the context. */
+ * `step` is a time step, or -1; letters keep off what the image shows (NULL: they
+ * stay at the edges), which must outlive the overlay.  Error messages go to the
+ * context. */
 snow_status annotations_make(const picture_annotations *annotations,
                              double azimuth, int64_t step,
                              const snow_image *image, snow_context *context,
                              snow_overlay **out);
 
-/* Collective.  Notes in `whole` that values are Hounsfield units where they say
- * so and the file says nothing, if a legend wants to know. */
+/* Notes in `whole` that values are Hounsfield units where they say so and the
+ * file says nothing, if a legend wants to know.  Collective, if the volume is
+ * one of the `parts` of several ranks. */
 void annotations_find_unit(const options *opts, const snow_volume *volume,
-                           snow_volume_info *whole);
+                           bool parts, snow_volume_info *whole);
 
 /* Reports the parts that a legend lacks. */
 void annotations_report(const options *opts);

@@ -295,7 +295,8 @@ int render_state_open(render_state *s, const char *path, int64_t time) {
     s->volume = NULL;
     int done = process_ranks() > 1 ? open_part(s, &step) : open_alone(s, &step);
     if (done == CONTINUE)
-        annotations_find_unit(s->opts, s->volume, &s->whole);
+        annotations_find_unit(s->opts, s->volume, process_ranks() > 1,
+                              &s->whole);
     return done;
 }
 

@@ -143,6 +143,8 @@ const recipe_key recipe_keys[] = {
     MADE("time", long, data.time, 0, 9e15, 0),
     MADE("frames", int, frames, 1, 1000000, 0),
     REAL("fps", fps, 0.01, 1000),
+    TEXT("axis", axis),
+    TEXT("at", at),
     TEXT("verb", verb),
     TEXT("version", version),
     {NULL, NULL, 0, 0, 0, 0, NULL, NULL},

@@ -259,10 +259,11 @@ snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
     snow_view usual, view;
     snow_settings settings;
     snow_look_file *tf = NULL;
-    if (recipe->depth)
+    if (recipe->depth || recipe->axis)
         return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
-                                 "\"depth\" is for pictures of files; remove "
-                                 "it from a recipe for a simulation");
+                                 "\"%s\" is for pictures of files; remove it "
+                                 "from a recipe for a simulation",
+                                 recipe->depth ? "depth" : "axis");
     snow_look_init(&look);
     snow_view_init(&usual);
     snow_view_init(&view);

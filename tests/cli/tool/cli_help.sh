@@ -23,7 +23,7 @@ done
 run 0 "the overview" "$TOOL" --help
 same_page overview.txt
 for word in output mode sparse kernel look quality camera labels data run \
-    more render turntable movie info phantom convert \
+    more render turntable movie slice info phantom convert \
     compare doctor help bench tf; do
     run 0 "help $word" "$TOOL" help $word
     same_page "help_$word.txt"
@@ -45,7 +45,7 @@ run 0 "pages of options and presets" words
 same_page words.txt
 
 # Verbs that render have one page; every option is found from there.
-for verb in render turntable movie; do
+for verb in render turntable movie slice; do
     run 0 "$verb --help" "$TOOL" $verb --help
     check "one page" [ "$(wc -l <"$OUT")" -le 50 ]
     cp "$OUT" page
@@ -56,10 +56,10 @@ for verb in render turntable movie; do
         run 3 "only the file is missing in: $arguments" "$TOOL" $arguments
     done <examples
 done
-for verb in turntable movie; do
+for verb in turntable movie slice; do
     "$TOOL" help $verb >page
     check "$verb shows what is its own first" bash -c \
-        "grep -m 1 -oE -- '--[a-z-]+ ' page | grep -qE 'frames|time-label'"
+        "grep -m 1 -oE -- '--[a-z-]+ ' page | grep -qE 'frames|time-label|axis'"
 done
 topics=$("$TOOL" help render | sed -n '/^all options/,/^$/s/^  \([a-z]*\) .*/\1/p')
 check "topics are listed" [ "$(wc -w <<<"$topics")" -ge 10 ]

@@ -20,7 +20,7 @@ x --json|--json: is not an option of render but of info
 -q info x|info: the verb must come first; give snowglass info
 rendr x -o y.png|rendr: is not a verb; did you mean render\?
 x y -o z.png|x: is neither a verb nor a file; verbs: render turntable movie
-view F|view: is neither a verb nor a file; verbs: render turntable movie info
+view F|view: is neither a verb nor a file; verbs: render turntable movie slice info
 -q view F -o z.png|view: is neither a verb nor a file
 trun-table x -o y.mp4|trun-table: is not a verb; did you mean turntable\?
 Inof x|Inof: is not a verb; did you mean info\?

@@ -1,0 +1,364 @@
+/* cmd_slice.c - the verb slice: one slice of a volume as a picture.
+ *
+ * The header says where the slice lies, and a crop has no more than it read. So
+ * a slice of a volume larger than memory takes the memory of a slice. */
+#include "commands/commands.h"
+#include "options/config.h"
+#include "picture/annotations.h"
+#include "picture/outputs.h"
+#include "picture/render_stats.h"
+#include "picture/show.h"
+#include "picture/warnings.h"
+#include "run/interrupt.h"
+#include "run/log.h"
+#include "run/start.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Degrees between a slice and the plane it stands for that are worth a note. */
+#define OBLIQUE 1.0
+
+typedef struct slice_work {
+    options opts; /* in a mode of its own, cropped to the slice */
+    snow_context *context;
+    const char *path;
+    snow_volume_info whole; /* what the slices are counted in */
+    snow_view view;
+    int axis, world; /* of the grid, and of the world beside it */
+    int64_t index;   /* in the whole */
+    double position; /* of its middle, in the world */
+    snow_volume *volume;
+    int64_t place; /* of the slice in the volume that was read */
+    snow_transfer *transfer;
+    snow_image *image;
+    snow_settings settings;
+    render_times times;
+    double begin, frame;
+} slice_work;
+
+/* --- which slice ---------------------------------------------------------- */
+
+static const char *axis_name(const slice_work *w) {
+    return w->opts.axis ? w->opts.axis : "axial";
+}
+
+static const char *unit_of(const snow_volume_info *info) {
+    return *info->unit ? info->unit : "mm";
+}
+
+/* The coordinate of a slice's middle along the axis of the world that it lies
+ * across. */
+static double position_of(const slice_work *w, double index) {
+    const snow_volume_info *info = &w->whole;
+    double at = info->matrix[w->world][3];
+    for (int i = 0; i < 3; i++)
+        at += info->matrix[w->world][i] *
+              (i == w->axis ? index : ((double)info->dims[i] - 1) / 2);
+    return at;
+}
+
+static int refuse_place(const slice_work *w) {
+    const char *unit = unit_of(&w->whole);
+    double last = (double)w->whole.dims[w->axis] - 1;
+    return fail_usage("--at: '%s' is no slice across %s: must be 0 to %g, or a "
+                      "position from %g%s to %g%s",
+                      w->opts.at, axis_name(w), last, position_of(w, 0), unit,
+                      position_of(w, last), unit);
+}
+
+/* A number, or a position with the unit of the world behind it. */
+static int find_place(slice_work *w) {
+    const char *at = w->opts.at;
+    double last = (double)w->whole.dims[w->axis] - 1;
+    char *end = NULL;
+    double index = at ? strtod(at, &end) : floor((last + 1) / 2);
+    if (at && end > at && strcmp(end, unit_of(&w->whole)) == 0)
+        index = rint((index - position_of(w, 0)) /
+                     w->whole.matrix[w->world][w->axis]);
+    else if (at && (end == at || *end))
+        index = NAN;
+    if (!(index >= 0 && index <= last) || index < floor(index) ||
+        index > floor(index))
+        return refuse_place(w);
+    w->index = (int64_t)index;
+    w->position = position_of(w, index);
+    return CONTINUE;
+}
+
+/* The nearest axis of the world, and how far the slice's normal is from it. */
+static double nearest_axis(const double normal[3], int *axis) {
+    *axis = 0;
+    for (int i = 1; i < 3; i++)
+        if (fabs(normal[i]) > fabs(normal[*axis]) + 1e-6)
+            *axis = i;
+    return acos(fmin(fabs(normal[*axis]), 1)) * 180 / acos(-1);
+}
+
+static int find_slice(slice_work *w) {
+    snow_view_init(&w->view);
+    w->view.width = (int)w->opts.size[0];
+    w->view.height = (int)w->opts.size[1];
+    snow_status status = snow_slice_view(w->context, &w->whole, axis_name(w),
+                                         &w->view, &w->axis);
+    if (status != SNOW_STATUS_OK)
+        return fail_status(w->context, status);
+    double angle = nearest_axis(w->view.back, &w->world);
+    if (angle > OBLIQUE && strlen(axis_name(w)) > 1 && w->opts.verbosity >= 0)
+        say("note: slices of the grid are %.0f degrees off %s: this is the "
+            "nearest of them, as it is",
+            angle, axis_name(w));
+    return find_place(w);
+}
+
+/* --- reading -------------------------------------------------------------- */
+
+/* Standard input can be read only once, so all of it is. */
+static bool is_piped(const slice_work *w) {
+    return strcmp(w->path, "-") == 0;
+}
+
+static int inspect(slice_work *w) {
+    snow_volume_options data = data_options(&w->opts);
+    snow_volume_info_init(&w->whole);
+    snow_status status =
+        snow_volume_inspect(w->context, w->path, &data, &w->whole);
+    return status == SNOW_STATUS_OK ? CONTINUE
+                                    : fail_status(w->context, status);
+}
+
+static void crop_to_slice(slice_work *w) {
+    int64_t *crop = w->opts.crop[w->axis];
+    crop[0] += w->index;
+    crop[1] = crop[0] + 1;
+}
+
+static int open_piped(slice_work *w) {
+    int done = open_input(w->context, &w->opts, w->path, &w->volume);
+    if (done != CONTINUE)
+        return done;
+    w->whole = *snow_volume_get_info(w->volume);
+    done = find_slice(w);
+    w->place = w->index;
+    return done;
+}
+
+static int open_slice(slice_work *w) {
+    if (is_piped(w))
+        return open_piped(w);
+    hear_warnings(&w->opts, w->context, false); /* they come again */
+    int done = inspect(w);
+    hear_warnings(&w->opts, w->context, true);
+    if (done == CONTINUE)
+        done = find_slice(w);
+    if (done != CONTINUE)
+        return done;
+    crop_to_slice(w);
+    return open_input(w->context, &w->opts, w->path, &w->volume);
+}
+
+/* --- the picture ---------------------------------------------------------- */
+
+/* Files of numbers get the values. */
+static bool has_colors(const slice_work *w) {
+    return snow_image_format_bits(w->opts.output) > 0 ||
+           strcmp(w->opts.output, "-") == 0;
+}
+
+/* The view is that of the voxels that were read, since its zoom counts in their
+ * size. */
+static snow_status draw(slice_work *w) {
+    static const char *const axes[] = {"x", "y", "z"};
+    const snow_volume_info *info = snow_volume_get_info(w->volume);
+    int axis;
+    double begin = seconds_now();
+    w->view.width = (int)w->opts.size[0];
+    w->view.height = (int)w->opts.size[1];
+    snow_status status =
+        snow_slice_view(w->context, info, axes[w->axis], &w->view, &axis);
+    if (status == SNOW_STATUS_OK)
+        status = snow_slice_render(w->volume, w->place, w->transfer, &w->view,
+                                   &w->settings, &w->image);
+    w->frame = seconds_now() - begin;
+    return status;
+}
+
+static int make_picture(slice_work *w) {
+    const options *opts = &w->opts;
+    double begin = seconds_now();
+    progress_begin(opts, "reading");
+    int done = open_slice(w);
+    progress_end(opts);
+    w->times.read = seconds_now() - begin;
+    if (done == CONTINUE && has_colors(w))
+        done = open_look(w->context, opts, w->volume, &w->transfer);
+    w->times.look = seconds_now() - begin - w->times.read;
+    if (done != CONTINUE)
+        return done;
+    snow_status status = draw(w);
+    return status == SNOW_STATUS_OK
+               ? CONTINUE
+               : fail_volume(w->context, status, name_of_input(w->path));
+}
+
+/* The description of a look without its opacities, which a slice ignores. */
+static void describe_colors(const slice_work *w, char *out, size_t size) {
+    const char *text =
+        w->transfer ? snow_transfer_description(w->transfer) : "data values";
+    const char *opacity = strstr(text, "; opacity"), *reason = NULL;
+    for (const char *at = opacity; at && (at = strstr(at, " ("));)
+        reason = at++;
+    snprintf(out, size, "%.*s%s",
+             opacity ? (int)(opacity - text) : (int)strlen(text), text,
+             reason ? reason : "");
+}
+
+static void report(const slice_work *w) {
+    char volume[256], colors[512];
+    describe_volume(&w->whole, volume, sizeof volume);
+    describe_colors(w, colors, sizeof colors);
+    config_note_slice(&w->opts, w->transfer, axis_name(w), w->index);
+    if (w->opts.verbosity < 0)
+        return;
+    say("%s: %s; %s slice %" PRId64 " of 0 to %" PRId64 ", at %g%s; %s; "
+        "%dx%d pixels%s%s",
+        name_of_input(w->path), volume, axis_name(w), w->index,
+        w->whole.dims[w->axis] - 1, w->position, unit_of(&w->whole), colors,
+        w->view.width, w->view.height, w->opts.named ? "; to " : "",
+        w->opts.named ? w->opts.output : "");
+    if (picture_is_empty(w->image))
+        say("note: the picture is empty: the slice has no finite value, or "
+            "with --log none above 0; give another --at");
+}
+
+/* Letters stay at the edges: a slice fills its picture. */
+static snow_status make_overlay(slice_work *w, snow_overlay **out) {
+    picture_annotations annotations = {&w->opts,
+                                       *snow_volume_get_info(w->volume),
+                                       w->view,
+                                       w->transfer,
+                                       {0, 0}};
+    annotations_find_unit(&w->opts, w->volume, false, &annotations.info);
+    return annotations_make(&annotations, 0, -1, NULL, w->context, out);
+}
+
+static int write_slice(slice_work *w) {
+    const options *opts = &w->opts;
+    snow_image_options form = picture_form(opts);
+    snow_overlay *overlay = NULL;
+    double begin = seconds_now();
+    bool shown = opts->show && strcmp(opts->output, "-") == 0;
+    if (!is_special(opts->output))
+        interrupt_hold();
+    snow_status status = make_overlay(w, &overlay);
+    form.overlay = overlay;
+    progress_begin(opts, "writing");
+    if (status == SNOW_STATUS_OK && !shown)
+        status = snow_image_save(w->image, opts->output, &form);
+    progress_end(opts);
+    int done =
+        status == SNOW_STATUS_OK ? CONTINUE : fail_status(w->context, status);
+    if (done == CONTINUE && opts->show)
+        done = show_picture(w->image, &form);
+    snow_overlay_free(overlay);
+    w->times.write = seconds_now() - begin;
+    return done;
+}
+
+/* --- figures -------------------------------------------------------------- */
+
+static json_t *figures(const slice_work *w) {
+    snow_stats stats = {.size = sizeof stats,
+                        .kernel = w->settings.kernel,
+                        .threads = w->settings.threads,
+                        .seconds_frame = w->frame};
+    render_report made = {.volume = &w->whole,
+                          .stats = &stats,
+                          .peak = snow_context_peak_bytes(w->context),
+                          .settings = &w->settings,
+                          .image = w->image,
+                          .times = &w->times};
+    static const char *const others[] = {
+        "threshold", "sparse_ratio", "encoding", "method", "footprint",
+        "ranks",     "load",         "isa",      "quality"};
+    json_t *tree = stats_json(&made);
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        json_object_del(tree, others[i]);
+    json_object_set_new(tree, "slice",
+                        json_pack("{s:s,s:I,s:f,s:s}", "axis", axis_name(w),
+                                  "index", (json_int_t)w->index, "position",
+                                  w->position, "unit", unit_of(&w->whole)));
+    json_object_set_new(
+        json_object_get(tree, "bytes"), "file",
+        json_integer((json_int_t)snow_context_bytes_read(w->context)));
+    return tree;
+}
+
+static int report_figures(slice_work *w) {
+    const options *opts = &w->opts;
+    int done = picture_is_empty(w->image) ? EXIT_EMPTY : SNOW_STATUS_OK;
+    w->times.total = seconds_now() - w->begin;
+    if (!opts->stats)
+        return done;
+    if (!is_special(opts->stats))
+        interrupt_hold();
+    int stats = write_json(figures(w), opts->stats, opts->overwrite);
+    return stats == SNOW_STATUS_OK ? done : stats;
+}
+
+/* --- the stages ----------------------------------------------------------- */
+
+static int check_request(slice_work *w) {
+    const options *opts = &w->opts;
+    int done = check_picture(opts);
+    if (done == CONTINUE && (strcmp(opts->kernel, "gauss") == 0 ||
+                             strcmp(opts->kernel, "bspline") == 0))
+        done = fail_usage("--kernel: %s cannot draw a slice; use tent, or box "
+                          "for the nearest voxel",
+                          opts->kernel);
+    if (done == CONTINUE)
+        done = open_context(opts, &w->context);
+    if (done != CONTINUE)
+        return done;
+    snow_context_set_memory_limit(w->context, opts->memory);
+    snow_context_set_progress(w->context, progress_hear, NULL);
+    fill_settings(opts, &w->settings);
+    if (!w->settings.threads)
+        w->settings.threads = process_processors();
+    w->settings.mode = SNOW_MODE_OVER; /* a slice has none */
+    return check_picture_paths(w->context, opts);
+}
+
+static int run_stages(slice_work *w) {
+    int done = check_request(w);
+    if (done != CONTINUE)
+        return done;
+    interrupt_guard();
+    done = make_picture(w);
+    if (interrupt_unguard())
+        return EXIT_INTERRUPTED;
+    if (done != CONTINUE)
+        return done;
+    report(w);
+    done = write_slice(w);
+    return done == CONTINUE ? report_figures(w) : done;
+}
+
+/* The look, background and marks of a slice are those of projections: the
+ * options get a mode that is neither over nor iso. */
+int cmd_slice(const options *opts) {
+    slice_work w = {
+        .opts = *opts, .path = opts->operands[0], .begin = seconds_now()};
+    w.opts.mode = "slice";
+    if (!options_given(opts, "size"))
+        w.opts.size[0] = w.opts.size[1] = 0;
+    int done = run_stages(&w);
+    snow_image_free(w.image);
+    snow_transfer_free(w.transfer);
+    snow_volume_close(w.volume);
+    snow_context_free(w.context);
+    return done;
+}

@@ -1,0 +1,100 @@
+#!/bin/bash
+# The verb slice beyond its values, which oracle_slice.py holds against another
+# reference: what is refused and how, notes, marks, files, memory, and the
+# command and the configuration that give the same picture again.
+. "$(dirname "$0")/../../support/shell.sh"
+
+head="phantom:head --dims 40x36x30"
+
+run 0 "a slice without options" "$TOOL" slice $head -o a.png
+says 'axial slice 15 of 0 to 29, at 3\.76667mm; grey 1\.\.172 '
+check "is a PNG" is_png a.png
+run 0 "by number" "$TOOL" slice $head -o b.png --axis axial --at 15 -q
+check "is the middle one" cmp -s a.png b.png
+refused 4 "a file is not replaced" 'exists' "$TOOL" slice $head -o a.png
+run 0 "unless told" "$TOOL" slice $head -o a.png -y -q
+run 0 "names of axes may be capital" "$TOOL" slice $head -o c.png -q --axis AXIAL
+check "of the same bytes" cmp -s a.png c.png
+run 0 "a name after the input" "$TOOL" slice $head
+says '; to head.png$'
+check "is written" is_png head.png
+
+for at in -1 36 1e9 2.5 nan middle 3um 5mm5; do
+    refused 2 "slice '$at'" \
+        "--at: '$at' is no slice across coronal: must be 0 to 35, or a position from" \
+        "$TOOL" slice $head -o x.png --axis coronal --at "$at"
+done
+refused 2 "a position outside" 'must be 0 to 29, or a position from -?[0-9.]+mm' \
+    "$TOOL" slice $head -o x.png --at 9999mm
+refused 2 "an axis" "choose from: x, y, z, axial, coronal, sagittal" \
+    "$TOOL" slice $head -o x.png --axis w
+refused 2 "a wide kernel" 'gauss cannot draw a slice; use tent' \
+    "$TOOL" slice $head -o x.png --kernel gauss
+refused 2 "an option of other verbs" 'is not an option of slice but of render' \
+    "$TOOL" slice $head -o x.png --azimuth 30
+refused 3 "no such file" 'absent.nii' "$TOOL" slice absent.nii -o x.png
+refused 2 "a legend in numbers" 'remove it or name a .png' \
+    "$TOOL" slice $head -o x.npy --legend
+check "nothing is written then" absent x.png
+
+run 0 "numbers" "$TOOL" slice $head -o a.npy
+says 'data values'
+check "are an array of rows" grep -aq "'shape': (40, 40)" a.npy
+for suffix in pfm exr tif webp jpg; do
+    run 0 "a .$suffix" "$TOOL" slice $head -o "a.$suffix" -q
+done
+run 0 "in 16 bits" "$TOOL" slice $head -o deep.png -q --bits 16
+run 0 "by standard output" "$TOOL" slice $head -o - -q
+check "are the bytes of the file" cmp -s "$OUT" a.png
+
+big="$head -s 300x200 -q"
+run 0 "with letters" "$TOOL" slice $big -o l.png
+run 0 "without" "$TOOL" slice $big -o n.png --no-labels
+run 6 "is another picture" "$TOOL" compare l.png n.png
+run 0 "with bars" "$TOOL" slice $big -o bars.png --legend
+run 6 "is another picture" "$TOOL" compare l.png bars.png
+run 0 "on white" "$TOOL" slice $big -o w.png --background white --no-labels
+run 6 "is another picture" "$TOOL" compare n.png w.png
+"$TOOL" slice $big -o one.npy -j 1
+"$TOOL" slice $big -o two.npy -j 3
+check "any number of threads gives the same bits" cmp -s one.npy two.npy
+
+printf 'NRRD0004\ntype: float\ndimension: 3\nsizes: 4 4 4\nencoding: ascii\n\n' >none.nrrd
+for i in $(seq 64); do echo nan; done >>none.nrrd
+run 7 "a slice without a value" "$TOOL" slice none.nrrd -o none.png
+says 'the picture is empty: the slice has no finite value'
+
+# again NAME OPTIONS...: the command and the configuration give the same bytes.
+again() {
+    local name=$1 command
+    shift
+    run 0 "$name" "$TOOL" slice -v "$@" -o again.png --save-config again.json -y
+    command=$(sed -n 's/^snowglass: again: //p' "$ERR")
+    mv again.png first.png
+    eval "\"\$TOOL\" ${command#snowglass } -q"
+    check "$name: the command again" cmp -s first.png again.png
+    rm again.png
+    run 0 "$name: the configuration" "$TOOL" --config again.json -q
+    check "$name: gives it again" cmp -s first.png again.png
+}
+again "a slice" $head
+again "by position" $head --axis sagittal --at 2.5mm -c viridis --legend
+again "of a usual size" $head -s 512 --at 3 --kernel box
+again "with a window" $head -w 80,100 --background white --bits 16 --no-labels
+again "with a preset" $head --preset ct-soft --crop 5:30,:,2:20
+run 0 "the configuration of another slice" \
+    "$TOOL" slice --config again.json --at 3 -o other.png -q
+run 6 "is another picture" "$TOOL" compare other.png again.png
+
+# A volume of 8 GiB, of which a slice is read.
+truncate -s 8G large.raw
+raw="--dims 2048x2048x2048 --type uint8"
+for axis in z y; do
+    run 0 "$axis of a volume larger than memory" "$TOOL" slice large.raw $raw \
+        --axis $axis --at 1500 -o large.npy -y -q --memory 64M --stats -
+    check "little of it is read" [ "$(number file)" -lt 20000000 ]
+    check "and little memory taken" [ "$(number peak)" -lt 64000000 ]
+done
+refused 5 "what does not fit is refused" 'memory' "$TOOL" slice large.raw $raw \
+    -o large.png --memory 1M
+finish

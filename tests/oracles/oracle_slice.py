@@ -1,0 +1,302 @@
+"""The verb slice beside slices of NumPy arrays: each axis and direction, the
+place and the number of a slice, spacing, sizes, kernels, values that are
+missing, looks, labels and oblique grids.
+"""
+import itertools
+import json
+import os
+import struct
+import subprocess
+import sys
+
+try:
+    import numpy as np
+except ImportError as missing:
+    print("skip  ", missing)
+    sys.exit(77)
+
+import oracle
+
+place = oracle.folder()
+PATIENT = ("sagittal", "coronal", "axial")
+TURNS = list(itertools.product(itertools.permutations(range(3)),
+                               itertools.product((1, -1), repeat=3)))
+
+
+def check(name, good):
+    oracle.checked += 1
+    if not good:
+        oracle.fail(name, "is something else")
+
+
+def run(path, *options, out="out.npy"):
+    if os.path.exists(out):
+        os.remove(out)
+    return subprocess.run([oracle.TOOL, "slice", path, "-o", out, *options],
+                          capture_output=True, text=True)
+
+
+def values(path, *options):
+    """The picture in data units, or None after a failure."""
+    done = run(path, *options)
+    if done.returncode:
+        oracle.fail(f"{path} {options}", done.stderr.strip())
+        return np.full((1, 1), np.nan)
+    return np.load("out.npy")
+
+
+def nifti(name, voxels, matrix, code=512):
+    """voxels [x, y, z]; code 512: uint16, 16: float32, 4: int16."""
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, *voxels.shape, 1, 1, 1, 1)
+    struct.pack_into("<hh", header, 70, code, 8 * voxels.itemsize)
+    spacing = np.linalg.norm(matrix[:3, :3], axis=0)
+    struct.pack_into("<8f", header, 76, 1, *spacing, 1, 1, 1, 1)
+    struct.pack_into("<fff", header, 108, 352, 1, 0)
+    header[123] = 2  # millimetres
+    struct.pack_into("<hh", header, 252, 0, 1)
+    struct.pack_into("<12f", header, 280, *matrix[:3].ravel())
+    header[344:348] = b"n+1\0"
+    with open(name, "wb") as out:
+        out.write(bytes(header) + voxels.tobytes(order="F"))
+    return name
+
+
+def turned(voxels, matrix, order, signs):
+    """New axis j is the old order[j], backwards where signs[j] is -1."""
+    out = np.eye(4)
+    new = voxels.transpose(order)
+    out[:3, 3] = matrix[:3, 3]
+    for j in range(3):
+        column = matrix[:3, order[j]]
+        if signs[j] < 0:
+            new = np.flip(new, j)
+            out[:3, 3] += column * (new.shape[j] - 1)
+        out[:3, j] = column * signs[j]
+    return new, out
+
+
+def plane(voxels, axis, index, medical=True):
+    """Of voxels [x, y, z] along right, front and head: row 0 is the top.  The
+    patient's left is at the right of the picture, or the front at the left of
+    it; without a patient x is at the right, or y, and y or z is up."""
+    flat = np.take(voxels, index, axis).T[::-1]
+    return flat[:, ::-1] if medical else flat
+
+
+def tent(pixels, pitch, voxels, step):
+    """Weights [pixel, voxel] of a row of pixels about the middle of voxels."""
+    places = (np.arange(pixels) + 0.5 - pixels / 2) * pitch / step
+    places = places + (voxels - 1) / 2
+    reach = max(1.0, pitch / step)
+    weights = 1 - np.abs(places[:, None] - np.arange(voxels)[None]) / reach
+    weights = np.maximum(weights, 0)
+    weights[(places < -0.5) | (places > voxels - 0.5)] = 0
+    return weights
+
+
+def scaled(flat, steps, width, height, least=0.5):
+    """The reference: the whole slice in a picture of that size.  A pixel has no
+    value where less than this share of the weight is of voxels with one."""
+    rows, columns = flat.shape
+    pitch = max(columns * steps[0] / width, rows * steps[1] / height)
+    across = tent(width, pitch, columns, steps[0])
+    down = tent(height, pitch, rows, steps[1])
+    known = np.isfinite(flat)
+    share = down @ known @ across.T
+    whole = np.outer(down.sum(1), across.sum(1))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        made = down @ np.where(known, flat, 0) @ across.T / share
+    made[~(share >= least * whole) | (whole == 0)] = np.nan
+    return made
+
+
+def is_scaled(got, flat, steps, width, height):
+    """Within 0.01, and within rounding of what has a value."""
+    more = scaled(flat, steps, width, height, 0.5 - 1e-6)
+    less = scaled(flat, steps, width, height, 0.5 + 1e-6)
+    if got.shape != more.shape:
+        return False
+    known = np.isfinite(got)
+    return (np.isfinite(more) >= known).all() and \
+        (np.isfinite(less) <= known).all() and \
+        (np.abs(got - more)[known] <= 0.01).all() and known.any()
+
+
+def near(a, b, tolerance):
+    return (a.shape == b.shape and np.array_equal(np.isnan(a), np.isnan(b)) and
+            np.nanmax(np.abs(a - b), initial=0) <= tolerance)
+
+
+random = np.random.default_rng(3)
+VOXELS = random.integers(0, 4000, (12, 14, 10)).astype(np.uint16)
+SPACING = (1.5, 1.5, 1.5)
+MATRIX = np.diag([*SPACING, 1.0])
+MATRIX[:3, 3] = [-20, 31, 7]
+
+# Every numbering of the grid gives the slices of the patient; numbers of slices
+# count in the grid, positions in the world.
+for order, signs in oracle.few(TURNS, 5):
+    new, matrix = turned(VOXELS, MATRIX, order, signs)
+    path = nifti("turned.nii", new, matrix)
+    for world, name in enumerate(PATIENT):
+        grid = order.index(world)
+        index = VOXELS.shape[world] // 3
+        number = index if signs[grid] > 0 else VOXELS.shape[world] - 1 - index
+        wanted = plane(VOXELS, world, index)
+        told = f"{name} of axes {order} {signs}"
+        check(told, np.array_equal(
+            values(path, "--axis", name, "--at", str(number)), wanted))
+        check(f"{told} by its grid axis", np.array_equal(
+            values(path, "--axis", "xyz"[grid], "--at", str(number)), wanted))
+        at = MATRIX[world, 3] + 1.5 * index + 0.7
+        check(f"{told} by its position", np.array_equal(
+            values(path, "--axis", name, "--at", f"{at}mm"), wanted))
+
+# The default is the middle axial slice.
+path = nifti("a.nii", VOXELS, MATRIX)
+check("the default", np.array_equal(values(path), plane(VOXELS, 2, 5)))
+
+# Without a patient, x is at the right and y or z up.
+np.save("a.npy", VOXELS.transpose())
+for world, name in enumerate(PATIENT):
+    wanted = plane(VOXELS, world, 4, medical=False)
+    for called in (name, "xyz"[world]):
+        check(f"{called} of an array", np.array_equal(
+            values("a.npy", "--axis", called, "--at", "4"), wanted))
+
+# Pixels are as large as the smaller spacing; sizes scale to fit.
+matrix = np.diag([0.75, 1.0, 2.5, 1.0])
+path = nifti("spaced.nii", VOXELS, matrix)
+for world, name in enumerate(PATIENT):
+    flat = plane(VOXELS, world, 3).astype(float)
+    steps = [np.diag(matrix)[i] for i in range(3) if i != world]
+    rows, columns = flat.shape
+    own = (round(columns * steps[0] / min(steps)),
+           round(rows * steps[1] / min(steps)))
+    got = values(path, "--axis", name, "--at", "3")
+    pitch = min(steps)
+    weights = (tent(own[1], pitch, rows, steps[1]),
+               tent(own[0], pitch, columns, steps[0]))
+    check(f"{name}: its own size", got.shape == own[::-1])
+    # The reference has a pixel of its own for the size that it is given.
+    made = weights[0] @ flat @ weights[1].T
+    made /= np.outer(weights[0].sum(1), weights[1].sum(1))
+    check(f"{name}: linear between voxels", near(got, made, 0.01))
+    for width, height in ((50, 40), (40, 64), (7, 5), (3, 9)):
+        got = values(path, "--axis", name, "--at", "3", "-s",
+                     f"{width}x{height}")
+        check(f"{name} of {width}x{height}",
+              is_scaled(got, flat, steps, width, height))
+    got = values(path, "--axis", name, "--at", "3", "-s", "61", "--kernel",
+                 "box")
+    check(f"{name}: nearest voxels are values", set(
+        got[np.isfinite(got)].tolist()) <= set(flat.ravel().tolist()))
+
+# What has no value has none in the picture.
+holes = VOXELS.astype(np.float32)
+holes[random.random(holes.shape) < 0.3] = np.nan
+holes[4, 5, 6] = np.inf
+path = nifti("holes.nii", holes, matrix, 16)
+flat = plane(np.where(np.isfinite(holes), holes, np.nan), 2, 6)
+got = values(path, "--at", "6")
+# The own size of this slice is 12 by 19 pixels: a pixel is 0.75 mm.
+check("holes", is_scaled(got, flat.astype(float), (0.75, 1.0), 12, 19))
+got = values(path, "--at", "6", "-s", "100x90")
+check("holes, enlarged",
+      is_scaled(got, flat.astype(float), (0.75, 1.0), 100, 90))
+
+# A grid that no axis of the world follows: its own slice, seen the nearest way.
+a, b, c = np.radians([20, -15, 10])
+turn = (np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)],
+                  [0, np.sin(a), np.cos(a)]]) @
+        np.array([[np.cos(b), 0, np.sin(b)], [0, 1, 0],
+                  [-np.sin(b), 0, np.cos(b)]]) @
+        np.array([[np.cos(c), -np.sin(c), 0], [np.sin(c), np.cos(c), 0],
+                  [0, 0, 1]]))
+oblique = MATRIX.copy()
+oblique[:3, :3] = turn @ MATRIX[:3, :3]
+for order, signs in oracle.few(TURNS, 9, 2):
+    new, matrix = turned(VOXELS, oblique, order, signs)
+    path = nifti("oblique.nii", new, matrix)
+    for world, name in enumerate(PATIENT):
+        grid = order.index(world)
+        number = 4 if signs[grid] > 0 else VOXELS.shape[world] - 5
+        got = values(path, "--axis", name, "--at", str(number))
+        check(f"{name} of an oblique grid {order} {signs}",
+              np.array_equal(got, plane(VOXELS, world, 4)))
+done = run("oblique.nii", "--axis", "axial")
+check("a note on it", "degrees off axial" in done.stderr)
+
+# Slices that are shifted against each other (a tilted gantry).
+tilted = np.diag([1.0, 1.0, 2.0, 1.0])
+tilted[1, 2] = 0.6
+path = nifti("tilted.nii", VOXELS, tilted)
+for index in (0, 9):
+    check(f"slice {index} of a tilted gantry", np.array_equal(
+        values(path, "--at", str(index)), plane(VOXELS, 2, index)))
+got = values(path, "--axis", "coronal", "--at", "3", "--kernel", "box")
+check("a coronal one is as high as its slanted columns",
+      got.shape == (round(10 * np.hypot(0.6, 2)), 12) and
+      set(got.ravel()) == set(plane(VOXELS, 1, 3).ravel().astype(float)))
+
+# Colours: opaque, whatever the opacity.
+path = nifti("b.nii", (VOXELS.astype(np.int32) - 1500).astype(np.int16),
+             MATRIX, 4)
+flat = plane(VOXELS, 2, 5).astype(float) - 1500
+
+
+def same_colors(name, options, grey, alpha=None):
+    """Of a PNG of 16 bits, that of the float pixels of the reference."""
+    done = run(path, "--bits", "16", "--no-labels", "--background", "none",
+               *options, out="out.png")
+    alpha = np.ones_like(grey) if alpha is None else alpha
+    np.save("wanted.npy", np.stack([grey * alpha] * 3 + [alpha],
+                                   -1).astype(np.float32))
+    other = subprocess.run([oracle.TOOL, "compare", "out.png", "wanted.npy",
+                            "--tolerance", "0.00002"], capture_output=True,
+                           text=True)
+    oracle.checked += 1
+    if done.returncode or other.returncode:
+        oracle.fail(name, done.stderr + other.stdout + other.stderr)
+
+
+def ramp(low, high):
+    return np.clip((flat - low) / (high - low), 0, 1)
+
+
+same_colors("a window", ("-w", "400", "--level", "40"), ramp(-160, 240))
+same_colors("a range", ("--range", "-1000,2000"), ramp(-1000, 2000))
+same_colors("all values", ("--range", "full"), ramp(flat.min(), flat.max()))
+with np.errstate(invalid="ignore"):
+    logarithm = np.clip(np.log10(np.maximum(flat, 1e-9) / 10) / 2, 0, 1)
+same_colors("a logarithm", ("--log", "--range", "10,1000"), logarithm,
+            (flat > 0).astype(float))
+look = {"colors": [[0, 0.2, 0.2, 0.2], [500, 0.2, 0.2, 0.2],
+                   [500, 0.6, 0.6, 0.6], [900, 0.6, 0.6, 0.6],
+                   [900, 1, 1, 1], [1000, 1, 1, 1]],
+        "opacity": [[0, 0], [1000, 0.5]]}
+with open("labels.csv", "w") as out:
+    out.write("value,r,g,b,a\n")
+    for value, r, g, b in look["colors"]:
+        out.write(f"{value},{r},{g},{b},{value / 2000}\n")
+steps = np.where(flat < 500, 0.2, np.where(flat < 900, 0.6, 1.0))
+same_colors("labels", ("--tf", "labels.csv"), steps)
+big = np.kron(steps, np.ones((4, 4)))
+same_colors("labels, enlarged, have no values in between",
+            ("--tf", "labels.csv", "-s", "48x56"), big)
+
+# A crop counts from its own first voxel.
+check("a crop", np.array_equal(
+    values("a.nii", "--at", "1", "--crop", "2:9,3:11,4:8"),
+    plane(VOXELS[2:9, 3:11, 4:8], 2, 1)))
+
+# The figures say which slice it was.
+run("a.nii", "--axis", "coronal", "--at", "3", "--stats", "s.json")
+with open("s.json") as figures:
+    told = json.load(figures)
+check("figures", told["slice"] == {"axis": "coronal", "index": 3,
+                                   "position": 35.5, "unit": "mm"} and
+      told["volume"]["dims"] == [12, 14, 10])
+oracle.finish()
