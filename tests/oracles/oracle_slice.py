@@ -236,6 +236,11 @@ path = nifti("tilted.nii", VOXELS, tilted)
 for index in (0, 9):
     check(f"slice {index} of a tilted gantry", np.array_equal(
         values(path, "--at", str(index)), plane(VOXELS, 2, index)))
+    with open(path, "rb") as file:  # all of it is read, and not just a slice
+        subprocess.run([oracle.TOOL, "slice", "-", "-o", "out.npy", "-y", "-q",
+                        "--at", str(index)], stdin=file, check=False)
+    check(f"slice {index} of a pipe", np.array_equal(
+        np.load("out.npy"), plane(VOXELS, 2, index)))
 got = values(path, "--axis", "coronal", "--at", "3", "--kernel", "box")
 check("a coronal one is as high as its slanted columns",
       got.shape == (round(10 * np.hypot(0.6, 2)), 12) and
@@ -286,6 +291,13 @@ same_colors("labels", ("--tf", "labels.csv"), steps)
 big = np.kron(steps, np.ones((4, 4)))
 same_colors("labels, enlarged, have no values in between",
             ("--tf", "labels.csv", "-s", "48x56"), big)
+
+# Values are those after slope and intercept.
+with open("b.nii", "r+b") as file:
+    file.seek(112)
+    file.write(struct.pack("<ff", 2.5, -1000))
+check("a slope", np.array_equal(values("b.nii", "--at", "5"),
+                                (2.5 * flat - 1000).astype(np.float32)))
 
 # A crop counts from its own first voxel.
 check("a crop", np.array_equal(
