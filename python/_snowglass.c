@@ -20,6 +20,7 @@
 #include <snowglass/ranks.h>
 #include <snowglass/snowglass.h>
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -436,6 +437,7 @@ typedef struct image_object {
     PyObject *transfer;
     snow_volume_info info;
     snow_view view;
+    bool opaque; /* colours of a slice, without opacities */
 } image_object;
 
 static PyObject *image_make(PyTypeObject *type, context_object *context,
@@ -510,8 +512,12 @@ static snow_status annotate(const image_object *o, const annotations *a,
     snow_status status = SNOW_STATUS_OK;
     if (t && a->letters)
         status = snow_overlay_orientation(overlay, &o->info, &o->view);
+    double range[2] = {0, 0};
+    if (t && o->opaque)
+        snow_transfer_domain(t->transfer, &range[0], &range[1]);
     if (t && a->legend && !status)
-        status = snow_overlay_color_bar(overlay, t->transfer, a->unit, NULL);
+        status = snow_overlay_color_bar(overlay, t->transfer, a->unit,
+                                        o->opaque ? range : NULL);
     if (t && a->scale_bar && !status && !(o->view.fov > 0))
         status = snow_overlay_scale_bar(overlay, &o->info, &o->view);
     if (a->title && !status)
@@ -980,9 +986,9 @@ static double *read_points(PyObject *given, const char *what, Py_ssize_t width,
 }
 
 static int range_of(const char *name) {
-    static const char *const names[] = {"auto", "full", "values",
-                                        "percentiles"};
-    for (int n = 0; n < 4; n++)
+    static const char *const names[] = {"auto", "full", "values", "percentiles",
+                                        "robust"};
+    for (int n = 0; n < 5; n++)
         if (strcmp(names[n], name) == 0)
             return n;
     return -1;
@@ -1176,6 +1182,81 @@ static PyObject *volume_render(PyObject *self, PyObject *args) {
     return out;
 }
 
+/* --- slices --------------------------------------------------------------- */
+
+/* slice_axis(name) -> the grid's axis, and the nearest of the world */
+static PyObject *volume_slice_axis(PyObject *self, PyObject *name) {
+    volume_object *o = (volume_object *)self;
+    const char *text = PyUnicode_AsUTF8AndSize(name, NULL);
+    int axis = 0, world = 0;
+    snow_view view;
+    snow_view_init(&view);
+    if (!text || !enter(o->context, Py_None))
+        return NULL;
+    if (!leave(o->context, snow_slice_view(o->context->context,
+                                           snow_volume_get_info(o->volume),
+                                           text, &view, &axis)))
+        return NULL;
+    for (int n = 1; n < 3; n++)
+        if (fabs(view.back[n]) > fabs(view.back[world]) + 1e-6)
+            world = n;
+    return Py_BuildValue("(ii)", axis, world);
+}
+
+static snow_status draw_slice(request *r, const char *axis, int64_t index,
+                              const snow_transfer *transfer) {
+    int found;
+    snow_status status = snow_slice_view(
+        r->volume->context->context, snow_volume_get_info(r->volume->volume),
+        axis, &r->view, &found);
+    if (status == SNOW_STATUS_OK)
+        status = snow_slice_render(r->volume->volume, index, transfer, &r->view,
+                                   &r->settings, &r->image);
+    return status;
+}
+
+/* slice(Image, axis, index, transfer or None for values, width, height,
+ * settings) */
+static PyObject *volume_slice(PyObject *self, PyObject *args) {
+    volume_object *o = (volume_object *)self;
+    PyObject *type, *transfer, *settings;
+    const char *axis;
+    long long index;
+    int width, height;
+    request r = {.volume = o};
+    snow_status status;
+    snow_settings_init(&r.settings);
+    snow_view_init(&r.view);
+    if (!PyArg_ParseTuple(args, "OsLOiiO", &type, &axis, &index, &transfer,
+                          &width, &height, &settings) ||
+        !fill(settings, FIELDS(settings_fields), &r.settings))
+        return NULL;
+    bool colored = PyObject_TypeCheck(transfer, transfer_type);
+    r.view.width = width;
+    r.view.height = height;
+    if (!enter(o->context, Py_None))
+        return NULL;
+    CALL(o->context, status,
+         draw_slice(&r, axis, index,
+                    colored ? ((transfer_object *)transfer)->transfer : NULL));
+    if (!leave(o->context, status)) {
+        discard(o->context, release_image, r.image);
+        return NULL;
+    }
+    image_object *made =
+        (image_object *)image_make((PyTypeObject *)type, o->context, r.image);
+    if (!made)
+        return NULL;
+    made->info = *snow_volume_get_info(o->volume);
+    made->view = r.view;
+    made->opaque = true;
+    if (colored) {
+        Py_INCREF(transfer);
+        made->transfer = transfer;
+    }
+    return (PyObject *)made;
+}
+
 /* --- lists ---------------------------------------------------------------- */
 
 static PyObject *list_of(const char *(*name)(size_t)) {
@@ -1244,6 +1325,8 @@ static PyMethodDef volume_methods[] = {
     METHOD("_freeze", volume_freeze, METH_NOARGS, "the voxels stay"),
     METHOD("_look", volume_look, METH_VARARGS, "a transfer function"),
     METHOD("_render", volume_render, METH_VARARGS, "a picture"),
+    METHOD("_slice_axis", volume_slice_axis, METH_O, "of the grid and world"),
+    METHOD("_slice", volume_slice, METH_VARARGS, "a picture of a slice"),
     {NULL, NULL, 0, NULL}};
 static PyGetSetDef volume_values[] = {
     {"_info", volume_info, NULL, "snow_volume_info", NULL},

@@ -5,7 +5,7 @@ import os
 from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Optional, \
     Sequence, Union
 
-from . import _snowglass
+from . import _recipes, _snowglass
 
 if TYPE_CHECKING:
     import numpy.typing
@@ -38,6 +38,7 @@ class Image(_snowglass.Image):
     #: elsewhere; None unless `depth=True` was asked for.
     depth: Optional["Image"] = None
     _annotations: Mapping[str, Any] = {}
+    _made: Any = None
 
     def __new__(cls, *_: Any, **__: Any) -> "Image":
         raise TypeError("make an Image by Volume.render or Image.load")
@@ -54,6 +55,24 @@ class Image(_snowglass.Image):
     @property
     def height(self) -> int:
         return self.shape[0]
+
+    @property
+    def recipe(self) -> dict[str, Any]:
+        """What it was made with, as the command line's `--config` reads it;
+        `snowglass.render(**recipe)` gives the same bits.  Of an array, without
+        "input": `snowglass.render(volume, **recipe)`.  Raises ValueError where
+        there is none: pictures of files, slices and turntables, and looks with
+        colours of their own."""
+        if self._made is None:
+            raise ValueError("only a picture by Volume.render has a recipe")
+        return _recipes.make(*self._made)
+
+    @property
+    def command(self) -> str:
+        """The command that makes the same picture, NAME.png unless -o is added.
+        Raises ValueError where there is none, as for a volume that is an
+        array."""
+        return _recipes.command(self.recipe)
 
     def save(self, path: Path, *, background: Color = None, bits: int = 0,
              overwrite: bool = True, title: Optional[str] = None) -> "Image":

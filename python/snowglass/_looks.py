@@ -17,7 +17,9 @@ class Look:
                   (`cmap` is another name for it)
     range         (low, high): the data values over which colours and opacities
                   are spread; "full": from the smallest to the largest;
-                  "1%,99%": percentiles; None: chosen (`clim` is another name)
+                  "1%,99%": percentiles; "robust": the window that the file
+                  names, or all values but a few far off; None: chosen (`clim`
+                  is another name)
     opacity       [(value, opacity), ...], opacities 0 to 1 at data values; they
                   replace those of a preset
     colors        [(value, (red, green, blue)), ...], 0 to 1
@@ -73,8 +75,8 @@ def look_of(look: Union[Look, str, None]) -> Look:
 def _parse_range(given: Optional[Range]) -> tuple[str, float, float]:
     if given is None or given == "auto":
         return "auto", 0.0, 0.0
-    if given == "full":
-        return "full", 0.0, 0.0
+    if given in ("full", "robust"):
+        return str(given), 0.0, 0.0
     kind = "values"
     if isinstance(given, str):
         words = given.split(",")
@@ -84,6 +86,6 @@ def _parse_range(given: Optional[Range]) -> tuple[str, float, float]:
     else:
         ends = [float(end) for end in given]
     if len(ends) != 2:
-        raise ValueError(f"range {given!r}: give (low, high), 'full' or "
-                         f"'1%,99%'")
+        raise ValueError(f"range {given!r}: give (low, high), 'full', "
+                         f"'robust' or '1%,99%'")
     return kind, ends[0], ends[1]

@@ -2,13 +2,14 @@
 from __future__ import annotations
 
 import dataclasses
+import operator
 import os
 import re
 import sys
 from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, Optional, \
     Sequence, Union
 
-from . import _arrays, _movies, _snowglass
+from . import _arrays, _movies, _recipes, _snowglass
 from ._images import Image, Path
 from ._looks import Look, look_of
 
@@ -80,6 +81,9 @@ class Volume(_snowglass.Volume):
     def __init__(self, source: Any, **options: Any) -> None:
         pass
 
+    #: The file and how it was opened, as keys of a recipe; None: an array.
+    _source: Optional[Mapping[str, Any]] = None
+
     @classmethod
     def _open(cls, path: str, memory: int, progress: Progress,
               options: Mapping[str, Any]) -> "Volume":
@@ -94,8 +98,12 @@ class Volume(_snowglass.Volume):
                     else str(fields[name])
         if "type" in fields and fields["type"] is not None:
             fields["type"] = str(fields["type"])
-        return _snowglass.open(cls, path, fields, clip, memory,
+        made = _snowglass.open(cls, path, fields, clip, memory,
                                _progress_of(progress))
+        fields["clip"] = clip
+        made._source = {"input": path, **{name: value for name, value
+                        in fields.items() if value is not None}}
+        return made
 
     # --- what it is ---
 
@@ -197,11 +205,7 @@ class Volume(_snowglass.Volume):
                   ) -> Any:
         if isinstance(look, _snowglass.Transfer):
             return look
-        chosen = look_of(look)
-        if mode not in ("over", "iso") and \
-                chosen.preset is None and chosen.colors is None:
-            chosen = dataclasses.replace(chosen, preset="linear")
-        return self._look(*chosen._arguments())
+        return self._look(*_chosen(look, mode)._arguments())
 
     def render(self, look: Union[Look, str, None] = None, *,
                view: Optional[str] = None, size: Union[int, Sequence[int]] = 512,
@@ -241,8 +245,15 @@ class Volume(_snowglass.Volume):
         """
         if fit not in ("visible", "volume"):
             raise ValueError(f"fit '{fit}': give visible or volume")
-        transfer = self._transfer(look, settings.get("mode") or "over")
+        mode = settings.get("mode") or "over"
+        transfer = self._transfer(look, mode)
         width, height = (size, size) if isinstance(size, int) else size
+        asked = {"view": view, "size": (width, height), "azimuth": azimuth,
+                 "elevation": elevation, "roll": roll, "zoom": zoom,
+                 "perspective": perspective, "position": position,
+                 "target": target, "up": up, "fit": fit, "light": light,
+                 "legend": legend, "scale_bar": scale_bar, "letters": letters,
+                 **settings}
         fields = {"width": width, "height": height, "azimuth": azimuth,
                   "elevation": elevation, "roll": roll, "zoom": zoom,
                   "fov": 30.0 if perspective is True else float(perspective),
@@ -256,6 +267,9 @@ class Volume(_snowglass.Volume):
             Image, transfer, view, fields, settings, fit == "visible", azimuths,
             _progress_of(progress))
         image.stats, image.depth = stats, depth
+        if azimuths is None and not isinstance(look, _snowglass.Transfer):
+            image._made = (self._source, self._info["unit"],
+                           _chosen(look, mode), asked)
         image._annotations = {"letters": letters, "legend": legend,
                               "unit": unit, "scale_bar": scale_bar}
         return image
@@ -285,6 +299,86 @@ class Volume(_snowglass.Volume):
             values = pixels[..., 0] / pixels[..., -1]
         return (low + (high - low) * values).astype(numpy.float32)
 
+    def slice(self, axis: str = "axial", at: Union[int, str, None] = None,
+              look: Union[Look, str, None] = None, *,
+              size: Union[int, Sequence[int], None] = None,
+              kernel: Optional[str] = None, legend: bool = False,
+              scale_bar: bool = False, letters: bool = True,
+              unit: Optional[str] = None, threads: int = 0) -> Image:
+        """A picture of one slice, in the colours of a look, opaque.
+
+        axis    "axial", "coronal" or "sagittal": the axis of the grid that is
+                nearest to that of the patient; "x", "y", "z": of the grid
+        at      the slice's number, or a position in the world with its unit,
+                "12.5mm"; None: the middle one
+        look    None: grey over the file's window or the volume's values
+        size    (width, height), or one number for both: the slice fits; None: a
+                pixel is a voxel, or its smaller side
+        kernel  "tent": linear between voxels; "box": the nearest
+
+        The patient's left is at the right of axial and coronal pictures, the
+        front at the top of axial ones and at the left of sagittal ones.
+        Without a patient, y or z is up.  `stats` of the picture has axis, index
+        and position.
+        """
+        image = self._draw_slice(axis, at, self._transfer(look, "slice"), size,
+                                 {"kernel": kernel, "threads": threads})
+        image._annotations = {"letters": letters, "legend": legend,
+                              "unit": unit, "scale_bar": scale_bar}
+        return image
+
+    def slice_values(self, axis: str = "axial",
+                     at: Union[int, str, None] = None, *,
+                     size: Union[int, Sequence[int], None] = None,
+                     kernel: Optional[str] = None, threads: int = 0
+                     ) -> "numpy.typing.NDArray[Any]":
+        """The same in data units: float32 of shape (height, width), NaN where
+        there is no value."""
+        import numpy
+        return numpy.asarray(self._draw_slice(
+            axis, at, None, size, {"kernel": kernel, "threads": threads}))
+
+    def _draw_slice(self, axis: str, at: Union[int, str, None], transfer: Any,
+                    size: Union[int, Sequence[int], None],
+                    settings: Mapping[str, Any]) -> Image:
+        if size is None:
+            size = 0
+        width, height = (size, size) if isinstance(size, int) else size
+        along, index, position = self._find_slice(axis, at)
+        image = self._slice(Image, "xyz"[along], index, transfer, width, height,
+                            settings)
+        image.stats = {"axis": axis, "index": index, "position": position}
+        return image
+
+    def _find_slice(self, axis: str, at: Union[int, str, None]
+                    ) -> tuple[int, int, float]:
+        """The grid's axis, the slice's number, and where its middle lies along
+        the nearest axis of the world."""
+        along, world = self._slice_axis(axis)
+        dims, row = self._info["dims"], self._info["matrix"][world]
+        unit = self._info["unit"] or "mm"
+        first = row[3] + sum(row[n] * (dims[n] - 1) / 2
+                             for n in range(3) if n != along)
+        index: float = dims[along] // 2
+        if isinstance(at, str):
+            number = at.strip()
+            placed = number.endswith(unit)
+            try:
+                index = float(number[:-len(unit)] if placed else number)
+            except ValueError:
+                index = float("nan")
+            if placed and index == index:
+                index = round((index - first) / row[along]) if row[along] else -1
+        elif at is not None:
+            index = operator.index(at)
+        if not 0 <= index < dims[along] or index != int(index):
+            last = first + row[along] * (dims[along] - 1)
+            raise ValueError(
+                f"there is no slice {at!r} across {axis}: give 0 to "
+                f"{dims[along] - 1}, or a position from '{first:g}{unit}' to "
+                f"'{last:g}{unit}'")
+        return along, int(index), first + row[along] * index
+
     def turntable(self, path: Path, look: Union[Look, str, None] = None, *,
                   frames: int = 90, fps: float = 30, progress: Progress = None,
                   **options: Any) -> None:
@@ -293,6 +387,17 @@ class Volume(_snowglass.Volume):
         which ffmpeg must be installed.  Options are those of render."""
         _movies.turntable(self, os.fspath(path), look, frames, fps,
                           _progress_of(progress), options)
+
+
+def _chosen(look: Union[Look, str, None], mode: str) -> Look:
+    """Projections and slices are grey unless a look says otherwise."""
+    chosen = look_of(look)
+    if mode not in ("over", "iso") and \
+            chosen.preset is None and chosen.colors is None:
+        chosen = dataclasses.replace(chosen, preset="linear")
+        if mode == "slice" and chosen.range is None:
+            chosen = dataclasses.replace(chosen, range="robust")
+    return chosen
 
 
 def _set_light(light: Union[str, Sequence[float], None],
@@ -311,13 +416,24 @@ def open(source: Path, **options: Any) -> Volume:
     return Volume(source, **options)
 
 
-def render(source: Any, look: Union[Look, str, None] = None, *,
-           open: Optional[Mapping[str, Any]] = None, **options: Any) -> Image:
+def render(source: Any = None, look: Union[Look, str, None] = None, *,
+           input: Any = None, open: Optional[Mapping[str, Any]] = None,
+           **options: Any) -> Image:
     """A picture of a file, an array or a Volume; `open` holds options of Volume,
-    the others are those of Volume.render."""
-    volume = source if isinstance(source, Volume) else \
-        Volume(source, **(open or {}))
-    return volume.render(look, **options)
+    the others are those of Volume.render, or keys of a recipe: what
+    `Image.recipe` gives and the command line saves, `render(**recipe)` draws,
+    with the same bits.  What such a file says of its output is left out."""
+    data, colors, options = _recipes.split(options)
+    if (source is None) == (input is None):
+        raise TypeError("give a volume, or input: the path of one")
+    if look is not None and colors is not None:
+        raise TypeError("give a look, or keys of one, not both")
+    volume = source if source is not None else input
+    if not isinstance(volume, Volume):
+        volume = Volume(volume, **{**data, **(open or {})})
+    if options.pop("opacity_unit", None) == "mm":
+        options["opacity_length"] = _recipes.length_of_mm(volume.info["unit"])
+    return volume.render(colors if look is None else look, **options)
 
 
 class Step(Volume):

@@ -1,0 +1,163 @@
+"""Recipes: what a picture was made with, under the long option names of the
+command line."""
+from __future__ import annotations
+
+import os
+import shlex
+from typing import Any, Mapping, Optional
+
+from ._looks import Look
+
+#: Keys of the data, as options of Volume.
+DATA = ("dims", "type", "endian", "spacing", "offset", "time", "channel",
+        "component", "crop", "dataset", "series", "allow_gaps", "mask",
+        "labels", "clip")
+#: Keys of the look.
+LOOK = ("preset", "colormap", "range", "opacity", "gradient_opacity", "log")
+#: Keys of the file of a picture and of other verbs, which are left out.
+OTHERS = ("output", "depth", "overwrite", "background", "bits", "frames", "fps",
+          "verb", "version", "time_label", "shift", "axis", "at")
+#: What need not be said.
+USUAL = {"azimuth": 0, "elevation": 0, "roll": 0, "perspective": 0, "zoom": 1,
+         "fit": "visible"}
+#: Lengths of a millimetre.
+UNITS = {"": 1.0, "mm": 1.0, "um": 1e3, "nm": 1e6, "m": 1e-3, "angstrom": 1e7}
+
+
+def _range_key(given: Any) -> Any:
+    """A range of a Look as one of a recipe."""
+    if isinstance(given, str) and "%" in given:
+        return ["p" + word.strip().rstrip("%") for word in given.split(",")]
+    return given if isinstance(given, str) else [float(end) for end in given]
+
+
+def _range_look(given: Any) -> Any:
+    if not isinstance(given, str) and isinstance(given[0], str):
+        return ",".join(word[1:] + "%" for word in given)
+    return given if isinstance(given, str) else tuple(given)
+
+
+def _plain(value: Any) -> Any:
+    """Numbers and lists that JSON knows."""
+    if isinstance(value, (str, bool)) or value is None:
+        return value
+    if hasattr(value, "__len__"):
+        return [_plain(each) for each in value]
+    if hasattr(value, "__index__"):
+        return value.__index__()
+    return float(value) if hasattr(value, "__float__") else os.fspath(value)
+
+
+def _look_keys(look: Look) -> dict[str, Any]:
+    if look.colors is not None:
+        raise ValueError("a look with colors of its own is no recipe: name a "
+                         "preset or a colormap")
+    if look.range == "robust":
+        raise ValueError("a range 'robust' is no recipe: give (low, high)")
+    keys = {name: getattr(look, name) for name in LOOK}
+    if look.range == "auto":
+        keys["range"] = None
+    if keys["range"] is not None:
+        keys["range"] = _range_key(keys["range"])
+    return {name: value for name, value in keys.items()
+            if value is not None and value is not False}
+
+
+def length_of_mm(unit: str) -> float:
+    """A millimetre in the unit of a volume's world."""
+    if unit not in UNITS:
+        raise ValueError(f"the volume's unit '{unit}' is not a length: use "
+                         f"opacities per voxel")
+    return UNITS[unit]
+
+
+def make(data: Optional[Mapping[str, Any]], unit: str, look: Look,
+         options: Mapping[str, Any]) -> dict[str, Any]:
+    """The recipe of a picture of a file's `data` (None: of an array), drawn
+    with these options of Volume.render."""
+    keys: dict[str, Any] = {**(data or {}), **_look_keys(look)}
+    for name, value in options.items():
+        if value is None or name in ("depth", "unit"):
+            continue
+        if name == "letters":
+            name, value = "no_labels", not value
+        elif name == "perspective":
+            value = 30.0 if value is True else float(value)
+        elif name == "size":
+            value = [value, value] if not hasattr(value, "__len__") else value
+        elif name == "opacity_length":
+            if value != UNITS.get(unit):
+                raise ValueError(f"opacity_length {value:g} is no recipe: it is "
+                                 f"neither a voxel nor a millimetre")
+            name, value = "opacity_unit", "mm"
+        if value is False or USUAL.get(name) == value:
+            continue
+        keys[name] = value
+    return {name.replace("_", "-"): _plain(value)
+            for name, value in keys.items()}
+
+
+def split(options: Mapping[str, Any]) -> tuple[
+        dict[str, Any], Optional[Look], dict[str, Any]]:
+    """Options of Volume, the look and options of Volume.render of the keys of a
+    recipe, and of any options that have these names."""
+    given = {name.replace("-", "_"): value for name, value in options.items()}
+    data = {name: given.pop(name) for name in DATA if name in given}
+    colors = {name: given.pop(name) for name in LOOK
+              if given.get(name, None) is not None}
+    if "tf" in given:
+        raise ValueError("a recipe with a file of a look (tf) cannot be drawn "
+                         "here; use the command line")
+    if given.get("shift"):
+        raise ValueError("a recipe with a shift cannot be drawn here; use the "
+                         "command line")
+    if isinstance(given.get("depth"), bool):
+        data_depth = {"depth": given["depth"]}
+    else:
+        data_depth = {}
+    for name in OTHERS:
+        given.pop(name, None)
+    given.update(data_depth)
+    window, level = given.pop("window", None), given.pop("level", None)
+    if window is not None:
+        if level is None:
+            window, level = window
+        colors["range"] = [level - window / 2, level + window / 2]
+    if "range" in colors:
+        colors["range"] = _range_look(colors["range"])
+    if "no_labels" in given:
+        given["letters"] = not given.pop("no_labels")
+    if isinstance(given.get("size"), list):
+        given["size"] = tuple(given["size"])
+    return data, Look(**colors) if colors else None, given
+
+
+def _word(key: str, value: Any) -> str:
+    """A value as it stands on the command line."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, float):
+        return repr(value)[:-2] if value == int(value) and abs(value) < 1e15 \
+            else repr(value)
+    if not isinstance(value, list):
+        return str(value)
+    between = "x" if key in ("size", "dims", "spacing") else ","
+    if key == "crop":
+        return ",".join(f"{low}:{high or ''}" for low, high in value)
+    pairs = ":" if key in ("opacity", "gradient-opacity") else ","
+    return between.join(pairs.join(_word("", part) for part in each)
+                        if isinstance(each, list) else _word("", each)
+                        for each in value)
+
+
+def command(recipe: Mapping[str, Any]) -> str:
+    """The command that makes the picture of a recipe."""
+    if "input" not in recipe:
+        raise ValueError("the volume is an array, which no command can open: "
+                         "write it by Volume.save, and draw the file")
+    words = ["snowglass", "render", recipe["input"]]
+    for key, value in recipe.items():
+        if key != "input":
+            words += ["--" + key] if value is True else \
+                ["--" + key, _word(key, value)]
+    return shlex.join(words)

@@ -1,0 +1,191 @@
+"""Slices and recipes of the Python package, beside NumPy and the command line.
+
+    SNOWGLASS=build/snowglass PYTHONPATH=build/python python3 -m unittest -v
+"""
+import os
+import shlex
+import subprocess
+import tempfile
+import unittest
+import warnings
+
+import numpy
+
+import snowglass as sg
+
+TOOL = os.environ.get("SNOWGLASS", "snowglass")
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        here = os.getcwd()
+        os.chdir(folder.name)
+        self.addCleanup(os.chdir, here)
+        caught = warnings.catch_warnings()
+        caught.__enter__()
+        self.addCleanup(caught.__exit__, None, None, None)
+        warnings.simplefilter("error")
+
+    def tool(self, *words):
+        subprocess.run([TOOL, *words], check=True, stderr=subprocess.DEVNULL)
+
+    def same(self, image, path):
+        """The floats that the command line wrote."""
+        expected = numpy.load(path)
+        if expected.ndim == 3 and expected.shape[-1] != image.shape[-1]:
+            expected = expected[..., [0, 3]]  # grey, written wide
+        numpy.testing.assert_array_equal(numpy.asarray(image), expected)
+
+
+class Slices(InFolder):
+    def setUp(self):
+        super().setUp()
+        random = numpy.random.default_rng(2)
+        self.array = random.integers(0, 900, (5, 6, 7)).astype(numpy.int16)
+        self.volume = sg.Volume(self.array, spacing=(1.5, 1.5, 1.5))
+
+    def test_values_are_those_of_the_array(self):
+        for axis, expected in [
+                ("z", self.array[3, ::-1]), ("axial", self.array[3, ::-1]),
+                ("y", self.array[::-1, 3]), ("coronal", self.array[::-1, 3]),
+                ("x", self.array[::-1, :, 3]),
+                ("sagittal", self.array[::-1, :, 3])]:
+            with self.subTest(axis):
+                got = self.volume.slice_values(axis, 3)
+                self.assertEqual(got.dtype, numpy.float32)
+                numpy.testing.assert_array_equal(got, expected)
+        patient = sg.Volume(self.array, spacing=(1.5, 1.5, 1.5), medical=True)
+        numpy.testing.assert_array_equal(patient.slice_values("axial", 3),
+                                         self.array[3, ::-1, ::-1])
+
+    def test_slices_that_are_shifted_against_each_other(self):
+        affine = numpy.eye(4)
+        affine[:2, 2] = 0.6, -0.3
+        volume = sg.Volume(self.array, affine=affine, medical=False)
+        for index in (0, 4):
+            numpy.testing.assert_array_equal(volume.slice_values("z", index),
+                                             self.array[index, ::-1])
+
+    def test_places(self):
+        image = self.volume.slice("y", "4.4mm")
+        self.assertEqual(image.stats, {"axis": "y", "index": 3,
+                                       "position": 4.5})
+        self.assertEqual(self.volume.slice("y").stats["index"], 3)
+        self.assertEqual(self.volume.slice("z", numpy.int64(4)).stats["index"],
+                         4)
+        for bad in (-1, 6, "6", "9mm", "-1mm", "4um", "here", "2.5"):
+            with self.assertRaisesRegex(ValueError, "across y: give 0 to 5, or "
+                                        "a position from '0mm' to '7.5mm'"):
+                self.volume.slice("y", bad)
+        with self.assertRaises(TypeError):
+            self.volume.slice("y", 2.5)
+        with self.assertRaisesRegex(ValueError, "axial, coronal or sagittal"):
+            self.volume.slice("w")
+
+    def test_colors_and_files(self):
+        image = self.volume.slice("z", 2, sg.Look(range=(0, 900)), size=(70, 60))
+        pixels = numpy.asarray(image)
+        self.assertEqual(pixels.shape, (60, 70, 2))
+        self.assertTrue((pixels[..., 1] == 1).all())
+        values = self.volume.slice_values("z", 2, size=(70, 60))
+        numpy.testing.assert_allclose(pixels[..., 0], values / 900, atol=1e-6)
+        colored = self.volume.slice("z", 2, "viridis", legend=True, size=200)
+        self.assertEqual(colored.shape, (200, 200, 4))
+        plain = self.volume.slice("z", 2, "viridis", size=200)
+        colored.save("with.png")
+        plain.save("without.png")
+        self.assertEqual(sg.compare(colored, plain).largest, 0)
+        self.assertGreater(sg.compare("with.png", "without.png").largest, 0.5)
+
+    def test_they_are_those_of_the_command_line(self):
+        self.volume.save("a.nrrd")
+        for axis, at, size in (("axial", 1, None), ("x", "4.5mm", (33, 44))):
+            words = ["-s", f"{size[0]}x{size[1]}"] if size else []
+            self.tool("slice", "a.nrrd", "--axis", axis, "--at", str(at), "-o",
+                      "a.npy", "-y", *words)
+            self.same(self.volume.slice_values(axis, at, size=size), "a.npy")
+        self.tool("slice", "a.nrrd", "--range", "100,600", "-o", "a.png",
+                  "--bits", "16", "--background", "none", "--no-labels")
+        image = self.volume.slice(look=sg.Look(range=(100, 600)))
+        image.save("b.png", bits=16)
+        self.assertEqual(sg.compare("a.png", "b.png").largest, 0)
+
+
+class Recipes(InFolder):
+    CASES = [
+        {},
+        {"view": "left", "azimuth": 30, "quality": "high", "size": (90, 70)},
+        {"look": sg.Look(cmap="viridis", clim=(50, 200)), "perspective": True},
+        {"look": sg.Look(range="5%,95%"), "zoom": 1.5, "light": (20, 40)},
+        {"look": sg.Look(opacity=[(80, 0), (200, .7)],
+                         gradient_opacity=[(0, 0), (20, 1)]), "shade": "none"},
+        {"mode": "mip", "fit": "volume", "threads": 2},
+        {"mode": "iso", "iso": 120.5, "light": "head", "letters": False},
+        {"look": "mr-default", "target": (30, 31, 20), "up": [0, 1, 1],
+         "roll": -5.25, "opacity_length": 1.0, "depth_darkening": 0.5},
+    ]
+
+    def draw(self, options):
+        volume = sg.Volume("head.nrrd", crop=((2, 60), (0, 0), (3, 0)),
+                           clip=[(1, 0, 0, 45.5)])
+        return volume.render(options.get("look"), **{
+            "size": 64, **{name: value for name, value in options.items()
+                           if name != "look"}})
+
+    def setUp(self):
+        super().setUp()
+        sg.Volume("phantom:head", dims=(64, 64, 48)).save("head.nrrd")
+
+    def test_a_recipe_and_a_command_give_the_same_bits(self):
+        for options in self.CASES:
+            with self.subTest(options):
+                image = self.draw(options)
+                again = sg.render(**image.recipe)
+                numpy.testing.assert_array_equal(numpy.asarray(again),
+                                                 numpy.asarray(image))
+                self.assertEqual(again.recipe, image.recipe)
+                words = shlex.split(image.command)
+                self.assertEqual(words[:3], ["snowglass", "render",
+                                             "head.nrrd"])
+                self.tool(*words[1:], "-o", "a.npy", "-y")
+                self.same(image, "a.npy")
+
+    def test_a_file_of_the_command_line(self):
+        import json
+        self.tool("render", "head.nrrd", "-s", "80x60", "--view", "left", "-c",
+                  "viridis", "--range", "p10,p90", "-o", "a.npy",
+                  "--save-config", "a.json")
+        with open("a.json", encoding="ascii") as file:
+            recipe = json.load(file)
+        self.same(sg.render(**recipe), "a.npy")
+        with open("b.json", "w", encoding="ascii") as file:
+            json.dump(self.draw(self.CASES[1]).recipe, file)
+        self.tool("render", "--config", "b.json", "-o", "b.npy")
+        self.same(self.draw(self.CASES[1]), "b.npy")
+
+    def test_what_has_none(self):
+        array = numpy.asarray(sg.Volume("head.nrrd"))
+        volume = sg.Volume(array)
+        image = volume.render("mr-default", size=32, azimuth=10)
+        self.assertNotIn("input", image.recipe)
+        self.assertEqual(sg.compare(sg.render(volume, **image.recipe),
+                                    image).largest, 0)
+        with self.assertRaisesRegex(ValueError, "is an array"):
+            image.command
+        with self.assertRaisesRegex(ValueError, "colors of its own"):
+            volume.render(sg.Look(colors=[(0, (0, 0, 0)), (9, (1, 1, 1))]),
+                          size=16).recipe
+        with self.assertRaisesRegex(ValueError, "Volume.render"):
+            volume.slice().recipe
+        with self.assertRaises(TypeError):
+            sg.render()
+        with self.assertRaises(TypeError):
+            sg.render("head.nrrd", "mr-default", preset="linear")
+        with self.assertRaisesRegex(TypeError, "colour"):
+            sg.render("head.nrrd", colour=3)
+
+
+if __name__ == "__main__":
+    unittest.main()
