@@ -63,10 +63,14 @@ static void print_names(const char *title, const char *(*name)(size_t),
         roff_item(name(i), text(i));
 }
 
-static void print_see_also(void) {
-    puts(".SH SEE ALSO\n.BR snowglass (1),\n.BR snowglass (3),\n"
-         ".BR snowglass (5),\n.BR snowglass (7)");
+static void print_documents(void) {
+    puts(".BR snowglass (3),\n.BR snowglass (5),\n.BR snowglass (7)");
     roff_text("and the documents in the folder share/doc/snowglass.");
+}
+
+static void print_see_also(void) {
+    puts(".SH SEE ALSO\n.BR snowglass (1),");
+    print_documents();
 }
 
 /* The page of the tool itself names those of its verbs. */
@@ -75,7 +79,7 @@ static void print_verb_pages(void) {
     for (const verb_row *verb = verb_table; verb->name; verb++)
         if (verb->bit)
             printf(".BR snowglass\\-%s (1),\n", verb->name);
-    print_text("and the documents in the folder share/doc/snowglass.");
+    print_documents();
 }
 
 /* --- pages ---------------------------------------------------------------- */

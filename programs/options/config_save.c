@@ -13,7 +13,6 @@
 
 #include <inttypes.h>
 #include <limits.h>
-#include <math.h>
 #include <snowglass/recipe.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -218,13 +217,9 @@ void config_note_slice(const options *opts, const snow_transfer *transfer,
     snprintf(at, sizeof at, "%" PRId64, index);
     chosen.axis = json_string(axis);
     chosen.at = json_string(opts->at ? opts->at : at);
-    if (!transfer || opts->preset || opts->tf || opts->shift < 0 ||
-        opts->shift > 0 || opts->range.kind != SNOW_RANGE_AUTO ||
-        !isnan(opts->window))
-        return;
-    double ends[2];
-    snow_transfer_domain(transfer, &ends[0], &ends[1]);
-    chosen.range = json_vector(ends, 2);
+    if (transfer && !opts->preset && !opts->tf && !(opts->shift < 0) &&
+        !(opts->shift > 0))
+        note_range(opts, transfer);
 }
 
 static void set_chosen(json_t *tree) {

@@ -3,7 +3,7 @@
  *
  * A pixel is the mean of the slice's own voxels, weighted by a tent of two
  * voxels, or of two pixels where these are larger. */
-#include "base/record.h"
+#include "base/base.h"
 #include "base/thread_pool.h"
 #include "base/vec3.h"
 #include "image/image.h"

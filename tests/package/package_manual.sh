@@ -51,7 +51,7 @@ check "the tool's page does not name itself" \
 unnamed=
 for verb in $verbs; do
     also "$(page "")" | grep -qF ".BR snowglass\\-$verb (1)," || unnamed+=" $verb"
-    also "$(page "-$verb")" | grep -qx '.BR snowglass (1)' || unnamed+=" of:$verb"
+    also "$(page "-$verb")" | grep -qx '.BR snowglass (1),' || unnamed+=" of:$verb"
 done
 check "pages name one another${unnamed:+, not$unnamed}" [ -z "$unnamed" ]
 status() { sed -n "/^.SH EXIT STATUS/,/^.SH ENV/{/^.B $1\$/,/^.TP/p}" "$(page "")"; }
