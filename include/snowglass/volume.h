@@ -94,8 +94,7 @@ SNOW_RECORD(snow_volume_options);
 /* Opens a file (format by its first bytes, then its name; gzip is undone), "-"
  * for standard input, "phantom:NAME", or raw data where `dims` and `type` say
  * so. `options` may be NULL. A crop stays where it was in the world. Errors:
- * BAD_INPUT (missing, damaged, unsupported), BAD_USAGE (options that do not fit
- * the format), STOPPED. */
+ * BAD_INPUT (missing, damaged, unsupported), BAD_USAGE (options), STOPPED. */
 SNOW_API snow_status snow_volume_open(snow_context *context, const char *path,
     const snow_volume_options *options, snow_volume **out);
 SNOW_API void snow_volume_close(snow_volume *volume);
@@ -147,8 +146,7 @@ SNOW_RECORD(snow_extent);
  * default it is the whole. Errors: BAD_USAGE (boxes not within one another). */
 SNOW_API snow_status snow_volume_set_extent(
     snow_volume *volume, const snow_extent *part);
-SNOW_API snow_status snow_volume_get_extent(
-    const snow_volume *volume, snow_extent *out);
+SNOW_API snow_status snow_volume_get_extent(const snow_volume *, snow_extent *);
 
 /* The patient's name: UTF-8 or "", never written. Voxels: NULL in a file. */
 SNOW_API const snow_volume_info *snow_volume_get_info(const snow_volume *);
@@ -165,6 +163,8 @@ typedef struct snow_volume_statistics {
 SNOW_RECORD(snow_volume_statistics);
 SNOW_API snow_status snow_volume_get_statistics(
     const snow_volume *volume, snow_volume_statistics *out);
+/* Whether a range of data values is a CT's, where no file names its unit. */
+SNOW_API bool snow_are_hounsfield(const snow_volume_info *, double, double);
 /* Finite v counts in bin floor((v - lo) / (hi - lo) * bins), hi in the last.
  * Errors: BAD_USAGE unless lo < hi, both finite, bins > 0. */
 SNOW_API snow_status snow_volume_histogram(const snow_volume *volume, double lo,

@@ -38,16 +38,8 @@ void annotations_report(const options *opts) {
             opts->scale_bar ? "scale-bar" : "legend");
 }
 
-/* Of medical formats only DICOM names the unit of values.  In those of a CT air
- * is near -1000, and the surroundings of a round scan have one of three smaller
- * values.  Other data seldom have them. */
-static bool are_hounsfield(double lowest, double highest) {
-    return ((lowest >= -1100 && lowest <= -900) || lowest == -2000 ||
-            lowest == -2048 || lowest == -3024) &&
-           highest >= 100 && highest <= 65535;
-}
-
-/* A volume that stays in its file has no figures: its unit is not known. */
+/* Of medical formats only DICOM names the unit of values.  A volume that stays
+ * in its file has no figures: its unit is not known. */
 void annotations_find_unit(const options *opts, const snow_volume *volume,
                            bool parts, snow_volume_info *whole) {
     snow_volume_statistics of;
@@ -65,7 +57,7 @@ void annotations_find_unit(const options *opts, const snow_volume *volume,
         snow_comm_reduce_doubles(process_comm(), ends, 2, SNOW_REDUCE_MIN) !=
             SNOW_STATUS_OK)
         return;
-    whole->hounsfield = are_hounsfield(ends[0], -ends[1]);
+    whole->hounsfield = snow_are_hounsfield(whole, ends[0], -ends[1]);
 }
 
 /* Projections show values by colour alone: the colours of the look, or those

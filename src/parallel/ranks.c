@@ -1,5 +1,6 @@
 /* parallel/ranks.c - what a frame keeps for pictures by many ranks. */
 #include "parallel/internal.h"
+#include "parallel/load_balance.h"
 
 void snow_in_flight_end(snow_in_flight *f) {
     snow_context *context = f->ranks->context;
@@ -76,4 +77,25 @@ snow_status snow_ranks_of(snow_frame *frame, snow_comm *comm) {
         frame->ranks = NULL;
     }
     return status;
+}
+
+/* --- frames, of one process and of many ranks ----------------------------- */
+
+snow_status snow_frame_new(snow_context *context, snow_frame **out) {
+    snow_frame *frame = NULL;
+    SNOW_TRY(snow_buffers_new(context, &frame));
+    snow_status status = snow_load_balance_new(context, &frame->work);
+    if (status == SNOW_STATUS_OK)
+        *out = frame;
+    else
+        snow_buffers_free(frame);
+    return status;
+}
+
+void snow_frame_free(snow_frame *frame) {
+    if (!frame)
+        return;
+    snow_ranks_free(frame->ranks);
+    snow_load_balance_free(frame->context, frame->work);
+    snow_buffers_free(frame);
 }

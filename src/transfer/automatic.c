@@ -246,23 +246,20 @@ static void build_constant(const snow_histogram *histogram,
 #define BIN_HU(value) (((value) + 1100) / 100)
 
 /* The preset for a CT in Hounsfield units: for bone, if that is 0.5 % of the
- * body, else for soft tissue; -1 for other volumes.  What names no modality is
- * CT if it is a patient's, has more than 8 bits, begins at air or at a padding
- * below, and 2 % of it are air. */
+ * body, else for soft tissue; -1 for other volumes.  Of what names no modality
+ * 2 % have to be air. */
 static snow_status hounsfield_preset(const snow_histogram *histogram,
                                      int *preset) {
     const snow_volume_info *info = &histogram->volume->info;
-    const bool ct = !strcmp(info->modality, "CT");
     uint64_t counts[BINS_HU], all;
-    if (histogram->log || !info->medical || (*info->modality && !ct) ||
-        snow_has_8_bits(info) || !(histogram->min >= -4096) ||
-        !(histogram->min < (ct ? 0 : -900)) || !(histogram->max < 32768))
+    if (histogram->log ||
+        !snow_are_hounsfield(info, histogram->min, histogram->max))
         return SNOW_STATUS_OK;
     SNOW_TRY(snow_count_bins(histogram, -1100, 2900, BINS_HU, counts, &all));
     double air = share_of(counts, 0, BIN_HU(-900), all);
     double body = share_of(counts, BIN_HU(-200), BINS_HU, all);
     double bone = share_of(counts, BIN_HU(300), BINS_HU, all);
-    if (body > 0 && (ct || air >= 0.02))
+    if (body > 0 && (*info->modality || air >= 0.02))
         *preset =
             snow_preset_from_name(bone >= 0.005 * body ? "ct-bone" : "ct-soft");
     return SNOW_STATUS_OK;

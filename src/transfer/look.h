@@ -104,11 +104,6 @@ typedef struct snow_histogram_split {
 snow_status snow_histogram_split_at(const snow_histogram *histogram,
                                     snow_histogram_split *out);
 
-/* Those are no Hounsfield units. */
-static inline bool snow_has_8_bits(const snow_volume_info *info) {
-    return info->eight_bits || snow_type_size(info->type) == 1;
-}
-
 /* The automatic look; over values of its own only if these may have any range.
  * Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,

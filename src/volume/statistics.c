@@ -41,6 +41,50 @@ double snow_volume_native(const snow_volume *volume, int64_t index) {
     return value;
 }
 
+int32_t snow_type_lowest(snow_type type) {
+    return type == SNOW_TYPE_INT8    ? INT8_MIN
+           : type == SNOW_TYPE_INT16 ? INT16_MIN
+                                     : 0;
+}
+
+/* Extremes, as values of a type whose extremes vectors of any machine find:
+ * with the sign bit turned over where `flip` has it. */
+#define EXTREMES(name, type, vector, flip)                         \
+    case SNOW_TYPE_##name: {                                       \
+        const type *stored = (const type *)volume->voxels + first; \
+        vector least = (vector)(stored[0] ^ (flip)), most = least; \
+        for (size_t n = 0; n < count; n++) {                       \
+            vector here = (vector)(stored[n] ^ (flip));            \
+            least = here < least ? here : least;                   \
+            most = here > most ? here : most;                      \
+        }                                                          \
+        *low = (type)(least ^ (flip));                             \
+        *high = (type)(most ^ (flip));                             \
+        return true;                                               \
+    }
+
+bool snow_volume_extremes(const snow_volume *volume, int64_t first,
+                          size_t count, int32_t *low, int32_t *high) {
+    switch (volume->info.type) {
+        EXTREMES(INT8, int8_t, uint8_t, 0x80)
+        EXTREMES(UINT8, uint8_t, uint8_t, 0)
+        EXTREMES(INT16, int16_t, int16_t, 0)
+        EXTREMES(UINT16, uint16_t, int16_t, 0x8000)
+    default:
+        return false;
+    }
+}
+
+/* What names no modality is CT if it is a patient's, has more than 8 bits, and
+ * begins at air or at a padding below. */
+bool snow_are_hounsfield(const snow_volume_info *info, double low,
+                         double high) {
+    const bool ct = !strcmp(info->modality, "CT");
+    return info->medical && (ct || !*info->modality) &&
+           !snow_has_8_bits(info) && low >= -4096 && low < (ct ? 0 : -900) &&
+           high < 32768;
+}
+
 /* The product was checked when the volume was made. */
 static int64_t voxel_count(const snow_volume *volume) {
     const int64_t *dims = volume->info.dims;

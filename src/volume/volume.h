@@ -99,4 +99,9 @@ int32_t snow_type_lowest(snow_type type);
 bool snow_volume_extremes(const snow_volume *volume, int64_t first,
                           size_t count, int32_t *low, int32_t *high);
 
+/* Those are no Hounsfield units. */
+static inline bool snow_has_8_bits(const snow_volume_info *info) {
+    return info->eight_bits || snow_type_size(info->type) == 1;
+}
+
 #endif

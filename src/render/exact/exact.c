@@ -221,7 +221,8 @@ static snow_status choose_loops(snow_exact *exact, const snow_job *job) {
 }
 
 /* Makes room and tables for a job. */
-static snow_status prepare(snow_exact *exact, const snow_job *job) {
+static snow_status prepare_tables(snow_picture *picture, snow_job *job) {
+    snow_exact *exact = picture->frame->exact;
     snow_context *context = exact->context;
     const snow_settings *settings = &job->settings;
     const snow_placement *p = &job->stored;
@@ -637,10 +638,6 @@ static snow_status gather_slab(pass *work) {
 }
 
 /* --- the whole ------------------------------------------------------------ */
-
-static snow_status prepare_tables(snow_picture *p, snow_job *job) {
-    return prepare(p->frame->exact, job);
-}
 
 static snow_status encode_slab(snow_picture *p, snow_job *job) {
     snow_exact *exact = p->frame->exact;

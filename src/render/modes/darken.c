@@ -1,7 +1,7 @@
 /* render/modes/darken.c - an unsharp mask of the depths (Luft, Colditz and
  * Deussen 2006, Image Enhancement by Unsharp Masking the Depth Buffer), at two
  * radii. */
-#include "render/modes/darken.h"
+#include "render/modes/depth.h"
 
 #include "image/image.h"
 

@@ -23,4 +23,16 @@ void snow_depth_note_sheet(const snow_job *job, int64_t slice,
 void snow_depth_find(const snow_placement *placement, const double of[4], int x,
                      int y, double depth, double at[3], double away[3]);
 
+/* --- darken.c: what lies behind that beside it is darker (docs/model.md) ---
+
+ * Darkens the colours of `image` by settings.depth_darkening; `depth` is of its
+ * size, NaN where there is nothing; the time is added to `stats`. Errors: no
+ * memory; then `image` is as before. */
+snow_status snow_depth_darken(const snow_job *job, const snow_image *depth,
+                              snow_image *image, snow_stats *stats);
+
+/* Blurs a plane in its place; what is at its borders goes on beyond them. */
+void snow_blur_plane(float *plane, float *spare, int width, int height,
+                     double deviation);
+
 #endif

@@ -2,7 +2,7 @@
  * ramp, a local image of pairs by the picture's method, and what they mean. */
 #include "render/modes/modes.h"
 #include "base/thread_pool.h"
-#include "composite/projection.h"
+#include "composite/over.h"
 #include "image/image.h"
 #include "render/job.h"
 #include "transfer/transfer.h"

@@ -5,7 +5,7 @@
  * whose grey is the data value itself, carried from the volume's own range to 0
  * to 1, and whose opacity is 1 for every finite voxel, so that classification,
  * the three encodings and splatting serve as they are, and a sheet's pixel is
- * (weighted values, weights).  composite/projection.h has how sheets become a
+ * (weighted values, weights).  composite/over.h has how sheets become a
  * local image of such pairs; here they become colours or data values. */
 #ifndef SNOW_RENDER_MODES_MODES_H
 #define SNOW_RENDER_MODES_MODES_H

@@ -9,7 +9,6 @@
 #include "base/vec3.h"
 #include "classify/count_interesting.h"
 #include "image/image.h"
-#include "render/modes/darken.h"
 #include "render/modes/depth.h"
 #include "render/picture.h"
 #include "volume/stream.h"

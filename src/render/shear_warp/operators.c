@@ -1,7 +1,7 @@
 /* render/shear_warp/operators.c - the modes: a record for each.  Over makes
  * colours; projections make numbers, which are coloured after the warp
  * (render/modes/modes.c). */
-#include "composite/projection.h"
+#include "composite/over.h"
 #include "render/shear_warp/internal.h"
 
 #include <math.h>
