@@ -45,9 +45,9 @@ for inside in TMUX=/tmp/tmux,1,0 STY=1.pts TERM=tmux-256color TERM=screen; do
     check "$inside: half blocks are shown" cmp -s inside blocks
 done
 # Whatever is written, a PNG is shown: its background, letters and colours.
-"$TOOL" convert -q phantom:head --dims 40x40x40 -o head.nii
+"$TOOL" convert -q phantom:head --dims 40x40x40 -o head.nrrd
 for options in "" "-c hot" "-m mip" "-m mean -c viridis"; do
-    shown="head.nii -s 90x60 -q $options --show"
+    shown="head.nrrd -s 200x160 -q $options --show"
     # shellcheck disable=SC2086
     run 0 "'$options' as a PNG" python3 terminal.py as_png "$TOOL" $shown
     # shellcheck disable=SC2086
@@ -55,10 +55,10 @@ for options in "" "-c hot" "-m mip" "-m mean -c viridis"; do
         "$TOOL" $shown -y -o shown.npy
     check "'$options': the same is shown" cmp -s as_png as_npy
 done
-run 0 "without letters" python3 terminal.py bare "$TOOL" head.nii -s 90x60 -q \
+run 0 "without letters" python3 terminal.py bare "$TOOL" head.nrrd -s 200x160 -q \
     -m mean -c viridis --show --no-labels
 check "letters are among what is shown" [ "$(cmp -s as_npy bare; echo $?)" = 1 ]
-run 0 "what is written" "$TOOL" head.nii -s 90x60 -q -m mean -c viridis -o own.npy
+run 0 "what is written" "$TOOL" head.nrrd -s 200x160 -q -m mean -c viridis -o own.npy
 check "is as without showing" cmp -s shown.npy own.npy
 cat >compare.py <<'END'
 """What was shown beside the levels of the PNG."""

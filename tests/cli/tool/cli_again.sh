@@ -38,15 +38,15 @@ python3 - <<'END' || exit 77
 import struct
 import random
 random.seed(5)
-def volume(name, kind, code, values):
+def volume(name, kind, code, values, sizes="16 14 12"):
     with open(name + ".raw", "wb") as out:
         out.write(struct.pack("<%d%s" % (len(values), code), *values))
     with open(name + ".nhdr", "w") as out:
-        out.write("NRRD0004\ntype: %s\ndimension: 3\nsizes: 16 14 12\n"
+        out.write("NRRD0004\ntype: %s\ndimension: 3\nsizes: %s\n"
                   "space: left-posterior-superior\n"
                   "space directions: (1.1,0,0) (0,0.9,0.1) (0,0,2)\n"
                   "encoding: raw\nendian: little\ndata file: %s.raw\n"
-                  % (kind, name))
+                  % (kind, sizes, name))
 grid = [(x, y, z) for z in range(12) for y in range(14) for x in range(16)]
 ball = [(x - 8) ** 2 + (y - 7) ** 2 + (2 * z - 12) ** 2 for x, y, z in grid]
 volume("ct", "int16", "h", [-1000 if r > 40 else 40 + r * 20 for r in ball])
@@ -55,8 +55,8 @@ volume("float", "float", "f", [1e5 + 0.01 * random.random() + 0.02 * (r < 30)
 volume("tiny", "double", "d", [1e-7 / (3.3 + r) for r in ball])
 volume("constant", "uint8", "B", [7] * len(grid))
 volume("noise", "uint16", "H", [random.randrange(65536) for _ in grid])
-volume("spot", "uint16", "H", [65535 if n == 1234 else 100 + random.randrange(900)
-                               for n in range(len(grid))])
+volume("spot", "uint16", "H", [65535 if n == 5432 else 100 + random.randrange(900)
+                               for n in range(30 * 28 * 26)], "30 28 26")
 volume("negative", "int8", "b", [max(-128, 100 - r) for r in ball])
 END
 for name in ct float tiny constant noise negative; do

@@ -142,13 +142,13 @@ prints '"min": 258.0, "max": 1800.0'
 if command -v python3 >/dev/null; then
     python3 -c '
 import struct
-head = "{\"descr\": \"<f4\", \"fortran_order\": False, \"shape\": (3, 3, 3, 3), }"
+head = "{\"descr\": \"<f4\", \"fortran_order\": False, \"shape\": (4, 4, 4, 3), }"
 head = head.replace("\"", chr(39)).ljust(117) + "\n"
 open("vectors.npy", "wb").write(b"\x93NUMPY\x01\x00" +
     struct.pack("<H", len(head)) + head.encode() +
-    struct.pack("<81f", *range(81)))'
+    struct.pack("<192f", *range(192)))'
     run 0 "a component" "$TOOL" info vectors.npy --component Y --json
-    prints '"min": 1.0, "max": 79.0'
+    prints '"min": 1.0, "max": 190.0'
     run 0 "all of them" "$TOOL" info vectors.npy --component Magnitude
     run 0 "a picture of one" render vectors.npy --component Y -o va.png \
         -s 9x9 --save-config v.json
