@@ -123,7 +123,7 @@ class Recipes(InFolder):
                          gradient_opacity=[(0, 0), (20, 1)]), "shade": "none"},
         {"mode": "mip", "fit": "volume", "threads": 2},
         {"mode": "iso", "iso": 120.5, "light": "head", "letters": False},
-        {"look": "mr-default", "target": (30, 31, 20), "up": [0, 1, 1],
+        {"look": "mr-default", "target": (30, 31, 20), "up": [1, 0, 1],
          "roll": -5.25, "opacity_length": 1.0, "depth_darkening": 0.5},
     ]
 
