@@ -1,0 +1,177 @@
+/* _insitu - pictures of a running simulation for Python, over the communicator
+ * of mpi4py: snowglass/insitu.py is what users see.
+ *
+ * A module of its own, since it brings an MPI. The communicator comes as its
+ * Fortran handle, so that nothing of mpi4py is needed to build it. */
+#define Py_LIMITED_API 0x030B0000
+#define PY_SSIZE_T_CLEAN
+#include <Python.h>
+
+#include <snowglass/mpi.h>
+#include <snowglass/recipe.h>
+
+#include <string.h>
+
+#define NAME "snowglass.insitu"
+
+static PyObject *error_type, *warning_type; /* of the core */
+
+static void end_movie(PyObject *capsule) {
+    snow_insitu_free(PyCapsule_GetPointer(capsule, NAME));
+}
+
+static snow_insitu *movie_of(PyObject *capsule) {
+    return PyCapsule_GetPointer(capsule, NAME);
+}
+
+static snow_context *context_of(const snow_insitu *movie) {
+    return snow_comm_context(snow_insitu_comm(movie));
+}
+
+static PyObject *answer(snow_status status, const char *message) {
+    if (PyErr_Occurred())
+        return NULL;
+    if (status == SNOW_STATUS_OK)
+        Py_RETURN_NONE;
+    return PyErr_Format(status == SNOW_STATUS_NO_MEMORY   ? PyExc_MemoryError
+                        : status == SNOW_STATUS_BAD_USAGE ? PyExc_ValueError
+                                                          : error_type,
+                        "%s", message);
+}
+
+/* Called by the thread that called the library, without Python's lock. */
+static void warn(void *user, const char *text) {
+    PyGILState_STATE state = PyGILState_Ensure();
+    (void)user;
+    if (!PyErr_Occurred())
+        PyErr_WarnEx(warning_type, text, 1);
+    PyGILState_Release(state);
+}
+
+/* new(the communicator's Fortran handle) */
+static PyObject *movie_new(PyObject *module, PyObject *args) {
+    int group;
+    snow_insitu *movie = NULL;
+    snow_status status;
+    (void)module;
+    if (!PyArg_ParseTuple(args, "i", &group))
+        return NULL;
+    Py_BEGIN_ALLOW_THREADS;
+    status = snow_insitu_new_mpi_fortran((MPI_Fint)group, &movie);
+    Py_END_ALLOW_THREADS;
+    if (status != SNOW_STATUS_OK)
+        return answer(status, "no movie over this communicator: MPI must run, "
+                              "and be the one that Snowglass was built with");
+    snow_insitu_set_warning(movie, warn, NULL);
+    return PyCapsule_New(movie, NAME, end_movie);
+}
+
+/* recipe(movie, its JSON text) */
+static PyObject *movie_recipe(PyObject *module, PyObject *args) {
+    PyObject *capsule;
+    const char *text;
+    Py_ssize_t bytes;
+    snow_recipe recipe;
+    (void)module;
+    if (!PyArg_ParseTuple(args, "Os#", &capsule, &text, &bytes) ||
+        !movie_of(capsule))
+        return NULL;
+    snow_insitu *movie = movie_of(capsule);
+    snow_recipe_init(&recipe);
+    snow_status status = snow_recipe_parse(context_of(movie), "the recipe",
+                                           text, (size_t)bytes, &recipe);
+    if (status == SNOW_STATUS_OK) {
+        status = snow_recipe_apply(&recipe, movie);
+        snow_recipe_clear(&recipe);
+    }
+    return answer(status, snow_context_message(context_of(movie)));
+}
+
+/* grid(movie, (x, y, z), origin, spacing) */
+static PyObject *movie_grid(PyObject *module, PyObject *args) {
+    PyObject *capsule;
+    long long dims[3];
+    double origin[3], spacing[3];
+    (void)module;
+    if (!PyArg_ParseTuple(args, "O(LLL)(ddd)(ddd)", &capsule, &dims[0],
+                          &dims[1], &dims[2], &origin[0], &origin[1],
+                          &origin[2], &spacing[0], &spacing[1], &spacing[2]) ||
+        !movie_of(capsule))
+        return NULL;
+    const int64_t all[3] = {dims[0], dims[1], dims[2]};
+    snow_insitu *movie = movie_of(capsule);
+    return answer(snow_insitu_set_grid(movie, all, origin, spacing),
+                  snow_insitu_message(movie));
+}
+
+/* brick(movie, id, first, count, halo, type, address, strides): all along x, y,
+ * z; the address is that of the first voxel behind the halo, strides are in
+ * values. */
+static PyObject *movie_brick(PyObject *module, PyObject *args) {
+    PyObject *capsule;
+    int id;
+    long long f[3], c[3], h, s[3];
+    unsigned long long address;
+    const char *type;
+    (void)module;
+    if (!PyArg_ParseTuple(args, "Oi(LLL)(LLL)LsK(LLL)", &capsule, &id, &f[0],
+                          &f[1], &f[2], &c[0], &c[1], &c[2], &h, &type,
+                          &address, &s[0], &s[1], &s[2]) ||
+        !movie_of(capsule))
+        return NULL;
+    const int64_t first[3] = {f[0], f[1], f[2]}, count[3] = {c[0], c[1], c[2]};
+    const int64_t strides[3] = {s[0], s[1], s[2]};
+    const snow_halo halo = {{h, h, h}, {h, h, h}};
+    snow_insitu *movie = movie_of(capsule);
+    snow_status status =
+        snow_insitu_set_brick(movie, id, first, count, h > 0 ? &halo : NULL);
+    if (status == SNOW_STATUS_OK && count[0] * count[1] * count[2] > 0)
+        status =
+            snow_insitu_set_voxels(movie, id, snow_type_from_name(type),
+                                   (const void *)(uintptr_t)address, strides);
+    return answer(status, snow_insitu_message(movie));
+}
+
+/* step(movie, number): collective */
+static PyObject *movie_step(PyObject *module, PyObject *args) {
+    PyObject *capsule;
+    long long number;
+    snow_status status;
+    (void)module;
+    if (!PyArg_ParseTuple(args, "OL", &capsule, &number) || !movie_of(capsule))
+        return NULL;
+    snow_insitu *movie = movie_of(capsule);
+    Py_BEGIN_ALLOW_THREADS;
+    status = snow_insitu_step(movie, number);
+    Py_END_ALLOW_THREADS;
+    return answer(status, snow_insitu_message(movie));
+}
+
+static PyMethodDef functions[] = {
+    {"new", movie_new, METH_VARARGS, "a movie over a communicator"},
+    {"recipe", movie_recipe, METH_VARARGS, "its look, view and output"},
+    {"grid", movie_grid, METH_VARARGS, "the whole grid"},
+    {"brick", movie_brick, METH_VARARGS, "this rank's voxels"},
+    {"step", movie_step, METH_VARARGS, "draws and writes; collective"},
+    {NULL, NULL, 0, NULL}};
+
+static struct PyModuleDef definition = {PyModuleDef_HEAD_INIT,
+                                        "_insitu",
+                                        NULL,
+                                        -1,
+                                        functions,
+                                        NULL,
+                                        NULL,
+                                        NULL,
+                                        NULL};
+
+PyMODINIT_FUNC PyInit__insitu(void);
+PyMODINIT_FUNC PyInit__insitu(void) {
+    PyObject *core = PyImport_ImportModule("snowglass._snowglass");
+    if (!core)
+        return NULL;
+    error_type = PyObject_GetAttrString(core, "Error");
+    warning_type = PyObject_GetAttrString(core, "SnowglassWarning");
+    Py_DECREF(core);
+    return error_type && warning_type ? PyModule_Create(&definition) : NULL;
+}

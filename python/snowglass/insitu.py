@@ -1,0 +1,101 @@
+"""Pictures of a running simulation, over the communicator of mpi4py.
+
+    from mpi4py import MPI
+    from snowglass import insitu
+
+    movie = insitu.Movie(MPI.COMM_WORLD, dims=(nx, ny, nz), output="rho_%04d.png",
+                         colormap="viridis", range=(0, 1), size=(800, 600))
+    movie.brick(rho, first=(0, 0, z0))       # this rank's part, [z, y, x]
+    for step in range(steps):
+        advance(rho)
+        movie.step(step)
+"""
+from __future__ import annotations
+
+import json
+import weakref
+from typing import Any, Mapping, Optional, Sequence
+
+try:
+    from . import _insitu
+except ImportError as missing:
+    raise ImportError(f"this build of Snowglass has no pictures in situ for "
+                      f"Python, which need MPI: {missing}") from missing
+
+
+class Movie:
+    """A movie of one field of a simulation, whose ranks each hold a part.
+
+    comm      of mpi4py; the MPI must be the one that Snowglass was built with
+    dims      voxels of the whole grid along x, y, z
+    origin, spacing   its place in the world
+    recipe    keys of a recipe (`Image.recipe`, or a file that the command line
+              has saved), and keywords the same: output, size, view, preset,
+              colormap, range, opacity, mode, legend, ...
+
+    Arguments are alike on all ranks.  `close` ends the movie, on all ranks and
+    before MPI ends; so does leaving it as a context.
+    """
+
+    def __init__(self, comm: Any, dims: Sequence[int], *,
+                 origin: Sequence[float] = (0, 0, 0),
+                 spacing: Sequence[float] = (1, 1, 1),
+                 recipe: Optional[Mapping[str, Any]] = None,
+                 **keys: Any) -> None:
+        given = {**(recipe or {}), **{name.replace("_", "-"): value
+                                      for name, value in keys.items()}}
+        given.pop("input", None)
+        self._arrays: dict[int, Any] = {}
+        self._held: list[Any] = [_insitu.new(comm.py2f())]
+        # At the latest before MPI ends, which is after Python's own functions.
+        weakref.finalize(self, self._held.clear)
+        _insitu.grid(self._movie, tuple(dims), tuple(origin), tuple(spacing))
+        _insitu.recipe(self._movie, json.dumps(given, allow_nan=False))
+
+    @property
+    def _movie(self) -> Any:
+        if not self._held:
+            raise ValueError("the movie is closed")
+        return self._held[0]
+
+    def brick(self, array: Any, first: Sequence[int] = (0, 0, 0), *,
+              halo: int = 0, id: int = 0) -> None:
+        """This rank's part of the field: an array [z, y, x] whose voxel at
+        (0, 0, 0) is `first` (x, y, z) of the grid.  It is used in place, in
+        whatever order its axes lie, and read by each `step`.
+
+        halo   layers of other ranks' voxels around it, on all sides, that the
+               array has too and that are up to date; `first` is behind them
+        id     a number for each part of a rank that has several
+        """
+        import numpy
+        voxels = numpy.asarray(array)
+        if voxels.ndim != 3 or any(side <= 2 * halo for side in voxels.shape):
+            raise ValueError(f"a brick must be an array of three dimensions with "
+                             f"voxels within its halo, not {voxels.shape}")
+        if any(step % voxels.itemsize or step <= 0 for step in voxels.strides):
+            raise ValueError("a brick's steps in memory must be whole values, and "
+                             "rise; copy the array")
+        if not voxels.dtype.isnative:
+            raise ValueError("a brick must have this machine's order of bytes")
+        inner = voxels[halo:, halo:, halo:] if halo else voxels
+        count = [side - 2 * halo for side in voxels.shape[::-1]]
+        strides = [step // voxels.itemsize for step in voxels.strides[::-1]]
+        _insitu.brick(self._movie, id, tuple(first), tuple(count), halo,
+                      voxels.dtype.name, inner.ctypes.data, tuple(strides))
+        self._arrays[id] = voxels  # as long as it is read
+
+    def step(self, number: int) -> None:
+        """Draws the fields as they are and writes a picture; collective."""
+        _insitu.step(self._movie, number)
+
+    def close(self) -> None:
+        """Ends the movie; collective."""
+        self._held.clear()
+        self._arrays.clear()
+
+    def __enter__(self) -> "Movie":
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
