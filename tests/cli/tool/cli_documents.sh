@@ -71,7 +71,7 @@ commands() {
     sed -e ':a' -e '/\\$/N; s/\\\n *//; ta' "$root/README.md" \
         "$root"/docs/*.md "$root"/docs/measurements/*.md |
         sed -n 's/^    \(snowglass .*\)/\1/p' |
-        grep -Ev 'snowglass bench|--show' | grep -Ev "$without" | sort -u
+        grep -Ev 'snowglass bench|--show' | grep -Ev -e "$without" | sort -u
 }
 
 # The short tier takes one in six.
