@@ -41,7 +41,7 @@ static int run_help(const options *opts) {
     return help_print(opts->operand_count ? opts->operands[0] : NULL, NULL);
 }
 
-/* bench is not in the list: it reads its own arguments. */
+/* bench and serve are not in the list: they are programs of their own. */
 static int run_verb(const verb_row *verb, const options *opts) {
     switch (verb->bit) {
     case VERB_RENDER:
@@ -154,6 +154,11 @@ static int dispatch(int argc, char **argv) {
         return fail_usage("%s is not built yet; %s", verb->name, verb->text);
     if (verb->bit == VERB_BENCH) /* of MPI: mpi_main.c */
         return sibling_become("snowglass-bench", argv + 1);
+    if (verb->bit == VERB_SERVE && process_mpi())
+        return fail_usage("serve: shows a volume by one process; start it with "
+                          "snowglass, without MPI");
+    if (verb->bit == VERB_SERVE)
+        return sibling_become("snowglass-serve", argv + 1);
     if (!is_for_all(verb) && !process_talks())
         return SNOW_STATUS_OK;
     if (verb->bit == VERB_HELP && argc == 3 && is_option(argv[2]))

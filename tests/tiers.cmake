@@ -25,7 +25,7 @@ set(SNOW_LABEL_late catalyst cli_again cli_balance cli_bench cli_figures
 file(GLOB formats CONFIGURE_DEPENDS formats/test_*.c)
 list(TRANSFORM formats REPLACE ".*/(.*)[.]c$" "\\1")
 set(SNOW_LABEL_surface ${formats} test_base test_compare test_convert test_image
-    test_mask test_npy_pfm test_pictures test_png test_recipe test_save
+    test_guard test_mask test_message test_npy_pfm test_pictures test_png test_recipe test_save
     test_source test_tf test_volume test_writer test_writer_named)
 set(SNOW_LABEL_threads test_affinity test_combine test_comm test_early
     test_pipeline test_frames test_insitu test_insitu_marks test_modes

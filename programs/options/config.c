@@ -191,22 +191,27 @@ static void fit_depth(const options *out, const verb_row *verb, json_t *tree) {
         json_object_del(tree, "depth");
 }
 
-/* Takes the keys in the order of the file. */
-static int take_file(options *out, const verb_row *verb) {
-    json_error_t error;
+/* Takes the keys in their order. */
+int config_take_tree(options *out, const verb_row *verb, const json_t *tree) {
     const char *key;
     json_t *value;
+    json_object_foreach((json_t *)tree, key, value) {
+        int done = take_key(out, verb, key, value);
+        if (done != CONTINUE)
+            return done;
+    }
+    return CONTINUE;
+}
+
+static int take_file(options *out, const verb_row *verb) {
+    json_error_t error;
     int done = check_recipe(out->config);
     if (done != CONTINUE)
         return done;
     json_t *tree = json_load_file(out->config, 0, &error);
     config_paths_read(tree, out->config);
     fit_depth(out, verb, tree);
-    json_object_foreach(tree, key, value) {
-        done = take_key(out, verb, key, value);
-        if (done != CONTINUE)
-            break;
-    }
+    done = config_take_tree(out, verb, tree);
     json_decref(tree);
     return done;
 }

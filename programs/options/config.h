@@ -12,6 +12,9 @@
  * stand on the command line.  Returns CONTINUE or an exit code. */
 int config_take(options *out, const verb_row *verb);
 
+/* Applies the keys of a recipe's tree in the same way. */
+int config_take_tree(options *out, const verb_row *verb, const json_t *tree);
+
 /* The verb for words without one: that of the --config file among them, or
  * render. */
 const verb_row *config_verb(int argc, char **argv);
@@ -32,6 +35,14 @@ void config_note(const options *opts, const snow_transfer *transfer,
 /* The same for a slice across an axis; `transfer` NULL: no colours. */
 void config_note_slice(const options *opts, const snow_transfer *transfer,
                        const char *axis, int64_t index);
+
+/* The options as the tree of a recipe, a new reference; NULL: no memory. */
+json_t *config_tree(const options *opts, const verb_row *verb);
+
+/* The command that makes the same picture: options of a tree that differ from
+ * their defaults. The caller frees it; NULL: no memory. */
+char *config_command(const options *opts, const verb_row *verb,
+                     const json_t *tree);
 
 /* Writes the --save-config file, if one is given, and prints the command with
  * -v.  Returns an exit code. */

@@ -259,7 +259,7 @@ static void keep_slice(const options *opts, json_t *tree) {
             json_object_del(tree, row->name);
 }
 
-static json_t *make_tree(const options *opts, const verb_row *verb) {
+json_t *config_tree(const options *opts, const verb_row *verb) {
     snow_context *context = NULL;
     snow_recipe recipe = {.size = sizeof recipe};
     json_t *tree = NULL;
@@ -331,9 +331,8 @@ static void write_command(FILE *out, const options *opts, const verb_row *verb,
     }
 }
 
-/* Prints the command that makes the same picture, with what was chosen. */
-static void print_command(const options *opts, const verb_row *verb,
-                          const json_t *tree) {
+char *config_command(const options *opts, const verb_row *verb,
+                     const json_t *tree) {
     snow_context *context = NULL;
     snow_recipe recipe = {.size = sizeof recipe};
     char *text = NULL;
@@ -350,7 +349,16 @@ static void print_command(const options *opts, const verb_row *verb,
         json_decref(usual);
     }
     snow_context_free(context);
-    if (out && fclose(out) == 0)
+    if (out)
+        fclose(out);
+    return text;
+}
+
+/* Prints the command that makes the same picture, with what was chosen. */
+static void print_command(const options *opts, const verb_row *verb,
+                          const json_t *tree) {
+    char *text = config_command(opts, verb, tree);
+    if (text)
         say("again: %s", text);
     free(text);
 }
@@ -361,7 +369,7 @@ int config_save(const options *opts, const verb_row *verb) {
     bool prints = opts->verbosity > 0 && rendered;
     if ((!opts->save_config && !prints) || !process_talks())
         return SNOW_STATUS_OK;
-    json_t *tree = make_tree(opts, verb);
+    json_t *tree = config_tree(opts, verb);
     if (!tree)
         return fail_memory(
             "%s: out of memory for its text; close other programs",

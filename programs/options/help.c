@@ -94,7 +94,8 @@ static int print_verb_page(const verb_row *row) {
         return sibling_run("snowglass-bench", words);
     }
     printf("snowglass %s %s\n%s\n", row->name, row->usage, row->text);
-    if (row->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE | VERB_SLICE)) {
+    if (row->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE | VERB_SLICE |
+                    VERB_SERVE)) {
         help_brief(row);
         return finish_stdout();
     }

@@ -11,7 +11,9 @@ enum {
     STILL = VERB_RENDER | VERB_SLICE,
     MOVIES = VERB_TURNTABLE | VERB_MOVIE,
     TURNED = RENDER | MOVIES,
-    ANY = STILL | MOVIES
+    SEEN = TURNED | VERB_SERVE,
+    WRITTEN = STILL | MOVIES,
+    ANY = WRITTEN | VERB_SERVE
 };
 
 /* The common options, with shorter texts than in the table. */
@@ -22,19 +24,19 @@ static const struct {
     {STILL, "output", "file of the picture; its ending is the format"},
     {MOVIES, "output",
      "the movie, such as turn.mp4, or single frames: f_%04d.png"},
-    {ANY, "overwrite", "replace the file if it exists"},
+    {WRITTEN, "overwrite", "replace the file if it exists"},
     {TURNED, "size", "size in pixels (default 512x512)"},
     {VERB_SLICE, "size", "size in pixels (default: that of the slice)"},
     {ANY, "preset", "look for a kind of data: ct-bone; help preset lists all"},
     {ANY, "colormap", "colours: viridis; help colormap lists all"},
     {ANY, "window", "show W data values around L: -w 400,40"},
-    {TURNED, "mode",
+    {SEEN, "mode",
      "over: matter with its opacity; mip: the largest value of each ray; help "
      "mode lists all"},
-    {TURNED, "view", "side or plane: left, axial, +z; help view lists all"},
-    {TURNED, "azimuth", "move the camera to its right around the volume"},
-    {TURNED, "elevation", "then move it up"},
-    {TURNED, "zoom", "magnify"},
+    {SEEN, "view", "side or plane: left, axial, +z; help view lists all"},
+    {SEEN, "azimuth", "move the camera to its right around the volume"},
+    {SEEN, "elevation", "then move it up"},
+    {SEEN, "zoom", "magnify"},
     {ANY, "legend", "draw a colour bar and a scale bar"},
 };
 
@@ -59,6 +61,10 @@ static const struct {
      {"snowglass movie run_%04d.nrrd -o run.mp4",
       "snowglass movie a.vti b.vti c.vti -o abc.webm -c viridis --range 0,1",
       "snowglass movie heart.nii.gz -o heart.gif --fps 10 --time-label"}},
+    {VERB_SERVE,
+     {"snowglass serve head.nii.gz",
+      "snowglass serve ct.nrrd --preset ct-bone --port 8000",
+      "snowglass serve run.nrrd --socket $XDG_RUNTIME_DIR/snowglass.sock"}},
 };
 
 /* The options that `render` does not have. */

@@ -20,7 +20,9 @@ enum {
     TURNTABLE = VERB_TURNTABLE,
     MOVIE = VERB_MOVIE,
     MOVIES = VERB_TURNTABLE | VERB_MOVIE,
-    RENDER = VERB_RENDER | MOVIES, /* all verbs that render */
+    WRITTEN = VERB_RENDER | MOVIES,
+    SERVE = VERB_SERVE,
+    RENDER = WRITTEN | SERVE, /* all verbs that render */
     INFO = VERB_INFO,
     PHANTOM = VERB_PHANTOM,
     COMPARE = VERB_COMPARE,
@@ -28,6 +30,7 @@ enum {
     CONVERT = VERB_CONVERT,
     TF = VERB_TF,
     SLICE = VERB_SLICE,
+    FILED = WRITTEN | SLICE,      /* all verbs whose pictures are files */
     PICTURE = RENDER | SLICE,     /* all verbs that make pictures */
     LOOKED = PICTURE | VERB_INFO, /* all verbs that use a look */
     INPUT = LOOKED | CONVERT,     /* all verbs that read a volume */
@@ -36,7 +39,7 @@ enum {
 
 /* clang-format off */
 const option_row option_table[] = {
-    {"output", 'o', "FILE", TOPIC_OUTPUT, PICTURE | PHANTOM | CONVERT | TF,
+    {"output", 'o', "FILE", TOPIC_OUTPUT, FILED | PHANTOM | CONVERT | TF,
      read_text,
      FIELD(output), 0, 0, "",
      "output file. Picture: .png, .jpg or .webp; .npy, .exr, .tif or .pfm for "
@@ -44,7 +47,7 @@ const option_row option_table[] = {
      "pattern such as f_%04d.png for single frames. Volume: .nrrd, .nii, "
      ".nii.gz, .mha, .npy, .raw or .raw.gz. A picture without -o is NAME.png in "
      "the working folder, after the input, and replaces no file"},
-    {"size", 's', "WxH|N", TOPIC_OUTPUT, PICTURE, read_size, FIELD(size), 0, 0, "",
+    {"size", 's', "WxH|N", TOPIC_OUTPUT, FILED, read_size, FIELD(size), 0, 0, "",
      "picture size in pixels; N is NxN (default 512x512; of a slice its own, a "
      "pixel for each voxel or, where they are not square, for its shorter side)"},
     {"background", 0, "COLOR|auto|none", TOPIC_OUTPUT, PICTURE, read_color,
@@ -53,9 +56,9 @@ const option_row option_table[] = {
      "or r,g,b from 0 to 1; auto, dark: #141414 in modes over and iso, black in "
      "the others and around slices; or none, transparent, but black in JPEG and movies by ffmpeg "
      "(default auto)"},
-    {"bits", 0, "8|16", TOPIC_OUTPUT, PICTURE, read_choice, FIELD(bits), 0, 0,
+    {"bits", 0, "8|16", TOPIC_OUTPUT, FILED, read_choice, FIELD(bits), 0, 0,
      "", "bits per channel of a PNG (default 8)"},
-    {"overwrite", 'y', NULL, TOPIC_OUTPUT, PICTURE | PHANTOM | CONVERT | TF,
+    {"overwrite", 'y', NULL, TOPIC_OUTPUT, FILED | PHANTOM | CONVERT | TF,
      read_flag,
      FIELD(overwrite), 0, 0, "",
      "replace existing files of --output, --depth and --stats (default: "
@@ -64,7 +67,7 @@ const option_row option_table[] = {
      "show the picture in the terminal, and write a file only if --output is "
      "given: by kitty's graphics protocol (kitty, Ghostty, WezTerm), elsewhere "
      "by half blocks in 24-bit colour"},
-    {"depth", 0, "FILE", TOPIC_OUTPUT, RENDER, read_text, FIELD(depth), 0,
+    {"depth", 0, "FILE", TOPIC_OUTPUT, WRITTEN, read_text, FIELD(depth), 0,
      0, "",
      "file for the depth of modes over and iso: .npy, .pfm, .exr or .tif. "
      "Depth is the distance in world units along the line of sight, from the "
@@ -167,7 +170,7 @@ const option_row option_table[] = {
     {"log", 0, NULL, TOPIC_LOOK, LOOKED, read_flag, FIELD(log), 0, 0, "",
      "logarithmic scale for values; values of 0 and below are transparent"},
 
-    {"quality", 0, "draft|normal|high", TOPIC_QUALITY, RENDER, read_choice,
+    {"quality", 0, "draft|normal|high", TOPIC_QUALITY, WRITTEN, read_choice,
      FIELD(quality), 0, 0, "",
      "draft: one intermediate pixel per voxel and linear filters; normal: two "
      "pixels and cubic filters; high: also interpolates between slices. With "
@@ -284,12 +287,12 @@ const option_row option_table[] = {
     {"isa", 0, "auto|scalar|avx2|avx512|neon|wasm", TOPIC_RUN, RENDER, read_choice,
      FIELD(isa), 0, 0, "",
      "instruction set to use (default auto: the best of this machine)"},
-    {"progress", 0, "auto|always|never", TOPIC_RUN, PICTURE, read_choice,
+    {"progress", 0, "auto|always|never", TOPIC_RUN, FILED, read_choice,
      FIELD(progress), 0, 0, "",
      "progress on stderr. auto: a status line or bar on a terminal, otherwise "
      "a line every 10 s; always: without a terminal also a line for each "
      "stage; never: none (default auto)"},
-    {"stats", 0, "FILE", TOPIC_RUN, PICTURE, read_text, FIELD(stats), 0, 0, "",
+    {"stats", 0, "FILE", TOPIC_RUN, FILED, read_text, FIELD(stats), 0, 0, "",
      "write timings and other figures as JSON; - is stdout; replacing a file "
      "needs --overwrite"},
     {"verbose", 'v', NULL, TOPIC_RUN, EVERY, read_constant, FIELD(verbosity), 1,
@@ -306,7 +309,7 @@ const option_row option_table[] = {
     {"config", 0, "FILE", TOPIC_RUN, LOOKED, read_text, FIELD(config), 0, 0, "",
      "read options from a JSON file whose keys are long option names, and "
      "input; options on the command line have priority"},
-    {"save-config", 0, "FILE", TOPIC_RUN, PICTURE, read_text,
+    {"save-config", 0, "FILE", TOPIC_RUN, FILED, read_text,
      FIELD(save_config), 0, 0, "",
      "write the options to a JSON file that gives the same picture with "
      "--config; --depth is included, --stats and other reports are not; - is "
@@ -328,22 +331,43 @@ const option_row option_table[] = {
     {"resume", 0, NULL, TOPIC_MORE, MOVIES, read_flag, FIELD(resume), 0, 0, "",
      "continue an interrupted run and keep its finished frames; all other "
      "options must be the same"},
-    {"cut", 0, "auto|equal|counted|bricks|measured", TOPIC_RANKS, RENDER,
+    {"cut", 0, "auto|equal|counted|bricks|measured", TOPIC_RANKS, WRITTEN,
      read_choice, FIELD(cut), 0, 0, "",
      "how the volume is partitioned: equal slabs as in the paper; counted or "
      "bricks: slabs or bricks with equal numbers of interesting voxels; "
      "measured: as auto, and a turntable repartitions slabs by rendering time "
      "(default auto: counted, or bricks where slabs would be thin)"},
-    {"combine", 0, "auto|tree|swap|direct|radix", TOPIC_RANKS, RENDER,
+    {"combine", 0, "auto|tree|swap|direct|radix", TOPIC_RANKS, WRITTEN,
      read_choice, FIELD(combine), 0, 0, "",
      "how the pictures of the ranks are combined: binary tree as in the paper, "
      "binary swap, direct send, or radix-k (default auto: by ranks and size)"},
-    {"radix", 0, "K", TOPIC_RANKS, RENDER, read_integer, FIELD(radix), 2, 64,
+    {"radix", 0, "K", TOPIC_RANKS, WRITTEN, read_integer, FIELD(radix), 2, 64,
      "", "ranks per group of --combine radix (default: chosen)"},
-    {"timeout", 0, "SECONDS", TOPIC_RANKS, RENDER, read_real, FIELD(timeout), 0,
+    {"timeout", 0, "SECONDS", TOPIC_RANKS, WRITTEN, read_real, FIELD(timeout), 0,
      1e9, "",
      "end the job if a rank neither sends nor waits for this long, and name "
      "the rank; 0 waits forever (default 300)"},
+
+    {"port", 0, "N", TOPIC_MORE, SERVE, read_integer, FIELD(port), 0, 65535, "",
+     "TCP port of the viewer (default 0: a free one, which is printed)"},
+    {"socket", 0, "PATH", TOPIC_MORE, SERVE, read_text, FIELD(socket), 0, 0, "",
+     "listen on a Unix socket that only its owner can open, in place of a port; "
+     "for ssh -L 8000:PATH on machines that others use too"},
+    {"listen", 0, "ADDRESS", TOPIC_MORE, SERVE, read_text, FIELD(listen), 0, 0,
+     "",
+     "listen on this address of the machine, without encryption (default: "
+     "127.0.0.1 and ::1, which only this machine can reach)"},
+    {"allow-host", 0, "NAME,...", TOPIC_MORE, SERVE, read_text,
+     FIELD(allow_host), 0, 0, "",
+     "names, with their ports, under which a proxy or a tunnel shows the "
+     "viewer; pages under other names are refused"},
+    {"token-file", 0, "FILE", TOPIC_MORE, SERVE, read_text, FIELD(token_file),
+     0, 0, "",
+     "take the secret of the URL from a file that only its owner can read; "
+     "without such a file, write one (default: a new secret)"},
+    {"idle", 0, "TIME", TOPIC_MORE, SERVE, read_seconds, FIELD(idle), 0, 0, "",
+     "end after this time without a page: seconds, or a number with m or h; 0 "
+     "never ends (default 1h)"},
 
     {"json", 0, NULL, TOPIC_MORE, INFO | COMPARE | DOCTOR | TF, read_flag,
      FIELD(json), 0, 0, "",
@@ -390,7 +414,8 @@ const verb_row verb_table[] = {
     {"tf", VERB_TF, -1,
      "list | show NAME|FILE [-o OUT.png] | convert IN -o OUT",
      "list, show and convert transfer functions"},
-    {"serve", 0, 0, "", "use render to write pictures"},
+    {"serve", VERB_SERVE, -1, "[INPUT] [--port N]",
+     "show a volume in a browser"},
     {.name = NULL},
 };
 

@@ -31,7 +31,8 @@ enum {
     VERB_MOVIE = 1 << 8,
     VERB_CONVERT = 1 << 9,
     VERB_TF = 1 << 10,
-    VERB_SLICE = 1 << 11
+    VERB_SLICE = 1 << 11,
+    VERB_SERVE = 1 << 12
 };
 
 typedef enum topic {
@@ -50,7 +51,7 @@ typedef enum topic {
 } topic;
 
 /* Must exceed the number of rows in option_table: more would be lost. */
-#define OPTION_ROWS_MOST 96
+#define OPTION_ROWS_MOST 128
 
 /* Size of the texts of a configuration. */
 #define CONFIG_TEXTS_BYTES 32768
@@ -111,6 +112,12 @@ typedef struct options {
     bool each_time; /* `time` is one of all steps, which are opened in turn */
 
     const char *axis, *at; /* of a slice; NULL: not given */
+    int64_t port;           /* of the viewer; 0: a free one */
+    const char *socket;     /* NULL: a port */
+    const char *listen;     /* address; NULL: this machine alone */
+    const char *allow_host; /* names, separated by commas; NULL: none */
+    const char *token_file; /* NULL: none */
+    double idle;            /* seconds without a page; 0: no end */
 
     int64_t frames; /* in a turn */
     double fps;

@@ -35,5 +35,6 @@ option_read read_points;          /* point_list */
 option_read read_gradient_points; /* point_list */
 option_read read_light;           /* light_value */
 option_read read_place;           /* place_value */
+option_read read_seconds;         /* double; units as in 90s, 5m or 1h */
 
 #endif

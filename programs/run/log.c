@@ -64,6 +64,15 @@ void silence_others(void) {
         close(nowhere);
 }
 
+/* Who hears messages instead. */
+static void (*hear_line)(void *user, const char *line);
+static void *hear_user;
+
+void say_to(void (*hear)(void *user, const char *line), void *user) {
+    hear_line = hear;
+    hear_user = user;
+}
+
 static void wipe_stage(void) {
     if (stage_shown)
         fputs("\r\033[K", stderr);
@@ -78,6 +87,10 @@ static void say_list(const char *format, va_list arguments) {
     for (char *at = line; *at; at++) {
         if ((unsigned char)*at < ' ' || *at == 127)
             *at = '?';
+    }
+    if (hear_line) {
+        hear_line(hear_user, line);
+        return;
     }
     if (!process_talks()) {
         memcpy(kept, line, sizeof kept);

@@ -12,6 +12,9 @@
  * (start.h) only keeps the line. */
 void say(const char *format, ...) SNOW_PRINTF(1, 2);
 
+/* From here on messages go to a function instead, which any thread calls. */
+void say_to(void (*hear)(void *user, const char *line), void *user);
+
 /* The last line of a rank that does not print, or "". */
 const char *last_said(void);
 

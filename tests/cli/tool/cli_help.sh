@@ -24,7 +24,7 @@ run 0 "the overview" "$TOOL" --help
 same_page overview.txt
 for word in output mode sparse kernel look quality camera labels data run \
     more render turntable movie slice info phantom convert \
-    compare doctor help bench tf; do
+    compare doctor help bench tf serve; do
     run 0 "help $word" "$TOOL" help $word
     same_page "help_$word.txt"
     cp "$OUT" page

@@ -36,8 +36,6 @@ phantom cube -o x.txt|x.txt
 turntable -o y.mp4|give snowglass turntable INPUT -o OUT
 turntable x y -o y.mp4|one word too many for turntable
 convert a b|one word too many for convert
-serve x|serve is not built yet
-help serve|serve is not built yet
 --perspective=wide x -o y.png|--perspective: 'wide' is out of range; give a decimal number from 0.001 to 120
 --perspective=150 x -o y.png|--perspective: '150' is out of range
 --perspective 0 x -o y.png|--perspective: '0' is out of range

@@ -1,0 +1,23 @@
+/* answers.h - what pages are told of the volume and its look, as JSON. */
+#ifndef ANSWERS_H
+#define ANSWERS_H
+
+#include "drawing.h"
+#include "outbox.h"
+#include "state.h"
+
+/* For all pages, also those that come later: the volume, its views, the names
+ * that a recipe may hold; the transfer function; figures of the last
+ * picture. */
+void answer_info(drawing *d, outbox *box);
+void answer_look(drawing *d, outbox *box);
+void answer_figures(drawing *d, outbox *box);
+
+/* Answers one page.  Frees the question's tree. */
+void answer_question(drawing *d, viewer_state *s, outbox *box,
+                     viewer_question *question);
+
+/* Sends a line that is shown as it is: to a page, or to all (0). */
+void answer_said(outbox *box, uint64_t client, const char *line);
+
+#endif

@@ -1,0 +1,47 @@
+/* drawing.h - makes pictures of a recipe by the very functions of
+ * `snowglass render`, so that the command of a recipe makes the same bytes.
+ *
+ * Of the volume, the look and the view only that is made anew which a recipe
+ * changes. */
+#ifndef DRAWING_H
+#define DRAWING_H
+
+#include "picture/render_state.h"
+
+#include <jansson.h>
+
+typedef struct drawing {
+    options first; /* as of the command line */
+    options opts;  /* of the present recipe */
+    json_t *tree;
+    render_state state;
+    char *data_key, *look_key; /* what volume and look were made of */
+    bool look_is_new;          /* since the caller last asked */
+} drawing;
+
+/* Opens the volume of the command line.  Returns CONTINUE or an exit code, as
+ * all functions here do. */
+int drawing_open(const options *first, json_t *recipe, drawing *out);
+void drawing_close(drawing *d);
+
+/* Makes what a recipe needs, whose tree stays the caller's. */
+int drawing_apply(drawing *d, const json_t *recipe);
+
+/* Frames what the look shows, from the sides of a turn: keys that set the
+ * camera's target and zoom, a new reference. */
+json_t *drawing_fit(drawing *d);
+
+/* Renders with a quality at a size of 1 / 2^shrink of the recipe's, unless
+ * `stop` says so: SNOW_STATUS_STOPPED.  With values painted. */
+int drawing_render(drawing *d, snow_quality quality, int shrink,
+                   snow_stop_fn *stop, void *user, snow_image **image,
+                   snow_overlay **overlay);
+
+/* A small picture with a preset in place of the look. */
+int drawing_thumbnail(drawing *d, const char *preset, int side,
+                      snow_image **image);
+
+/* The command that makes the picture at rest, to be freed. */
+char *drawing_command(const drawing *d);
+
+#endif

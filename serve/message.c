@@ -1,0 +1,173 @@
+/* message.c - implements message.h. */
+#include "message.h"
+
+#include <string.h>
+
+/* What a page may change.  Paths, and how a raw file is read, are those of the
+ * command line. */
+static const char *const keys[] = {
+    "size",         "background",
+    "mode",         "iso",
+    "threshold",    "preset",
+    "colormap",     "log",
+    "opacity",      "gradient-opacity",
+    "range",        "window",
+    "level",        "shift",
+    "opacity-unit", "shade",
+    "light",        "ambient",
+    "diffuse",      "specular",
+    "shininess",    "depth-darkening",
+    "occlusion",    "view",
+    "azimuth",      "elevation",
+    "roll",         "zoom",
+    "perspective",  "fit",
+    "position",     "target",
+    "up",           "no-labels",
+    "legend",       "scale-bar",
+    "crop",         "channel",
+    "component",    "labels",
+    "clip",         "time",
+};
+
+bool message_may_set(const char *key) {
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
+        if (strcmp(keys[i], key) == 0)
+            return true;
+    return false;
+}
+
+/* jansson itself goes down 2,048 levels, each a call. */
+static bool is_shallow(const char *text, size_t length) {
+    int depth = 0;
+    bool quoted = false;
+    for (size_t i = 0; i < length; i++) {
+        char c = text[i];
+        if (quoted && c == '\\')
+            i++;
+        else if (c == '"')
+            quoted = !quoted;
+        else if (!quoted && (c == '{' || c == '['))
+            depth++;
+        else if (!quoted && (c == '}' || c == ']'))
+            depth--;
+        if (depth > MESSAGE_DEPTH)
+            return false;
+    }
+    return true;
+}
+
+static bool read_n(const json_t *tree, uint32_t *out) {
+    const json_t *n = json_object_get(tree, "n");
+    json_int_t value = json_integer_value(n);
+    *out = (uint32_t)value;
+    return json_is_integer(n) && value >= 0 && value <= UINT32_MAX;
+}
+
+static const char *read_hello(message *m) {
+    size_t index;
+    json_t *want;
+    m->token = json_string_value(json_object_get(m->tree, "token"));
+    json_array_foreach(json_object_get(m->tree, "wants"), index, want) {
+        const char *word = json_string_value(want);
+        m->webp = m->webp || (word && strcmp(word, "webp") == 0);
+    }
+    return m->token ? NULL : "hello: needs a token; open the printed URL";
+}
+
+/* Pictures of more pixels would make the others wait. */
+static bool is_small(const json_t *size) {
+    json_int_t width = json_integer_value(json_array_get(size, 0));
+    json_int_t height = json_integer_value(json_array_get(size, 1));
+    return json_array_size(size) == 2 && width >= 1 && height >= 1 &&
+           width <= MESSAGE_SIDE && height <= MESSAGE_SIDE;
+}
+
+static const char *read_set(message *m) {
+    const char *key;
+    json_t *value;
+    m->recipe = json_object_get(m->tree, "recipe");
+    if (!read_n(m->tree, &m->n) || !json_is_object(m->recipe))
+        return "set: needs a number n and a recipe";
+    json_object_foreach((json_t *)m->recipe, key, value) {
+        if (!message_may_set(key))
+            return "set: has a key that only the command line can set";
+        if (strcmp(key, "size") == 0 && !is_small(value))
+            return "set: a picture has 1 to 4096 pixels a side";
+    }
+    return NULL;
+}
+
+static const char *read_moving(message *m) {
+    const json_t *on = json_object_get(m->tree, "on");
+    m->on = json_is_true(on);
+    return json_is_boolean(on) ? NULL : "moving: needs on, true or false";
+}
+
+static const char *read_ack(message *m) {
+    return read_n(m->tree, &m->n) ? NULL : "ack: needs a number n";
+}
+
+static const char *read_ask(message *m) {
+    m->what = json_string_value(json_object_get(m->tree, "what"));
+    return m->what ? NULL : "ask: needs what is asked for";
+}
+
+static const char *read_kind(message *m) {
+    static const struct {
+        const char *name;
+        message_kind kind;
+        const char *(*read)(message *);
+    } rows[] = {{"hello", MESSAGE_HELLO, read_hello},
+                {"set", MESSAGE_SET, read_set},
+                {"moving", MESSAGE_MOVING, read_moving},
+                {"ack", MESSAGE_ACK, read_ack},
+                {"ask", MESSAGE_ASK, read_ask}};
+    const char *name = json_string_value(json_object_get(m->tree, "t"));
+    for (size_t i = 0; name && i < sizeof rows / sizeof *rows; i++) {
+        if (strcmp(rows[i].name, name) != 0)
+            continue;
+        m->kind = rows[i].kind;
+        return rows[i].read(m);
+    }
+    return "a message needs a known kind t";
+}
+
+const char *message_read(const char *text, size_t length, message *out) {
+    *out = (message){.n = 0};
+    if (length > MESSAGE_BYTES || !is_shallow(text, length))
+        return "a message has at most 65,536 bytes and 8 levels";
+    out->tree = json_loadb(text, length, JSON_REJECT_DUPLICATES, NULL);
+    const char *wrong = json_is_object(out->tree)
+                            ? read_kind(out)
+                            : "a message must be one JSON object";
+    if (wrong)
+        message_free(out);
+    return wrong;
+}
+
+void message_free(message *m) {
+    json_decref(m->tree);
+    m->tree = NULL;
+}
+
+static void put_u32(unsigned char *out, uint32_t value) {
+    for (int i = 0; i < 4; i++)
+        out[i] = (unsigned char)(value >> (8 * i));
+}
+
+void frame_head_write(const frame_head *head, unsigned char out[32]) {
+    memset(out, 0, FRAME_HEAD_BYTES);
+    memcpy(out, "SNW1", 4);
+    put_u32(out + 4, head->n);
+    out[8] = (unsigned char)head->level;
+    out[9] = (unsigned char)head->kind;
+    out[10] = (unsigned char)head->pane;
+    put_u32(out + 16, head->width);
+    put_u32(out + 20, head->height);
+    put_u32(out + 24, head->render_us);
+    put_u32(out + 28, head->pack_us);
+}
+
+void frame_head_set_n(unsigned char head[32], uint32_t n) {
+    put_u32(head + 4, n);
+}

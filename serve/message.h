@@ -1,0 +1,73 @@
+/* message.h - what a page says: JSON texts, read and checked before anything
+ * is done with them; and the head of a picture that is sent to it.
+ *
+ *   {"t": "hello", "token": "...", "wants": ["jpeg", "webp", "png"]}
+ *   {"t": "set", "n": 17, "recipe": {"azimuth": 30, "preset": null}}
+ *   {"t": "moving", "on": true}
+ *   {"t": "ack", "n": 17}
+ *   {"t": "ask", "what": "histogram", ...}
+ *
+ * Nothing here touches a socket or a file. */
+#ifndef MESSAGE_H
+#define MESSAGE_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/* The longest text, the deepest nesting, the longest side of a picture. */
+#define MESSAGE_BYTES 65536
+#define MESSAGE_DEPTH 8
+#define MESSAGE_SIDE 4096
+
+typedef enum message_kind {
+    MESSAGE_HELLO,
+    MESSAGE_SET,
+    MESSAGE_MOVING,
+    MESSAGE_ACK,
+    MESSAGE_ASK
+} message_kind;
+
+typedef struct message {
+    message_kind kind;
+    uint32_t n;           /* of set and ack */
+    bool on;              /* of moving */
+    bool webp;            /* of hello: the page can show WebP */
+    const char *token;    /* of hello */
+    const char *what;     /* of ask */
+    const json_t *recipe; /* of set: keys that change; null takes one out */
+    json_t *tree;         /* owns the texts */
+} message;
+
+/* Reads a text.  Returns NULL, and message_free must follow; or what is wrong
+ * with it, and there is nothing to free. */
+const char *message_read(const char *text, size_t length, message *out);
+void message_free(message *m);
+
+/* Whether a page may set a key of the recipe: no key names a file. */
+bool message_may_set(const char *key);
+
+#define FRAME_HEAD_BYTES 32
+
+typedef enum frame_kind {
+    FRAME_JPEG = 1,
+    FRAME_PNG = 2,
+    FRAME_WEBP = 3
+} frame_kind;
+
+/* What stands before a picture's bytes, little endian:
+ *
+ *    0 "SNW1" | 4 n | 8 level, kind, pane, flags | 12 zero
+ *   16 width  | 20 height | 24 microseconds of rendering | 28 of packing */
+typedef struct frame_head {
+    uint32_t n;
+    int level, kind, pane;
+    uint32_t width, height, render_us, pack_us;
+} frame_head;
+
+void frame_head_write(const frame_head *head, unsigned char out[32]);
+
+/* Replaces n, which each page counts by itself. */
+void frame_head_set_n(unsigned char head[32], uint32_t n);
+
+#endif

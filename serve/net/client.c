@@ -1,0 +1,130 @@
+/* client.c - implements client.h. */
+#include "net/client.h"
+#include "message.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Bytes of a piece: what a socket takes at once. */
+#define PIECE_BYTES 65536
+
+void client_free(client *c, outbox *box) {
+    for (int i = 0; i < c->count; i++)
+        parcel_release(box, c->queue[i]);
+    if (c->sending)
+        parcel_release(box, c->sending);
+    free(c->text);
+    c->count = 0;
+    c->sending = NULL;
+    c->text = NULL;
+    c->id = 0;
+}
+
+static bool is_picture(const parcel *p) {
+    return p->topic == PARCEL_PICTURE || p->topic == PARCEL_THIN_PICTURE;
+}
+
+void client_queue(client *c, outbox *box, parcel *p) {
+    for (int i = 0; i < c->count && p->topic != PARCEL_PLAIN; i++) {
+        if (c->queue[i]->topic != p->topic)
+            continue;
+        parcel_release(box, c->queue[i]);
+        c->queue[i] = parcel_share(box, p);
+        return;
+    }
+    if (c->count == CLIENT_QUEUE_MOST)
+        c->too_slow = true;
+    else
+        c->queue[c->count++] = parcel_share(box, p);
+}
+
+void client_note_set(client *c, uint32_t n, uint32_t revision) {
+    c->sets[c->set_count % CLIENT_SETS].n = n;
+    c->sets[c->set_count % CLIENT_SETS].revision = revision;
+    c->set_count++;
+}
+
+/* The newest of the page's own messages that a revision has in it. */
+static uint32_t n_of(const client *c, uint32_t revision) {
+    uint32_t best = 0, n = 0;
+    for (unsigned i = 0; i < CLIENT_SETS && i < c->set_count; i++)
+        if (c->sets[i].revision <= revision && c->sets[i].revision >= best) {
+            best = c->sets[i].revision;
+            n = c->sets[i].n;
+        }
+    return n;
+}
+
+void client_acknowledge(client *c) {
+    if (c->under_way > 0)
+        c->under_way--;
+}
+
+/* The index of the next parcel that may be sent, or -1. */
+static int next_of(const client *c) {
+    for (int i = 0; i < c->count; i++)
+        if (!is_picture(c->queue[i]) || c->under_way < CLIENT_UNDER_WAY)
+            return i;
+    return -1;
+}
+
+bool client_has_more(const client *c) {
+    return c->sending || next_of(c) >= 0;
+}
+
+static void begin(client *c) {
+    int index = next_of(c);
+    if (index < 0)
+        return;
+    c->sending = c->queue[index];
+    c->sent = 0;
+    memmove(c->queue + index, c->queue + index + 1,
+            (size_t)(c->count - index - 1) * sizeof *c->queue);
+    c->count--;
+    c->under_way += is_picture(c->sending);
+}
+
+/* lws writes into the bytes before a piece, and others read the parcel: so it
+ * is copied. */
+static bool send_piece(client *c) {
+    static unsigned char room[LWS_PRE + PIECE_BYTES];
+    const parcel *p = c->sending;
+    size_t length = p->length - c->sent;
+    bool first = c->sent == 0, last = length <= PIECE_BYTES;
+    if (!last)
+        length = PIECE_BYTES;
+    memcpy(room + LWS_PRE, p->bytes + c->sent, length);
+    if (first && is_picture(p))
+        frame_head_set_n(room + LWS_PRE, n_of(c, p->revision));
+    int how = !first       ? LWS_WRITE_CONTINUATION
+              : p->is_text ? LWS_WRITE_TEXT
+                           : LWS_WRITE_BINARY;
+    if (!last)
+        how |= LWS_WRITE_NO_FIN;
+    c->sent += length;
+    return lws_write(c->wsi, room + LWS_PRE, length,
+                     (enum lws_write_protocol)how) >= 0;
+}
+
+bool client_send(client *c, outbox *box) {
+    if (!c->sending)
+        begin(c);
+    if (!c->sending)
+        return true;
+    bool good = send_piece(c);
+    if (c->sent == c->sending->length) {
+        parcel_release(box, c->sending);
+        c->sending = NULL;
+    }
+    return good;
+}
+
+int client_collect(client *c, const void *bytes, size_t length, bool last) {
+    if (!c->text)
+        c->text = malloc(MESSAGE_BYTES);
+    if (!c->text || c->used + length > MESSAGE_BYTES)
+        return -1;
+    memcpy(c->text + c->used, bytes, length);
+    c->used += length;
+    return last ? 1 : 0;
+}

@@ -1,0 +1,61 @@
+/* client.h - a page: what waits for it, what was sent, what it has painted.
+ *
+ * A page that is slow has at most two pictures under way, and of those that
+ * wait only the newest; other pages do not notice.  All functions are of the
+ * thread that serves sockets. */
+#ifndef CLIENT_H
+#define CLIENT_H
+
+#include "outbox.h"
+
+#include <libwebsockets.h>
+
+#define CLIENT_QUEUE_MOST 96
+#define CLIENT_UNDER_WAY 2
+#define CLIENT_SETS 64
+
+/* lws allocates it, zeroed, for each WebSocket. */
+typedef struct client {
+    struct lws *wsi;
+    uint64_t id; /* from 1; 0: closed, or not greeted */
+    struct client *next;
+    bool webp;
+    bool moving;   /* something is dragged there */
+    bool too_slow; /* so much waits that it is closed */
+    char *text;    /* a message that comes in pieces */
+    size_t used;
+    parcel *queue[CLIENT_QUEUE_MOST]; /* the oldest first */
+    int count;
+    parcel *sending; /* and of it: */
+    size_t sent;
+    int under_way; /* pictures that were sent and not acknowledged */
+    uint32_t n;    /* the newest that the page counted */
+    struct {
+        uint32_t revision, n; /* what its own sets became */
+    } sets[CLIENT_SETS];      /* a ring */
+    unsigned set_count;
+} client;
+
+void client_free(client *c, outbox *box);
+
+/* Queues a parcel, which it shares. */
+void client_queue(client *c, outbox *box, parcel *p);
+
+/* Notes that message n of the page became a revision. */
+void client_note_set(client *c, uint32_t n, uint32_t revision);
+
+/* A picture was painted. */
+void client_acknowledge(client *c);
+
+/* Sends a piece of the next parcel; called when the socket can take one. False
+ * for an error. */
+bool client_send(client *c, outbox *box);
+
+/* Whether client_send has something to do. */
+bool client_has_more(const client *c);
+
+/* Collects a piece of a message.  Returns 1 when it is whole: `text` and `used`
+ * hold it; 0 when more comes; -1 where it is too long. */
+int client_collect(client *c, const void *bytes, size_t length, bool last);
+
+#endif

@@ -1,0 +1,25 @@
+/* pages.h - the files of the page, which are part of the program, and how they
+ * are sent. */
+#ifndef PAGES_H
+#define PAGES_H
+
+#include "net/guard.h"
+
+#include <libwebsockets.h>
+
+/* A file as the build packed it (serve/embed.cmake). */
+typedef struct page_file {
+    const char *name; /* "" for the page itself */
+    const char *type;
+    const char *tag;             /* of its content, quoted */
+    const unsigned char *packed; /* by gzip */
+    size_t packed_length, length;
+} page_file;
+
+/* Ends with a row without a name. */
+extern const page_file page_files[];
+
+/* Answers a request.  Returns what a callback of lws does. */
+int pages_answer(struct lws *wsi, const guard *g, const char *path);
+
+#endif

@@ -1,0 +1,126 @@
+/* outbox.c - implements outbox.h: a list under one lock. */
+#include "outbox.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct outbox {
+    pthread_mutex_t lock;
+    void (*wake)(void *user);
+    void *user;
+    parcel *first, **end;
+    parcel *newest[PARCEL_TOPICS];
+};
+
+outbox *outbox_new(void (*wake)(void *user), void *user) {
+    outbox *box = calloc(1, sizeof *box);
+    if (!box)
+        return NULL;
+    pthread_mutex_init(&box->lock, NULL);
+    box->wake = wake;
+    box->user = user;
+    box->end = &box->first;
+    return box;
+}
+
+/* Under the lock. */
+static void drop(parcel *p) {
+    if (p && --p->owners == 0)
+        free(p);
+}
+
+void outbox_free(outbox *box) {
+    if (!box)
+        return;
+    for (parcel *p = box->first, *next; p; p = next) {
+        next = p->next;
+        drop(p);
+    }
+    for (int i = 0; i < PARCEL_TOPICS; i++)
+        drop(box->newest[i]);
+    pthread_mutex_destroy(&box->lock);
+    free(box);
+}
+
+parcel *parcel_new(size_t length) {
+    parcel *p = malloc(sizeof *p + length);
+    if (p)
+        *p = (parcel){.owners = 1, .length = length};
+    return p;
+}
+
+void parcel_release(outbox *box, parcel *p) {
+    pthread_mutex_lock(&box->lock);
+    drop(p);
+    pthread_mutex_unlock(&box->lock);
+}
+
+parcel *parcel_share(outbox *box, parcel *p) {
+    pthread_mutex_lock(&box->lock);
+    p->owners++;
+    pthread_mutex_unlock(&box->lock);
+    return p;
+}
+
+/* Under the lock: takes what is replaced out of the list. */
+static void remove_topic(outbox *box, parcel_topic topic, uint64_t client) {
+    for (parcel **at = &box->first; *at;) {
+        parcel *p = *at;
+        if (p->topic != topic || p->client != client) {
+            at = &p->next;
+            continue;
+        }
+        *at = p->next;
+        if (box->end == &p->next)
+            box->end = at;
+        drop(p);
+    }
+}
+
+void outbox_put(outbox *box, parcel *p) {
+    if (!p)
+        return;
+    pthread_mutex_lock(&box->lock);
+    if (p->topic != PARCEL_PLAIN && p->client == 0) {
+        remove_topic(box, p->topic, p->client);
+        drop(box->newest[p->topic]);
+        box->newest[p->topic] = p;
+        p->owners++;
+    }
+    p->next = NULL;
+    *box->end = p;
+    box->end = &p->next;
+    pthread_mutex_unlock(&box->lock);
+    box->wake(box->user);
+}
+
+void outbox_put_text(outbox *box, uint64_t client, parcel_topic topic,
+                     const char *text) {
+    parcel *p = text ? parcel_new(strlen(text)) : NULL;
+    if (!p)
+        return;
+    memcpy(p->bytes, text, p->length);
+    p->is_text = true;
+    p->client = client;
+    p->topic = topic;
+    outbox_put(box, p);
+}
+
+parcel *outbox_take(outbox *box) {
+    pthread_mutex_lock(&box->lock);
+    parcel *first = box->first;
+    box->first = NULL;
+    box->end = &box->first;
+    pthread_mutex_unlock(&box->lock);
+    return first;
+}
+
+parcel *outbox_newest(outbox *box, parcel_topic topic) {
+    pthread_mutex_lock(&box->lock);
+    parcel *p = box->newest[topic];
+    if (p)
+        p->owners++;
+    pthread_mutex_unlock(&box->lock);
+    return p;
+}

@@ -1,0 +1,43 @@
+/* pack.h - packs pictures for the pages, one picture behind the renderer, in a
+ * thread of its own.
+ *
+ * Drafts and normal pictures become JPEG.  The picture at rest becomes the PNG
+ * that `snowglass render` writes, byte for byte, since the same function writes
+ * it. */
+#ifndef PACK_H
+#define PACK_H
+
+#include "outbox.h"
+
+#include <snowglass/snowglass.h>
+
+/* What the renderer made.  Image and overlay belong to the renderer's context,
+ * and go back to it: another thread may only read them. */
+typedef struct picture {
+    snow_image *image;
+    snow_overlay *overlay; /* or NULL */
+    snow_image_options form;
+    uint32_t revision;
+    int level; /* 0 draft, 1 normal, 2 high */
+    uint32_t render_us;
+    struct picture *next; /* of those that are done */
+} picture;
+
+typedef struct packer packer;
+
+/* Starts the thread; NULL: no memory, or no thread. */
+packer *packer_new(outbox *box);
+
+/* Ends it, and returns all pictures for the renderer to free. */
+picture *packer_end(packer *p);
+void packer_free(packer *p);
+
+/* Takes over a picture, in place of one that still waits.  Returns those that
+ * are done, linked by `next`, for the renderer to free. */
+picture *packer_put(packer *p, picture *made);
+
+/* Packs a small picture at once, in the calling thread: a parcel, or NULL. */
+parcel *pack_small(const snow_image *image, const snow_image_options *form,
+                   int pane);
+
+#endif

@@ -1,0 +1,213 @@
+/* render.c - implements render.h. */
+#include "render.h"
+#include "answers.h"
+
+#include "commands/commands.h"
+#include "picture/warnings.h"
+#include "run/log.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A draft that takes longer gets half the side; one that takes less gets it
+ * back.  With a quarter of the pixels it takes at least a quarter of the time,
+ * so the two do not alternate.  One for which voxels were encoded anew does not
+ * count. */
+#define SECONDS_MOST 0.040
+#define SECONDS_LEAST 0.009
+#define SHRINK_MOST 3
+
+struct renderer {
+    pthread_t thread;
+    drawing *drawing;
+    viewer_state *state;
+    outbox *box;
+    packer *pack;
+    uint32_t drawn; /* the last picture's revision */
+    int level;      /* and quality; -1: none yet */
+    int shrink;
+    uint32_t revision; /* of the picture under way */
+    bool told_empty;
+};
+
+static bool asks_for_end(void *user) {
+    const renderer *r = user;
+    return state_has_ended(r->state);
+}
+
+static bool is_stale(void *user) {
+    const renderer *r = user;
+    return state_is_stale(r->state, r->revision);
+}
+
+static void free_pictures(picture *made) {
+    while (made) {
+        picture *next = made->next;
+        snow_overlay_free(made->overlay);
+        snow_image_free(made->image);
+        free(made);
+        made = next;
+    }
+}
+
+static void adapt(renderer *r, int level, double took) {
+    if (level == 1 && took <= SECONDS_MOST)
+        r->shrink = 0;
+    if (level > 0 || snow_frame_stats(r->drawing->state.frame)->encoded)
+        return;
+    if (took > SECONDS_MOST && r->shrink < SHRINK_MOST)
+        r->shrink++;
+    else if (took < SECONDS_LEAST && r->shrink > 0)
+        r->shrink--;
+}
+
+/* A new range or preset that shows nothing is told once, until something is
+ * seen again. */
+static void tell_empty(renderer *r, snow_image *image) {
+    bool empty = picture_is_empty(image);
+    if (empty && !r->told_empty)
+        outbox_put_text(r->box, 0, PARCEL_PLAIN,
+                        "{\"t\":\"said\",\"text\":\"Nothing is visible: change "
+                        "the range, the opacity or the clip planes.\"}");
+    r->told_empty = empty;
+}
+
+static void hand_over(renderer *r, snow_image *image, snow_overlay *overlay,
+                      int level, double took) {
+    picture *made = malloc(sizeof *made);
+    if (!made) {
+        snow_overlay_free(overlay);
+        snow_image_free(image);
+        return;
+    }
+    *made = (picture){.image = image,
+                      .overlay = overlay,
+                      .form = picture_form(&r->drawing->opts),
+                      .revision = r->revision,
+                      .level = level,
+                      .render_us = (uint32_t)(took * 1e6)};
+    free_pictures(packer_put(r->pack, made));
+}
+
+static int draw(renderer *r, int level) {
+    static const snow_quality qualities[] = {
+        SNOW_QUALITY_DRAFT, SNOW_QUALITY_NORMAL, SNOW_QUALITY_HIGH};
+    snow_image *image;
+    snow_overlay *overlay;
+    double begin = seconds_now();
+    int done =
+        drawing_render(r->drawing, qualities[level], level ? 0 : r->shrink,
+                       level ? is_stale : asks_for_end, r, &image, &overlay);
+    if (done != CONTINUE)
+        return done;
+    double took = seconds_now() - begin;
+    adapt(r, level, took);
+    if (level > 0)
+        tell_empty(r, image);
+    hand_over(r, image, overlay, level, took);
+    if (level > 0)
+        answer_figures(r->drawing, r->box);
+    return CONTINUE;
+}
+
+/* A state that cannot be drawn is not tried again. */
+static void serve_state(renderer *r, int level, json_t *recipe,
+                        uint32_t revision) {
+    int done = CONTINUE;
+    r->revision = revision;
+    if (r->drawn != revision || r->level < 0)
+        done = drawing_apply(r->drawing, recipe);
+    json_decref(recipe);
+    if (r->drawing->look_is_new && done == CONTINUE)
+        answer_look(r->drawing, r->box);
+    r->drawing->look_is_new = false;
+    if (done == CONTINUE)
+        done = draw(r, level);
+    bool stopped = done == EXIT_INTERRUPTED;
+    r->drawn = revision;
+    r->level = done == CONTINUE ? level : stopped ? r->level : 2;
+}
+
+/* The first frame shows all of the object. */
+static void begin(renderer *r) {
+    uint32_t revision;
+    json_t *keys =
+        r->drawing->opts.target.given ? json_object() : drawing_fit(r->drawing);
+    if (json_object_size(keys))
+        free(state_set(r->state, keys, &revision));
+    json_decref(keys);
+    char *state = state_text(r->state, &revision);
+    outbox_put_text(r->box, 0, PARCEL_STATE, state);
+    free(state);
+    answer_info(r->drawing, r->box);
+    answer_look(r->drawing, r->box);
+}
+
+static void *run(void *user) {
+    renderer *r = user;
+    viewer_work work;
+    begin(r);
+    for (;;) {
+        viewer_question question;
+        json_t *recipe = NULL;
+        uint32_t revision = 0;
+        work = state_wait(r->state, r->drawn, r->level, &question, &recipe,
+                          &revision);
+        if (work == WORK_END)
+            return NULL;
+        if (work == WORK_ANSWER)
+            answer_question(r->drawing, r->state, r->box, &question);
+        else
+            serve_state(r, (int)work - WORK_DRAFT, recipe, revision);
+    }
+}
+
+/* Reading again, and encoding, may take long: pages see how far it is.  A
+ * picture is soon there, or was not waited for. */
+static bool hear_progress(void *user, snow_stage stage, double fraction) {
+    renderer *r = user;
+    static const char *const names[] = {
+        [SNOW_STAGE_READ] = "reading", [SNOW_STAGE_ENCODE] = "encoding"};
+    if (stage == SNOW_STAGE_RENDER)
+        return state_has_ended(r->state);
+    json_t *tree = json_pack("{s:s, s:s, s:f}", "t", "progress", "stage",
+                             names[stage], "part", fraction);
+    char *text = json_dumps(tree, JSON_COMPACT);
+    outbox_put_text(r->box, 0, PARCEL_PROGRESS, text);
+    free(text);
+    json_decref(tree);
+    return state_has_ended(r->state);
+}
+
+/* Signals are for the thread that serves sockets. */
+static bool start(renderer *r) {
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    bool started = pthread_create(&r->thread, NULL, run, r) == 0;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return started;
+}
+
+renderer *renderer_new(drawing *d, viewer_state *s, outbox *box, packer *pack) {
+    renderer *r = malloc(sizeof *r);
+    if (!r)
+        return NULL;
+    *r = (renderer){
+        .drawing = d, .state = s, .box = box, .pack = pack, .level = -1};
+    snow_context_set_progress(d->state.context, hear_progress, r);
+    if (start(r))
+        return r;
+    free(r);
+    return NULL;
+}
+
+void renderer_free(renderer *r) {
+    if (!r)
+        return;
+    pthread_join(r->thread, NULL);
+    free_pictures(packer_end(r->pack));
+    free(r);
+}

@@ -1,0 +1,231 @@
+/* state.c - implements state.h: a monitor. */
+#include "state.h"
+#include "message.h"
+
+#include <snowglass/recipe.h>
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define QUESTIONS_MOST 128
+
+struct viewer_state {
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    json_t *recipe;
+    atomic_uint revision;
+    atomic_bool ended;
+    bool moving;
+    int watchers;
+    double changed_at;
+    viewer_question questions[QUESTIONS_MOST]; /* a ring */
+    int first, count;
+    bool answered;         /* the last work was an answer: pictures are next */
+    snow_context *checker; /* of the thread that sets */
+};
+
+static double seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+viewer_state *state_new(json_t *recipe) {
+    pthread_condattr_t monotonic;
+    viewer_state *s = calloc(1, sizeof *s);
+    if (!s || snow_context_new(NULL, &s->checker) != SNOW_STATUS_OK) {
+        free(s);
+        return NULL;
+    }
+    pthread_mutex_init(&s->lock, NULL);
+    pthread_condattr_init(&monotonic);
+    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+    pthread_cond_init(&s->changed, &monotonic);
+    pthread_condattr_destroy(&monotonic);
+    s->recipe = recipe;
+    atomic_init(&s->revision, 1);
+    return s;
+}
+
+void state_free(viewer_state *s) {
+    if (!s)
+        return;
+    for (int i = 0; i < s->count; i++)
+        json_decref(s->questions[(s->first + i) % QUESTIONS_MOST].tree);
+    json_decref(s->recipe);
+    snow_context_free(s->checker);
+    pthread_cond_destroy(&s->changed);
+    pthread_mutex_destroy(&s->lock);
+    free(s);
+}
+
+static void merge(json_t *recipe, const json_t *changes) {
+    const char *key;
+    json_t *value;
+    json_object_foreach((json_t *)changes, key, value) {
+        if (json_is_null(value))
+            json_object_del(recipe, key);
+        else
+            json_object_set_new(recipe, key, json_deep_copy(value));
+    }
+}
+
+/* What the library says against a recipe, or NULL. */
+static char *fault_of(viewer_state *s, const json_t *recipe) {
+    snow_recipe record = {.size = sizeof record};
+    char *text = json_dumps(recipe, JSON_COMPACT);
+    if (!text)
+        return strdup("out of memory for a recipe; close other programs");
+    snow_status status =
+        snow_recipe_parse(s->checker, "the page", text, strlen(text), &record);
+    free(text);
+    if (status == SNOW_STATUS_OK)
+        snow_recipe_clear(&record);
+    return status == SNOW_STATUS_OK ? NULL
+                                    : strdup(snow_context_message(s->checker));
+}
+
+char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision) {
+    pthread_mutex_lock(&s->lock);
+    json_t *recipe = json_deep_copy(s->recipe);
+    merge(recipe, changes);
+    char *fault = fault_of(s, recipe);
+    if (fault) {
+        json_decref(recipe);
+    } else {
+        json_decref(s->recipe);
+        s->recipe = recipe;
+        s->changed_at = seconds();
+        *revision = ++s->revision;
+        pthread_cond_signal(&s->changed);
+    }
+    pthread_mutex_unlock(&s->lock);
+    return fault;
+}
+
+json_t *state_recipe(viewer_state *s) {
+    pthread_mutex_lock(&s->lock);
+    json_t *copy = json_deep_copy(s->recipe);
+    pthread_mutex_unlock(&s->lock);
+    return copy;
+}
+
+char *state_text(viewer_state *s, uint32_t *revision) {
+    const char *key;
+    json_t *value, *shown = json_object();
+    pthread_mutex_lock(&s->lock);
+    json_object_foreach(s->recipe, key, value) if (message_may_set(key))
+        json_object_set_new(shown, key, json_deep_copy(value));
+    *revision = s->revision;
+    pthread_mutex_unlock(&s->lock);
+    json_t *tree = json_pack("{s:s, s:o}", "t", "state", "recipe", shown);
+    char *text = json_dumps(tree, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    json_decref(tree);
+    return text;
+}
+
+void state_set_moving(viewer_state *s, bool moving) {
+    pthread_mutex_lock(&s->lock);
+    s->moving = moving;
+    s->changed_at = seconds();
+    pthread_cond_signal(&s->changed);
+    pthread_mutex_unlock(&s->lock);
+}
+
+void state_set_watchers(viewer_state *s, int count) {
+    pthread_mutex_lock(&s->lock);
+    s->watchers = count;
+    if (!count)
+        s->moving = false;
+    pthread_cond_signal(&s->changed);
+    pthread_mutex_unlock(&s->lock);
+}
+
+bool state_ask(viewer_state *s, uint64_t client, json_t *tree) {
+    pthread_mutex_lock(&s->lock);
+    bool room = s->count < QUESTIONS_MOST;
+    if (room)
+        s->questions[(s->first + s->count++) % QUESTIONS_MOST] =
+            (viewer_question){client, tree};
+    pthread_cond_signal(&s->changed);
+    pthread_mutex_unlock(&s->lock);
+    if (!room)
+        json_decref(tree);
+    return room;
+}
+
+void state_end(viewer_state *s) {
+    s->ended = true;
+    pthread_mutex_lock(&s->lock);
+    pthread_cond_signal(&s->changed);
+    pthread_mutex_unlock(&s->lock);
+}
+
+/* The next picture, and when it is due; WORK_END: none. */
+static viewer_work next_picture(const viewer_state *s, uint32_t drawn,
+                                int level, double *due) {
+    *due = 0;
+    if (!s->watchers)
+        return WORK_END;
+    if (level < 0 || drawn != s->revision)
+        return WORK_DRAFT;
+    if (level >= 2 || s->moving)
+        return WORK_END;
+    *due = s->changed_at + (level ? STATE_HIGH_SECONDS : STATE_NORMAL_SECONDS);
+    return level ? WORK_HIGH : WORK_NORMAL;
+}
+
+static void wait_until(viewer_state *s, double due) {
+    struct timespec at = {.tv_sec = (time_t)due};
+    at.tv_nsec = (long)((due - (double)at.tv_sec) * 1e9);
+    pthread_cond_timedwait(&s->changed, &s->lock, &at);
+}
+
+/* Under the lock.  Answers and drafts take turns, so that neither waits for all
+ * of the other. */
+static viewer_work choose(viewer_state *s, uint32_t drawn, int level) {
+    for (;;) {
+        double due;
+        if (s->ended)
+            return WORK_END;
+        viewer_work picture = next_picture(s, drawn, level, &due);
+        bool ready = picture != WORK_END && due <= seconds();
+        if (s->count && !(ready && picture == WORK_DRAFT && s->answered))
+            return WORK_ANSWER;
+        if (ready)
+            return picture;
+        if (picture != WORK_END)
+            wait_until(s, due);
+        else
+            pthread_cond_wait(&s->changed, &s->lock);
+    }
+}
+
+viewer_work state_wait(viewer_state *s, uint32_t drawn, int level,
+                       viewer_question *question, json_t **recipe,
+                       uint32_t *revision) {
+    pthread_mutex_lock(&s->lock);
+    viewer_work work = choose(s, drawn, level);
+    s->answered = work == WORK_ANSWER;
+    if (work == WORK_ANSWER) {
+        *question = s->questions[s->first];
+        s->first = (s->first + 1) % QUESTIONS_MOST;
+        s->count--;
+    } else if (work != WORK_END) {
+        *recipe = json_deep_copy(s->recipe);
+        *revision = s->revision;
+    }
+    pthread_mutex_unlock(&s->lock);
+    return work;
+}
+
+bool state_is_stale(const viewer_state *s, uint32_t revision) {
+    return s->ended || s->revision != revision;
+}
+
+bool state_has_ended(const viewer_state *s) {
+    return s->ended;
+}

@@ -1,0 +1,73 @@
+/* state.h - what is to be shown: a recipe, which pages change and the renderer
+ * reads, and what pages ask.  The newest state wins.
+ *
+ * Keys that a page may set (message.h) are the state; the others came from the
+ * command line and stay. */
+#ifndef VIEWER_STATE_H
+#define VIEWER_STATE_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct viewer_state viewer_state;
+
+/* A question of a page, with the message that holds it. */
+typedef struct viewer_question {
+    uint64_t client;
+    json_t *tree; /* the caller's after state_wait */
+} viewer_question;
+
+/* What the renderer is to do next. */
+typedef enum viewer_work {
+    WORK_END,
+    WORK_ANSWER, /* a question */
+    WORK_DRAFT,  /* a new state */
+    WORK_NORMAL, /* it has rested for STATE_NORMAL_SECONDS */
+    WORK_HIGH    /* or for STATE_HIGH_SECONDS */
+} viewer_work;
+
+#define STATE_NORMAL_SECONDS 0.12
+#define STATE_HIGH_SECONDS 0.3
+
+/* Takes over a recipe's tree; NULL: no memory. */
+viewer_state *state_new(json_t *recipe);
+void state_free(viewer_state *s);
+
+/* Merges keys into the state; null takes one out.  Returns NULL and the
+ * revision of the new state, or what is wrong, to be freed by the caller; then
+ * nothing has changed. */
+char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision);
+
+/* The state as a text {"t": "state", "recipe": {...}}, to be freed. */
+char *state_text(viewer_state *s, uint32_t *revision);
+
+/* Some page moves something: drafts suffice. */
+void state_set_moving(viewer_state *s, bool moving);
+
+/* How many pages look; without any nothing is drawn. */
+void state_set_watchers(viewer_state *s, int count);
+
+/* Takes over the tree.  False, and the tree is freed, where too many wait. */
+bool state_ask(viewer_state *s, uint64_t client, json_t *tree);
+
+void state_end(viewer_state *s);
+
+/* --- for the renderer ------------------------------------------------------
+ */
+
+/* Waits for work.  `drawn` is the revision of the last picture, and `level` its
+ * quality; -1: none.  For a state *recipe gets a copy of the whole recipe. */
+viewer_work state_wait(viewer_state *s, uint32_t drawn, int level,
+                       viewer_question *question, json_t **recipe,
+                       uint32_t *revision);
+
+/* Whether a picture of a revision is no longer wanted: a state is newer, or the
+ * end has come. */
+bool state_is_stale(const viewer_state *s, uint32_t revision);
+bool state_has_ended(const viewer_state *s);
+
+/* A copy of the whole recipe. */
+json_t *state_recipe(viewer_state *s);
+
+#endif

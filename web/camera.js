@@ -1,0 +1,77 @@
+// camera.js - the camera of a recipe, as snowglass/view.h describes it: turns,
+// shifts, zooms.
+
+const add = (a, b, k = 1) => a.map((x, i) => x + k * b[i]);
+const dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0);
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+    a[0] * b[1] - a[1] * b[0]];
+const unit = a => a.map(x => x / (Math.hypot(...a) || 1));
+const turn = (a, b, degrees) => {
+    const angle = degrees * Math.PI / 180, c = Math.cos(angle), s = Math.sin(angle);
+    return [add(a.map(x => c * x), b, s), add(b.map(x => c * x), a, -s)];
+};
+
+export const ZOOM_LEAST = 1e-3, ZOOM_MOST = 1e3;
+
+/** Where the camera is before it is turned: [back, up]. */
+function base(recipe, info) {
+    if (!recipe.position)
+        return info.views[recipe.view ?? info.view] ?? info.views['+z'];
+    const back = unit(add(recipe.position, recipe.target ?? info.middle, -1));
+    let up = recipe.up ?? (Math.abs(back[2]) > 0.999 ? [0, 1, 0] : [0, 0, 1]);
+    up = unit(add(up, back, -dot(up, back)));
+    return [back, up];
+}
+
+/** The camera's directions in the world: right, up, back. */
+export function axes(recipe, info) {
+    let [back, up] = base(recipe, info);
+    let right = cross(up, back);
+    [back, right] = turn(back, right, recipe.azimuth ?? 0);
+    [back, up] = turn(back, up, recipe.elevation ?? 0);
+    right = cross(up, back);
+    [up, right] = turn(up, right, recipe.roll ?? 0);
+    return {right, up, back};
+}
+
+/** The length of a pixel in the target's plane; `side` is the shorter one. */
+function pixel(recipe, info, side) {
+    const fov = recipe.perspective ?? 0;
+    const wide = fov > 0 ? info.radius / Math.cos(fov * Math.PI / 360) : info.radius;
+    return 2 * wide / ((recipe.zoom ?? 1) * side);
+}
+
+function move(recipe, info, by) {
+    const changes = {target: add(recipe.target ?? info.middle, by)};
+    if (recipe.position)
+        changes.position = add(recipe.position, by);
+    return changes;
+}
+
+/** Turns by a drag of dx, dy pixels in a picture whose height is `side`. */
+export function turned(recipe, dx, dy, side) {
+    const k = 180 / side;
+    const elevation = (recipe.elevation ?? 0) + dy * k;
+    return {azimuth: round(((recipe.azimuth ?? 0) - dx * k) % 360),
+        elevation: round(Math.max(-90, Math.min(90, elevation)))};
+}
+
+/** The object follows the pointer. */
+export function panned(recipe, info, dx, dy, side) {
+    const {right, up} = axes(recipe, info), length = pixel(recipe, info, side);
+    return move(recipe, info, add(right.map(x => -dx * length * x), up, dy * length));
+}
+
+/** Zooms by a factor about a point, in pixels from the middle. */
+export function zoomed(recipe, info, factor, x, y, side) {
+    const zoom = Math.max(ZOOM_LEAST, Math.min(ZOOM_MOST, (recipe.zoom ?? 1) * factor));
+    const left = 1 - (recipe.zoom ?? 1) / zoom, length = pixel(recipe, info, side);
+    const {right, up} = axes(recipe, info);
+    const by = add(right.map(a => x * length * left * a), up, -y * length * left);
+    return {zoom, ...move(recipe, info, by)};
+}
+
+/** A few digits are enough for an angle, and read better in a command. */
+export function round(value) {
+    return Math.round(value * 100) / 100;
+}

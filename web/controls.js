@@ -1,0 +1,79 @@
+// controls.js - makes the elements of the page.  Texts from files and from the
+// server become text, never markup.
+
+/** An element with properties and children; names with "-" are attributes. */
+export function make(tag, properties = {}, ...children) {
+    const element = document.createElement(tag);
+    for (const [name, value] of Object.entries(properties)) {
+        if (name.includes('-') || name === 'for' || name === 'role')
+            element.setAttribute(name, value);
+        else
+            element[name] = value;
+    }
+    element.append(...children);
+    return element;
+}
+
+export function button(text, name, press) {
+    return make('button', {type: 'button', textContent: text, title: name,
+        'aria-label': name, onclick: press});
+}
+
+let count = 0;
+
+/** A row with a name that belongs to its first control. */
+export function row(name, control, ...more) {
+    control.id ||= `control${++count}`;
+    return make('div', {className: 'row'},
+        make('label', {className: 'name', textContent: name, htmlFor: control.id}),
+        control, ...more);
+}
+
+export function select(options, change) {
+    const list = make('select', {onchange: () => change(list.value)});
+    for (const option of options) {
+        const [value, text] = Array.isArray(option) ? option : [option, option];
+        list.append(make('option', {value, textContent: text}));
+    }
+    return list;
+}
+
+export function check(name, change) {
+    const box = make('input', {type: 'checkbox', onchange: () => change(box.checked)});
+    return {box, label: make('label', {}, box, ` ${name}`)};
+}
+
+/** A number that is taken when it is typed and left, or entered. */
+export function number(name, change, step = 'any') {
+    const field = make('input', {type: 'number', step, 'aria-label': name,
+        onchange: () => {
+            if (field.value !== '' && Number.isFinite(field.valueAsNumber))
+                change(field.valueAsNumber);
+        }});
+    return field;
+}
+
+/** A slider: `begin` and `end` enclose what is one step to undo. */
+export function slider(name, low, high, step, recipe, change) {
+    const input = make('input', {type: 'range', min: low, max: high, step,
+        'aria-label': name,
+        oninput: () => change(input.valueAsNumber),
+        onpointerdown: () => recipe.begin(),
+        onpointerup: () => recipe.end(),
+        onpointercancel: () => recipe.end()});
+    return input;
+}
+
+export function section(name, open, ...children) {
+    return make('details', {open}, make('summary', {textContent: name}),
+        make('div', {}, ...children));
+}
+
+/** Sets a value unless the user is typing there. */
+export function show(field, value) {
+    if (document.activeElement !== field || field.type === 'range')
+        field.value = value;
+}
+
+/** At most five digits, without zeros at the end. */
+export const short = value => String(+Number(value).toPrecision(5));

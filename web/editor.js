@@ -1,0 +1,266 @@
+// editor.js - the transfer function over the histogram: points are dragged,
+// added, removed, or set as numbers.
+
+import {button, make, number, row, short, show} from './controls.js';
+
+const NEAR = 12; // pixels
+const EDGE = 8;
+
+export class Editor {
+    constructor(recipe, page) {
+        this.recipe = recipe;
+        this.page = page;
+        this.log = true;
+        this.chosen = -1;
+        this.canvas = make('canvas', {className: 'editor', tabIndex: 0,
+            role: 'img', 'aria-label': 'Opacity over the histogram of the values. ' +
+            'Arrow keys move the chosen point, Page keys choose another, Insert ' +
+            'adds one, Delete removes it.'});
+        this.value = number('value of the chosen point', value => this.put(value, null));
+        this.opacity = number('opacity of the chosen point',
+            value => this.put(null, Math.max(0, Math.min(1, value))), 0.01);
+        this.opacity.min = 0;
+        this.opacity.max = 1;
+        this.listen();
+    }
+
+    get element() {
+        const scale = button('Log', 'Logarithmic counts of the histogram', () => {
+            this.log = !this.log;
+            scale.setAttribute('aria-pressed', this.log);
+            this.draw();
+        });
+        scale.setAttribute('aria-pressed', this.log);
+        return make('div', {}, this.canvas,
+            row('Value', this.value, make('label', {htmlFor: '', textContent: 'Opacity '}, this.opacity)),
+            make('div', {className: 'row'},
+                button('Add', 'Add a point beside the chosen one', () => this.insert()),
+                button('Remove', 'Remove the chosen point', () => this.remove()),
+                scale,
+                button('Automatic', 'Opacity of the preset, or made from the histogram',
+                    () => this.recipe.set({opacity: null, range: null, shift: null}))));
+    }
+
+    listen() {
+        const canvas = this.canvas;
+        canvas.addEventListener('pointerdown', event => this.down(event));
+        canvas.addEventListener('pointermove', event => this.move(event));
+        for (const name of ['pointerup', 'pointercancel'])
+            canvas.addEventListener(name, () => this.up());
+        canvas.addEventListener('dblclick', event => this.doubled(event));
+        canvas.addEventListener('keydown', event => this.key(event));
+        new ResizeObserver(() => this.draw()).observe(canvas);
+    }
+
+    /** The points in use: those of the recipe, else of the look. */
+    get points() {
+        return this.recipe.keys.opacity ?? this.page.look?.opacity ?? [];
+    }
+
+    /** What the axis spans: the histogram, and the points. */
+    get span() {
+        const {histogram} = this.page, points = this.points;
+        const low = Math.min(histogram?.lo ?? Infinity, points[0]?.[0] ?? Infinity);
+        const high = Math.max(histogram?.hi ?? -Infinity, points.at(-1)?.[0] ?? -Infinity);
+        return low < high ? [low, high] : [low - 1, low + 1];
+    }
+
+    x(value) {
+        const [low, high] = this.span;
+        return EDGE + (value - low) / (high - low) * (this.canvas.clientWidth - 2 * EDGE);
+    }
+
+    y(opacity) {
+        return this.bottom - opacity * (this.bottom - EDGE);
+    }
+
+    get bottom() {
+        return this.canvas.clientHeight - 18;
+    }
+
+    /** Value and opacity at a place of the canvas. */
+    at(event) {
+        const box = this.canvas.getBoundingClientRect();
+        const x = event.clientX - box.left, y = event.clientY - box.top;
+        const [low, high] = this.span;
+        return {x, y,
+            value: low + (x - EDGE) / (box.width - 2 * EDGE) * (high - low),
+            opacity: Math.max(0, Math.min(1, (this.bottom - y) / (this.bottom - EDGE)))};
+    }
+
+    near(place) {
+        let best = -1, least = NEAR;
+        this.points.forEach(([value, opacity], i) => {
+            const far = Math.hypot(this.x(value) - place.x, this.y(opacity) - place.y);
+            if (far < least)
+                [best, least] = [i, far];
+        });
+        return best;
+    }
+
+    set(points, chosen = this.chosen) {
+        this.chosen = chosen;
+        this.recipe.set({opacity: points});
+    }
+
+    digits(value) {
+        const [low, high] = this.span;
+        const places = Math.max(0, Math.ceil(3 - Math.log10(high - low)));
+        return +value.toFixed(Math.min(12, places));
+    }
+
+    /** Moves the chosen point, between its neighbours. */
+    put(value, opacity) {
+        const points = this.points.map(point => [...point]), point = points[this.chosen];
+        if (!point)
+            return;
+        const low = points[this.chosen - 1]?.[0] ?? -Infinity;
+        const high = points[this.chosen + 1]?.[0] ?? Infinity;
+        if (value !== null)
+            point[0] = Math.max(low, Math.min(high, this.digits(value)));
+        if (opacity !== null)
+            point[1] = +opacity.toFixed(3);
+        this.set(points);
+    }
+
+    insert(place = null) {
+        const points = this.points.map(point => [...point]);
+        const from = Math.max(0, Math.min(this.chosen, points.length - 2));
+        const a = points[from] ?? [this.span[0], 0], b = points[from + 1] ?? a;
+        const point = place ? [this.digits(place.value), +place.opacity.toFixed(3)]
+            : [this.digits((a[0] + b[0]) / 2), +((a[1] + b[1]) / 2).toFixed(3)];
+        const index = place ? points.filter(other => other[0] <= point[0]).length : from + 1;
+        points.splice(index, 0, point);
+        this.set(points, index);
+    }
+
+    remove() {
+        if (this.points.length < 2 || !this.points[this.chosen])
+            return;
+        this.set(this.points.filter((_, i) => i !== this.chosen),
+            Math.min(this.chosen, this.points.length - 2));
+    }
+
+    down(event) {
+        const place = this.at(event);
+        this.canvas.setPointerCapture(event.pointerId);
+        this.chosen = this.near(place);
+        this.from = {place, points: this.points};
+        this.recipe.begin();
+        this.draw();
+    }
+
+    /** A point, or all of them where none is near. */
+    move(event) {
+        if (!this.from)
+            return;
+        const place = this.at(event);
+        if (this.chosen >= 0) {
+            this.put(place.value, place.opacity);
+            return;
+        }
+        const by = place.value - this.from.place.value;
+        if (Math.abs(place.x - this.from.place.x) > 2)
+            this.set(this.from.points.map(
+                ([value, opacity]) => [this.digits(value + by), opacity]));
+    }
+
+    up() {
+        this.from = null;
+        this.recipe.end();
+    }
+
+    doubled(event) {
+        const place = this.at(event), index = this.near(place);
+        if (index < 0) {
+            this.insert(place);
+            return;
+        }
+        this.chosen = index;
+        this.remove();
+    }
+
+    key(event) {
+        const [low, high] = this.span, step = event.shiftKey ? 0.002 : 0.01;
+        const point = this.points[this.chosen];
+        const moves = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
+        const by = moves[event.key];
+        if (by && point)
+            this.put(point[0] + by[0] * step * (high - low),
+                Math.max(0, Math.min(1, point[1] + by[1] * step)));
+        else if (event.key === 'PageDown' || event.key === 'PageUp')
+            this.chosen = Math.max(0, Math.min(this.points.length - 1,
+                this.chosen + (event.key === 'PageDown' ? 1 : -1)));
+        else if (event.key === 'Insert')
+            this.insert();
+        else if (event.key === 'Delete')
+            this.remove();
+        else
+            return;
+        event.preventDefault();
+        event.stopPropagation();
+        this.draw();
+    }
+
+    draw() {
+        const canvas = this.canvas, scale = devicePixelRatio || 1;
+        const width = canvas.clientWidth, height = canvas.clientHeight;
+        if (!width)
+            return;
+        canvas.width = Math.round(width * scale);
+        canvas.height = Math.round(height * scale);
+        const g = canvas.getContext('2d'), style = getComputedStyle(canvas);
+        g.scale(scale, scale);
+        this.drawHistogram(g, style.getPropertyValue('--line'));
+        this.drawStrip(g);
+        this.drawPoints(g, style.getPropertyValue('--text'), style.getPropertyValue('--accent'));
+        const point = this.points[this.chosen];
+        this.value.disabled = this.opacity.disabled = !point;
+        show(this.value, point ? short(point[0]) : '');
+        show(this.opacity, point ? short(point[1]) : '');
+    }
+
+    drawHistogram(g, color) {
+        const {histogram} = this.page;
+        if (!histogram)
+            return;
+        const scaled = count => this.log ? Math.log1p(count) : count;
+        const top = Math.max(1, ...histogram.counts.map(scaled));
+        const step = (histogram.hi - histogram.lo) / histogram.counts.length;
+        g.fillStyle = color;
+        histogram.counts.forEach((count, i) => {
+            const x = this.x(histogram.lo + i * step), wide = this.x(histogram.lo + (i + 1) * step) - x;
+            const tall = scaled(count) / top * (this.bottom - EDGE);
+            g.fillRect(x, this.bottom - tall, wide + 0.5, tall);
+        });
+    }
+
+    drawStrip(g) {
+        const look = this.page.look;
+        look?.strip.forEach((color, i) => {
+            const at = k => this.x(look.low + (look.high - look.low) * k / look.strip.length);
+            g.fillStyle = color;
+            g.fillRect(at(i), this.bottom + 3, at(i + 1) - at(i) + 0.5, 11);
+        });
+    }
+
+    drawPoints(g, line, accent) {
+        const points = this.points;
+        if (!points.length)
+            return;
+        g.strokeStyle = line;
+        g.lineWidth = 1.5;
+        g.beginPath();
+        g.moveTo(0, this.y(points[0][1]));
+        for (const [value, opacity] of points)
+            g.lineTo(this.x(value), this.y(opacity));
+        g.lineTo(this.canvas.clientWidth, this.y(points.at(-1)[1]));
+        g.stroke();
+        points.forEach(([value, opacity], i) => {
+            g.fillStyle = i === this.chosen ? accent : line;
+            g.beginPath();
+            g.arc(this.x(value), this.y(opacity), i === this.chosen ? 6 : 4.5, 0, 7);
+            g.fill();
+        });
+    }
+}

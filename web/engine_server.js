@@ -1,0 +1,129 @@
+// engine_server.js - the renderer behind a WebSocket: sends what changes,
+// receives pictures and texts.  Of the page only this module and the first
+// lines of viewer.js know the address.
+
+const MAGIC = 0x31574e53;
+const TYPES = ['', 'image/jpeg', 'image/png', 'image/webp'];
+const FATAL = [4401, 4429];
+
+/**
+ * Events by name: 'open', 'closed', 'picture', 'small', and the kinds of texts
+ * (info, look, state, figures, progress, histogram, command, said).
+ */
+export class ServerEngine {
+    constructor(token) {
+        this.token = token;
+        this.hearers = new Map();
+        this.n = 0;
+        this.sentAt = new Map();
+        this.waiting = null; // changes of the next frame of the screen
+        this.painting = Promise.resolve();
+        this.wait = 500;
+    }
+
+    on(name, hear) {
+        this.hearers.set(name, [...(this.hearers.get(name) ?? []), hear]);
+    }
+
+    tell(name, value) {
+        for (const hear of this.hearers.get(name) ?? [])
+            hear(value);
+    }
+
+    open() {
+        const url = new URL('ws', location.href);
+        url.protocol = url.protocol.replace('http', 'ws');
+        url.hash = '';
+        url.search = '';
+        this.socket = new WebSocket(url, 'snowglass.1');
+        this.socket.binaryType = 'arraybuffer';
+        this.socket.onopen = () => {
+            this.wait = 500;
+            this.say({t: 'hello', token: this.token, wants: ['jpeg', 'png', 'webp']});
+            this.tell('open');
+        };
+        this.socket.onclose = event => this.closed(event);
+        this.socket.onmessage = event => this.hear(event.data);
+    }
+
+    closed(event) {
+        const fatal = FATAL.includes(event.code);
+        this.tell('closed', fatal ? event.reason : 'The viewer does not answer. ' +
+            'Trying again; if it has ended, start snowglass serve again.');
+        if (fatal)
+            return;
+        setTimeout(() => this.open(), this.wait);
+        this.wait = Math.min(2 * this.wait, 8000);
+    }
+
+    say(message) {
+        if (this.socket?.readyState === WebSocket.OPEN)
+            this.socket.send(JSON.stringify(message));
+    }
+
+    ask(what, more = {}) {
+        this.say({t: 'ask', what, ...more});
+    }
+
+    moving(on) {
+        this.flush();
+        this.say({t: 'moving', on});
+    }
+
+    /** Changes of a recipe; null takes a key out.  Sent once a frame. */
+    set(changes) {
+        if (!this.waiting)
+            requestAnimationFrame(() => this.flush());
+        this.waiting = {...this.waiting, ...changes};
+    }
+
+    flush() {
+        if (!this.waiting)
+            return;
+        this.n++;
+        this.sentAt.set(this.n, performance.now());
+        this.say({t: 'set', n: this.n, recipe: this.waiting});
+        this.waiting = null;
+    }
+
+    hear(data) {
+        if (typeof data === 'string') {
+            const message = JSON.parse(data);
+            this.tell(message.t, message);
+        } else {
+            this.painting = this.painting.then(() => this.paint(data));
+        }
+    }
+
+    async paint(data) {
+        const head = new DataView(data);
+        if (head.getUint32(0, true) !== MAGIC)
+            return;
+        const n = head.getUint32(4, true);
+        const frame = {
+            level: head.getUint8(8), kind: head.getUint8(9), pane: head.getUint8(10),
+            width: head.getUint32(16, true), height: head.getUint32(20, true),
+            render: head.getUint32(24, true) / 1000, pack: head.getUint32(28, true) / 1000,
+            bytes: data.byteLength,
+            blob: new Blob([new Uint8Array(data, 32)], {type: TYPES[head.getUint8(9)]})};
+        if (frame.pane) {
+            this.tell('small', frame);
+            return;
+        }
+        frame.bitmap = await createImageBitmap(frame.blob, {
+            premultiplyAlpha: 'none', colorSpaceConversion: 'none'});
+        this.tell('picture', frame);
+        frame.bitmap.close();
+        this.say({t: 'ack', n});
+        this.measure(n);
+    }
+
+    measure(n) {
+        const sent = this.sentAt.get(n);
+        if (sent !== undefined)
+            this.tell('measured', performance.now() - sent);
+        for (const key of this.sentAt.keys())
+            if (key <= n)
+                this.sentAt.delete(key);
+    }
+}

@@ -1,0 +1,55 @@
+// keys.js - the keyboard, where no field takes it.
+
+import {round, zoomed} from './camera.js';
+import {make} from './controls.js';
+
+export const VIEWS = ['anterior', 'posterior', 'left', 'right', 'superior', 'inferior'];
+export const MODES = ['over', 'mip', 'minip', 'mean', 'sum', 'iso'];
+
+const TEXTS = [['Drag', 'turn'], ['Shift or middle drag', 'move'], ['Wheel', 'zoom'],
+    ['Right drag', 'window (across) and level (up)'], ['Ctrl right drag', 'opacity'],
+    ['Two fingers', 'move and zoom'], ['Arrows', 'turn 5 degrees, with Shift 1'],
+    ['+ -', 'zoom'], ['r', 'frame all'],
+    ['1 - 6', 'front, back, left, right, top, bottom'], ['m', 'next mode'],
+    ['p', 'parallel or perspective'], ['l', 'letters'], ['Space', 'play time steps'],
+    ['c', 'the command line'], ['s', 'save the picture'], ['z Shift+z', 'undo, redo'],
+    ['?', 'this help']];
+
+export function helpTable() {
+    return make('table', {}, ...TEXTS.map(([key, text]) => make('tr', {},
+        make('td', {}, make('kbd', {textContent: key})), make('td', {textContent: text}))));
+}
+
+const TURNS = {ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
+
+/** `actions` has what the buttons do, by name. */
+export function listenToKeys(recipe, page, actions) {
+    document.addEventListener('keydown', event => {
+        const field = event.target.closest?.('input, select, textarea, dialog, summary');
+        if (field || event.ctrlKey || event.metaKey || event.altKey || !page.info)
+            return;
+        if (press(event, recipe, page, actions))
+            event.preventDefault();
+    });
+}
+
+function press(event, recipe, page, actions) {
+    const {key} = event, keys = recipe.keys;
+    if (key === ' ' && event.target.closest?.('button'))
+        return false;
+    if (TURNS[key]) {
+        const [a, e] = TURNS[key], step = event.shiftKey ? 1 : 5;
+        recipe.set({azimuth: round(((keys.azimuth ?? 0) + a * step) % 360),
+            elevation: round(Math.max(-90, Math.min(90, (keys.elevation ?? 0) + e * step)))});
+    } else if (key === '+' || key === '=' || key === '-') {
+        recipe.set(zoomed(keys, page.info, key === '-' ? 1 / 1.15 : 1.15, 0, 0, 1));
+    } else if (key >= '1' && key <= '6') {
+        actions.view(VIEWS[key - 1]);
+    } else {
+        const named = {r: 'fit', m: 'mode', p: 'perspective', l: 'letters', ' ': 'play',
+            c: 'command', s: 'save', z: 'undo', Z: 'redo', '?': 'help'}[key];
+        actions[named]?.();
+        return Boolean(named);
+    }
+    return true;
+}

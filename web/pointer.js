@@ -1,0 +1,121 @@
+// pointer.js - mouse, wheel and fingers on the picture.
+
+import {panned, turned, zoomed} from './camera.js';
+
+/** What a drag does, by button and key. */
+function kindOf(event) {
+    if (event.button === 1 || (event.button === 0 && event.shiftKey))
+        return 'pan';
+    if (event.button === 2)
+        return event.ctrlKey || event.metaKey ? 'opacity' : 'window';
+    return event.button === 0 ? 'turn' : null;
+}
+
+export class Pointer {
+    /** `look` has the present range and points. */
+    constructor(canvas, recipe, page) {
+        this.canvas = canvas;
+        this.recipe = recipe;
+        this.page = page;
+        this.fingers = new Map();
+        canvas.addEventListener('pointerdown', event => this.down(event));
+        canvas.addEventListener('pointermove', event => this.move(event));
+        for (const name of ['pointerup', 'pointercancel'])
+            canvas.addEventListener(name, event => this.up(event));
+        canvas.addEventListener('wheel', event => this.wheel(event), {passive: false});
+        canvas.addEventListener('contextmenu', event => event.preventDefault());
+        canvas.addEventListener('auxclick', event => event.preventDefault());
+    }
+
+    get side() {
+        return Math.min(this.canvas.clientWidth, this.canvas.clientHeight) || 1;
+    }
+
+    /** From the middle of the picture. */
+    at(event) {
+        const box = this.canvas.getBoundingClientRect();
+        return [event.clientX - box.left - box.width / 2,
+            event.clientY - box.top - box.height / 2];
+    }
+
+    down(event) {
+        this.kind ??= kindOf(event);
+        if (!this.kind || !this.page.info)
+            return;
+        event.preventDefault();
+        this.canvas.focus();
+        this.canvas.setPointerCapture(event.pointerId);
+        this.fingers.set(event.pointerId, this.at(event));
+        this.start = this.page.look;
+        this.total = [0, 0];
+        this.recipe.begin();
+    }
+
+    move(event) {
+        const before = this.fingers.get(event.pointerId);
+        if (!before)
+            return;
+        const now = this.at(event);
+        if (this.fingers.size === 2)
+            this.pinch(event.pointerId, before, now);
+        else
+            this.drag(now[0] - before[0], now[1] - before[1]);
+        this.fingers.set(event.pointerId, now);
+    }
+
+    drag(dx, dy) {
+        const keys = this.recipe.keys, info = this.page.info;
+        this.total = [this.total[0] + dx, this.total[1] + dy];
+        if (this.kind === 'turn')
+            this.recipe.set(turned(keys, dx, dy, this.canvas.clientHeight));
+        else if (this.kind === 'pan')
+            this.recipe.set(panned(keys, info, dx, dy, this.side));
+        else
+            this.recipe.set(this.kind === 'window' ? this.windowed() : this.faded());
+    }
+
+    /** To the right: wider; up: a higher level. */
+    windowed() {
+        const {low, high} = this.start, [x, y] = this.total;
+        const width = (high - low) * Math.exp(x / 250);
+        const level = (low + high) / 2 - (high - low) * y / this.canvas.clientHeight;
+        const digits = value => +value.toPrecision(5);
+        return {range: [digits(level - width / 2), digits(level + width / 2)]};
+    }
+
+    /** Up: more opaque. */
+    faded() {
+        const factor = Math.exp(-this.total[1] / 120);
+        return {opacity: this.start.opacity.map(
+            ([value, opacity]) => [value, Math.min(1, opacity * factor)])};
+    }
+
+    /** Two fingers: the middle moves, the distance zooms. */
+    pinch(id, before, now) {
+        const other = [...this.fingers].find(([key]) => key !== id)[1];
+        const far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) || 1;
+        const factor = far(now, other) / far(before, other);
+        const x = (now[0] + other[0]) / 2, y = (now[1] + other[1]) / 2;
+        const info = this.page.info;
+        this.recipe.set(panned(this.recipe.keys, info, (now[0] - before[0]) / 2,
+            (now[1] - before[1]) / 2, this.side));
+        this.recipe.set(zoomed(this.recipe.keys, info, factor, x, y, this.side));
+    }
+
+    up(event) {
+        if (!this.fingers.delete(event.pointerId) || this.fingers.size)
+            return;
+        this.kind = null;
+        this.recipe.end();
+    }
+
+    wheel(event) {
+        event.preventDefault();
+        if (!this.page.info)
+            return;
+        const lines = event.deltaMode ? 30 : 1;
+        const [x, y] = this.at(event);
+        this.recipe.set(zoomed(this.recipe.keys, this.page.info,
+            Math.exp(-event.deltaY * lines / 600), x, y, this.side));
+    }
+}

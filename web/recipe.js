@@ -1,0 +1,113 @@
+// recipe.js - the state of the page, which is a recipe and nothing else, and
+// how it was before.
+
+const HISTORY = 200;
+const TOGETHER = 600; // ms in which changes of the same keys are one step
+
+const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+
+export class Recipe {
+    constructor(engine) {
+        this.engine = engine;
+        this.keys = {};
+        this.before = [];
+        this.after = [];
+        this.hearers = [];
+        this.gesture = false;
+        this.last = {names: '', at: 0};
+        engine.on('state', message => this.take(message.recipe));
+    }
+
+    onChange(hear) {
+        this.hearers.push(hear);
+    }
+
+    changed() {
+        for (const hear of this.hearers)
+            hear(this.keys);
+    }
+
+    /** What another page, or the server, has changed. */
+    take(keys) {
+        this.keys = keys;
+        this.changed();
+    }
+
+    /** A drag is one step, however many changes it makes. */
+    begin() {
+        if (this.gesture)
+            return;
+        this.remember('');
+        this.gesture = true;
+        this.engine.moving(true);
+    }
+
+    end() {
+        if (!this.gesture)
+            return;
+        this.gesture = false;
+        this.engine.moving(false);
+        this.changed();
+    }
+
+    remember(names) {
+        const now = performance.now();
+        const together = names && names === this.last.names &&
+            now - this.last.at < TOGETHER;
+        this.last = {names, at: now};
+        if (together)
+            return;
+        this.before.push({...this.keys});
+        this.before.splice(0, this.before.length - HISTORY);
+        this.after = [];
+    }
+
+    set(changes) {
+        const names = Object.keys(changes).filter(
+            key => !same(this.keys[key] ?? null, changes[key]));
+        if (!names.length)
+            return;
+        if (!this.gesture)
+            this.remember(names.join());
+        this.apply(changes);
+    }
+
+    apply(changes) {
+        this.keys = {...this.keys};
+        for (const [key, value] of Object.entries(changes)) {
+            if (value === null || value === undefined)
+                delete this.keys[key];
+            else
+                this.keys[key] = value;
+        }
+        this.engine.set(changes);
+        this.changed();
+    }
+
+    /** Becomes another recipe whole; the size is the window's. */
+    replace(keys) {
+        const changes = {...keys};
+        for (const key of Object.keys(this.keys))
+            if (!(key in keys))
+                changes[key] = null;
+        delete changes.size;
+        this.apply(changes);
+    }
+
+    step(from, to) {
+        if (!from.length)
+            return false;
+        to.push({...this.keys});
+        this.last = {names: '', at: 0};
+        this.replace(from.pop());
+        return true;
+    }
+
+    undo() {
+        return this.step(this.before, this.after);
+    }
+
+    redo() {
+        return this.step(this.after, this.before);
+    }
+}

@@ -1,0 +1,229 @@
+// viewer.js - puts the page together: the picture, the lines around it, and what
+// the buttons do.
+
+import {button, make} from './controls.js';
+import {ServerEngine} from './engine_server.js';
+import {MODES, helpTable, listenToKeys} from './keys.js';
+import {Panel} from './panel.js';
+import {Pointer} from './pointer.js';
+import {Recipe} from './recipe.js';
+
+const SIDE_MOST = 4096;
+const LEVELS = ['draft', 'normal', 'high: final'];
+
+const given = new URLSearchParams(location.hash.slice(1));
+const engine = new ServerEngine(given.get('token') ?? '');
+const recipe = new Recipe(engine);
+const page = {info: null, look: null, histogram: null, rest: null};
+
+// --- elements ----------------------------------------------------------------
+
+const canvas = make('canvas', {tabIndex: 0, role: 'img', 'aria-label': 'The volume'});
+const paint = canvas.getContext('2d', {alpha: false});
+const said = make('p', {className: 'said', role: 'status'});
+const title = make('span', {className: 'faint grow'});
+const level = make('span', {className: 'faint'});
+const figures = make('span', {className: 'faint grow'});
+const undo = button('Undo', 'Undo (z)', () => actions.undo());
+const redo = button('Redo', 'Redo (Shift+z)', () => actions.redo());
+const text = make('textarea', {readOnly: true, spellcheck: false, 'aria-label': 'Text to copy'});
+const dialog = make('dialog', {});
+const picture = make('div', {className: 'picture'}, canvas, said);
+
+// --- what is said --------------------------------------------------------------
+
+let quiet;
+function say(line, stays = false) {
+    said.textContent = line;
+    clearTimeout(quiet);
+    if (!stays)
+        quiet = setTimeout(() => {
+            said.textContent = '';
+        }, 6000);
+}
+
+function open(name, ...children) {
+    dialog.replaceChildren(make('h2', {textContent: name}), ...children,
+        make('p', {}, button('Close', 'Close', () => dialog.close())));
+    dialog.showModal();
+}
+
+/** Shows a text, and copies it where the browser allows that. */
+async function copy(name, value) {
+    text.value = value;
+    open(name, text);
+    text.select();
+    try {
+        await navigator.clipboard.writeText(value);
+        say('Copied.');
+    } catch {
+        say('Press Ctrl+C to copy.');
+    }
+}
+
+function save(name, blob) {
+    const link = make('a', {href: URL.createObjectURL(blob), download: name});
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+const baseName = () => (page.info.name.split(':').at(-1).split('.')[0] || 'picture');
+
+// --- actions --------------------------------------------------------------------
+
+let player;
+const actions = {
+    view(name) {
+        recipe.set({view: name, azimuth: 0, elevation: 0, roll: 0, position: null, up: null});
+    },
+    fit: () => engine.ask('fit'),
+    mode() {
+        const next = MODES[(MODES.indexOf(recipe.keys.mode ?? 'over') + 1) % MODES.length];
+        const {low, high} = page.look;
+        recipe.set(next === 'iso' ? {mode: next, iso: recipe.keys.iso ?? (low + high) / 2}
+            : {mode: next, iso: null});
+        say(`Mode ${next}`);
+    },
+    perspective() {
+        const on = (recipe.keys.perspective ?? 0) > 0;
+        recipe.set({perspective: on ? 0 : page.info.fov});
+    },
+    letters: () => recipe.set({'no-labels': recipe.keys['no-labels'] ? null : true}),
+    play() {
+        if (player || page.info.times < 2) {
+            clearInterval(player);
+            player = null;
+            return;
+        }
+        player = setInterval(() => recipe.set(
+            {time: ((recipe.keys.time ?? 0) + 1) % page.info.times}), 200);
+    },
+    command: () => engine.ask('command'),
+    link() {
+        const url = new URL(location.href);
+        const keys = {...recipe.keys};
+        delete keys.size;
+        url.hash = new URLSearchParams({token: engine.token, recipe: JSON.stringify(keys)});
+        copy('Link to this state', url.href);
+    },
+    file() {
+        const blob = new Blob([`${JSON.stringify(recipe.keys, null, 2)}\n`],
+            {type: 'application/json'});
+        save(`${baseName()}.json`, blob);
+    },
+    save() {
+        if (page.rest)
+            save(`${baseName()}.png`, page.rest);
+        else
+            say('The picture is saved when it is final: wait a moment.');
+    },
+    undo: () => recipe.undo() || say('Nothing to undo'),
+    redo: () => recipe.redo() || say('Nothing to redo'),
+    help: () => open('Mouse, fingers and keys', helpTable()),
+};
+
+// --- the picture ------------------------------------------------------------------
+
+/** Pixels of the screen, as many as the server draws. */
+function fitWindow() {
+    const scale = devicePixelRatio || 1;
+    const size = [picture.clientWidth, picture.clientHeight].map(
+        side => Math.max(16, Math.min(SIDE_MOST, Math.round(side * scale))));
+    if (JSON.stringify(recipe.keys.size) !== JSON.stringify(size))
+        recipe.apply({size});
+}
+
+let round = 0;
+engine.on('measured', ms => {
+    round = ms;
+});
+engine.on('picture', frame => {
+    const [width, height] = frame.level ? [frame.width, frame.height]
+        : recipe.keys.size ?? [frame.width, frame.height];
+    if (canvas.width !== width || canvas.height !== height)
+        [canvas.width, canvas.height] = [width, height];
+    paint.imageSmoothingQuality = 'high';
+    paint.drawImage(frame.bitmap, 0, 0, width, height);
+    page.rest = frame.level === 2 ? frame.blob : null;
+    level.textContent = LEVELS[frame.level];
+    canvas.dataset.level = frame.level;
+    figures.textContent = `${frame.width} x ${frame.height}, drawn in ${frame.render.toFixed(1)} ms, ` +
+        `packed in ${frame.pack.toFixed(1)} ms, ${(frame.bytes / 1024).toFixed(0)} kB, ` +
+        `round trip ${round.toFixed(0)} ms`;
+    page.frames = (page.frames ?? 0) + 1;
+});
+
+function describe() {
+    if (!page.info)
+        return;
+    const {keys} = recipe;
+    canvas.setAttribute('aria-label', `${page.info.name} from ${keys.view ?? page.info.view}, ` +
+        `azimuth ${keys.azimuth ?? 0}, elevation ${keys.elevation ?? 0} degrees, ` +
+        `preset ${keys.preset ?? 'automatic'}, mode ${keys.mode ?? 'over'}`);
+    undo.disabled = !recipe.before.length;
+    redo.disabled = !recipe.after.length;
+}
+
+// --- the server ----------------------------------------------------------------------
+
+const panel = new Panel(recipe, page, engine, actions);
+let first = true;
+
+engine.on('closed', reason => say(reason, true));
+engine.on('open', () => say(''));
+engine.on('said', message => say(message.text));
+engine.on('progress', ({stage, part}) => say(part < 1 ? `${stage}, ${Math.round(100 * part)} %` : ''));
+engine.on('command', message => copy('The command that makes this picture', message.text));
+engine.on('histogram', message => {
+    page.histogram = message;
+    panel.editor.draw();
+});
+engine.on('look', message => {
+    page.look = message;
+    panel.update();
+});
+engine.on('info', info => {
+    page.info = info;
+    page.whole ??= info.dims;
+    document.title = `${info.name} - snowglass`;
+    title.textContent = `${info.name}  ${info.dims.join(' x ')} ${info.type}, ` +
+        `${info.spacing.map(x => +x.toPrecision(4)).join(' x ')} ${info.unit}`;
+    panel.build();
+    engine.ask('histogram');
+});
+engine.on('state', () => {
+    if (!first)
+        return;
+    first = false;
+    fitWindow();
+    try {
+        if (given.has('recipe'))
+            recipe.replace(JSON.parse(given.get('recipe')));
+    } catch {
+        say('The link is damaged: its recipe cannot be read.');
+    }
+});
+recipe.onChange(() => {
+    panel.update();
+    describe();
+});
+
+document.getElementById('viewer').append(
+    make('section', {className: 'stage', 'aria-label': 'Picture'},
+        make('div', {className: 'top'}, make('h1', {textContent: 'snowglass'}), title, level,
+            button('Help', 'Mouse, fingers and keys (?)', actions.help)),
+        picture,
+        make('div', {className: 'bottom'}, figures,
+            button('Command', 'Copy the command that makes this picture (c)', actions.command),
+            button('Link', 'Copy a link to this state', actions.link),
+            button('Recipe', 'Save the recipe of this state', actions.file),
+            button('Picture', 'Save the picture (s)', actions.save), undo, redo)),
+    panel.element, dialog);
+new Pointer(canvas, recipe, page);
+listenToKeys(recipe, page, actions);
+new ResizeObserver(() => {
+    if (!first)
+        fitWindow();
+}).observe(picture);
+engine.open();
+window.snowglass = {engine, recipe, page}; // for the console, and for tests
