@@ -63,27 +63,6 @@ static json_t *views(drawing *d) {
     return all;
 }
 
-static void find_middle(const snow_volume_info *info, double middle[3],
-                        double *radius) {
-    double square[4] = {0};
-    for (int i = 0; i < 3; i++) {
-        middle[i] = info->matrix[i][3];
-        for (int k = 0; k < 3; k++)
-            middle[i] += info->matrix[i][k] * (double)(info->dims[k] - 1) / 2;
-    }
-    for (int corner = 0; corner < 4; corner++)
-        for (int i = 0; i < 3; i++) {
-            double along = 0;
-            for (int k = 0; k < 3; k++)
-                along += (k && corner & k ? -1 : 1) * info->matrix[i][k] *
-                         (double)info->dims[k] / 2;
-            square[corner] += along * along;
-        }
-    *radius = 0;
-    for (int corner = 0; corner < 4; corner++)
-        *radius = fmax(*radius, sqrt(square[corner]));
-}
-
 /* The name without its folder: what else a path tells is nobody's business. */
 static const char *base_of(const char *path) {
     const char *slash = strrchr(path, '/');
@@ -94,7 +73,7 @@ void answer_info(drawing *d, outbox *box) {
     const snow_volume_info *info = &d->state.whole;
     snow_volume_statistics of = {.size = sizeof of};
     double middle[3], radius;
-    find_middle(info, middle, &radius);
+    drawing_middle(d, middle, &radius);
     if (snow_volume_get_statistics(d->state.volume, &of) != SNOW_STATUS_OK)
         of.min = of.max = NAN;
     json_t *tree = json_pack(

@@ -8,6 +8,7 @@
 
 #include <snowglass/ranks.h>
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,7 +76,7 @@ static int reopen(drawing *d) {
     s->transfer = NULL;
     s->framed = false;
     int done = render_state_open(s, d->opts.operands[0], d->opts.time);
-    d->look_is_new = true;
+    d->look_is_new = d->volume_is_new = true;
     return done;
 }
 
@@ -161,7 +162,7 @@ static double rounded(double value) {
 json_t *drawing_fit(drawing *d) {
     render_state *s = &d->state;
     snow_view view = s->view;
-    double azimuths[TURN_SIDES];
+    double azimuths[TURN_SIDES], radius;
     if (view.has_position)
         return json_object();
     make_view(s->context, &d->opts, &s->whole, &view);
@@ -172,16 +173,33 @@ json_t *drawing_fit(drawing *d) {
     if (snow_view_fit(NULL, s->volume, s->transfer, &s->settings, azimuths,
                       TURN_SIDES, &view) != SNOW_STATUS_OK)
         return json_object();
-    for (int i = 0; i < 3 && !view.has_target; i++) {
-        view.target[i] = s->whole.matrix[i][3];
-        for (int k = 0; k < 3; k++)
-            view.target[i] +=
-                s->whole.matrix[i][k] * (double)(s->whole.dims[k] - 1) / 2;
-    }
+    if (!view.has_target)
+        drawing_middle(d, view.target, &radius);
     for (int i = 0; i < 3; i++)
         view.target[i] = rounded(view.target[i]);
     return json_pack("{s:f, s:o, s:s}", "zoom", rounded(view.zoom), "target",
                      json_vector(view.target, 3), "fit", "volume");
+}
+
+void drawing_middle(const drawing *d, double middle[3], double *radius) {
+    const snow_volume_info *info = &d->state.whole;
+    double square[4] = {0};
+    for (int i = 0; i < 3; i++) {
+        middle[i] = info->matrix[i][3];
+        for (int k = 0; k < 3; k++)
+            middle[i] += info->matrix[i][k] * (double)(info->dims[k] - 1) / 2;
+    }
+    for (int corner = 0; corner < 4; corner++)
+        for (int i = 0; i < 3; i++) {
+            double along = 0;
+            for (int k = 0; k < 3; k++)
+                along += (k && corner & k ? -1 : 1) * info->matrix[i][k] *
+                         (double)info->dims[k] / 2;
+            square[corner] += along * along;
+        }
+    *radius = 0;
+    for (int corner = 0; corner < 4; corner++)
+        *radius = fmax(*radius, sqrt(square[corner]));
 }
 
 /* --- pictures

@@ -15,8 +15,8 @@ typedef struct drawing {
     options opts;  /* of the present recipe */
     json_t *tree;
     render_state state;
-    char *data_key, *look_key; /* what volume and look were made of */
-    bool look_is_new;          /* since the caller last asked */
+    char *data_key, *look_key;       /* what volume and look were made of */
+    bool volume_is_new, look_is_new; /* since the caller last looked */
 } drawing;
 
 /* Opens the volume of the command line.  Returns CONTINUE or an exit code, as
@@ -26,6 +26,10 @@ void drawing_close(drawing *d);
 
 /* Makes what a recipe needs, whose tree stays the caller's. */
 int drawing_apply(drawing *d, const json_t *recipe);
+
+/* The middle of the volume, and from there to its farthest corner: what zoom 1
+ * shows (snowglass/view.h). */
+void drawing_middle(const drawing *d, double middle[3], double *radius);
 
 /* Frames what the look shows, from the sides of a turn: keys that set the
  * camera's target and zoom, a new reference. */

@@ -6,6 +6,7 @@
 #include "picture/warnings.h"
 #include "run/log.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -30,6 +31,7 @@ struct renderer {
     int shrink;
     uint32_t revision; /* of the picture under way */
     bool told_empty;
+    double radius; /* of the volume that was read last */
 };
 
 static bool asks_for_end(void *user) {
@@ -50,6 +52,13 @@ static void free_pictures(picture *made) {
         free(made);
         made = next;
     }
+}
+
+static void tell_state(renderer *r) {
+    uint32_t revision;
+    char *text = state_text(r->state, &revision);
+    outbox_put_text(r->box, 0, PARCEL_STATE, text);
+    free(text);
 }
 
 static void adapt(renderer *r, int level, double took) {
@@ -112,6 +121,29 @@ static int draw(renderer *r, int level) {
     return CONTINUE;
 }
 
+/* Another crop has another middle and size, which zoom goes by: it is changed
+ * so that the object stays as large.  Whether the state is a new one. */
+static bool keep_scale(renderer *r) {
+    double middle[3], radius, before = r->radius;
+    uint32_t revision;
+    if (!r->drawing->volume_is_new)
+        return false;
+    r->drawing->volume_is_new = false;
+    drawing_middle(r->drawing, middle, &radius);
+    r->radius = radius;
+    if (!(fabs(radius - before) > 1e-9 * before))
+        return false;
+    answer_info(r->drawing, r->box);
+    if (!r->drawing->opts.target.given)
+        return false;
+    json_t *keys =
+        json_pack("{s:f}", "zoom", r->drawing->opts.zoom * radius / before);
+    free(state_set(r->state, keys, &revision));
+    json_decref(keys);
+    tell_state(r);
+    return true;
+}
+
 /* A state that cannot be drawn is not tried again. */
 static void serve_state(renderer *r, int level, json_t *recipe,
                         uint32_t revision) {
@@ -120,6 +152,8 @@ static void serve_state(renderer *r, int level, json_t *recipe,
     if (r->drawn != revision || r->level < 0)
         done = drawing_apply(r->drawing, recipe);
     json_decref(recipe);
+    if (done == CONTINUE && keep_scale(r))
+        return;
     if (r->drawing->look_is_new && done == CONTINUE)
         answer_look(r->drawing, r->box);
     r->drawing->look_is_new = false;
@@ -133,14 +167,15 @@ static void serve_state(renderer *r, int level, json_t *recipe,
 /* The first frame shows all of the object. */
 static void begin(renderer *r) {
     uint32_t revision;
+    double middle[3];
     json_t *keys =
         r->drawing->opts.target.given ? json_object() : drawing_fit(r->drawing);
     if (json_object_size(keys))
         free(state_set(r->state, keys, &revision));
     json_decref(keys);
-    char *state = state_text(r->state, &revision);
-    outbox_put_text(r->box, 0, PARCEL_STATE, state);
-    free(state);
+    tell_state(r);
+    drawing_middle(r->drawing, middle, &r->radius);
+    r->drawing->volume_is_new = false;
     answer_info(r->drawing, r->box);
     answer_look(r->drawing, r->box);
 }

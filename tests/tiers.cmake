@@ -38,7 +38,7 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     test_phantom test_perspective test_camera_points
     cli_documents cli_bench cli_figures cli_frame cli_stream
     cli_matrix cli_balance cli_turntable cli_modules cli_memory cli_progress
-    cli_large oracle_zarr oracle_tiff oracle_vtk oracle_pictures)
+    serve_browser serve_sockets cli_large oracle_zarr oracle_tiff oracle_vtk oracle_pictures)
 
 # Tenths of a second on one core in the short tier, of those that take more than
 # one second (scripts/test_costs); before them what takes longest in the long
@@ -47,7 +47,7 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
 set(SNOW_COSTS
     isa_wasm 320 isa_neon 310 mpi_stall 300 mpi_insitu 280 simulate 270
     mpi_render 260 mpi_modes 250
-    mpi_fail 240 mpi_comm 230 mpi_bench 220 cli_progress 200 cli_large 190
+    serve_browser 245 mpi_fail 240 mpi_comm 230 mpi_bench 220 cli_progress 200 cli_large 190
     test_model_raycast 37 cli_stream 87 test_ranks 62 test_stream 57
     cli_figures 52 oracle_zarr 46 test_modes 44
     cli_turntable 41 oracle_vtk 40 cli_render 39 test_stop 37
@@ -57,7 +57,7 @@ set(SNOW_COSTS
     test_ranks_open 28 test_value 27 test_insitu 26
     test_model_picture 22 test_histogram 22 oracle_tiff 22
     cli_real 22 cli_balance 21 test_model_encodings 20 test_value_model 20
-    oracle_orientation 20 oracle_hdf5 20 oracle_netcdf 18 test_comm 17
+    serve_sockets 20 oracle_orientation 20 oracle_hdf5 20 oracle_netcdf 18 test_comm 17
     cli_formats 16 cli_config 16 test_gradient_opacity 16 test_value_truth 14
     test_load_balance 13 test_api 13 test_kernels 13 cli_usage 12
     test_splat_isa 11 

@@ -256,6 +256,8 @@ export class Editor {
             g.lineTo(this.x(value), this.y(opacity));
         g.lineTo(this.canvas.clientWidth, this.y(points.at(-1)[1]));
         g.stroke();
+        this.canvas.dataset.points = points.map(([value, opacity]) =>
+            `${Math.round(this.x(value))},${Math.round(this.y(opacity))}`).join(' ');
         points.forEach(([value, opacity], i) => {
             g.fillStyle = i === this.chosen ? accent : line;
             g.beginPath();

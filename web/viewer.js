@@ -117,6 +117,10 @@ const actions = {
         else
             say('The picture is saved when it is final: wait a moment.');
     },
+    reset() {
+        recipe.remember('');
+        recipe.replace(page.begin);
+    },
     undo: () => recipe.undo() || say('Nothing to undo'),
     redo: () => recipe.redo() || say('Nothing to redo'),
     help: () => open('Mouse, fingers and keys', helpTable()),
@@ -183,18 +187,23 @@ engine.on('look', message => {
     panel.update();
 });
 engine.on('info', info => {
+    const known = page.info;
     page.info = info;
     page.whole ??= info.dims;
     document.title = `${info.name} - snowglass`;
     title.textContent = `${info.name}  ${info.dims.join(' x ')} ${info.type}, ` +
         `${info.spacing.map(x => +x.toPrecision(4)).join(' x ')} ${info.unit}`;
-    panel.build();
+    if (known) // a part of the same volume
+        panel.update();
+    else
+        panel.build();
     engine.ask('histogram');
 });
 engine.on('state', () => {
     if (!first)
         return;
     first = false;
+    page.begin = {...recipe.keys};
     fitWindow();
     try {
         if (given.has('recipe'))
@@ -217,7 +226,8 @@ document.getElementById('viewer').append(
             button('Command', 'Copy the command that makes this picture (c)', actions.command),
             button('Link', 'Copy a link to this state', actions.link),
             button('Recipe', 'Save the recipe of this state', actions.file),
-            button('Picture', 'Save the picture (s)', actions.save), undo, redo)),
+            button('Picture', 'Save the picture (s)', actions.save), undo, redo,
+            button('Reset', 'All as it was when the page was opened', actions.reset))),
     panel.element, dialog);
 new Pointer(canvas, recipe, page);
 listenToKeys(recipe, page, actions);

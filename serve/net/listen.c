@@ -84,8 +84,7 @@ static void accept_all(listener *l, int fd) {
  * -------------------------------------------------------------------- */
 
 static void end_when_idle(lws_sorted_usec_list_t *timer) {
-    listener *l = lws_container_of(timer, listener, idle_timer);
-    l->ended = true;
+    listener_stop(lws_container_of(timer, listener, idle_timer));
 }
 
 /* The clock of idleness runs while there is no page. */
@@ -328,7 +327,7 @@ static int serve_socket(struct lws *wsi, enum lws_callback_reasons reason,
     }
 }
 
-/* The listening sockets. */
+/* The listening sockets; no page may name this protocol. */
 static int serve_door(struct lws *wsi, enum lws_callback_reasons reason,
                       void *user, void *in, size_t length) {
     (void)user;
@@ -336,7 +335,7 @@ static int serve_door(struct lws *wsi, enum lws_callback_reasons reason,
     (void)length;
     if (reason == LWS_CALLBACK_RAW_RX_FILE)
         accept_all(of(wsi), lws_get_socket_fd(wsi));
-    return 0;
+    return reason == LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION ? 1 : 0;
 }
 
 static const struct lws_protocols protocols[] = {

@@ -1,0 +1,55 @@
+"""The viewer's page in Chromium, and the command that it copies."""
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from viewer_client import SHORT, TOOL, Server, check, finish, skip
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+WEB = os.path.abspath(sys.argv[3])
+PLAYWRIGHT = os.path.join(WEB, "node_modules", "playwright-core", "index.mjs")
+
+
+def find(*names):
+    return next(filter(None, map(shutil.which, names)), None)
+
+
+node, chromium = find("node", "nodejs"), find("chromium", "chromium-browser")
+if not node:
+    skip("there is no node")
+if not chromium:
+    skip("there is no chromium")
+if not os.path.exists(PLAYWRIGHT):
+    skip("there is no playwright-core: ./dev test installs it where npm is")
+
+shots = os.path.join(WEB, "pictures")
+os.makedirs(shots, exist_ok=True)
+
+
+def drive(*words):
+    """Runs the page; its lines are this test's."""
+    done = subprocess.run([node, os.path.join(HERE, "web", "viewer.mjs"),
+                           PLAYWRIGHT, chromium, *words], timeout=500)
+    check("the page", done.returncode == 0, done.returncode)
+
+
+def same_bytes():
+    words = shlex.split(open(os.path.join(shots, "command.txt")).read())
+    words[0] = TOOL
+    out = words[words.index("--output") + 1] = os.path.join(shots, "again.png")
+    subprocess.run([*words, "-y", "-q"], check=True)
+    check("the saved picture has the bytes of the copied command",
+          open(out, "rb").read() ==
+          open(os.path.join(shots, "rest.png"), "rb").read())
+
+
+server = Server("phantom:head")
+drive(server.url, shots, "short" if SHORT else "long")
+same_bytes()
+code, said = server.stop()
+check("it ends in order", code == 0, f"{code} {said}")
+finish()

@@ -1,0 +1,223 @@
+"""What the tests of the viewer share: a server, and a WebSocket made of a plain
+socket, which can also say what no browser would.
+
+Tests are run as `python3 serve_NAME.py TOOL DATA`; they exit with 77 where the
+viewer is not built."""
+import base64
+import http.client
+import json
+import os
+import socket
+import struct
+import subprocess
+import sys
+import time
+
+TOOL = os.path.abspath(sys.argv[1])
+DATA = sys.argv[2] if len(sys.argv) > 2 else ""
+SHORT = os.environ.get("SNOW_TIER", "short") == "short"  # docs/testing.md
+HELLO = ["jpeg", "png"]
+wrong = 0
+
+
+def skip(why):
+    print("skip  ", why)
+    sys.exit(77)
+
+
+def check(name, good, why=""):
+    global wrong
+    print(f"ok     {name}" if good else f"FAILED {name}: {why}")
+    wrong += not good
+
+
+def finish():
+    if wrong:
+        sys.exit(f"{wrong} checks failed")
+
+
+class Server:
+    """A viewer of its own; `url` is what it prints."""
+
+    def __init__(self, *arguments):
+        if not os.path.exists(os.path.join(os.path.dirname(TOOL),
+                                           "snowglass-serve")):
+            skip("snowglass-serve is not built: libwebsockets or libturbojpeg "
+                 "is missing")
+        self.process = subprocess.Popen(
+            [TOOL, "serve", *arguments], stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE, text=True)
+        self.url = self.process.stdout.readline().strip()
+        if not self.url:
+            sys.exit(f"FAILED to start: {self.process.stderr.read()}")
+        self.host = self.url.split("/")[2]
+        self.port = int(self.host.rsplit(":", 1)[1])
+        self.token = self.url.partition("token=")[2]
+        self.path = None  # of a Unix socket
+
+    def connect(self):
+        if self.path:
+            made = socket.socket(socket.AF_UNIX)
+            made.connect(self.path)
+        else:
+            made = socket.create_connection(("127.0.0.1", self.port))
+        made.settimeout(20)
+        return made
+
+    def get(self, path="/", host=None, method="GET", **headers):
+        """Status, headers and body of a page."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port)
+        connection.sock = self.connect()
+        connection.putrequest(method, path, skip_host=True,
+                              skip_accept_encoding=True)
+        if host != "":
+            connection.putheader("Host", host or self.host)
+        for name, value in headers.items():
+            connection.putheader(name.replace("_", "-"), value)
+        connection.endheaders()
+        answer = connection.getresponse()
+        body = answer.read()
+        connection.close()
+        return answer.status, dict((name.lower(), value) for name, value
+                                   in answer.getheaders()), body
+
+    def kilobytes(self, what="VmRSS"):
+        with open(f"/proc/{self.process.pid}/status") as status:
+            for line in status:
+                if line.startswith(what + ":"):
+                    return int(line.split()[1])
+        return 0
+
+    def stop(self):
+        self.process.terminate()
+        code = self.process.wait(20)
+        return code, self.process.stderr.read()
+
+
+class Page:
+    """A WebSocket as a page has one."""
+
+    def __init__(self, server, origin=None, host=None, path="/ws",
+                 protocol="snowglass.1", token=None, hello=True):
+        self.socket = server.connect()
+        self.bytes = b""
+        key = base64.b64encode(os.urandom(16)).decode()
+        origin = f"http://{server.host}" if origin is None else origin
+        lines = [f"GET {path} HTTP/1.1", f"Host: {host or server.host}",
+                 "Upgrade: websocket", "Connection: Upgrade",
+                 f"Sec-WebSocket-Key: {key}", "Sec-WebSocket-Version: 13"]
+        lines += [f"Sec-WebSocket-Protocol: {protocol}"] if protocol else []
+        lines += [f"Origin: {origin}"] if origin else []
+        self.socket.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
+        self.head = b""
+        while b"\r\n\r\n" not in self.head:
+            try:
+                got = self.socket.recv(4096)
+            except OSError:
+                break
+            if not got:
+                break
+            self.head += got
+        self.head, _, self.bytes = self.head.partition(b"\r\n\r\n")
+        self.is_open = self.head.startswith(b"HTTP/1.1 101")
+        if hello and self.is_open:
+            self.say({"t": "hello", "token": token or server.token,
+                      "wants": HELLO})
+
+    def send_frame(self, first, body, mask=True, length=None):
+        length = len(body) if length is None else length
+        bit = 0x80 if mask else 0
+        head = bytes([first])
+        if length < 126:
+            head += bytes([bit | length])
+        elif length < 65536:
+            head += bytes([bit | 126]) + struct.pack(">H", length)
+        else:
+            head += bytes([bit | 127]) + struct.pack(">Q", length)
+        if mask:
+            key = os.urandom(4)
+            body = bytes(b ^ key[i & 3] for i, b in enumerate(body))
+            head += key
+        try:
+            self.socket.sendall(head + body)
+        except OSError:
+            pass  # closed already
+
+    def say(self, message):
+        if not isinstance(message, bytes):
+            message = json.dumps(message).encode()
+        self.send_frame(0x81, message)
+
+    def need(self, count):
+        while len(self.bytes) < count:
+            got = self.socket.recv(1 << 20)
+            if not got:
+                raise EOFError
+            self.bytes += got
+        taken, self.bytes = self.bytes[:count], self.bytes[count:]
+        return taken
+
+    def hear(self):
+        """("text", object), ("picture", bytes), ("closed", code)."""
+        whole, kind = b"", 0
+        while True:
+            try:
+                first, length = self.need(2)
+                if length == 126:
+                    length, = struct.unpack(">H", self.need(2))
+                elif length == 127:
+                    length, = struct.unpack(">Q", self.need(8))
+                body = self.need(length)
+            except (EOFError, ConnectionError):
+                return "closed", 0
+            if first & 15 == 8:
+                return "closed", int.from_bytes(body[:2], "big")
+            if first & 15 == 9:
+                continue
+            kind = first & 15 or kind
+            whole += body
+            if first & 128:
+                return ("text", json.loads(whole)) if kind == 1 else \
+                    ("picture", whole)
+
+    def hear_text(self, kind, seconds=20):
+        """The next text of a kind; None when the page was closed."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            what, message = self.hear()
+            if what == "closed":
+                return None
+            if what == "text" and message["t"] == kind:
+                return message
+        return None
+
+    def hear_picture(self, level, n=None, seconds=60):
+        """Bytes of the next picture of a quality, which is acknowledged."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            what, message = self.hear()
+            if what == "closed":
+                return None
+            if what != "picture" or message[10]:
+                continue
+            got, = struct.unpack("<I", message[4:8])
+            self.say({"t": "ack", "n": got})
+            if message[8] == level and (n is None or got == n):
+                return message[32:]
+        return None
+
+    def closed_code(self, seconds=20):
+        """Waits for the close, whatever is said before; None: none came."""
+        end = time.monotonic() + seconds
+        self.socket.settimeout(seconds)
+        while time.monotonic() < end:
+            try:
+                what, code = self.hear()
+            except (TimeoutError, socket.timeout):
+                return None
+            if what == "closed":
+                return code
+        return None
+
+    def close(self):
+        self.socket.close()

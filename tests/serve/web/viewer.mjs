@@ -1,0 +1,322 @@
+// tests/serve/web/viewer.mjs - the page in Chromium, without a GPU.
+//
+//   node viewer.mjs PLAYWRIGHT CHROMIUM URL FOLDER short|long
+//
+// Screenshots, the picture at rest and the command are left in FOLDER.
+import {createServer, request} from 'node:http';
+import {connect} from 'node:net';
+import {writeFileSync} from 'node:fs';
+
+const [playwright, chromium, url, folder, tier] = process.argv.slice(2);
+const {chromium: browsers} = await import(playwright);
+const long = tier !== 'short';
+let wrong = 0;
+
+function check(name, good, why = '') {
+    console.log(good ? `ok     ${name}` : `FAILED ${name}: ${why}`);
+    wrong += good ? 0 : 1;
+}
+
+const browser = await browsers.launch({executablePath: chromium,
+    args: ['--no-sandbox', '--disable-gpu', '--disable-software-rasterizer']});
+const said = []; // on the console, and against the policy
+
+async function open(options = {}, address = url) {
+    const context = await browser.newContext({viewport: {width: 1000, height: 700},
+        acceptDownloads: true, ...options});
+    const page = await context.newPage();
+    page.on('console', message => said.push(message.text()));
+    page.on('pageerror', error => said.push(String(error)));
+    await page.addInitScript(() => document.addEventListener('securitypolicyviolation',
+        event => console.log(`policy: ${event.violatedDirective}`)));
+    await page.goto(address);
+    await rest(page);
+    return page;
+}
+
+/** Until the final picture of the present state is there. */
+async function rest(page) {
+    await page.waitForFunction(() => {
+        const {engine, page: of} = window.snowglass ?? {};
+        return of?.rest && !engine.waiting && !engine.sentAt.size;
+    }, null, {timeout: 60000});
+    await page.waitForTimeout(50);
+}
+
+const keys = page => page.evaluate(() => window.snowglass.recipe.keys);
+const shot = (page, name) => page.screenshot({path: `${folder}/${name}.png`});
+const middle = async page => {
+    const box = await page.locator('.picture canvas').boundingBox();
+    return [box.x + box.width / 2, box.y + box.height / 2];
+};
+
+async function drag(page, dx, dy, button = 'left', modifier = null) {
+    const [x, y] = await middle(page);
+    if (modifier)
+        await page.keyboard.down(modifier);
+    await page.mouse.move(x, y);
+    await page.mouse.down({button});
+    for (let i = 1; i <= 8; i++)
+        await page.mouse.move(x + dx * i / 8, y + dy * i / 8);
+    await page.mouse.up({button});
+    if (modifier)
+        await page.keyboard.up(modifier);
+    await rest(page);
+}
+
+async function smoke(page) {
+    const gl = await page.evaluate(() => Boolean(document.createElement('canvas').getContext('webgl')));
+    check('there is no WebGL', !gl);
+    const before = await keys(page);
+    check('the page has the size of its window', before.size[0] > 600 && before.size[1] > 500,
+        before.size);
+    await drag(page, 100, 0);
+    let now = await keys(page);
+    check('a drag to the right moves the camera to its left',
+        now.azimuth < before.azimuth && now.elevation === before.elevation, now.azimuth);
+    await drag(page, 0, 60);
+    now = await keys(page);
+    check('a drag down moves it up', now.elevation > before.elevation, now.elevation);
+    const [x, y] = await middle(page);
+    await page.mouse.move(x + 100, y);
+    await page.mouse.wheel(0, -300);
+    await rest(page);
+    const zoomed = await keys(page);
+    check('the wheel zooms', zoomed.zoom > 1.3 * now.zoom, zoomed.zoom);
+    for (let i = 0; i < 3; i++)
+        await page.keyboard.press('z');
+    await rest(page);
+    now = await keys(page);
+    check('three steps are undone', now.azimuth === before.azimuth && now.zoom === before.zoom &&
+        now.elevation === before.elevation, JSON.stringify(now));
+    await page.keyboard.press('Z');
+    await rest(page);
+    check('and one is done again', (await keys(page)).azimuth < before.azimuth);
+    await page.keyboard.press('c');
+    await page.waitForSelector('dialog[open] textarea');
+    const command = await page.locator('dialog textarea').inputValue();
+    check('the command is shown', command.startsWith('snowglass render '), command);
+    writeFileSync(`${folder}/command.txt`, command);
+    await page.keyboard.press('Escape');
+    const coming = page.waitForEvent('download');
+    await page.keyboard.press('s');
+    await (await coming).saveAs(`${folder}/rest.png`);
+    await sameAsCanvas(page);
+    await shot(page, 'smoke');
+}
+
+/** What is painted is the picture at rest, pixel by pixel. */
+async function sameAsCanvas(page) {
+    const different = await page.evaluate(async () => {
+        const bitmap = await createImageBitmap(window.snowglass.page.rest,
+            {premultiplyAlpha: 'none', colorSpaceConversion: 'none'});
+        const canvas = document.querySelector('.picture canvas');
+        const copy = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+        copy.drawImage(bitmap, 0, 0);
+        const a = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+        const b = copy.getImageData(0, 0, bitmap.width, bitmap.height).data;
+        return a.length === b.length ? a.reduce((sum, value, i) => sum + (value !== b[i]), 0) : -1;
+    });
+    check('the canvas has the pixels of the PNG', different === 0, different);
+}
+
+/** Every control has a name for a screen reader. */
+async function names(page) {
+    await page.evaluate(() => document.querySelectorAll('details').forEach(each => {
+        each.open = true;
+    }));
+    const nameless = await page.evaluate(() => [...document.querySelectorAll(
+        'button, input, select, textarea, canvas, summary')].filter(element => !(
+        element.getAttribute('aria-label') || element.textContent.trim() ||
+        [...(element.labels ?? [])].some(label => label.textContent.trim())))
+        .map(element => element.outerHTML.slice(0, 90)));
+    check('every control has a name', nameless.length === 0, nameless.join(' '));
+}
+
+async function editor(page) {
+    const canvas = page.locator('.editor');
+    const box = await canvas.boundingBox();
+    const points = () => page.evaluate(() => window.snowglass.recipe.keys.opacity ??
+        window.snowglass.page.look.opacity);
+    const at = index => page.evaluate(i => {
+        const look = document.querySelector('.editor');
+        return look.dataset.points.split(' ').map(pair => pair.split(',').map(Number))[i];
+    }, index);
+    const before = await points();
+    const [x, y] = await at(1);
+    await page.mouse.move(box.x + x, box.y + y);
+    await page.mouse.down();
+    await page.mouse.move(box.x + x + 2, box.y + y - 30, {steps: 5});
+    await page.mouse.up();
+    await rest(page);
+    let now = await points();
+    check('a dragged point is more opaque', now[1][1] > before[1][1], JSON.stringify(now));
+    await page.mouse.dblclick(box.x + box.width / 2, box.y + 20);
+    await rest(page);
+    now = await points();
+    check('a double click adds a point', now.length === before.length + 1, now.length);
+    await page.getByLabel('value of the chosen point').fill('123');
+    await page.keyboard.press('Enter');
+    await rest(page);
+    check('which takes an exact number', (await points()).some(point => point[0] === 123));
+    await page.getByRole('button', {name: 'Remove the chosen point'}).click();
+    await rest(page);
+    check('and is removed', (await points()).length === before.length);
+    await page.mouse.move(box.x + 3, box.y + 12);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 33, box.y + 12, {steps: 4});
+    await page.mouse.up();
+    await rest(page);
+    const moved = await points();
+    check('a drag of empty ground moves all', moved[0][0] > now[0][0], JSON.stringify(moved));
+    await shot(page, 'editor');
+    await page.getByRole('button', {name: /^Opacity of the preset/}).click();
+    await rest(page);
+    check('and all is automatic again', !(await keys(page)).opacity);
+}
+
+async function controls(page) {
+    await drag(page, 60, 0, 'right');
+    let now = await keys(page);
+    check('a right drag sets the range', Array.isArray(now.range), JSON.stringify(now.range));
+    const before = now.target;
+    await drag(page, 50, 0, 'left', 'Shift');
+    check('with Shift a drag moves the volume', String((await keys(page)).target) !== String(before));
+    await page.getByLabel('Mode', {exact: true}).selectOption('mip');
+    await rest(page);
+    await shot(page, 'mip');
+    await page.getByLabel('Mode', {exact: true}).selectOption('iso');
+    await rest(page);
+    now = await keys(page);
+    check('mode iso has a value', now.mode === 'iso' && Number.isFinite(now.iso), now.iso);
+    await page.getByLabel('Mode', {exact: true}).selectOption('over');
+    await page.getByRole('button', {name: /^Opacity of the preset/}).click();
+    await page.locator('summary', {hasText: 'Clip'}).click();
+    await page.getByLabel(/clip .*highest/).first().fill('0');
+    await rest(page);
+    check('a clip plane is set', (await keys(page)).clip?.length === 1,
+        JSON.stringify((await keys(page)).clip));
+    await shot(page, 'clip');
+    await page.getByRole('button', {name: 'Remove all clip planes'}).click();
+    await page.locator('summary', {hasText: 'Presets'}).click();
+    await page.waitForFunction(() => [...document.querySelectorAll('.presets img')]
+        .every(image => !image.hidden), null, {timeout: 60000});
+    await page.locator('.presets button', {hasText: 'ct-bone'}).first().click();
+    await rest(page);
+    check('a preset is chosen', (await keys(page)).preset === 'ct-bone');
+    await shot(page, 'presets');
+    for (const key of ['1', '3', '6', 'ArrowLeft', 'ArrowUp', '+', '-', 'p', 'l', 'm', 'm', 'r']) {
+        await page.keyboard.press(key);
+        await rest(page);
+    }
+    now = await keys(page);
+    check('keys work', now.view === 'inferior' && now.perspective > 0 && now['no-labels'] &&
+        now.mode === 'minip', JSON.stringify(now));
+}
+
+/** A link restores the state, and two pages see each other's changes. */
+async function together(page) {
+    await page.getByRole('button', {name: 'Copy a link to this state'}).click();
+    const link = await page.locator('dialog textarea').inputValue();
+    await page.keyboard.press('Escape');
+    const before = await keys(page);
+    await page.keyboard.press('1');
+    await rest(page);
+    const other = await open({}, link);
+    const now = await keys(other);
+    check('a link restores the view', now.view === before.view && now.mode === before.mode,
+        JSON.stringify(now));
+    await other.keyboard.press('3');
+    await page.waitForFunction(() => window.snowglass.recipe.keys.view === 'left');
+    check('another page sees a change', true);
+    await other.context().close();
+}
+
+async function touch() {
+    const page = await open({viewport: {width: 400, height: 700}, hasTouch: true});
+    const before = await keys(page);
+    const [x, y] = await middle(page);
+    const session = await page.context().newCDPSession(page);
+    const send = (type, points) => session.send('Input.dispatchTouchEvent', {type,
+        touchPoints: points.map(([px, py], id) => ({x: px, y: py, id}))});
+    await send('touchStart', [[x, y]]);
+    for (let i = 1; i < 6; i++)
+        await send('touchMove', [[x + 10 * i, y]]);
+    await send('touchEnd', []);
+    await rest(page);
+    let now = await keys(page);
+    check('one finger turns', now.azimuth < before.azimuth, now.azimuth);
+    await send('touchStart', [[x - 30, y], [x + 30, y]]);
+    for (let i = 1; i < 6; i++)
+        await send('touchMove', [[x - 30 - 8 * i, y], [x + 30 + 8 * i, y]]);
+    await send('touchEnd', []);
+    await rest(page);
+    now = await keys(page);
+    check('two fingers zoom', now.zoom > 1.5 * before.zoom, now.zoom);
+    await shot(page, 'touch');
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    check('nothing is wider than the window', wide <= 400, wide);
+    await page.context().close();
+}
+
+async function schemes(page0) {
+    await page0.getByRole('button', {name: /^All as it was/}).click();
+    await page0.waitForTimeout(300);
+    check('all can be reset', (await keys(page0)).mode === 'over');
+    for (const colorScheme of ['dark', 'light']) {
+        const page = await open({viewport: {width: 1600, height: 1000}, colorScheme});
+        await shot(page, colorScheme);
+        await page.context().close();
+    }
+    const page = await open({viewport: {width: 500, height: 400}, deviceScaleFactor: 2});
+    check('a dense screen gets more pixels', (await keys(page)).size[0] > 700);
+    await page.context().close();
+}
+
+/** A proxy that puts a prefix before every path, as portals do. */
+async function prefixed() {
+    const {port, hash} = new URL(url);
+    const prefix = '/node/n17/8000';
+    const headers = given => ({...given, host: `127.0.0.1:${port}`});
+    const proxy = createServer((asked, answer) => {
+        const passed = request({port, path: asked.url.slice(prefix.length), method: asked.method,
+            headers: headers(asked.headers)}, got => {
+            answer.writeHead(got.statusCode, got.headers);
+            got.pipe(answer);
+        });
+        asked.pipe(passed);
+    });
+    proxy.on('upgrade', (asked, socket) => {
+        const inner = connect(port, '127.0.0.1', () => {
+            const lines = Object.entries({...headers(asked.headers), origin: `http://127.0.0.1:${port}`})
+                .map(([name, value]) => `${name}: ${value}`);
+            inner.write(`GET ${asked.url.slice(prefix.length)} HTTP/1.1\r\n${lines.join('\r\n')}\r\n\r\n`);
+            inner.pipe(socket).pipe(inner);
+        });
+        inner.on('error', () => socket.destroy());
+        socket.on('error', () => inner.destroy());
+    });
+    await new Promise(resolve => proxy.listen(0, '127.0.0.1', resolve));
+    const page = await open({}, `http://127.0.0.1:${proxy.address().port}${prefix}/${hash}`);
+    check('behind a prefix the page works', true);
+    await page.context().close();
+    proxy.closeAllConnections();
+    proxy.close();
+}
+
+const page = await open();
+await smoke(page);
+await names(page);
+if (long) {
+    await page.reload();
+    await rest(page);
+    await editor(page);
+    await controls(page);
+    await together(page);
+    await touch();
+    await schemes(page);
+    await prefixed();
+}
+check('nothing is on the console, nor against the policy', said.length === 0, said.join(' | '));
+await browser.close();
+process.exit(wrong ? 1 : 0);
