@@ -11,6 +11,7 @@ struct outbox {
     void *user;
     parcel *first, **end;
     parcel *newest[PARCEL_TOPICS];
+    int fast, thin;
 };
 
 outbox *outbox_new(void (*wake)(void *user), void *user) {
@@ -105,6 +106,20 @@ void outbox_put_text(outbox *box, uint64_t client, parcel_topic topic,
     p->client = client;
     p->topic = topic;
     outbox_put(box, p);
+}
+
+void outbox_set_audience(outbox *box, int fast, int thin) {
+    pthread_mutex_lock(&box->lock);
+    box->fast = fast;
+    box->thin = thin;
+    pthread_mutex_unlock(&box->lock);
+}
+
+bool outbox_has_audience(outbox *box, parcel_topic about) {
+    pthread_mutex_lock(&box->lock);
+    bool has = about == PARCEL_THIN_PICTURE ? box->thin > 0 : box->fast > 0;
+    pthread_mutex_unlock(&box->lock);
+    return has;
 }
 
 parcel *outbox_take(outbox *box) {

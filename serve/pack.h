@@ -1,9 +1,9 @@
 /* pack.h - packs pictures for the pages, one picture behind the renderer, in a
  * thread of its own.
  *
- * Drafts and normal pictures become JPEG.  The picture at rest becomes the PNG
- * that `snowglass render` writes, byte for byte, since the same function writes
- * it. */
+ * Drafts and normal pictures become JPEG, on thin links WebP.  The picture at
+ * rest becomes the PNG that `snowglass render` writes, byte for byte, since the
+ * same function writes it. */
 #ifndef PACK_H
 #define PACK_H
 

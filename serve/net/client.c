@@ -24,7 +24,16 @@ static bool is_picture(const parcel *p) {
     return p->topic == PARCEL_PICTURE || p->topic == PARCEL_THIN_PICTURE;
 }
 
+/* The picture at rest, whose head tells it, is one for all links. */
+static bool is_for_link(const client *c, const parcel *p) {
+    bool final = p->topic == PARCEL_PICTURE && p->bytes[8] == 2;
+    return !is_picture(p) || final ||
+           c->thin == (p->topic == PARCEL_THIN_PICTURE);
+}
+
 void client_queue(client *c, outbox *box, parcel *p) {
+    if (!is_for_link(c, p))
+        return;
     for (int i = 0; i < c->count && p->topic != PARCEL_PLAIN; i++) {
         if (c->queue[i]->topic != p->topic)
             continue;
@@ -55,9 +64,22 @@ static uint32_t n_of(const client *c, uint32_t revision) {
     return n;
 }
 
-void client_acknowledge(client *c) {
+static bool has_picture(const client *c) {
+    for (int i = 0; i < c->count; i++)
+        if (is_picture(c->queue[i]))
+            return true;
+    return false;
+}
+
+/* A link is thin where most pictures wait until another has arrived, and no
+ * more when hardly any does. */
+bool client_acknowledge(client *c) {
+    bool before = c->thin;
     if (c->under_way > 0)
         c->under_way--;
+    c->blocked += 0.2 * ((has_picture(c) ? 1 : 0) - c->blocked);
+    c->thin = c->webp && c->blocked > (c->thin ? 0.02 : 0.6);
+    return c->thin != before;
 }
 
 /* The index of the next parcel that may be sent, or -1. */

@@ -28,8 +28,10 @@ typedef struct client {
     int count;
     parcel *sending; /* and of it: */
     size_t sent;
-    int under_way; /* pictures that were sent and not acknowledged */
-    uint32_t n;    /* the newest that the page counted */
+    bool thin;      /* the link, since pictures wait for it: */
+    double blocked; /* the share of them, of late */
+    int under_way;  /* pictures that were sent and not acknowledged */
+    uint32_t n;     /* the newest that the page counted */
     struct {
         uint32_t revision, n; /* what its own sets became */
     } sets[CLIENT_SETS];      /* a ring */
@@ -44,8 +46,8 @@ void client_queue(client *c, outbox *box, parcel *p);
 /* Notes that message n of the page became a revision. */
 void client_note_set(client *c, uint32_t n, uint32_t revision);
 
-/* A picture was painted. */
-void client_acknowledge(client *c);
+/* A picture was painted.  Whether the link counts as another kind now. */
+bool client_acknowledge(client *c);
 
 /* Sends a piece of the next parcel; called when the socket can take one. False
  * for an error. */

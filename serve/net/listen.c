@@ -87,12 +87,20 @@ static void end_when_idle(lws_sorted_usec_list_t *timer) {
     listener_stop(lws_container_of(timer, listener, idle_timer));
 }
 
+static void count_links(listener *l) {
+    int thin = 0;
+    for (const client *c = l->clients; c; c = c->next)
+        thin += c->thin;
+    outbox_set_audience(l->box, l->count - thin, thin);
+}
+
 /* The clock of idleness runs while there is no page. */
 static void count_clients(listener *l, int change) {
     bool moving = false;
     l->count += change;
     for (const client *c = l->clients; c; c = c->next)
         moving = moving || c->moving;
+    count_links(l);
     state_set_watchers(l->state, l->count);
     if (!moving && change < 0)
         state_set_moving(l->state, false);
@@ -194,7 +202,8 @@ static int take(listener *l, client *c, message *m) {
         set_moving(l, c, m->on);
         break;
     case MESSAGE_ACK:
-        client_acknowledge(c);
+        if (client_acknowledge(c))
+            count_links(l);
         break;
     case MESSAGE_ASK:
         if (!state_ask(l->state, c->id, json_incref(m->tree)))

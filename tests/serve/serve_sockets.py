@@ -8,10 +8,11 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from viewer_client import (DATA, SHORT, TOOL, Page, Server, check, finish)
+from viewer_client import SHORT, TOOL, Page, Server, ThinLink, check, finish
 
 FOLDER = tempfile.TemporaryDirectory()
 SMALL = os.path.join(FOLDER.name, "small.nrrd")
@@ -281,6 +282,39 @@ RECIPES = [
 ]
 
 
+def thin_links():
+    """5 Mbit/s and 80 ms: what a page at home gets of 1024x1024 pixels."""
+    server = Server("phantom:engine", "--preset", "ct-bone")
+    link = ThinLink(server, 5e6, 0.04)
+    page = Page(server, port=link.port, wants=("jpeg", "png", "webp"))
+    page.say({"t": "set", "n": 1, "recipe": {"size": [1024, 1024]}})
+    page.hear_picture(2, 1)
+    page.say({"t": "moving", "on": True})
+    stop, kinds, sizes = time.monotonic() + 8, [], []
+
+    def move():
+        n = 2
+        while time.monotonic() < stop:
+            page.say({"t": "set", "n": n, "recipe": {"azimuth": n % 360}})
+            n += 1
+            time.sleep(0.03)
+
+    threading.Thread(target=move).start()
+    while time.monotonic() < stop:
+        what, message = page.hear()
+        if what == "picture":
+            page.say({"t": "ack", "n": 0})
+            kinds.append(message[9])
+            sizes.append(len(message))
+    rate = len(kinds[len(kinds) // 4:]) / 6
+    print(f"       5 Mbit/s, 80 ms: {rate:.1f} pictures a second, of "
+          f"{sum(sizes) / len(sizes) / 1000:.0f} kB, "
+          f"{kinds.count(3)} of {len(kinds)} as WebP")
+    check("a thin link gets WebP", kinds.count(3) > len(kinds) / 3, kinds)
+    page.close()
+    server.stop()
+
+
 def endings():
     for arguments, code, words in (
             (["no-such-file.nrrd"], 3, "no-such-file"),
@@ -381,6 +415,8 @@ print(f"       peak memory {server.kilobytes('VmHWM') / 1024:.0f} MB")
 check("memory is bounded", server.kilobytes("VmHWM") < 400 * 1024)
 code, said = server.stop()
 check("it ends in order", code == 0, f"{code} {said}")
+if not SHORT:
+    thin_links()
 endings()
 secrets()
 unix_socket()

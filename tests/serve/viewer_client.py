@@ -4,6 +4,7 @@ socket, which can also say what no browser would.
 Tests are run as `python3 serve_NAME.py TOOL DATA`; they exit with 77 where the
 viewer is not built."""
 import base64
+import collections
 import http.client
 import json
 import os
@@ -11,6 +12,7 @@ import socket
 import struct
 import subprocess
 import sys
+import threading
 import time
 
 TOOL = os.path.abspath(sys.argv[1])
@@ -94,12 +96,65 @@ class Server:
         return code, self.process.stderr.read()
 
 
+class ThinLink:
+    """A proxy that delays and limits what a server sends: `tc netem` is not
+    everywhere."""
+
+    def __init__(self, server, bits, delay):
+        self.rate, self.delay, self.port_of = bits / 8, delay, server.port
+        self.door = socket.create_server(("127.0.0.1", 0))
+        self.port = self.door.getsockname()[1]
+        threading.Thread(target=self.serve, daemon=True).start()
+
+    def serve(self):
+        while True:
+            near, _ = self.door.accept()
+            far = socket.create_connection(("127.0.0.1", self.port_of))
+            for a, b, rate in ((near, far, 1e9), (far, near, self.rate)):
+                queue = collections.deque()
+                threading.Thread(target=self.read, args=(a, queue, rate),
+                                 daemon=True).start()
+                threading.Thread(target=self.write, args=(b, queue),
+                                 daemon=True).start()
+
+    def read(self, source, queue, rate):
+        free = time.monotonic()
+        while True:
+            try:
+                got = source.recv(4096)
+            except OSError:
+                got = b""
+            free = max(free, time.monotonic()) + len(got) / rate
+            queue.append((free + self.delay, got))
+            if not got:
+                return
+            while free > time.monotonic() + 0.02:  # a small buffer
+                time.sleep(0.002)
+
+    @staticmethod
+    def write(target, queue):
+        while True:
+            if not queue or queue[0][0] > time.monotonic():
+                time.sleep(0.001)
+                continue
+            _, got = queue.popleft()
+            try:
+                if not got:
+                    target.close()
+                    return
+                target.sendall(got)
+            except OSError:
+                return
+
+
 class Page:
     """A WebSocket as a page has one."""
 
     def __init__(self, server, origin=None, host=None, path="/ws",
-                 protocol="snowglass.1", token=None, hello=True):
-        self.socket = server.connect()
+                 protocol="snowglass.1", token=None, hello=True, port=None,
+                 wants=HELLO):
+        self.socket = socket.create_connection(("127.0.0.1", port)) if port \
+            else server.connect()
         self.bytes = b""
         key = base64.b64encode(os.urandom(16)).decode()
         origin = f"http://{server.host}" if origin is None else origin
@@ -122,7 +177,7 @@ class Page:
         self.is_open = self.head.startswith(b"HTTP/1.1 101")
         if hello and self.is_open:
             self.say({"t": "hello", "token": token or server.token,
-                      "wants": HELLO})
+                      "wants": list(wants)})
 
     def send_frame(self, first, body, mask=True, length=None):
         length = len(body) if length is None else length
