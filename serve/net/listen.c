@@ -206,7 +206,7 @@ static int take(listener *l, client *c, message *m) {
             count_links(l);
         break;
     case MESSAGE_ASK:
-        if (!state_ask(l->state, c->id, json_incref(m->tree)))
+        if (!state_ask(l->state, c->id, json_deep_copy(m->tree)))
             answer_said(l->box, c->id, "ask: too many questions wait");
         break;
     }
