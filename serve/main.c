@@ -94,9 +94,8 @@ static json_t *first_recipe(const options *opts) {
     return tree;
 }
 
-static int fail_memory(void) {
-    say("out of memory at the start; close other programs");
-    return SNOW_STATUS_NO_MEMORY;
+static int fail_start(void) {
+    return fail_memory("out of memory at the start; close other programs");
 }
 
 /* Opens sockets before the volume, which may take long. */
@@ -117,7 +116,7 @@ static int open_all(viewer *v) {
     v->box = v->listener ? outbox_new(listener_wake, v->listener) : NULL;
     if (!v->state || !v->box) {
         json_decref(recipe);
-        return fail_memory();
+        return fail_start();
     }
     progress_begin(opts, "reading");
     done = drawing_open(opts, recipe, &v->drawing);
@@ -141,7 +140,7 @@ static int serve(viewer *v) {
     if (v->pack)
         v->renderer = renderer_new(&v->drawing, v->state, v->box, v->pack);
     if (!v->renderer)
-        return fail_memory();
+        return fail_start();
     say_to(hear_line, v->box);
     listener_run(v->listener, v->state, v->box);
     return SNOW_STATUS_OK;
