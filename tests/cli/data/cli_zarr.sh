@@ -67,7 +67,7 @@ printf '\3\4' >b.zarr/1/0.0.0.0
 run 0 "an image" info b.zarr --json --time 1
 says 'level 0 of 2 \(0\) is used.*of 0 \(2, 2, 2, 2\), 1 \(2, 1, 1, 1\)$'
 prints '"spacing": \[0.5, 0.5, 0.5\], "unit": "um"'
-prints '"times": 2, "time": 1, "storage": "version 2, level 0 of 2 \(0\), axes t z y x, chunks 1x2x2x2, not compressed"'
+prints '"times": 2, "time": 1, "components": 1, "magnitude": false, "storage": "version 2, level 0 of 2 \(0\), axes t z y x, chunks 1x2x2x2, not compressed"'
 prints '"min": 2.0, "max": 2.0'
 for way in "b.zarr --dataset 1" b.zarr/1 b.zarr:/1 b.zarr/1/; do
     # shellcheck disable=SC2086
