@@ -55,14 +55,6 @@ snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
                  placement->slices);
 }
 
-snow_status snow_sparse_grow_ea(snow_sparse *s, size_t size) {
-    SNOW_TRY(SNOW_RESERVE(s->context, s->ea, s->ea_bytes,
-                          s->ea_bytes + size + SNOW_EA_MARGIN));
-    memset(s->ea + s->ea_bytes, 0, size + SNOW_EA_MARGIN);
-    s->ea_bytes += size;
-    return SNOW_STATUS_OK;
-}
-
 snow_status snow_sparse_begin_slice(snow_sparse *s) {
     s->row = 0;
     return s->scheme->begin_slice(s);

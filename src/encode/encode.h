@@ -147,7 +147,13 @@ size_t snow_walk_row(snow_walk *walk, snow_span *spans, size_t *voxel);
 /* For the schemes: appends `size` bytes of zeros to EA. There are as many as
  * SNOW_EA_MARGIN more, which may be read and written. */
 #define SNOW_EA_MARGIN 64
-snow_status snow_sparse_grow_ea(snow_sparse *sparse, size_t size);
+static inline snow_status snow_sparse_grow_ea(snow_sparse *s, size_t size) {
+    SNOW_TRY(SNOW_RESERVE(s->context, s->ea, s->ea_bytes,
+                          s->ea_bytes + size + SNOW_EA_MARGIN));
+    memset(s->ea + s->ea_bytes, 0, size + SNOW_EA_MARGIN);
+    s->ea_bytes += size;
+    return SNOW_STATUS_OK;
+}
 
 /* Adds voxels to a row's spans: extends the last span if they touch it, or
  * begins a new one. */

@@ -23,19 +23,6 @@ const char *snow_phantom_description(size_t index) {
     return index < phantom_count ? phantoms[index]->text : NULL;
 }
 
-/* One product and one sum, so that all machines round alike. */
-double snow_phantom_place(const snow_phantom_grid *grid, int axis,
-                          int64_t index) {
-    return grid->origin[axis] + grid->step[axis] * (double)index;
-}
-
-/* To the nearest, halves up; noise may reach past either end. */
-uint8_t snow_phantom_byte(double value) {
-    if (value <= 0)
-        return 0;
-    return value >= 255 ? 255 : (uint8_t)(value + 0.5);
-}
-
 static const snow_phantom *find_phantom(const char *name) {
     for (size_t i = 0; i < phantom_count; i++)
         if (strcmp(name, phantoms[i]->name) == 0)

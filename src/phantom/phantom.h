@@ -47,12 +47,19 @@ snow_status snow_phantom_make(snow_context *context, const char *name,
                               const snow_volume_options *options, uint64_t seed,
                               snow_volume_info *info, snow_volume **out);
 
-/* World coordinate of an index along an axis. */
-double snow_phantom_place(const snow_phantom_grid *grid, int axis,
-                          int64_t index);
+/* World coordinate of an index along an axis: one product and one sum, so that
+ * all machines round alike. */
+static inline double snow_phantom_place(const snow_phantom_grid *grid, int axis,
+                                        int64_t index) {
+    return grid->origin[axis] + grid->step[axis] * (double)index;
+}
 
-/* A value as uint8: rounded to nearest, clamped to 0 to 255. */
-uint8_t snow_phantom_byte(double value);
+/* A value as uint8: to the nearest, halves up, clamped to 0 to 255. */
+static inline uint8_t snow_phantom_byte(double value) {
+    if (value <= 0)
+        return 0;
+    return value >= 255 ? 255 : (uint8_t)(value + 0.5);
+}
 
 /* --- solids --------------------------------------------------------------- */
 

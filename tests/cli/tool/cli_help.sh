@@ -1,8 +1,8 @@
 #!/bin/bash
 # The help is exact, goes to standard output, and fits 80 columns.  After a
 # change that is meant, the pages of tests/cli/help are written anew by
-#   for p in tests/cli/help/help_*.txt; do
-#       w=${p#*help_}; build/snowglass help ${w%.txt} >$p; done
+#   for p in tests/cli/help/*/*.txt; do
+#       build/snowglass help "$(basename "$p" .txt)" >"$p"; done
 #   for w in window view ct-bone ct-soft-tissue mr-angio; do
 #       build/snowglass help $w; done >tests/cli/help/words.txt
 #   build/snowglass --help >tests/cli/help/overview.txt
@@ -26,15 +26,15 @@ for word in output mode sparse kernel look quality camera labels data run \
     more render turntable movie slice info phantom convert \
     compare doctor help bench tf serve; do
     run 0 "help $word" "$TOOL" help $word
-    same_page "help_$word.txt"
+    same_page "$(cd "$HERE/cli/help" && echo */"$word.txt")"
     cp "$OUT" page
     run 0 "--help $word" "$TOOL" --help $word
     check "--help $word is the same page" cmp -s page "$OUT"
 done
 run 0 "info --help" "$TOOL" info --help
-check "info --help is help info" cmp -s "$HERE/cli/help/help_info.txt" "$OUT"
+check "info --help is help info" cmp -s "$HERE/cli/help/verbs/info.txt" "$OUT"
 run 0 "info INPUT --help" "$TOOL" info missing.nrrd --help
-check "--help counts after an operand" cmp -s "$HERE/cli/help/help_info.txt" "$OUT"
+check "--help counts after an operand" cmp -s "$HERE/cli/help/verbs/info.txt" "$OUT"
 
 words() {
     for word in window view ct-bone ct-soft-tissue mr-angio; do
