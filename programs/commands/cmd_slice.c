@@ -245,6 +245,39 @@ static snow_status make_overlay(slice_work *w, snow_overlay **out) {
     return annotations_make(&annotations, 0, -1, NULL, w->context, out);
 }
 
+/* The same slice in colours. */
+static int draw_colors(slice_work *w) {
+    w->transfer = NULL;
+    w->image = NULL;
+    int done = open_look(w->context, &w->opts, w->volume, &w->transfer);
+    if (done != CONTINUE)
+        return done;
+    snow_status status = draw(w);
+    return status == SNOW_STATUS_OK ? CONTINUE
+                                    : fail_status(w->context, status);
+}
+
+/* Shows what a PNG would, also where values are written. */
+static int show_slice(const slice_work *w) {
+    slice_work shown = *w;
+    snow_overlay *overlay = NULL;
+    int done = has_colors(w) ? CONTINUE : draw_colors(&shown);
+    shown.opts.output = "-";
+    snow_image_options form = picture_form(&shown.opts);
+    if (done == CONTINUE) {
+        snow_status status = make_overlay(&shown, &overlay);
+        form.overlay = overlay;
+        done = status == SNOW_STATUS_OK ? show_picture(shown.image, &form)
+                                        : fail_status(w->context, status);
+    }
+    snow_overlay_free(overlay);
+    if (!has_colors(w)) {
+        snow_image_free(shown.image);
+        snow_transfer_free(shown.transfer);
+    }
+    return done;
+}
+
 static int write_slice(slice_work *w) {
     const options *opts = &w->opts;
     snow_image_options form = picture_form(opts);
@@ -262,7 +295,7 @@ static int write_slice(slice_work *w) {
     int done =
         status == SNOW_STATUS_OK ? CONTINUE : fail_status(w->context, status);
     if (done == CONTINUE && opts->show)
-        done = show_picture(w->image, &form);
+        done = show_slice(w);
     snow_overlay_free(overlay);
     w->times.write = seconds_now() - begin;
     return done;

@@ -55,6 +55,13 @@ for options in "" "-c hot" "-m mip" "-m mean -c viridis"; do
         "$TOOL" $shown -y -o shown.npy
     check "'$options': the same is shown" cmp -s as_png as_npy
 done
+for verb in "slice --at 20" "slice --axis x -c hot"; do
+    run 0 "$verb as a PNG" python3 terminal.py as_png "$TOOL" $verb head.nrrd \
+        -q -s 120x100 --show
+    run 0 "$verb beside a file of values" python3 terminal.py as_values \
+        "$TOOL" $verb head.nrrd -q -s 120x100 --show -y -o values.npy
+    check "$verb: the same is shown" cmp -s as_png as_values
+done
 run 0 "without letters" python3 terminal.py bare "$TOOL" head.nrrd -s 200x160 -q \
     -m mean -c viridis --show --no-labels
 check "letters are among what is shown" [ "$(cmp -s as_npy bare; echo $?)" = 1 ]
