@@ -31,8 +31,7 @@ SNOW_API snow_context *snow_comm_context(const snow_comm *comm);
 
 /* Collective. OK if all ranks give it; else the status of the lowest rank that
  * failed, with its message in every context, after "rank N: ". */
-SNOW_API snow_status snow_comm_agree_status(
-    snow_comm *comm, snow_status status);
+SNOW_API snow_status snow_comm_agree_status(snow_comm *, snow_status status);
 
 /* Collective. `count` bytes of rank `root` to all; of each rank, in order. */
 SNOW_API snow_status snow_comm_broadcast(

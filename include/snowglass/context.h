@@ -66,8 +66,7 @@ SNOW_API void snow_context_set_progress(
     snow_context *context, snow_progress_fn *progress, void *user);
 
 /* The most bytes that its objects may hold together; 0: no limit. */
-SNOW_API void snow_context_set_memory_limit(
-    snow_context *context, uint64_t bytes);
+SNOW_API void snow_context_set_memory_limit(snow_context *, uint64_t bytes);
 
 /* Bytes that its objects hold, the most they ever held, and bytes read from
  * files, compressed ones as stored. */

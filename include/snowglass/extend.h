@@ -13,9 +13,13 @@ SNOW_API void snow_context_warn(snow_context *context, const char *format, ...)
     SNOW_PRINTF(2, 3);
 
 /* A block of the context's memory, aligned to 64, or NULL and a message;
- * `release` accepts NULL. The limit of bytes; 0: none. */
+ * `release` accepts NULL. `reserve` makes the block in *block_pointer, or a new
+ * one for NULL, hold `count` items at least, growing by half so that appending
+ * takes linear time; the first `keep` stay. The limit of bytes; 0: none. */
 SNOW_API void *snow_context_allocate(snow_context *context, size_t bytes);
 SNOW_API void snow_context_release(snow_context *context, void *block);
+SNOW_API snow_status snow_context_reserve(snow_context *context,
+    void *block_pointer, uint64_t keep, uint64_t count, size_t size);
 SNOW_API uint64_t snow_context_limit(const snow_context *context);
 
 /* snow_x_init_sized: zeros, then `defaults` (or NULL) as far as `size` reaches.

@@ -104,8 +104,7 @@ SNOW_API snow_status snow_insitu_update(snow_insitu *insitu);
 
 /* Collective. A picture of the voxels last taken, on rank 0 (scattered: each
  * rank's part); NULL on others, and on all where limits left it out. */
-SNOW_API snow_status snow_insitu_render(
-    snow_insitu *insitu, snow_image **image);
+SNOW_API snow_status snow_insitu_render(snow_insitu *, snow_image **image);
 
 /* Collective. Updates, renders, writes on rank 0; means and sums as colours. */
 SNOW_API snow_status snow_insitu_step(snow_insitu *insitu, int64_t step);

@@ -53,6 +53,7 @@ struct snow_context {
 #define snow_notify snow_context_warn
 #define snow_allocate snow_context_allocate
 #define snow_release snow_context_release
+#define snow_reserve snow_context_reserve
 
 /* Puts "prefix: " before the message of a failure in a called function and
  * returns its status: each level adds what it knows (the name of the file,
@@ -73,13 +74,7 @@ void *snow_allocate_clear(snow_context *context, size_t bytes);
 /* The same for an array; its size is checked for overflow. */
 void *snow_allocate_array(snow_context *context, uint64_t count, size_t size);
 
-/* Makes a block of items, whose pointer `*block_pointer` is, hold at least
- * `count`, growing by half so that a sequence of appends costs linear time; its
- * first `keep` items are preserved. A NULL pointer gets a new block. On failure
- * nothing changes. */
-snow_status snow_reserve(snow_context *context, void *block_pointer,
-                         uint64_t keep, uint64_t count, size_t size);
-
+/* snow_reserve for a pointer to items of their own type. */
 #define SNOW_RESERVE(context, block, keep, count)                        \
     snow_reserve(context, &(block), (uint64_t)(keep), (uint64_t)(count), \
                  sizeof *(block))

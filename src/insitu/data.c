@@ -119,13 +119,12 @@ static void copy_bricks(const snow_insitu *insitu, size_t value) {
 /* Room for the dense box. */
 static snow_status reserve_dense(snow_insitu *insitu, size_t value) {
     const int64_t *count = insitu->layout.stored.count;
-    double bytes =
-        (double)count[0] * (double)count[1] * (double)count[2] * (double)value;
-    size_t exact = bytes < 0x1p62
-                       ? (size_t)(count[0] * count[1] * count[2]) * value
-                       : SIZE_MAX;
-    INSITU_TRY(snow_insitu_reserve(insitu, &insitu->dense, &insitu->dense_bytes,
-                                   0, exact));
+    double voxels = (double)count[0] * (double)count[1] * (double)count[2];
+    uint64_t exact = voxels < 0x1p62
+                         ? (uint64_t)(count[0] * count[1] * count[2])
+                         : UINT64_MAX;
+    INSITU_TRY(
+        snow_context_reserve(insitu->context, &insitu->dense, 0, exact, value));
     if (!snow_box_voxels(&insitu->layout.owned))
         memset(insitu->dense, 0, value);
     return SNOW_STATUS_OK;

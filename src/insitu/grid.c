@@ -55,13 +55,12 @@ snow_status snow_insitu_set_grid(snow_insitu *insitu, const int64_t dims[3],
 
 /* Makes room for brick `id`; those between are empty. */
 static snow_status reserve_bricks(snow_insitu *insitu, int id) {
-    size_t size = sizeof *insitu->bricks;
+    const size_t size = sizeof *insitu->bricks;
     size_t had = (size_t)insitu->brick_count, count = (size_t)id + 1;
     if (count <= had)
         return SNOW_STATUS_OK;
-    INSITU_TRY(snow_insitu_reserve(insitu, &insitu->bricks,
-                                   &insitu->brick_bytes, had * size,
-                                   count * size));
+    INSITU_TRY(snow_context_reserve(insitu->context, &insitu->bricks, had,
+                                    count, size));
     memset(insitu->bricks + had, 0, (count - had) * size);
     insitu->brick_count = (int)count;
     return SNOW_STATUS_OK;

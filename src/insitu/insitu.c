@@ -7,7 +7,6 @@
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 
 snow_status snow_insitu_new(snow_comm *comm, snow_insitu **out) {
     snow_context *context = snow_comm_context(comm);
@@ -46,7 +45,6 @@ void snow_insitu_forget(snow_insitu *insitu) {
     insitu->volume = NULL;
     insitu->frame = NULL;
     insitu->dense = NULL;
-    insitu->dense_bytes = 0;
     insitu->layout.planned = insitu->taken = false;
 }
 
@@ -124,24 +122,6 @@ snow_status snow_insitu_refuse(snow_insitu *insitu, const char *format, ...) {
     return snow_insitu_set_error(
         insitu,
         snow_context_fail(insitu->context, SNOW_STATUS_BAD_USAGE, "%s", text));
-}
-
-snow_status snow_insitu_reserve(snow_insitu *insitu, void *block_pointer,
-                                size_t *room, size_t keep, size_t bytes) {
-    void *old;
-    if (bytes <= *room)
-        return SNOW_STATUS_OK;
-    size_t wanted = *room + *room / 2 > bytes ? *room + *room / 2 : bytes;
-    void *grown = snow_context_allocate(insitu->context, wanted);
-    if (!grown)
-        return SNOW_STATUS_NO_MEMORY;
-    memcpy(&old, block_pointer, sizeof old);
-    if (keep)
-        memcpy(grown, old, keep);
-    snow_context_release(insitu->context, old);
-    memcpy(block_pointer, &grown, sizeof grown);
-    *room = wanted;
-    return SNOW_STATUS_OK;
 }
 
 snow_status snow_insitu_begin(snow_insitu *insitu) {

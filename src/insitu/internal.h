@@ -70,7 +70,6 @@ struct snow_insitu {
     /* As given by the setters. */
     snow_volume_info whole; /* dims 0 until there is a grid */
     snow_insitu_brick *bricks;
-    size_t brick_bytes;
     int brick_count;
     snow_ghosts ghosts;
     snow_balance balance;
@@ -94,10 +93,8 @@ struct snow_insitu {
     bool boxes_known; /* these are there, of the bricks as they are */
     snow_box *held;   /* the bricks' boxes, and the bricks, in one order */
     snow_brick *moved;
-    size_t boxes_bytes, held_bytes, moved_bytes;
     int held_count;
     char *dense;
-    size_t dense_bytes;
     bool copied;
     snow_volume *volume; /* NULL: none yet */
     bool taken;          /* an update has succeeded */
@@ -118,11 +115,6 @@ struct snow_insitu {
     int64_t pictures, skipped;
     snow_degradation last_lowering;
 };
-
-/* Makes a list that a record has at least so long: *block has room for *bytes,
- * of which the first `keep` stay.  On failure nothing changes. */
-snow_status snow_insitu_reserve(snow_insitu *insitu, void *block_pointer,
-                                size_t *room, size_t keep, size_t bytes);
 
 /* For setters, beside snow_insitu_set_error: SNOW_STATUS_BAD_USAGE with that
  * message. */

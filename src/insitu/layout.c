@@ -1,6 +1,5 @@
-/* insitu/layout.c - which box each rank draws, and how its voxels come there.
- * Where every rank's bricks are one box together, work stays where the voxels
- * are; else boxes are cut anew. */
+/* insitu/layout.c - which box each rank draws, and how its voxels come there
+ * (data.c). */
 #include "insitu/internal.h"
 
 #include <string.h>
@@ -32,10 +31,10 @@ static snow_status list_bricks(snow_insitu *insitu) {
     if (!insitu->whole.dims[0])
         return snow_context_fail(insitu->context, SNOW_STATUS_BAD_USAGE,
                                  "there is no grid; call snow_insitu_set_grid");
-    INSITU_TRY(snow_insitu_reserve(insitu, &insitu->held, &insitu->held_bytes,
-                                   0, count * sizeof *insitu->held));
-    INSITU_TRY(snow_insitu_reserve(insitu, &insitu->moved, &insitu->moved_bytes,
-                                   0, count * sizeof *insitu->moved));
+    INSITU_TRY(snow_context_reserve(insitu->context, &insitu->held, 0, count,
+                                    sizeof *insitu->held));
+    INSITU_TRY(snow_context_reserve(insitu->context, &insitu->moved, 0, count,
+                                    sizeof *insitu->moved));
     for (int id = 0; id < insitu->brick_count; id++)
         if (snow_box_voxels(&insitu->bricks[id].box))
             INSITU_TRY(add_brick(insitu, id));
@@ -139,8 +138,8 @@ static snow_status check_whole(const snow_insitu *insitu) {
                              (long long)(all - held), (long long)all);
 }
 
-/* Collective.  A new layout, and the plan_layout of its exchange; one of
- * nothing finds bricks that overlap as well. */
+/* Collective.  A new layout, and the plan of its exchange; one of nothing finds
+ * bricks that overlap as well. */
 static snow_status plan_layout(snow_insitu *insitu,
                                const snow_insitu_layout *wanted,
                                const snow_box *united,
@@ -164,7 +163,7 @@ static snow_status plan_layout(snow_insitu *insitu,
 }
 
 /* What this rank finds out by itself: its bricks, how the view lies, how wide
- * ghosts must be, which snow_insitu_grow_box as pictures get smaller. */
+ * ghosts must be, which grow as pictures get smaller. */
 static snow_status look_around(snow_insitu *insitu, const snow_view *view,
                                const snow_settings *settings,
                                snow_ranks_needs *needs) {
@@ -175,11 +174,10 @@ static snow_status look_around(snow_insitu *insitu, const snow_view *view,
 
 /* Collective.  Every rank's united bricks, when they are not known. */
 static snow_status share_boxes(snow_insitu *insitu, const snow_box *united) {
-    size_t ranks = (size_t)snow_comm_size(insitu->comm);
+    const uint64_t ranks = (uint64_t)snow_comm_size(insitu->comm);
     INSITU_TRY(snow_comm_agree_status(
-        insitu->comm,
-        snow_insitu_reserve(insitu, &insitu->boxes, &insitu->boxes_bytes, 0,
-                            ranks * sizeof *insitu->boxes)));
+        insitu->comm, snow_context_reserve(insitu->context, &insitu->boxes, 0,
+                                           ranks, sizeof *insitu->boxes)));
     INSITU_TRY(snow_comm_allgather(insitu->comm, united, sizeof *united,
                                    insitu->boxes));
     insitu->boxes_known = true;

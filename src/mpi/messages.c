@@ -48,21 +48,6 @@ static snow_status fail_side(mpi_side *side, int error, const char *what,
 
 /* --- memory --------------------------------------------------------------- */
 
-/* Replaces a block by a larger one; the first `keep` bytes are copied. */
-static snow_status grow_block(mpi_side *side, void *block_pointer, size_t keep,
-                              size_t bytes) {
-    void *old;
-    void *block = snow_context_allocate(side->context, bytes);
-    if (!block)
-        return SNOW_STATUS_NO_MEMORY;
-    memcpy(&old, block_pointer, sizeof old);
-    if (keep)
-        memcpy(block, old, keep);
-    snow_context_release(side->context, old);
-    memcpy(block_pointer, &block, sizeof block);
-    return SNOW_STATUS_OK;
-}
-
 static snow_status spare_slot(mpi_side *side, int *out) {
     for (int i = 0; i < side->slot_count; i++)
         if (side->slots[i].request == MPI_REQUEST_NULL) {
@@ -70,9 +55,9 @@ static snow_status spare_slot(mpi_side *side, int *out) {
             return SNOW_STATUS_OK;
         }
     int count = side->slot_count * 2 + 8;
-    snow_status status = grow_block(side, &side->slots,
-                                    (size_t)side->slot_count * sizeof(mpi_slot),
-                                    (size_t)count * sizeof(mpi_slot));
+    snow_status status = snow_context_reserve(
+        side->context, &side->slots, (uint64_t)side->slot_count,
+        (uint64_t)count, sizeof *side->slots);
     if (status != SNOW_STATUS_OK)
         return status;
     for (int i = side->slot_count; i < count; i++)
@@ -84,17 +69,15 @@ static snow_status spare_slot(mpi_side *side, int *out) {
 
 /* Reserves memory for the requests of a wait. */
 static snow_status make_room(mpi_side *side, int count) {
-    if (count <= side->capacity)
-        return SNOW_STATUS_OK;
-    size_t capacity = (size_t)count * 2;
-    snow_status status =
-        grow_block(side, &side->requests, 0, capacity * sizeof(MPI_Request));
+    const uint64_t some = (uint64_t)count;
+    snow_status status = snow_context_reserve(side->context, &side->requests, 0,
+                                              some, sizeof *side->requests);
     if (status == SNOW_STATUS_OK)
-        status = grow_block(side, &side->places, 0, capacity * sizeof(int));
+        status = snow_context_reserve(side->context, &side->places, 0, some,
+                                      sizeof *side->places);
     if (status == SNOW_STATUS_OK)
-        status = grow_block(side, &side->peers, 0, capacity * sizeof(int));
-    if (status == SNOW_STATUS_OK)
-        side->capacity = (int)capacity;
+        status = snow_context_reserve(side->context, &side->peers, 0, some,
+                                      sizeof *side->peers);
     return status;
 }
 

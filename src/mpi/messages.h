@@ -24,9 +24,8 @@ typedef struct mpi_side {
     int slot_count;
     /* Of the last wait: its requests. */
     MPI_Request *requests;
-    int *places;  /* indices of the requests among the messages */
-    int *peers;   /* of the requests */
-    int capacity; /* of the three */
+    int *places; /* indices of the requests among the messages */
+    int *peers;  /* of the requests */
 #ifndef SMPI_H
     snow_idle_fn *meanwhile; /* other work done in waits, or NULL */
     void *meanwhile_user;
