@@ -29,11 +29,8 @@ snow_status snow_context_new(const snow_allocator *allocator,
         allocator->allocate(allocator->user, sizeof *context);
     if (!context)
         return SNOW_STATUS_NO_MEMORY;
-    *context = (snow_context){.allocator = *allocator};
-    if (pthread_mutex_init(&context->lock, NULL)) {
-        allocator->release(allocator->user, context);
-        return SNOW_STATUS_NO_MEMORY;
-    }
+    *context = (snow_context){.allocator = *allocator,
+                              .lock = PTHREAD_MUTEX_INITIALIZER};
     *out = context;
     return SNOW_STATUS_OK;
 }

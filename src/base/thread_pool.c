@@ -124,13 +124,10 @@ static snow_pool *pool_of(snow_context *context) {
     snow_pool *pool = allocate_uncounted(context, sizeof *pool);
     if (!pool)
         return NULL;
-    if (pthread_mutex_init(&pool->lock, NULL) ||
-        pthread_cond_init(&pool->wake, NULL) ||
-        pthread_cond_init(&pool->rest, NULL)) {
-        give_back(context, pool);
-        return NULL;
-    }
-    pool->owner = getpid();
+    *pool = (snow_pool){.owner = getpid(),
+                        .lock = PTHREAD_MUTEX_INITIALIZER,
+                        .wake = PTHREAD_COND_INITIALIZER,
+                        .rest = PTHREAD_COND_INITIALIZER};
     context->pool = pool;
     return pool;
 }

@@ -400,17 +400,10 @@ snow_status snow_mailbox_new(snow_context *context, int ranks,
     if (!mailbox)
         return SNOW_STATUS_NO_MEMORY;
     mailbox->context = context;
-    if (pthread_mutex_init(&mailbox->lock, NULL)) {
-        snow_release(context, mailbox);
-        return snow_fail(context, SNOW_STATUS_NO_MEMORY,
-                         "cannot create a lock: out of memory");
-    }
-    for (; mailbox->ranks < ranks; mailbox->ranks++)
-        if (pthread_cond_init(&mailbox->boxes[mailbox->ranks].wake, NULL)) {
-            snow_mailbox_free(mailbox);
-            return snow_fail(context, SNOW_STATUS_NO_MEMORY,
-                             "cannot create a lock: out of memory");
-        }
+    mailbox->ranks = ranks;
+    mailbox->lock = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
+    for (int rank = 0; rank < ranks; rank++)
+        mailbox->boxes[rank].wake = (pthread_cond_t)PTHREAD_COND_INITIALIZER;
     *out = mailbox;
     return SNOW_STATUS_OK;
 }

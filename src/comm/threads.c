@@ -137,35 +137,25 @@ static snow_status run(thread_crew *crew, thread_rank *members, int ranks) {
     return status;
 }
 
-static snow_status run_with_gate(thread_crew *crew, thread_rank *members,
-                                 int ranks) {
-    if (pthread_mutex_init(&crew->lock, NULL))
-        return snow_fail(crew->context, SNOW_STATUS_NO_MEMORY,
-                         "cannot create a lock: out of memory");
-    if (pthread_cond_init(&crew->turn, NULL)) {
-        pthread_mutex_destroy(&crew->lock);
-        return snow_fail(crew->context, SNOW_STATUS_NO_MEMORY,
-                         "cannot create a lock: out of memory");
-    }
-    snow_status status = run(crew, members, ranks);
-    pthread_cond_destroy(&crew->turn);
-    pthread_mutex_destroy(&crew->lock);
-    return status;
-}
-
 snow_status snow_comm_run_threads(snow_context *context, int ranks,
                                   snow_comm_body_fn *body, void *user) {
     if (ranks < 1)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "invalid number of ranks %d: must be at least 1",
                          ranks);
-    thread_crew crew = {.context = context, .body = body, .user = user};
+    thread_crew crew = {.context = context,
+                        .body = body,
+                        .user = user,
+                        .lock = PTHREAD_MUTEX_INITIALIZER,
+                        .turn = PTHREAD_COND_INITIALIZER};
     SNOW_TRY(snow_mailbox_new(context, ranks, &crew.mailbox));
     snow_status status = SNOW_STATUS_NO_MEMORY;
     size_t bytes = (size_t)ranks * sizeof(thread_rank);
     thread_rank *members = snow_allocate_clear(context, bytes);
     if (members)
-        status = run_with_gate(&crew, members, ranks);
+        status = run(&crew, members, ranks);
+    pthread_cond_destroy(&crew.turn);
+    pthread_mutex_destroy(&crew.lock);
     snow_release(context, members);
     snow_mailbox_free(crew.mailbox);
     return status;

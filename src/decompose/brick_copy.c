@@ -1,5 +1,5 @@
-/* decompose/brick_copy.c - copies a box of voxels between memories of any
- * strides. */
+/* decompose/brick_copy.c - boxes of voxels: what two share, and copies between
+ * memories of any strides. */
 #include <snowglass/extend.h>
 
 #include <string.h>
@@ -103,4 +103,19 @@ void snow_brick_copy(const snow_brick *brick, size_t value, const snow_box *box,
         o.to += (box->first[i] - whole->first[i]) * o.to_step[i] * bytes;
     }
     copy(&o, value);
+}
+
+bool snow_box_intersect(const snow_box *a, const snow_box *b, snow_box *out) {
+    snow_box shared;
+    for (int i = 0; i < 3; i++) {
+        int64_t end_a = a->first[i] + a->count[i];
+        int64_t end_b = b->first[i] + b->count[i];
+        int64_t end = end_a < end_b ? end_a : end_b;
+        shared.first[i] = a->first[i] > b->first[i] ? a->first[i] : b->first[i];
+        shared.count[i] = end - shared.first[i];
+        if (shared.count[i] <= 0)
+            return false;
+    }
+    *out = shared;
+    return true;
 }

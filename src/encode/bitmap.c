@@ -23,11 +23,6 @@ static snow_status bitmap_add_row(snow_sparse *s, const uint64_t *mask) {
     return SNOW_STATUS_OK;
 }
 
-static snow_status bitmap_end_slice(snow_sparse *s) {
-    (void)s;
-    return SNOW_STATUS_OK;
-}
-
 #define CHUNK 56 /* bits that every load provides */
 
 /* Bits first .. first + count - 1, count <= CHUNK. Reads up to 8 bytes beyond
@@ -51,4 +46,4 @@ static size_t bitmap_next_row(snow_walk *walk, snow_span *spans) {
 }
 
 const snow_scheme snow_scheme_bitmap = {bitmap_begin_slice, bitmap_add_row,
-                                        bitmap_end_slice, bitmap_next_row};
+                                        NULL, bitmap_next_row};

@@ -103,7 +103,8 @@ static snow_status point(snow_sparse *s) {
 }
 
 snow_status snow_sparse_end_slice(snow_sparse *s) {
-    SNOW_TRY(s->scheme->end_slice(s));
+    if (s->scheme->end_slice)
+        SNOW_TRY(s->scheme->end_slice(s));
     return point(s);
 }
 

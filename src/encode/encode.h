@@ -74,7 +74,7 @@ struct snow_scheme {
      * SNOW_STATUS_NO_MEMORY. */
     snow_status (*begin_slice)(snow_sparse *sparse);
     snow_status (*add_row)(snow_sparse *sparse, const uint64_t *mask);
-    snow_status (*end_slice)(snow_sparse *sparse);
+    snow_status (*end_slice)(snow_sparse *sparse); /* or NULL */
     /* Reads the next row's spans into `spans`, which has room for (columns + 1)
      * / 2; returns their number. The caller advances voxel and row. */
     size_t (*next_row)(snow_walk *walk, snow_span *spans);

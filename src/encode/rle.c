@@ -56,10 +56,6 @@ static snow_status rle_add_row(snow_sparse *s, const uint64_t *mask) {
     return add_voxels(s, interesting, columns - begun);
 }
 
-static snow_status rle_end_slice(snow_sparse *s) {
-    return write_run(s);
-}
-
 /* Goes to the run of the next voxel; a slice's first is uninteresting. */
 static void find_run(snow_walk *walk) {
     while (!walk->run) {
@@ -85,5 +81,5 @@ static size_t rle_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-const snow_scheme snow_scheme_rle = {rle_begin_slice, rle_add_row,
-                                     rle_end_slice, rle_next_row};
+const snow_scheme snow_scheme_rle = {rle_begin_slice, rle_add_row, write_run,
+                                     rle_next_row};

@@ -1,6 +1,6 @@
 /* encode/transpose.c - transposes tiles, for all voxel sizes and instruction
  * sets. */
-#include "encode/transpose.h"
+#include "encode/fetch.h"
 
 #include <string.h>
 

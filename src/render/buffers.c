@@ -9,12 +9,8 @@ snow_status snow_buffers_new(snow_context *context, snow_frame **out) {
     if (!frame)
         return SNOW_STATUS_NO_MEMORY;
     frame->context = context;
-    snow_status status = snow_exact_new(context, &frame->exact);
-    if (status == SNOW_STATUS_OK)
-        *out = frame;
-    else
-        snow_buffers_free(frame);
-    return status;
+    *out = frame;
+    return SNOW_STATUS_OK;
 }
 
 void snow_buffers_free(snow_frame *frame) {

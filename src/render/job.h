@@ -15,7 +15,7 @@
 #include <snowglass/ranks.h>
 #include <snowglass/render.h>
 
-typedef struct snow_exact snow_exact; /* render/exact/exact.h */
+typedef struct snow_exact snow_exact; /* render/exact/exact.c */
 typedef struct snow_ranks snow_ranks; /* parallel/internal.h */
 typedef struct snow_load_balance
     snow_load_balance; /* parallel/load_balance.h */

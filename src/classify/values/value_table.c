@@ -259,14 +259,10 @@ void snow_value_table_begin(const snow_value_look *look,
 }
 
 void snow_value_table_fini(snow_context *context, snow_value_table *table) {
-    snow_release(context, table->entries);
-    snow_release(context, table->node_of);
-    snow_release(context, table->at);
-    snow_release(context, table->logs);
-    snow_release(context, table->plain);
-    snow_release(context, table->looks);
-    snow_release(context, table->planes);
-    snow_release(context, table->key);
-    snow_release(context, table->next_key);
+    void *const blocks[] = {table->entries, table->node_of, table->at,
+                            table->logs,    table->plain,   table->looks,
+                            table->planes,  table->key,     table->next_key};
+    for (size_t n = 0; n < sizeof blocks / sizeof *blocks; n++)
+        snow_release(context, blocks[n]);
     *table = (snow_value_table){0};
 }

@@ -149,9 +149,9 @@ static void begin_marker(marker *m, int64_t low, int64_t high, void *scratch) {
                            at + bits_bytes(s) + line_bytes(s));
 }
 
-snow_status snow_value_cells_band(snow_value_store *s,
-                                  const snow_value_store_params *params,
-                                  int64_t band, int worker, void *scratch) {
+void snow_value_cells_band(snow_value_store *s,
+                           const snow_value_store_params *params, int64_t band,
+                           int worker, void *scratch) {
     marker m = {.store = s, .params = params, .band = band};
     /* The first band has the row of cells above the volume too. */
     int64_t first = band ? band * SNOW_VALUE_BAND : -1;
@@ -162,11 +162,10 @@ snow_status snow_value_cells_band(snow_value_store *s,
     begin_marker(&m, low, high, scratch);
     for (int64_t slice = 0; slice < s->slices; slice++) {
         if (snow_monitor_look(s->context->monitor, worker))
-            return SNOW_STATUS_OK; /* snow_parallel fails */
+            return; /* snow_parallel fails */
         snow_value_lines_slice(&m.lines, slice);
         mark_slice(&m, slice, first, end);
     }
-    return SNOW_STATUS_OK;
 }
 
 /* Bits of the rows of a column of words that have any. */

@@ -53,9 +53,9 @@ size_t snow_value_cells_bytes(const snow_value_store *store,
 
 /* The masks of the rows of cells of a band; the last band's go on to the
  * volume's end. */
-snow_status snow_value_cells_band(snow_value_store *store,
-                                  const snow_value_store_params *params,
-                                  int64_t band, int worker, void *scratch);
+void snow_value_cells_band(snow_value_store *store,
+                           const snow_value_store_params *params, int64_t band,
+                           int worker, void *scratch);
 
 /* The coarse masks of eight slices, once all their bands are there; with kernel
  * bspline cells grow before. */

@@ -24,9 +24,9 @@ static void keep_status(store_job *job, snow_status status) {
 }
 
 static void cells_item(void *of, int64_t band, int worker) {
-    store_job *job = of;
-    keep_status(job, snow_value_cells_band(job->store, job->params, band,
-                                           worker, scratch_of(job, worker)));
+    const store_job *job = of;
+    snow_value_cells_band(job->store, job->params, band, worker,
+                          scratch_of(job, worker));
 }
 
 static void coarse_item(void *of, int64_t eight, int worker) {

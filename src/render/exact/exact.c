@@ -73,12 +73,14 @@ typedef struct pass {
     int64_t first, count; /* gathering: slices from the viewer */
 } pass;
 
-snow_status snow_exact_new(snow_context *context, snow_exact **out) {
-    snow_exact *exact = snow_allocate_clear(context, sizeof *exact);
-    if (!exact)
+/* Of the frame; made when a picture needs it. */
+static snow_status new_exact(snow_frame *frame) {
+    if (frame->exact)
+        return SNOW_STATUS_OK;
+    frame->exact = snow_allocate_clear(frame->context, sizeof *frame->exact);
+    if (!frame->exact)
         return SNOW_STATUS_NO_MEMORY;
-    exact->context = context;
-    *out = exact;
+    frame->exact->context = frame->context;
     return SNOW_STATUS_OK;
 }
 
@@ -222,6 +224,7 @@ static snow_status choose_loops(snow_exact *exact, const snow_job *job) {
 
 /* Makes room and tables for a job. */
 static snow_status prepare_tables(snow_picture *picture, snow_job *job) {
+    SNOW_TRY(new_exact(picture->frame));
     snow_exact *exact = picture->frame->exact;
     snow_context *context = exact->context;
     const snow_settings *settings = &job->settings;

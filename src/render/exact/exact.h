@@ -4,16 +4,10 @@
 #ifndef SNOW_RENDER_EXACT_EXACT_H
 #define SNOW_RENDER_EXACT_EXACT_H
 
-#include "classify/classify.h"
-#include "encode/encode.h"
 #include "render/picture.h"
 
 /* The buffers of the stages, kept from picture to picture: a second picture of
- * the same sizes takes no memory. */
-typedef struct snow_exact snow_exact;
-
-/* Errors: SNOW_STATUS_NO_MEMORY. */
-snow_status snow_exact_new(snow_context *context, snow_exact **out);
+ * the same sizes takes no memory.  NULL until needed. */
 void snow_exact_free(snow_exact *exact);
 
 /* snow_method_exact fills the local image of a job, and the seconds of its

@@ -89,7 +89,7 @@ static void aim(const snow_raycast_pass *pass, double x, double y,
         start_parallel(p, x, y, start);
         memcpy(viewer, p->back, 3 * sizeof *viewer);
         for (int n = 0; n < 3; n++)
-            ray->along[n] = -snow_dot(pass->inverse[n], viewer);
+            ray->along[n] = -snow_dot(pass->shader.inverse[n], viewer);
     }
     to_axes(p, start, ray->start);
 }
@@ -249,7 +249,6 @@ static snow_status prepare(const snow_picture *p, const snow_job *job,
         snow_field_make(job->volume, p->job.transfer, s, !over, &pass->field));
     SNOW_TRY(snow_shader_init(job->context, job->volume, &job->placement, s,
                               &pass->shader));
-    memcpy(pass->inverse, pass->shader.inverse, sizeof pass->inverse);
     set_colors(pass);
     set_part(pass);
     set_depth(pass);

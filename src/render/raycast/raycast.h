@@ -58,7 +58,6 @@ struct snow_raycast_pass {
     double step;          /* the longest, in world units */
     bool cut;             /* the volume is a part of one: */
     int64_t own[3][2];    /* its first and last voxels */
-    double inverse[3][3]; /* world to index */
     double depth[4];      /* of index position (x, y, z), and a constant */
     /* Values that a window must reach to be seen, in the field's units. */
     double visible[2];

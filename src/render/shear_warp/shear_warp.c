@@ -30,12 +30,12 @@ void snow_value_path_free(snow_value_path *path) {
     snow_value_store_fini(&path->store);
     snow_value_forget_axes(path);
     snow_value_forget_slabs(path);
-    snow_release(context, path->kept.slabs);
-    snow_release(context, path->sheets);
-    snow_release(context, path->places);
-    snow_release(context, path->spreads);
-    snow_release(context, path->lanes[0]);
-    snow_release(context, path->lanes[1]);
+    void *const blocks[] = {path->kept.slabs,   path->sheets,   path->places,
+                            path->spreads,      path->lanes[0], path->lanes[1],
+                            path->curve_points, path->lines,    path->clips,
+                            path->scratch};
+    for (size_t n = 0; n < sizeof blocks / sizeof *blocks; n++)
+        snow_release(context, blocks[n]);
     for (int n = 0; n < 2; n++) {
         snow_release(context, path->images[n].plane);
         snow_release(context, path->images[n].drawn);
@@ -43,10 +43,6 @@ void snow_value_path_free(snow_value_path *path) {
         snow_release(context, path->images[n].halved);
     }
     snow_line_batch_fini(&path->batch);
-    snow_release(context, path->curve_points);
-    snow_release(context, path->lines);
-    snow_release(context, path->clips);
-    snow_release(context, path->scratch);
     snow_release(context, path);
 }
 
