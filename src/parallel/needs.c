@@ -9,36 +9,24 @@
 
 SNOW_RECORD_OF_ZEROS(snow_ranks_needs);
 
-/* The caller's records. */
-typedef struct records {
-    snow_volume_info whole;
-    snow_view view;
-    snow_settings settings;
-} records;
-
-static snow_status read_records(snow_context *context,
-                                const snow_volume_info *whole,
-                                const snow_view *view,
-                                const snow_settings *settings, records *out) {
-    SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_info, whole, &out->whole));
-    SNOW_TRY(SNOW_RECORD_READ(context, snow_view, view, &out->view));
-    return SNOW_RECORD_READ(context, snow_settings, settings, &out->settings);
-}
-
 snow_status
 snow_ranks_find_needs(snow_context *context, const snow_volume_info *whole,
                       const snow_view *view, const snow_settings *settings,
                       const snow_look *look, snow_ranks_needs *out) {
     snow_placement placement;
-    records r;
+    snow_volume_info info;
+    snow_view seen;
+    snow_settings how;
     snow_look known;
     snow_ranks_needs needs;
-    SNOW_TRY(read_records(context, whole, view, settings, &r));
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_info, whole, &info));
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_view, view, &seen));
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_settings, settings, &how));
     SNOW_TRY(SNOW_RECORD_READ(context, snow_look, look, &known));
-    SNOW_TRY(snow_settings_resolve(context, &r.whole, &r.settings));
-    SNOW_TRY(snow_placement_make(context, &r.whole, &r.view, &placement));
+    SNOW_TRY(snow_settings_resolve(context, &info, &how));
+    SNOW_TRY(snow_placement_make(context, &info, &seen, &placement));
     needs.slice_axis = placement.slice_axis;
-    SNOW_TRY(snow_ghosts_needed(context, &r.whole, &r.view, &r.settings,
+    SNOW_TRY(snow_ghosts_needed(context, &info, &seen, &how,
                                 snow_look_has_gradient_opacity(&known), true,
                                 needs.layers));
     return SNOW_RECORD_FILL(context, snow_ranks_needs, &needs, out);
@@ -50,9 +38,11 @@ snow_status snow_ranks_have_order(snow_context *context,
                                   int count, bool *out) {
     snow_viewer viewer;
     snow_placement placement;
-    records r;
-    SNOW_TRY(read_records(context, whole, view, NULL, &r));
-    SNOW_TRY(snow_placement_make(context, &r.whole, &r.view, &placement));
+    snow_volume_info info;
+    snow_view seen;
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_info, whole, &info));
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_view, view, &seen));
+    SNOW_TRY(snow_placement_make(context, &info, &seen, &placement));
     int *order = NULL;
     SNOW_TRY(SNOW_RESERVE(context, order, 0, count));
     snow_clip_viewer(&placement, &viewer);

@@ -82,8 +82,10 @@ snow_status snow_ranks_of(snow_frame *frame, snow_comm *comm) {
 /* --- frames, of one process and of many ranks ----------------------------- */
 
 snow_status snow_frame_new(snow_context *context, snow_frame **out) {
-    snow_frame *frame = NULL;
-    SNOW_TRY(snow_buffers_new(context, &frame));
+    snow_frame *frame = snow_allocate_clear(context, sizeof *frame);
+    if (!frame)
+        return SNOW_STATUS_NO_MEMORY;
+    frame->context = context;
     snow_status status = snow_load_balance_new(context, &frame->work);
     if (status == SNOW_STATUS_OK)
         *out = frame;

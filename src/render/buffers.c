@@ -4,15 +4,6 @@
 #include "image/image.h"
 #include "render/exact/exact.h"
 
-snow_status snow_buffers_new(snow_context *context, snow_frame **out) {
-    snow_frame *frame = snow_allocate_clear(context, sizeof *frame);
-    if (!frame)
-        return SNOW_STATUS_NO_MEMORY;
-    frame->context = context;
-    *out = frame;
-    return SNOW_STATUS_OK;
-}
-
 void snow_buffers_free(snow_frame *frame) {
     snow_exact_free(frame->exact);
     for (int n = 0; n < SNOW_GROUP_RANKS; n++)

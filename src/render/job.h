@@ -37,9 +37,7 @@ struct snow_frame {
     snow_load_balance *work; /* of the same */
 };
 
-/* A frame without what many ranks need (parallel/internal.h).  Errors:
- * SNOW_STATUS_NO_MEMORY. */
-snow_status snow_buffers_new(snow_context *context, snow_frame **out);
+/* Frees a frame, but for what many ranks need (parallel/internal.h). */
 void snow_buffers_free(snow_frame *frame);
 
 /* What one picture is made from; lives as long as the call that makes it. */
