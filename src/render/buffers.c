@@ -1,4 +1,4 @@
-/* render/buffers.c - see buffers.h. */
+/* render/buffers.c - what a frame keeps from picture to picture. */
 #include "render/job.h"
 
 #include "image/image.h"

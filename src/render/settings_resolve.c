@@ -1,4 +1,4 @@
-/* render/settings_resolve.c - see settings_resolve.h. */
+/* render/settings_resolve.c - settings made definite for a volume (job.h). */
 #include "render/job.h"
 
 #include "base/thread_pool.h"
