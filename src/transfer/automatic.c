@@ -161,12 +161,10 @@ static void read_counts(const uint64_t *counts, uint64_t all, bool log,
 
 snow_status snow_histogram_split_at(const snow_histogram *histogram,
                                     snow_histogram_split *out) {
-    snow_histogram_split parting = {0};
-    if (!(histogram->min < histogram->max)) {
-        parting.constant = true;
-        *out = parting;
+    *out =
+        (snow_histogram_split){.constant = !(histogram->min < histogram->max)};
+    if (out->constant)
         return SNOW_STATUS_OK;
-    }
     double padding = (double)histogram->at_min / (double)histogram->finite;
     if (padding <= PADDING)
         padding = 0;
@@ -180,8 +178,7 @@ snow_status snow_histogram_split_at(const snow_histogram *histogram,
     }
     uint64_t counts[BINS], all;
     SNOW_TRY(snow_count_bins(histogram, ends[0], ends[1], BINS, counts, &all));
-    read_counts(counts, all, histogram->log, ends[0], ends[1], &parting);
-    *out = parting;
+    read_counts(counts, all, histogram->log, ends[0], ends[1], out);
     return SNOW_STATUS_OK;
 }
 

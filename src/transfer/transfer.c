@@ -61,14 +61,6 @@ static bool all_grey(const snow_color_point *colors, size_t count) {
     return true;
 }
 
-static void *copy(snow_context *context, const void *items, size_t count,
-                  size_t size) {
-    void *block = snow_allocate_array(context, count, size);
-    if (block)
-        memcpy(block, items, count * size);
-    return block;
-}
-
 snow_status snow_transfer_new(snow_context *context,
                               const snow_color_point *colors,
                               size_t color_count,
@@ -88,13 +80,16 @@ snow_status snow_transfer_new(snow_context *context,
     transfer->color_count = color_count;
     transfer->opacity_count = opacity_count;
     transfer->grey = all_grey(colors, color_count);
-    transfer->colors = copy(context, colors, color_count, sizeof *colors);
-    transfer->opacities =
-        copy(context, opacities, opacity_count, sizeof *opacities);
-    if (!transfer->colors || !transfer->opacities) {
+    snow_status status =
+        SNOW_RESERVE(context, transfer->colors, 0, color_count);
+    if (status == SNOW_STATUS_OK)
+        status = SNOW_RESERVE(context, transfer->opacities, 0, opacity_count);
+    if (status != SNOW_STATUS_OK) {
         snow_transfer_free(transfer);
-        return SNOW_STATUS_NO_MEMORY;
+        return status;
     }
+    memcpy(transfer->colors, colors, color_count * sizeof *colors);
+    memcpy(transfer->opacities, opacities, opacity_count * sizeof *opacities);
     char text[80];
     snprintf(text, sizeof text, "%zu colour and %zu opacity points",
              color_count, opacity_count);
@@ -151,9 +146,8 @@ snow_status snow_transfer_set_gradient_opacity(snow_transfer *transfer,
     if (all_one(points, count))
         count = 0;
     if (count) {
-        gradients = copy(transfer->context, points, count, sizeof *points);
-        if (!gradients)
-            return SNOW_STATUS_NO_MEMORY;
+        SNOW_TRY(SNOW_RESERVE(transfer->context, gradients, 0, count));
+        memcpy(gradients, points, count * sizeof *points);
     }
     snow_release(transfer->context, transfer->gradients);
     transfer->gradients = gradients;
