@@ -37,6 +37,11 @@ static void end_object(PyObject *self) {
     Py_DECREF((PyObject *)type);
 }
 
+/* Names of files and their texts may be in any encoding. */
+static PyObject *text_of(const void *text) {
+    return PyUnicode_DecodeUTF8(text, (Py_ssize_t)strlen(text), "replace");
+}
+
 /* --- contexts ------------------------------------------------------------- */
 
 typedef void free_fn(void *object);
@@ -123,8 +128,7 @@ static bool report(void *user, snow_stage stage, double fraction) {
 static void keep_warning(void *user, const char *text) {
     context_object *c = user;
     PyGILState_STATE state = PyGILState_Ensure();
-    PyObject *one =
-        PyUnicode_DecodeUTF8(text, (Py_ssize_t)strlen(text), "replace");
+    PyObject *one = text_of(text);
     if (!one || PyList_Append(c->warnings, one))
         PyErr_Clear();
     Py_XDECREF(one);
@@ -162,6 +166,19 @@ static void context_free(PyObject *self) {
     end_object(self);
 }
 
+/* Waits while another thread draws; false when a signal's handler raised. */
+static bool wait_for(context_object *c) {
+    PyLockStatus got = PY_LOCK_FAILURE;
+    while (got != PY_LOCK_ACQUIRED) {
+        PyThreadState *saved = PyEval_SaveThread();
+        got = PyThread_acquire_lock_timed(c->lock, 50000, 1);
+        PyEval_RestoreThread(saved);
+        if (got != PY_LOCK_ACQUIRED && PyErr_CheckSignals())
+            return false;
+    }
+    return true;
+}
+
 /* Takes the lock; false with an exception. */
 static bool enter(context_object *c, PyObject *progress) {
     unsigned long here = PyThread_get_thread_ident();
@@ -171,10 +188,8 @@ static bool enter(context_object *c, PyObject *progress) {
                         "progress: a callback must use another one");
         return false;
     }
-    if (!PyThread_acquire_lock(c->lock, NOWAIT_LOCK)) {
-        Py_BEGIN_ALLOW_THREADS PyThread_acquire_lock(c->lock, WAIT_LOCK);
-        Py_END_ALLOW_THREADS
-    }
+    if (!PyThread_acquire_lock(c->lock, NOWAIT_LOCK) && !wait_for(c))
+        return false;
     c->held = true;
     c->holder = here;
     c->raised = false;
@@ -192,18 +207,18 @@ static bool enter(context_object *c, PyObject *progress) {
     } while (0)
 
 static void set_error(snow_status status, const char *message) {
-    if (status == SNOW_STATUS_NO_MEMORY)
-        PyErr_SetString(PyExc_MemoryError, message);
-    else if (status == SNOW_STATUS_BAD_USAGE)
-        PyErr_SetString(PyExc_ValueError, message);
-    else {
-        PyObject *error = PyObject_CallFunction(error_type, "s", message);
-        PyObject *number = PyLong_FromLong(status);
-        if (error && number && !PyObject_SetAttrString(error, "status", number))
-            PyErr_SetObject(error_type, error);
-        Py_XDECREF(error);
-        Py_XDECREF(number);
-    }
+    PyObject *text = text_of(message), *number = PyLong_FromLong(status);
+    PyObject *type = status == SNOW_STATUS_NO_MEMORY   ? PyExc_MemoryError
+                     : status == SNOW_STATUS_BAD_USAGE ? PyExc_ValueError
+                                                       : error_type;
+    PyObject *error =
+        text && number ? PyObject_CallFunction(type, "O", text) : NULL;
+    if (error && (type != error_type ||
+                  !PyObject_SetAttrString(error, "status", number)))
+        PyErr_SetObject(type, error);
+    Py_XDECREF(error);
+    Py_XDECREF(number);
+    Py_XDECREF(text);
 }
 
 /* Gives the lock back; false with an exception, if the status is an error or a
@@ -307,8 +322,10 @@ static bool set_field(const field *f, PyObject *value, void *record) {
     case 'b':
         *(bool *)to = PyObject_IsTrue(value) == 1;
         break;
-    case 's': /* the dictionary keeps it */
-        *(const char **)(void *)to = PyUnicode_AsUTF8AndSize(value, NULL);
+    case 's': /* the dictionary keeps it; paths are bytes */
+        *(const char **)(void *)to = PyBytes_Check(value)
+                                         ? PyBytes_AsString(value)
+                                         : PyUnicode_AsUTF8AndSize(value, NULL);
         break;
     case 'e':
         return set_enum(f, value, (int *)(void *)to);
@@ -419,6 +436,7 @@ static const field option_fields[] = {
     OPTION(dataset, 's', NULL),     OPTION(series, 's', NULL),
     OPTION(mask, 's', NULL),        OPTION(labels, 's', NULL),
     OPTION(component, 's', NULL),   OPTION(allow_gaps, 'b', NULL),
+    OPTION(each_time, 'b', NULL),
 };
 
 #define LOOK(name, kind) FIELD(snow_look, name, kind, NULL)
@@ -437,7 +455,7 @@ typedef struct image_object {
     PyObject *transfer;
     snow_volume_info info;
     snow_view view;
-    bool opaque; /* colours of a slice, without opacities */
+    bool opaque; /* a slice, which fills its picture */
 } image_object;
 
 static PyObject *image_make(PyTypeObject *type, context_object *context,
@@ -504,43 +522,46 @@ typedef struct transfer_object {
 typedef struct annotations {
     int letters, legend, scale_bar;
     const char *unit, *title;
+    double range[2]; /* of colours without opacity; not a number: none */
 } annotations;
 
+/* In the order of the command line: what comes first takes its place. */
 static snow_status annotate(const image_object *o, const annotations *a,
                             snow_overlay *overlay) {
     const transfer_object *t = (const transfer_object *)o->transfer;
     snow_status status = SNOW_STATUS_OK;
-    if (t && a->letters)
-        status = snow_overlay_orientation(overlay, &o->info, &o->view);
-    double range[2] = {0, 0};
-    if (t && o->opaque)
-        snow_transfer_domain(t->transfer, &range[0], &range[1]);
-    if (t && a->legend && !status)
+    snow_overlay_keep_off(overlay, o->opaque ? NULL : o->image);
+    if (t && a->legend)
         status = snow_overlay_color_bar(overlay, t->transfer, a->unit,
-                                        o->opaque ? range : NULL);
-    if (t && a->scale_bar && !status && !(o->view.fov > 0))
+                                        isnan(a->range[0]) ? NULL : a->range);
+    if (t && (a->legend || a->scale_bar) && !status)
         status = snow_overlay_scale_bar(overlay, &o->info, &o->view);
     if (a->title && !status)
         status = snow_overlay_title(overlay, a->title);
+    if (t && a->letters && !status)
+        status = snow_overlay_orientation(overlay, &o->info, &o->view);
     return status;
 }
 
+/* To a file, or without a path as red, green and blue: bytes. */
 static PyObject *image_save(PyObject *self, PyObject *args,
                             PyObject *keywords) {
-    static char *names[] = {"path",    "background", "bits", "overwrite",
-                            "letters", "legend",     "unit", "scale_bar",
-                            "title",   "depth",      NULL};
+    static char *names[] = {"path",    "background", "bits",  "overwrite",
+                            "letters", "legend",     "unit",  "scale_bar",
+                            "title",   "depth",      "range", NULL};
     image_object *o = (image_object *)self;
     snow_image_options options;
-    PyObject *background = Py_None, *depth = Py_None;
-    const char *path;
+    PyObject *file, *background = Py_None, *depth = Py_None, *rgb = NULL;
+    char *path = NULL;
     int overwrite = 0;
-    annotations a = {0};
+    annotations a = {.range = {NAN, NAN}};
     snow_image_options_init(&options);
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "s|$OipppzpzO", names,
-                                     &path, &background, &options.bits,
-                                     &overwrite, &a.letters, &a.legend, &a.unit,
-                                     &a.scale_bar, &a.title, &depth))
+    if (!PyArg_ParseTupleAndKeywords(
+            args, keywords, "O|$OipppzpzO(dd)", names, &file, &background,
+            &options.bits, &overwrite, &a.letters, &a.legend, &a.unit,
+            &a.scale_bar, &a.title, &depth, &a.range[0], &a.range[1]))
+        return NULL;
+    if (file != Py_None && PyBytes_AsStringAndSize(file, &path, NULL))
         return NULL;
     options.overwrite = overwrite;
     options.flatten = background != Py_None;
@@ -552,8 +573,14 @@ static PyObject *image_save(PyObject *self, PyObject *args,
             return PyErr_Format(PyExc_TypeError, "depth must be an Image");
         options.depth = ((image_object *)depth)->image;
     }
-    if (!enter(o->context, Py_None))
+    if (!path &&
+        !(rgb = PyBytes_FromStringAndSize(NULL, o->shape[0] * o->shape[1] * 3)))
         return NULL;
+    unsigned char *bytes = rgb ? (unsigned char *)PyBytes_AsString(rgb) : NULL;
+    if (!enter(o->context, Py_None)) {
+        Py_XDECREF(rgb);
+        return NULL;
+    }
     snow_overlay *overlay = NULL;
     snow_status status = SNOW_STATUS_OK;
     if (a.letters || a.legend || a.scale_bar || a.title)
@@ -563,24 +590,46 @@ static PyObject *image_save(PyObject *self, PyObject *args,
         status = annotate(o, &a, overlay);
     options.overlay = overlay;
     if (!status)
-        CALL(o->context, status, snow_image_save(o->image, path, &options));
+        CALL(o->context, status,
+             rgb ? snow_image_to_rgb8_with(o->image, &options, bytes)
+                 : snow_image_save(o->image, path, &options));
     snow_overlay_free(overlay);
-    if (!leave(o->context, status))
-        return NULL;
-    Py_RETURN_NONE;
+    if (leave(o->context, status))
+        return rgb ? rgb : Py_NewRef(Py_None);
+    Py_XDECREF(rgb);
+    return NULL;
 }
 
-static PyObject *image_to_rgb8(PyObject *self, PyObject *background) {
+/* paint(Image, low, high): data values in the look's colours; from not a
+ * number: between those of the picture -> (image, low, high) */
+static PyObject *image_paint(PyObject *self, PyObject *args) {
     image_object *o = (image_object *)self;
-    double color[3];
-    if (!set_triple("background", background, 3, false, color))
+    const transfer_object *t = (const transfer_object *)o->transfer;
+    PyObject *type;
+    double low, high;
+    snow_image *painted = NULL;
+    snow_status status;
+    if (!PyArg_ParseTuple(args, "Odd", &type, &low, &high) ||
+        !enter(o->context, Py_None))
         return NULL;
-    PyObject *bytes =
-        PyBytes_FromStringAndSize(NULL, o->shape[0] * o->shape[1] * 3);
-    if (bytes)
-        snow_image_to_rgb8(o->image, color,
-                           (unsigned char *)PyBytes_AsString(bytes));
-    return bytes;
+    if (isnan(low))
+        snow_image_value_range(o->image, &low, &high);
+    CALL(o->context, status,
+         snow_image_apply_colormap(o->image, t->transfer, low, high, &painted));
+    const bool fine = leave(o->context, status);
+    PyObject *image =
+        painted ? image_make((PyTypeObject *)type, o->context, painted) : NULL;
+    if (!image)
+        return NULL;
+    if (!fine) {
+        Py_DECREF(image);
+        return NULL;
+    }
+    image_object *made = (image_object *)image;
+    made->transfer = Py_NewRef(o->transfer);
+    made->info = o->info;
+    made->view = o->view;
+    return Py_BuildValue("(Ndd)", image, low, high);
 }
 
 static PyObject *image_load(PyObject *module, PyObject *args) {
@@ -589,7 +638,7 @@ static PyObject *image_load(PyObject *module, PyObject *args) {
     snow_image *image = NULL;
     snow_status status;
     (void)module;
-    if (!PyArg_ParseTuple(args, "Os", &type, &path))
+    if (!PyArg_ParseTuple(args, "Oy", &type, &path))
         return NULL;
     context_object *c =
         (context_object *)context_make(context_type, NULL, NULL);
@@ -598,10 +647,11 @@ static PyObject *image_load(PyObject *module, PyObject *args) {
         return NULL;
     }
     CALL(c, status, snow_image_load(c->context, path, &image));
-    PyObject *made = NULL;
-    if (leave(c, status))
-        made = image_make((PyTypeObject *)type, c, image);
+    const bool fine = leave(c, status);
+    PyObject *made = image ? image_make((PyTypeObject *)type, c, image) : NULL;
     Py_DECREF((PyObject *)c);
+    if (!fine)
+        Py_CLEAR(made);
     return made;
 }
 
@@ -637,7 +687,7 @@ static void transfer_free(PyObject *self) {
 static PyObject *transfer_text(PyObject *self, void *closure) {
     transfer_object *o = (transfer_object *)self;
     (void)closure;
-    return PyUnicode_FromString(snow_transfer_description(o->transfer));
+    return text_of(snow_transfer_description(o->transfer));
 }
 
 static PyObject *transfer_domain(PyObject *self, void *closure) {
@@ -670,7 +720,8 @@ typedef struct volume_object {
     snow_volume *volume;
     snow_frame *frame;
     Py_buffer buffer; /* of wrapped voxels */
-    Py_ssize_t shape[3], strides[3];
+    int order[3]; /* that dimensions of an array have in memory, slowest 0 */
+    Py_ssize_t shape[3], strides[3], exports;
 } volume_object;
 
 /* Type codes of the buffer protocol, by snow_type. */
@@ -683,8 +734,7 @@ static void volume_free(PyObject *self) {
         discard(o->context, release_frame, o->frame);
         discard(o->context, release_volume, o->volume);
     }
-    if (o->buffer.obj)
-        PyBuffer_Release(&o->buffer);
+    PyBuffer_Release(&o->buffer);
     Py_XDECREF((PyObject *)o->context);
     end_object(self);
 }
@@ -695,6 +745,8 @@ static volume_object *volume_begin(PyObject *type, PyObject *like) {
         (volume_object *)PyType_GenericAlloc((PyTypeObject *)type, 0);
     if (!o)
         return NULL;
+    for (int n = 0; n < 3; n++)
+        o->order[n] = n;
     if (like && PyObject_TypeCheck(like, volume_type)) {
         o->context = ((volume_object *)like)->context;
         Py_INCREF((PyObject *)o->context);
@@ -714,6 +766,20 @@ static bool is_given(PyObject *given, const char *name) {
     return item && item != Py_None;
 }
 
+static bool is_open(const volume_object *o) {
+    if (!o->volume)
+        PyErr_SetString(PyExc_ValueError,
+                        "the volume is closed: open it again");
+    return o->volume != NULL;
+}
+
+/* Takes the lock of a volume that is not closed. */
+static bool use(volume_object *o, PyObject *progress) {
+    if (!enter(o->context, progress))
+        return false;
+    return is_open(o) || leave(o->context, SNOW_STATUS_OK);
+}
+
 static PyObject *volume_open(PyObject *module, PyObject *args) {
     PyObject *type, *given, *clip, *progress;
     const char *path;
@@ -722,7 +788,7 @@ static PyObject *volume_open(PyObject *module, PyObject *args) {
     snow_status status;
     (void)module;
     snow_volume_options_init(&options);
-    if (!PyArg_ParseTuple(args, "OsOOKO", &type, &path, &given, &clip, &limit,
+    if (!PyArg_ParseTuple(args, "OyOOKO", &type, &path, &given, &clip, &limit,
                           &progress) ||
         !fill(given, FIELDS(option_fields), &options))
         return NULL;
@@ -772,7 +838,8 @@ static snow_type type_of_buffer(const Py_buffer *buffer) {
     return SNOW_TYPE_NONE;
 }
 
-/* Over a C contiguous array (z, y, x) of the caller. */
+/* Over a C contiguous array (z, y, x) of the caller, whose own array has its
+ * dimensions in an order. */
 static PyObject *volume_wrap(PyObject *module, PyObject *args) {
     PyObject *type, *array, *matrix, *like;
     double slope, intercept;
@@ -780,12 +847,15 @@ static PyObject *volume_wrap(PyObject *module, PyObject *args) {
     const char *unit;
     snow_status status;
     (void)module;
-    if (!PyArg_ParseTuple(args, "OOOddpsO", &type, &array, &matrix, &slope,
-                          &intercept, &medical, &unit, &like))
+    int order[3];
+    if (!PyArg_ParseTuple(args, "OO(iii)OddpsO", &type, &array, &order[0],
+                          &order[1], &order[2], &matrix, &slope, &intercept,
+                          &medical, &unit, &like))
         return NULL;
     volume_object *o = volume_begin(type, like);
     if (!o)
         return NULL;
+    memcpy(o->order, order, sizeof order);
     snow_volume_info info;
     snow_volume_info_init(&info);
     if (PyObject_GetBuffer(array, &o->buffer,
@@ -834,10 +904,11 @@ static PyObject *volume_masked(PyObject *module, PyObject *args) {
                             "such as 1,4-7",
                             labels);
     volume_object *o = volume_begin(type, given);
-    if (!o || !enter(o->context, Py_None)) {
+    if (!o || !use((volume_object *)given, Py_None)) {
         Py_XDECREF((PyObject *)o);
         return NULL;
     }
+    memcpy(o->order, ((volume_object *)given)->order, sizeof o->order);
     CALL(o->context, status,
          snow_volume_mask(((volume_object *)given)->volume,
                           ((volume_object *)mask)->volume,
@@ -850,21 +921,32 @@ static PyObject *volume_masked(PyObject *module, PyObject *args) {
 
 static int volume_buffer(PyObject *self, Py_buffer *view, int flags) {
     volume_object *o = (volume_object *)self;
+    view->obj = NULL;
+    if (!is_open(o))
+        return -1;
     const snow_volume_info *info = snow_volume_get_info(o->volume);
     const void *voxels = snow_volume_voxels(o->volume);
+    const int64_t *dims = info->dims;
     Py_ssize_t size = (Py_ssize_t)snow_type_size(info->type);
-    if (!voxels) {
-        PyErr_SetString(PyExc_BufferError, "the voxels stay in their file");
+    const Py_ssize_t steps[3] = {size * dims[0] * dims[1], size * dims[0],
+                                 size};
+    const int all =
+        PyBUF_C_CONTIGUOUS | PyBUF_F_CONTIGUOUS | PyBUF_ANY_CONTIGUOUS;
+    bool turned = o->order[0] > o->order[1] || o->order[1] > o->order[2];
+    if (!voxels || (turned && (flags & all) != PyBUF_STRIDES)) {
+        PyErr_SetString(PyExc_BufferError,
+                        voxels ? "the array is not C contiguous"
+                               : "the voxels stay in their file");
         return -1;
     }
-    for (int n = 0; n < 3; n++)
-        o->shape[2 - n] = (Py_ssize_t)info->dims[n];
-    o->strides[2] = size;
-    o->strides[1] = size * o->shape[2];
-    o->strides[0] = o->strides[1] * o->shape[1];
-    if (PyBuffer_FillInfo(view, self, (void *)voxels,
-                          o->strides[0] * o->shape[0], 1, flags))
+    for (int n = 0; n < 3; n++) {
+        o->shape[n] = (Py_ssize_t)dims[2 - o->order[n]];
+        o->strides[n] = steps[o->order[n]];
+    }
+    if (PyBuffer_FillInfo(view, self, (void *)voxels, steps[0] * dims[2], 1,
+                          flags))
         return -1;
+    o->exports++;
     view->itemsize = size;
     view->ndim = 3;
     view->shape = o->shape;
@@ -873,21 +955,50 @@ static int volume_buffer(PyObject *self, Py_buffer *view, int flags) {
     return 0;
 }
 
+static void volume_release(PyObject *self, Py_buffer *view) {
+    (void)view;
+    ((volume_object *)self)->exports--;
+}
+
+/* Gives the memory back, which arrays may still use. */
+static PyObject *volume_close(PyObject *self, PyObject *nothing) {
+    volume_object *o = (volume_object *)self;
+    (void)nothing;
+    if (!enter(o->context, Py_None))
+        return NULL;
+    if (o->exports)
+        PyErr_SetString(PyExc_BufferError,
+                        "the volume cannot be closed: arrays of its voxels are "
+                        "in use; delete them");
+    else {
+        snow_frame_free(o->frame);
+        snow_volume_close(o->volume);
+        o->frame = NULL;
+        o->volume = NULL;
+        PyBuffer_Release(&o->buffer);
+    }
+    return leave(o->context, SNOW_STATUS_OK) ? Py_NewRef(Py_None) : NULL;
+}
+
 static PyObject *volume_info(PyObject *self, void *closure) {
     volume_object *o = (volume_object *)self;
+    if (!is_open(o))
+        return NULL;
     const snow_volume_info *i = snow_volume_get_info(o->volume);
     const double(*m)[4] = i->matrix;
     (void)closure;
     return Py_BuildValue(
-        "{s(LLL)sss(ddd)s((dddd)(dddd)(dddd)(dddd))sdsdsOsssssLsLss}", "dims",
-        (long long)i->dims[0], (long long)i->dims[1], (long long)i->dims[2],
-        "type", snow_type_name(i->type), "spacing", i->spacing[0],
-        i->spacing[1], i->spacing[2], "matrix", m[0][0], m[0][1], m[0][2],
-        m[0][3], m[1][0], m[1][1], m[1][2], m[1][3], m[2][0], m[2][1], m[2][2],
-        m[2][3], m[3][0], m[3][1], m[3][2], m[3][3], "slope", i->slope,
+        "{s(LLL)sss(ddd)s((dddd)(dddd)(dddd)(dddd))sdsdsOsO&sssLsLsO&sO&sO}",
+        "dims", (long long)i->dims[0], (long long)i->dims[1],
+        (long long)i->dims[2], "type", snow_type_name(i->type), "spacing",
+        i->spacing[0], i->spacing[1], i->spacing[2], "matrix", m[0][0], m[0][1],
+        m[0][2], m[0][3], m[1][0], m[1][1], m[1][2], m[1][3], m[2][0], m[2][1],
+        m[2][2], m[2][3], m[3][0], m[3][1], m[3][2], m[3][3], "slope", i->slope,
         "intercept", i->intercept, "medical", i->medical ? Py_True : Py_False,
-        "unit", i->unit, "format", i->format, "times", (long long)i->times,
-        "time", (long long)i->time, "storage", i->storage);
+        "unit", text_of, i->unit, "format", i->format, "times",
+        (long long)i->times, "time", (long long)i->time, "storage", text_of,
+        i->storage, "modality", text_of, i->modality, "hounsfield",
+        i->hounsfield ? Py_True : Py_False);
 }
 
 static PyObject *volume_statistics(PyObject *self, PyObject *nothing) {
@@ -896,14 +1007,17 @@ static PyObject *volume_statistics(PyObject *self, PyObject *nothing) {
     snow_status status;
     (void)nothing;
     snow_volume_statistics_init(&s);
-    if (!enter(o->context, Py_None))
+    if (!use(o, Py_None))
         return NULL;
     CALL(o->context, status, snow_volume_get_statistics(o->volume, &s));
     if (!leave(o->context, status))
         return NULL;
-    return Py_BuildValue("{sLsLsdsdsd}", "voxels", (long long)s.voxels,
+    const bool hu =
+        snow_are_hounsfield(snow_volume_get_info(o->volume), s.min, s.max);
+    return Py_BuildValue("{sLsLsdsdsdsO}", "voxels", (long long)s.voxels,
                          "finite", (long long)s.finite, "min", s.min, "max",
-                         s.max, "sum", s.sum);
+                         s.max, "sum", s.sum, "hounsfield",
+                         hu ? Py_True : Py_False);
 }
 
 static PyObject *volume_histogram(PyObject *self, PyObject *args) {
@@ -920,7 +1034,7 @@ static PyObject *volume_histogram(PyObject *self, PyObject *args) {
     if (!counts)
         return PyErr_NoMemory();
     PyObject *list = NULL;
-    if (enter(o->context, Py_None)) {
+    if (use(o, Py_None)) {
         CALL(o->context, status,
              snow_volume_histogram(o->volume, low, high, (size_t)bins, counts));
         if (leave(o->context, status))
@@ -937,8 +1051,7 @@ static PyObject *volume_save(PyObject *self, PyObject *args) {
     const char *path;
     int overwrite;
     snow_status status;
-    if (!PyArg_ParseTuple(args, "sp", &path, &overwrite) ||
-        !enter(o->context, Py_None))
+    if (!PyArg_ParseTuple(args, "yp", &path, &overwrite) || !use(o, Py_None))
         return NULL;
     CALL(o->context, status, snow_volume_save(o->volume, path, overwrite));
     if (!leave(o->context, status))
@@ -949,7 +1062,7 @@ static PyObject *volume_save(PyObject *self, PyObject *args) {
 static PyObject *volume_freeze(PyObject *self, PyObject *nothing) {
     volume_object *o = (volume_object *)self;
     (void)nothing;
-    if (!enter(o->context, Py_None))
+    if (!use(o, Py_None))
         return NULL;
     snow_volume_freeze(o->volume);
     if (!leave(o->context, SNOW_STATUS_OK))
@@ -1023,7 +1136,7 @@ static PyObject *volume_look(PyObject *self, PyObject *args) {
     transfer_object *made = NULL;
     if (!PyErr_Occurred())
         made = (transfer_object *)PyType_GenericAlloc(transfer_type, 0);
-    if (made && enter(o->context, Py_None)) {
+    if (made && use(o, Py_None)) {
         Py_INCREF((PyObject *)o->context);
         made->context = o->context;
         CALL(o->context, status,
@@ -1046,8 +1159,8 @@ static bool make_view(volume_object *o, const char *name, PyObject *given,
     context_object *c = o->context;
     snow_status status = SNOW_STATUS_OK;
     snow_view_init(view);
-    status = name ? snow_view_from_name(c->context, name, view)
-                  : snow_view_default(o->volume, view);
+    name = snow_view_name_for(snow_volume_get_info(o->volume), name);
+    status = snow_view_from_name(c->context, name, view);
     if (status != SNOW_STATUS_OK) {
         set_error(status, snow_context_message(c->context));
         return false;
@@ -1117,8 +1230,8 @@ static PyObject *stats_of(const volume_object *o) {
         s->seconds_frame);
 }
 
-/* render(Image, transfer, view, view's fields, settings, azimuths or None to
- * fit, progress) -> (image, depth or None, the view's target and zoom, stats)
+/* render(Image, transfer, view, view's fields, settings, fit, azimuths or None,
+ * progress) -> (image, depth or None, the view's target or None, zoom, stats)
  */
 static PyObject *volume_render(PyObject *self, PyObject *args) {
     volume_object *o = (volume_object *)self;
@@ -1147,7 +1260,7 @@ static PyObject *volume_render(PyObject *self, PyObject *args) {
         r.azimuth_count = (size_t)count;
         r.azimuths = turns;
     }
-    if (!enter(o->context, progress)) {
+    if (!use(o, progress)) {
         PyMem_Free(turns);
         return NULL;
     }
@@ -1160,7 +1273,7 @@ static PyObject *volume_render(PyObject *self, PyObject *args) {
     PyMem_Free(turns);
     PyObject *stats = status == SNOW_STATUS_OK ? stats_of(o) : NULL;
     const bool fine = leave(o->context, status);
-    PyObject *image = NULL, *depth = NULL, *out = NULL;
+    PyObject *image = NULL, *depth = NULL, *target = NULL, *out = NULL;
     if (r.image)
         image = image_make((PyTypeObject *)type, o->context, r.image);
     if (r.depth)
@@ -1172,10 +1285,13 @@ static PyObject *volume_render(PyObject *self, PyObject *args) {
         made->info = *snow_volume_get_info(o->volume);
         made->view = r.view;
     }
+    if (fine && r.view.has_target)
+        target = Py_BuildValue("(ddd)", r.view.target[0], r.view.target[1],
+                               r.view.target[2]);
     if (fine && image && stats)
-        out = Py_BuildValue("(OO(ddd)dO)", image, depth ? depth : Py_None,
-                            r.view.target[0], r.view.target[1],
-                            r.view.target[2], r.view.zoom, stats);
+        out = Py_BuildValue("(OOOdO)", image, depth ? depth : Py_None,
+                            target ? target : Py_None, r.view.zoom, stats);
+    Py_XDECREF(target);
     Py_XDECREF(image);
     Py_XDECREF(depth);
     Py_XDECREF(stats);
@@ -1191,7 +1307,7 @@ static PyObject *volume_slice_axis(PyObject *self, PyObject *name) {
     int axis = 0, world = 0;
     snow_view view;
     snow_view_init(&view);
-    if (!text || !enter(o->context, Py_None))
+    if (!text || !use(o, Py_None))
         return NULL;
     if (!leave(o->context, snow_slice_view(o->context->context,
                                            snow_volume_get_info(o->volume),
@@ -1234,7 +1350,7 @@ static PyObject *volume_slice(PyObject *self, PyObject *args) {
     bool colored = PyObject_TypeCheck(transfer, transfer_type);
     r.view.width = width;
     r.view.height = height;
-    if (!enter(o->context, Py_None))
+    if (!use(o, Py_None))
         return NULL;
     CALL(o->context, status,
          draw_slice(&r, axis, index,
@@ -1290,6 +1406,14 @@ static PyObject *names_of(PyObject *module, PyObject *what) {
     return name ? PyErr_Format(PyExc_ValueError, "no list '%s'", name) : NULL;
 }
 
+/* Most bits a channel of a picture file; 0: floats; -1: none that is written.
+ */
+static PyObject *format_bits(PyObject *module, PyObject *path) {
+    const char *text = PyBytes_AsString(path);
+    (void)module;
+    return text ? PyLong_FromLong(snow_image_format_bits(text)) : NULL;
+}
+
 static PyObject *version(PyObject *module, PyObject *nothing) {
     (void)module;
     (void)nothing;
@@ -1302,8 +1426,9 @@ static PyObject *version(PyObject *module, PyObject *nothing) {
     { name, (PyCFunction)(void (*)(void))(function), flags, text }
 
 static PyMethodDef image_methods[] = {
-    METHOD("_save", image_save, METH_VARARGS | METH_KEYWORDS, "to a file"),
-    METHOD("_to_rgb8", image_to_rgb8, METH_O, "bytes on a background"),
+    METHOD("_save", image_save, METH_VARARGS | METH_KEYWORDS,
+           "to a file, or as bytes"),
+    METHOD("_paint", image_paint, METH_VARARGS, "values as colours"),
     {NULL, NULL, 0, NULL}};
 static PyGetSetDef image_values[] = {
     {"shape", image_shape, NULL, "(height, width, channels)", NULL},
@@ -1323,6 +1448,7 @@ static PyMethodDef volume_methods[] = {
     METHOD("_histogram", volume_histogram, METH_VARARGS, "low, high, bins"),
     METHOD("_save", volume_save, METH_VARARGS, "path, overwrite"),
     METHOD("_freeze", volume_freeze, METH_NOARGS, "the voxels stay"),
+    METHOD("_close", volume_close, METH_NOARGS, "gives its memory back"),
     METHOD("_look", volume_look, METH_VARARGS, "a transfer function"),
     METHOD("_render", volume_render, METH_VARARGS, "a picture"),
     METHOD("_slice_axis", volume_slice_axis, METH_O, "of the grid and world"),
@@ -1338,6 +1464,7 @@ static PyMethodDef functions[] = {
     METHOD("load_image", image_load, METH_VARARGS, "a picture of a file"),
     METHOD("compare", image_compare, METH_VARARGS, "of two pictures"),
     METHOD("names", names_of, METH_O, "presets, colormaps, ..."),
+    METHOD("format_bits", format_bits, METH_O, "of a picture file's name"),
     METHOD("version", version, METH_NOARGS, "of the library"),
     {NULL, NULL, 0, NULL}};
 
@@ -1350,12 +1477,13 @@ static PyType_Slot slot_of(int number, void (*function)(void)) {
 }
 
 typedef int buffer_fn(PyObject *self, Py_buffer *view, int flags);
+typedef void release_fn(PyObject *self, Py_buffer *view);
 
 static PyTypeObject *add_type(PyObject *module, const char *name, size_t size,
                               destructor dealloc, buffer_fn *buffer,
-                              PyMethodDef *methods, PyGetSetDef *values,
-                              unsigned flags) {
-    PyType_Slot slots[6] = {{0, NULL}};
+                              release_fn *release, PyMethodDef *methods,
+                              PyGetSetDef *values, unsigned flags) {
+    PyType_Slot slots[7] = {{0, NULL}};
     int n = 0;
     slots[n++] = SLOT(Py_tp_dealloc, dealloc);
     if (methods)
@@ -1364,6 +1492,8 @@ static PyTypeObject *add_type(PyObject *module, const char *name, size_t size,
         slots[n++] = (PyType_Slot){Py_tp_getset, values};
     if (buffer)
         slots[n++] = SLOT(Py_bf_getbuffer, buffer);
+    if (release)
+        slots[n++] = SLOT(Py_bf_releasebuffer, release);
     PyType_Spec spec = {name, (int)size, 0, Py_TPFLAGS_DEFAULT | flags, slots};
     PyObject *type = PyType_FromSpec(&spec);
     if (type && PyModule_AddObjectRef(module, strchr(name, '.') + 1, type))
@@ -1388,16 +1518,17 @@ PyMODINIT_FUNC PyInit__snowglass(void) {
     if (!m)
         return NULL;
     context_type = add_type(m, "_snowglass.Context", sizeof(context_object),
-                            context_free, NULL, NULL, NULL, closed);
+                            context_free, NULL, NULL, NULL, NULL, closed);
     transfer_type = add_type(m, "_snowglass.Transfer", sizeof(transfer_object),
-                             transfer_free, NULL, transfer_methods,
+                             transfer_free, NULL, NULL, transfer_methods,
                              transfer_values, closed);
-    volume_type = add_type(m, "_snowglass.Volume", sizeof(volume_object),
-                           volume_free, volume_buffer, volume_methods,
-                           volume_values, closed | Py_TPFLAGS_BASETYPE);
+    volume_type =
+        add_type(m, "_snowglass.Volume", sizeof(volume_object), volume_free,
+                 volume_buffer, volume_release, volume_methods, volume_values,
+                 closed | Py_TPFLAGS_BASETYPE);
     image_type = add_type(m, "_snowglass.Image", sizeof(image_object),
-                          image_free, image_buffer, image_methods, image_values,
-                          closed | Py_TPFLAGS_BASETYPE);
+                          image_free, image_buffer, NULL, image_methods,
+                          image_values, closed | Py_TPFLAGS_BASETYPE);
     error_type =
         PyErr_NewException("snowglass.Error", PyExc_RuntimeError, NULL);
     warning_type = PyErr_NewException("snowglass.SnowglassWarning",

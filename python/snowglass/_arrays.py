@@ -10,6 +10,8 @@ from . import _snowglass
 class Wrapped(NamedTuple):
     """What the core's `wrap` takes; the array is C contiguous."""
     array: Any
+    order: tuple[int, ...]   #: that the given dimensions have in memory
+    axes: str                #: what the given dimensions are
     matrix: list[float]
     slope: float
     intercept: float
@@ -25,10 +27,14 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
     """Any source as an array, and its place in the world."""
     import numpy
     if _is_nibabel(source):
-        affine = source.affine if affine is None and spacing is None else affine
+        if affine is None and spacing is None:
+            affine = _affine_in_mm(source)
         axes = axes or "xyz"
         unit, medical = unit or "mm", True if medical is None else medical
-        source = numpy.asanyarray(source.dataobj)
+        if slope == 1 and intercept == 0:
+            source, slope, intercept = _stored_values(source.dataobj)
+        else:
+            source = numpy.asanyarray(source.dataobj)
     elif _is_xarray(source):
         source, spacing, axes, unit, affine = _of_xarray(source, spacing, axes,
                                                          unit, affine)
@@ -43,14 +49,52 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
                         f"others, such as array[0]")
     if 0 in array.shape:
         raise ValueError(f"an array of shape {array.shape} has no voxels")
-    array, axes = _contiguous(_plain_type(array, copy), axes, copy)
+    array, order = _contiguous(_plain_type(array, copy), copy)
     matrix = _matrix(spacing, affine)
     # Column n of the matrix belongs to dimension n of the voxels, x first.
-    columns = ["xyz".index(name) for name in reversed(axes)]
-    placed = matrix[:, columns + [3]]
-    return Wrapped(array, [float(each) for each in placed.ravel()],
-                   float(slope), float(intercept), bool(medical), unit or "",
-                   frozen)
+    placed = matrix[:, columns_of(order, axes) + [3]]
+    return Wrapped(array, order, axes, [float(each) for each in placed.ravel()],
+                   float(slope), float(intercept), bool(medical),
+                   _cut(unit or ""), frozen)
+
+
+def columns_of(order: Sequence[int], axes: str) -> list[int]:
+    """Which of x, y, z each dimension in memory is, fastest first."""
+    return ["xyz".index(axes[list(order).index(n)]) for n in (2, 1, 0)]
+
+
+def like(source: Any, shape: Sequence[int], order: Sequence[int]) -> Any:
+    """An array of a shape as its dimensions lie in memory, C contiguous."""
+    import numpy
+    if _is_nibabel(source):
+        source = source.dataobj
+    array = numpy.asarray(source)
+    if array.shape != tuple(shape):
+        raise ValueError(f"a mask of shape {array.shape} for a volume of shape "
+                         f"{tuple(shape)}: they must be the same")
+    turned = array.transpose([list(order).index(n) for n in range(3)])
+    return numpy.ascontiguousarray(_plain_type(turned, True))
+
+
+def _cut(unit: str) -> str:
+    """At most the 15 bytes that the library keeps, no half characters."""
+    return unit.encode()[:15].decode(errors="ignore")
+
+
+def _affine_in_mm(image: Any) -> Any:
+    """As the library reads files: NIfTI may be in metres or micrometres."""
+    import numpy
+    units = getattr(image.header, "get_xyzt_units", lambda: ("mm",))()
+    factor = {"meter": 1000.0, "micron": 0.001}.get(str(units[0]), 1.0)
+    return numpy.diag([factor, factor, factor, 1]) @ image.affine
+
+
+def _stored_values(data: Any) -> tuple[Any, float, float]:
+    """Those of a file, which nibabel would multiply out to float64."""
+    import numpy
+    if not hasattr(data, "get_unscaled"):
+        return numpy.asanyarray(data), 1, 0
+    return data.get_unscaled(), float(data.slope), float(data.inter)
 
 
 def _is_nibabel(source: Any) -> bool:
@@ -88,7 +132,7 @@ def _of_xarray(source: Any, spacing: Any, axes: Optional[str],
         affine = numpy.eye(4)
         for n, axis in enumerate("xyz"):
             affine[n, n], affine[n, 3] = steps[axis], origins[axis]
-    return source.values, spacing, axes, (unit or "")[:15], affine
+    return source.values, spacing, axes, unit, affine
 
 
 def _to_array(source: Any) -> Any:
@@ -130,18 +174,18 @@ def _plain_type(array: Any, copy: Optional[bool]) -> Any:
     return array.astype(wanted)
 
 
-def _contiguous(array: Any, axes: str, copy: Optional[bool]) -> tuple[Any, str]:
-    """Its axes in the order of memory: the matrix turns with them."""
+def _contiguous(array: Any, copy: Optional[bool]
+                ) -> tuple[Any, tuple[int, ...]]:
+    """Its dimensions in the order of memory, and where each of them went."""
     import numpy
-    order = sorted(range(3), key=lambda n: -abs(array.strides[n]))
-    # Dimensions of one element may have any stride; they stay where they are.
-    turned = array.transpose(order)
-    if turned.flags.c_contiguous:
-        return turned, "".join(axes[n] for n in order)
     if array.flags.c_contiguous:
-        return array, axes
+        return array, (0, 1, 2)
+    slowest = sorted(range(3), key=lambda n: -abs(array.strides[n]))
+    turned = array.transpose(slowest)
+    if turned.flags.c_contiguous:
+        return turned, tuple(slowest.index(n) for n in range(3))
     _refuse_copy(copy, "its memory has gaps or runs backwards")
-    return numpy.ascontiguousarray(array), axes
+    return numpy.ascontiguousarray(array), (0, 1, 2)
 
 
 def _refuse_copy(copy: Optional[bool], why: str) -> None:

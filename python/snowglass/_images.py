@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import re
 from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Optional, \
     Sequence, Union
 
@@ -39,14 +40,19 @@ class Image(_snowglass.Image):
     depth: Optional["Image"] = None
     _annotations: Mapping[str, Any] = {}
     _made: Any = None
+    _background: Optional[Sequence[float]] = None  # what "auto" is
+    _values: bool = False                          # modes mean and sum
+    _domain: Optional[tuple[float, float]] = None  # of colours of values
+    _ranged: bool = False                          # whether it was asked for
+    _view: tuple[Any, float] = (None, 1)           # target and zoom, as fitted
 
     def __new__(cls, *_: Any, **__: Any) -> "Image":
         raise TypeError("make an Image by Volume.render or Image.load")
 
     @staticmethod
     def load(path: Path) -> "Image":
-        """Reads PNG, WebP, NPY, PFM, EXR or TIFF."""
-        return _snowglass.load_image(Image, os.fspath(path))
+        """Reads PNG, WebP, JPEG, NPY, PFM, EXR or TIFF."""
+        return _snowglass.load_image(Image, os.fsencode(path))
 
     @property
     def width(self) -> int:
@@ -74,24 +80,48 @@ class Image(_snowglass.Image):
         array."""
         return _recipes.command(self.recipe)
 
-    def save(self, path: Path, *, background: Color = None, bits: int = 0,
+    def save(self, path: Path, *, background: Color = "auto", bits: int = 0,
              overwrite: bool = True, title: Optional[str] = None) -> "Image":
-        """Writes .png, .webp, .npy, .pfm, .exr or .tif, whole or not at all.
+        """Writes .png, .webp, .jpg, .npy, .pfm, .exr or .tif, whole or not at
+        all.  PNG, WebP and JPEG show letters and bars; the others hold the
+        pixels as they are.
 
-        background    "black", "white", "#rrggbb" or three numbers 0 to 1 that
-                      PNG and WebP are laid on; None: transparent
+        background    what PNG, WebP and JPEG are laid on: "auto" (dark; black
+                      for projections), "black", "white", "#rrggbb", three
+                      numbers 0 to 1; None: transparent
         bits          8 or 16 a channel of PNG
         title         a line of text at the upper left
         """
-        marks = dict(self._annotations)
+        name = os.fsencode(path)
+        picture, marks = self, dict[str, Any]()
         if title is not None:
             marks["title"] = title
-        self._save(os.fspath(path), background=color_of(background), bits=bits,
-                   overwrite=overwrite, depth=self.depth
-                   if os.fspath(path).endswith(".exr") else None, **marks)
+        if _snowglass.format_bits(name) > 0:
+            picture, drawn = self._drawn()
+            marks = {**drawn, **marks}
+        elif background == "auto":
+            background = None
+        depth = self.depth if name.lower().endswith(b".exr") else None
+        picture._save(name, background=self._color(background), bits=bits,
+                      overwrite=overwrite, depth=depth, **marks)
         return self
 
-    def png(self, background: Color = None) -> bytes:
+    def _color(self, background: Color) -> Optional[Sequence[float]]:
+        return self._background if background == "auto" \
+            else color_of(background)
+
+    def _drawn(self) -> tuple["Image", dict[str, Any]]:
+        """What files of levels show, values in colours, and its annotations."""
+        marks, picture = dict(self._annotations), self
+        range = self._domain
+        if self._values:
+            low, high = self._domain if self._ranged and self._domain else \
+                (float("nan"), float("nan"))
+            picture, low, high = self._paint(Image, low, high)
+            range = (low, high) if low or high else range
+        return picture, {**marks, "range": range} if range else marks
+
+    def png(self, background: Color = "auto") -> bytes:
         """The bytes of a PNG file."""
         import tempfile
         with tempfile.TemporaryDirectory() as folder:
@@ -101,16 +131,18 @@ class Image(_snowglass.Image):
                 return file.read()
 
     def _repr_png_(self) -> bytes:
-        return self.png("black")
+        return self.png()
 
-    def to_rgb(self, background: Color = "black") -> "numpy.typing.NDArray[Any]":
-        """uint8 of shape (height, width, 3), on a background."""
+    def to_rgb(self, background: Color = "auto") -> "numpy.typing.NDArray[Any]":
+        """uint8 of shape (height, width, 3), on a background (None: black),
+        with neither letters nor bars."""
         import numpy
-        data = self._to_rgb8(color_of(background) or (0.0, 0.0, 0.0))
-        return numpy.frombuffer(data, numpy.uint8).reshape(
+        picture = self._drawn()[0]
+        data = picture._save(None, background=self._color(background))
+        return numpy.frombuffer(data or b"", numpy.uint8).reshape(
             self.height, self.width, 3)
 
-    def to_pil(self, background: Color = None) -> Any:
+    def to_pil(self, background: Color = "auto") -> Any:
         """A picture of the library Pillow."""
         import io
         import PIL.Image  # type: ignore[import]
@@ -141,8 +173,12 @@ def compare(a: Union[Image, Path], b: Union[Image, Path]) -> Difference:
     return Difference(*_snowglass.compare(*pictures))
 
 
-NAMED = {"black": (0.0, 0.0, 0.0), "white": (1.0, 1.0, 1.0),
-         "grey": (0.5, 0.5, 0.5), "gray": (0.5, 0.5, 0.5)}
+# Those that the command line knows.
+NAMED = {"black": "000000", "white": "ffffff", "grey": "808080",
+         "gray": "808080", "silver": "c0c0c0", "red": "ff0000",
+         "green": "008000", "blue": "0000ff", "navy": "000080",
+         "yellow": "ffff00", "magenta": "ff00ff", "cyan": "00ffff",
+         "orange": "ffa500"}
 
 
 def color_of(given: Color) -> Optional[Sequence[float]]:
@@ -151,13 +187,12 @@ def color_of(given: Color) -> Optional[Sequence[float]]:
         return None
     if not isinstance(given, str):
         return tuple(float(part) for part in given)
-    if given in NAMED:
-        return NAMED[given]
-    digits = given[1:]
-    if given.startswith("#") and len(digits) == 6:
-        try:
-            return tuple(int(digits[n:n + 2], 16) / 255 for n in (0, 2, 4))
-        except ValueError:
-            pass
-    raise ValueError(f"'{given}' is no colour: give black, white, grey, "
+    digits = NAMED.get(given.lower(), "")
+    if given.startswith("#"):
+        digits = given[1:]
+    if len(digits) == 3:
+        digits = "".join(2 * digit for digit in digits)
+    if re.fullmatch("[0-9a-fA-F]{6}", digits):
+        return tuple(int(digits[n:n + 2], 16) / 255 for n in (0, 2, 4))
+    raise ValueError(f"'{given}' is no colour: give {', '.join(NAMED)}, #rgb, "
                      f"#rrggbb or three numbers 0 to 1")

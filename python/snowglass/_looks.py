@@ -72,6 +72,11 @@ def look_of(look: Union[Look, str, None]) -> Look:
                     f"not {type(look).__name__}")
 
 
+def is_ranged(look: Any) -> bool:
+    """Whether a look names the range that it is spread over."""
+    return isinstance(look, Look) and look.range not in (None, "auto")
+
+
 def _parse_range(given: Optional[Range]) -> tuple[str, float, float]:
     if given is None or given == "auto":
         return "auto", 0.0, 0.0

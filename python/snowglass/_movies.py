@@ -5,13 +5,24 @@ import os
 import re
 from typing import Any, Callable, Optional
 
-from ._images import Color, color_of
+from ._images import Color
+from ._looks import is_ranged
 
-ENCODERS = {".mp4": ["-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "18"],
-            ".webm": ["-c:v", "libvpx-vp9", "-pix_fmt", "yuv420p", "-crf", "24",
-                      "-b:v", "0"],
-            ".gif": ["-filter_complex",
-                     "split[a][b];[a]palettegen[p];[b][p]paletteuse"]}
+# As the command line does, in programs/movie/movie_encoder.c: 4:2:0 has even
+# sides, so that an odd one gets a black line more, and levels of BT.709.
+VIDEO = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:"
+         "out_range=tv:flags=accurate_rnd+full_chroma_int,format=yuv420p"]
+TAGS = ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc",
+        "bt709", "-color_range", "tv"]
+ENCODERS = {
+    ".mp4": [*VIDEO, "-c:v", "libx264", "-preset", "veryfast", "-crf", "18",
+             *TAGS, "-movflags", "+faststart", "-f", "mp4"],
+    ".webm": [*VIDEO, "-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0",
+              "-deadline", "realtime", "-cpu-used", "6", "-row-mt", "1", *TAGS,
+              "-f", "webm"],
+    ".gif": ["-vf", "split[a][b];[a]palettegen=stats_mode=single:"
+             "reserve_transparent=0[p];[b][p]paletteuse=new=1:dither=bayer:"
+             "bayer_scale=4", "-loop", "0", "-f", "gif"]}
 
 
 def turntable(volume: Any, path: str, look: Any, frames: int, fps: float,
@@ -21,8 +32,12 @@ def turntable(volume: Any, path: str, look: Any, frames: int, fps: float,
         raise ValueError(f"{frames} frames: give at least 1")
     start = float(options.pop("azimuth", 0))
     angles = [start + 360 * n / frames for n in range(frames)]
-    transfer = volume._transfer(look, options.get("mode") or "over")
-    background = options.pop("background", None)
+    mode = options.get("mode") or "over"
+    if mode == "sum" and not is_ranged(look):
+        raise ValueError("mode sum: all frames of a movie need the same range; "
+                         "give Look(range=(low, high))")
+    transfer = volume._transfer(look, mode)
+    background = options.pop("background", "auto")
     suffix = os.path.splitext(path)[1].lower()
     if re.search(r"%0?\d*d", path):
         save = _save_by(path, background)
@@ -33,8 +48,15 @@ def turntable(volume: Any, path: str, look: Any, frames: int, fps: float,
                          f"files by a pattern such as turn_%04d.png")
     try:
         for n, angle in enumerate(angles):
-            save(n, volume.render(transfer, azimuth=angle, _azimuths=angles,
-                                  **options))
+            image = volume.render(transfer, azimuth=angle, _azimuths=angles,
+                                  **options)
+            image._ranged = True  # the same colours in all frames
+            save(n, image)
+            if n == 0:  # the frame that suits all of them
+                target, options["zoom"] = image._view
+                options["fit"] = "volume"
+                if target and options.get("position") is None:
+                    options["target"] = target
             if progress:
                 progress("turntable", (n + 1) / frames)
     except BaseException:
@@ -60,7 +82,7 @@ class _Encoder:
             raise RuntimeError(f"{path}: movies need the program ffmpeg; "
                                f"install it, or write turn_%04d.png")
         self.path, self.suffix, self.fps = path, suffix, fps
-        self.background = color_of(background) or (0.0, 0.0, 0.0)
+        self.background = background
         root, ext = os.path.splitext(path)
         self.partial = f"{root}.{os.getpid()}.part{ext}"
         self.process: Any = None
@@ -71,12 +93,14 @@ class _Encoder:
             self.process = subprocess.Popen(
                 [str(self.program), "-v", "error", "-y", "-f", "rawvideo",
                  "-pix_fmt", "rgb24", "-s", f"{image.width}x{image.height}",
-                 "-r", f"{self.fps:g}", "-i", "-", *ENCODERS[self.suffix],
-                 self.partial],
+                 "-framerate", f"{self.fps:.10g}", "-i", "-", "-an",
+                 *ENCODERS[self.suffix], "file:" + self.partial],
                 stdin=subprocess.PIPE, stderr=subprocess.PIPE)
         assert self.process.stdin
         try:
-            self.process.stdin.write(image._to_rgb8(self.background))
+            picture, marks = image._drawn()
+            self.process.stdin.write(picture._save(
+                None, background=image._color(self.background), **marks))
         except BrokenPipeError:
             self.finish()
 

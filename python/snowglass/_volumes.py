@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, Optional, \
 
 from . import _arrays, _movies, _recipes, _snowglass
 from ._images import Image, Path
-from ._looks import Look, look_of
+from ._looks import Look, is_ranged, look_of
 
 if TYPE_CHECKING:
     import numpy.typing
@@ -64,16 +64,20 @@ class Volume(_snowglass.Volume):
 
     A Volume may be used by several threads; they take turns.
     """
+    _axes: str = "zyx"                       # of the array
+    _order: tuple[int, ...] = (0, 1, 2)      # of its dimensions in memory
 
     def __new__(cls, source: Any, *, progress: Progress = None,
                 memory: int = 0, **options: Any) -> "Volume":
         if isinstance(source, (str, os.PathLike)):
-            return cls._open(os.fspath(source), memory, progress, options)
+            return cls._open(source, memory, progress, options)
         if memory:
             raise TypeError("memory counts for files only")
         given = _arrays.wrap(source, **options)
-        made = _snowglass.wrap(cls, given.array, given.matrix, given.slope,
-                               given.intercept, given.medical, given.unit, None)
+        made = _snowglass.wrap(cls, given.array, given.order, given.matrix,
+                               given.slope, given.intercept, given.medical,
+                               given.unit, None)
+        made._axes, made._order = given.axes, given.order
         if given.frozen:
             made._freeze()
         return made
@@ -85,7 +89,7 @@ class Volume(_snowglass.Volume):
     _source: Optional[Mapping[str, Any]] = None
 
     @classmethod
-    def _open(cls, path: str, memory: int, progress: Progress,
+    def _open(cls, path: Path, memory: int, progress: Progress,
               options: Mapping[str, Any]) -> "Volume":
         fields = dict(options)
         clip = fields.pop("clip", None)
@@ -94,49 +98,74 @@ class Volume(_snowglass.Volume):
             fields["spacing"] = (spacing,) * 3
         for name in ("mask", "dataset", "series", "labels", "component"):
             if fields.get(name) is not None:
-                fields[name] = os.fspath(fields[name]) if name == "mask" \
+                fields[name] = os.fsencode(fields[name]) if name == "mask" \
                     else str(fields[name])
+        if fields.get("time") is not None:  # nobody need be told of others
+            fields.setdefault("each_time", True)
         if "type" in fields and fields["type"] is not None:
             fields["type"] = str(fields["type"])
-        made = _snowglass.open(cls, path, fields, clip, memory,
+        made = _snowglass.open(cls, os.fsencode(path), fields, clip, memory,
                                _progress_of(progress))
-        fields["clip"] = clip
-        made._source = {"input": path, **{name: value for name, value
-                        in fields.items() if value is not None}}
+        made._source = {"input": os.fspath(path), **{
+            name: value for name, value in {**fields, **options}.items()
+            if value is not None and name != "each_time"}}
         return made
+
+    def close(self) -> None:
+        """Gives the memory back now, not when the last name of the volume goes.
+        Pictures stay.  BufferError: arrays of the voxels are in use."""
+        self._close()
 
     # --- what it is ---
 
     @property
     def info(self) -> Mapping[str, Any]:
         """dims (x, y, z), type, spacing, matrix, slope, intercept, medical,
-        unit, format, times, time, storage."""
-        return self._info
+        unit, format, times, time, storage, modality, hounsfield."""
+        info = dict(self._info)
+        columns = _arrays.columns_of(self._order, self._axes)
+        if columns != [0, 1, 2]:  # x, y, z lie in another order in memory
+            x, y, z = (columns.index(axis) for axis in range(3))
+            for name in ("dims", "spacing"):
+                info[name] = tuple(info[name][n] for n in (x, y, z))
+            info["matrix"] = tuple(tuple(row[n] for n in (x, y, z, 3))
+                                   for row in info["matrix"])
+        return info
+
+    @property
+    def axes(self) -> str:
+        """What the dimensions of `numpy.asarray(volume)` are: "zyx", "xyz"."""
+        return self._axes
 
     @property
     def dims(self) -> tuple[int, int, int]:
         """Voxels along x, y, z."""
-        return self._info["dims"]
+        return self.info["dims"]
 
     @property
     def shape(self) -> tuple[int, int, int]:
-        """Of `numpy.asarray(volume)`: voxels along z, y, x."""
-        return self._info["dims"][::-1]
+        """Of `numpy.asarray(volume)`: that of the array that was given; of a
+        file voxels along z, y, x."""
+        z, y, x = reversed(self._info["dims"])
+        slowest = (z, y, x)
+        return slowest[self._order[0]], slowest[self._order[1]], \
+            slowest[self._order[2]]
 
     @property
     def spacing(self) -> tuple[float, float, float]:
         """Lengths of a voxel along x, y, z."""
-        return self._info["spacing"]
+        return self.info["spacing"]
 
     @property
     def affine(self) -> "numpy.typing.NDArray[Any]":
         """4x4 matrix from indices x, y, z to the world."""
         import numpy
-        return numpy.array(self._info["matrix"])
+        return numpy.array(self.info["matrix"])
 
     @property
     def statistics(self) -> Mapping[str, Any]:
-        """voxels, finite, min, max, sum of the data values."""
+        """voxels, finite, min, max, sum of the data values; hounsfield: whether
+        they are those of a CT."""
         return self._statistics()
 
     def histogram(self, bins: int = 256,
@@ -155,7 +184,8 @@ class Volume(_snowglass.Volume):
             numpy.linspace(range[0], range[1], bins + 1)
 
     def __array__(self, dtype: Any = None, copy: Any = None) -> "numpy.typing.NDArray[Any]":
-        """The stored values, of shape (z, y, x), not writeable."""
+        """The stored values, in the shape that was given; of files (z, y, x).
+        Not writeable."""
         import numpy
         array: Any = numpy.asarray(memoryview(self))  # type: ignore[arg-type]
         if dtype is not None and array.dtype != dtype:
@@ -163,7 +193,7 @@ class Volume(_snowglass.Volume):
         return array.copy() if copy else array
 
     def __str__(self) -> str:
-        info, known = self._info, self._statistics()
+        info, known = self.info, self._statistics()
         dims = "x".join(str(each) for each in info["dims"])
         spacing = "x".join(f"{each:g}" for each in info["spacing"])
         unit = " " + info["unit"] if info["unit"] else ""
@@ -171,31 +201,39 @@ class Volume(_snowglass.Volume):
                f"{known['min']:g}..{known['max']:g}"
 
     def __repr__(self) -> str:
-        dims = "x".join(str(each) for each in self._info["dims"])
+        dims = "x".join(str(each) for each in self.dims)
         return f"<snowglass.Volume {dims} {self._info['type']}>"
 
     # --- what is made of it ---
 
     def save(self, path: Path, *, overwrite: bool = True) -> "Volume":
-        """Writes .nrrd, .nii, .nii.gz, .mha, .npy or .raw."""
-        self._save(os.fspath(path), overwrite)
+        """Writes .nrrd, .nii, .nii.gz, .mha, .npy or .raw, x fastest."""
+        import numpy
+        volume, info = self, self.info
+        if info["dims"] != self._info["dims"] or \
+                info["matrix"] != self._info["matrix"]:
+            order = [self._axes.index(axis) for axis in "zyx"]
+            volume = Volume(numpy.asarray(self).transpose(order).copy(),
+                            **{name: info[name] for name in
+                               ("slope", "intercept", "medical", "unit")},
+                            affine=info["matrix"])
+        volume._save(os.fsencode(path), overwrite)
         return self
 
     def masked(self, mask: Any, labels: Union[str, Sequence[int], None] = None
                ) -> "Volume":
-        """A volume without the voxels where the mask, an array [z, y, x] of the
-        same shape, has none of the labels (by default: where it is 0)."""
-        import numpy
-        voxels = numpy.ascontiguousarray(mask)
-        if voxels.dtype == bool:
-            voxels = voxels.view(numpy.uint8)
+        """A volume without the voxels where the mask, an array of the same
+        shape, has none of the labels (by default: where it is 0)."""
+        voxels = _arrays.like(mask, self.shape, self._order)
         if labels is not None and not isinstance(labels, str):
             labels = ",".join(str(int(each)) for each in labels)
         info = self._info
         matrix = [part for row in info["matrix"] for part in row]
-        other = _snowglass.wrap(Volume, voxels, matrix, 1.0, 0.0,
+        other = _snowglass.wrap(Volume, voxels, (0, 1, 2), matrix, 1.0, 0.0,
                                 info["medical"], info["unit"], self)
-        return _snowglass.masked(type(self), self, other, labels)
+        made = _snowglass.masked(Volume, self, other, labels)
+        made._axes, made._order = self._axes, self._order
+        return made
 
     def look(self, look: Union[Look, str, None] = None) -> str:
         """What a look becomes for this volume, in one line."""
@@ -247,7 +285,7 @@ class Volume(_snowglass.Volume):
             raise ValueError(f"fit '{fit}': give visible or volume")
         mode = settings.get("mode") or "over"
         transfer = self._transfer(look, mode)
-        width, height = (size, size) if isinstance(size, int) else size
+        width, height = (size, size) if hasattr(size, "__index__") else size
         asked = {"view": view, "size": (width, height), "azimuth": azimuth,
                  "elevation": elevation, "roll": roll, "zoom": zoom,
                  "perspective": perspective, "position": position,
@@ -259,20 +297,38 @@ class Volume(_snowglass.Volume):
                   "fov": 30.0 if perspective is True else float(perspective),
                   "position": position, "target": target, "upward": up}
         _set_light(light, settings)
-        if transfer.unshaded and settings.get("shade") is None and \
-                settings.get("mode") in (None, "over"):
+        if transfer.unshaded and settings.get("shade") is None:
             settings["shade"] = "none"
         azimuths = settings.pop("_azimuths", None)
-        image, depth, _, _, stats = self._render(
+        image, depth, target, zoom, stats = self._render(
             Image, transfer, view, fields, settings, fit == "visible", azimuths,
             _progress_of(progress))
-        image.stats, image.depth = stats, depth
+        image.stats, image.depth, image._view = stats, depth, (target, zoom)
         if azimuths is None and not isinstance(look, _snowglass.Transfer):
             image._made = (self._source, self._info["unit"],
-                           _chosen(look, mode), asked)
-        image._annotations = {"letters": letters, "legend": legend,
-                              "unit": unit, "scale_bar": scale_bar}
+                           look_of(look), asked)
+        self._annotate(image, mode, transfer, look, {
+            "letters": letters, "legend": legend, "unit": unit,
+            "scale_bar": scale_bar})
         return image
+
+    def _annotate(self, image: Image, mode: str, transfer: Any, look: Any,
+                  annotations: dict[str, Any]) -> None:
+        """Notes what a saved picture will show, as the command line has it."""
+        if annotations["legend"] and annotations["unit"] is None:
+            annotations["unit"] = self._unit_of_values()
+        image._annotations = annotations
+        image._values = mode in ("mean", "sum")
+        image._domain = None if mode == "over" else transfer.domain
+        image._ranged = is_ranged(look)
+        image._background = (20 / 255,) * 3 if mode in ("over", "iso") \
+            else (0.0,) * 3
+
+    def _unit_of_values(self) -> Optional[str]:
+        """HU of a CT, which is known by its values where no modality is named."""
+        info = self._info
+        return "HU" if info["hounsfield"] or not info["modality"] and \
+            self._statistics()["hounsfield"] else None
 
     def project(self, mode: str = "mip", *, view: Optional[str] = None,
                 size: Union[int, Sequence[int]] = 512, **options: Any
@@ -321,10 +377,12 @@ class Volume(_snowglass.Volume):
         Without a patient, y or z is up.  `stats` of the picture has axis, index
         and position.
         """
-        image = self._draw_slice(axis, at, self._transfer(look, "slice"), size,
+        transfer = self._transfer(look, "slice")
+        image = self._draw_slice(axis, at, transfer, size,
                                  {"kernel": kernel, "threads": threads})
-        image._annotations = {"letters": letters, "legend": legend,
-                              "unit": unit, "scale_bar": scale_bar}
+        self._annotate(image, "slice", transfer, look, {
+            "letters": letters, "legend": legend, "unit": unit,
+            "scale_bar": scale_bar})
         return image
 
     def slice_values(self, axis: str = "axial",
@@ -343,7 +401,7 @@ class Volume(_snowglass.Volume):
                     settings: Mapping[str, Any]) -> Image:
         if size is None:
             size = 0
-        width, height = (size, size) if isinstance(size, int) else size
+        width, height = (size, size) if hasattr(size, "__index__") else size
         along, index, position = self._find_slice(axis, at)
         image = self._slice(Image, "xyz"[along], index, transfer, width, height,
                             settings)
@@ -354,7 +412,11 @@ class Volume(_snowglass.Volume):
                     ) -> tuple[int, int, float]:
         """The grid's axis, the slice's number, and where its middle lies along
         the nearest axis of the world."""
-        along, world = self._slice_axis(axis)
+        inner = axis.lower()
+        if inner in ("x", "y", "z"):  # which may lie otherwise in memory
+            columns = _arrays.columns_of(self._order, self._axes)
+            inner = "xyz"[columns.index("xyz".index(inner))]
+        along, world = self._slice_axis(inner)
         dims, row = self._info["dims"], self._info["matrix"][world]
         unit = self._info["unit"] or "mm"
         first = row[3] + sum(row[n] * (dims[n] - 1) / 2
@@ -395,7 +457,8 @@ def _chosen(look: Union[Look, str, None], mode: str) -> Look:
     if mode not in ("over", "iso") and \
             chosen.preset is None and chosen.colors is None:
         chosen = dataclasses.replace(chosen, preset="linear")
-        if mode == "slice" and chosen.range is None:
+        # Over the file's window, or all values but a few far off.
+        if not is_ranged(chosen):
             chosen = dataclasses.replace(chosen, range="robust")
     return chosen
 
@@ -437,30 +500,47 @@ def render(source: Any = None, look: Union[Look, str, None] = None, *,
 
 
 class Step(Volume):
-    """A volume of a series; `index` is its number."""
+    """A volume of a series; `index` is its number.  It is closed when the next
+    one is asked for."""
     index: int = 0
     path: str = ""
+    _times: int = 1
 
 
 def series(pattern: Union[Path, Sequence[Path]], **options: Any
            ) -> Iterator[Step]:
-    """The volumes of a series, one after the other, so that no more than one is
-    in memory: files by a pattern such as "run_%04d.h5", a list of files, or the
-    time steps of one file.  Options are those of Volume."""
+    """The volumes of a series, one after the other: files by a pattern such as
+    "run_%04d.h5", a list of files, or the time steps of one file.  Options are
+    those of Volume.  A step is closed when the next one is asked for, so that no
+    more than one is in memory, unless arrays of its voxels are in use."""
     if not isinstance(pattern, (str, os.PathLike)):
         paths = [(n, os.fspath(each)) for n, each in enumerate(pattern)]
     else:
         paths = _files_of(os.fspath(pattern))
-    for index, path in paths:
-        step = Step(path, **options)
-        times = step.info["times"]
-        step.index, step.path = index, path
+    if not paths:
+        return
+    index, path = paths[0]
+    if len(paths) == 1 and options.get("time") is None:
+        options["each_time"] = True
+    step = _step(index, path, options)
+    yield step
+    times = step._times if "each_time" in options else 1
+    later = [(time, path, {**options, "time": time})
+             for time in range(1, times)] or \
+        [(index, path, options) for index, path in paths[1:]]
+    for each in later:
+        try:
+            step.close()
+        except BufferError:
+            pass
+        step = _step(*each)
         yield step
-        if len(paths) == 1 and "time" not in options:
-            for time in range(1, times):
-                step = Step(path, time=time, **options)
-                step.index, step.path = time, path
-                yield step
+
+
+def _step(index: int, path: str, options: Mapping[str, Any]) -> Step:
+    step = Step(path, **options)
+    step.index, step.path, step._times = index, path, step._info["times"]
+    return step
 
 
 def _files_of(pattern: str) -> list[tuple[int, str]]:

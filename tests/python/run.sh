@@ -9,7 +9,7 @@ export SNOWGLASS=$2 PYTHONPATH=$3
     exit 77
 }
 if [ "${SNOW_TIER:-short}" = short ]; then
-    "$python" -m unittest discover -s "$here" -p 'test_s*.py'
+    "$python" -m unittest discover -s "$here" -p 'test_[st]*.py'
     exit
 fi
 "$python" -m unittest discover -s "$here" -p 'test_*.py'

@@ -3,7 +3,9 @@ place, errors are the library's own lines, threads take turns.
 
     SNOWGLASS=build/snowglass PYTHONPATH=build/python python3 -m unittest -v
 """
+import contextlib
 import gc
+import itertools
 import os
 import resource
 import signal
@@ -247,8 +249,102 @@ class Arrays(InFolder):
         self.assertEqual(half.statistics["finite"], mask.sum())
         self.assertEqual(volume.masked(mask.astype(int) * 5, [4, 5])
                          .statistics["finite"], mask.sum())
-        with self.assertRaises(sg.Error):
+        with self.assertRaisesRegex(ValueError, "must be the same"):
             volume.masked(mask[:-1])
+
+    def each_order(self):
+        """A cube of three different sides, as arrays of any order of memory
+        and of axes, and what they are called."""
+        cube = numpy.arange(4 * 5 * 6, dtype=numpy.int16).reshape(4, 5, 6)
+        for slowest in itertools.permutations(range(3)):
+            back = [slowest.index(n) for n in range(3)]
+            array = cube.transpose(slowest).copy().transpose(back)
+            for axes in itertools.permutations("zyx"):
+                yield array, "".join(axes)
+
+    def test_shape_and_values_are_as_given(self):
+        for array, axes in self.each_order():
+            with self.subTest(strides=array.strides, axes=axes):
+                volume = sg.Volume(array, axes=axes, copy=False,
+                                   spacing=(0.5, 1, 2), unit="mm")
+                self.assertEqual(volume.shape, array.shape)
+                self.assertEqual(volume.axes, axes)
+                seen = numpy.asarray(volume)
+                numpy.testing.assert_array_equal(seen, array)
+                self.assertTrue(numpy.shares_memory(seen, array))
+                self.assertEqual(volume.dims, tuple(
+                    array.shape[axes.index(axis)] for axis in "xyz"))
+                self.assertEqual(volume.spacing, (0.5, 1, 2))
+                numpy.testing.assert_array_equal(
+                    volume.affine, numpy.diag([0.5, 1, 2, 1]))
+                self.assertIn("x".join(map(str, volume.dims)), str(volume))
+                self.assertEqual(bytes(memoryview(volume)), array.tobytes())
+
+    def test_masks_lie_as_the_volume_does(self):
+        for array, axes in self.each_order():
+            with self.subTest(strides=array.strides, axes=axes):
+                volume = sg.Volume(array, axes=axes, spacing=(0.5, 1, 2))
+                mask = numpy.zeros(array.shape, bool)
+                mask[1:, :2, 3] = True
+                for given in (mask, numpy.asfortranarray(mask),
+                              sg.Volume(mask)):
+                    half = volume.masked(given)
+                    self.assertEqual(half.shape, array.shape)
+                    self.assertEqual(half.axes, axes)
+                    numpy.testing.assert_array_equal(
+                        numpy.asarray(half), numpy.where(mask, array, numpy.nan))
+                    self.assertEqual(half.spacing, (0.5, 1, 2))
+
+    def test_saved_files_have_x_first(self):
+        for array, axes in self.each_order():
+            with self.subTest(strides=array.strides, axes=axes):
+                affine = [[0, 2, 0, 5], [3, 0, 0, 6], [0, 0, 4, 7],
+                          [0, 0, 0, 1]]
+                volume = sg.Volume(array, axes=axes, affine=affine, slope=2)
+                volume.save(self.path("a.mha"))
+                file = sg.Volume(self.path("a.mha"))
+                self.assertEqual(file.dims, volume.dims)
+                numpy.testing.assert_allclose(file.affine, affine)
+                numpy.testing.assert_array_equal(
+                    numpy.asarray(file), array.transpose(
+                        [axes.index(axis) for axis in "zyx"]))
+                self.assertEqual(file.info["slope"], 2)
+                sg.Volume(array, axes=axes).save(self.path("a.npy"))
+                numpy.testing.assert_array_equal(
+                    numpy.load(self.path("a.npy")),
+                    array.transpose([axes.index(axis) for axis in "zyx"]))
+
+    def test_slices_of_any_order_are_the_same(self):
+        for array, axes in self.each_order():
+            plain = sg.Volume(array.transpose([axes.index(a) for a in "zyx"])
+                              .copy(), spacing=(0.5, 1, 2))
+            volume = sg.Volume(array, axes=axes, spacing=(0.5, 1, 2))
+            for axis in ("x", "y", "z", "axial", "sagittal"):
+                with self.subTest(axis, strides=array.strides, axes=axes):
+                    for at in (1, None):
+                        numpy.testing.assert_array_equal(
+                            volume.slice_values(axis, at),
+                            plain.slice_values(axis, at))
+
+    def test_closed_volumes(self):
+        volume = sg.Volume(self.array.copy())
+        view = numpy.asarray(volume)
+        image = volume.render(size=32)
+        with self.assertRaisesRegex(BufferError, "in use"):
+            volume.close()
+        self.assertEqual(view[20, 30, 30], self.array[20, 30, 30])
+        del view
+        volume.close()
+        volume.close()
+        for use in (lambda: volume.render(), lambda: volume.info,
+                    lambda: volume.shape, lambda: memoryview(volume),
+                    lambda: volume.statistics, lambda: volume.histogram(),
+                    lambda: volume.save(self.path("a.npy")),
+                    lambda: volume.slice(), lambda: volume.slice_values("x"),
+                    lambda: volume.look(), lambda: print(volume)):
+            with self.assertRaisesRegex(ValueError, "closed"):
+                use()
+        image.save(self.path("a.png"))
 
     def test_memory_grows_by_no_copy(self):
         array = numpy.zeros((256, 256, 400), numpy.uint8)  # 26 MB
@@ -346,6 +442,55 @@ class Arrays(InFolder):
                                  for n in (3, 5, 12)])
         with self.assertRaises(FileNotFoundError):
             next(sg.series(self.path("none_%d.nrrd")))
+        self.assertEqual(list(sg.series([])), [])
+
+    def test_a_series_holds_one_step(self):
+        for n in range(4):
+            sg.Volume(self.array + n).save(self.path(f"r_{n}.nrrd"))
+        seen, kept = [], []
+        for step in sg.series(self.path("r_%d.nrrd")):
+            kept.append(numpy.asarray(step)[0, 0, :4] if step.index == 1
+                        else None)
+            seen.append(step)
+        self.assertEqual(kept[1].tolist(), (self.array[0, 0, :4] + 1).tolist())
+        self.assertEqual(seen[3].shape, self.array.shape)
+        self.assertEqual(seen[1].shape, self.array.shape)  # kept by the array
+        for n in (0, 2):
+            with self.assertRaisesRegex(ValueError, "closed"):
+                seen[n].shape
+
+    def test_memory_of_a_series(self):
+        voxels = numpy.zeros(32 << 20, numpy.uint8)
+        for n in range(3):
+            voxels.tofile(self.path(f"v_{n}.raw"))
+        code = f"""if True:
+            import re, snowglass as sg
+            most = lambda: int(re.search(r"VmHWM:\\s*(\\d+)", open(
+                "/proc/self/status").read()).group(1))
+            before = most()
+            for step in sg.series({self.path("v_%d.raw")!r}, dims=(256, 256, 512),
+                                  type="uint8"):
+                assert step.statistics["max"] == 0
+            print((most() - before) / 1024)"""
+        said = subprocess.run([sys.executable, "-c", code], check=True,
+                              capture_output=True, text=True).stdout
+        self.assertLess(float(said), 48)  # MB; two steps are 64
+
+    def test_time_steps_of_one_file(self):
+        try:
+            import nibabel
+        except ImportError:
+            self.skipTest("nibabel is not installed")
+        array = numpy.arange(3 * 4 * 5 * 3, dtype=numpy.int16)
+        image = nibabel.Nifti1Image(array.reshape(5, 4, 3, 3), numpy.eye(4))
+        image.to_filename(self.path("t.nii"))
+        self.assertEqual([step.index for step in sg.series(self.path("t.nii"))],
+                         [0, 1, 2])  # and warns of no other steps
+        steps = list(sg.series(self.path("t.nii"), time=2))
+        numpy.testing.assert_array_equal(
+            numpy.asarray(steps[0]).T, array.reshape(5, 4, 3, 3)[..., 2])
+        with self.assertWarnsRegex(sg.SnowglassWarning, "time"):
+            sg.Volume(self.path("t.nii"))
 
 
 class Calls(InFolder):
@@ -403,6 +548,63 @@ class Calls(InFolder):
         timer.join()
         self.assertLess(time.perf_counter() - took, 0.5)
         volume.render(size=16)
+
+    def test_interrupt_of_a_thread_that_waits(self):
+        volume = head()
+        busy = threading.Event()
+
+        def stay(stage, fraction):
+            busy.set()
+            if enough.wait(0.1):
+                raise TimeoutError
+
+        def work():
+            with contextlib.suppress(TimeoutError):
+                volume.render(size=2000, method="raycast", progress=stay)
+
+        enough = threading.Event()
+        worker = threading.Thread(target=work)
+        worker.start()
+        self.assertTrue(busy.wait(20))
+        timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            volume.render(size=16)
+        alive = worker.is_alive()
+        enough.set()
+        worker.join()
+        self.assertTrue(alive)  # it was interrupted, and not served
+        volume.render(size=16)
+
+    def test_text_that_is_not_utf8(self):
+        with self.assertRaisesRegex(sg.Error, "caf.*cannot be opened"):
+            sg.Volume(os.fsdecode(b"caf\xe9.nrrd"))
+        with self.assertRaisesRegex(sg.Error, "caf"):
+            sg.Image.load(os.fsdecode(b"caf\xe9.png"))
+        name = os.fsdecode(os.fsencode(self.path("")) + b"caf\xe9.")
+        head().save(name + "nrrd").render(size=16).save(name + "png")
+        self.assertEqual(sg.Volume(name + "nrrd").dims, (64, 64, 48))
+        self.assertEqual(sg.Image.load(name + "png").width, 16)
+        with open(self.path("u.nrrd"), "wb") as file:
+            file.write(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\n"
+                       b"space dimension: 3\nspace units: \"\xb5m\" \"\xb5m\" "
+                       b"\"\xb5m\"\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n"
+                       b"encoding: raw\n\n" + bytes(range(8)))
+        self.assertTrue(sg.Volume(self.path("u.nrrd")).info["unit"])
+        array = numpy.zeros((2, 2, 2), numpy.uint8)
+        self.assertEqual(sg.Volume(array, unit="µ" * 9).info["unit"], "µ" * 7)
+
+    def test_a_picture_that_warns_is_not_kept(self):
+        head().render(size=1024, letters=False).save(self.path("a.png"))
+        with open(self.path("a.png"), "ab") as file:
+            file.write(b"more")
+        with self.assertRaisesRegex(sg.SnowglassWarning, "after"):
+            sg.Image.load(self.path("a.png"))
+        before = resident()
+        for _ in range(8):  # of 16 MB each
+            with self.assertRaises(sg.SnowglassWarning):
+                sg.Image.load(self.path("a.png"))
+        self.assertLess(resident() - before, 32 << 20)
 
     def test_errors(self):
         with self.assertRaisesRegex(sg.Error, "nope.nrrd: cannot be opened"):

@@ -1,0 +1,250 @@
+"""Pictures and movies of the package are those of the command line, byte for
+byte: the same defaults, letters, bars, background, colours of values.
+
+    SNOWGLASS=build/snowglass PYTHONPATH=build/python python3 -m unittest -v
+"""
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+import warnings
+
+import numpy
+
+import snowglass as sg
+
+TOOL = os.environ.get("SNOWGLASS", "snowglass")
+LONG = os.environ.get("SNOW_TIER", "short") != "short"
+
+
+def some(cases, count):
+    """The first ones; all in the long tier."""
+    return cases if LONG else cases[:count]
+
+
+def patient():
+    """A CT by its values: air at -1000, tissue, bone; and its place."""
+    z, y, x = numpy.ogrid[:30, :40, :50]
+    far = ((x - 25) / 20) ** 2 + ((y - 18) / 15) ** 2 + ((z - 15) / 12) ** 2
+    array = numpy.where(far < 1, 40, -1000).astype(numpy.int16)
+    array[far < 0.3] = 700
+    array[20:24, 5:9, 22:30] = 1200
+    turn = numpy.deg2rad(12)
+    matrix = numpy.diag([0.8, 0.9, 1.6, 1])
+    matrix[:2, :2] = [[-0.8 * numpy.cos(turn), 0.9 * numpy.sin(turn)],
+                      [0.8 * numpy.sin(turn), 0.9 * numpy.cos(turn)]]
+    return sg.Volume(array, affine=matrix, unit="mm", medical=True)
+
+
+def spots():
+    """Values near 100, and one that is far brighter than all others."""
+    array = numpy.zeros((24, 28, 32), numpy.uint16)
+    array[6:18, 8:20, 10:22] = 100 + numpy.arange(12)
+    array[12, 14, 16] = 60000
+    return sg.Volume(array, spacing=(1, 1, 2), unit="um")
+
+
+def cloud():
+    """Values that rise everywhere: no surface to be shaded."""
+    z, y, x = numpy.ogrid[:24, :24, :24]
+    return sg.Volume((x + 2 * y + 3 * z).astype(numpy.float32))
+
+
+def plate():
+    array = numpy.zeros((40, 4, 36), numpy.uint8)
+    array[8:30, 1:3, 6:20] = 200
+    return sg.Volume(array)
+
+
+class Same(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        caught = warnings.catch_warnings()
+        caught.__enter__()
+        self.addCleanup(caught.__exit__, None, None, None)
+        warnings.simplefilter("error")
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def bytes_of(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def file_of(self, make):
+        path = self.path(make.__name__ + ".nrrd")
+        if not os.path.exists(path):
+            make().save(path)
+        return path
+
+    def tool(self, verb, make, *words):
+        subprocess.run([TOOL, verb, self.file_of(make), "-y", "-q", *words],
+                       check=True)
+
+    def same(self, make, words, options, saving=None, suffix=".png"):
+        """A picture of a file by both, and of the array itself."""
+        tool, ours = "tool" + suffix, "ours" + suffix
+        self.tool("render", make, "-s", "180x150", "-o", self.path(tool),
+                  *words)
+        for volume in (sg.Volume(self.file_of(make)), make()):
+            volume.render(size=(180, 150), **options).save(
+                self.path(ours), **(saving or {}))
+            self.assertEqual(sg.compare(self.path(tool),
+                                        self.path(ours)).largest, 0)
+            self.assertEqual(self.bytes_of(tool), self.bytes_of(ours))
+
+
+class Pictures(Same):
+    def test_defaults(self):
+        for make in (patient, spots, cloud, plate):
+            with self.subTest(make.__name__):
+                self.same(make, [], {})
+
+    def test_names_of_views_mean_the_same_side(self):
+        for view in some(["axial", "back", "coronal", "sagittal", "front",
+                          "top", "-x"], 2):
+            for make in some([patient, spots], 1):
+                with self.subTest(view, make=make.__name__):
+                    self.same(make, ["--view", view], {"view": view})
+
+    def test_letters_legend_and_scale_bar(self):
+        for mode in some(["over", "mip", "mean", "minip", "sum", "iso"], 3):
+            words = ["-m", mode] + ["--iso", "60"] * (mode == "iso")
+            options = {"mode": mode, **({"iso": 60} if mode == "iso" else {})}
+            for make in some([patient, spots], 1):
+                with self.subTest(mode, make=make.__name__):
+                    self.same(make, words, options)
+                    self.same(make, [*words, "--legend"],
+                              {**options, "legend": True})
+                    self.same(make, [*words, "--scale-bar", "--no-labels"],
+                              {**options, "scale_bar": True, "letters": False})
+
+    def test_looks(self):
+        for words, look in some([
+                (["-c", "viridis"], "viridis"),
+                (["--preset", "ct-bone"], "ct-bone"),
+                (["--range", "0,300"], sg.Look(clim=(0, 300))),
+                (["--range", "full"], sg.Look(range="full")),
+                (["--range", "p2,p98", "-c", "inferno"],
+                 sg.Look(range="2%,98%", colormap="inferno")),
+                (["--opacity", "-500:0,700:0.8"],
+                 sg.Look(opacity=[(-500, 0), (700, 0.8)]))], 2):
+            for mode in some(["over", "mip", "mean"], 1):
+                with self.subTest(words, mode=mode):
+                    self.same(patient, [*words, "-m", mode, "--legend"],
+                              {"look": look, "mode": mode, "legend": True})
+
+    def test_cameras_and_lights(self):
+        for words, options in some([
+                (["--azimuth", "30", "--elevation", "-20", "--roll", "5"],
+                 {"azimuth": 30, "elevation": -20, "roll": 5}),
+                (["--perspective", "--legend"],
+                 {"perspective": True, "legend": True}),
+                (["--fit", "volume", "--zoom", "1.5"],
+                 {"fit": "volume", "zoom": 1.5}),
+                (["--position", "0,-200,0", "--target", "0,0,0"],
+                 {"position": (0, -200, 0), "target": (0, 0, 0)}),
+                (["--light", "head", "--quality", "high"],
+                 {"light": "head", "quality": "high"}),
+                (["--light", "40,10", "--shade", "phong"],
+                 {"light": (40, 10), "shade": "phong"}),
+                (["--occlusion", "0.5", "--depth-darkening", "0.4"],
+                 {"occlusion": 0.5, "depth_darkening": 0.4}),
+                (["--method", "raycast"], {"method": "raycast"})], 2):
+            for make in some([patient, cloud], 1):
+                with self.subTest(words, make=make.__name__):
+                    self.same(make, words, options)
+
+    def test_backgrounds_bits_and_formats(self):
+        for words, saving, suffix in [
+                (["--background", "none"], {"background": None}, ".png"),
+                (["--background", "white"], {"background": "white"}, ".png"),
+                (["--background", "#18f"], {"background": "#18f"}, ".png"),
+                (["--background", "0.2,0.4,0.6", "--bits", "16"],
+                 {"background": (0.2, 0.4, 0.6), "bits": 16}, ".png"),
+                ([], {}, ".webp"), ([], {}, ".jpg"), ([], {}, ".npy"),
+                ([], {}, ".pfm"), ([], {}, ".exr"), ([], {}, ".tif")]:
+            with self.subTest(words, suffix=suffix):
+                self.same(patient, words, {}, saving, suffix)
+        self.same(patient, ["-m", "mean"], {"mode": "mean"}, {}, ".npy")
+
+    def test_slices(self):
+        for make, axis, at in some([
+                (patient, "axial", "14"), (spots, "axial", "12"),
+                (patient, "x", "20"), (patient, "coronal", "18"),
+                (spots, "sagittal", "15")], 2):
+            for words, options in [
+                    ([], {}), (["-s", "200x170", "--legend"],
+                               {"size": (200, 170), "legend": True}),
+                    (["-s", "200", "-c", "viridis", "--range", "0,90"],
+                     {"size": 200, "look": sg.Look(cmap="viridis",
+                                                   clim=(0, 90))})]:
+                with self.subTest(make.__name__, axis=axis, words=words):
+                    self.tool("slice", make, "--axis", axis, "--at", at, "-o",
+                              self.path("t.png"), *words)
+                    make().slice(axis, int(at), **options).save(
+                        self.path("p.png"))
+                    self.assertEqual(self.bytes_of("t.png"),
+                                     self.bytes_of("p.png"))
+
+    def test_what_is_shown_is_what_is_saved(self):
+        image = patient().render(size=200, legend=True)
+        image.save(self.path("a.png"))
+        self.assertEqual(image.png(), self.bytes_of("a.png"))
+        self.assertEqual(image._repr_png_(), self.bytes_of("a.png"))
+        plain = patient().render(size=200, letters=False)
+        plain.save(self.path("b.png"))
+        levels = numpy.asarray(sg.Image.load(self.path("b.png")))[..., :3]
+        numpy.testing.assert_array_equal(plain.to_rgb(),
+                                         numpy.rint(levels * 255))
+        self.assertEqual(plain.to_rgb()[0, 0].tolist(), [20, 20, 20])
+        mean = patient().render(size=64, mode="mean")
+        self.assertEqual(mean.to_rgb().shape, (64, 64, 3))
+
+
+class Movies(Same):
+    def test_frames(self):
+        for words, options in some([
+                (["--legend"], {"legend": True}),
+                (["-m", "mean"], {"mode": "mean"}),
+                (["-m", "sum", "--range", "0,9000"],
+                 {"mode": "sum", "look": sg.Look(range=(0, 9000))}),
+                (["--fit", "volume", "--azimuth", "20", "--view", "left"],
+                 {"fit": "volume", "azimuth": 20, "view": "left"})], 1):
+            with self.subTest(words):
+                self.tool("turntable", patient, "-s", "120x90", "--frames", "3",
+                          "-o", self.path("t_%d.png"), *words)
+                sg.Volume(self.file_of(patient)).turntable(
+                    self.path("p_%d.png"), frames=3, size=(120, 90), **options)
+                for n in range(3):
+                    self.assertEqual(self.bytes_of(f"t_{n}.png"),
+                                     self.bytes_of(f"p_{n}.png"))
+        with self.assertRaisesRegex(ValueError, "same range"):
+            patient().turntable(self.path("p_%d.png"), frames=2, mode="sum")
+
+    def test_odd_sides(self):
+        if not shutil.which("ffmpeg"):
+            self.skipTest("ffmpeg is not installed")
+        for suffix in some([".mp4", ".webm", ".gif"], 1):
+            with self.subTest(suffix):
+                words = ["-s", "101x75", "--frames", "3", "--fps", "10"]
+                self.tool("turntable", patient, *words, "-o",
+                          self.path("t" + suffix))
+                patient().turntable(self.path("p" + suffix), frames=3, fps=10,
+                                    size=(101, 75))
+                self.assertEqual(self.frames_of("t" + suffix),
+                                 self.frames_of("p" + suffix))
+                self.assertEqual(len(set(self.frames_of("p" + suffix))), 3)
+
+    def frames_of(self, name):
+        listed = subprocess.run(
+            ["ffmpeg", "-v", "error", "-i", self.path(name), "-f", "framemd5",
+             "-"], check=True, capture_output=True, text=True).stdout
+        return [line.split()[-1] for line in listed.splitlines()
+                if not line.startswith("#")]
+
+
+if __name__ == "__main__":
+    unittest.main()
