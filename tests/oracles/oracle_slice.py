@@ -166,6 +166,15 @@ for world, name in enumerate(PATIENT):
         check(f"{called} of an array", np.array_equal(
             values("a.npy", "--axis", called, "--at", "4"), wanted))
 
+# Row 0 of an image is the top, and its slice 0 in front, as in Fiji.
+try:
+    import tifffile
+    tifffile.imwrite("a.tif", VOXELS.transpose())
+    check("an image", np.array_equal(values("a.tif", "--at", "4"),
+                                     VOXELS[:, :, 4].T))
+except ImportError as missing:
+    print("skip   an image:", missing)
+
 # Pixels are as large as the smaller spacing; sizes scale to fit.
 matrix = np.diag([0.75, 1.0, 2.5, 1.0])
 path = nifti("spaced.nii", VOXELS, matrix)
