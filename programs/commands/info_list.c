@@ -54,11 +54,13 @@ static void free_entries(struct dirent **entries, int count) {
     free(entries);
 }
 
+/* False for a pipe or a device, which may keep who opens it waiting. */
 static bool path_in(const char *folder, const char *name, char out[PATH_MAX]) {
     size_t length = strlen(folder);
     bool slash = length && folder[length - 1] == '/';
     return snprintf(out, PATH_MAX, "%s%s%s", folder, slash ? "" : "/", name) <
-           PATH_MAX;
+               PATH_MAX &&
+           (is_file(out) || is_folder(out));
 }
 
 /* Whether what a folder holds is a volume by itself, and no part of one that

@@ -226,6 +226,10 @@ run 0 "a folder" "$TOOL" info many
 check "is listed by name" [ "$(cut -d: -f1 "$OUT" | tr '\n' ' ')" = \
     "many/a.nii.gz many/b.nrrd " ]
 says '^snowglass: many/read.me: has an unknown format'
+mkfifo many/pipe many/pipe.nrrd
+run 0 "pipes in a folder are not waited for" timeout 60 "$TOOL" info many
+check "nor listed" [ "$(cut -d: -f1 "$OUT" | tr '\n' ' ')" = \
+    "many/a.nii.gz many/b.nrrd " ]
 run 0 "a folder and a file" "$TOOL" info many/deep/ phantom:cube
 prints '^many/deep/c.nrrd: '
 prints '^phantom:cube: '
