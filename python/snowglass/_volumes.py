@@ -285,7 +285,7 @@ class Volume(_snowglass.Volume):
             raise ValueError(f"fit '{fit}': give visible or volume")
         mode = settings.get("mode") or "over"
         transfer = self._transfer(look, mode)
-        width, height = (size, size) if hasattr(size, "__index__") else size
+        width, height = _sides(size)
         asked = {"view": view, "size": (width, height), "azimuth": azimuth,
                  "elevation": elevation, "roll": roll, "zoom": zoom,
                  "perspective": perspective, "position": position,
@@ -399,9 +399,7 @@ class Volume(_snowglass.Volume):
     def _draw_slice(self, axis: str, at: Union[int, str, None], transfer: Any,
                     size: Union[int, Sequence[int], None],
                     settings: Mapping[str, Any]) -> Image:
-        if size is None:
-            size = 0
-        width, height = (size, size) if hasattr(size, "__index__") else size
+        width, height = _sides(0 if size is None else size)
         along, index, position = self._find_slice(axis, at)
         image = self._slice(Image, "xyz"[along], index, transfer, width, height,
                             settings)
@@ -461,6 +459,14 @@ def _chosen(look: Union[Look, str, None], mode: str) -> Look:
         if not is_ranged(chosen):
             chosen = dataclasses.replace(chosen, range="robust")
     return chosen
+
+
+def _sides(size: Any) -> tuple[int, int]:
+    """Width and height; one number, of NumPy too, is both."""
+    if hasattr(size, "__index__"):
+        return operator.index(size), operator.index(size)
+    width, height = size
+    return operator.index(width), operator.index(height)
 
 
 def _set_light(light: Union[str, Sequence[float], None],
