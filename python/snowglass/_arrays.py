@@ -1,6 +1,7 @@
 """Arrays of other libraries as volumes."""
 from __future__ import annotations
 
+import os
 import warnings
 from typing import Any, NamedTuple, Optional, Sequence
 
@@ -18,6 +19,7 @@ class Wrapped(NamedTuple):
     medical: bool
     unit: str
     frozen: bool
+    values: Optional[str]    #: the unit of data values, where it is known
 
 
 def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
@@ -26,6 +28,7 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
          copy: Optional[bool] = None, frozen: bool = True) -> Wrapped:
     """Any source as an array, and its place in the world."""
     import numpy
+    values: Optional[str] = None
     if _is_nibabel(source):
         if affine is None and spacing is None:
             affine = _affine_in_mm(source)
@@ -36,6 +39,7 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
         else:
             source = numpy.asanyarray(source.dataobj)
     elif _is_xarray(source):
+        values = str(source.attrs.get("units", "")) or None
         source, spacing, axes, unit, affine = _of_xarray(source, spacing, axes,
                                                          unit, affine)
     array = _to_array(source)
@@ -44,9 +48,10 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
         raise ValueError(f"axes '{axes}': give the order of the dimensions, "
                          f"such as 'zyx' or 'xyz'")
     if array.ndim != 3:
+        part = "image.slicer[..., 0]" if axes == "xyz" else "array[0]"
         raise TypeError(f"an array of shape {array.shape}: a volume has three "
                         f"dimensions [{', '.join(axes)}]; choose one of the "
-                        f"others, such as array[0]")
+                        f"others, such as {part}")
     if 0 in array.shape:
         raise ValueError(f"an array of shape {array.shape} has no voxels")
     array, order = _contiguous(_plain_type(array, copy), copy)
@@ -55,7 +60,7 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
     placed = matrix[:, columns_of(order, axes) + [3]]
     return Wrapped(array, order, axes, [float(each) for each in placed.ravel()],
                    float(slope), float(intercept), bool(medical),
-                   _cut(unit or ""), frozen)
+                   _cut(unit or ""), frozen, values)
 
 
 def columns_of(order: Sequence[int], axes: str) -> list[int]:
@@ -103,7 +108,7 @@ def _is_nibabel(source: Any) -> bool:
 
 def _is_xarray(source: Any) -> bool:
     return hasattr(source, "dims") and hasattr(source, "coords") and \
-        hasattr(source, "values")
+        hasattr(source, "values") and not hasattr(source, "data_vars")
 
 
 def _of_xarray(source: Any, spacing: Any, axes: Optional[str],
@@ -149,12 +154,22 @@ def _to_array(source: Any) -> Any:
     if hasattr(source, "__array__") or hasattr(source, "__array_interface__") \
             or hasattr(source, "__dlpack__"):
         return numpy.asarray(source)
+    kind = type(source).__name__
+    if hasattr(source, "keys"):  # a group of HDF5 or Zarr, a Dataset, an .npz
+        names = [str(name) for name in source.keys()]
+        raise TypeError(f"a {kind} holds several arrays: choose one of them, "
+                        f"such as {kind.lower()}[{(names or ['name'])[0]!r}] "
+                        f"(there are {', '.join(names[:9]) or 'none'})")
+    if isinstance(source, (list, tuple)) and source and \
+            all(isinstance(each, (str, os.PathLike)) for each in source):
+        raise TypeError("a list of files is no volume: name their folder, or a "
+                        "pattern such as 'slices/ct_*.tif'")
     try:
-        return numpy.asarray(memoryview(source))
+        return numpy.asarray(source if isinstance(source, (list, tuple)) else
+                             memoryview(source))
     except TypeError:
         raise TypeError(f"a volume must be a path, an array, or an image of "
-                        f"nibabel or xarray, not {type(source).__name__}"
-                        ) from None
+                        f"nibabel or xarray, not {kind}") from None
 
 
 def _plain_type(array: Any, copy: Optional[bool]) -> Any:

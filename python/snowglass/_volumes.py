@@ -42,7 +42,7 @@ class Volume(_snowglass.Volume):
         in whatever order its axes lie, and must not change while it is drawn;
       - an image of nibabel, whose affine is heeded;
       - a DataArray of xarray with three dimensions, whose evenly spaced
-        coordinates give the spacing.
+        coordinates give the spacing, and whose units stand over the legend.
 
     spacing     lengths of a voxel along x, y, z
     affine      4x4 matrix from indices x, y, z to the world, instead
@@ -66,6 +66,7 @@ class Volume(_snowglass.Volume):
     """
     _axes: str = "zyx"                       # of the array
     _order: tuple[int, ...] = (0, 1, 2)      # of its dimensions in memory
+    _values: Optional[str] = None            # unit of the data values
 
     def __new__(cls, source: Any, *, progress: Progress = None,
                 memory: int = 0, **options: Any) -> "Volume":
@@ -78,6 +79,7 @@ class Volume(_snowglass.Volume):
                                given.slope, given.intercept, given.medical,
                                given.unit, None)
         made._axes, made._order = given.axes, given.order
+        made._values = given.values
         if given.frozen:
             made._freeze()
         return made
@@ -233,6 +235,7 @@ class Volume(_snowglass.Volume):
                                 info["medical"], info["unit"], self)
         made = _snowglass.masked(Volume, self, other, labels)
         made._axes, made._order = self._axes, self._order
+        made._values = self._values
         return made
 
     def look(self, look: Union[Look, str, None] = None) -> str:
@@ -327,6 +330,8 @@ class Volume(_snowglass.Volume):
     def _unit_of_values(self) -> Optional[str]:
         """HU of a CT, which is known by its values where no modality is named."""
         info = self._info
+        if self._values:
+            return self._values
         return "HU" if info["hounsfield"] or not info["modality"] and \
             self._statistics()["hounsfield"] else None
 

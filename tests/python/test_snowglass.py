@@ -227,9 +227,13 @@ class Arrays(InFolder):
         for bad, error in [(numpy.zeros((2, 2, 2), complex), "complex"),
                            (numpy.zeros((2, 2)), "three dimensions"),
                            (numpy.zeros((2, 0, 2)), "no voxels"),
-                           (7, "not int")]:
+                           (7, "not int"),
+                           ({"rho": 1, "p": 2}, r"such as dict\['rho'\]"),
+                           (["a.tif", "b.tif"], "pattern such as"),
+                           ([], "three dimensions")]:
             with self.assertRaisesRegex((TypeError, ValueError), error):
                 sg.Volume(bad)
+        self.assertEqual(sg.Volume(list(self.array)).shape, self.array.shape)
 
     def test_slope_and_intercept(self):
         volume = sg.Volume(self.array, slope=2, intercept=-1024)
@@ -380,6 +384,16 @@ class Arrays(InFolder):
             by_file.render(size=80),
             sg.Volume(nibabel.load(self.path("a.nii"))).render(size=80)
         ).largest, 0)
+        image.header.set_xyzt_units("meter")
+        image.header.set_slope_inter(2, -1000)
+        image.to_filename(self.path("b.nii"))
+        by_file = sg.Volume(self.path("b.nii"))
+        by_image = sg.Volume(nibabel.load(self.path("b.nii")))
+        self.assertEqual({**by_file.info, "format": ""},
+                         {**by_image.info, "format": ""})
+        self.assertEqual(by_image.info["type"], "int16")  # as it is stored
+        self.assertEqual(sg.compare(by_file.render(size=80),
+                                    by_image.render(size=80)).largest, 0)
 
     def test_xarray(self):
         try:
@@ -395,6 +409,15 @@ class Arrays(InFolder):
         self.assertEqual(volume.spacing, (0.5, 0.5, 2.0))
         self.assertEqual(volume.info["unit"], "um")
         self.assertEqual(volume.affine[1, 1], -0.5)
+        data.attrs["units"] = "K"
+        for options in ({"legend": True}, {"legend": True, "unit": "K"}):
+            sg.Volume(data).render(size=256, **options).save(
+                self.path(f"{len(options)}.png"))
+        self.assertEqual(sg.compare(self.path("1.png"),
+                                    self.path("2.png")).largest, 0)
+        volume.render(size=256, legend=True).save(self.path("0.png"))
+        self.assertGreater(sg.compare(self.path("0.png"),
+                                      self.path("2.png")).largest, 0.5)
         self.assertEqual(sg.Volume(data.transpose("x", "z", "y"))
                          .info["unit"], "um")
 
