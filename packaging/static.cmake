@@ -4,7 +4,7 @@
 # HDF5 brings half of the network with it.
 set(CMAKE_FIND_LIBRARY_SUFFIXES .a)
 set(CMAKE_EXE_LINKER_FLAGS "${CMAKE_EXE_LINKER_FLAGS} -static")
-foreach(part MODULES MPI PYTHON CATALYST HDF5 GDCM EXR BLOSC)
+foreach(part MODULES MPI PYTHON CATALYST SERVE HDF5 GDCM EXR BLOSC)
   set(SNOW_${part} OFF CACHE STRING "" FORCE)
 endforeach()
 # What libtiff itself needs, last.
