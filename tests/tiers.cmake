@@ -18,7 +18,8 @@ set(SNOW_LABEL_long cli_documents cli_large cli_matrix cli_stream cli_turntable
     isa_neon isa_wasm simulate mpi_bench mpi_clusters mpi_combine mpi_fail mpi_hosts
     mpi_insitu mpi_kill mpi_modes mpi_other mpi_python mpi_stall package_cmake
     serve_fuzz
-    package_layout package_manual package_pkgconfig package_recipes package_site package_within)
+    package_layout package_manual package_pkgconfig package_recipes package_site package_wheel
+    package_within)
 set(SNOW_LABEL_late catalyst cli_again cli_balance cli_bench cli_figures
     cli_interrupt cli_measurements cli_shear_warp mpi_comm oracle_hdf5
     oracle_vtk oracle_zarr test_comm test_model_raycast test_value_model
