@@ -16,6 +16,8 @@
 /* What a volume is opened by, and what a look is made of besides. */
 static const char *const data_keys[] = {
     "crop", "channel", "component", "labels", "clip", "time", NULL};
+static const char *const base_keys[] = {"crop",   "channel", "component",
+                                        "labels", "time",    NULL};
 static const char *const look_keys[] = {
     "preset", "colormap", "log",   "opacity", "gradient-opacity",
     "range",  "window",   "level", "shift",   "mode",
@@ -80,6 +82,41 @@ static int reopen(drawing *d) {
     return done;
 }
 
+/* Where clip planes move, the volume without them is kept, and read only once.
+ * What needs more memory than there is, or stays in its file, is opened as
+ * ever. */
+static bool reclip(drawing *d) {
+    render_state *s = &d->state;
+    snow_volume_options data = data_options(&d->opts);
+    size_t count = 0;
+    snow_volume *made = NULL;
+    while (count < SNOW_CLIPS_MAX &&
+           (data.clip[count][0] != 0 || data.clip[count][1] != 0 ||
+            data.clip[count][2] != 0))
+        count++;
+    if (s->plan.streams || !s->volume || !count || data.mask)
+        return false;
+    memset(data.clip, 0, sizeof data.clip);
+    if (!d->base && snow_volume_open(s->context, d->opts.operands[0], &data,
+                                     &d->base) != SNOW_STATUS_OK)
+        return false;
+    if (snow_volume_clip(d->base, d->opts.clip[0], count, &made) !=
+        SNOW_STATUS_OK)
+        return false;
+    snow_volume_close(s->volume);
+    s->volume = made;
+    s->whole = *snow_volume_get_info(made);
+    return true;
+}
+
+/* Forgets the volume without clip planes where another is meant, or none. */
+static void drop_base(drawing *d, char *key) {
+    if (take_key(&d->base_key, key)) {
+        snow_volume_close(d->base);
+        d->base = NULL;
+    }
+}
+
 static int restyle(drawing *d) {
     snow_transfer *made = NULL;
     snow_look look = look_options(&d->opts);
@@ -101,6 +138,7 @@ static int place(drawing *d) {
         done = make_settings(&d->opts, &s->whole, &s->settings);
     if (done != CONTINUE)
         return done;
+    annotations_find_unit(&d->opts, s->volume, false, &s->whole);
     if (snow_transfer_is_unshaded(s->transfer) &&
         !options_given(&d->opts, "shade"))
         s->settings.shade = SNOW_SHADE_NONE;
@@ -127,9 +165,12 @@ int drawing_apply(drawing *d, const json_t *recipe) {
     d->tree = json_deep_copy(recipe);
     bool other_data = take_key(&d->data_key, key_of(recipe, data_keys));
     bool other_look = take_key(&d->look_key, key_of(recipe, look_keys));
-    if (other_data || !d->state.volume)
+    bool clips = json_object_get(recipe, "clip") != NULL;
+    drop_base(d, clips ? key_of(recipe, base_keys) : NULL);
+    bool clipped = other_data && reclip(d);
+    if ((other_data && !clipped) || !d->state.volume)
         done = reopen(d);
-    else if (other_look || !d->state.transfer)
+    else if (clipped || other_look || !d->state.transfer)
         done = restyle(d);
     if (done == CONTINUE)
         done = place(d);
@@ -147,9 +188,11 @@ int drawing_open(const options *first, json_t *recipe, drawing *out) {
 }
 
 void drawing_close(drawing *d) {
+    snow_volume_close(d->base);
     render_state_free(&d->state);
     json_decref(d->tree);
     forget(d);
+    free(d->base_key);
 }
 
 /* To five digits, which read well in a command. */

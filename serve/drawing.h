@@ -15,7 +15,10 @@ typedef struct drawing {
     options opts;  /* of the present recipe */
     json_t *tree;
     render_state state;
-    char *data_key, *look_key;       /* what volume and look were made of */
+    char *data_key, *look_key; /* what volume and look were made of */
+    snow_volume *base; /* the volume without clip planes, while these move; or
+                          NULL */
+    char *base_key;    /* what it was made of */
     bool volume_is_new, look_is_new; /* since the caller last looked */
 } drawing;
 

@@ -1,23 +1,35 @@
 // editor.js - the transfer function over the histogram: points are dragged,
-// added, removed, or set as numbers.
+// added, removed, or set as numbers.  The same for the opacity by gradient.
 
 import {button, make, number, row, short, show} from './controls.js';
 
 const NEAR = 12; // pixels
 const EDGE = 8;
 
+/** Of a look: the key of its points, and those in use where it is not set. */
+export const BY_VALUE = {key: 'opacity', name: 'value',
+    usual: page => page.look?.opacity ?? [], range: page => page.histogram};
+
+/** By magnitude of the gradient, up to a step of a quarter of all values. */
+export const BY_GRADIENT = {key: 'gradient-opacity', name: 'gradient', usual: () => [],
+    range({histogram, info}) {
+        const step = Math.min(...info?.spacing ?? [1]);
+        return histogram && {lo: 0, hi: (histogram.hi - histogram.lo) / 4 / step, counts: []};
+    }};
+
 export class Editor {
-    constructor(recipe, page) {
+    constructor(recipe, page, kind = BY_VALUE) {
         this.recipe = recipe;
         this.page = page;
+        this.kind = kind;
         this.log = true;
         this.chosen = -1;
         this.canvas = make('canvas', {className: 'editor', tabIndex: 0,
-            role: 'img', 'aria-label': 'Opacity over the histogram of the values. ' +
+            role: 'img', 'aria-label': `Opacity by ${kind.name}, over the histogram. ` +
             'Arrow keys move the chosen point, Page keys choose another, Insert ' +
             'adds one, Delete removes it.'});
-        this.value = number('value of the chosen point', value => this.put(value, null));
-        this.opacity = number('opacity of the chosen point',
+        this.value = number(`${kind.name} of the chosen point`, value => this.put(value, null));
+        this.opacity = number(`opacity at the chosen ${kind.name}`,
             value => this.put(null, Math.max(0, Math.min(1, value))), 0.01);
         this.opacity.min = 0;
         this.opacity.max = 1;
@@ -32,13 +44,16 @@ export class Editor {
         });
         scale.setAttribute('aria-pressed', this.log);
         return make('div', {}, this.canvas,
-            row('Value', this.value, make('label', {htmlFor: '', textContent: 'Opacity '}, this.opacity)),
+            row(this.kind === BY_VALUE ? 'Value' : 'Gradient', this.value,
+                make('label', {}, 'Opacity ', this.opacity)),
             make('div', {className: 'row'},
                 button('Add', 'Add a point beside the chosen one', () => this.insert()),
                 button('Remove', 'Remove the chosen point', () => this.remove()),
-                scale,
-                button('Automatic', 'Opacity of the preset, or made from the histogram',
-                    () => this.recipe.set({opacity: null, range: null, shift: null}))));
+                ...this.kind === BY_VALUE ? [scale,
+                    button('Automatic', 'Opacity of the preset, or made from the histogram',
+                        () => this.recipe.set({opacity: null, range: null, shift: null}))]
+                    : [button('None', 'The gradient does not matter',
+                        () => this.recipe.set({[this.kind.key]: null}))]));
     }
 
     listen() {
@@ -54,12 +69,12 @@ export class Editor {
 
     /** The points in use: those of the recipe, else of the look. */
     get points() {
-        return this.recipe.keys.opacity ?? this.page.look?.opacity ?? [];
+        return this.recipe.keys[this.kind.key] ?? this.kind.usual(this.page);
     }
 
     /** What the axis spans: the histogram, and the points. */
     get span() {
-        const {histogram} = this.page, points = this.points;
+        const histogram = this.kind.range(this.page), points = this.points;
         const low = Math.min(histogram?.lo ?? Infinity, points[0]?.[0] ?? Infinity);
         const high = Math.max(histogram?.hi ?? -Infinity, points.at(-1)?.[0] ?? -Infinity);
         return low < high ? [low, high] : [low - 1, low + 1];
@@ -100,7 +115,7 @@ export class Editor {
 
     set(points, chosen = this.chosen) {
         this.chosen = chosen;
-        this.recipe.set({opacity: points});
+        this.recipe.set({[this.kind.key]: points});
     }
 
     digits(value) {
@@ -125,6 +140,10 @@ export class Editor {
 
     insert(place = null) {
         const points = this.points.map(point => [...point]);
+        if (!points.length && !place) { // the usual beginning: edges alone
+            this.set([[0, 0], [this.digits(this.span[1] / 4), 1]], 1);
+            return;
+        }
         const from = Math.max(0, Math.min(this.chosen, points.length - 2));
         const a = points[from] ?? [this.span[0], 0], b = points[from + 1] ?? a;
         const point = place ? [this.digits(place.value), +place.opacity.toFixed(3)]
@@ -221,8 +240,8 @@ export class Editor {
     }
 
     drawHistogram(g, color) {
-        const {histogram} = this.page;
-        if (!histogram)
+        const histogram = this.kind.range(this.page);
+        if (!histogram?.counts.length)
             return;
         const scaled = count => this.log ? Math.log1p(count) : count;
         const top = Math.max(1, ...histogram.counts.map(scaled));
@@ -237,6 +256,8 @@ export class Editor {
 
     drawStrip(g) {
         const look = this.page.look;
+        if (this.kind !== BY_VALUE)
+            return;
         look?.strip.forEach((color, i) => {
             const at = k => this.x(look.low + (look.high - look.low) * k / look.strip.length);
             g.fillStyle = color;

@@ -2,7 +2,7 @@
 
 import {button, check, make, number, row, section, select, short, show, slider}
     from './controls.js';
-import {Editor} from './editor.js';
+import {BY_GRADIENT, Editor} from './editor.js';
 import {MODES, VIEWS} from './keys.js';
 
 const WORLD_VIEWS = ['+x', '-x', '+y', '-y', '+z', '-z'];
@@ -29,6 +29,7 @@ export class Panel {
     constructor(recipe, page, engine, actions) {
         Object.assign(this, {recipe, page, engine, actions});
         this.editor = new Editor(recipe, page);
+        this.gradient = new Editor(recipe, page, BY_GRADIENT);
         this.element = make('aside', {className: 'panel', 'aria-label': 'Controls'});
         this.updates = [];
         engine.on('small', frame => this.showThumbnail(frame));
@@ -37,8 +38,9 @@ export class Panel {
     /** When the volume is known. */
     build() {
         this.updates = [];
-        this.element.replaceChildren(this.look(), this.presets(), this.shading(),
-            this.camera(), this.clipping(), this.time(), this.labels());
+        this.element.replaceChildren(this.look(),
+            section('Opacity by gradient', false, this.gradient.element), this.presets(),
+            this.shading(), this.camera(), this.clipping(), this.time(), this.labels());
         this.update();
     }
 
@@ -47,6 +49,7 @@ export class Panel {
             for (const each of this.updates)
                 each(this.recipe.keys);
         this.editor.draw();
+        this.gradient.draw();
     }
 
     /** Keeps a control as the recipe is. */

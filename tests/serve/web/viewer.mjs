@@ -134,7 +134,7 @@ async function names(page) {
 }
 
 async function editor(page) {
-    const canvas = page.locator('.editor');
+    const canvas = page.locator('.editor').first();
     const box = await canvas.boundingBox();
     const points = () => page.evaluate(() => window.snowglass.recipe.keys.opacity ??
         window.snowglass.page.look.opacity);
@@ -170,6 +170,13 @@ async function editor(page) {
     const moved = await points();
     check('a drag of empty ground moves all', moved[0][0] > now[0][0], JSON.stringify(moved));
     await shot(page, 'editor');
+    await page.locator('summary', {hasText: 'Opacity by gradient'}).click();
+    await page.getByRole('button', {name: 'Add a point beside the chosen one'}).nth(1).click();
+    await rest(page);
+    check('opacity follows the gradient', (await keys(page))['gradient-opacity']?.length === 2);
+    await shot(page, 'gradient');
+    await page.getByRole('button', {name: 'The gradient does not matter'}).click();
+    await page.locator('summary', {hasText: 'Opacity by gradient'}).click();
     await page.getByRole('button', {name: /^Opacity of the preset/}).click();
     await rest(page);
     check('and all is automatic again', !(await keys(page)).opacity);
@@ -302,6 +309,45 @@ async function prefixed() {
     await page.context().close();
     proxy.closeAllConnections();
     proxy.close();
+}
+
+/** A radiologist's way: bone, window and level, a joint, the command. */
+async function film(name, options) {
+    const page = await open(options);
+    await shot(page, `film_${name}_1`);
+    await page.locator('summary', {hasText: 'Presets'}).click();
+    await page.locator('.presets button', {hasText: 'ct-bone'}).first().click();
+    await rest(page);
+    check('bone is seen', (await keys(page)).preset === 'ct-bone');
+    await shot(page, `film_${name}_2`);
+    await drag(page, 40, -20, 'right');
+    await shot(page, `film_${name}_3`);
+    await page.locator('summary', {hasText: 'Clip'}).click();
+    const slider = page.getByLabel(/clip .*highest/).first();
+    const [low, high] = [await slider.getAttribute('min'), await slider.getAttribute('max')];
+    await slider.fill(String((+low + +high) / 2));
+    await rest(page);
+    check('it is cut', (await keys(page)).clip?.length === 1);
+    await drag(page, -120, 30);
+    await shot(page, `film_${name}_4`);
+    await page.getByRole('button', {name: /^Copy the command/}).click();
+    await page.waitForSelector('dialog[open] textarea');
+    writeFileSync(`${folder}/command.txt`, await page.locator('dialog textarea').inputValue());
+    await shot(page, `film_${name}_5`);
+    await page.keyboard.press('Escape');
+    const coming = page.waitForEvent('download');
+    await page.getByRole('button', {name: /^Save the picture/}).click();
+    await (await coming).saveAs(`${folder}/rest.png`);
+    await page.getByRole('button', {name: /^All as it was/}).click();
+    await page.context().close();
+}
+
+if (tier === 'film') {
+    await film('wide', {viewport: {width: 1600, height: 1000}});
+    await film('narrow', {viewport: {width: 400, height: 700}, hasTouch: true});
+    check('nothing is on the console', said.length === 0, said.join(' | '));
+    await browser.close();
+    process.exit(wrong ? 1 : 0);
 }
 
 const page = await open();
