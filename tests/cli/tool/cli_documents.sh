@@ -1,7 +1,7 @@
 # tests/cli/tool/cli_documents.sh - every command that README and guides show works as
 # it stands: `script TOOL DATA`.  Stand-ins of the files that they name are made
-# from phantoms; the bench is left out, since it takes long, and what is shown in
-# a terminal.
+# from phantoms; the bench is left out, since it takes long, the viewer, since it
+# does not end (tests/serve), and what is shown in a terminal.
 set -uo pipefail
 tool=$(realpath "$1")
 root=$(realpath "$(dirname "$0")/../../..")
@@ -71,7 +71,7 @@ commands() {
     sed -e ':a' -e '/\\$/N; s/\\\n *//; ta' "$root/README.md" \
         "$root"/docs/*.md "$root"/docs/measurements/*.md |
         sed -n 's/^    \(snowglass .*\)/\1/p' |
-        grep -Ev 'snowglass bench|--show' | grep -Ev -e "$without" | sort -u
+        grep -Ev 'snowglass (bench|serve)|--show' | grep -Ev -e "$without" | sort -u
 }
 
 # The short tier takes one in six.
