@@ -28,11 +28,11 @@ typedef struct slice_work {
     const char *path;
     snow_volume_info whole; /* what the slices are counted in */
     snow_view view;
-    int axis, world; /* of the grid, and of the world beside it */
-    int64_t index;   /* in the whole */
-    double position; /* of its middle, in the world */
-    snow_volume *volume;
-    int64_t place; /* of the slice in the volume that was read */
+    int axis, world;     /* of the grid, and of the world beside it */
+    int64_t index;       /* in the whole */
+    double position;     /* of its middle, in the world */
+    snow_volume *volume; /* the slice */
+    char *cut;           /* its voxels, if all came through a pipe */
     snow_transfer *transfer;
     snow_image *image;
     snow_settings settings;
@@ -136,14 +136,48 @@ static void crop_to_slice(slice_work *w) {
     crop[1] = crop[0] + 1;
 }
 
+/* Copies the voxels of the slice: rows of the whole where they lie so. */
+static void copy_slice(const slice_work *w, char *out) {
+    const int64_t *dims = w->whole.dims;
+    const size_t size = snow_type_size(w->whole.type);
+    const size_t steps[3] = {size, size * (size_t)dims[0],
+                             size * (size_t)(dims[0] * dims[1])};
+    const int u = w->axis == 0, v = w->axis == 2 ? 1 : 2;
+    const char *from = snow_volume_voxels(w->volume);
+    from += (size_t)w->index * steps[w->axis];
+    for (int64_t b = 0; b < dims[v]; b++)
+        for (int64_t a = 0; a < dims[u]; a++, out += size)
+            memcpy(out, from + (size_t)a * steps[u] + (size_t)b * steps[v],
+                   size);
+}
+
+/* The slice in the place of the whole, as a crop would have read it. */
+static int cut_slice(slice_work *w) {
+    snow_volume_info info = w->whole;
+    snow_volume *slice = NULL;
+    info.dims[w->axis] = 1;
+    for (int row = 0; row < 3; row++)
+        info.matrix[row][3] += info.matrix[row][w->axis] * (double)w->index;
+    w->cut = malloc(snow_type_size(info.type) *
+                    (size_t)(info.dims[0] * info.dims[1] * info.dims[2]));
+    if (!w->cut)
+        return fail_memory("out of memory for the slice; close other programs");
+    copy_slice(w, w->cut);
+    snow_status status = snow_volume_wrap(w->context, &info, w->cut, &slice);
+    if (status != SNOW_STATUS_OK)
+        return fail_status(w->context, status);
+    snow_volume_close(w->volume);
+    w->volume = slice;
+    return CONTINUE;
+}
+
 static int open_piped(slice_work *w) {
     int done = open_input(w->context, &w->opts, w->path, &w->volume);
     if (done != CONTINUE)
         return done;
     w->whole = *snow_volume_get_info(w->volume);
     done = find_slice(w);
-    w->place = w->index;
-    return done;
+    return done == CONTINUE ? cut_slice(w) : done;
 }
 
 static int open_slice(slice_work *w) {
@@ -180,7 +214,7 @@ static snow_status draw(slice_work *w) {
     snow_status status =
         snow_slice_view(w->context, info, axes[w->axis], &w->view, &axis);
     if (status == SNOW_STATUS_OK)
-        status = snow_slice_render(w->volume, w->place, w->transfer, &w->view,
+        status = snow_slice_render(w->volume, 0, w->transfer, &w->view,
                                    &w->settings, &w->image);
     w->frame = seconds_now() - begin;
     return status;
@@ -392,6 +426,7 @@ int cmd_slice(const options *opts) {
     snow_image_free(w.image);
     snow_transfer_free(w.transfer);
     snow_volume_close(w.volume);
+    free(w.cut);
     snow_context_free(w.context);
     return done;
 }

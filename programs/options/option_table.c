@@ -115,9 +115,9 @@ const option_row option_table[] = {
      "a built-in transfer function (default: made from the histogram)"},
     {"colormap", 'c', "NAME", TOPIC_LOOK, LOOKED, read_colormap,
      FIELD(colormap), 0, 0, "", "colours along the range (default grey, or the preset's)"},
-    {"opacity", 0, "V:O,V:O", TOPIC_LOOK, LOOKED, read_points, FIELD(opacities),
-     0, 0, "", "opacity from 0 to 1 at data values, linear in between"},
-    {"gradient-opacity", 0, "G:O,G:O", TOPIC_LOOK, LOOKED, read_gradient_points,
+    {"opacity", 0, "V:O,V:O", TOPIC_LOOK, LOOKED & ~SLICE, read_points,
+     FIELD(opacities), 0, 0, "", "opacity from 0 to 1 at data values, linear in between"},
+    {"gradient-opacity", 0, "G:O,G:O", TOPIC_LOOK, LOOKED & ~SLICE, read_gradient_points,
      FIELD(gradient_opacities), 0, 0, "",
      "scale the opacity by gradient magnitude (data units per mm): factors "
      "from 0 to 1, linear in between; 0:0,20:1 shows boundaries and hides "

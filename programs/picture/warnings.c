@@ -3,6 +3,7 @@
 #include "run/log.h"
 #include "run/start.h"
 
+#include <math.h>
 #include <string.h>
 
 static bool is_heard(const options *opts) {
@@ -45,13 +46,14 @@ static void warn_method(const render_state *s) {
 }
 
 bool picture_is_empty(snow_image *image) {
-    if (!image || snow_image_channels(image) == 1)
+    if (!image)
         return false;
     int64_t count = (int64_t)snow_image_width(image) * snow_image_height(image);
     const float *pixels = snow_image_pixels(image);
     int channels = snow_image_channels(image);
     for (int64_t i = 0; i < count; i++)
-        if (pixels[i * channels + channels - 1] != 0)
+        if (channels == 1 ? !isnan(pixels[i])
+                          : pixels[i * channels + channels - 1] != 0)
             return false;
     return true;
 }

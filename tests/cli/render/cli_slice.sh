@@ -32,6 +32,8 @@ refused 2 "a wide kernel" 'gauss cannot draw a slice; use tent' \
     "$TOOL" slice $head -o x.png --kernel gauss
 refused 2 "an option of other verbs" 'is not an option of slice but of render' \
     "$TOOL" slice $head -o x.png --azimuth 30
+refused 2 "opacities" 'is not an option of slice but of render' \
+    "$TOOL" slice $head -o x.png --opacity 0:0,100:1
 refused 3 "no such file" 'absent.nii' "$TOOL" slice absent.nii -o x.png
 refused 2 "a legend in numbers" 'remove it or name a .png' \
     "$TOOL" slice $head -o x.npy --legend
@@ -63,6 +65,15 @@ printf 'NRRD0004\ntype: float\ndimension: 3\nsizes: 4 4 4\nencoding: ascii\n\n' 
 for i in $(seq 64); do echo nan; done >>none.nrrd
 run 7 "a slice without a value" "$TOOL" slice none.nrrd -o none.png
 says 'the picture is empty: the slice has no finite value'
+run 7 "nor one in numbers" "$TOOL" slice none.nrrd -o none.npy -q
+
+"$TOOL" convert $head -o m.nrrd -q
+for axis in axial y sagittal; do
+    "$TOOL" slice m.nrrd --axis $axis -o file.png -q
+    "$TOOL" slice - --axis $axis -o pipe.png -q -y <m.nrrd
+    check "$axis through a pipe is the same" cmp -s file.png pipe.png
+    rm file.png
+done
 
 # again NAME OPTIONS...: the command and the configuration give the same bytes.
 again() {
