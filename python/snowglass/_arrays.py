@@ -97,8 +97,9 @@ def _affine_in_mm(image: Any) -> Any:
 def _stored_values(data: Any) -> tuple[Any, float, float]:
     """Those of a file, which nibabel would multiply out to float64."""
     import numpy
-    if not hasattr(data, "get_unscaled"):
-        return numpy.asanyarray(data), 1, 0
+    for name in ("get_unscaled", "slope", "inter"):  # PAR/REC has a slope a slice
+        if not hasattr(data, name):
+            return numpy.asanyarray(data), 1, 0
     return data.get_unscaled(), float(data.slope), float(data.inter)
 
 

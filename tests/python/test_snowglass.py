@@ -395,6 +395,28 @@ class Arrays(InFolder):
         self.assertEqual(sg.compare(by_file.render(size=80),
                                     by_image.render(size=80)).largest, 0)
 
+    def test_images_whose_slices_have_slopes_of_their_own(self):
+        array = self.array
+
+        class Proxy:  # as nibabel's PARRECArrayProxy
+            shape = array.T.shape
+
+            def get_unscaled(self):
+                return array.T
+
+            def __array__(self, dtype=None):
+                return array.T * numpy.float32(0.5)
+
+        class Header:
+            def get_xyzt_units(self):
+                return "mm", "sec"
+
+        class Image:
+            dataobj, affine, header = Proxy(), numpy.eye(4), Header()
+
+        numpy.testing.assert_array_equal(numpy.asarray(sg.Volume(Image())),
+                                         array.T * numpy.float32(0.5))
+
     def test_xarray(self):
         try:
             import xarray
