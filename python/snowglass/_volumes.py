@@ -468,9 +468,10 @@ def _chosen(look: Union[Look, str, None], mode: str) -> Look:
 
 def _sides(size: Any) -> tuple[int, int]:
     """Width and height; one number, of NumPy too, is both."""
-    if hasattr(size, "__index__"):
+    try:  # arrays have __index__ too, which fails
         return operator.index(size), operator.index(size)
-    width, height = size
+    except TypeError:
+        width, height = size
     return operator.index(width), operator.index(height)
 
 

@@ -109,6 +109,14 @@ class Pictures(InFolder):
                     expected = expected[..., [0, 3]]
                 numpy.testing.assert_array_equal(numpy.asarray(image), expected)
 
+    def test_sizes(self):
+        for size in (24, numpy.int64(24), (24, 24), [24, numpy.int32(24)],
+                     numpy.array([24, 24]), numpy.array(24)):
+            self.assertEqual(head().render(size=size).shape[:2], (24, 24))
+        for size in (24.5, (24,), numpy.array([24.5, 24])):
+            with self.assertRaises((TypeError, ValueError)):
+                head().render(size=size)
+
     def test_saved_pictures_have_letters_and_bars(self):
         image = head().render(size=256, legend=True, scale_bar=True)
         plain = head().render(size=256, letters=False)
