@@ -17,9 +17,9 @@ LOOK = ("preset", "colormap", "range", "opacity", "gradient_opacity", "log")
 #: Keys of the file of a picture and of other verbs, which are left out.
 OTHERS = ("output", "depth", "overwrite", "background", "bits", "frames", "fps",
           "verb", "version", "time_label", "shift", "axis", "at")
-#: What need not be said.
+#: What need not be said; some of it the command line has no words for.
 USUAL = {"azimuth": 0, "elevation": 0, "roll": 0, "perspective": 0, "zoom": 1,
-         "fit": "visible"}
+         "fit": "visible", "threads": 0, "footprint": 0, "opacity_length": 0}
 #: Lengths of a millimetre.
 UNITS = {"": 1.0, "mm": 1.0, "um": 1e3, "nm": 1e6, "m": 1e-3, "angstrom": 1e7}
 
@@ -39,6 +39,8 @@ def _range_look(given: Any) -> Any:
 
 def _plain(value: Any) -> Any:
     """Numbers and lists that JSON knows."""
+    if hasattr(value, "tolist"):  # numbers and arrays of NumPy
+        value = value.tolist()
     if isinstance(value, (str, bool)) or value is None:
         return value
     if hasattr(value, "__len__"):
@@ -77,7 +79,11 @@ def make(data: Optional[Mapping[str, Any]], unit: str, look: Look,
     with these options of Volume.render."""
     keys: dict[str, Any] = {**(data or {}), **_look_keys(look)}
     for name, value in options.items():
-        if value is None or name in ("depth", "unit"):
+        value = _plain(value)
+        if value is None or name in ("depth", "unit") or \
+                value == USUAL.get(name):
+            continue
+        if name == "iso" and options.get("mode") != "iso":
             continue
         if name == "letters":
             name, value = "no_labels", not value
@@ -90,11 +96,9 @@ def make(data: Optional[Mapping[str, Any]], unit: str, look: Look,
                 raise ValueError(f"opacity_length {value:g} is no recipe: it is "
                                  f"neither a voxel nor a millimetre")
             name, value = "opacity_unit", "mm"
-        if value is False or USUAL.get(name) == value:
-            continue
         keys[name] = value
     return {name.replace("_", "-"): _plain(value)
-            for name, value in keys.items()}
+            for name, value in keys.items() if value is not False}
 
 
 def split(options: Mapping[str, Any]) -> tuple[
@@ -155,7 +159,10 @@ def command(recipe: Mapping[str, Any]) -> str:
     if "input" not in recipe:
         raise ValueError("the volume is an array, which no command can open: "
                          "write it by Volume.save, and draw the file")
-    words = ["snowglass", "render", recipe["input"]]
+    path = recipe["input"]
+    if path.startswith("-") and path != "-":
+        path = os.path.join(".", path)  # no option
+    words = ["snowglass", "render", path]
     for key, value in recipe.items():
         if key != "input":
             words += ["--" + key] if value is True else \

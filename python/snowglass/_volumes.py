@@ -108,8 +108,9 @@ class Volume(_snowglass.Volume):
             fields["type"] = str(fields["type"])
         made = _snowglass.open(cls, os.fsencode(path), fields, clip, memory,
                                _progress_of(progress))
+        given = {**options, **fields, "mask": options.get("mask")}
         made._source = {"input": os.fspath(path), **{
-            name: value for name, value in {**fields, **options}.items()
+            name: value for name, value in given.items()
             if value is not None and name != "each_time"}}
         return made
 

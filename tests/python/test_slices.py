@@ -165,6 +165,17 @@ class Recipes(InFolder):
         self.tool("render", "--config", "b.json", "-o", "b.npy")
         self.same(self.draw(self.CASES[1]), "b.npy")
 
+    def test_arrays_as_options(self):
+        for name, value in (("position", [0, -600, 0]), ("target", [3, 4, 5]),
+                            ("up", [1, 0, 1]), ("light", [20, 40])):
+            with self.subTest(name):
+                image, same = (
+                    self.draw({name: given, "zoom": numpy.float32(1.5)})
+                    for given in (numpy.array(value), value))
+                self.assertEqual(image.recipe, same.recipe)
+                self.assertEqual(image.recipe[name], value)
+                self.assertEqual(image.command, same.command)
+
     def test_what_has_none(self):
         array = numpy.asarray(sg.Volume("head.nrrd"))
         volume = sg.Volume(array)

@@ -4,6 +4,7 @@ byte: the same defaults, letters, bars, background, colours of values.
     SNOWGLASS=build/snowglass PYTHONPATH=build/python python3 -m unittest -v
 """
 import os
+import shlex
 import shutil
 import subprocess
 import tempfile
@@ -205,6 +206,33 @@ class Pictures(Same):
         self.assertEqual(plain.to_rgb()[0, 0].tolist(), [20, 20, 20])
         mean = patient().render(size=64, mode="mean")
         self.assertEqual(mean.to_rgb().shape, (64, 64, 3))
+
+
+class Commands(Same):
+    def test_the_tool_takes_them(self):
+        spots().save(self.path("a.nrrd"))
+        spots().save(self.path("-dash.nrrd"))
+        here = os.getcwd()
+        os.chdir(self.folder.name)
+        self.addCleanup(os.chdir, here)
+        for path, opening, options in [
+                ("a.nrrd", {"spacing": 2}, {}),
+                ("a.nrrd", {"spacing": numpy.float32(1.5)}, {}),
+                ("a.nrrd", {"allow_gaps": False, "labels": None}, {}),
+                ("a.nrrd", {}, {"threads": 0, "footprint": 0, "iso": 0,
+                                "opacity_length": 0}),
+                ("-dash.nrrd", {}, {"azimuth": -20})]:
+            with self.subTest(path, opening=opening, options=options):
+                image = sg.Volume(path, **opening).render(
+                    size=(64, 48), **options)
+                image.save("p.png")
+                words = shlex.split(image.command)
+                subprocess.run([TOOL, *words[1:], "-o", "t.png", "-y", "-q"],
+                               check=True)
+                self.assertEqual(self.bytes_of("t.png"),
+                                 self.bytes_of("p.png"))
+                again = sg.render(**image.recipe)
+                self.assertEqual(sg.compare(again, image).largest, 0)
 
 
 class Movies(Same):
