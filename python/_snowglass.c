@@ -838,6 +838,18 @@ static snow_type type_of_buffer(const Py_buffer *buffer) {
     return SNOW_TYPE_NONE;
 }
 
+/* What the values of another volume mean. */
+static void copy_meaning(PyObject *like, snow_volume_info *info) {
+    if (like == Py_None || !((volume_object *)like)->volume)
+        return;
+    const snow_volume_info *known =
+        snow_volume_get_info(((volume_object *)like)->volume);
+    memcpy(info->modality, known->modality, sizeof info->modality);
+    memcpy(info->window, known->window, sizeof info->window);
+    info->hounsfield = known->hounsfield;
+    info->eight_bits = known->eight_bits;
+}
+
 /* Over a C contiguous array (z, y, x) of the caller, whose own array has its
  * dimensions in an order. */
 static PyObject *volume_wrap(PyObject *module, PyObject *args) {
@@ -858,6 +870,7 @@ static PyObject *volume_wrap(PyObject *module, PyObject *args) {
     memcpy(o->order, order, sizeof order);
     snow_volume_info info;
     snow_volume_info_init(&info);
+    copy_meaning(like, &info);
     if (PyObject_GetBuffer(array, &o->buffer,
                            PyBUF_C_CONTIGUOUS | PyBUF_FORMAT) ||
         !set_triple("matrix", matrix, 16, false, info.matrix))

@@ -373,7 +373,9 @@ class Volume(_snowglass.Volume):
                 nearest to that of the patient; "x", "y", "z": of the grid
         at      the slice's number, or a position in the world with its unit,
                 "12.5mm"; None: the middle one
-        look    None: grey over the file's window or the volume's values
+        look    what it leaves open is chosen from the slice's values; None: grey
+                over the file's window or the slice's values but a few far off.
+                Give a Look with a range to have the same greys in several slices
         size    (width, height), or one number for both: the slice fits; None: a
                 pixel is a voxel, or its smaller side
         kernel  "tent": linear between voxels; "box": the nearest
@@ -383,10 +385,13 @@ class Volume(_snowglass.Volume):
         Without a patient, y or z is up.  `stats` of the picture has axis, index
         and position.
         """
-        transfer = self._transfer(look, "slice")
-        image = self._draw_slice(axis, at, transfer, size,
-                                 {"kernel": kernel, "threads": threads})
-        self._annotate(image, "slice", transfer, look, {
+        along, index, position = self._find_slice(axis, at)
+        alone = self._slice_alone(along, index)
+        transfer = alone._transfer(look, "slice")
+        image = alone._draw_slice(along, 0, transfer, size,
+                                  {"kernel": kernel, "threads": threads})
+        image.stats = {"axis": axis, "index": index, "position": position}
+        alone._annotate(image, "slice", transfer, look, {
             "letters": letters, "legend": legend, "unit": unit,
             "scale_bar": scale_bar})
         return image
@@ -399,18 +404,33 @@ class Volume(_snowglass.Volume):
         """The same in data units: float32 of shape (height, width), NaN where
         there is no value."""
         import numpy
+        along, index, _ = self._find_slice(axis, at)
         return numpy.asarray(self._draw_slice(
-            axis, at, None, size, {"kernel": kernel, "threads": threads}))
+            along, index, None, size, {"kernel": kernel, "threads": threads}))
 
-    def _draw_slice(self, axis: str, at: Union[int, str, None], transfer: Any,
+    def _draw_slice(self, along: int, index: int, transfer: Any,
                     size: Union[int, Sequence[int], None],
                     settings: Mapping[str, Any]) -> Image:
         width, height = _sides(0 if size is None else size)
-        along, index, position = self._find_slice(axis, at)
-        image = self._slice(Image, "xyz"[along], index, transfer, width, height,
-                            settings)
-        image.stats = {"axis": axis, "index": index, "position": position}
-        return image
+        return self._slice(Image, "xyz"[along], index, transfer, width, height,
+                           settings)
+
+    def _slice_alone(self, along: int, index: int) -> "Volume":
+        """A slice as a volume of its own, as the command line reads it: looks
+        are chosen from its values."""
+        import numpy
+        info = self._info
+        turned = numpy.asarray(self).transpose(
+            [self._order.index(n) for n in range(3)])
+        voxels = numpy.take(turned, [index], axis=2 - along)
+        matrix = numpy.array(info["matrix"])
+        matrix[:, 3] += matrix[:, along] * index
+        made = _snowglass.wrap(
+            Volume, numpy.ascontiguousarray(voxels), (0, 1, 2),
+            matrix.ravel().tolist(), info["slope"], info["intercept"],
+            info["medical"], info["unit"], self)
+        made._values = self._values
+        return made
 
     def _find_slice(self, axis: str, at: Union[int, str, None]
                     ) -> tuple[int, int, float]:

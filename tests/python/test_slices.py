@@ -31,6 +31,13 @@ class InFolder(unittest.TestCase):
     def tool(self, *words):
         subprocess.run([TOOL, *words], check=True, stderr=subprocess.DEVNULL)
 
+    def same_bytes(self, *paths):
+        contents = []
+        for path in paths:
+            with open(path, "rb") as file:
+                contents.append(file.read())
+        self.assertEqual(*contents)
+
     def same(self, image, path):
         """The floats that the command line wrote."""
         expected = numpy.load(path)
@@ -98,6 +105,46 @@ class Slices(InFolder):
         plain.save("without.png")
         self.assertEqual(sg.compare(colored, plain).largest, 0)
         self.assertGreater(sg.compare("with.png", "without.png").largest, 0.5)
+
+    def test_defaults_are_those_of_the_slice(self):
+        rising = numpy.linspace(0, 5e-3, self.array.size, dtype=numpy.float32)
+        for array, options in (
+                (self.array, {"medical": True}),
+                (rising.reshape(self.array.shape), {}),
+                (numpy.asfortranarray(self.array), {}),
+                (self.array.astype(numpy.uint8), {"slope": 2, "intercept": 1})):
+            volume = sg.Volume(array, spacing=(1, 2, 3), **options)
+            volume.save("a.mha")
+            for axis in ("axial", "y", "sagittal"):
+                for words, look in (([], None), (["-c", "viridis"], "viridis")):
+                    with self.subTest(axis, type=array.dtype, look=look):
+                        self.tool("slice", "a.mha", "--axis", axis, "--at", "3",
+                                  "-o", "a.png", "-y", "--legend", *words)
+                        for each in (volume, sg.Volume("a.mha")):
+                            each.slice(axis, 3, look, legend=True).save("b.png")
+                            self.same_bytes("a.png", "b.png")
+
+    def test_masks_hold_for_the_default_of_a_slice(self):
+        mask = (self.array > 300).astype(numpy.uint8)
+        sg.Volume(mask, spacing=(1.5, 1.5, 1.5)).save("m.nrrd")
+        self.volume.save("a.nrrd")
+        self.tool("slice", "a.nrrd", "--mask", "m.nrrd", "--at", "3", "-o",
+                  "a.png")
+        for each in (self.volume.masked(mask),
+                     sg.Volume("a.nrrd", mask="m.nrrd")):
+            each.slice("axial", 3).save("b.png")
+            self.same_bytes("a.png", "b.png")
+
+    def test_masked_bytes_are_no_hounsfield_units_in_a_slice_either(self):
+        small = (self.array // 4).astype(numpy.uint8)
+        sg.Volume(small).save("a.nrrd")
+        sg.Volume((small > 60).astype(numpy.uint8)).save("m.nrrd")
+        self.tool("slice", "a.nrrd", "--mask", "m.nrrd", "--preset", "ct-bone",
+                  "-o", "a.png")
+        with self.assertWarnsRegex(sg.SnowglassWarning, "of 8 bits"):
+            sg.Volume("a.nrrd", mask="m.nrrd").slice(
+                look="ct-bone").save("b.png")
+        self.same_bytes("a.png", "b.png")
 
     def test_they_are_those_of_the_command_line(self):
         self.volume.save("a.nrrd")

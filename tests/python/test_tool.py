@@ -172,13 +172,13 @@ class Pictures(Same):
         self.same(patient, ["-m", "mean"], {"mode": "mean"}, {}, ".npy")
 
     def test_slices(self):
-        # Without a range Python takes that of the whole volume, which is read.
         grey = sg.Look(range=(-200, 900))
         for make, axis, at in some([
                 (patient, "axial", "14"), (spots, "axial", "12"),
                 (patient, "x", "20"), (patient, "coronal", "18"),
                 (spots, "sagittal", "15")], 2):
             for words, options in [
+                    (["--legend"], {"legend": True}),
                     (["--range", "-200,900"], {"look": grey}),
                     (["-s", "200x170", "--legend", "--range", "-200,900"],
                      {"size": (200, 170), "legend": True, "look": grey}),
