@@ -16,10 +16,13 @@ DATA = ("dims", "type", "endian", "spacing", "offset", "time", "channel",
 LOOK = ("preset", "colormap", "range", "opacity", "gradient_opacity", "log")
 #: Keys of the file of a picture and of other verbs, which are left out.
 OTHERS = ("output", "depth", "overwrite", "background", "bits", "frames", "fps",
-          "verb", "version", "time_label", "shift", "axis", "at")
+          "verb", "version", "time_label", "shift")
 #: What need not be said; some of it the command line has no words for.
 USUAL = {"azimuth": 0, "elevation": 0, "roll": 0, "perspective": 0, "zoom": 1,
          "fit": "visible", "threads": 0, "footprint": 0, "opacity_length": 0}
+#: What Volume.slice takes, besides the look.
+SLICE = ("axis", "at", "size", "kernel", "legend", "scale_bar", "letters",
+         "unit", "threads")
 #: Lengths of a millimetre.
 UNITS = {"": 1.0, "mm": 1.0, "um": 1e3, "nm": 1e6, "m": 1e-3, "angstrom": 1e7}
 
@@ -119,6 +122,8 @@ def split(options: Mapping[str, Any]) -> tuple[
         data_depth = {"depth": given["depth"]}
     else:
         data_depth = {}
+    if given.get("verb") == "slice":
+        given.setdefault("axis", "axial")
     for name in OTHERS:
         given.pop(name, None)
     given.update(data_depth)
@@ -134,6 +139,15 @@ def split(options: Mapping[str, Any]) -> tuple[
     if isinstance(given.get("size"), list):
         given["size"] = tuple(given["size"])
     return data, Look(**colors) if colors else None, given
+
+
+def check_slice(options: Mapping[str, Any]) -> None:
+    """That Volume.slice takes all of a recipe of a slice."""
+    others = [name.replace("_", "-") for name in options if name not in SLICE]
+    if others:
+        raise ValueError(f"{', '.join(others)}: Volume.slice, which draws this "
+                         f"recipe, knows only {', '.join(SLICE)}; remove the "
+                         f"others, or axis and at")
 
 
 def _word(key: str, value: Any) -> str:

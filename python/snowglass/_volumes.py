@@ -518,8 +518,12 @@ def render(source: Any = None, look: Union[Look, str, None] = None, *,
     """A picture of a file, an array or a Volume; `open` holds options of Volume,
     the others are those of Volume.render, or keys of a recipe: what
     `Image.recipe` gives and the command line saves, `render(**recipe)` draws,
-    with the same bits.  What such a file says of its output is left out."""
+    with the same bits.  What such a file says of its output is left out.  With
+    an axis it is a recipe of a slice, which Volume.slice draws."""
     data, colors, options = _recipes.split(options)
+    sliced = "axis" in options or "at" in options
+    if sliced:
+        _recipes.check_slice(options)
     if (source is None) == (input is None):
         raise TypeError("give a volume, or input: the path of one")
     if look is not None and colors is not None:
@@ -527,6 +531,8 @@ def render(source: Any = None, look: Union[Look, str, None] = None, *,
     volume = source if source is not None else input
     if not isinstance(volume, Volume):
         volume = Volume(volume, **{**data, **(open or {})})
+    if sliced:
+        return volume.slice(look=colors if look is None else look, **options)
     if options.pop("opacity_unit", None) == "mm":
         options["opacity_length"] = _recipes.length_of_mm(volume.info["unit"])
     return volume.render(colors if look is None else look, **options)

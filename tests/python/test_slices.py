@@ -212,6 +212,24 @@ class Recipes(InFolder):
         self.tool("render", "--config", "b.json", "-o", "b.npy")
         self.same(self.draw(self.CASES[1]), "b.npy")
 
+    def test_a_file_of_a_slice(self):
+        import json
+        for words in (["--axis", "coronal", "--at", "20"],
+                      ["--axis", "x", "--at", "30", "-s", "90x80", "-c",
+                       "viridis", "--legend", "--no-labels", "--kernel", "box",
+                       "--crop", "2:50,0:64,3:48", "--threads", "1"], []):
+            with self.subTest(words):
+                self.tool("slice", "head.nrrd", *words, "-o", "a.png", "-y",
+                          "--save-config", "a.json")
+                with open("a.json", encoding="ascii") as file:
+                    recipe = json.load(file)
+                sg.render(**recipe).save("b.png")
+                self.same_bytes("a.png", "b.png")
+        with self.assertRaisesRegex(ValueError, "azimuth.*Volume.slice"):
+            sg.render(**recipe, azimuth=3)
+        with self.assertRaisesRegex(ValueError, "azimuth.*Volume.slice"):
+            sg.render("head.nrrd", at=3, azimuth=3)
+
     def test_arrays_as_options(self):
         for name, value in (("position", [0, -600, 0]), ("target", [3, 4, 5]),
                             ("up", [1, 0, 1]), ("light", [20, 40])):
