@@ -17,6 +17,7 @@ class Snowglass(CMakePackage):
 
     variant("mpi", default=True, description="The tool and library for MPI")
     variant("python", default=False, description="The Python package")
+    variant("serve", default=False, description="The viewer in the browser")
     variant("hdf5", default=True, description="Read HDF5 and NetCDF-4")
     variant("tiff", default=True, description="Read and write TIFF")
     variant("gdcm", default=False, description="Unpack DICOM")
@@ -36,8 +37,13 @@ class Snowglass(CMakePackage):
     depends_on("libpng")
     depends_on("jansson")
     depends_on("mpi", when="+mpi")
+    # So that `spack load` and environments let Python find it.
+    extends("python", when="+python")
     depends_on("python@3.11:", type=("build", "link", "run"), when="+python")
     depends_on("py-numpy", type="run", when="+python")
+    depends_on("libwebsockets@4.1:", when="+serve")
+    depends_on("libjpeg-turbo@2:", when="+serve")
+    depends_on("gzip", type="build", when="+serve")
     depends_on("hdf5@1.10.3: ~mpi", when="+hdf5")
     depends_on("libtiff@4.5:", when="+tiff")
     depends_on("gdcm@3:", when="+gdcm")
@@ -50,9 +56,11 @@ class Snowglass(CMakePackage):
     depends_on("expat", when="+expat")
 
     def cmake_args(self):
+        # All parts are named: one that is not is built where the system, and
+        # not Spack, has its libraries.
         args = [self.define("BUILD_TESTING", self.run_tests),
                 self.define("SNOW_CATALYST", False)]
-        for name in ("mpi", "python", "hdf5", "tiff", "gdcm", "exr", "webp",
-                     "jpeg", "blosc", "zstd", "lz4", "expat"):
+        for name in ("mpi", "python", "serve", "hdf5", "tiff", "gdcm", "exr",
+                     "webp", "jpeg", "blosc", "zstd", "lz4", "expat"):
             args.append(self.define_from_variant("SNOW_" + name.upper(), name))
         return args

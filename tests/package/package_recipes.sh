@@ -20,6 +20,25 @@ for option in $(grep -ohE -- '-DSNOW_[A-Z0-9_]+' "$PACKAGING/debian/rules" \
 done
 check "options exist${lacking:+, but for$lacking}" [ -z "$lacking" ]
 
+# Parts that are built where their libraries are found.  A package that does not
+# name them has what the machine that built it happened to have.
+parts=$(sed -nE 's/^ *set\(SNOW_([A-Z0-9]+) (AUTO|\$\{default\}) CACHE STRING.*/\1/p
+    s/^snow_optional\(([A-Z0-9]+).*/\1/p' "${CMAKE_FILES[@]}" | grep -vx MANUAL)
+check "the parts are found" [ "$(wc -w <<<"$parts")" -ge 14 ]
+names_all() { # FILE PATTERN PART...: each part stands in the file, behind the pattern
+    local file=$1 pattern=$2 part lacking=
+    shift 2
+    for part; do
+        grep -qE -- "$pattern$part\b" "$file" || lacking+=" SNOW_$part"
+    done
+    [ -z "$lacking" ] || { echo "not$lacking" && return 1; }
+}
+# shellcheck disable=SC2086  # words
+check "Debian's rules name all parts" names_all "$PACKAGING/debian/rules" -DSNOW_ $parts
+# The formats' libraries are those of conda itself.
+check "conda's script names the others" names_all "$PACKAGING/conda/build.sh" \
+    -DSNOW_ MPI CATALYST PYTHON SERVE
+
 # --- Spack and conda ----------------------------------------------------------
 
 # The recipe is run with a stand-in for Spack's own module.
@@ -29,7 +48,7 @@ import re
 import sys
 import types
 
-seen = {"variants": [], "needs": [], "versions": []}
+seen = {"variants": [], "needs": [], "extends": [], "versions": []}
 
 
 class CMakePackage:
@@ -49,6 +68,7 @@ module.license = lambda name: None
 module.version = lambda name, **more: seen["versions"].append(name)
 module.variant = lambda name, **more: seen["variants"].append(name)
 module.depends_on = lambda name, when="", type=None: seen["needs"].append(when)
+module.extends = lambda name, when="": seen["extends"].append((name, when))
 sys.modules["spack"] = types.ModuleType("spack")
 sys.modules["spack.package"] = module
 spec = {}
@@ -59,6 +79,7 @@ for when in seen["needs"]:
     assert not when or when[1:] in seen["variants"], when
 for name in seen["variants"]:
     assert f"+{name}" in seen["needs"], f"{name} needs nothing"
+assert seen["extends"] == [("python", "+python")], "Python does not find it"
 END
 if [ -n "$python" ]; then
     run 0 "Spack's recipe runs" "$python" -B stand_in.py "$PACKAGING/spack/package.py"
@@ -67,15 +88,19 @@ if [ -n "$python" ]; then
         [ "$option" = BUILD_TESTING ] || known "$option" || lacking+=" $option"
     done <"$OUT"
     check "and its options exist${lacking:+, but for$lacking}" [ -z "$lacking" ]
-    check "all of them" [ "$(grep -c SNOW_ "$OUT")" -ge 12 ]
+    # shellcheck disable=SC2086  # words
+    check "all of them" names_all "$OUT" ^SNOW_ $parts
 fi
 if [ -n "$python" ] && "$python" -c 'import yaml' 2>/dev/null; then
     sed -e '/^{%/d' -e "s/{{ version }}/$version/; s/{{ \([a-z]*\)('\([a-z]*\)') }}/\1_\2/" \
         "$PACKAGING/conda/meta.yaml" >meta.yaml
     run 0 "conda's recipe is YAML" "$python" -c \
         'import yaml; m = yaml.safe_load(open("meta.yaml"))
-print(m["package"]["version"], len(m["requirements"]["host"]))'
+print(m["package"]["version"], len(m["requirements"]["host"]))
+print(*m["test"]["requires"])'
     prints "^$version 14$"
+    # A test has what it requires and the package, which needs no pkg-config.
+    prints '^pkg-config$'
 else
     skipped "conda's recipe" "there is no yaml for Python"
 fi
