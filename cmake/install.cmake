@@ -2,7 +2,8 @@
 #
 #   snowglass_runtime  programs, shared libraries, modules, manual, completions
 #   snowglass_dev      headers, archives, pkg-config, CMake package, Fortran
-#   snowglass_mpi      all that needs MPI: program, library, header, packages
+#   snowglass_mpi      all that needs MPI: program, library, header, packages, the
+#                      module for Python
 #   snowglass_python   the Python package (python/CMakeLists.txt)
 #   snowglass_doc      documents and examples
 #

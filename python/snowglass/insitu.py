@@ -19,8 +19,9 @@ from typing import Any, Mapping, Optional, Sequence
 try:
     from . import _insitu
 except ImportError as missing:
-    raise ImportError(f"this build of Snowglass has no pictures in situ for "
-                      f"Python, which need MPI: {missing}") from missing
+    raise ImportError(f"pictures in situ for Python need a Snowglass with MPI "
+                      f"(Debian: install python3-snowglass-mpi): {missing}"
+                      ) from missing
 
 
 class Movie:

@@ -33,7 +33,7 @@ check "doc has the README" has doc '/README[.]md$'
 check "doc has the guide" has doc '/docs/usage[.]md$'
 check "doc has an example" has doc '/examples/minimal[.]c$'
 check "mpi has all that is of MPI" \
-    [ "$(grep -E -- '/mpi[.]h$|-mpi' all.files)" = "$(cat mpi.files)" ]
+    [ "$(grep -E -- '/mpi[.]h$|-mpi|/_insitu[.].*so$' all.files)" = "$(cat mpi.files)" ]
 check "each file belongs to one component" \
     [ "$(cat {runtime,dev,mpi,python,doc}.files | sort)" = \
     "$(cat all.files)" ]

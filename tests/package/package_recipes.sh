@@ -126,6 +126,7 @@ for list in "$PACKAGING"/debian/*.install "$PACKAGING"/debian/*.manpages; do
         files=$(find $pattern ! -type d 2>/dev/null)
         [ -n "$files" ] || echo "${list##*/}: $pattern" >>idle
         echo "$files" >>listed
+        [[ $list == *-mpi* ]] || echo "$files" >>without_mpi
     done <"$list"
 done
 [ -e "$(find usr -name 'snowglass-mpi.pc')" ] || sed -i '/mpi/d' idle 2>/dev/null
@@ -137,6 +138,11 @@ find usr ! -type d | sort >installed
 check "there are many" [ "$(wc -l <installed)" -gt 100 ]
 check "each file is in a list" diff <(sort -u listed | sed '/^$/d') installed
 check "and in one only" [ -z "$(sort listed | sed '/^$/d' | uniq -d)" ]
+# What dpkg-shlibdeps would make the package of the file depend on.
+xargs readelf -d <without_mpi >needed 2>/dev/null
+check "libraries that files need are found" grep -q 'NEEDED.*libsnowglass[.]so' needed
+needs_no_mpi() { ! grep -E 'NEEDED.*\[lib(snowglass-)?mpi' needed; }
+check "packages that are not of MPI do not need it" needs_no_mpi
 
 for package in $(sed -n 's/^Package: //p' "$PACKAGING/debian/control"); do
     [ -e "$PACKAGING/debian/$package.install" ] || fail "$package has no list"
