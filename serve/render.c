@@ -122,7 +122,7 @@ static int draw(renderer *r, int level) {
 }
 
 /* Another crop has another middle and size, which zoom goes by: it is changed
- * so that the object stays as large.  Whether the state is a new one. */
+ * so that the object stays as large, unless a page set both.  Whether the state is a new one. */
 static bool keep_scale(renderer *r) {
     double middle[3], radius, before = r->radius;
     uint32_t revision;
@@ -134,7 +134,7 @@ static bool keep_scale(renderer *r) {
     if (!(fabs(radius - before) > 1e-9 * before))
         return false;
     answer_info(r->drawing, r->box);
-    if (!r->drawing->opts.target.given)
+    if (!r->drawing->opts.target.given || !state_crop_is_alone(r->state))
         return false;
     json_t *keys =
         json_pack("{s:f}", "zoom", r->drawing->opts.zoom * radius / before);

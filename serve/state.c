@@ -19,6 +19,7 @@ struct viewer_state {
     atomic_uint revision;
     atomic_bool ended;
     bool moving;
+    bool crop_is_alone;
     int watchers;
     double changed_at;
     viewer_question questions[QUESTIONS_MOST]; /* a ring */
@@ -88,6 +89,13 @@ static char *fault_of(viewer_state *s, const json_t *recipe) {
                                     : strdup(snow_context_message(s->checker));
 }
 
+/* A step back, a link: crop and camera come together, and fit. */
+static void note_crop(viewer_state *s, const json_t *changes) {
+    if (json_object_get(changes, "crop"))
+        s->crop_is_alone = !json_object_get(changes, "zoom") &&
+                           !json_object_get(changes, "target");
+}
+
 char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision) {
     pthread_mutex_lock(&s->lock);
     json_t *recipe = json_deep_copy(s->recipe);
@@ -99,11 +107,19 @@ char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision) {
         json_decref(s->recipe);
         s->recipe = recipe;
         s->changed_at = seconds();
+        note_crop(s, changes);
         *revision = ++s->revision;
         pthread_cond_signal(&s->changed);
     }
     pthread_mutex_unlock(&s->lock);
     return fault;
+}
+
+bool state_crop_is_alone(viewer_state *s) {
+    pthread_mutex_lock(&s->lock);
+    bool alone = s->crop_is_alone;
+    pthread_mutex_unlock(&s->lock);
+    return alone;
 }
 
 json_t *state_recipe(viewer_state *s) {

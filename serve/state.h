@@ -67,6 +67,10 @@ viewer_work state_wait(viewer_state *s, uint32_t drawn, int level,
 bool state_is_stale(const viewer_state *s, uint32_t revision);
 bool state_has_ended(const viewer_state *s);
 
+/* Whether the set that last changed the crop left the camera as it was: so its
+ * zoom is still by the size of the volume before. */
+bool state_crop_is_alone(viewer_state *s);
+
 /* A copy of the whole recipe. */
 json_t *state_recipe(viewer_state *s);
 

@@ -264,6 +264,26 @@ def same_bytes(server, path, recipe):
           f"{done.returncode} {done.stderr} {' '.join(words)}")
 
 
+def crop_and_back(server):
+    """A crop keeps the object's size; a step back names its zoom itself."""
+    page = Page(server)
+    before = page.hear_text("state")["recipe"]
+    page.say({"t": "set", "n": 1, "recipe": {"crop": [[12, 36], [12, 36],
+                                                      [12, 36]]}})
+    cropped = page.hear_text("state")["recipe"]
+    check("a crop keeps the scale", cropped["zoom"] < 0.8 * before["zoom"],
+          f"{before['zoom']} {cropped['zoom']}")
+    page.say({"t": "set", "n": 2, "recipe": {
+        "crop": None, "zoom": before["zoom"], "target": before["target"]}})
+    page.hear_picture(2, 2)
+    page.close()
+    page = Page(server)
+    now = page.hear_text("state")["recipe"]
+    check("a step back has its own zoom", now["zoom"] == before["zoom"],
+          f"{before['zoom']} {now['zoom']}")
+    page.close()
+
+
 RECIPES = [
     {"azimuth": 33.5, "elevation": -12},
     {"preset": "ct-bone", "view": "left", "legend": True},
@@ -409,6 +429,7 @@ crowds(server)
 slow_ones(server)
 many_pages(server)
 floods(server)
+crop_and_back(server)
 for recipe in RECIPES[::3] if SHORT else RECIPES:
     same_bytes(server, SMALL, recipe)
 print(f"       peak memory {server.kilobytes('VmHWM') / 1024:.0f} MB")
