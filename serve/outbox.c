@@ -64,14 +64,17 @@ parcel *parcel_share(outbox *box, parcel *p) {
     return p;
 }
 
-/* Under the lock: takes what is replaced out of the list. */
-static void remove_topic(outbox *box, parcel_topic topic, uint64_t client) {
+/* Under the lock: takes what a parcel replaces out of the list.  Two states that
+ * each leave out another page become one for all, as neither has the other's. */
+static void replace(outbox *box, parcel *by) {
     for (parcel **at = &box->first; *at;) {
         parcel *p = *at;
-        if (p->topic != topic || p->client != client) {
+        if (p->topic != by->topic || p->client != by->client) {
             at = &p->next;
             continue;
         }
+        if (p->except != by->except)
+            by->except = 0;
         *at = p->next;
         if (box->end == &p->next)
             box->end = at;
@@ -84,7 +87,7 @@ void outbox_put(outbox *box, parcel *p) {
         return;
     pthread_mutex_lock(&box->lock);
     if (p->topic != PARCEL_PLAIN && p->client == 0) {
-        remove_topic(box, p->topic, p->client);
+        replace(box, p);
         drop(box->newest[p->topic]);
         box->newest[p->topic] = p;
         p->owners++;
