@@ -196,9 +196,7 @@ static void answer_fit(drawing *d, viewer_state *s, outbox *box) {
     json_t *keys = drawing_apply(d, recipe) == CONTINUE ? drawing_fit(d) : NULL;
     if (keys)
         free(state_set(s, keys, &revision));
-    char *state = state_text(s, &revision);
-    outbox_put_text(box, 0, PARCEL_STATE, state);
-    free(state);
+    outbox_put(box, state_parcel(s, 0, 0));
     json_decref(keys);
     json_decref(recipe);
 }

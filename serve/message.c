@@ -1,6 +1,7 @@
 /* message.c - implements message.h. */
 #include "message.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* What a page may change.  Paths, and how a raw file is read, are those of the
@@ -170,4 +171,10 @@ void frame_head_write(const frame_head *head, unsigned char out[32]) {
 
 void frame_head_set_n(unsigned char head[32], uint32_t n) {
     put_u32(head + 4, n);
+}
+
+void state_text_set_n(unsigned char *text, uint32_t n) {
+    char digits[16];
+    snprintf(digits, sizeof digits, "%-10u", n);
+    memcpy(text + strlen(STATE_HEAD), digits, 10);
 }

@@ -70,4 +70,9 @@ void frame_head_write(const frame_head *head, unsigned char out[32]);
 /* Replaces n, which each page counts by itself. */
 void frame_head_set_n(unsigned char head[32], uint32_t n);
 
+/* What a text of the state begins with; %-10u is n, of which a page's own is
+ * put in its place when it is sent: its newest message that the state has. */
+#define STATE_HEAD "{\"t\":\"state\",\"n\":"
+void state_text_set_n(unsigned char *text, uint32_t n);
+
 #endif

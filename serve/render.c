@@ -55,10 +55,7 @@ static void free_pictures(picture *made) {
 }
 
 static void tell_state(renderer *r) {
-    uint32_t revision;
-    char *text = state_text(r->state, &revision);
-    outbox_put_text(r->box, 0, PARCEL_STATE, text);
-    free(text);
+    outbox_put(r->box, state_parcel(r->state, 0, 0));
 }
 
 static void adapt(renderer *r, int level, double took) {

@@ -6,6 +6,7 @@
 
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -108,9 +109,10 @@ char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision) {
         s->recipe = recipe;
         s->changed_at = seconds();
         note_crop(s, changes);
-        *revision = ++s->revision;
+        s->revision++;
         pthread_cond_signal(&s->changed);
     }
+    *revision = s->revision;
     pthread_mutex_unlock(&s->lock);
     return fault;
 }
@@ -129,18 +131,30 @@ json_t *state_recipe(viewer_state *s) {
     return copy;
 }
 
-char *state_text(viewer_state *s, uint32_t *revision) {
+parcel *state_parcel(viewer_state *s, uint64_t client, uint64_t except) {
     const char *key;
     json_t *value, *shown = json_object();
     pthread_mutex_lock(&s->lock);
     json_object_foreach(s->recipe, key, value) if (message_may_set(key))
         json_object_set_new(shown, key, json_deep_copy(value));
-    *revision = s->revision;
+    uint32_t revision = s->revision;
     pthread_mutex_unlock(&s->lock);
-    json_t *tree = json_pack("{s:s, s:o}", "t", "state", "recipe", shown);
-    char *text = json_dumps(tree, JSON_COMPACT | JSON_REAL_PRECISION(17));
-    json_decref(tree);
-    return text;
+    char *text = json_dumps(shown, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    json_decref(shown);
+    size_t most = (text ? strlen(text) : 0) + 64;
+    parcel *made = text ? parcel_new(most) : NULL;
+    if (made) {
+        made->length = (size_t)snprintf((char *)made->bytes, most,
+                                        STATE_HEAD "%-10u,\"recipe\":%s}", 0U,
+                                        text);
+        made->is_text = true;
+        made->topic = PARCEL_STATE;
+        made->client = client;
+        made->except = except;
+        made->revision = revision;
+    }
+    free(text);
+    return made;
 }
 
 void state_set_moving(viewer_state *s, bool moving) {

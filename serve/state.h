@@ -6,6 +6,8 @@
 #ifndef VIEWER_STATE_H
 #define VIEWER_STATE_H
 
+#include "outbox.h"
+
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -34,13 +36,14 @@ typedef enum viewer_work {
 viewer_state *state_new(json_t *recipe);
 void state_free(viewer_state *s);
 
-/* Merges keys into the state; null takes one out.  Returns NULL and the
- * revision of the new state, or what is wrong, to be freed by the caller; then
- * nothing has changed. */
+/* Merges keys into the state; null takes one out.  Returns NULL, or what is
+ * wrong, to be freed by the caller; then nothing has changed.  And the revision
+ * of the state. */
 char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision);
 
-/* The state as a text {"t": "state", "recipe": {...}}, to be freed. */
-char *state_text(viewer_state *s, uint32_t *revision);
+/* The state as a parcel {"t": "state", "n": 0, "recipe": {...}} (message.h) for a
+ * page, or for all (0) but one; NULL: no memory. */
+parcel *state_parcel(viewer_state *s, uint64_t client, uint64_t except);
 
 /* Some page moves something: drafts suffice. */
 void state_set_moving(viewer_state *s, bool moving);

@@ -16,6 +16,7 @@ export class ServerEngine {
         this.hearers = new Map();
         this.n = 0;
         this.sentAt = new Map();
+        this.unheard = new Map(); // changes that no state or picture has yet
         this.waiting = null; // changes of the next frame of the screen
         this.painting = Promise.resolve();
         this.wait = 500;
@@ -39,6 +40,8 @@ export class ServerEngine {
         this.socket.binaryType = 'arraybuffer';
         this.socket.onopen = () => {
             this.wait = 500;
+            this.sentAt.clear();
+            this.unheard.clear();
             this.say({t: 'hello', token: this.token, wants: ['jpeg', 'png', 'webp']});
             this.tell('open');
         };
@@ -82,6 +85,7 @@ export class ServerEngine {
             return;
         this.n++;
         this.sentAt.set(this.n, performance.now());
+        this.unheard.set(this.n, this.waiting);
         this.say({t: 'set', n: this.n, recipe: this.waiting});
         this.waiting = null;
     }
@@ -89,10 +93,30 @@ export class ServerEngine {
     hear(data) {
         if (typeof data === 'string') {
             const message = JSON.parse(data);
+            if (message.t === 'state')
+                this.renew(message);
             this.tell(message.t, message);
         } else {
             this.painting = this.painting.then(() => this.paint(data));
         }
+    }
+
+    /** What the page has changed since stays on top of a state. */
+    renew({n, recipe}) {
+        this.heard(n);
+        for (const changes of [...this.unheard.values(), this.waiting ?? {}])
+            for (const [key, value] of Object.entries(changes)) {
+                if (value === null)
+                    delete recipe[key];
+                else
+                    recipe[key] = value;
+            }
+    }
+
+    heard(n) {
+        for (const key of this.unheard.keys())
+            if (key <= n)
+                this.unheard.delete(key);
     }
 
     async paint(data) {
@@ -119,6 +143,7 @@ export class ServerEngine {
     }
 
     measure(n) {
+        this.heard(n);
         const sent = this.sentAt.get(n);
         if (sent !== undefined)
             this.tell('measured', performance.now() - sent);

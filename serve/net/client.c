@@ -55,12 +55,10 @@ void client_note_set(client *c, uint32_t n, uint32_t revision) {
 
 /* The newest of the page's own messages that a revision has in it. */
 static uint32_t n_of(const client *c, uint32_t revision) {
-    uint32_t best = 0, n = 0;
+    uint32_t n = 0;
     for (unsigned i = 0; i < CLIENT_SETS && i < c->set_count; i++)
-        if (c->sets[i].revision <= revision && c->sets[i].revision >= best) {
-            best = c->sets[i].revision;
+        if (c->sets[i].revision <= revision && c->sets[i].n > n)
             n = c->sets[i].n;
-        }
     return n;
 }
 
@@ -118,6 +116,8 @@ static bool send_piece(client *c) {
     memcpy(room + LWS_PRE, p->bytes + c->sent, length);
     if (first && is_picture(p))
         frame_head_set_n(room + LWS_PRE, n_of(c, p->revision));
+    if (first && p->topic == PARCEL_STATE)
+        state_text_set_n(room + LWS_PRE, n_of(c, p->revision));
     int how = !first       ? LWS_WRITE_CONTINUATION
               : p->is_text ? LWS_WRITE_TEXT
                            : LWS_WRITE_BINARY;

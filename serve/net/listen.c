@@ -130,19 +130,7 @@ static void queue_newest(listener *l, client *c, parcel_topic about) {
 }
 
 static void send_state(listener *l, uint64_t to, uint64_t except) {
-    uint32_t revision;
-    char *text = state_text(l->state, &revision);
-    parcel *p = text ? parcel_new(strlen(text)) : NULL;
-    if (p) {
-        memcpy(p->bytes, text, p->length);
-        p->is_text = true;
-        p->topic = PARCEL_STATE;
-        p->client = to;
-        p->except = except;
-        p->revision = revision;
-    }
-    outbox_put(l->box, p);
-    free(text);
+    outbox_put(l->box, state_parcel(l->state, to, except));
 }
 
 static int greet(listener *l, client *c, const message *m) {
@@ -170,13 +158,13 @@ static int greet(listener *l, client *c, const message *m) {
 static void set(listener *l, client *c, const message *m) {
     uint32_t revision;
     char *fault = state_set(l->state, m->recipe, &revision);
+    client_note_set(c, m->n, revision);
     if (fault) {
         answer_said(l->box, c->id, fault);
         send_state(l, c->id, 0);
         free(fault);
         return;
     }
-    client_note_set(c, m->n, revision);
     if (l->count > 1)
         send_state(l, 0, c->id);
 }

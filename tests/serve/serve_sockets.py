@@ -284,6 +284,33 @@ def crop_and_back(server):
     page.close()
 
 
+def two_at_once(server):
+    """Both pages learn of both changes, and which of their own are in a state."""
+    one, other = Page(server), Page(server)
+    for page in (one, other):
+        page.hear_text("state")
+    for n in range(1, 30):
+        one.say({"t": "set", "n": n, "recipe": {"azimuth": n}})
+        other.say({"t": "set", "n": 100 + n, "recipe": {"elevation": n}})
+    for page, own, key, last in ((one, "azimuth", "elevation", 29),
+                                 (other, "elevation", "azimuth", 129)):
+        state = {"recipe": {}}
+        while state and state["recipe"].get(key) != 29:
+            state = page.hear_text("state")
+        check(f"the other's {key} arrives", state is not None)
+        if state:
+            base = 100 if own == "elevation" else 0
+            check(f"its n is that of its {own}",
+                  state["n"] in (0, base + state["recipe"].get(own, 0)), state)
+    one.say({"t": "set", "n": 77, "recipe": {"zoom": "wrong"}})
+    state = one.hear_text("state")
+    while state and state["n"] != 77:
+        state = one.hear_text("state")
+    check("a refused change counts as heard", state is not None)
+    one.close()
+    other.close()
+
+
 RECIPES = [
     {"azimuth": 33.5, "elevation": -12},
     {"preset": "ct-bone", "view": "left", "legend": True},
@@ -430,6 +457,7 @@ slow_ones(server)
 many_pages(server)
 floods(server)
 crop_and_back(server)
+two_at_once(server)
 for recipe in RECIPES[::3] if SHORT else RECIPES:
     same_bytes(server, SMALL, recipe)
 print(f"       peak memory {server.kilobytes('VmHWM') / 1024:.0f} MB")
