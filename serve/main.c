@@ -133,15 +133,18 @@ static int print_url(const viewer *v) {
 
 static int serve(viewer *v) {
     hear_signals(v->listener);
+    renderer_begin(&v->drawing, v->state, v->box);
     int done = print_url(v);
     if (done != SNOW_STATUS_OK)
         return done;
     v->pack = packer_new(v->box);
+    say_to(hear_line, v->box);
     if (v->pack)
         v->renderer = renderer_new(&v->drawing, v->state, v->box, v->pack);
-    if (!v->renderer)
+    if (!v->renderer) {
+        say_to(NULL, NULL);
         return fail_start();
-    say_to(hear_line, v->box);
+    }
     listener_run(v->listener, v->state, v->box);
     return SNOW_STATUS_OK;
 }

@@ -161,26 +161,20 @@ static void serve_state(renderer *r, int level, json_t *recipe,
     r->level = done == CONTINUE ? level : stopped ? r->level : 2;
 }
 
-/* The first frame shows all of the object. */
-static void begin(renderer *r) {
+void renderer_begin(drawing *d, viewer_state *s, outbox *box) {
     uint32_t revision;
-    double middle[3];
-    json_t *keys =
-        r->drawing->opts.target.given ? json_object() : drawing_fit(r->drawing);
+    json_t *keys = d->opts.target.given ? json_object() : drawing_fit(d);
     if (json_object_size(keys))
-        free(state_set(r->state, keys, &revision));
+        free(state_set(s, keys, &revision));
     json_decref(keys);
-    tell_state(r);
-    drawing_middle(r->drawing, middle, &r->radius);
-    r->drawing->volume_is_new = false;
-    answer_info(r->drawing, r->box);
-    answer_look(r->drawing, r->box);
+    d->volume_is_new = false;
+    answer_info(d, box);
+    answer_look(d, box);
 }
 
 static void *run(void *user) {
     renderer *r = user;
     viewer_work work;
-    begin(r);
     for (;;) {
         viewer_question question;
         json_t *recipe = NULL;
@@ -224,11 +218,13 @@ static bool start(renderer *r) {
 }
 
 renderer *renderer_new(drawing *d, viewer_state *s, outbox *box, packer *pack) {
+    double middle[3];
     renderer *r = malloc(sizeof *r);
     if (!r)
         return NULL;
     *r = (renderer){
         .drawing = d, .state = s, .box = box, .pack = pack, .level = -1};
+    drawing_middle(d, middle, &r->radius);
     snow_context_set_progress(d->state.context, hear_progress, r);
     if (start(r))
         return r;

@@ -311,6 +311,22 @@ def two_at_once(server):
     other.close()
 
 
+def first_state():
+    """What a page sets at once is not lost, nor its first state another one."""
+    server = Server(SMALL)
+    page = Page(server)
+    page.say({"t": "set", "n": 1, "recipe": {"zoom": 3.5}})
+    begin = page.hear_text("state")["recipe"]
+    check("the first state is framed", "target" in begin, begin)
+    page.hear_picture(2, 1)
+    page.close()
+    page = Page(server)
+    now = page.hear_text("state")["recipe"]
+    check("a zoom that is set at once stays", now["zoom"] == 3.5, now)
+    page.close()
+    server.stop()
+
+
 RECIPES = [
     {"azimuth": 33.5, "elevation": -12},
     {"preset": "ct-bone", "view": "left", "legend": True},
@@ -464,6 +480,7 @@ print(f"       peak memory {server.kilobytes('VmHWM') / 1024:.0f} MB")
 check("memory is bounded", server.kilobytes("VmHWM") < 400 * 1024)
 code, said = server.stop()
 check("it ends in order", code == 0, f"{code} {said}")
+first_state()
 if not SHORT:
     thin_links()
 endings()
