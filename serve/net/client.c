@@ -31,9 +31,22 @@ static bool is_for_link(const client *c, const parcel *p) {
            c->thin == (p->topic == PARCEL_THIN_PICTURE);
 }
 
+/* Of all pictures that wait, for whichever link, only the newest is sent. */
+static void forget_pictures(client *c, outbox *box) {
+    int left = 0;
+    for (int i = 0; i < c->count; i++)
+        if (is_picture(c->queue[i]))
+            parcel_release(box, c->queue[i]);
+        else
+            c->queue[left++] = c->queue[i];
+    c->count = left;
+}
+
 void client_queue(client *c, outbox *box, parcel *p) {
     if (!is_for_link(c, p))
         return;
+    if (is_picture(p))
+        forget_pictures(c, box);
     for (int i = 0; i < c->count && p->topic != PARCEL_PLAIN; i++) {
         if (c->queue[i]->topic != p->topic)
             continue;
