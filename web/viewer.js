@@ -147,6 +147,10 @@ engine.on('picture', frame => {
     if (canvas.width !== width || canvas.height !== height)
         [canvas.width, canvas.height] = [width, height];
     paint.imageSmoothingQuality = 'high';
+    if (frame.level === 2) { // it may have alpha: over black, as those before it
+        paint.fillStyle = '#000';
+        paint.fillRect(0, 0, width, height);
+    }
     paint.drawImage(frame.bitmap, 0, 0, width, height);
     page.rest = frame.level === 2 ? frame.blob : null;
     level.textContent = LEVELS[frame.level];

@@ -102,6 +102,11 @@ async function smoke(page) {
     await page.keyboard.press('s');
     await (await coming).saveAs(`${folder}/rest.png`);
     await sameAsCanvas(page);
+    await page.evaluate(() => window.snowglass.recipe.set({background: 'none'}));
+    await rest(page);
+    await sameAsCanvas(page);
+    await page.evaluate(() => window.snowglass.recipe.set({background: null}));
+    await rest(page);
     await shot(page, 'smoke');
 }
 
@@ -111,10 +116,13 @@ async function sameAsCanvas(page) {
         const bitmap = await createImageBitmap(window.snowglass.page.rest,
             {premultiplyAlpha: 'none', colorSpaceConversion: 'none'});
         const canvas = document.querySelector('.picture canvas');
-        const copy = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
-        copy.drawImage(bitmap, 0, 0);
-        const a = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
-        const b = copy.getImageData(0, 0, bitmap.width, bitmap.height).data;
+        const pixels = image => {
+            const copy = new OffscreenCanvas(image.width, image.height).getContext('2d',
+                {alpha: false, willReadFrequently: true});
+            copy.drawImage(image, 0, 0);
+            return copy.getImageData(0, 0, image.width, image.height).data;
+        };
+        const [a, b] = [canvas, bitmap].map(pixels);
         return a.length === b.length ? a.reduce((sum, value, i) => sum + (value !== b[i]), 0) : -1;
     });
     check('the canvas has the pixels of the PNG', different === 0, different);
