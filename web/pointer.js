@@ -27,8 +27,15 @@ export class Pointer {
         canvas.addEventListener('auxclick', event => event.preventDefault());
     }
 
+    /** The box in which the picture is drawn: another page may have another window. */
+    get box() {
+        const {clientWidth, clientHeight, width, height} = this.canvas;
+        const scale = Math.min(clientWidth / width, clientHeight / height) || 1;
+        return [width * scale, height * scale];
+    }
+
     get side() {
-        return Math.min(this.canvas.clientWidth, this.canvas.clientHeight) || 1;
+        return Math.min(...this.box);
     }
 
     /** From the middle of the picture. */
@@ -67,7 +74,7 @@ export class Pointer {
         const keys = this.recipe.keys, info = this.page.info;
         this.total = [this.total[0] + dx, this.total[1] + dy];
         if (this.kind === 'turn')
-            this.recipe.set(turned(keys, dx, dy, this.canvas.clientHeight));
+            this.recipe.set(turned(keys, dx, dy, this.box[1]));
         else if (this.kind === 'pan')
             this.recipe.set(panned(keys, info, dx, dy, this.side));
         else

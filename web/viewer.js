@@ -175,10 +175,13 @@ function describe() {
 // --- the server ----------------------------------------------------------------------
 
 const panel = new Panel(recipe, page, engine, actions);
-let first = true;
+let first = true, fresh = true; // the first state of all, and of a connection
 
 engine.on('closed', reason => say(reason, true));
-engine.on('open', () => say(''));
+engine.on('open', () => {
+    fresh = true;
+    say('');
+});
 engine.on('said', message => say(message.text));
 engine.on('progress', ({stage, part}) => say(part < 1 ? `${stage}, ${Math.round(100 * part)} %` : ''));
 engine.on('command', message => copy('The command that makes this picture', message.text));
@@ -204,11 +207,15 @@ engine.on('info', info => {
     engine.ask('histogram');
 });
 engine.on('state', () => {
-    if (!first)
+    const begins = first;
+    if (!fresh)
         return;
-    first = false;
-    page.begin = {...recipe.keys};
-    fitWindow();
+    if (first)
+        page.begin = {...recipe.keys};
+    first = fresh = false;
+    fitWindow(); // a server that was started again has another size
+    if (!begins)
+        return;
     try {
         if (given.has('recipe'))
             recipe.replace(JSON.parse(given.get('recipe')));

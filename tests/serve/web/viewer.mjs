@@ -229,6 +229,33 @@ async function controls(page) {
         now.mode === 'minip', JSON.stringify(now));
 }
 
+/** A pan follows the pointer also where the picture has another page's shape. */
+async function letterboxed(page) {
+    await page.evaluate(() => window.snowglass.recipe.apply({size: [300, 600]}));
+    await rest(page);
+    const [right, pixel] = await page.evaluate(() => {
+        const {recipe: {keys: of}, page: {info}} = window.snowglass;
+        const {clientHeight, clientWidth} = document.querySelector('.picture canvas');
+        const wide = Math.min(clientWidth, clientHeight / 2);
+        return [of.target, 2 * info.radius / (of.zoom * wide)];
+    });
+    await drag(page, 80, 0, 'left', 'Shift');
+    const now = (await keys(page)).target;
+    const moved = Math.hypot(...now.map((x, i) => x - right[i]));
+    check('a pan follows the pointer in a letterbox', Math.abs(moved / (80 * pixel) - 1) < 0.05,
+        moved / (80 * pixel));
+}
+
+/** After a connection is lost the page has its window's size again. */
+async function reconnected(page) {
+    await page.evaluate(() => window.snowglass.engine.socket.close());
+    await page.waitForFunction(() => window.snowglass.recipe.keys.size[0] > 300, null,
+        {timeout: 20000});
+    await rest(page);
+    check('a page that comes back has the size of its window',
+        (await keys(page)).size[0] > 500);
+}
+
 /** A link restores the state, and two pages see each other's changes. */
 async function together(page) {
     await page.getByRole('button', {name: 'Copy a link to this state'}).click();
@@ -364,6 +391,8 @@ await names(page);
 if (long) {
     await page.reload();
     await rest(page);
+    await letterboxed(page);
+    await reconnected(page);
     await editor(page);
     await controls(page);
     await together(page);
