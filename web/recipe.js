@@ -5,6 +5,7 @@ const HISTORY = 200;
 const TOGETHER = 600; // ms in which changes of the same keys are one step
 
 const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+const sorted = ({size, ...keys}) => Object.entries(keys).sort(([a], [b]) => a < b ? -1 : 1);
 
 export class Recipe {
     constructor(engine) {
@@ -13,7 +14,7 @@ export class Recipe {
         this.before = [];
         this.after = [];
         this.hearers = [];
-        this.gesture = false;
+        this.gesture = null; // 'begun', then 'changed'
         this.last = {names: '', at: 0};
         engine.on('state', message => this.take(message.recipe));
     }
@@ -33,19 +34,18 @@ export class Recipe {
         this.changed();
     }
 
-    /** A drag is one step, however many changes it makes. */
+    /** A drag is one step, however many changes it makes, and none without any. */
     begin() {
         if (this.gesture)
             return;
-        this.remember('');
-        this.gesture = true;
+        this.gesture = 'begun';
         this.engine.moving(true);
     }
 
     end() {
         if (!this.gesture)
             return;
-        this.gesture = false;
+        this.gesture = null;
         this.engine.moving(false);
         this.changed();
     }
@@ -69,6 +69,9 @@ export class Recipe {
             return;
         if (!this.gesture)
             this.remember(names.join());
+        else if (this.gesture === 'begun')
+            this.remember('');
+        this.gesture &&= 'changed';
         this.apply(changes);
     }
 
@@ -94,7 +97,10 @@ export class Recipe {
         this.apply(changes);
     }
 
+    /** To another state; steps that changed nothing are passed over. */
     step(from, to) {
+        while (from.length && same(sorted(from.at(-1)), sorted(this.keys)))
+            from.pop();
         if (!from.length)
             return false;
         to.push({...this.keys});

@@ -76,7 +76,10 @@ const actions = {
     view(name) {
         recipe.set({view: name, azimuth: 0, elevation: 0, roll: 0, position: null, up: null});
     },
-    fit: () => engine.ask('fit'),
+    fit() {
+        recipe.remember('');
+        engine.ask('fit');
+    },
     mode() {
         const next = MODES[(MODES.indexOf(recipe.keys.mode ?? 'over') + 1) % MODES.length];
         const {low, high} = page.look;

@@ -91,7 +91,25 @@ async function smoke(page) {
         now.elevation === before.elevation, JSON.stringify(now));
     await page.keyboard.press('Z');
     await rest(page);
-    check('and one is done again', (await keys(page)).azimuth < before.azimuth);
+    const again = (await keys(page)).azimuth;
+    check('and one is done again', again < before.azimuth);
+    await page.mouse.click(x, y);
+    await page.keyboard.press('Z');
+    await rest(page);
+    check('a click is no step: another is done again',
+        (await keys(page)).elevation > before.elevation);
+    await page.keyboard.press('+');
+    await rest(page);
+    const near = (await keys(page)).zoom;
+    await page.keyboard.press('r');
+    await page.waitForFunction(was => window.snowglass.recipe.keys.zoom !== was, near);
+    await rest(page);
+    await page.keyboard.press('z');
+    await rest(page);
+    check('frame all is a step', (await keys(page)).zoom === near, (await keys(page)).zoom);
+    await page.keyboard.press('z');
+    await page.keyboard.press('z');
+    await rest(page);
     await page.keyboard.press('c');
     await page.waitForSelector('dialog[open] textarea');
     const command = await page.locator('dialog textarea').inputValue();
