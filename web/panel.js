@@ -25,6 +25,9 @@ function bounds(info) {
     });
 }
 
+/** Planes of the command line that no slider shows, and that stay. */
+const isOblique = plane => plane.slice(0, 3).filter(x => x !== 0).length > 1;
+
 export class Panel {
     constructor(recipe, page, engine, actions) {
         Object.assign(this, {recipe, page, engine, actions});
@@ -208,7 +211,7 @@ export class Panel {
     /** The planes as the lowest and highest visible place of each axis. */
     clips(box, keys) {
         const ends = box.map(pair => [...pair]);
-        for (const [a, b, c, d] of keys.clip ?? []) {
+        for (const [a, b, c, d] of (keys.clip ?? []).filter(plane => !isOblique(plane))) {
             const axis = [a, b, c].findIndex(x => x !== 0);
             const sign = [a, b, c][axis];
             ends[axis][sign > 0 ? 1 : 0] = d / sign;
@@ -220,7 +223,7 @@ export class Panel {
         const ends = this.clips(box, this.recipe.keys), margin = (box[axis][1] - box[axis][0]) / 200;
         ends[axis][end] = end ? Math.max(value, ends[axis][0] + margin)
             : Math.min(value, ends[axis][1] - margin);
-        const planes = [];
+        const planes = (this.recipe.keys.clip ?? []).filter(isOblique);
         ends.forEach((pair, i) => pair.forEach((place, side) => {
             if (Math.abs(place - box[i][side]) <= 1e-6 * (box[i][1] - box[i][0]))
                 return;

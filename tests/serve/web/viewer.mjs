@@ -230,6 +230,12 @@ async function controls(page) {
     check('a clip plane is set', (await keys(page)).clip?.length === 1,
         JSON.stringify((await keys(page)).clip));
     await shot(page, 'clip');
+    await page.evaluate(() => window.snowglass.recipe.set({clip: [[1, 1, 0, 20]]}));
+    await page.getByLabel(/clip .*highest/).nth(1).fill('0');
+    await rest(page);
+    const clip = (await keys(page)).clip;
+    check('an oblique plane stays', clip?.length === 2 && clip[0][0] === 1 && clip[0][1] === 1,
+        JSON.stringify(clip));
     await page.getByRole('button', {name: 'Remove all clip planes'}).click();
     await page.locator('summary', {hasText: 'Presets'}).click();
     await page.waitForFunction(() => [...document.querySelectorAll('.presets img')]
