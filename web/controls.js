@@ -60,7 +60,9 @@ export function slider(name, low, high, step, recipe, change) {
         oninput: () => change(input.valueAsNumber),
         onpointerdown: () => recipe.begin(),
         onpointerup: () => recipe.end(),
-        onpointercancel: () => recipe.end()});
+        onpointercancel: () => recipe.end(),
+        onchange: () => recipe.end(), // let go elsewhere
+        onlostpointercapture: () => recipe.end()});
     return input;
 }
 

@@ -60,7 +60,7 @@ export class Editor {
         const canvas = this.canvas;
         canvas.addEventListener('pointerdown', event => this.down(event));
         canvas.addEventListener('pointermove', event => this.move(event));
-        for (const name of ['pointerup', 'pointercancel'])
+        for (const name of ['pointerup', 'pointercancel', 'lostpointercapture'])
             canvas.addEventListener(name, () => this.up());
         canvas.addEventListener('dblclick', event => this.doubled(event));
         canvas.addEventListener('keydown', event => this.key(event));
@@ -161,6 +161,8 @@ export class Editor {
     }
 
     down(event) {
+        if (event.button)
+            return;
         const place = this.at(event);
         this.canvas.setPointerCapture(event.pointerId);
         this.chosen = this.near(place);
@@ -185,6 +187,8 @@ export class Editor {
     }
 
     up() {
+        if (!this.from)
+            return;
         this.from = null;
         this.recipe.end();
     }

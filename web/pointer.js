@@ -20,7 +20,7 @@ export class Pointer {
         this.fingers = new Map();
         canvas.addEventListener('pointerdown', event => this.down(event));
         canvas.addEventListener('pointermove', event => this.move(event));
-        for (const name of ['pointerup', 'pointercancel'])
+        for (const name of ['pointerup', 'pointercancel', 'lostpointercapture'])
             canvas.addEventListener(name, event => this.up(event));
         canvas.addEventListener('wheel', event => this.wheel(event), {passive: false});
         canvas.addEventListener('contextmenu', event => event.preventDefault());

@@ -177,6 +177,13 @@ async function editor(page) {
     await rest(page);
     let now = await points();
     check('a dragged point is more opaque', now[1][1] > before[1][1], JSON.stringify(now));
+    const [px, py] = await at(1);
+    await page.mouse.move(box.x + px, box.y + py);
+    await page.mouse.down({button: 'right'});
+    await page.mouse.move(box.x + px + 2, box.y + py - 30, {steps: 5});
+    await page.mouse.up({button: 'right'});
+    check('the right button drags no point', JSON.stringify(await points()) === JSON.stringify(now));
+    await page.keyboard.press('Escape');
     await page.mouse.dblclick(box.x + box.width / 2, box.y + 20);
     await rest(page);
     now = await points();
