@@ -26,7 +26,7 @@ const TURNS = {ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, -1], ArrowDo
 export function listenToKeys(recipe, page, actions) {
     document.addEventListener('keydown', event => {
         const field = event.target.closest?.('input, select, textarea, dialog, summary');
-        if (field || event.ctrlKey || event.metaKey || event.altKey || !page.info)
+        if (field || event.ctrlKey || event.metaKey || event.altKey || !page.info || !page.look)
             return;
         if (press(event, recipe, page, actions))
             event.preventDefault();

@@ -46,8 +46,10 @@ export class Pointer {
     }
 
     down(event) {
+        if (!this.page.info || !this.page.look)
+            return;
         this.kind ??= kindOf(event);
-        if (!this.kind || !this.page.info)
+        if (!this.kind)
             return;
         event.preventDefault();
         this.canvas.focus();

@@ -26,6 +26,7 @@ const level = make('span', {className: 'faint'});
 const figures = make('span', {className: 'faint grow'});
 const undo = button('Undo', 'Undo (z)', () => actions.undo());
 const redo = button('Redo', 'Redo (Shift+z)', () => actions.redo());
+const buttons = make('span', {className: 'buttons'});
 const text = make('textarea', {readOnly: true, spellcheck: false, 'aria-label': 'Text to copy'});
 const dialog = make('dialog', {});
 const picture = make('div', {className: 'picture'}, canvas, said);
@@ -177,6 +178,14 @@ function describe() {
 
 // --- the server ----------------------------------------------------------------------
 
+/** Buttons work when the volume and its look are known. */
+function ready() {
+    if (page.info && page.look)
+        for (const each of buttons.children)
+            each.disabled = false;
+    describe();
+}
+
 const panel = new Panel(recipe, page, engine, actions);
 let first = true, fresh = true; // the first state of all, and of a connection
 
@@ -195,6 +204,7 @@ engine.on('histogram', message => {
 engine.on('look', message => {
     page.look = message;
     panel.update();
+    ready();
 });
 engine.on('info', info => {
     const known = page.info;
@@ -208,6 +218,7 @@ engine.on('info', info => {
     else
         panel.build();
     engine.ask('histogram');
+    ready();
 });
 engine.on('state', () => {
     const begins = first;
@@ -231,17 +242,20 @@ recipe.onChange(() => {
     describe();
 });
 
+buttons.append(
+    button('Command', 'Copy the command that makes this picture (c)', actions.command),
+    button('Link', 'Copy a link to this state', actions.link),
+    button('Recipe', 'Save the recipe of this state', actions.file),
+    button('Picture', 'Save the picture (s)', actions.save), undo, redo,
+    button('Reset', 'All as it was when the page was opened', actions.reset));
+for (const each of buttons.children)
+    each.disabled = true;
 document.getElementById('viewer').append(
     make('section', {className: 'stage', 'aria-label': 'Picture'},
         make('div', {className: 'top'}, make('h1', {textContent: 'snowglass'}), title, level,
             button('Help', 'Mouse, fingers and keys (?)', actions.help)),
         picture,
-        make('div', {className: 'bottom'}, figures,
-            button('Command', 'Copy the command that makes this picture (c)', actions.command),
-            button('Link', 'Copy a link to this state', actions.link),
-            button('Recipe', 'Save the recipe of this state', actions.file),
-            button('Picture', 'Save the picture (s)', actions.save), undo, redo,
-            button('Reset', 'All as it was when the page was opened', actions.reset))),
+        make('div', {className: 'bottom'}, figures, buttons)),
     panel.element, dialog);
 new Pointer(canvas, recipe, page);
 listenToKeys(recipe, page, actions);

@@ -416,6 +416,28 @@ if (tier === 'film') {
     process.exit(wrong ? 1 : 0);
 }
 
+/** Before the server has said anything nothing can be pressed, and nothing throws. */
+async function unready() {
+    const context = await browser.newContext();
+    const page = await context.newPage();
+    page.on('pageerror', error => said.push(String(error)));
+    await page.addInitScript(() => {
+        window.WebSocket = class {
+            static OPEN = 1;
+        };
+    });
+    await page.goto(url);
+    await page.waitForSelector('.bottom button');
+    const enabled = await page.locator('.bottom button:enabled').count();
+    check('buttons wait for the volume', enabled === 0, enabled);
+    for (const key of ['m', 'c', 'p', ' '])
+        await page.keyboard.press(key);
+    await page.mouse.click(200, 200);
+    await page.mouse.click(200, 200, {button: 'right'});
+    await context.close();
+}
+
+await unready();
 const page = await open();
 await smoke(page);
 await names(page);
