@@ -97,7 +97,8 @@ export class ServerEngine {
                 this.renew(message);
             this.tell(message.t, message);
         } else {
-            this.painting = this.painting.then(() => this.paint(data));
+            this.painting = this.painting.then(() => this.paint(data)).catch(
+                error => this.tell('said', {text: `A picture cannot be shown: ${error.message}`}));
         }
     }
 
@@ -134,12 +135,15 @@ export class ServerEngine {
             this.tell('small', frame);
             return;
         }
-        frame.bitmap = await createImageBitmap(frame.blob, {
-            premultiplyAlpha: 'none', colorSpaceConversion: 'none'});
-        this.tell('picture', frame);
-        frame.bitmap.close();
-        this.say({t: 'ack', n});
-        this.measure(n);
+        try {
+            frame.bitmap = await createImageBitmap(frame.blob, {
+                premultiplyAlpha: 'none', colorSpaceConversion: 'none'});
+            this.tell('picture', frame);
+            frame.bitmap.close();
+        } finally { // the server waits for it
+            this.say({t: 'ack', n});
+            this.measure(n);
+        }
     }
 
     measure(n) {

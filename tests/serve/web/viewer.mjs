@@ -277,6 +277,23 @@ async function letterboxed(page) {
         moved / (80 * pixel));
 }
 
+/** One picture that cannot be decoded stops no other. */
+async function damaged(page) {
+    await page.evaluate(() => {
+        const {createImageBitmap: good} = window;
+        let left = 3;
+        window.createImageBitmap = (...given) => left-- > 0
+            ? Promise.reject(new Error('damaged')) : good(...given);
+    });
+    for (let i = 0; i < 5; i++) {
+        await page.keyboard.press('ArrowLeft');
+        await page.waitForTimeout(200);
+    }
+    await rest(page);
+    check('after damaged pictures others are shown',
+        await page.evaluate(() => document.querySelector('.picture canvas').dataset.level === '2'));
+}
+
 /** After a connection is lost the page has its window's size again. */
 async function reconnected(page) {
     await page.evaluate(() => window.snowglass.engine.socket.close());
@@ -446,6 +463,7 @@ if (long) {
     await rest(page);
     await letterboxed(page);
     await reconnected(page);
+    await damaged(page);
     await editor(page);
     await controls(page);
     await together(page);
