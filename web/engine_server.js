@@ -4,7 +4,7 @@
 
 const MAGIC = 0x31574e53;
 const TYPES = ['', 'image/jpeg', 'image/png', 'image/webp'];
-const FATAL = [4401, 4429];
+const FATAL = [4400, 4401, 4429]; // a message that it does not take, the secret, too many
 
 /**
  * Events by name: 'open', 'closed', 'picture', 'small', and the kinds of texts
@@ -51,7 +51,7 @@ export class ServerEngine {
 
     closed(event) {
         const fatal = FATAL.includes(event.code);
-        this.tell('closed', fatal ? event.reason : 'The viewer does not answer. ' +
+        this.tell('closed', fatal ? `${event.reason} ${event.code === 4400 ? 'Load the page again.' : ''}` : 'The viewer does not answer. ' +
             'Trying again; if it has ended, start snowglass serve again.');
         if (fatal)
             return;

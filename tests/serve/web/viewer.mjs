@@ -352,6 +352,12 @@ async function touch() {
 async function schemes(page0) {
     await page0.getByRole('button', {name: /^All as it was/}).click();
     await page0.waitForTimeout(300);
+    const spoiled = await open();
+    await spoiled.evaluate(() => window.snowglass.engine.set({mask: '/etc/passwd'}));
+    await spoiled.waitForFunction(() => /command line.*Load the page/.test(
+        document.querySelector('.said').textContent));
+    check('a message that is refused is told', true);
+    await spoiled.context().close();
     check('all can be reset', (await keys(page0)).mode === 'over');
     for (const colorScheme of ['dark', 'light']) {
         const page = await open({viewport: {width: 1600, height: 1000}, colorScheme});
