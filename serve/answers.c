@@ -201,16 +201,33 @@ static void answer_fit(drawing *d, viewer_state *s, outbox *box) {
     json_decref(recipe);
 }
 
-/* {"what": "thumbnail", "preset": "ct-bone", "pane": 4} */
-static void answer_thumbnail(drawing *d, outbox *box, uint64_t client,
-                             const json_t *tree) {
+/* The state that was the newest when a picture was begun. */
+typedef struct begun {
+    const viewer_state *state;
+    uint32_t revision;
+} begun;
+
+static bool has_changed(void *user) {
+    const begun *b = user;
+    return state_is_stale(b->state, b->revision);
+}
+
+/* {"what": "thumbnail", "preset": "ct-bone", "pane": 4}: is asked again where a
+ * page changes something meanwhile. */
+static void answer_thumbnail(drawing *d, viewer_state *s, outbox *box,
+                             uint64_t client, json_t *tree) {
+    begun now = {s, state_revision(s)};
     const char *preset = json_string_value(json_object_get(tree, "preset"));
     json_int_t pane = json_integer_value(json_object_get(tree, "pane"));
     snow_image *image = NULL;
     if (!preset || pane < 4 || pane > 255 ||
         (*preset && snow_preset_from_name(preset) < 0))
         return;
-    if (drawing_thumbnail(d, preset, THUMBNAIL_SIDE, &image) != CONTINUE)
+    int done = drawing_thumbnail(d, preset, THUMBNAIL_SIDE, has_changed, &now,
+                                 &image);
+    if (done == EXIT_INTERRUPTED)
+        state_ask(s, client, json_incref(tree));
+    if (done != CONTINUE)
         return;
     snow_image_options form = picture_form(&d->opts);
     parcel *made = pack_small(image, &form, (int)pane);
@@ -234,7 +251,7 @@ void answer_question(drawing *d, viewer_state *s, outbox *box,
     else if (strcmp(what, "fit") == 0)
         answer_fit(d, s, box);
     else if (strcmp(what, "thumbnail") == 0)
-        answer_thumbnail(d, box, client, question->tree);
+        answer_thumbnail(d, s, box, client, question->tree);
     else
         answer_said(box, client, "ask: nothing is known of what is asked");
     json_decref(question->tree);

@@ -310,7 +310,7 @@ int drawing_render(drawing *d, snow_quality quality, int shrink,
 
 /* Its own frame: the one of the volume keeps its encoding. */
 int drawing_thumbnail(drawing *d, const char *preset, int side,
-                      snow_image **image) {
+                      snow_stop_fn *stop, void *user, snow_image **image) {
     render_state *s = &d->state;
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
@@ -318,14 +318,17 @@ int drawing_thumbnail(drawing *d, const char *preset, int side,
     snow_view view = s->view;
     snow_settings settings = s->settings;
     settings.quality = SNOW_QUALITY_DRAFT;
-    settings.stop = NULL;
+    settings.mode = SNOW_MODE_OVER; /* what a preset is for */
+    settings.stop = stop;
+    settings.stop_user = user;
     view.width = view.height = side;
     snow_status status =
         snow_transfer_new_for_volume(s->volume, &look, &transfer);
     if (status == SNOW_STATUS_OK)
         status = snow_frame_new(s->context, &frame);
-    if (status == SNOW_STATUS_OK && snow_transfer_is_unshaded(transfer))
-        settings.shade = SNOW_SHADE_NONE;
+    if (status == SNOW_STATUS_OK && !options_given(&d->opts, "shade"))
+        settings.shade = snow_transfer_is_unshaded(transfer) ? SNOW_SHADE_NONE
+                                                             : SNOW_SHADE_PHONG;
     if (status == SNOW_STATUS_OK)
         status = snow_frame_render(frame, s->volume, transfer, &view, &settings,
                                    image);

@@ -44,9 +44,10 @@ int drawing_render(drawing *d, snow_quality quality, int shrink,
                    snow_stop_fn *stop, void *user, snow_image **image,
                    snow_overlay **overlay);
 
-/* A small picture with a preset in place of the look. */
+/* A small picture with a preset in place of the look, unless `stop` says so:
+ * EXIT_INTERRUPTED. */
 int drawing_thumbnail(drawing *d, const char *preset, int side,
-                      snow_image **image);
+                      snow_stop_fn *stop, void *user, snow_image **image);
 
 /* The command that makes the picture at rest, to be freed. */
 char *drawing_command(const drawing *d);

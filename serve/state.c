@@ -175,11 +175,13 @@ void state_set_watchers(viewer_state *s, int count) {
 }
 
 bool state_ask(viewer_state *s, uint64_t client, json_t *tree) {
+    const char *what = json_string_value(json_object_get(tree, "what"));
+    bool waits = what && strcmp(what, "thumbnail") == 0;
     pthread_mutex_lock(&s->lock);
     bool room = s->count < QUESTIONS_MOST;
     if (room)
         s->questions[(s->first + s->count++) % QUESTIONS_MOST] =
-            (viewer_question){client, tree};
+            (viewer_question){client, tree, waits};
     pthread_cond_signal(&s->changed);
     pthread_mutex_unlock(&s->lock);
     if (!room)
@@ -214,16 +216,37 @@ static void wait_until(viewer_state *s, double due) {
     pthread_cond_timedwait(&s->changed, &s->lock, &at);
 }
 
+/* The place of the next question, from the first; or -1. */
+static int next_question(const viewer_state *s, bool rests) {
+    for (int i = 0; i < s->count; i++)
+        if (rests || !s->questions[(s->first + i) % QUESTIONS_MOST].waits)
+            return i;
+    return -1;
+}
+
+/* Those before it move up. */
+static viewer_question take_question(viewer_state *s, int place) {
+    viewer_question taken = s->questions[(s->first + place) % QUESTIONS_MOST];
+    for (; place > 0; place--)
+        s->questions[(s->first + place) % QUESTIONS_MOST] =
+            s->questions[(s->first + place - 1) % QUESTIONS_MOST];
+    s->first = (s->first + 1) % QUESTIONS_MOST;
+    s->count--;
+    return taken;
+}
+
 /* Under the lock.  Answers and drafts take turns, so that neither waits for all
  * of the other. */
-static viewer_work choose(viewer_state *s, uint32_t drawn, int level) {
+static viewer_work choose(viewer_state *s, uint32_t drawn, int level,
+                          int *place) {
     for (;;) {
         double due;
         if (s->ended)
             return WORK_END;
         viewer_work picture = next_picture(s, drawn, level, &due);
         bool ready = picture != WORK_END && due <= seconds();
-        if (s->count && !(ready && picture == WORK_DRAFT && s->answered))
+        *place = next_question(s, picture == WORK_END && !s->moving);
+        if (*place >= 0 && !(ready && picture == WORK_DRAFT && s->answered))
             return WORK_ANSWER;
         if (ready)
             return picture;
@@ -238,12 +261,11 @@ viewer_work state_wait(viewer_state *s, uint32_t drawn, int level,
                        viewer_question *question, json_t **recipe,
                        uint32_t *revision) {
     pthread_mutex_lock(&s->lock);
-    viewer_work work = choose(s, drawn, level);
+    int place;
+    viewer_work work = choose(s, drawn, level, &place);
     s->answered = work == WORK_ANSWER;
     if (work == WORK_ANSWER) {
-        *question = s->questions[s->first];
-        s->first = (s->first + 1) % QUESTIONS_MOST;
-        s->count--;
+        *question = take_question(s, place);
     } else if (work != WORK_END) {
         *recipe = json_deep_copy(s->recipe);
         *revision = s->revision;
@@ -254,6 +276,10 @@ viewer_work state_wait(viewer_state *s, uint32_t drawn, int level,
 
 bool state_is_stale(const viewer_state *s, uint32_t revision) {
     return s->ended || s->revision != revision;
+}
+
+uint32_t state_revision(const viewer_state *s) {
+    return s->revision;
 }
 
 bool state_has_ended(const viewer_state *s) {

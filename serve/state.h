@@ -18,6 +18,7 @@ typedef struct viewer_state viewer_state;
 typedef struct viewer_question {
     uint64_t client;
     json_t *tree; /* the caller's after state_wait */
+    bool waits;   /* a thumbnail, which takes long: until the picture rests */
 } viewer_question;
 
 /* What the renderer is to do next. */
@@ -69,6 +70,7 @@ viewer_work state_wait(viewer_state *s, uint32_t drawn, int level,
  * end has come. */
 bool state_is_stale(const viewer_state *s, uint32_t revision);
 bool state_has_ended(const viewer_state *s);
+uint32_t state_revision(const viewer_state *s);
 
 /* Whether the set that last changed the crop left the camera as it was: so its
  * zoom is still by the size of the volume before. */

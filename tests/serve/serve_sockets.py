@@ -327,6 +327,52 @@ def first_state():
     server.stop()
 
 
+def thumbnails_wait(server):
+    """They come when the picture is final, and no change waits for them."""
+    page = Page(server)
+    page.say({"t": "set", "n": 1, "recipe": {"azimuth": 3}})
+    for pane in range(4, 12):
+        page.say({"t": "ask", "what": "thumbnail", "preset": "ct-bone",
+                  "pane": pane})
+    page.say({"t": "ask", "what": "command"})
+    kinds = []
+    while len([kind for kind in kinds if kind == "small"]) < 8:
+        what, message = page.hear()
+        if what == "closed":
+            break
+        if what == "text" and message["t"] == "command":
+            kinds.append("command")
+        elif what == "picture" and message[10]:
+            kinds.append("small")
+        elif what == "picture":
+            got, = struct.unpack("<I", message[4:8])
+            page.say({"t": "ack", "n": got})
+            if got == 1:
+                kinds.append(message[8])
+    first = kinds.index("small") if "small" in kinds else 0
+    check("thumbnails come after pictures and other answers",  # the final one
+          {"command", 0, 1} <= set(kinds[:first]), kinds)  # is packed meanwhile
+    page.close()
+
+
+def thumbnails(server):
+    """The picture of a preset is the same in every mode."""
+    page = Page(server)
+    seen = []
+    for n, mode in enumerate(("over", "mean", "sum"), 1):
+        page.say({"t": "set", "n": n, "recipe": {
+            "mode": mode, "size": [SIDE, SIDE], "background": "#000000"}})
+        page.hear_picture(2, n)
+        page.say({"t": "ask", "what": "thumbnail", "preset": "ct-bone",
+                  "pane": 4})
+        seen.append(page.hear_small(4)[32:])
+    check("a thumbnail is painted in all modes", seen[1:] == seen[:1] * 2,
+          [len(each) for each in seen])
+    page.say({"t": "set", "n": 9, "recipe": {
+        "mode": "over", "size": None, "background": None}})
+    page.close()
+
+
 RECIPES = [
     {"azimuth": 33.5, "elevation": -12},
     {"preset": "ct-bone", "view": "left", "legend": True},
@@ -474,6 +520,8 @@ many_pages(server)
 floods(server)
 crop_and_back(server)
 two_at_once(server)
+thumbnails_wait(server)
+thumbnails(server)
 for recipe in RECIPES[::3] if SHORT else RECIPES:
     same_bytes(server, SMALL, recipe)
 print(f"       peak memory {server.kilobytes('VmHWM') / 1024:.0f} MB")

@@ -261,6 +261,18 @@ class Page:
                 return message[32:]
         return None
 
+    def hear_small(self, pane):
+        """The next picture of a pane; None when the page was closed."""
+        while True:
+            what, message = self.hear()
+            if what == "closed":
+                return None
+            if what != "picture":
+                continue
+            if message[10] == pane:
+                return message
+            self.say({"t": "ack", "n": 0})
+
     def closed_code(self, seconds=20):
         """Waits for the close, whatever is said before; None: none came."""
         end = time.monotonic() + seconds
