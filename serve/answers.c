@@ -190,12 +190,19 @@ static void answer_command(drawing *d, viewer_state *s, outbox *box,
     json_decref(recipe);
 }
 
-static void answer_fit(drawing *d, viewer_state *s, outbox *box) {
+static void answer_fit(drawing *d, viewer_state *s, outbox *box,
+                       uint64_t client) {
     uint32_t revision;
     json_t *recipe = state_recipe(s);
     json_t *keys = drawing_apply(d, recipe) == CONTINUE ? drawing_fit(d) : NULL;
-    if (keys)
+    if (json_object_size(keys))
         free(state_set(s, keys, &revision));
+    else if (keys)
+        answer_said(box, client,
+                    d->state.view.has_position
+                        ? "The camera stands at a position that was given: "
+                          "choose a view to frame all."
+                        : "Nothing is visible that could be framed.");
     outbox_put(box, state_parcel(s, 0, 0));
     json_decref(keys);
     json_decref(recipe);
@@ -249,7 +256,7 @@ void answer_question(drawing *d, viewer_state *s, outbox *box,
     else if (strcmp(what, "command") == 0)
         answer_command(d, s, box, client);
     else if (strcmp(what, "fit") == 0)
-        answer_fit(d, s, box);
+        answer_fit(d, s, box, client);
     else if (strcmp(what, "thumbnail") == 0)
         answer_thumbnail(d, s, box, client, question->tree);
     else

@@ -373,6 +373,18 @@ def thumbnails(server):
     page.close()
 
 
+def fit_at_position():
+    server = Server(SMALL, "--position", "200,10,20")
+    page = Page(server)
+    page.hear_text("state")
+    page.say({"t": "ask", "what": "fit"})
+    said = page.hear_text("said")
+    check("what cannot be framed is told", said and "position" in said["text"],
+          said)
+    page.close()
+    server.stop()
+
+
 RECIPES = [
     {"azimuth": 33.5, "elevation": -12},
     {"preset": "ct-bone", "view": "left", "legend": True},
@@ -529,6 +541,7 @@ check("memory is bounded", server.kilobytes("VmHWM") < 400 * 1024)
 code, said = server.stop()
 check("it ends in order", code == 0, f"{code} {said}")
 first_state()
+fit_at_position()
 if not SHORT:
     thin_links()
 endings()
