@@ -190,6 +190,21 @@ static void answer_command(drawing *d, viewer_state *s, outbox *box,
     json_decref(recipe);
 }
 
+/* As a text, which keeps the order and the digits of its keys. */
+static void answer_recipe(drawing *d, viewer_state *s, outbox *box,
+                          uint64_t client) {
+    json_t *newest = state_recipe(s);
+    json_t *tree =
+        drawing_apply(d, newest) == CONTINUE ? drawing_recipe(d) : NULL;
+    char *text = tree ? json_dumps(tree, JSON_INDENT(2) | JSON_FORM) : NULL;
+    if (text)
+        put(box, client, PARCEL_PLAIN,
+            json_pack("{s:s, s:s}", "t", "recipe", "text", text));
+    free(text);
+    json_decref(tree);
+    json_decref(newest);
+}
+
 static void answer_fit(drawing *d, viewer_state *s, outbox *box,
                        uint64_t client) {
     uint32_t revision;
@@ -255,6 +270,8 @@ void answer_question(drawing *d, viewer_state *s, outbox *box,
         answer_histogram(d, box, client, question->tree);
     else if (strcmp(what, "command") == 0)
         answer_command(d, s, box, client);
+    else if (strcmp(what, "recipe") == 0)
+        answer_recipe(d, s, box, client);
     else if (strcmp(what, "fit") == 0)
         answer_fit(d, s, box, client);
     else if (strcmp(what, "thumbnail") == 0)

@@ -2,6 +2,7 @@
 #include "drawing.h"
 #include "commands/commands.h"
 #include "options/config.h"
+#include "options/config_paths.h"
 #include "picture/annotations.h"
 #include "picture/paint.h"
 #include "run/log.h"
@@ -350,6 +351,16 @@ static void name_output(const char *input, char out[80]) {
         snprintf(out, 80, "picture.png");
     else
         snprintf(out, 80, "%.*s.png", (int)length, base);
+}
+
+json_t *drawing_recipe(const drawing *d) {
+    static options opts; /* large; one thread draws */
+    opts = d->opts;
+    opts.output = NULL;
+    opts.quality = "high";
+    json_t *tree = config_tree(&opts, verb_of(VERB_RENDER));
+    config_paths_write(tree, "/"); /* whole: the file may be put anywhere */
+    return tree;
 }
 
 char *drawing_command(const drawing *d) {

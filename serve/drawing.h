@@ -49,6 +49,10 @@ int drawing_render(drawing *d, snow_quality quality, int shrink,
 int drawing_thumbnail(drawing *d, const char *preset, int side,
                       snow_stop_fn *stop, void *user, snow_image **image);
 
+/* The whole recipe of the picture at rest, for --config: with what only the
+ * command line can set.  NULL: no memory. */
+json_t *drawing_recipe(const drawing *d);
+
 /* The command that makes the picture at rest, to be freed. */
 char *drawing_command(const drawing *d);
 

@@ -110,11 +110,7 @@ const actions = {
         url.hash = new URLSearchParams({token: engine.token, recipe: JSON.stringify(keys)});
         copy('Link to this state', url.href);
     },
-    file() {
-        const blob = new Blob([`${JSON.stringify(recipe.keys, null, 2)}\n`],
-            {type: 'application/json'});
-        save(`${baseName()}.json`, blob);
-    },
+    file: () => engine.ask('recipe'),
     save() {
         if (page.rest)
             save(`${baseName()}.png`, page.rest);
@@ -197,6 +193,8 @@ engine.on('open', () => {
 engine.on('said', message => say(message.text));
 engine.on('progress', ({stage, part}) => say(part < 1 ? `${stage}, ${Math.round(100 * part)} %` : ''));
 engine.on('command', message => copy('The command that makes this picture', message.text));
+engine.on('recipe', message => save(`${baseName()}.json`,
+    new Blob([`${message.text}\n`], {type: 'application/json'})));
 engine.on('histogram', message => {
     page.histogram = message;
     panel.editor.draw();

@@ -1,4 +1,5 @@
 """The viewer's door: who is refused, and that nobody keeps others out."""
+import json
 import os
 import re
 import shlex
@@ -385,6 +386,33 @@ def fit_at_position():
     server.stop()
 
 
+def recipe_file():
+    """A recipe has what only the command line sets, so it makes the picture."""
+    points = os.path.join(FOLDER.name, "points.json")
+    with open(points, "w") as out:
+        json.dump({"snowglass-tf": 1, "values": "data", "opacities": [[20 + i, i / 400] for i in range(300)]}, out)
+    raw = os.path.join(FOLDER.name, "small.raw")
+    with open(raw, "wb") as out:
+        out.write(bytes(i % 48 * 5 for i in range(48 ** 3)))
+    server = Server(raw, "--dims", "48x48x48", "--type", "uint8", "--tf", points)
+    page = Page(server)
+    page.say({"t": "set", "n": 1, "recipe": {"azimuth": 12,
+                                             "size": [SIDE, SIDE]}})
+    shown = page.hear_picture(2, 1)
+    page.say({"t": "ask", "what": "recipe"})
+    recipe = page.hear_text("recipe")
+    path, out = (os.path.join(FOLDER.name, name)
+                 for name in ("recipe.json", "recipe.png"))
+    with open(path, "w") as file:
+        file.write(recipe["text"])
+    done = subprocess.run([TOOL, "render", "--config", path, "-o", out, "-q"],
+                          capture_output=True, text=True)
+    check("a saved recipe has the bytes of the picture", done.returncode == 0
+          and open(out, "rb").read() == shown, done.stderr or recipe["text"])
+    page.close()
+    server.stop()
+
+
 RECIPES = [
     {"azimuth": 33.5, "elevation": -12},
     {"preset": "ct-bone", "view": "left", "legend": True},
@@ -542,6 +570,7 @@ code, said = server.stop()
 check("it ends in order", code == 0, f"{code} {said}")
 first_state()
 fit_at_position()
+recipe_file()
 if not SHORT:
     thin_links()
 endings()
