@@ -12,6 +12,7 @@
 
 #define HISTOGRAM_BINS 256
 #define STRIP_COLORS 64
+#define POINTS_MOST 256 /* of a recipe */
 #define THUMBNAIL_SIDE 96
 
 /* Sends a tree, which it frees. */
@@ -93,6 +94,7 @@ void answer_info(drawing *d, outbox *box) {
     json_object_set_new(tree, "views", views(d));
     json_object_set_new(tree, "presets", presets());
     json_object_set_new(tree, "colormaps", names_of(snow_colormap_name));
+    json_object_set_new(tree, "tf", json_boolean(d->first.tf != NULL));
     json_object_set_new(tree, "fov", json_real(SNOW_FOV_DEFAULT));
     put(box, 0, PARCEL_INFO, tree);
 }
@@ -102,7 +104,7 @@ void answer_info(drawing *d, outbox *box) {
 
 static json_t *points_of(const snow_opacity_point *points, size_t count) {
     json_t *list = json_array();
-    for (size_t i = 0; i < count && i < 256; i++)
+    for (size_t i = 0; i < count && i < POINTS_MOST; i++)
         json_array_append_new(
             list, json_pack("[f,f]", points[i].value, points[i].opacity));
     return list;
@@ -134,8 +136,8 @@ void answer_look(drawing *d, outbox *box) {
     snow_transfer_domain(transfer, &low, &high);
     put(box, 0, PARCEL_LOOK,
         json_pack(
-            "{s:s, s:f, s:f, s:o, s:o, s:o, s:s, s:b}", "t", "look", "low", low,
-            "high", high, "opacity",
+            "{s:s, s:f, s:f, s:I, s:o, s:o, s:o, s:s, s:b}", "t", "look", "low", low,
+            "high", high, "count", (json_int_t)look.opacity_count, "opacity",
             points_of(look.opacities, look.opacity_count), "gradient",
             points_of(look.gradient_opacities, look.gradient_opacity_count),
             "strip", strip_of(transfer, low, high), "text",

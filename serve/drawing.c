@@ -316,6 +316,8 @@ int drawing_thumbnail(drawing *d, const char *preset, int side,
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
     snow_look look = {.size = sizeof look, .preset = *preset ? preset : NULL};
+    if (!*preset && d->first.loaded) /* what no preset means then */
+        look.base = snow_look_file_look(d->first.loaded);
     snow_view view = s->view;
     snow_settings settings = s->settings;
     settings.quality = SNOW_QUALITY_DRAFT;

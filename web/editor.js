@@ -72,6 +72,16 @@ export class Editor {
         return this.recipe.keys[this.kind.key] ?? this.kind.usual(this.page);
     }
 
+    /** A recipe holds fewer points than a file: such a look is shown, not changed. */
+    get isWhole() {
+        const {look, say} = this.page;
+        const whole = this.kind !== BY_VALUE || this.recipe.keys.opacity ||
+            (look?.count ?? 0) <= this.points.length;
+        if (!whole)
+            say(`The look has ${look.count} points, too many to change here; choose a preset.`);
+        return whole;
+    }
+
     /** What the axis spans: the histogram, and the points. */
     get span() {
         const histogram = this.kind.range(this.page), points = this.points;
@@ -114,6 +124,8 @@ export class Editor {
     }
 
     set(points, chosen = this.chosen) {
+        if (!this.isWhole)
+            return;
         this.chosen = chosen;
         this.recipe.set({[this.kind.key]: points});
     }

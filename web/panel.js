@@ -99,14 +99,16 @@ export class Panel {
 
     /** Pictures of the volume itself, made when the list is opened. */
     presets() {
-        const names = [['', 'made from the histogram'], ...this.page.info.presets];
+        const {page} = this, none = page.info.tf ? 'of the file' : 'automatic';
+        const names = [['', page.info.tf ? 'of the file of --tf' : 'made from the histogram'], 
+            ...page.info.presets];
         const grid = make('div', {className: 'presets'});
         this.images = names.map(([name, text]) => {
             const image = make('img', {alt: '', hidden: true});
             const choose = make('button', {type: 'button', title: text,
-                'aria-label': `Preset ${name || 'automatic'}: ${text}`,
+                'aria-label': `Preset ${name || none}: ${text}`,
                 onclick: () => this.recipe.set({...NO_SHAPE, preset: name || null})},
-            image, name || 'automatic');
+            image, name || none);
             this.follow(keys => choose.setAttribute('aria-pressed',
                 (keys.preset ?? '') === name));
             grid.append(choose);

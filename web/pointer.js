@@ -92,8 +92,12 @@ export class Pointer {
         return {range: [digits(level - width / 2), digits(level + width / 2)]};
     }
 
-    /** Up: more opaque. */
+    /** Up: more opaque; not of a look whose points the page has not all. */
     faded() {
+        if (!this.recipe.keys.opacity && this.start.count > this.start.opacity.length) {
+            this.page.say('The look has too many points to change here; choose a preset.');
+            return {};
+        }
         const factor = Math.exp(-this.total[1] / 120);
         return {opacity: this.start.opacity.map(
             ([value, opacity]) => [value, Math.min(1, opacity * factor)])};

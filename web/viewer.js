@@ -43,6 +43,8 @@ function say(line, stays = false) {
         }, 6000);
 }
 
+page.say = say;
+
 function open(name, ...children) {
     dialog.replaceChildren(make('h2', {textContent: name}), ...children,
         make('p', {}, button('Close', 'Close', () => dialog.close())));

@@ -1,4 +1,5 @@
 """The viewer's page in Chromium, and the command that it copies."""
+import json
 import os
 import shlex
 import shutil
@@ -55,7 +56,19 @@ def watch(what, *volume):
     check("it ends in order", code == 0, f"{code} {said}")
 
 
+def many_points():
+    points = os.path.join(shots, "points.json")
+    with open(points, "w") as out:
+        json.dump({"snowglass-tf": 1, "values": "data", "opacities": [
+            [i, i / 300] for i in range(300)]}, out)
+    server = Server("phantom:head", "--tf", points)
+    drive(server.url, shots, "points")
+    server.stop()
+
+
 watch("short" if SHORT else "long", "phantom:head")
+if not SHORT:
+    many_points()
 scan = os.path.join(DATA, "classic", "CThead_256x256x113_u16be.raw.gz")
 if not SHORT and os.path.exists(scan):
     watch("film", scan, "--dims", "256x256x113", "--type", "uint16", "--endian",

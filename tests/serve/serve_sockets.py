@@ -399,6 +399,16 @@ def recipe_file():
     page.say({"t": "set", "n": 1, "recipe": {"azimuth": 12,
                                              "size": [SIDE, SIDE]}})
     shown = page.hear_picture(2, 1)
+    page.say({"t": "ask", "what": "thumbnail", "preset": "", "pane": 4})
+    of_file = page.hear_small(4)
+    page.say({"t": "ask", "what": "thumbnail", "preset": "ct-bone", "pane": 4})
+    check("the first thumbnail is there", of_file and
+          of_file[32:] != page.hear_small(4)[32:])
+    late = Page(server)
+    look = late.hear_text("look")
+    check("a look of many points says how many there are",
+          look["count"] == 300 and len(look["opacity"]) == 256, look["count"])
+    late.close()
     page.say({"t": "ask", "what": "recipe"})
     recipe = page.hear_text("recipe")
     path, out = (os.path.join(FOLDER.name, name)

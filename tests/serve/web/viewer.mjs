@@ -460,6 +460,29 @@ async function unready() {
     await context.close();
 }
 
+/** A look of more points than a recipe holds is shown, and not changed. */
+async function manyPoints() {
+    const page = await open();
+    const box = await page.locator('.editor').first().boundingBox();
+    await page.mouse.move(box.x + 3, box.y + 12);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 33, box.y + 12, {steps: 4});
+    await page.mouse.up();
+    check('it is told that they are too many', /too many/.test(
+        await page.locator('.said').textContent()));
+    check('and none is changed', !(await keys(page)).opacity);
+    await drag(page, 0, -40, 'right', 'Control');
+    check('nor faded', !(await keys(page)).opacity);
+    await shot(page, 'points');
+    await page.context().close();
+}
+
+if (tier === 'points') {
+    await manyPoints();
+    await browser.close();
+    process.exit(wrong ? 1 : 0);
+}
+
 await unready();
 const page = await open();
 await smoke(page);
