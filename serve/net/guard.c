@@ -24,6 +24,8 @@ void guard_allow_own(guard *g, int port) {
     for (size_t i = 0; i < sizeof own_names / sizeof *own_names; i++) {
         snprintf(host, sizeof host, port ? "%s:%d" : "%s", own_names[i], port);
         add_host(g, host, strlen(host));
+        if (port == 80) /* which browsers leave out */
+            add_host(g, own_names[i], strlen(own_names[i]));
     }
     g->own = g->count;
 }

@@ -47,6 +47,17 @@ static void a_host_is_one_of_the_names(void **state) {
             fail_msg("'%s' is judged wrongly", rows[i].host);
 }
 
+static void port_80_is_left_out(void **state) {
+    (void)state;
+    guard g = guard_of(80, NULL);
+    assert_true(guard_host(&g, "127.0.0.1"));
+    assert_true(guard_host(&g, "localhost:80"));
+    assert_true(guard_origin(&g, "http://[::1]", "[::1]"));
+    assert_false(guard_origin(&g, "https://localhost", "localhost"));
+    assert_false(guard_host(&g, "localhost:8000"));
+    assert_false(guard_host(&g, "evil.org"));
+}
+
 static void an_origin_is_that_of_an_allowed_page(void **state) {
     (void)state;
     static const struct {
@@ -154,6 +165,7 @@ static void a_page_is_the_last_part_of_a_path(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_host_is_one_of_the_names),
+        cmocka_unit_test(port_80_is_left_out),
         cmocka_unit_test(an_origin_is_that_of_an_allowed_page),
         cmocka_unit_test(a_unix_socket_has_any_port_but_one_page),
         cmocka_unit_test(only_the_whole_secret_opens),
