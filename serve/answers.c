@@ -136,9 +136,10 @@ void answer_look(drawing *d, outbox *box) {
     snow_transfer_domain(transfer, &low, &high);
     put(box, 0, PARCEL_LOOK,
         json_pack(
-            "{s:s, s:f, s:f, s:I, s:o, s:o, s:o, s:s, s:b}", "t", "look", "low", low,
-            "high", high, "count", (json_int_t)look.opacity_count, "opacity",
-            points_of(look.opacities, look.opacity_count), "gradient",
+            "{s:s, s:f, s:f, s:I, s:o, s:o, s:o, s:s, s:b}", "t", "look", "low",
+            low, "high", high, "count", (json_int_t)look.opacity_count,
+            "opacity", points_of(look.opacities, look.opacity_count),
+            "gradient",
             points_of(look.gradient_opacities, look.gradient_opacity_count),
             "strip", strip_of(transfer, low, high), "text",
             snow_transfer_description(transfer), "shaded",
@@ -247,8 +248,8 @@ static void answer_thumbnail(drawing *d, viewer_state *s, outbox *box,
     if (!preset || pane < 4 || pane > 255 ||
         (*preset && snow_preset_from_name(preset) < 0))
         return;
-    int done = drawing_thumbnail(d, preset, THUMBNAIL_SIDE, has_changed, &now,
-                                 &image);
+    int done =
+        drawing_thumbnail(d, preset, THUMBNAIL_SIDE, has_changed, &now, &image);
     if (done == EXIT_INTERRUPTED)
         state_ask(s, client, json_incref(tree));
     if (done != CONTINUE)

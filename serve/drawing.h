@@ -44,8 +44,8 @@ int drawing_render(drawing *d, snow_quality quality, int shrink,
                    snow_stop_fn *stop, void *user, snow_image **image,
                    snow_overlay **overlay);
 
-/* A small picture with a preset in place of the look, or with none, unless `stop` says so:
- * EXIT_INTERRUPTED. */
+/* A small picture with a preset in place of the look, or with none, unless
+ * `stop` says so: EXIT_INTERRUPTED. */
 int drawing_thumbnail(drawing *d, const char *preset, int side,
                       snow_stop_fn *stop, void *user, snow_image **image);
 

@@ -64,8 +64,9 @@ parcel *parcel_share(outbox *box, parcel *p) {
     return p;
 }
 
-/* Under the lock: takes what a parcel replaces out of the list.  Two states that
- * each leave out another page become one for all, as neither has the other's. */
+/* Under the lock: takes what a parcel replaces out of the list.  Two states
+ * that each leave out another page become one for all, as neither has the
+ * other's. */
 static void replace(outbox *box, parcel *by) {
     for (parcel **at = &box->first; *at;) {
         parcel *p = *at;

@@ -119,7 +119,8 @@ static int draw(renderer *r, int level) {
 }
 
 /* Another crop has another middle and size, which zoom goes by: it is changed
- * so that the object stays as large, unless a page set both.  Whether the state is a new one. */
+ * so that the object stays as large, unless a page set both.  Whether the state
+ * is a new one. */
 static bool keep_scale(renderer *r) {
     double middle[3], radius, before = r->radius;
     uint32_t revision;

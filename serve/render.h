@@ -11,8 +11,8 @@
 
 typedef struct renderer renderer;
 
-/* Before any page can connect: the first state shows all of the object, and what
- * pages are told of it waits for them. */
+/* Before any page can connect: the first state shows all of the object, and
+ * what pages are told of it waits for them. */
 void renderer_begin(drawing *d, viewer_state *s, outbox *box);
 
 /* Starts the thread, which takes over the drawing; NULL: no memory, or no

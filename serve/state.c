@@ -144,9 +144,9 @@ parcel *state_parcel(viewer_state *s, uint64_t client, uint64_t except) {
     size_t most = (text ? strlen(text) : 0) + 64;
     parcel *made = text ? parcel_new(most) : NULL;
     if (made) {
-        made->length = (size_t)snprintf((char *)made->bytes, most,
-                                        STATE_HEAD "%-10u,\"recipe\":%s}", 0U,
-                                        text);
+        made->length =
+            (size_t)snprintf((char *)made->bytes, most,
+                             STATE_HEAD "%-10u,\"recipe\":%s}", 0U, text);
         made->is_text = true;
         made->topic = PARCEL_STATE;
         made->client = client;
