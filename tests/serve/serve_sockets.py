@@ -206,7 +206,7 @@ def many_pages(server):
     for n in range(2, 42):  # the slow one acknowledges nothing
         fast.say({"t": "set", "n": n, "recipe": {"azimuth": n}})
         seen += fast.hear_picture(0, n, 10) is not None
-    check(f"each of 40 drafts is seen beside a slow page: {seen}", seen == 40)
+    check(f"each of 40 changes is seen beside a slow page: {seen}", seen == 40)
     state = slow.hear_text("state")
     check("the other page learns of changes", state is not None)
     last = None

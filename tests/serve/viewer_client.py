@@ -247,7 +247,8 @@ class Page:
         return None
 
     def hear_picture(self, level, n=None, seconds=60):
-        """Bytes of the next picture of a quality, which is acknowledged."""
+        """Bytes of the next picture of a quality or a finer one, as a busy machine
+        may leave out a draft; it is acknowledged."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             what, message = self.hear()
@@ -257,7 +258,7 @@ class Page:
                 continue
             got, = struct.unpack("<I", message[4:8])
             self.say({"t": "ack", "n": got})
-            if message[8] == level and (n is None or got == n):
+            if message[8] >= level and (n is None or got == n):
                 return message[32:]
         return None
 
