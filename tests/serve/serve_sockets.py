@@ -314,7 +314,7 @@ def two_at_once(server):
 
 def first_state():
     """What a page sets at once is not lost, nor its first state another one."""
-    server = Server(SMALL)
+    server = Server("phantom:head")
     page = Page(server)
     page.say({"t": "set", "n": 1, "recipe": {"zoom": 3.5}})
     begin = page.hear_text("state")["recipe"]
