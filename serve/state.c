@@ -216,12 +216,13 @@ static void wait_until(viewer_state *s, double due) {
     pthread_cond_timedwait(&s->changed, &s->lock, &at);
 }
 
-/* The place of the next question, from the first; or -1. */
+/* The place of the next question, from the first, or -1.  Thumbnails come after
+ * all others. */
 static int next_question(const viewer_state *s, bool rests) {
     for (int i = 0; i < s->count; i++)
-        if (rests || !s->questions[(s->first + i) % QUESTIONS_MOST].waits)
+        if (!s->questions[(s->first + i) % QUESTIONS_MOST].waits)
             return i;
-    return -1;
+    return rests && s->count ? 0 : -1;
 }
 
 /* Those before it move up. */

@@ -353,6 +353,17 @@ def thumbnails_wait(server):
     first = kinds.index("small") if "small" in kinds else 0
     check("thumbnails come after pictures and other answers",  # the final one
           {"command", 0, 1} <= set(kinds[:first]), kinds)  # is packed meanwhile
+    for pane in range(4, 12):
+        page.say({"t": "ask", "what": "thumbnail", "preset": "ct-bone",
+                  "pane": pane})
+    page.say({"t": "ask", "what": "command"})
+    smalls = 0
+    while True:
+        what, message = page.hear()
+        if what == "closed" or what == "text" and message["t"] == "command":
+            break
+        smalls += what == "picture" and message[10] > 0
+    check("a command does not wait for thumbnails", smalls < 4, smalls)
     page.close()
 
 
