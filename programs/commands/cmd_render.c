@@ -305,6 +305,9 @@ static int write_picture(work *w, const options *opts) {
         status = snow_image_save(w->image, opts->output, &form);
     if (status == SNOW_STATUS_OK && opts->depth && !beside)
         status = snow_image_save(depth, opts->depth, &plain);
+    if (status == SNOW_STATUS_OK && !opts->show && !opts->stats &&
+        !is_special(opts->output))
+        interrupt_finish();
     progress_end(opts);
     int done = CONTINUE;
     if (status != SNOW_STATUS_OK)

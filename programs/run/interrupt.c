@@ -4,6 +4,7 @@
 #include "options/options.h"
 
 #include <errno.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <sys/time.h>
@@ -13,6 +14,12 @@
  * messages are off, and whether a signal has come.  Atomic, not only
  * sig_atomic_t: the handler may run in any thread. */
 static atomic_int held, movie, mute, pending;
+
+/* Whether all that was asked for is written. */
+static atomic_int finished;
+
+/* Handlers that run.  One in another thread may have seen the state before. */
+static atomic_int running;
 
 /* Where messages go. */
 static atomic_int message_fd = STDERR_FILENO;
@@ -45,6 +52,9 @@ static void leave(int signal_number) {
     int number = errno;
     ssize_t given = 0;
     (void)signal_number;
+    if (finished)
+        return;
+    running++;
     bool again = (held || guarded) && atomic_exchange(&pending, 1);
     if (again || !held) {
         if (!mute && !(again && guarded))
@@ -57,7 +67,14 @@ static void leave(int signal_number) {
     if (held && movie && !mute)
         given = write(message_fd, later, sizeof later - 1);
     (void)given;
+    running--;
     errno = number;
+}
+
+/* Those that leave the process do not end. */
+static void let_handlers_end(void) {
+    while (running)
+        sched_yield();
 }
 
 /* A signal that the parent has disabled (nohup) stays disabled. */
@@ -89,6 +106,7 @@ void interrupt_guard(void) {
 
 bool interrupt_unguard(void) {
     guarded = 0;
+    let_handlers_end();
     if (pending)
         set_timer(0);
     sigaction(SIGALRM, &alarm_before, NULL);
@@ -102,11 +120,17 @@ bool interrupt_asked(void *unused) {
 
 void interrupt_hold(void) {
     held = 1;
+    let_handlers_end();
+}
+
+void interrupt_finish(void) {
+    finished = 1;
+    let_handlers_end();
 }
 
 void interrupt_hold_movie(void) {
     movie = 1;
-    held = 1;
+    interrupt_hold();
 }
 
 bool interrupt_seen(void) {

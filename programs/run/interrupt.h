@@ -36,6 +36,9 @@ bool interrupt_asked(void *unused);
 /* From here to the end of the program files come into being. */
 void interrupt_hold(void);
 
+/* All files are there: signals change the exit status no more. */
+void interrupt_finish(void);
+
 /* The same for a movie, which polls interrupt_seen; the first signal is
  * reported. */
 void interrupt_hold_movie(void);

@@ -288,11 +288,12 @@ kill -TERM $job
 wait $job
 check "SIGTERM while a pipe waits for its reader" [ $? -eq 130 ]
 
-# At any moment: 130 and no picture, or 0 and a whole one.
+# At any moment: 130 and no picture, or 0 and a whole one.  In the foreground
+# timeout sends one signal; else a second one to the group, which ends writing.
 broken=0 early=0
 for delay in 0.01 0.02 0.04 0.06 0.08 0.1 0.13 0.16 0.2 0.3 0.5; do
     rm -f late.png
-    timeout --preserve-status -s TERM $delay "$TOOL" -q phantom:engine \
+    timeout --foreground --preserve-status -s TERM $delay "$TOOL" -q phantom:engine \
         --dims 64x64x64 -s 700x700 --bits 16 -o late.png 2>/dev/null
     case $? in
     130) early=$((early + 1)) && [ ! -e late.png ] || broken=1 ;;
