@@ -22,7 +22,7 @@ set(SNOW_LABEL_long cli_documents cli_large cli_matrix cli_stream cli_turntable
     package_within)
 set(SNOW_LABEL_late catalyst cli_again cli_balance cli_bench cli_figures
     cli_interrupt cli_measurements cli_shear_warp mpi_comm oracle_hdf5
-    oracle_vtk oracle_zarr test_comm test_model_raycast test_value_model
+    oracle_vtk oracle_zarr test_comm test_model_raycast test_stream test_value_model
     test_value_truth test_value_views)
 file(GLOB formats CONFIGURE_DEPENDS formats/test_*.c)
 list(TRANSFORM formats REPLACE ".*/(.*)[.]c$" "\\1")
