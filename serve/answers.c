@@ -64,7 +64,7 @@ static json_t *views(drawing *d) {
     return all;
 }
 
-/* The name without its folder: what else a path tells is nobody's business. */
+/* The name without its folder: what else a path says is nobody's business. */
 static const char *base_of(const char *path) {
     const char *slash = strrchr(path, '/');
     return slash ? slash + 1 : path;

@@ -1,4 +1,4 @@
-/* answers.h - what pages are told of the volume and its look, as JSON. */
+/* answers.h - what pages get to know of the volume and its look, as JSON. */
 #ifndef ANSWERS_H
 #define ANSWERS_H
 

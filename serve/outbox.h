@@ -37,7 +37,8 @@ typedef struct parcel {
 
 typedef struct outbox outbox;
 
-/* `wake` tells the serving thread that something waits; any thread calls it. */
+/* `wake` lets the serving thread know that something waits; any thread calls
+ * it. */
 outbox *outbox_new(void (*wake)(void *user), void *user);
 void outbox_free(outbox *box);
 

@@ -45,12 +45,17 @@ static bool ends_sentence(const char *word, size_t length) {
            !(last > 3 && strncmp(word, "e.g.", 4) == 0);
 }
 
+/* Writes a word; `font` is of words with marks. */
+typedef void print_fn(const char *text, size_t length, char *font);
+
 /* A paragraph: words on lines, each sentence on a line of its own. */
-void roff_text(const char *text) {
+static void fill_lines(const char *text, size_t line, bool one_line,
+                       print_fn *print) {
     size_t at = 0;
+    char font = 'R';
     while (*text) {
         size_t length = strcspn(text, " ");
-        if (at && at + 1 + length > LINE) {
+        if (!one_line && at && at + 1 + length > line) {
             putchar('\n');
             at = 0;
         }
@@ -58,15 +63,24 @@ void roff_text(const char *text) {
             putchar(' ');
         else if (*text == '.' || *text == '\'')
             fputs("\\&", stdout);
-        roff_chars(text, length, text[strspn(text, "([")] == '-');
+        print(text, length, &font);
         at += length + 1;
-        if (ends_sentence(text, length) && text[length]) {
+        if (!one_line && ends_sentence(text, length) && text[length]) {
             putchar('\n');
             at = 0;
         }
         text += length + (text[length] == ' ');
     }
     putchar('\n');
+}
+
+static void print_plain(const char *text, size_t length, char *font) {
+    (void)font;
+    roff_chars(text, length, text[strspn(text, "([")] == '-');
+}
+
+void roff_text(const char *text) {
+    fill_lines(text, LINE, false, print_plain);
 }
 
 /* A line of a macro, whose argument is one text. */
@@ -158,25 +172,5 @@ static void print_word(const char *text, size_t length, char *font) {
 }
 
 void roff_prose(const char *text, bool one_line) {
-    size_t at = 0;
-    char font = 'R';
-    while (*text) {
-        size_t length = strcspn(text, " ");
-        if (!one_line && at && at + 1 + length > LINE - 14) { /* marks grow */
-            putchar('\n');
-            at = 0;
-        }
-        if (at)
-            putchar(' ');
-        else if (*text == '.' || *text == '\'')
-            fputs("\\&", stdout);
-        print_word(text, length, &font);
-        at += length + 1;
-        if (!one_line && ends_sentence(text, length) && text[length]) {
-            putchar('\n');
-            at = 0;
-        }
-        text += length + (text[length] == ' ');
-    }
-    putchar('\n');
+    fill_lines(text, LINE - 14, one_line, print_word); /* marks grow */
 }

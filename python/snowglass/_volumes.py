@@ -102,7 +102,7 @@ class Volume(_snowglass.Volume):
             if fields.get(name) is not None:
                 fields[name] = os.fsencode(fields[name]) if name == "mask" \
                     else str(fields[name])
-        if fields.get("time") is not None:  # nobody need be told of others
+        if fields.get("time") is not None:  # others need no note
             fields.setdefault("each_time", True)
         if "type" in fields and fields["type"] is not None:
             fields["type"] = str(fields["type"])

@@ -24,7 +24,7 @@ static bool is_picture(const parcel *p) {
     return p->topic == PARCEL_PICTURE || p->topic == PARCEL_THIN_PICTURE;
 }
 
-/* The picture at rest, whose head tells it, is one for all links. */
+/* The picture at rest, whose head says so, is one for all links. */
 static bool is_for_link(const client *c, const parcel *p) {
     bool final = p->topic == PARCEL_PICTURE && p->bytes[8] == 2;
     return !is_picture(p) || final ||

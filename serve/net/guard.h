@@ -42,7 +42,8 @@ bool guard_host(const guard *g, const char *host);
  * or over https behind a proxy.  With any port it is that of `host`. */
 bool guard_origin(const guard *g, const char *origin, const char *host);
 
-/* Whether it is the secret, in a time that does not tell how much of it. */
+/* Whether it is the secret, in a time that does not depend on how much of it is
+ * right. */
 bool guard_token(const guard *g, const char *token, size_t length);
 
 /* Whether a text can be a secret: letters, digits, "-" and "_". */

@@ -15,7 +15,7 @@
 
 #define BACKLOG 128
 
-/* The port that a browser most likely is told for a tunnel. */
+/* The port that a browser most likely is given for a tunnel. */
 #define TUNNEL_PORT 8000
 
 static int open_socket(int family) {
