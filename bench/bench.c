@@ -24,6 +24,7 @@ static const char help[] =
     "  figure11 figure12      the paper's speed-ups on 1 to 32 nodes\n"
     "  speed                  how fast pictures are made\n"
     "  balance                how equal the work of many processors is\n"
+    "  order                  what it takes to put their parts in order\n"
     "  combine                pictures of many ranks (bench combine --help)\n"
     "  frame                  a volume's picture by many ranks (bench frame "
     "--help)\n"
@@ -53,6 +54,13 @@ static const char help[] =
     "over "
     "the\n"
     "mean, for equal slabs, slabs by count, and bricks.\n"
+    "\n"
+    "order prints what a rank takes to put the parts of all ranks in order "
+    "from "
+    "front\n"
+    "to back: up to 100,000 slabs, cells of a grid, bricks, and bricks in any "
+    "order\n"
+    "with holes.\n"
     "\n"
     "Every row is verified before its times are printed.  Figures tell on "
     "stderr how\n"
@@ -114,6 +122,7 @@ static const struct bench_entry {
     {"figure12", bench_figure12, "cq", true},
     {"speed", bench_speed, "qlvocwst", false},
     {"balance", bench_balance, "", true},
+    {"order", bench_order, "", false},
 };
 
 /* What runs on the ranks that there are, or on threads of its own; it reads its

@@ -136,6 +136,9 @@ int bench_figure12(snow_context *context, const bench_options *options);
 /* How equal the work of many processors is. */
 int bench_balance(snow_context *context, const bench_options *options);
 
+/* What it takes to put their parts in order. */
+int bench_order(snow_context *context, const bench_options *options);
+
 /* Today's speed, method by method: see speed.h. */
 int bench_speed(snow_context *context, const bench_options *options);
 

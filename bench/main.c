@@ -16,7 +16,8 @@ static int run(int argc, char **argv) {
 int tool_run(int argc, char **argv, const process_start *how) {
     process_begin(how);
     interrupt_install();
-    int done = process_agree(run(argc, argv));
+    int done = process_meet(CONTINUE, VERB_BENCH, 0);
+    done = process_agree(done == CONTINUE ? run(argc, argv) : done);
     if (process_ranks() >
         1) /* whose launcher ends all with the first to fail */
         interrupt_mute();

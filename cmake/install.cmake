@@ -44,6 +44,10 @@ install(DIRECTORY include/snowglass DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
 install(FILES examples/insitu/snowglass.f90 COMPONENT snowglass_dev
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/snowglass)
 
+# The page without a server, where ./dev web has made it: `snowglass export`.
+install(FILES build-web/viewer.html OPTIONAL COMPONENT snowglass_runtime
+        DESTINATION share/snowglass/web)
+
 # --- pkg-config ---------------------------------------------------------------
 
 # Words for the linker instead of files: -lNAME, and -L where it is not searched.

@@ -5,6 +5,7 @@
  * public headers only.  Its exit codes are the library's status values, 7
  * and 130 (options.h). */
 #include "commands/commands.h"
+#include "movie/series.h"
 #include "options/config.h"
 #include "picture/default_name.h"
 #include "run/interrupt.h"
@@ -58,6 +59,8 @@ static int run_verb(const verb_row *verb, const options *opts) {
         return cmd_phantom(opts);
     case VERB_CONVERT:
         return cmd_convert(opts);
+    case VERB_EXPORT:
+        return cmd_export(opts);
     case VERB_COMPARE:
         return cmd_compare(opts);
     case VERB_TF:
@@ -87,49 +90,50 @@ static void remark_launcher(const options *opts) {
             ranks, launcher);
 }
 
-/* `named` is false if the verb was not written and render is assumed. */
-static int run_command(const verb_row *verb, bool named, int argc,
-                       char **argv) {
+/* What the command line asks of this rank; not more where that is nothing. */
+typedef struct command {
+    const verb_row *verb;
+    bool named; /* the verb was written; else render is assumed */
     options opts;
-    options_init(&opts);
-    int done = options_parse(&opts, verb, argc, argv);
-    if (done != CONTINUE)
-        return done;
-    if (opts.version)
-        return print_version();
-    if (opts.help && !process_talks())
-        return SNOW_STATUS_OK;
-    if (opts.help)
-        return help_print(opts.help_word,
-                          named && verb->bit != VERB_HELP ? verb : NULL);
-    if (opts.verbosity < 0 && process_ranks() == 1) /* MPI's errors are kept */
+} command;
+
+static int run_command(command *c) {
+    options *opts = &c->opts;
+    const verb_row *verb = c->verb;
+    if (opts->verbosity < 0 && process_ranks() == 1) /* MPI's errors are kept */
         silence_others();
     if (process_ranks() > 1 && is_for_all(verb))
-        snow_comm_set_timeout(process_comm(), opts.timeout);
+        snow_comm_set_timeout(process_comm(), opts->timeout);
+    if (verb->bit == VERB_EXPORT)
+        export_take(opts);
+    int done = series_take(opts, verb);
     if (verb->bit == VERB_RENDER)
-        done = process_agree(default_name(&opts));
-    else if (verb->bit == VERB_SLICE)
-        done = default_name(&opts);
+        done = process_agree(done == CONTINUE ? default_name(opts) : done);
+    else if (verb->bit == VERB_SLICE && done == CONTINUE)
+        done = default_name(opts);
     if (done == CONTINUE)
-        done = config_check(&opts);
+        done = config_check(opts);
     if (done == CONTINUE)
-        done = look_load(&opts); /* on every rank: the file is small */
+        done = settle_channels(opts, verb->bit & (VERB_RENDER | VERB_TURNTABLE |
+                                                  VERB_MOVIE | VERB_SLICE));
+    if (done == CONTINUE)
+        done = look_load(opts); /* on every rank: the file is small */
     if (is_for_all(verb))
         done = process_agree(done);
     if (done != CONTINUE) {
-        look_unload(&opts);
+        look_unload(opts);
         return done;
     }
     if (is_for_all(verb))
-        remark_launcher(&opts);
+        remark_launcher(opts);
     double begin = seconds_now();
-    done = run_verb(verb, &opts);
+    done = run_verb(verb, opts);
     if (done == SNOW_STATUS_OK || done == EXIT_EMPTY) {
-        int saved = config_save(&opts, verb);
+        int saved = config_save(opts, verb);
         done = saved == SNOW_STATUS_OK ? done : saved;
     }
-    look_unload(&opts);
-    if (opts.verbosity > 0 &&
+    look_unload(opts);
+    if (opts->verbosity > 0 &&
         verb->bit != VERB_RENDER) /* render reports more itself */
         say("seconds: total %.3f", seconds_now() - begin);
     return done;
@@ -141,29 +145,83 @@ static bool is_option(const char *word) {
            strcmp(word, "-h") != 0;
 }
 
-/* Only the first word can be a verb: a file of that name is ./NAME. */
-static int dispatch(int argc, char **argv) {
+static int read_options(command *c, int argc, char **argv) {
+    options_init(&c->opts);
+    int done = options_parse(&c->opts, c->verb, argc, argv);
+    if (done != CONTINUE)
+        return done;
+    if (c->opts.version)
+        return print_version();
+    if (c->opts.help && !process_talks())
+        return SNOW_STATUS_OK;
+    if (c->opts.help)
+        return help_print(c->opts.help_word,
+                          c->named && c->verb->bit != VERB_HELP ? c->verb
+                                                                : NULL);
+    return CONTINUE;
+}
+
+/* Only the first word can be a verb: a file of that name is ./NAME.  Ranks but
+ * the first read no options of verbs that are not theirs. */
+static int read_command(int argc, char **argv, command *c) {
     if (argc < 2) {
         help_hint();
         return SNOW_STATUS_BAD_USAGE;
     }
-    const verb_row *verb = verb_named(argv[1]);
-    if (!verb)
-        return run_command(config_verb(argc, argv), false, argc, argv);
+    const verb_row *verb = c->verb = verb_named(argv[1]);
+    c->named = verb != NULL;
+    if (!verb) {
+        c->verb = config_verb(argc, argv);
+        return read_options(c, argc, argv);
+    }
     if (!verb->bit)
         return fail_usage("%s is not built yet; %s", verb->name, verb->text);
     if (verb->bit == VERB_BENCH) /* of MPI: mpi_main.c */
         return sibling_become("snowglass-bench", argv + 1);
-    if (verb->bit == VERB_SERVE && process_mpi())
-        return fail_usage("serve: shows a volume by one process; start it with "
-                          "snowglass, without MPI");
-    if (verb->bit == VERB_SERVE)
+    if (verb->bit == VERB_SERVE) /* the same */
         return sibling_become("snowglass-serve", argv + 1);
     if (!is_for_all(verb) && !process_talks())
-        return SNOW_STATUS_OK;
+        return CONTINUE;
     if (verb->bit == VERB_HELP && argc == 3 && is_option(argv[2]))
         return help_print(argv[2], NULL);
-    return run_command(verb, true, argc - 1, argv + 1);
+    return read_options(c, argc - 1, argv + 1);
+}
+
+/* Mixes a text, which may be none, into a word (FNV-1a). */
+static uint32_t mix(uint32_t word, const char *text) {
+    for (; text && *text; text++)
+        word = (word ^ (unsigned char)*text) * 16777619U;
+    return (word ^ (text ? 1U : 2U)) * 16777619U;
+}
+
+/* A word for what all ranks must be given alike: not how a machine works and
+ * what it says. */
+static int word_of(const command *c) {
+    static const char *const own[] = {"threads", "memory",   "isa",
+                                      "verbose", "progress", "quiet"};
+    uint32_t word = 2166136261U;
+    if (!c->verb || !is_for_all(c->verb))
+        return 0;
+    for (int i = 0; option_table[i].name; i++) {
+        bool alike = true;
+        for (size_t n = 0; n < sizeof own / sizeof *own; n++)
+            alike = alike && strcmp(option_table[i].name, own[n]) != 0;
+        word = alike ? mix(word, c->opts.given[i]) : word;
+    }
+    for (int i = 0; i < c->opts.operand_count; i++)
+        word = mix(word, c->opts.operands[i]);
+    return (int)(word >> 1);
+}
+
+/* All ranks learn of a wrong command, or of another one, before any waits. */
+static int dispatch(int argc, char **argv) {
+    command c = {.verb = NULL};
+    int done = read_command(argc, argv, &c);
+    done = process_meet(done, c.verb ? (int)c.verb->bit : 0, word_of(&c));
+    if (done != CONTINUE)
+        return done;
+    return is_for_all(c.verb) || process_talks() ? run_command(&c)
+                                                 : SNOW_STATUS_OK;
 }
 
 int tool_run(int argc, char **argv, const process_start *how) {

@@ -1,4 +1,4 @@
-/* mpi_main.c - the tool with MPI: snowglass-mpi.
+/* mpi_main.c - the tool with MPI: snowglass-mpi, and the programs beside it.
  *
  * MPI is started and ended only here.  Rank 0 writes and prints.  A rank whose
  * connection to the others has failed prints an error itself, and ends the job,
@@ -129,8 +129,12 @@ static int run_tool(int argc, char **argv) {
 
 int main(int argc, char **argv) {
     int level;
-    if (argc > 1 && strcmp(argv[1], "bench") == 0) /* before MPI is begun */
+#ifdef SNOW_SIBLINGS /* they become other programs before MPI is begun */
+    if (argc > 1 && strcmp(argv[1], "bench") == 0)
         return sibling_become("snowglass-bench-mpi", argv + 1);
+    if (argc > 1 && strcmp(argv[1], "serve") == 0)
+        return sibling_become("snowglass-serve-mpi", argv + 1);
+#endif
     signal(SIGALRM, give_up);
     limit_seconds(MPI_SECONDS);
     if (MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level) !=

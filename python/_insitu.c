@@ -132,15 +132,19 @@ static PyObject *movie_brick(PyObject *module, PyObject *args) {
     return answer(status, snow_insitu_message(movie));
 }
 
-/* step(movie, number): collective */
+/* step(movie, number, time, unit): collective; a time of NaN is none */
 static PyObject *movie_step(PyObject *module, PyObject *args) {
     PyObject *capsule;
     long long number;
+    double time;
+    const char *unit;
     snow_status status;
     (void)module;
-    if (!PyArg_ParseTuple(args, "OL", &capsule, &number) || !movie_of(capsule))
+    if (!PyArg_ParseTuple(args, "OLds", &capsule, &number, &time, &unit) ||
+        !movie_of(capsule))
         return NULL;
     snow_insitu *movie = movie_of(capsule);
+    snow_insitu_set_time(movie, time, unit);
     Py_BEGIN_ALLOW_THREADS;
     status = snow_insitu_step(movie, number);
     Py_END_ALLOW_THREADS;

@@ -3,14 +3,18 @@
 #include "message.h"
 
 #include "commands/commands.h"
+#include "draw/pick.h"
+#include "draw/slices.h"
+#include "draw/small.h"
+#include "draw/values.h"
 #include "pack.h"
+#include "recipe_file.h"
 #include "run/log.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define HISTOGRAM_BINS 256
 #define STRIP_COLORS 64
 #define POINTS_MOST 256 /* of a recipe */
 #define THUMBNAIL_SIDE 96
@@ -72,18 +76,17 @@ static const char *base_of(const char *path) {
 
 void answer_info(drawing *d, outbox *box) {
     const snow_volume_info *info = &d->state.whole;
-    snow_volume_statistics of = {.size = sizeof of};
-    double middle[3], radius;
+    double middle[3], radius, ends[2], window[2];
     drawing_middle(d, middle, &radius);
-    if (snow_volume_get_statistics(d->state.volume, &of) != SNOW_STATUS_OK)
-        of.min = of.max = NAN;
+    values_ends(d, ends);
+    values_window(d, window);
     json_t *tree = json_pack(
         "{s:s, s:s, s:o, s:o, s:s, s:s, s:b, s:I, s:o, s:o, s:o, s:f}", "t",
         "info", "name", base_of(d->first.operands[0]), "dims",
         json_sizes(info->dims, 3), "spacing", json_vector(info->spacing, 3),
         "unit", info->unit, "type", snow_type_name(info->type), "medical",
         (int)info->medical, "times", (json_int_t)info->times, "min",
-        json_number(of.min), "max", json_number(of.max), "middle",
+        json_number(ends[0]), "max", json_number(ends[1]), "middle",
         json_vector(middle, 3), "radius", radius);
     json_t *matrix = json_array();
     for (int i = 0; i < 3; i++)
@@ -95,7 +98,20 @@ void answer_info(drawing *d, outbox *box) {
     json_object_set_new(tree, "presets", presets());
     json_object_set_new(tree, "colormaps", names_of(snow_colormap_name));
     json_object_set_new(tree, "tf", json_boolean(d->first.tf != NULL));
+    json_object_set_new(tree, "mask", json_boolean(d->first.mask != NULL));
+    json_object_set_new(tree, "labels",
+                        d->first.labels ? json_string(d->first.labels)
+                                        : json_null());
     json_object_set_new(tree, "fov", json_real(SNOW_FOV_DEFAULT));
+    json_object_set_new(tree, "slices", d->live ? json_null() : slices_info(d));
+    json_object_set_new(tree, "live", json_boolean(d->live));
+    json_object_set_new(tree, "window",
+                        json_pack("[f,f]", window[0], window[1]));
+    json_object_set_new(
+        tree, "hounsfield",
+        json_boolean(info->hounsfield ||
+                     (info->medical && ends[0] < ends[1] &&
+                      snow_are_hounsfield(info, ends[0], ends[1]))));
     put(box, 0, PARCEL_INFO, tree);
 }
 
@@ -155,37 +171,40 @@ void answer_figures(drawing *d, outbox *box) {
                   snow_method_name(stats->method)));
 }
 
+void answer_step(outbox *box, int64_t step) {
+    put(box, 0, PARCEL_FIGURES,
+        json_pack("{s:s, s:I}", "t", "step", "step", (json_int_t)step));
+}
+
 /* --- what is asked
  * --------------------------------------------------------------- */
 
 static void answer_histogram(drawing *d, outbox *box, uint64_t client,
                              const json_t *tree) {
-    uint64_t counts[HISTOGRAM_BINS];
-    snow_volume_statistics of = {.size = sizeof of};
+    uint64_t counts[VALUES_BINS];
+    double ends[2];
     const json_t *lo = json_object_get(tree, "lo"),
                  *hi = json_object_get(tree, "hi");
-    if (snow_volume_get_statistics(d->state.volume, &of) != SNOW_STATUS_OK)
-        return;
-    double low = json_is_number(lo) ? json_number_value(lo) : of.min;
-    double high = json_is_number(hi) ? json_number_value(hi) : of.max;
-    if (!(low < high) ||
-        snow_volume_histogram(d->state.volume, low, high, HISTOGRAM_BINS,
-                              counts) != SNOW_STATUS_OK)
+    if (!json_is_number(lo) || !json_is_number(hi))
+        values_ends(d, ends);
+    double low = json_is_number(lo) ? json_number_value(lo) : ends[0];
+    double high = json_is_number(hi) ? json_number_value(hi) : ends[1];
+    if (!(low < high) || !isfinite(high - low) ||
+        values_count(d, low, high, counts) != CONTINUE)
         return;
     json_t *list = json_array();
-    for (int i = 0; i < HISTOGRAM_BINS; i++)
+    for (int i = 0; i < VALUES_BINS; i++)
         json_array_append_new(list, json_integer((json_int_t)counts[i]));
     put(box, client, PARCEL_PLAIN,
         json_pack("{s:s, s:f, s:f, s:o}", "t", "histogram", "lo", low, "hi",
                   high, "counts", list));
 }
 
-/* Of the newest state, which may not be drawn yet. */
 static void answer_command(drawing *d, viewer_state *s, outbox *box,
-                           uint64_t client) {
+                           uint64_t client, unsigned verb) {
     json_t *recipe = state_recipe(s);
     int done = drawing_apply(d, recipe);
-    char *command = done == CONTINUE ? drawing_command(d) : NULL;
+    char *command = done == CONTINUE ? drawing_command(d, verb) : NULL;
     if (command)
         put(box, client, PARCEL_PLAIN,
             json_pack("{s:s, s:s}", "t", "command", "text", command));
@@ -194,16 +213,20 @@ static void answer_command(drawing *d, viewer_state *s, outbox *box,
 }
 
 /* As a text, which keeps the order and the digits of its keys. */
-static void answer_recipe(drawing *d, viewer_state *s, outbox *box,
-                          uint64_t client) {
-    json_t *newest = state_recipe(s);
-    json_t *tree =
-        drawing_apply(d, newest) == CONTINUE ? drawing_recipe(d) : NULL;
+void answer_recipe_text(outbox *box, uint64_t client, const json_t *tree) {
     char *text = tree ? json_dumps(tree, JSON_INDENT(2) | JSON_FORM) : NULL;
     if (text)
         put(box, client, PARCEL_PLAIN,
             json_pack("{s:s, s:s}", "t", "recipe", "text", text));
     free(text);
+}
+
+static void answer_recipe(drawing *d, viewer_state *s, outbox *box,
+                          uint64_t client) {
+    json_t *newest = state_recipe(s);
+    json_t *tree =
+        drawing_apply(d, newest) == CONTINUE ? recipe_file_tree(d) : NULL;
+    answer_recipe_text(box, client, tree);
     json_decref(tree);
     json_decref(newest);
 }
@@ -245,41 +268,193 @@ static void answer_thumbnail(drawing *d, viewer_state *s, outbox *box,
     const char *preset = json_string_value(json_object_get(tree, "preset"));
     json_int_t pane = json_integer_value(json_object_get(tree, "pane"));
     snow_image *image = NULL;
-    if (!preset || pane < 4 || pane > 255 ||
+    if (!d->state.volume || !preset || pane < 4 || pane > 255 ||
         (*preset && snow_preset_from_name(preset) < 0))
         return;
     int done =
-        drawing_thumbnail(d, preset, THUMBNAIL_SIDE, has_changed, &now, &image);
+        small_thumbnail(d, preset, THUMBNAIL_SIDE, has_changed, &now, &image);
     if (done == EXIT_INTERRUPTED)
         state_ask(s, client, json_incref(tree));
     if (done != CONTINUE)
         return;
     snow_image_options form = picture_form(&d->opts);
-    parcel *made = pack_small(image, &form, (int)pane);
+    parcel *made = pack_small(image, &form, false, (int)pane, 0);
     if (made)
         made->client = client;
     outbox_put(box, made);
     snow_image_free(image);
 }
 
+static void put_no_slice(outbox *box, uint64_t client, json_int_t pane) {
+    if (pane >= 1 && pane <= 3)
+        put(box, client, PARCEL_PLAIN,
+            json_pack("{s:s, s:I}", "t", "slice", "pane", pane));
+}
+
+static bool read_slice(const json_t *tree, slice_asked *out) {
+    const json_t *range = json_object_get(tree, "range");
+    out->axis = json_string_value(json_object_get(tree, "axis"));
+    out->index = json_integer_value(json_object_get(tree, "index"));
+    out->low = json_number_value(json_array_get(range, 0));
+    out->high = json_number_value(json_array_get(range, 1));
+    out->colored = json_is_true(json_object_get(tree, "colored"));
+    return out->axis && out->low < out->high;
+}
+
+/* {"what": "slice", "axis": "axial", "index": 57, "range": [0, 80], "pane": 1,
+ * "n": 8, "exact": true}: {"t": "slice", "pane": 1} where there is none, as the
+ * page waits for it. */
+static void answer_slice(drawing *d, outbox *box, uint64_t client,
+                         const json_t *tree) {
+    slice_asked asked;
+    snow_image_options form;
+    snow_image *image = NULL;
+    json_int_t pane = json_integer_value(json_object_get(tree, "pane"));
+    json_int_t n = json_integer_value(json_object_get(tree, "n"));
+    bool exact = json_is_true(json_object_get(tree, "exact"));
+    if (pane < 1 || pane > 3)
+        return;
+    if (read_slice(tree, &asked))
+        slices_draw(d, &asked, &image, &form);
+    parcel *made =
+        image ? pack_small(image, &form, exact, (int)pane, (uint32_t)n) : NULL;
+    if (made)
+        made->client = client;
+    else
+        put_no_slice(box, client, pane);
+    outbox_put(box, made);
+    snow_image_free(image);
+}
+
+static void answer_slice_command(drawing *d, outbox *box, uint64_t client,
+                                 const json_t *tree) {
+    slice_asked asked;
+    char *command = read_slice(tree, &asked) ? slices_command(d, &asked) : NULL;
+    if (command)
+        put(box, client, PARCEL_PLAIN,
+            json_pack("{s:s, s:s}", "t", "command", "text", command));
+    free(command);
+}
+
+static void read_at(const json_t *tree, int64_t index[3]) {
+    const json_t *at = json_object_get(tree, "at");
+    for (size_t i = 0; i < 3; i++)
+        index[i] = json_integer_value(json_array_get(at, i));
+}
+
+static void put_value(outbox *box, uint64_t client, const int64_t at[3],
+                      double value) {
+    put(box, client, PARCEL_PLAIN,
+        json_pack("{s:s, s:o, s:o}", "t", "value", "at", json_sizes(at, 3),
+                  "value", json_number(value)));
+}
+
+/* {"what": "value", "at": [12, 30, 57]} */
+static void answer_value(drawing *d, outbox *box, uint64_t client,
+                         const json_t *tree) {
+    int64_t at[3];
+    read_at(tree, at);
+    put_value(box, client, at, slices_value(d, at));
+}
+
+void answer_none(outbox *box, uint64_t client, const json_t *tree) {
+    const char *what = json_string_value(json_object_get(tree, "what"));
+    int64_t at[3];
+    if (what && strcmp(what, "slice") == 0)
+        put_no_slice(box, client,
+                     json_integer_value(json_object_get(tree, "pane")));
+    if (!what || strcmp(what, "value") != 0)
+        return;
+    read_at(tree, at);
+    put_value(box, client, at, NAN);
+}
+
+/* {"what": "depth", "x": 0.5, "y": 0.25}: of the picture as it was drawn last.
+ * The page knows the camera. */
+static void answer_depth(drawing *d, outbox *box, uint64_t client,
+                         const json_t *tree) {
+    double depth;
+    double x = json_number_value(json_object_get(tree, "x"));
+    double y = json_number_value(json_object_get(tree, "y"));
+    if (x < 0 || x > 1 || y < 0 || y > 1 ||
+        pick_depth(d, x, y, &depth) != CONTINUE)
+        return;
+    put(box, client, PARCEL_PLAIN,
+        json_pack("{s:s, s:f, s:f, s:o}", "t", "depth", "x", x, "y", y, "depth",
+                  json_number(depth)));
+}
+
+/* What needs the newest state, which may not be drawn yet. */
+static bool answer_state(drawing *d, viewer_state *s, outbox *box,
+                         viewer_question *question, const char *what) {
+    if (strcmp(what, "command") == 0)
+        answer_command(d, s, box, question->client, VERB_RENDER);
+    else if (strcmp(what, "movie-command") == 0)
+        answer_command(d, s, box, question->client, VERB_TURNTABLE);
+    else if (strcmp(what, "recipe") == 0)
+        answer_recipe(d, s, box, question->client);
+    else if (strcmp(what, "fit") == 0)
+        answer_fit(d, s, box, question->client);
+    else if (strcmp(what, "thumbnail") == 0)
+        answer_thumbnail(d, s, box, question->client, question->tree);
+    else
+        return false;
+    return true;
+}
+
+/* Makes what the newest state needs, once for each state. */
+static int follow(drawing *d, viewer_state *s) {
+    uint32_t revision = state_revision(s); /* the recipe may be newer */
+    if (d->followed == revision)
+        return d->followed_done;
+    json_t *recipe = state_recipe(s);
+    d->followed_done = drawing_apply(d, recipe);
+    d->followed = revision;
+    json_decref(recipe);
+    return d->followed_done;
+}
+
+/* What is answered of the volume: `newest` where that is the one of the newest
+ * state, not of the last picture. */
+typedef struct answer_row {
+    const char *what;
+    void (*answer)(drawing *, outbox *, uint64_t, const json_t *);
+    bool newest;
+} answer_row;
+
+/* Why a state has no volume is said when it is made. */
+static void answer_by(const answer_row *row, drawing *d, viewer_state *s,
+                      outbox *box, const viewer_question *question) {
+    bool made = !row->newest || follow(d, s) == CONTINUE;
+    if (made && d->state.volume && d->state.transfer) {
+        row->answer(d, box, question->client, question->tree);
+        return;
+    }
+    answer_none(box, question->client, question->tree);
+    if (made)
+        answer_said(
+            box, question->client,
+            "There is no volume: undo, or choose another time or crop.");
+}
+
 void answer_question(drawing *d, viewer_state *s, outbox *box,
                      viewer_question *question) {
+    static const answer_row rows[] = {
+        {"histogram", answer_histogram, false},
+        {"slice", answer_slice, true},
+        {"slice-command", answer_slice_command, true},
+        {"value", answer_value, true},
+        {"depth", answer_depth, false}};
     const char *what =
         json_string_value(json_object_get(question->tree, "what"));
-    uint64_t client = question->client;
-    if (!d->state.volume || !d->state.transfer)
-        what = "";
-    if (strcmp(what, "histogram") == 0)
-        answer_histogram(d, box, client, question->tree);
-    else if (strcmp(what, "command") == 0)
-        answer_command(d, s, box, client);
-    else if (strcmp(what, "recipe") == 0)
-        answer_recipe(d, s, box, client);
-    else if (strcmp(what, "fit") == 0)
-        answer_fit(d, s, box, client);
-    else if (strcmp(what, "thumbnail") == 0)
-        answer_thumbnail(d, s, box, client, question->tree);
-    else
-        answer_said(box, client, "ask: nothing is known of what is asked");
+    bool known = false;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (strcmp(what, rows[i].what) == 0) {
+            answer_by(&rows[i], d, s, box, question);
+            known = true;
+        }
+    if (!known && !answer_state(d, s, box, question, what))
+        answer_said(box, question->client,
+                    "ask: nothing is known of what is asked");
     json_decref(question->tree);
 }

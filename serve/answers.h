@@ -2,7 +2,7 @@
 #ifndef ANSWERS_H
 #define ANSWERS_H
 
-#include "drawing.h"
+#include "draw/drawing.h"
 #include "outbox.h"
 #include "state.h"
 
@@ -13,9 +13,16 @@ void answer_info(drawing *d, outbox *box);
 void answer_look(drawing *d, outbox *box);
 void answer_figures(drawing *d, outbox *box);
 
+/* The step that a simulation has drawn; a recipe, as a text. */
+void answer_step(outbox *box, int64_t step);
+void answer_recipe_text(outbox *box, uint64_t client, const json_t *tree);
+
 /* Answers one page.  Frees the question's tree. */
 void answer_question(drawing *d, viewer_state *s, outbox *box,
                      viewer_question *question);
+
+/* Of slices and values, which a page waits for: that there is none. */
+void answer_none(outbox *box, uint64_t client, const json_t *tree);
 
 /* Sends a line that is shown as it is: to a page, or to all (0). */
 void answer_said(outbox *box, uint64_t client, const char *line);

@@ -1,35 +1,26 @@
-# embed.cmake - makes a C file of the files of web/, packed by gzip:
+# embed.cmake - makes a C file of the page in web/, packed by gzip:
 #
 #   cmake -D FOLDER=web -D GZIP=gzip -D OUT=web_files.c -P embed.cmake
 #
-# Together they have at most 25,000 bytes, since they go through thin tunnels.
+# In all at most 25,000 bytes.
+cmake_minimum_required(VERSION 3.19)
 set(most 25000)
-string(REPEAT "." 70 line) # 14 bytes
-file(GLOB files ${FOLDER}/*.html ${FOLDER}/*.css ${FOLDER}/*.js)
-list(SORT files)
+
+include(${CMAKE_CURRENT_LIST_DIR}/modules.cmake)
+
 set(arrays "")
 set(rows "")
 set(total 0)
-set(number 0)
-foreach(file ${files})
-  get_filename_component(name ${file} NAME)
-  get_filename_component(suffix ${file} LAST_EXT)
-  string(SUBSTRING ${suffix} 1 -1 suffix)
-  if(suffix STREQUAL html)
-    set(type "text/html; charset=utf-8")
-  elseif(suffix STREQUAL css)
-    set(type "text/css; charset=utf-8")
-  else()
-    set(type "text/javascript; charset=utf-8")
-  endif()
-  if(name STREQUAL index.html)
-    set(name "")
-  endif()
-  execute_process(COMMAND ${GZIP} -9nc INPUT_FILE ${file}
+string(REPEAT "." 70 line) # 14 bytes
+
+# Appends the row of a file whose content is `text`.
+macro(add_file number name type)
+  file(WRITE ${OUT}.text "${text}")
+  execute_process(COMMAND ${GZIP} -9nc INPUT_FILE ${OUT}.text
                   OUTPUT_FILE ${OUT}.gz COMMAND_ERROR_IS_FATAL ANY)
-  file(SIZE ${file} length)
+  file(SIZE ${OUT}.text length)
   file(SIZE ${OUT}.gz packed)
-  file(SHA256 ${file} hash)
+  file(SHA256 ${OUT}.text hash)
   string(SUBSTRING ${hash} 0 16 hash)
   file(READ ${OUT}.gz bytes HEX)
   string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
@@ -39,9 +30,17 @@ foreach(file ${files})
          "static const unsigned char file${number}[] = {\n    ${bytes}};\n")
   string(APPEND rows "    {\"${name}\", \"${type}\", \"\\\"${hash}\\\"\",\n"
                      "     file${number}, ${packed}, ${length}},\n")
-  math(EXPR number "${number} + 1")
-endforeach()
-file(REMOVE ${OUT}.gz)
+endmacro()
+
+read_short(${FOLDER}/index.html)
+string(STRIP "${text}" text) # a byte before <!doctype> would be one too many
+add_file(0 "" "text/html; charset=utf-8")
+read_short(${FOLDER}/viewer.css)
+add_file(1 viewer.css "text/css; charset=utf-8")
+add_module(viewer "")
+get_property(text GLOBAL PROPERTY modules)
+add_file(2 viewer.js "text/javascript; charset=utf-8")
+file(REMOVE ${OUT}.gz ${OUT}.text)
 if(total GREATER most)
   message(FATAL_ERROR "${FOLDER}: ${total} bytes packed, more than ${most}: "
                       "shorten the page")

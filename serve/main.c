@@ -1,20 +1,25 @@
 /* main.c - the program snowglass-serve, which `snowglass serve` starts: shows a
  * volume in browsers that need no WebGL.
  *
- * Three threads: this one serves sockets (net/listen.c), one draws (render.c),
+ * Three threads: this one draws (render.c), one serves sockets (net/listen.c),
  * one packs pictures (pack.c).  Between them are the newest state (state.c) and
  * what waits for the pages (outbox.c).  The program is one of its own since
- * libwebsockets brings many libraries with it. */
+ * libwebsockets brings many libraries with it.  Of many ranks
+ * (snowglass-serve-mpi) the first has these threads, and the others draw with
+ * it (ranks.c). */
 #include "answers.h"
+#include "draw/ranks.h"
+#include "live.h"
 #include "message.h"
 #include "net/listen.h"
 #include "render.h"
 
 #include "commands/commands.h"
+#include "movie/series.h"
 #include "options/config.h"
 #include "run/log.h"
-#include "run/start.h"
 
+#include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,7 +37,9 @@ typedef struct viewer {
     viewer_state *state;
     packer *pack;
     renderer *renderer;
+    pthread_t thread; /* of the listener */
     drawing drawing;
+    live *live; /* in its place; or NULL */
 } viewer;
 
 /* A signal ends the serving in order. */
@@ -58,6 +65,23 @@ static void hear_line(void *user, const char *line) {
     answer_said(user, 0, line);
 }
 
+/* A simulation draws by its recipe alone. */
+static int check_live(const options *opts) {
+    if (opts->operand_count || process_ranks() > 1)
+        return fail_usage("--live: %s; give it alone, to one process",
+                          opts->operand_count
+                              ? "shows a simulation, and no file"
+                              : "needs no ranks, as the simulation draws");
+    for (size_t i = 0; option_table[i].name; i++)
+        if (opts->given[i] && option_table[i].verbs & VERB_RENDER &&
+            !(option_table[i].verbs & VERB_HELP))
+            return fail_usage("--%s: cannot be given with --live: the "
+                              "simulation draws by %s; leave it out, or change "
+                              "that recipe",
+                              option_table[i].name, opts->live);
+    return CONTINUE;
+}
+
 static int read_options(options *opts, int argc, char **argv) {
     static char *operands[] = {engine, NULL};
     const verb_row *verb = verb_of(VERB_SERVE);
@@ -65,6 +89,8 @@ static int read_options(options *opts, int argc, char **argv) {
     int done = options_parse(opts, verb, argc, argv);
     if (done != CONTINUE)
         return done;
+    if ((opts->version || opts->help) && !process_talks())
+        return SNOW_STATUS_OK;
     if (opts->version) {
         printf("snowglass %s\n", snow_version());
         return finish_stdout();
@@ -74,6 +100,9 @@ static int read_options(options *opts, int argc, char **argv) {
     if (opts->operand_count > 1)
         return fail_usage("%s: is one file too many; serve shows one volume",
                           opts->operands[1]);
+    done = opts->live ? check_live(opts) : CONTINUE;
+    if (done != CONTINUE)
+        return done;
     if (opts->operand_count == 0)
         opts->operands = operands;
     opts->operand_count = 1;
@@ -98,29 +127,52 @@ static int fail_start(void) {
     return fail_memory("out of memory at the start; close other programs");
 }
 
-/* Opens sockets before the volume, which may take long. */
-static int open_all(viewer *v) {
+/* Of the first rank: what serves, and its state, before the volume, which may
+ * take long. */
+static int open_door(viewer *v, const json_t *recipe) {
     options *opts = &v->opts;
     int done = secret_make(opts, &v->guard);
-    if (done == CONTINUE)
-        done = look_load(opts);
-    if (done == CONTINUE)
+    if (done == CONTINUE && !opts->live)
         done = check_input(opts);
     if (done == CONTINUE)
         done = sockets_open(opts, &v->guard, &v->sockets);
     if (done != CONTINUE)
         return done;
-    json_t *recipe = first_recipe(opts);
-    v->state = recipe ? state_new(json_deep_copy(recipe)) : NULL;
+    json_t *copy = json_deep_copy(recipe);
+    v->state = copy ? state_new(copy) : NULL;
     v->listener = listener_new(&v->sockets, &v->guard, opts->idle);
     v->box = v->listener ? outbox_new(listener_wake, v->listener) : NULL;
-    if (!v->state || !v->box) {
-        json_decref(recipe);
-        return fail_start();
+    return v->state && v->box ? CONTINUE : fail_start();
+}
+
+static int open_live(viewer *v) {
+    int done = live_new(&v->opts, &v->live);
+    json_t *recipe = done == CONTINUE ? live_recipe(v->live) : NULL;
+    if (done == CONTINUE)
+        done = open_door(v, recipe);
+    json_decref(recipe);
+    return done;
+}
+
+static int open_all(viewer *v) {
+    options *opts = &v->opts;
+    snow_comm *comm = process_ranks() > 1 ? process_comm() : NULL;
+    if (comm)
+        snow_comm_set_timeout(comm, opts->timeout);
+    int done = series_take(opts, verb_of(VERB_SERVE));
+    if (done == CONTINUE)
+        done = settle_channels(opts, false);
+    if (done == CONTINUE)
+        done = look_load(opts); /* on every rank: the file is small */
+    json_t *recipe = done == CONTINUE ? first_recipe(opts) : NULL;
+    if (done == CONTINUE && process_talks())
+        done = open_door(v, recipe);
+    done = process_agree(done);
+    if (done == CONTINUE) {
+        progress_begin(opts, "reading");
+        done = drawing_open(opts, recipe, &v->drawing);
+        progress_end(opts);
     }
-    progress_begin(opts, "reading");
-    done = drawing_open(opts, recipe, &v->drawing);
-    progress_end(opts);
     json_decref(recipe);
     return done;
 }
@@ -131,6 +183,39 @@ static int print_url(const viewer *v) {
     return finish_stdout();
 }
 
+/* Ends the drawing when it ends itself. */
+static void *listen_to_pages(void *user) {
+    viewer *v = user;
+    listener_run(v->listener, v->state, v->box);
+    state_end(v->state);
+    return NULL;
+}
+
+/* Signals are for the thread that serves sockets; what draws is this one, the
+ * only one that may speak to other ranks. */
+static bool start_listening(viewer *v) {
+    sigset_t all;
+    if (pthread_create(&v->thread, NULL, listen_to_pages, v) != 0)
+        return false;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, NULL);
+    return true;
+}
+
+/* Where ranks are lost nothing can be drawn any more.  A page has heard why;
+ * so does who started the job. */
+static int draw_all(viewer *v) {
+    while (!process_broken() && renderer_step(v->renderer, NULL) != WORK_END) {
+    }
+    listener_stop(v->listener);
+    pthread_join(v->thread, NULL);
+    say_to(NULL, NULL);
+    if (!process_broken())
+        return SNOW_STATUS_OK;
+    say("%s", snow_context_message(v->drawing.state.context));
+    return SNOW_STATUS_FAILED;
+}
+
 static int serve(viewer *v) {
     hear_signals(v->listener);
     renderer_begin(&v->drawing, v->state, v->box);
@@ -138,43 +223,70 @@ static int serve(viewer *v) {
     if (done != SNOW_STATUS_OK)
         return done;
     v->pack = packer_new(v->box);
-    say_to(hear_line, v->box);
     if (v->pack)
         v->renderer = renderer_new(&v->drawing, v->state, v->box, v->pack);
-    if (!v->renderer) {
+    say_to(hear_line, v->box);
+    if (v->renderer && start_listening(v))
+        return draw_all(v);
+    say_to(NULL, NULL);
+    return fail_start();
+}
+
+static int serve_live(viewer *v) {
+    hear_signals(v->listener);
+    int done = print_url(v);
+    if (done != SNOW_STATUS_OK)
+        return done;
+    say_to(hear_line, v->box);
+    if (!start_listening(v)) {
         say_to(NULL, NULL);
         return fail_start();
     }
-    listener_run(v->listener, v->state, v->box);
+    live_run(v->live, v->state, v->box);
+    pthread_join(v->thread, NULL);
+    say_to(NULL, NULL);
     return SNOW_STATUS_OK;
 }
 
+/* A rank that only draws ends when the first one says so; the signals of a
+ * terminal reach them all. */
+static int follow(viewer *v) {
+    signal(SIGINT, SIG_IGN);
+    signal(SIGTERM, SIG_IGN);
+    signal(SIGHUP, SIG_IGN);
+    int done = ranks_follow(&v->drawing);
+    return done == CONTINUE ? SNOW_STATUS_OK : done;
+}
+
 static void close_all(viewer *v) {
-    if (v->state)
-        state_end(v->state);
     if (v->pack && !v->renderer)
         packer_end(v->pack);
     renderer_free(v->renderer);
-    say_to(NULL, NULL);
     packer_free(v->pack);
     listener_free(v->listener);
     outbox_free(v->box);
     state_free(v->state);
     drawing_close(&v->drawing);
+    live_free(v->live);
     look_unload(&v->opts);
     sockets_close(&v->sockets);
 }
 
-int main(int argc, char **argv) {
-    static const process_start alone = {.comm = NULL};
+int tool_run(int argc, char **argv, const process_start *how) {
     static viewer v;
-    process_begin(&alone);
-    int done = read_options(&v.opts, argc, argv);
+    process_begin(how);
+    int done = process_meet(read_options(&v.opts, argc, argv), VERB_SERVE, 0);
     if (done != CONTINUE)
         return done;
-    done = open_all(&v);
-    if (done == CONTINUE)
+    done = v.opts.live ? open_live(&v) : open_all(&v);
+    if (done == CONTINUE && v.live) {
+        done = serve_live(&v);
+    } else if (done == CONTINUE && !process_talks()) {
+        done = follow(&v);
+    } else if (done == CONTINUE) {
         done = serve(&v);
+        ranks_tell(&v.drawing, RANKS_END, NULL);
+    }
     close_all(&v);
     return done;
 }

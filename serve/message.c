@@ -5,29 +5,59 @@
 #include <string.h>
 
 /* What a page may change.  Paths, and how a raw file is read, are those of the
- * command line. */
+ * command line; the mask is switched. */
 static const char *const keys[] = {
-    "size",         "background",
-    "mode",         "iso",
-    "threshold",    "preset",
-    "colormap",     "log",
-    "opacity",      "gradient-opacity",
-    "range",        "window",
-    "level",        "shift",
-    "opacity-unit", "shade",
-    "light",        "ambient",
-    "diffuse",      "specular",
-    "shininess",    "depth-darkening",
-    "occlusion",    "view",
-    "azimuth",      "elevation",
-    "roll",         "zoom",
-    "perspective",  "fit",
-    "position",     "target",
-    "up",           "no-labels",
-    "legend",       "scale-bar",
-    "crop",         "channel",
-    "component",    "labels",
-    "clip",         "time",
+    "size",
+    "background",
+    "mode",
+    "iso",
+    "threshold",
+    "preset",
+    "colormap",
+    "log",
+    "symlog",
+    "opacity",
+    "gradient-opacity",
+    "range",
+    "window",
+    "level",
+    "shift",
+    "opacity-unit",
+    "shade",
+    "light",
+    "ambient",
+    "diffuse",
+    "specular",
+    "shininess",
+    "depth-darkening",
+    "occlusion",
+    "view",
+    "azimuth",
+    "elevation",
+    "roll",
+    "zoom",
+    "perspective",
+    "fit",
+    "position",
+    "target",
+    "up",
+    "no-labels",
+    "legend",
+    "scale-bar",
+    "title",
+    "legend-title",
+    "unit",
+    "annotate",
+    "time-format",
+    "outline",
+    "axes",
+    "crop",
+    "channel",
+    "component",
+    "labels",
+    "clip",
+    "time",
+    "mask",
 };
 
 bool message_may_set(const char *key) {
@@ -94,6 +124,10 @@ static const char *read_set(message *m) {
             return "set: has a key that only the command line can set";
         if (strcmp(key, "size") == 0 && !is_small(value))
             return "set: a picture has 1 to 4096 pixels a side";
+        if (strcmp(key, "mask") == 0 && !json_is_null(value) &&
+            !json_is_true(value))
+            return "set: the mask is switched by null and true; only the "
+                   "command line names its file";
     }
     return NULL;
 }
@@ -177,4 +211,18 @@ void state_text_set_n(unsigned char *text, uint32_t n) {
     char digits[16];
     snprintf(digits, sizeof digits, "%-10u", n);
     memcpy(text + strlen(STATE_HEAD), digits, 10);
+}
+
+void set_log_note(set_log *log, uint32_t n, uint32_t revision) {
+    log->sets[log->count % SET_LOG_LENGTH].n = n;
+    log->sets[log->count % SET_LOG_LENGTH].revision = revision;
+    log->count++;
+}
+
+uint32_t set_log_n(const set_log *log, uint32_t revision) {
+    uint32_t n = 0;
+    for (unsigned i = 0; i < SET_LOG_LENGTH && i < log->count; i++)
+        if (log->sets[i].revision <= revision && log->sets[i].n > n)
+            n = log->sets[i].n;
+    return n;
 }

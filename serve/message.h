@@ -44,7 +44,8 @@ typedef struct message {
 const char *message_read(const char *text, size_t length, message *out);
 void message_free(message *m);
 
-/* Whether a page may set a key of the recipe: no key names a file. */
+/* Whether a page may set a key of the recipe: no value names a file, and that
+ * of "mask" is null or true, which stands for the file of the command line. */
 bool message_may_set(const char *key);
 
 #define FRAME_HEAD_BYTES 32
@@ -52,7 +53,8 @@ bool message_may_set(const char *key);
 typedef enum frame_kind {
     FRAME_JPEG = 1,
     FRAME_PNG = 2,
-    FRAME_WEBP = 3
+    FRAME_WEBP = 3,
+    FRAME_LEVELS = 4 /* red, green, blue, 255: to a page without a server */
 } frame_kind;
 
 /* What stands before a picture's bytes, little endian:
@@ -69,6 +71,22 @@ void frame_head_write(const frame_head *head, unsigned char out[32]);
 
 /* Replaces n, which each page counts by itself. */
 void frame_head_set_n(unsigned char head[32], uint32_t n);
+
+/* What revisions of the state a page's own messages became: the last of them.
+ */
+#define SET_LOG_LENGTH 64
+typedef struct set_log {
+    struct {
+        uint32_t revision, n;
+    } sets[SET_LOG_LENGTH]; /* a ring */
+    unsigned count;
+} set_log;
+
+/* Notes that message n became a revision. */
+void set_log_note(set_log *log, uint32_t n, uint32_t revision);
+
+/* The newest message that a revision has in it; 0: none. */
+uint32_t set_log_n(const set_log *log, uint32_t revision);
 
 /* What a text of the state begins with; %-10u is n, of which a page's own is
  * put in its place when it is sent: its newest message that the state has. */

@@ -31,8 +31,12 @@ struct packer {
     bool ending;
     outbox *box;
     snow_context *context; /* the thread's own */
-    int file;              /* in memory, as standard output */
 };
+
+/* Standard output, of which a process has one, as a file in memory: two threads
+ * write PNGs to it. */
+static pthread_mutex_t file_lock = PTHREAD_MUTEX_INITIALIZER;
+static int file = -1;
 
 static double seconds(void) {
     struct timespec now;
@@ -129,15 +133,6 @@ static parcel *pack_lossy(const snow_image *image,
     return made;
 }
 
-parcel *pack_small(const snow_image *image, const snow_image_options *form,
-                   int pane) {
-    frame_head head = {.level = 1,
-                       .pane = pane,
-                       .width = (uint32_t)snow_image_width(image),
-                       .height = (uint32_t)snow_image_height(image)};
-    return pack_lossy(image, form, false, &head);
-}
-
 /* --- PNG -------------------------------------------------------------------
  */
 
@@ -154,13 +149,11 @@ static snow_image *copy_image(snow_context *context, snow_image *from) {
     return image;
 }
 
-/* The library writes a PNG to a file or to standard output, which is a file in
- * memory here (packer_new). */
-static parcel *read_back(packer *p, frame_head *head, double begin) {
-    off_t length = lseek(p->file, 0, SEEK_END);
-    void *bytes = length > 0 ? mmap(NULL, (size_t)length, PROT_READ, MAP_SHARED,
-                                    p->file, 0)
-                             : MAP_FAILED;
+static parcel *read_back(frame_head *head, double begin) {
+    off_t length = lseek(file, 0, SEEK_END);
+    void *bytes =
+        length > 0 ? mmap(NULL, (size_t)length, PROT_READ, MAP_SHARED, file, 0)
+                   : MAP_FAILED;
     if (bytes == MAP_FAILED)
         return NULL;
     parcel *made = finish(head, FRAME_PNG, begin, bytes, (size_t)length);
@@ -168,18 +161,38 @@ static parcel *read_back(packer *p, frame_head *head, double begin) {
     return made;
 }
 
+/* The library writes a PNG to a file or to standard output (packer_new). */
+static parcel *write_png(const snow_image *image,
+                         const snow_image_options *form, frame_head *head,
+                         double begin) {
+    parcel *packed = NULL;
+    pthread_mutex_lock(&file_lock);
+    if (ftruncate(file, 0) == 0 && lseek(STDOUT_FILENO, 0, SEEK_SET) == 0 &&
+        snow_image_save(image, "-", form) == SNOW_STATUS_OK)
+        packed = read_back(head, begin);
+    pthread_mutex_unlock(&file_lock);
+    return packed;
+}
+
 static parcel *pack_png(packer *p, const picture *made, frame_head *head) {
     double begin = seconds();
     snow_image *image = copy_image(p->context, made->image);
     snow_image_options form = made->form;
-    parcel *packed = NULL;
     form.overlay = made->overlay;
-    if (image && ftruncate(p->file, 0) == 0 &&
-        lseek(STDOUT_FILENO, 0, SEEK_SET) == 0 &&
-        snow_image_save(image, "-", &form) == SNOW_STATUS_OK)
-        packed = read_back(p, head, begin);
+    parcel *packed = image ? write_png(image, &form, head, begin) : NULL;
     snow_image_free(image);
     return packed;
+}
+
+parcel *pack_small(const snow_image *image, const snow_image_options *form,
+                   bool exact, int pane, uint32_t n) {
+    frame_head head = {.n = n,
+                       .level = exact ? 2 : 1,
+                       .pane = pane,
+                       .width = (uint32_t)snow_image_width(image),
+                       .height = (uint32_t)snow_image_height(image)};
+    return exact ? write_png(image, form, &head, seconds())
+                 : pack_lossy(image, form, false, &head);
 }
 
 /* --- the thread ------------------------------------------------------------
@@ -236,9 +249,9 @@ static void *run(void *user) {
 }
 
 /* From here on nothing may print to standard output. */
-static bool open_file(packer *p) {
-    p->file = memfd_create("snowglass", MFD_CLOEXEC);
-    return p->file >= 0 && dup2(p->file, STDOUT_FILENO) == STDOUT_FILENO;
+static bool open_file(void) {
+    file = memfd_create("snowglass", MFD_CLOEXEC);
+    return file >= 0 && dup2(file, STDOUT_FILENO) == STDOUT_FILENO;
 }
 
 packer *packer_new(outbox *box) {
@@ -246,10 +259,9 @@ packer *packer_new(outbox *box) {
     if (!p)
         return NULL;
     p->box = box;
-    p->file = -1;
     pthread_mutex_init(&p->lock, NULL);
     pthread_cond_init(&p->changed, NULL);
-    if (open_file(p) && snow_context_new(NULL, &p->context) == SNOW_STATUS_OK &&
+    if (open_file() && snow_context_new(NULL, &p->context) == SNOW_STATUS_OK &&
         pthread_create(&p->thread, NULL, run, p) == 0)
         return p;
     packer_free(p);
@@ -285,8 +297,9 @@ picture *packer_end(packer *p) {
 void packer_free(packer *p) {
     if (!p)
         return;
-    if (p->file >= 0)
-        close(p->file);
+    if (file >= 0)
+        close(file);
+    file = -1;
     snow_context_free(p->context);
     pthread_cond_destroy(&p->changed);
     pthread_mutex_destroy(&p->lock);

@@ -36,8 +36,10 @@ void packer_free(packer *p);
  * are done, linked by `next`, for the renderer to free. */
 picture *packer_put(packer *p, picture *made);
 
-/* Packs a small picture at once, in the calling thread: a parcel, or NULL. */
+/* Packs a small picture at once, in the calling thread, which owns its context,
+ * as JPEG or, if it is to be `exact`, as the PNG that the tool writes: a parcel
+ * for pane and n of the page, or NULL. */
 parcel *pack_small(const snow_image *image, const snow_image_options *form,
-                   int pane);
+                   bool exact, int pane, uint32_t n);
 
 #endif

@@ -7,8 +7,6 @@
 #include "run/log.h"
 
 #include <math.h>
-#include <pthread.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,7 +19,6 @@
 #define SHRINK_MOST 3
 
 struct renderer {
-    pthread_t thread;
     drawing *drawing;
     viewer_state *state;
     outbox *box;
@@ -39,9 +36,10 @@ static bool asks_for_end(void *user) {
     return state_has_ended(r->state);
 }
 
+/* A picture at rest, which may take long, begins again after an answer. */
 static bool is_stale(void *user) {
     const renderer *r = user;
-    return state_is_stale(r->state, r->revision);
+    return state_is_stale(r->state, r->revision) || state_is_asked(r->state);
 }
 
 static void free_pictures(picture *made) {
@@ -69,7 +67,7 @@ static void adapt(renderer *r, int level, double took) {
         r->shrink--;
 }
 
-/* A new range or preset that shows nothing is told once, until something is
+/* A new range or preset that shows nothing is reported once, until something is
  * seen again. */
 static void tell_empty(renderer *r, snow_image *image) {
     bool empty = picture_is_empty(image);
@@ -173,22 +171,17 @@ void renderer_begin(drawing *d, viewer_state *s, outbox *box) {
     answer_look(d, box);
 }
 
-static void *run(void *user) {
-    renderer *r = user;
-    viewer_work work;
-    for (;;) {
-        viewer_question question;
-        json_t *recipe = NULL;
-        uint32_t revision = 0;
-        work = state_wait(r->state, r->drawn, r->level, &question, &recipe,
-                          &revision);
-        if (work == WORK_END)
-            return NULL;
-        if (work == WORK_ANSWER)
-            answer_question(r->drawing, r->state, r->box, &question);
-        else
-            serve_state(r, (int)work - WORK_DRAFT, recipe, revision);
-    }
+viewer_work renderer_step(renderer *r, double *due) {
+    viewer_question question;
+    json_t *recipe = NULL;
+    uint32_t revision = 0;
+    viewer_work work = state_next(r->state, r->drawn, r->level, due, &question,
+                                  &recipe, &revision);
+    if (work == WORK_ANSWER)
+        answer_question(r->drawing, r->state, r->box, &question);
+    else if (work >= WORK_DRAFT)
+        serve_state(r, (int)work - WORK_DRAFT, recipe, revision);
+    return work;
 }
 
 /* Reading again, and encoding, may take long: pages see how far it is.  A
@@ -208,16 +201,6 @@ static bool hear_progress(void *user, snow_stage stage, double fraction) {
     return state_has_ended(r->state);
 }
 
-/* Signals are for the thread that serves sockets. */
-static bool start(renderer *r) {
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    bool started = pthread_create(&r->thread, NULL, run, r) == 0;
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return started;
-}
-
 renderer *renderer_new(drawing *d, viewer_state *s, outbox *box, packer *pack) {
     double middle[3];
     renderer *r = malloc(sizeof *r);
@@ -227,16 +210,13 @@ renderer *renderer_new(drawing *d, viewer_state *s, outbox *box, packer *pack) {
         .drawing = d, .state = s, .box = box, .pack = pack, .level = -1};
     drawing_middle(d, middle, &r->radius);
     snow_context_set_progress(d->state.context, hear_progress, r);
-    if (start(r))
-        return r;
-    free(r);
-    return NULL;
+    return r;
 }
 
 void renderer_free(renderer *r) {
     if (!r)
         return;
-    pthread_join(r->thread, NULL);
     free_pictures(packer_end(r->pack));
+    snow_context_set_progress(r->drawing->state.context, NULL, NULL);
     free(r);
 }

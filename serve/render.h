@@ -1,10 +1,10 @@
-/* render.h - the thread that draws: the newest state as a draft,
- * then, when it rests, in normal and in high quality; and answers to what pages
- * ask.  It alone uses the context of the volume. */
+/* render.h - draws the newest state as a draft, then, when it rests, in normal
+ * and in high quality; and answers what pages ask.  One thread does this, and
+ * it alone uses the context of the volume. */
 #ifndef RENDER_H
 #define RENDER_H
 
-#include "drawing.h"
+#include "draw/drawing.h"
 #include "outbox.h"
 #include "pack.h"
 #include "state.h"
@@ -15,11 +15,14 @@ typedef struct renderer renderer;
  * what pages are told of it waits for them. */
 void renderer_begin(drawing *d, viewer_state *s, outbox *box);
 
-/* Starts the thread, which takes over the drawing; NULL: no memory, or no
- * thread. */
+/* Takes over the drawing; NULL: no memory. */
 renderer *renderer_new(drawing *d, viewer_state *s, outbox *box, packer *pack);
 
-/* Waits for its end, after state_end. */
+/* Does what is to be done next, and says what that was.  Waits for it where due
+ * is NULL, until WORK_END (state_next). */
+viewer_work renderer_step(renderer *r, double *due);
+
+/* After the thread of renderer_step has ended. */
 void renderer_free(renderer *r);
 
 #endif

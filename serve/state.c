@@ -17,6 +17,7 @@ struct viewer_state {
     pthread_mutex_t lock;
     pthread_cond_t changed;
     json_t *recipe;
+    json_t *mask; /* the file that the recipe began with; or NULL */
     atomic_uint revision;
     atomic_bool ended;
     bool moving;
@@ -25,6 +26,7 @@ struct viewer_state {
     double changed_at;
     viewer_question questions[QUESTIONS_MOST]; /* a ring */
     int first, count;
+    atomic_int urgent;     /* those of them that do not wait for pictures */
     bool answered;         /* the last work was an answer: pictures are next */
     snow_context *checker; /* of the thread that sets */
 };
@@ -48,6 +50,7 @@ viewer_state *state_new(json_t *recipe) {
     pthread_cond_init(&s->changed, &monotonic);
     pthread_condattr_destroy(&monotonic);
     s->recipe = recipe;
+    s->mask = json_incref(json_object_get(recipe, "mask"));
     atomic_init(&s->revision, 1);
     return s;
 }
@@ -58,18 +61,27 @@ void state_free(viewer_state *s) {
     for (int i = 0; i < s->count; i++)
         json_decref(s->questions[(s->first + i) % QUESTIONS_MOST].tree);
     json_decref(s->recipe);
+    json_decref(s->mask);
     snow_context_free(s->checker);
     pthread_cond_destroy(&s->changed);
     pthread_mutex_destroy(&s->lock);
     free(s);
 }
 
-static void merge(json_t *recipe, const json_t *changes) {
+/* Pages know of the mask only whether it is used. */
+static bool is_mask(const char *key) {
+    return strcmp(key, "mask") == 0;
+}
+
+static void merge(const viewer_state *s, json_t *recipe,
+                  const json_t *changes) {
     const char *key;
     json_t *value;
     json_object_foreach((json_t *)changes, key, value) {
-        if (json_is_null(value))
+        if (json_is_null(value) || (is_mask(key) && !s->mask))
             json_object_del(recipe, key);
+        else if (is_mask(key))
+            json_object_set(recipe, key, s->mask);
         else
             json_object_set_new(recipe, key, json_deep_copy(value));
     }
@@ -100,7 +112,7 @@ static void note_crop(viewer_state *s, const json_t *changes) {
 char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision) {
     pthread_mutex_lock(&s->lock);
     json_t *recipe = json_deep_copy(s->recipe);
-    merge(recipe, changes);
+    merge(s, recipe, changes);
     char *fault = fault_of(s, recipe);
     if (fault) {
         json_decref(recipe);
@@ -136,7 +148,8 @@ parcel *state_parcel(viewer_state *s, uint64_t client, uint64_t except) {
     json_t *value, *shown = json_object();
     pthread_mutex_lock(&s->lock);
     json_object_foreach(s->recipe, key, value) if (message_may_set(key))
-        json_object_set_new(shown, key, json_deep_copy(value));
+        json_object_set_new(shown, key,
+                            is_mask(key) ? json_true() : json_deep_copy(value));
     uint32_t revision = s->revision;
     pthread_mutex_unlock(&s->lock);
     char *text = json_dumps(shown, JSON_COMPACT | JSON_REAL_PRECISION(17));
@@ -182,6 +195,7 @@ bool state_ask(viewer_state *s, uint64_t client, json_t *tree) {
     if (room)
         s->questions[(s->first + s->count++) % QUESTIONS_MOST] =
             (viewer_question){client, tree, waits};
+    s->urgent += room && !waits;
     pthread_cond_signal(&s->changed);
     pthread_mutex_unlock(&s->lock);
     if (!room)
@@ -196,16 +210,16 @@ void state_end(viewer_state *s) {
     pthread_mutex_unlock(&s->lock);
 }
 
-/* The next picture, and when it is due; WORK_END: none. */
+/* The next picture, and when it is due; WORK_NONE: none. */
 static viewer_work next_picture(const viewer_state *s, uint32_t drawn,
                                 int level, double *due) {
     *due = 0;
     if (!s->watchers)
-        return WORK_END;
+        return WORK_NONE;
     if (level < 0 || drawn != s->revision)
         return WORK_DRAFT;
     if (level >= 2 || s->moving)
-        return WORK_END;
+        return WORK_NONE;
     *due = s->changed_at + (level ? STATE_HIGH_SECONDS : STATE_NORMAL_SECONDS);
     return level ? WORK_HIGH : WORK_NORMAL;
 }
@@ -233,41 +247,47 @@ static viewer_question take_question(viewer_state *s, int place) {
             s->questions[(s->first + place - 1) % QUESTIONS_MOST];
     s->first = (s->first + 1) % QUESTIONS_MOST;
     s->count--;
+    s->urgent -= !taken.waits;
     return taken;
 }
 
-/* Under the lock.  Answers and drafts take turns, so that neither waits for all
- * of the other. */
+/* Under the lock: what can be done now; WORK_NONE: nothing before *due or,
+ * where that is 0, before something changes.  Answers and drafts take turns, so
+ * that neither waits for all of the other. */
 static viewer_work choose(viewer_state *s, uint32_t drawn, int level,
-                          int *place) {
-    for (;;) {
-        double due;
-        if (s->ended)
-            return WORK_END;
-        viewer_work picture = next_picture(s, drawn, level, &due);
-        bool ready = picture != WORK_END && due <= seconds();
-        *place = next_question(s, picture == WORK_END && !s->moving);
-        if (*place >= 0 && !(ready && picture == WORK_DRAFT && s->answered))
-            return WORK_ANSWER;
-        if (ready)
-            return picture;
-        if (picture != WORK_END)
-            wait_until(s, due);
-        else
-            pthread_cond_wait(&s->changed, &s->lock);
-    }
+                          int *place, double *due) {
+    viewer_work picture = next_picture(s, drawn, level, due);
+    bool ready = picture != WORK_NONE && *due <= seconds();
+    *place = next_question(s, picture == WORK_NONE && !s->moving);
+    if (s->ended)
+        return WORK_END;
+    if (*place >= 0 && !(ready && picture == WORK_DRAFT && s->answered))
+        return WORK_ANSWER;
+    return ready ? picture : WORK_NONE;
 }
 
-viewer_work state_wait(viewer_state *s, uint32_t drawn, int level,
+static void wait_for_change(viewer_state *s, double due) {
+    if (due > 0)
+        wait_until(s, due);
+    else
+        pthread_cond_wait(&s->changed, &s->lock);
+}
+
+viewer_work state_next(viewer_state *s, uint32_t drawn, int level, double *due,
                        viewer_question *question, json_t **recipe,
                        uint32_t *revision) {
     pthread_mutex_lock(&s->lock);
     int place;
-    viewer_work work = choose(s, drawn, level, &place);
-    s->answered = work == WORK_ANSWER;
+    double at;
+    viewer_work work;
+    while ((work = choose(s, drawn, level, &place, &at)) == WORK_NONE && !due)
+        wait_for_change(s, at);
+    s->answered = work == WORK_ANSWER || (work == WORK_NONE && s->answered);
+    if (due)
+        *due = at;
     if (work == WORK_ANSWER) {
         *question = take_question(s, place);
-    } else if (work != WORK_END) {
+    } else if (work >= WORK_DRAFT) {
         *recipe = json_deep_copy(s->recipe);
         *revision = s->revision;
     }
@@ -277,6 +297,10 @@ viewer_work state_wait(viewer_state *s, uint32_t drawn, int level,
 
 bool state_is_stale(const viewer_state *s, uint32_t revision) {
     return s->ended || s->revision != revision;
+}
+
+bool state_is_asked(const viewer_state *s) {
+    return s->urgent > 0;
 }
 
 uint32_t state_revision(const viewer_state *s) {

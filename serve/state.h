@@ -17,13 +17,14 @@ typedef struct viewer_state viewer_state;
 /* A question of a page, with the message that holds it. */
 typedef struct viewer_question {
     uint64_t client;
-    json_t *tree; /* the caller's after state_wait */
+    json_t *tree; /* the caller's after state_next */
     bool waits;   /* a thumbnail, which takes long: until the picture rests */
 } viewer_question;
 
 /* What the renderer is to do next. */
 typedef enum viewer_work {
     WORK_END,
+    WORK_NONE,   /* nothing yet */
     WORK_ANSWER, /* a question */
     WORK_DRAFT,  /* a new state */
     WORK_NORMAL, /* it has rested for STATE_NORMAL_SECONDS */
@@ -60,15 +61,21 @@ void state_end(viewer_state *s);
 /* --- for the renderer ------------------------------------------------------
  */
 
-/* Waits for work.  `drawn` is the revision of the last picture, and `level` its
- * quality; -1: none.  For a state *recipe gets a copy of the whole recipe. */
-viewer_work state_wait(viewer_state *s, uint32_t drawn, int level,
+/* The next work.  `drawn` is the revision of the last picture, and `level` its
+ * quality; -1: none.  For a state *recipe gets a copy of the whole recipe.
+ * Waits where due is NULL; else gives WORK_NONE while nothing is to be done,
+ * and at *due, in seconds of the monotonic clock, it is to be asked again; 0:
+ * when something has changed. */
+viewer_work state_next(viewer_state *s, uint32_t drawn, int level, double *due,
                        viewer_question *question, json_t **recipe,
                        uint32_t *revision);
 
 /* Whether a picture of a revision is no longer wanted: a state is newer, or the
  * end has come. */
 bool state_is_stale(const viewer_state *s, uint32_t revision);
+/* Whether a page waits for an answer that is to come before a picture at rest.
+ */
+bool state_is_asked(const viewer_state *s);
 bool state_has_ended(const viewer_state *s);
 uint32_t state_revision(const viewer_state *s);
 

@@ -19,12 +19,12 @@ static snow_status render_pass(snow_picture *p, snow_status status) {
     if (!p->ahead)
         status = combiner->place(p, status);
     /* 01 */ status = snow_parts_open(&parts, p, status);
-    while ((part = snow_parts_next(&parts, &status))) {
+    while ((part = snow_parts_next(&parts, &status)))
         if (status == SNOW_STATUS_OK && !p->ahead)
             /* 02 - 13 */ status = draw(p, part);
-        /* 14 - 18 */ status = combiner->combine(p, part, status);
-    }
-    /* 19 - 20 */ return combiner->display(p, snow_parts_close(&parts, status));
+    status = snow_parts_close(&parts, status);
+    /* 14 - 18 */ status = combiner->combine(p, &p->pass->job, status);
+    /* 19 - 20 */ return combiner->display(p, status);
 }
 
 /* The plan, and the local image where it is drawn ahead. */
@@ -73,7 +73,8 @@ snow_status snow_frame_render(snow_frame *frame, const snow_volume *volume,
                               const snow_view *view,
                               const snow_settings *settings,
                               snow_image **image) {
-    const snow_request request = {volume, transfer, view, settings};
+    const snow_request request = {volume,   transfer,      view,
+                                  settings, frame->layers, frame->layer_count};
     return render_alone(frame, &request, NULL, image);
 }
 
@@ -81,7 +82,8 @@ snow_status snow_frame_render_bytes(
     snow_frame *frame, const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings,
     const double background[3], unsigned char *pixels, size_t stride) {
-    const snow_request request = {volume, transfer, view, settings};
+    const snow_request request = {volume,   transfer,      view,
+                                  settings, frame->layers, frame->layer_count};
     const snow_bytes bytes = {pixels, stride, background};
     snow_image *image = NULL;
     SNOW_TRY(snow_picture_check_bytes(frame->context, &request, &bytes));
@@ -102,7 +104,8 @@ snow_status
 snow_ranks_begin(snow_frame *frame, snow_comm *comm, const snow_volume *volume,
                  const snow_transfer *transfer, const snow_view *view,
                  const snow_settings *settings, const snow_ranks_options *how) {
-    const snow_request request = {volume, transfer, view, settings};
+    const snow_request request = {volume,   transfer,      view,
+                                  settings, frame->layers, frame->layer_count};
     snow_picture *p, *waiting;
     SNOW_TRY(snow_pipeline_open(frame, comm, settings, how, &p));
     snow_pipeline_begun(p, begin(p, &request));

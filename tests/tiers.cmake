@@ -5,7 +5,8 @@
 #            what another test shows with small
 #   late     not run by the short tier either, but under sanitizers by the long
 #            one: the bench program and its tables, the in situ adaptor, the
-#            installed library, numbers held against a truth, and what another
+#            installed library, numbers held against a truth, files and
+#            pictures held against other libraries, and what another
 #            test of the short tier calls
 #   surface  reads what comes from elsewhere: files, recipes, command lines;
 #            run under the address and undefined-behaviour sanitizers by each
@@ -16,22 +17,27 @@
 # The sanitized builds of the long tier run all but `long` and `plain`.
 set(SNOW_LABEL_long cli_documents cli_large cli_matrix cli_stream cli_turntable
     isa_neon isa_wasm simulate mpi_bench mpi_clusters mpi_combine mpi_fail mpi_hosts
-    mpi_insitu mpi_kill mpi_modes mpi_other mpi_python mpi_stall package_cmake
+    mpi_insitu mpi_kill mpi_modes mpi_other mpi_overlay mpi_python mpi_serve mpi_stall package_cmake
     serve_fuzz
     package_layout package_manual package_pkgconfig package_recipes package_site package_wheel
-    package_within)
-set(SNOW_LABEL_late catalyst cli_again cli_balance cli_bench cli_figures
-    cli_interrupt cli_measurements cli_shear_warp mpi_comm oracle_hdf5
-    oracle_vtk oracle_zarr test_comm test_model_raycast test_stream test_value_model
-    test_value_truth test_value_views)
+    package_within wasm_engine wasm_page)
+set(SNOW_LABEL_late
+    catalyst cli_again cli_background cli_balance cli_bench cli_figures
+    cli_frame cli_interrupt cli_measurements cli_order cli_real
+    cli_shear_warp cli_show mpi_comm oracle_amr oracle_dicom oracle_fit oracle_hdf5
+    oracle_mrc oracle_netcdf oracle_npy oracle_orientation oracle_pictures
+    oracle_seg oracle_series oracle_slice oracle_tiff oracle_vtk oracle_zarr test_comm
+    test_darken test_histogram test_load_balance test_model_encodings
+    test_model_raycast test_phantom test_raycast test_splat_isa test_stream
+    test_value_model test_value_truth test_value_views)
 file(GLOB formats CONFIGURE_DEPENDS formats/test_*.c)
 list(TRANSFORM formats REPLACE ".*/(.*)[.]c$" "\\1")
 set(SNOW_LABEL_surface ${formats} test_base test_compare test_convert test_image
-    test_guard test_mask test_message test_npy_pfm test_pictures test_png test_recipe test_save
+    test_guard test_live_file test_mask test_message test_npy_pfm test_pictures test_png test_recipe test_save
     test_source test_tf test_volume test_writer test_writer_named)
 set(SNOW_LABEL_threads test_affinity test_combine test_comm test_early
-    test_pipeline test_frames test_insitu test_insitu_marks test_modes
-    test_raycast test_value test_value_parts test_value_perspective test_simulated test_stop test_progress test_ranks test_ranks_open test_redistribute
+    test_pipeline test_frames test_insitu test_insitu_levels test_insitu_marks test_modes
+    test_raycast test_value test_value_layer_parts test_value_parts test_value_perspective test_simulated test_stop test_progress test_ranks test_ranks_open test_redistribute
     test_load_balance)
 set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     test_model_raycast test_model_reference test_model_rules test_model_slabs
@@ -39,7 +45,7 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     test_value_views
     test_phantom test_perspective test_camera_points
     cli_documents cli_bench cli_figures cli_frame cli_stream
-    cli_matrix cli_balance cli_turntable cli_modules cli_memory cli_progress
+    cli_matrix cli_balance cli_order cli_turntable cli_modules cli_memory cli_progress
     serve_browser serve_sockets cli_large oracle_zarr oracle_tiff oracle_vtk oracle_pictures)
 
 # Tenths of a second on one core in the short tier, of those that take more than
@@ -48,8 +54,8 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
 # at the end.
 set(SNOW_COSTS
     isa_wasm 320 isa_neon 310 mpi_stall 300 mpi_insitu 280 simulate 270
-    mpi_render 260 mpi_modes 250
-    serve_browser 245 mpi_fail 240 mpi_comm 230 mpi_bench 220 cli_progress 200 cli_large 190
+    mpi_render 260 wasm_page 300 mpi_modes 250
+    mpi_serve 300 serve_browser 245 mpi_fail 240 mpi_comm 230 mpi_bench 220 cli_progress 200 cli_large 190
     test_model_raycast 37 cli_stream 87 test_ranks 62 test_stream 57
     cli_figures 52 oracle_zarr 46 test_modes 44
     cli_turntable 41 oracle_vtk 40 cli_render 39 test_stop 37

@@ -1,9 +1,9 @@
 // camera.js - the camera of a recipe, as snowglass/view.h describes it: turns,
 // shifts, zooms.
 
-const add = (a, b, k = 1) => a.map((x, i) => x + k * b[i]);
-const dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0);
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+export const add = (a, b, k = 1) => a.map((x, i) => x + k * b[i]);
+export const dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0);
+export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
     a[0] * b[1] - a[1] * b[0]];
 const unit = a => a.map(x => x / (Math.hypot(...a) || 1));
 const turn = (a, b, degrees) => {
@@ -11,7 +11,8 @@ const turn = (a, b, degrees) => {
     return [add(a.map(x => c * x), b, s), add(b.map(x => c * x), a, -s)];
 };
 
-export const ZOOM_LEAST = 1e-3, ZOOM_MOST = 1e3;
+export const ZOOM_LEAST = 1e-3;
+export const ZOOM_MOST = 1e3;
 
 /** Where the camera is before it is turned: [back, up]. */
 function base(recipe, info) {
@@ -34,11 +35,42 @@ export function axes(recipe, info) {
     return {right, up, back};
 }
 
-/** The length of a pixel in the target's plane; `side` is the shorter one. */
-function pixel(recipe, info, side) {
+/** The eye's distance from the target, without end in a parallel projection. */
+function distance(recipe, info) {
     const fov = recipe.perspective ?? 0;
-    const wide = fov > 0 ? info.radius / Math.cos(fov * Math.PI / 360) : info.radius;
+    return !(fov > 0) ? Infinity : recipe.position
+        ? Math.hypot(...add(recipe.position, recipe.target ?? info.middle, -1))
+        : info.radius / Math.sin(fov * Math.PI / 360);
+}
+
+/** The length of a pixel in the target's plane; `side` is the shorter one. */
+export function pixel(recipe, info, side) {
+    const far = distance(recipe, info);
+    const wide = far < Infinity ? far * Math.tan(recipe.perspective * Math.PI / 360) : info.radius;
     return 2 * wide / ((recipe.zoom ?? 1) * side);
+}
+
+/** Where a place of the world is seen, in pixels from the middle of the picture;
+ * null behind the eye. */
+export function project(recipe, info, place, side) {
+    const {right, up, back} = axes(recipe, info), from = add(place, recipe.target ?? info.middle, -1);
+    const far = distance(recipe, info), left = far < Infinity ? 1 - dot(from, back) / far : 1;
+    const length = pixel(recipe, info, side) * left;
+    return left > 0 ? [dot(from, right) / length, -dot(from, up) / length] : null;
+}
+
+/** The place in the world that is seen there, at a distance from the target's
+ * plane. */
+export function unproject(recipe, info, x, y, depth, side) {
+    const {right, up, back} = axes(recipe, info), far = distance(recipe, info);
+    const length = pixel(recipe, info, side) * (far < Infinity ? 1 + depth / far : 1);
+    const across = add(right.map(a => a * x * length), up, -y * length);
+    return add(add(recipe.target ?? info.middle, across), back, -depth);
+}
+
+/** Changes that make a place the one that the camera turns around. */
+export function aimed(recipe, info, place) {
+    return {...move(recipe, info, add(place, recipe.target ?? info.middle, -1)), target: place};
 }
 
 function move(recipe, info, by) {

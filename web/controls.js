@@ -53,6 +53,13 @@ export function number(name, change, step = 'any') {
     return field;
 }
 
+/** A line of text, taken as a number is. */
+export function line(name, change) {
+    const field = make('input', {type: 'text', 'aria-label': name, maxLength: 120,
+        onchange: () => change(field.value)});
+    return field;
+}
+
 /** A slider: `begin` and `end` enclose what is one step to undo. */
 export function slider(name, low, high, step, recipe, change) {
     const input = make('input', {type: 'range', min: low, max: high, step,

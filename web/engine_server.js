@@ -4,11 +4,13 @@
 
 const MAGIC = 0x31574e53;
 const TYPES = ['', 'image/jpeg', 'image/png', 'image/webp'];
+const FRAME = 12; // ms, less than a screen's
 const FATAL = [4400, 4401, 4429]; // a message that it does not take, the secret, too many
 
 /**
- * Events by name: 'open', 'closed', 'picture', 'small', and the kinds of texts
- * (info, look, state, figures, progress, histogram, command, said).
+ * Events by name: 'open', 'closed', 'picture', 'small' (of a slice or a preset,
+ * in its pane), and the kinds of texts (info, look, state, figures, progress,
+ * histogram, command, said, slice, value, depth).
  */
 export class ServerEngine {
     constructor(token) {
@@ -20,6 +22,7 @@ export class ServerEngine {
         this.waiting = null; // changes of the next frame of the screen
         this.painting = Promise.resolve();
         this.wait = 500;
+        this.flushed = 0;
     }
 
     on(name, hear) {
@@ -64,7 +67,9 @@ export class ServerEngine {
             this.socket.send(JSON.stringify(message));
     }
 
+    /** Of the recipe as it is now. */
     ask(what, more = {}) {
+        this.flush();
         this.say({t: 'ask', what, ...more});
     }
 
@@ -73,10 +78,16 @@ export class ServerEngine {
         this.say({t: 'moving', on});
     }
 
-    /** Changes of a recipe; null takes a key out.  Sent once a frame. */
+    /** Changes of a recipe; null takes a key out.  Sent at once, but not more often
+     * than the screen has frames. */
     set(changes) {
-        if (!this.waiting)
-            requestAnimationFrame(() => this.flush());
+        if (!this.waiting) {
+            this.since = performance.now();
+            if (this.since - this.flushed > FRAME)
+                queueMicrotask(() => this.flush());
+            else
+                requestAnimationFrame(() => this.flush());
+        }
         this.waiting = {...this.waiting, ...changes};
     }
 
@@ -84,7 +95,8 @@ export class ServerEngine {
         if (!this.waiting)
             return;
         this.n++;
-        this.sentAt.set(this.n, performance.now());
+        this.flushed = performance.now();
+        this.sentAt.set(this.n, this.since);
         this.unheard.set(this.n, this.waiting);
         this.say({t: 'set', n: this.n, recipe: this.waiting});
         this.waiting = null;
@@ -126,24 +138,27 @@ export class ServerEngine {
             return;
         const n = head.getUint32(4, true);
         const frame = {
-            level: head.getUint8(8), kind: head.getUint8(9), pane: head.getUint8(10),
+            n, level: head.getUint8(8), kind: head.getUint8(9), pane: head.getUint8(10),
             width: head.getUint32(16, true), height: head.getUint32(20, true),
             render: head.getUint32(24, true) / 1000, pack: head.getUint32(28, true) / 1000,
-            bytes: data.byteLength,
+            data, bytes: data.byteLength,
             blob: new Blob([new Uint8Array(data, 32)], {type: TYPES[head.getUint8(9)]})};
         if (frame.pane) {
             this.tell('small', frame);
             return;
         }
         try {
-            frame.bitmap = await createImageBitmap(frame.blob, {
-                premultiplyAlpha: 'none', colorSpaceConversion: 'none'});
+            frame.bitmap = await this.decode(frame);
             this.tell('picture', frame);
             frame.bitmap.close();
         } finally { // the server waits for it
             this.say({t: 'ack', n});
             this.measure(n);
         }
+    }
+
+    decode({blob}) {
+        return createImageBitmap(blob, {premultiplyAlpha: 'none', colorSpaceConversion: 'none'});
     }
 
     measure(n) {

@@ -8,11 +8,15 @@ export const MODES = ['over', 'mip', 'minip', 'mean', 'sum', 'iso'];
 
 const TEXTS = [['Drag', 'turn'], ['Shift or middle drag', 'move'], ['Wheel', 'zoom'],
     ['Right drag', 'window (across) and level (up)'], ['Ctrl right drag', 'opacity'],
+    ['Ctrl drag', 'light'], ['Double click', 'turn around this point'],
+    ['x', 'three slices'], ['k', 'handles of clip planes'],
+    ['On a slice', 'drag: where they cross; wheel: next slice; right drag: window and level; ' +
+        'Ctrl wheel: zoom; double click: alone'],
     ['Two fingers', 'move and zoom'], ['Arrows', 'turn 5 degrees, with Shift 1'],
     ['+ -', 'zoom'], ['r', 'frame all'],
     ['1 - 6', 'front, back, left, right, top, bottom'], ['m', 'next mode'],
     ['p', 'parallel or perspective'], ['l', 'letters'], ['Space', 'play time steps'],
-    ['c', 'the command line'], ['s', 'save the picture'], ['z Shift+z', 'undo, redo'],
+    ['c v', 'the command line, that of a movie'], ['s', 'save the picture'], ['z Shift+z', 'undo, redo'],
     ['?', 'this help']];
 
 export function helpTable() {
@@ -47,7 +51,7 @@ function press(event, recipe, page, actions) {
         actions.view(VIEWS[key - 1]);
     } else {
         const named = {r: 'fit', m: 'mode', p: 'perspective', l: 'letters', ' ': 'play',
-            c: 'command', s: 'save', z: 'undo', Z: 'redo', '?': 'help'}[key];
+            c: 'command', v: 'movie', s: 'save', x: 'slices', k: 'handles', z: 'undo', Z: 'redo', '?': 'help'}[key];
         actions[named]?.();
         return Boolean(named);
     }

@@ -1,36 +1,21 @@
 // panel.js - the controls beside the picture.
 
-import {button, check, make, number, row, section, select, short, show, slider}
+import {bounds, ends, facing, grips, moved, PLANES_MOST, tilted, tiltedTo} from './clip.js';
+import {button, check, line, make, number, row, section, select, short, show, slider}
     from './controls.js';
 import {BY_GRADIENT, Editor} from './editor.js';
 import {MODES, VIEWS} from './keys.js';
+import {axisNames} from './overlay.js';
 
 const WORLD_VIEWS = ['+x', '-x', '+y', '-y', '+z', '-z'];
 const AXES = ['x', 'y', 'z'];
-const PATIENT_AXES = ['left - right', 'back - front', 'bottom - top'];
 const FIRST_PANE = 4;
 const NO_SHAPE = {colormap: null, opacity: null, 'gradient-opacity': null, range: null,
-    shift: null, log: null};
-
-/** The corners of the volume in the world, lowest and highest. */
-function bounds(info) {
-    return info.matrix.map((line, i) => {
-        let low = line[3], high = line[3];
-        line.slice(0, 3).forEach((step, k) => {
-            const ends = [-0.5 * step, (info.dims[k] - 0.5) * step];
-            low += Math.min(...ends);
-            high += Math.max(...ends);
-        });
-        return [low, high];
-    });
-}
-
-/** Planes of the command line that no slider shows, and that stay. */
-const isOblique = plane => plane.slice(0, 3).filter(x => x !== 0).length > 1;
+    shift: null, log: null, symlog: null};
 
 export class Panel {
-    constructor(recipe, page, engine, actions) {
-        Object.assign(this, {recipe, page, engine, actions});
+    constructor(recipe, page, engine, actions, slices) {
+        Object.assign(this, {recipe, page, engine, actions, slices});
         this.editor = new Editor(recipe, page);
         this.gradient = new Editor(recipe, page, BY_GRADIENT);
         this.element = make('aside', {className: 'panel', 'aria-label': 'Controls'});
@@ -40,10 +25,12 @@ export class Panel {
 
     /** When the volume is known. */
     build() {
+        const {live} = this.page.info; // a simulation knows its own data
         this.updates = [];
         this.element.replaceChildren(this.look(),
             section('Opacity by gradient', false, this.gradient.element), this.presets(),
-            this.shading(), this.camera(), this.clipping(), this.time(), this.labels());
+            this.camera(), live ? '' : this.slices.section(each => this.follow(each)), live ? '' : this.clipping(), this.shading(),
+            this.time(), this.labels());
         this.update();
     }
 
@@ -77,7 +64,9 @@ export class Panel {
         const high = number('highest value of the range', value => this.setRange(null, value));
         const percent = button('1-99 %', 'Range of the 1st to the 99th percentile',
             () => recipe.set({range: ['p1', 'p99']}));
-        const log = check('logarithmic values', on => recipe.set({log: on || null}));
+        const shift = number('shift of the look in data units', value => recipe.set({shift: value || null}));
+        const log = check('logarithmic values', on => recipe.set({log: on || null, symlog: null}));
+        const symlog = check('on both sides of 0', on => recipe.set({symlog: on || null, log: null}));
         this.follow(keys => {
             show(modes, keys.mode ?? 'over');
             isoRow.hidden = keys.mode !== 'iso';
@@ -85,14 +74,17 @@ export class Panel {
             show(maps, keys.colormap ?? '');
             show(low, page.look ? short(page.look.low) : '');
             show(high, page.look ? short(page.look.high) : '');
+            show(shift, short(keys.shift ?? 0));
             log.box.checked = Boolean(keys.log);
+            symlog.box.checked = Boolean(keys.symlog);
         });
-        return section('Look', true, this.editor.element, row('Range', low, high, percent),
-            row('Colours', maps), row('Mode', modes), isoRow, log.label);
+        return section('Look', true, this.editor.element, row('Range', low, high, percent), row('Shift', shift),
+            row('Colours', maps), row('Mode', modes), isoRow, log.label, symlog.label);
     }
 
     setRange(low, high) {
-        const range = [low ?? this.page.look.low, high ?? this.page.look.high];
+        const {look} = this.page, shift = this.value('shift', 0); // which is added to a range
+        const range = [low ?? look.low, high ?? look.high].map(value => value - shift);
         if (range[0] < range[1])
             this.recipe.set({range});
     }
@@ -147,8 +139,12 @@ export class Panel {
     shading() {
         const {recipe} = this;
         const shade = check('shaded', on => recipe.set({shade: on ? 'phong' : 'none'}));
-        const light = select([['key', 'from the upper left'], ['head', 'from the viewer']],
-            value => recipe.set({light: value}));
+        const light = select([['key', 'from the upper left'], ['head', 'from the viewer'],
+            ['direction', 'from a direction']],
+        value => recipe.set({light: value === 'direction' ? [-25, 35] : value}));
+        const way = ['right', 'up'].map((name, i) => slider(`degrees of the light ${name}`, -90, 90, 1,
+            recipe, value => recipe.set({light: recipe.keys.light.map((old, k) => k === i ? value : old)})));
+        const ways = row('Right, up', ...way);
         const sparse = make('output', {className: 'faint'});
         this.engine.on('figures', figures => {
             sparse.textContent = `${(100 * figures.sparse).toFixed(1)} % of the voxels are ` +
@@ -156,9 +152,13 @@ export class Panel {
         });
         this.follow(keys => {
             shade.box.checked = keys.shade ? keys.shade === 'phong' : this.page.look?.shaded ?? true;
-            show(light, keys.light === 'head' ? 'head' : 'key');
+            ways.hidden = !Array.isArray(keys.light);
+            show(light, ways.hidden ? keys.light ?? 'key' : 'direction');
+            way.forEach((input, i) => {
+                input.value = ways.hidden ? 0 : keys.light[i];
+            });
         });
-        return section('Light and detail', false, shade.label, row('Light', light),
+        return section('Light and detail', false, shade.label, row('Light', light), ways,
             this.strength('Ambient', 'ambient', 0, 1, 0.01, 0.2),
             this.strength('Diffuse', 'diffuse', 0, 1, 0.01, 0.7),
             this.strength('Specular', 'specular', 0, 1, 0.01, 0.2),
@@ -189,51 +189,66 @@ export class Panel {
             perspective.label);
     }
 
-    /** Two planes across each axis of the world, and the box that is read. */
+    /** Two planes across each axis of the world, tilted ones, and the box that is
+     * read.  While it is open handles are on the picture. */
     clipping() {
         const {page, recipe} = this, box = bounds(page.info);
-        const rows = box.map(([low, high], axis) => {
-            const name = page.info.medical ? PATIENT_AXES[axis] : AXES[axis];
+        const rows = axisNames(page.info).map((name, axis) => {
+            const [low, high] = box[axis];
             const inputs = [0, 1].map(end => slider(
                 `clip ${name}, ${end ? 'highest' : 'lowest'}`, low, high, (high - low) / 200,
-                recipe, value => this.setClip(box, axis, end, value)));
-            this.follow(keys => {
-                const ends = this.clips(box, keys)[axis];
-                inputs.forEach((input, end) => {
-                    input.value = ends[end];
-                });
-            });
+                recipe, value => recipe.set(moved(box, recipe.keys, axis, end, value))));
+            this.follow(keys => inputs.forEach((input, end) => {
+                input.value = ends(box, keys)[axis][end];
+            }));
             return row(name, ...inputs);
         });
-        return section('Clip', false, ...rows,
-            button('Remove all', 'Remove all clip planes', () => recipe.set({clip: null})),
-            ...this.cropping());
+        const cut = button('Cut here', 'A plane that faces the viewer, through the point that is ' +
+            'turned around', () => recipe.set(facing(recipe.keys, page.info)));
+        this.follow(keys => {
+            cut.disabled = (keys.clip?.length ?? 0) >= PLANES_MOST;
+        });
+        this.clips = section('Clip', false, ...rows, ...this.tilted(), make('div', {className: 'row'}, cut,
+            button('Remove all', 'Remove all clip planes', () => recipe.set({clip: null}))),
+        ...this.masking(), ...this.cropping());
+        this.clips.addEventListener('toggle', () => {
+            page.clipping = this.clips.open;
+            recipe.changed();
+        });
+        return this.clips;
     }
 
-    /** The planes as the lowest and highest visible place of each axis. */
-    clips(box, keys) {
-        const ends = box.map(pair => [...pair]);
-        for (const [a, b, c, d] of (keys.clip ?? []).filter(plane => !isOblique(plane))) {
-            const axis = [a, b, c].findIndex(x => x !== 0);
-            const sign = [a, b, c][axis];
-            ends[axis][sign > 0 ? 1 : 0] = d / sign;
-        }
-        return ends;
+    tilted() {
+        const {page, recipe} = this, grip = i => grips(recipe.keys, page.info, axisNames(page.info))[6 + i];
+        return Array.from({length: PLANES_MOST}, (_, i) => {
+            const input = slider(`tilted clip plane ${i + 1}`, -1, 1, 0.01, recipe, value => {
+                const {low, high, move} = grip(i);
+                recipe.set(move(recipe.keys, low + (value + 1) / 2 * (high - low)));
+            });
+            const line = row(`Tilted ${i + 1}`, input, button('Remove', `Remove tilted plane ${i + 1}`,
+                () => recipe.set(tiltedTo(recipe.keys, i, null))));
+            this.follow(keys => {
+                line.hidden = i >= tilted(keys).length;
+                if (line.hidden)
+                    return;
+                const {value, low, high} = grip(i);
+                input.value = 2 * (value - low) / (high - low) - 1;
+            });
+            return line;
+        });
     }
 
-    setClip(box, axis, end, value) {
-        const ends = this.clips(box, this.recipe.keys), margin = (box[axis][1] - box[axis][0]) / 200;
-        ends[axis][end] = end ? Math.max(value, ends[axis][0] + margin)
-            : Math.min(value, ends[axis][1] - margin);
-        const planes = (this.recipe.keys.clip ?? []).filter(isOblique);
-        ends.forEach((pair, i) => pair.forEach((place, side) => {
-            if (Math.abs(place - box[i][side]) <= 1e-6 * (box[i][1] - box[i][0]))
-                return;
-            const plane = [0, 0, 0, +(side ? place : -place).toPrecision(6)];
-            plane[i] = side ? 1 : -1;
-            planes.push(plane);
-        }));
-        this.recipe.set({clip: planes.length ? planes : null});
+    /** Labels are those of the mask; a page that begins without it has them too. */
+    masking() {
+        const {page, recipe} = this;
+        if (!page.info.mask)
+            return [];
+        const mask = check('only what the mask keeps', on => recipe.set({mask: on || null,
+            labels: on ? page.info.labels : null}));
+        this.follow(keys => {
+            mask.box.checked = Boolean(keys.mask);
+        });
+        return [mask.label];
     }
 
     cropping() {
@@ -274,15 +289,29 @@ export class Panel {
     }
 
     labels() {
-        const {recipe} = this;
+        const {recipe, page} = this;
+        const title = line('title of the picture', value => recipe.set({title: value || null}));
+        const time = select([['', 'nothing'], ['time', 'time'], ['step', 'number of the step']],
+            annotate => recipe.set({annotate: annotate || null}));
+        this.follow(keys => {
+            show(title, keys.title ?? '');
+            show(time, keys.annotate ?? '');
+        });
         const boxes = [['letters of the sides', 'no-labels', true], ['colour bar', 'legend', false],
-            ['scale bar', 'scale-bar', false]].map(([name, key, inverse]) => {
-            const made = check(name, on => recipe.set({[key]: on !== inverse || null}));
+            ['scale bar', 'scale-bar', false], ["edges of the volume's box", 'outline', false],
+            ['its axes, with numbers', 'axes', false]].map(([name, key, inverse]) => {
+            const made = check(name, on => {
+                recipe.set({[key]: on !== inverse || null});
+                if (key === 'outline' || key === 'axes')
+                    this.actions.fit(); // the box is larger
+            });
             this.follow(keys => {
                 made.box.checked = Boolean(keys[key]) !== inverse;
             });
             return make('div', {}, made.label);
         });
-        return section('Letters and bars', false, ...boxes);
+        const drawn = page.info.mask === undefined ? boxes.slice(0, 3) // by a notebook's kernel
+            : [...boxes, row('Title', title), row('Time', time)];
+        return section('Letters and bars', false, ...drawn);
     }
 }

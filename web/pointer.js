@@ -1,19 +1,32 @@
 // pointer.js - mouse, wheel and fingers on the picture.
 
-import {panned, turned, zoomed} from './camera.js';
+import {panned, round, turned, zoomed} from './camera.js';
 
-/** What a drag does, by button and key. */
-function kindOf(event) {
+/** What a drag does, by button and key; otherwise what was chosen, as a finger has
+ * neither. */
+export const TOOLS = [['turn', 'turns'], ['pan', 'moves'], ['window', 'window, level'],
+    ['opacity', 'opacity'], ['light', 'light']];
+
+export function kindOf(event, tool) {
     if (event.button === 1 || (event.button === 0 && event.shiftKey))
         return 'pan';
     if (event.button === 2)
         return event.ctrlKey || event.metaKey ? 'opacity' : 'window';
-    return event.button === 0 ? 'turn' : null;
+    return event.button ? null : event.ctrlKey ? 'light' : tool;
+}
+
+/** The light follows the pointer; the key light is where it begins. */
+function lit(keys, dx, dy, side) {
+    const [azimuth, elevation] = Array.isArray(keys.light) ? keys.light
+        : keys.light === 'head' ? [0, 0] : [-25, 35];
+    const bound = value => round(Math.max(-90, Math.min(90, value)));
+    return {light: [bound(azimuth + 180 * dx / side), bound(elevation - 180 * dy / side)]};
 }
 
 export class Pointer {
-    /** `look` has the present range and points. */
-    constructor(canvas, recipe, page) {
+    /** `page.look` has the present range and points; `aim` gets a place that was
+     * double-clicked, as shares of the picture's sides. */
+    constructor(canvas, recipe, page, aim) {
         this.canvas = canvas;
         this.recipe = recipe;
         this.page = page;
@@ -23,6 +36,10 @@ export class Pointer {
         for (const name of ['pointerup', 'pointercancel', 'lostpointercapture'])
             canvas.addEventListener(name, event => this.up(event));
         canvas.addEventListener('wheel', event => this.wheel(event), {passive: false});
+        canvas.addEventListener('dblclick', event => {
+            const [x, y] = this.at(event), [width, height] = this.box;
+            aim(x / width + 0.5, y / height + 0.5);
+        });
         canvas.addEventListener('contextmenu', event => event.preventDefault());
         canvas.addEventListener('auxclick', event => event.preventDefault());
     }
@@ -48,7 +65,7 @@ export class Pointer {
     down(event) {
         if (!this.page.info || !this.page.look)
             return;
-        this.kind ??= kindOf(event);
+        this.kind ??= kindOf(event, this.page.tool);
         if (!this.kind)
             return;
         event.preventDefault();
@@ -79,6 +96,8 @@ export class Pointer {
             this.recipe.set(turned(keys, dx, dy, this.box[1]));
         else if (this.kind === 'pan')
             this.recipe.set(panned(keys, info, dx, dy, this.side));
+        else if (this.kind === 'light')
+            this.recipe.set(lit(keys, dx, dy, this.side));
         else
             this.recipe.set(this.kind === 'window' ? this.windowed() : this.faded());
     }
@@ -88,7 +107,7 @@ export class Pointer {
         const {low, high} = this.start, [x, y] = this.total;
         const width = (high - low) * Math.exp(x / 250);
         const level = (low + high) / 2 - (high - low) * y / this.canvas.clientHeight;
-        const digits = value => +value.toPrecision(5);
+        const digits = value => +(value - (this.recipe.keys.shift ?? 0)).toPrecision(5);
         return {range: [digits(level - width / 2), digits(level + width / 2)]};
     }
 

@@ -4,6 +4,9 @@
 const HISTORY = 200;
 const TOGETHER = 600; // ms in which changes of the same keys are one step
 
+/** What is of this page alone, and no part of the picture (slices.js). */
+const OWN = 'slices';
+
 const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 const sorted = ({size, ...keys}) => Object.entries(keys).sort(([a], [b]) => a < b ? -1 : 1);
 
@@ -30,7 +33,7 @@ export class Recipe {
 
     /** What another page, or the server, has changed. */
     take(keys) {
-        this.keys = keys;
+        this.keys = OWN in this.keys ? {...keys, [OWN]: this.keys[OWN]} : keys;
         this.changed();
     }
 
@@ -83,7 +86,9 @@ export class Recipe {
             else
                 this.keys[key] = value;
         }
-        this.engine.set(changes);
+        const {[OWN]: own, ...sent} = changes;
+        if (Object.keys(sent).length)
+            this.engine.set(sent);
         this.changed();
     }
 

@@ -1,12 +1,15 @@
 // viewer.js - puts the page together: the picture, the lines around it, and what
 // the buttons do.
 
-import {button, make} from './controls.js';
+import {button, make, select} from './controls.js';
 import {ServerEngine} from './engine_server.js';
+import {aimed, unproject} from './camera.js';
 import {MODES, helpTable, listenToKeys} from './keys.js';
+import {Overlay} from './overlay.js';
 import {Panel} from './panel.js';
-import {Pointer} from './pointer.js';
+import {Pointer, TOOLS} from './pointer.js';
 import {Recipe} from './recipe.js';
+import {Slices} from './slices.js';
 
 const SIDE_MOST = 4096;
 const LEVELS = ['draft', 'normal', 'high: final'];
@@ -14,7 +17,7 @@ const LEVELS = ['draft', 'normal', 'high: final'];
 const given = new URLSearchParams(location.hash.slice(1));
 const engine = new ServerEngine(given.get('token') ?? '');
 const recipe = new Recipe(engine);
-const page = {info: null, look: null, histogram: null, rest: null};
+const page = {info: null, look: null, histogram: null, rest: null, clipping: false, tool: 'turn'};
 
 // --- elements ----------------------------------------------------------------
 
@@ -30,6 +33,7 @@ const buttons = make('span', {className: 'buttons'});
 const text = make('textarea', {readOnly: true, spellcheck: false, 'aria-label': 'Text to copy'});
 const dialog = make('dialog', {});
 const picture = make('div', {className: 'picture'}, canvas, said);
+const views = make('div', {className: 'views'}, picture);
 
 // --- what is said --------------------------------------------------------------
 
@@ -56,6 +60,7 @@ async function copy(name, value) {
     text.value = value;
     open(name, text);
     text.select();
+    text.scrollTop = 0; // a long command is read from its beginning
     try {
         await navigator.clipboard.writeText(value);
         say('Copied.');
@@ -104,7 +109,13 @@ const actions = {
         player = setInterval(() => recipe.set(
             {time: ((recipe.keys.time ?? 0) + 1) % page.info.times}), 200);
     },
+    slices: () => slices.toggle(),
+    handles() {
+        if (panel.clips)
+            panel.clips.open = !panel.clips.open;
+    },
     command: () => engine.ask('command'),
+    movie: () => engine.ask('movie-command'),
     link() {
         const url = new URL(location.href);
         const keys = {...recipe.keys};
@@ -133,6 +144,8 @@ const actions = {
 /** Pixels of the screen, as many as the server draws. */
 function fitWindow() {
     const scale = devicePixelRatio || 1;
+    if (!picture.clientWidth || page.info?.live) // a slice is shown alone; a movie has one size
+        return;
     const size = [picture.clientWidth, picture.clientHeight].map(
         side => Math.max(16, Math.min(SIDE_MOST, Math.round(side * scale))));
     if (JSON.stringify(recipe.keys.size) !== JSON.stringify(size))
@@ -155,12 +168,13 @@ engine.on('picture', frame => {
     }
     paint.drawImage(frame.bitmap, 0, 0, width, height);
     page.rest = frame.level === 2 ? frame.blob : null;
-    level.textContent = LEVELS[frame.level];
+    level.textContent = page.info?.live ? `step ${page.step}` : LEVELS[frame.level];
     canvas.dataset.level = frame.level;
     figures.textContent = `${frame.width} x ${frame.height}, drawn in ${frame.render.toFixed(1)} ms, ` +
         `packed in ${frame.pack.toFixed(1)} ms, ${(frame.bytes / 1024).toFixed(0)} kB, ` +
         `round trip ${round.toFixed(0)} ms`;
     page.frames = (page.frames ?? 0) + 1;
+    overlay.follow();
 });
 
 function describe() {
@@ -176,15 +190,22 @@ function describe() {
 
 // --- the server ----------------------------------------------------------------------
 
-/** Buttons work when the volume and its look are known. */
+/** Buttons work when the volume and its look are known; what a notebook's kernel does
+ * not offer is hidden. */
 function ready() {
     if (page.info && page.look)
-        for (const each of buttons.children)
+        for (const each of buttons.querySelectorAll('button'))
             each.disabled = false;
+    sliced.hidden = filmed.hidden = !page.info?.slices;
+    commanded.hidden = page.info?.live;
     describe();
 }
 
-const panel = new Panel(recipe, page, engine, actions);
+const slices = new Slices(recipe, page, engine, views);
+const panel = new Panel(recipe, page, engine, actions, slices);
+const pointer = new Pointer(canvas, recipe, page, (x, y) => engine.ask('depth', {x, y}));
+const overlay = new Overlay(recipe, page, pointer, slices);
+picture.append(...overlay.elements);
 let first = true, fresh = true; // the first state of all, and of a connection
 
 engine.on('closed', reason => say(reason, true));
@@ -197,6 +218,20 @@ engine.on('progress', ({stage, part}) => say(part < 1 ? `${stage}, ${Math.round(
 engine.on('command', message => copy('The command that makes this picture', message.text));
 engine.on('recipe', message => save(`${baseName()}.json`,
     new Blob([`${message.text}\n`], {type: 'application/json'})));
+engine.on('depth', ({x, y, depth}) => {
+    if (!Number.isFinite(depth)) {
+        say('Nothing opaque is there to turn around; modes over and iso have depths.');
+        return;
+    }
+    const [width, height] = pointer.box, {keys} = recipe;
+    const place = unproject(keys, page.info, (x - 0.5) * width, (y - 0.5) * height, depth, pointer.side)
+        .map(value => +value.toPrecision(6));
+    const changes = aimed(keys, page.info, place);
+    recipe.set(keys.slices ? {...changes, slices: {...keys.slices, at: place}} : changes);
+});
+engine.on('step', ({step}) => {
+    page.step = step;
+});
 engine.on('histogram', message => {
     page.histogram = message;
     panel.editor.draw();
@@ -211,12 +246,13 @@ engine.on('info', info => {
     page.info = info;
     page.whole ??= info.dims;
     document.title = `${info.name} - snowglass`;
-    title.textContent = `${info.name}  ${info.dims.join(' x ')} ${info.type}, ` +
+    title.textContent = `${info.name}  ${info.dims.join(' x ')}${info.live ? '' : ` ${info.type}`}, ` +
         `${info.spacing.map(x => +x.toPrecision(4)).join(' x ')} ${info.unit}`;
     if (known) // a part of the same volume
         panel.update();
     else
         panel.build();
+    slices.renew();
     engine.ask('histogram');
     ready();
 });
@@ -242,26 +278,33 @@ recipe.onChange(() => {
     describe();
 });
 
-buttons.append(
-    button('Command', 'Copy the command that makes this picture (c)', actions.command),
+const tool = select(TOOLS, name => {
+    page.tool = name;
+});
+const sliced = button('Slices', 'Three slices beside the picture (x)', actions.slices);
+const commanded = button('Command', 'Copy the command that makes this picture (c)', actions.command);
+const filmed = button('Movie', 'Copy the command that makes a movie of a turn (v)',
+    actions.movie);
+buttons.append(make('label', {}, 'Drag ', tool), sliced,
+    commanded, filmed,
     button('Link', 'Copy a link to this state', actions.link),
     button('Recipe', 'Save the recipe of this state', actions.file),
     button('Picture', 'Save the picture (s)', actions.save), undo, redo,
     button('Reset', 'All as it was when the page was opened', actions.reset));
-for (const each of buttons.children)
+for (const each of buttons.querySelectorAll('button'))
     each.disabled = true;
 document.getElementById('viewer').append(
     make('section', {className: 'stage', 'aria-label': 'Picture'},
         make('div', {className: 'top'}, make('h1', {textContent: 'snowglass'}), title, level,
             button('Help', 'Mouse, fingers and keys (?)', actions.help)),
-        picture,
+        views,
         make('div', {className: 'bottom'}, figures, buttons)),
     panel.element, dialog);
-new Pointer(canvas, recipe, page);
 listenToKeys(recipe, page, actions);
 new ResizeObserver(() => {
+    overlay.draw();
     if (!first)
         fitWindow();
 }).observe(picture);
 engine.open();
-window.snowglass = {engine, recipe, page}; // for the console, and for tests
+window.snowglass = {engine, recipe, page, slices, overlay}; // for the console, and for tests

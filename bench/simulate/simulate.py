@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 # What the program is made of: nothing that renders.  Pictures in files are PNG
 # and what else needs no further library.
-SOURCES = ["bench/combine/*.c", "bench/hosts.c", "bench/line.c", "bench/option_table.c",
+SOURCES = ["bench/combine/*combine*.c", "bench/hosts.c", "bench/line.c", "bench/option_table.c",
            "src/combine/*.c", "src/simd/isa.c", "src/comm/*.c", "src/base/*.c",
            "src/io/*.c", "src/io/filters/*.c", "src/image/*.c",
            "src/mpi/comm_mpi.c", "src/mpi/messages.c"]

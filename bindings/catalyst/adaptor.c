@@ -7,7 +7,7 @@
  *               catalyst/scripts/...        texts, or objects with `filename`;
  *                                           the one that ends in .json is the
  *                                           recipe, others are left alone
- *   execute     catalyst/state/{timestep,cycle}
+ *   execute     catalyst/state/{timestep,cycle,time}
  *               catalyst/channels/C/{type,data}
  *
  * The recipe's "input" names what is shown, as "CHANNEL/FIELD"; without it the
@@ -48,6 +48,14 @@ static struct adaptor {
 static void say(const char *text) {
     if (!adaptor.comm || snow_comm_rank(adaptor.comm) == 0)
         fprintf(stderr, "snowglass: %s\n", text);
+}
+
+/* What is wrong with a recipe is wrong at each step. */
+static void say_once(const char *text) {
+    static char said[512];
+    if (strcmp(said, text) != 0)
+        say(text);
+    snprintf(said, sizeof said, "%s", text);
 }
 
 static void hear(void *user, const char *text) {
@@ -110,17 +118,22 @@ static void take_input(const char *input) {
     snprintf(adaptor.field, NAME_BYTES, "%s", field);
 }
 
+/* Collective.  The first rank's path counts: others may lack its variables. */
 static snow_status take_recipe(const char *path) {
+    char first[4096] = "";
     snow_recipe recipe = {.size = sizeof recipe};
     snow_insitu_set_output(adaptor.insitu, "snowglass_%06d.png", NULL);
-    if (!path)
-        return SNOW_STATUS_OK;
-    snow_status status = snow_recipe_load(adaptor.context, path, &recipe);
-    if (status != SNOW_STATUS_OK)
+    if (path)
+        snprintf(first, sizeof first, "%s", path);
+    snow_status status =
+        snow_comm_broadcast(adaptor.comm, first, sizeof first, 0);
+    if (status != SNOW_STATUS_OK || !*first)
         return status;
-    if (recipe.input)
+    status = snow_recipe_apply_file(adaptor.insitu, first);
+    if (status == SNOW_STATUS_OK)
+        status = snow_recipe_load(adaptor.context, first, &recipe);
+    if (status == SNOW_STATUS_OK && recipe.input)
         take_input(recipe.input);
-    status = snow_recipe_apply(&recipe, adaptor.insitu);
     snow_recipe_clear(&recipe);
     return status;
 }
@@ -149,7 +162,8 @@ enum catalyst_status catalyst_initialize_snowglass(const conduit_node *params) {
     }
     snow_insitu_set_warning(adaptor.insitu, hear, NULL);
     /* Told to all ranks by the first step, with the message. */
-    snow_insitu_set_error(adaptor.insitu, take_recipe(find_recipe(params)));
+    snow_insitu_set_recipe_status(adaptor.insitu,
+                                  take_recipe(find_recipe(params)));
     return catalyst_status_ok;
 }
 
@@ -243,6 +257,9 @@ static snow_status show(const conduit_node *params) {
             snow_insitu_set_voxels(adaptor.insitu, n, b->type, b->voxels,
                                    b->stride);
     }
+    if (conduit_node_has_path((conduit_node *)params, "catalyst/state/time"))
+        snow_insitu_set_time(adaptor.insitu,
+                             mesh_number(params, "catalyst/state/time", 0), "");
     return snow_insitu_step(adaptor.insitu, step_of(params));
 }
 
@@ -265,7 +282,7 @@ enum catalyst_status catalyst_execute_snowglass(const conduit_node *params) {
     if (!adaptor.insitu)
         return catalyst_status_ok;
     if (show(params) != SNOW_STATUS_OK)
-        say(snow_insitu_message(adaptor.insitu));
+        say_once(snow_insitu_message(adaptor.insitu));
     report_figures(step_of(params));
     return catalyst_status_ok;
 }

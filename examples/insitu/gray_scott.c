@@ -175,6 +175,13 @@ static void write_field(const box *b, const char *path) {
 }
 
 /* ------------------------------------------------------------------------- */
+
+/* Pictures left out, and what all took beside the simulation. */
+static void hear(void *user, const char *text) {
+    (void)user;
+    fprintf(stderr, "gray_scott: %s\n", text);
+}
+
 /* The movie: what is shown, how, and where its frames go. */
 static snow_insitu *open_movie(const box *b, const char *pattern) {
     static const snow_opacity_point opacities[] = {
@@ -193,6 +200,7 @@ static snow_insitu *open_movie(const box *b, const char *pattern) {
     snow_view_init(&view);
     if (snow_insitu_new_mpi(NULL, b->comm, &movie) != SNOW_STATUS_OK)
         return NULL;
+    snow_insitu_set_warning(movie, hear, NULL);
     snow_insitu_set_grid(movie, b->dims, NULL, NULL);
     snow_insitu_set_brick(movie, 0, b->first, b->count, NULL);
     snow_insitu_set_look(movie, &look);

@@ -3,9 +3,10 @@
 ! stands between lines of dashes.
 !
 ! mpif90 snowglass.f90 heat.f90 -lsnowglass-recipe -lsnowglass-mpi -lsnowglass
-! mpirun -n 4 ./a.out heat.json [FIELD]
+! mpirun -n 4 ./a.out heat.json|- [FIELD]
 !
-! writes the last field as raw float64 to FIELD, x fastest.
+! writes the last field as raw float64 to FIELD, x fastest.  With - in place of a
+! recipe the picture is described by calls.
 program heat
   use mpi
   use snowglass
@@ -43,13 +44,18 @@ program heat
     int([n(1), n(2), nz], c_int64_t), snow_halo([1, 1, 1], [1, 1, 1]))
   status = snow_insitu_set_voxels(movie, 0, SNOW_TYPE_FLOAT64, c_loc(t(1,1,1)), &
     c_null_ptr)
-  status = snow_recipe_apply_file(movie, trim(recipe) // c_null_char)
+  if (recipe == "-") then
+    call describe_picture()
+  else
+    status = snow_recipe_apply_file(movie, trim(recipe) // c_null_char)
+  end if
   ! ---------------------------------------------------------------------------
 
   do step = 1, steps
     call advance()
     ! -------------------------------------------------------------------------
     if (mod(step, every) == 0) then
+      status = snow_insitu_set_time(movie, step * rate, "s" // c_null_char)
       status = snow_insitu_step(movie, int(step, c_int64_t))
       if (status /= 0) then
         if (rank == 0) print *, "heat: ", snow_insitu_message(movie)
@@ -67,6 +73,38 @@ program heat
   if (status /= 0) stop 1
 
 contains
+
+  subroutine describe_picture()
+    character(len=9), target :: map = "plasma" // c_null_char
+    character(len=16), target :: title = "Heat" // c_null_char
+    type(snow_opacity_point), target :: points(3) = [ &
+      snow_opacity_point(0.05d0, 0d0), snow_opacity_point(0.5d0, 0.1d0), &
+      snow_opacity_point(1d0, 0.9d0)]
+    type(snow_look) :: look
+    type(snow_view) :: view
+    type(snow_insitu_texts) :: texts
+    look = snow_look_init()
+    look%colormap = c_loc(map)
+    look%range = SNOW_RANGE_VALUES
+    look%low = 0
+    look%high = 1
+    look%opacities = c_loc(points)
+    look%opacity_count = size(points)
+    status = snow_insitu_set_look(movie, look)
+    view = snow_view_init()
+    view%width = 400
+    view%height = 300
+    view%azimuth = 30
+    view%elevation = 20
+    status = snow_insitu_set_view(movie, view)
+    texts = snow_insitu_texts_init()
+    texts%title = c_loc(title)
+    status = snow_insitu_set_texts(movie, texts)
+    status = snow_insitu_set_annotations(movie, .true._c_bool, &
+      .false._c_bool, .true._c_bool)
+    status = snow_insitu_set_output(movie, "told_%04d.png" // c_null_char, &
+      c_null_ptr)
+  end subroutine
 
   ! Two bars and a ball are kept hot: they are set again after every step.
   subroutine heat_sources()

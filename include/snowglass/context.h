@@ -1,10 +1,9 @@
 /* snowglass/context.h - memory and messages of all objects.
  *
- * The library has no global state: allocator, last error message and count of
- * bytes live in a context, made first and freed last. A context and all objects
- * made with it belong to one thread at a time; different contexts are
- * independent. A context keeps the threads that render (they sleep between
- * pictures) until it is freed; after fork() the child makes its own. */
+ * The library has no global state: allocator, last error message, count of
+ * bytes and the threads that render live in a context, made first and freed
+ * last. It and all objects made with it belong to one thread at a time;
+ * different ones are independent. After fork() threads are made anew. */
 #ifndef SNOWGLASS_CONTEXT_H
 #define SNOWGLASS_CONTEXT_H
 
@@ -58,9 +57,9 @@ typedef enum snow_stage {
     SNOW_STAGE_RENDER    /* of a picture: all else */
 } snow_stage;
 
-/* Receives a stage's progress, 0 to 1, rising; true ends the call with STOPPED,
- * unless it is nearly done. Called as snow_stop_fn, at most 20 times a second;
- * not for what takes under 1/20 s; a reported stage ends with 1. Or NULL. */
+/* Receives a stage's progress, 0 to 1, rising; true ends the call with STOPPED.
+ * Called as snow_stop_fn, at most 20 times a second; a reported stage ends with
+ * 1, and short ones are not. Or NULL. */
 typedef bool snow_progress_fn(void *user, snow_stage stage, double fraction);
 SNOW_API void snow_context_set_progress(
     snow_context *context, snow_progress_fn *progress, void *user);

@@ -14,8 +14,7 @@ SNOW_API void snow_context_warn(snow_context *context, const char *format, ...)
 
 /* A block of the context's memory, aligned to 64, or NULL and a message;
  * `release` accepts NULL. `reserve` makes the block in *block_pointer, or a new
- * one for NULL, hold `count` items at least, growing by half so that appending
- * takes linear time; the first `keep` stay. The limit of bytes; 0: none. */
+ * one, hold `count` items, the first `keep` as they were. The limit (0). */
 SNOW_API void *snow_context_allocate(snow_context *context, size_t bytes);
 SNOW_API void snow_context_release(snow_context *context, void *block);
 SNOW_API snow_status snow_context_reserve(snow_context *context,
@@ -49,9 +48,8 @@ typedef struct snow_message {
 
 typedef bool snow_idle_fn(void *user); /* a piece of work; false: none left */
 
-/* A transport, called by the communicator's thread. Those that return a status
- * leave a message by snow_context_fail; after a failure only `end` is called.
- * The first five and `end` are needed, others may be NULL. */
+/* A transport, called by the communicator's thread; after a failure, which
+ * leaves a message, only `end` is. The first five and `end` are needed. */
 typedef struct snow_comm_ops {
     size_t size;
     /* Start a message, whose bytes stay until it is done, and get ready for one
@@ -75,12 +73,10 @@ typedef struct snow_comm_ops {
     void (*end)(void *self);                     /* frees self */
 } snow_comm_ops;
 SNOW_RECORD(snow_comm_ops);
-
 /* A communicator over a transport; `ops` is copied. It ends `self`, unless it
  * fails. Errors: BAD_USAGE (missing functions, rank not in 0 to ranks - 1). */
 SNOW_API snow_status snow_comm_new(snow_context *context,
     const snow_comm_ops *ops, void *self, int rank, int ranks, snow_comm **out);
-
 /* Collective. Element by element over all ranks; the result replaces `values`,
  * with the same bits on every rank. */
 typedef enum snow_reduce {
@@ -100,7 +96,6 @@ static inline int64_t snow_box_voxels(const snow_box *box) {
 /* What two boxes share; false, and *out untouched, where that is nothing. */
 SNOW_API bool snow_box_intersect(
     const snow_box *a, const snow_box *b, snow_box *out);
-
 /* A box's voxels in memory, from its first one; strides in values. */
 typedef struct snow_brick {
     snow_box box;
@@ -112,13 +107,17 @@ typedef struct snow_brick {
  * the dense box `whole` (x fastest), values of 1, 2, 4 or 8 bytes. */
 SNOW_API void snow_brick_copy(const snow_brick *brick, size_t value,
     const snow_box *box, const snow_box *whole, void *dense);
-
+/* Cells of `ratio` voxels, NaN: none, in a box three wider than `voxels`, as
+ * those, row by row; `take` says for NULL whether it wants one. */
+typedef bool snow_refined_fn(void *user, int64_t y, int64_t z, const double *);
+SNOW_API snow_status snow_cells_refine(snow_context *, const double *cells,
+    const snow_box *box, const int64_t ratio[3], const snow_box *voxels,
+    snow_refined_fn *take, void *user);
 /* A plan of moves, with its buffers; `clear` drops both. */
 typedef struct snow_voxels snow_voxels;
 SNOW_API snow_status snow_voxels_new(snow_comm *comm, snow_voxels **out);
 SNOW_API void snow_voxels_free(snow_voxels *voxels);
 SNOW_API void snow_voxels_clear(snow_voxels *voxels);
-
 /* Collective. Plans what goes where when this rank holds `count` boxes and
  * wants one; any may be empty. Moves voxels of `value` bytes from bricks[n] in
  * held[n] to the wanted box. Errors, alike on all ranks: BAD_USAGE (boxes that
@@ -140,7 +139,6 @@ typedef struct snow_ranks_needs {
     int slice_axis;    /* of the grid: slices of the view lie across it */
 } snow_ranks_needs;
 SNOW_RECORD(snow_ranks_needs);
-
 /* Errors: as snow_frame_render. */
 SNOW_API snow_status snow_ranks_find_needs(snow_context *context,
     const snow_volume_info *whole, const snow_view *view,
@@ -151,7 +149,6 @@ SNOW_API snow_status snow_ranks_find_needs(snow_context *context,
 SNOW_API snow_status snow_ranks_have_order(snow_context *context,
     const snow_volume_info *whole, const snow_view *view, const snow_box *boxes,
     int count, bool *out);
-
 /* A rank's slab of deterministic pictures; both 0 where it gets none. */
 SNOW_API void snow_ranks_slab(
     int64_t slices, int ranks, int rank, int64_t *first, int64_t *count);

@@ -1,8 +1,6 @@
-/* snowglass/image.h - the picture: float pixels, premultiplied, linear.
- *
- * Row 0 is the top. Grey pictures have two channels (grey, alpha), colour
- * pictures four (red, green, blue, alpha). One channel is an array of values in
- * data units (modes mean and sum, depths), NaN where there is none. */
+/* snowglass/image.h - the picture: float pixels, premultiplied, linear, row 0
+ * on top. Two channels are grey and alpha, four red, green, blue and alpha. One
+ * is an array of values (modes mean and sum, depths), NaN for none. */
 #ifndef SNOWGLASS_IMAGE_H
 #define SNOWGLASS_IMAGE_H
 
@@ -15,7 +13,6 @@ typedef struct snow_overlay snow_overlay; /* snowglass/overlay.h */
 SNOW_API snow_status snow_image_new(snow_context *context, int width,
     int height, int channels, snow_image **out);
 SNOW_API void snow_image_free(snow_image *image);
-
 SNOW_API int snow_image_width(const snow_image *image);
 SNOW_API int snow_image_height(const snow_image *image);
 SNOW_API int snow_image_channels(const snow_image *image);
@@ -27,21 +24,19 @@ SNOW_API uint64_t snow_image_checksum(const snow_image *image);
 
 typedef struct snow_image_options {
     size_t size;
-    bool flatten;         /* PNG, WebP, JPEG: lay it on `background` */
-    double background[3]; /* red, green, blue, 0 to 1 */
-    int bits;             /* PNG: 8 or 16 bits a channel; 0 means 8 */
-    bool overwrite;       /* replace an existing file */
-    const snow_overlay *overlay; /* PNG, WebP, JPEG: drawn over the picture,
-                                    of its size; NULL: nothing */
-    const snow_image *depth;     /* EXR: channel Z; NULL: none */
+    bool flatten;                /* PNG, WebP, JPEG: lay it on `background` */
+    double background[3];        /* red, green, blue, 0 to 1 */
+    int bits;                    /* PNG: 8 or 16 bits a channel; 0 means 8 */
+    bool overwrite;              /* replace an existing file */
+    const snow_overlay *overlay; /* PNG, WebP, JPEG: over it, of its size */
+    const snow_image *depth;     /* EXR: channel Z; NULL: none, as the others */
+    const char *comment;         /* PNG: a text "Snowglass"; it is not drawn */
 } snow_image_options;
 SNOW_RECORD(snow_image_options);
-
 /* Writes .png, .webp, .jpg, .jpeg (levels; JPEG on black without `flatten`),
- * .npy, .pfm, .exr, .tif, .tiff (floats), or "-", a PNG to standard output
- * (docs/output.md), whole or not at all. `options` may be NULL. Errors:
- * BAD_OUTPUT (an existing file, unless options->overwrite), BAD_USAGE (unknown
- * suffix, options that the format cannot hold). */
+ * .npy, .pfm, .exr, .tif, .tiff (floats), or "-", a PNG to standard output,
+ * whole or not at all. `options` may be NULL. Errors: BAD_OUTPUT (an existing
+ * file, unless options->overwrite), BAD_USAGE (what the format cannot hold). */
 SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
     const snow_image_options *options);
 
@@ -51,9 +46,9 @@ SNOW_API snow_status snow_image_check_path(
 SNOW_API snow_status snow_image_check(snow_context *context, const char *path,
     int width, int height, const snow_image_options *options);
 
-/* Of a path's suffix: the most bits a channel, 0 for floats, -1 for none that
- * is written; whether it holds a depth. Suffix `index` (from 0), NULL past the
- * end, and whether this build has it. */
+/* Of a path's suffix: the most bits a channel, 0 for floats, -1 for none;
+ * whether it holds a depth. Suffix `index` (NULL past the end), and if built.
+ */
 SNOW_API int snow_image_format_bits(const char *path);
 SNOW_API bool snow_image_format_has_depth(const char *path);
 SNOW_API const char *snow_image_format_suffix(size_t index, bool *built);
@@ -81,7 +76,6 @@ typedef struct snow_image_difference {
     int x, y;    /* a pixel of the largest difference */
 } snow_image_difference;
 SNOW_RECORD(snow_image_difference);
-
 /* NaN equals NaN only, an infinity itself only. Errors: DIFFERENT (sizes). */
 SNOW_API snow_status snow_image_compare(
     const snow_image *a, const snow_image *b, snow_image_difference *out);

@@ -25,41 +25,44 @@ SNOW_API void snow_insitu_own_comm(snow_insitu *insitu, bool with_context);
 SNOW_API const char *snow_insitu_message(const snow_insitu *insitu);
 SNOW_API snow_status snow_insitu_set_error(
     snow_insitu *insitu, snow_status status);
-
+/* Of a recipe: collective calls fail until one is OK. What all ranks call
+ * before they take voxels, with NULL at the end; its failure is a warning. */
+SNOW_API snow_status snow_insitu_set_recipe_status(
+    snow_insitu *insitu, snow_status status);
+typedef snow_status snow_refresh_fn(snow_insitu *insitu, void *user);
+SNOW_API void snow_insitu_set_refresh(
+    snow_insitu *insitu, snow_refresh_fn *refresh, void *user);
 /* Receives warnings (pictures left out or lowered, and why), on rank 0. */
 SNOW_API void snow_insitu_set_warning(
     snow_insitu *insitu, snow_warning_fn *warning, void *user);
-
 /* Alike on all ranks: voxels of the global grid along x, y, z, world place of
  * voxel 0 (NULL: 0), distance of neighbours (NULL: 1). Forgets all bricks. */
 SNOW_API snow_status snow_insitu_set_grid(snow_insitu *insitu,
     const int64_t dims[3], const double origin[3], const double spacing[3]);
-
 /* Neighbours' voxels around a brick in memory, on both sides of each axis. */
 typedef struct snow_halo {
     int64_t low[3], high[3];
 } snow_halo;
-
 /* Brick `id` (from 0) of this rank; a count of 0 removes it. Bricks of all
- * ranks make up the grid without an overlap. `halo` (or NULL) is up to date
- * whenever voxels are taken. Forgets the brick's voxels. */
+ * ranks make up the grid. `halo` (or NULL) is up to date when it is read. */
 SNOW_API snow_status snow_insitu_set_brick(snow_insitu *insitu, int id,
     const int64_t first[3], const int64_t count[3], const snow_halo *halo);
-
 /* `voxels` points at the first one behind the halo; strides in values, NULL: x
  * fastest, halo included. One type for all bricks. */
 SNOW_API snow_status snow_insitu_set_voxels(snow_insitu *insitu, int id,
     snow_type type, const void *voxels, const int64_t stride[3]);
 
+/* A brick's cells, and its halo's, are so many voxels wide, and finer bricks
+ * cover them (docs/insitu.md, Levels). Before its voxels, which are floats. */
+SNOW_API snow_status snow_insitu_set_cells(
+    snow_insitu *insitu, int id, const int64_t cells[3]);
 typedef struct snow_world_brick { /* a brick by its place in the world */
     double origin[3];             /* of its first voxel, behind the halo */
     int64_t count[3];             /* voxels; 0: none */
     snow_halo halo;
 } snow_world_brick;
-
 /* Collective. Grid, spanned by the bricks of all ranks, and bricks 0 .. count -
- * 1. The higher brick owns voxels that two share at their border. Errors:
- * BAD_USAGE (other spacings; a brick between the voxels of others). */
+ * 1; the higher owns voxels that two share. Errors: BAD_USAGE (no grid). */
 SNOW_API snow_status snow_insitu_place_bricks(snow_insitu *insitu,
     const snow_world_brick *bricks, int count, const double spacing[3]);
 
@@ -75,37 +78,44 @@ typedef enum snow_balance {    /* where the work is done */
 
 SNOW_API snow_status snow_insitu_set_distribution(
     snow_insitu *insitu, snow_ghosts ghosts, snow_balance balance);
-
-/* Alike on all ranks. The look (copied) takes what it needs from the values of
- * the next picture, once; setting it again chooses anew. */
+/* Alike on all ranks. The look (copied) is fitted to the next picture's values;
+ * set again, anew. `shaded` (false): also where a look is best unshaded. */
 SNOW_API snow_status snow_insitu_set_look(
     snow_insitu *insitu, const snow_look *look);
 SNOW_API snow_status snow_insitu_set_view(
     snow_insitu *insitu, const snow_view *view);
 SNOW_API snow_status snow_insitu_set_settings(
     snow_insitu *insitu, const snow_settings *settings);
+SNOW_API void snow_insitu_set_shaded(snow_insitu *insitu, bool shaded);
 SNOW_API snow_status snow_insitu_set_ranks(
     snow_insitu *insitu, const snow_ranks_options *how);
-
 /* Where a step writes, with one %d (or %04d) for its number; what it draws over
  * pictures: colour and scale bar; the latter alone; that number. */
 SNOW_API snow_status snow_insitu_set_output(snow_insitu *insitu,
     const char *pattern, const snow_image_options *options);
 SNOW_API snow_status snow_insitu_set_annotations(
     snow_insitu *insitu, bool legend, bool scale_bar, bool step);
-
-/* What pictures may cost (docs/insitu.md, Cost): mean `seconds` a step, `bytes`
- * of each rank's context; 0: no limit. Pictures are lowered or left out. */
+/* What annotations say (snow_time_text, snow_overlay_box), copied; the time of
+ * the next step, in place of its number (but with the time_format ""). */
+typedef struct snow_insitu_texts {
+    size_t size;
+    const char *title, *quantity, *unit, *time_format; /* NULL: none */
+    bool outline, axes;
+} snow_insitu_texts;
+SNOW_RECORD(snow_insitu_texts);
+SNOW_API snow_status snow_insitu_set_texts(
+    snow_insitu *insitu, const snow_insitu_texts *texts);
+SNOW_API snow_status snow_insitu_set_time(
+    snow_insitu *insitu, double time, const char *unit);
+/* Mean `seconds` a step, `bytes` of each rank's context; 0: no limit. Pictures
+ * are lowered or left out (docs/insitu.md, Cost). */
 SNOW_API snow_status snow_insitu_set_limits(
     snow_insitu *insitu, double seconds, uint64_t bytes);
-
 /* Collective. Takes the voxels; then they may change, if they were copied. */
 SNOW_API snow_status snow_insitu_update(snow_insitu *insitu);
-
 /* Collective. A picture of the voxels last taken, on rank 0 (scattered: each
  * rank's part); NULL on others, and on all where limits left it out. */
 SNOW_API snow_status snow_insitu_render(snow_insitu *, snow_image **image);
-
 /* Collective. Updates, renders, writes on rank 0; means and sums as colours. */
 SNOW_API snow_status snow_insitu_step(snow_insitu *insitu, int64_t step);
 
@@ -120,7 +130,6 @@ typedef enum snow_degradation { /* of a picture, to keep a limit */
     SNOW_DEGRADATION_QUARTER, /* and a quarter */
     SNOW_DEGRADATION_SKIPPED  /* left out */
 } snow_degradation;
-
 /* Figures of the last picture, and of all so far; collective. */
 typedef struct snow_insitu_stats {
     size_t size;

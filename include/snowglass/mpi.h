@@ -1,9 +1,8 @@
 /* snowglass/mpi.h - communicators of MPI processes, and pictures over them.
  *
  * A library of its own, libsnowglass-mpi (pkg-config: snowglass-mpi), for one
- * MPI. It neither starts nor ends MPI; MPI_THREAD_FUNNELED is enough. Errors of
- * MPI are FAILED where MPI reports them to the communicator; some (MPICH, in
- * waits) go to MPI_COMM_WORLD's error handler, which is the caller's. */
+ * MPI. It neither starts nor ends MPI; MPI_THREAD_FUNNELED is enough. Some
+ * errors of MPI go to the caller's error handler (MPICH, in waits). */
 #ifndef SNOWGLASS_MPI_H
 #define SNOWGLASS_MPI_H
 

@@ -1,6 +1,5 @@
-/* snowglass/overlay.h - what is drawn over a picture as it is written, white
- * with a dark border or, on a light background, the reverse: a list of shapes,
- * which never touches the picture's floats; files of levels show it. */
+/* snowglass/overlay.h - shapes that are drawn over a picture as it is written
+ * to a file of levels; they never touch the picture's floats. */
 #ifndef SNOWGLASS_OVERLAY_H
 #define SNOWGLASS_OVERLAY_H
 
@@ -19,7 +18,7 @@ SNOW_API void snow_overlay_keep_off(snow_overlay *, const snow_image *);
 
 /* Pixels of a capital letter that suits pictures of its size. */
 SNOW_API double snow_overlay_text_height(const snow_overlay *overlay);
-/* A line of ASCII and micro signs, capitals `height` pixels high. (x, y) is the
+/* A line of UTF-8 (Latin-1), capitals `height` pixels high. (x, y) is the
  * place of (share_x, share_y) in its box, whose upper left corner is (0, 0). */
 SNOW_API snow_status snow_overlay_text(snow_overlay *overlay, double x,
     double y, double share_x, double share_y, double height, const char *text);
@@ -39,7 +38,15 @@ SNOW_API snow_status snow_overlay_color_bar(snow_overlay *overlay,
 /* Lower left, sides of at least 128 pixels, not in perspective: a length. */
 SNOW_API snow_status snow_overlay_scale_bar(
     snow_overlay *overlay, const snow_volume_info *info, const snow_view *view);
-/* A line of text, upper left; sides of at least 64 pixels. */
+/* Edges of the volume's box, those behind it only where the picture that is
+ * kept off is clear; `axes`: with ticks. Sides of at least 128 pixels. */
+SNOW_API snow_status snow_overlay_box(snow_overlay *overlay,
+    const snow_volume_info *info, const snow_view *view, bool axes);
+/* A volume's time: "12 h", the date of a unit "hours since 1990-01-01", or by a
+ * format of printf (one %g, %f or %e) or strftime; false: it cannot. */
+SNOW_API bool snow_time_text(
+    const snow_volume_info *info, const char *format, char *out, size_t room);
+/* Lines of text, upper left; sides of at least 64 pixels. */
 SNOW_API snow_status snow_overlay_title(snow_overlay *, const char *text);
 
 #endif

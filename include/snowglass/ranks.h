@@ -1,9 +1,8 @@
 /* snowglass/ranks.h - one picture by many processors: section 4 of the paper.
  *
  * Every rank holds a part of the volume (snow_extent), splats it into a local
- * image, and the local images are combined. All calls but those marked are
- * collective (snowglass/comm.h), with the same arguments on all ranks; errors
- * are the same on all. docs/scaling.md and docs/combining.md explain them. */
+ * image, and these are combined (docs/scaling.md, docs/combining.md). All calls
+ * but those marked are collective, with the same arguments on all ranks. */
 #ifndef SNOWGLASS_RANKS_H
 #define SNOWGLASS_RANKS_H
 
@@ -37,25 +36,21 @@ typedef struct snow_ranks_options {
     const snow_transfer *transfer; /* for snow_ranks_open, instead of a look */
 } snow_ranks_options;
 SNOW_RECORD(snow_ranks_options);
-
 /* Opens this rank's part of a volume, with the ghost voxels that the view
- * needs. No rank holds the whole, but rank 0 of a pipe; a file is read once.
- * The transfer function is that of the whole, to the bit; NULL where `how` has
- * one. Errors: of snow_volume_open, snow_transfer_new_for_volume,
- * snow_frame_render; BAD_INPUT (ranks see different files). */
+ * needs, in its file where a limit has no room. The transfer function is that
+ * of the whole; NULL where `how` has one. Errors: of snow_volume_open,
+ * _frame_render, snow_transfer_new_for_volume; BAD_INPUT (files differ). */
 SNOW_API snow_status snow_ranks_open(snow_comm *comm, const char *path,
     const snow_volume_options *options, const snow_look *look,
     const snow_view *view, const snow_settings *settings,
     const snow_ranks_options *how, snow_volume **volume,
     snow_transfer **transfer);
-
 /* Makes the parts serve another view or settings: voxels move where they do
  * not, and *volume is closed and replaced. */
 SNOW_API snow_status snow_ranks_repartition(snow_comm *comm,
     const snow_transfer *transfer, const snow_view *view,
     const snow_settings *settings, const snow_ranks_options *how,
     snow_volume **volume);
-
 /* The same before each picture of a frame, `left` of which are to come, this
  * one included; with SNOW_PARTITION_MEASURED also where ranks' times differ. */
 SNOW_API snow_status snow_ranks_rebalance(snow_frame *frame, snow_comm *comm,
@@ -67,9 +62,8 @@ SNOW_API snow_status snow_ranks_rebalance(snow_frame *frame, snow_comm *comm,
 SNOW_API snow_status snow_ranks_new_transfer(snow_comm *comm,
     const snow_volume *volume, const snow_look *look, snow_transfer **out);
 
-/* Moves a view's target and multiplies its zoom so that what a look shows from
- * each azimuth (NULL: the view's) fills the picture but for 4 % at the edges
- * (docs/model.md, point 2). Collective, unless `comm` is NULL. */
+/* Fits a view's target and zoom to what a look shows from each azimuth (NULL:
+ * the view's; docs/model.md, point 2). Collective, unless `comm` is NULL. */
 SNOW_API snow_status snow_view_fit(snow_comm *comm, const snow_volume *volume,
     const snow_transfer *transfer, const snow_settings *settings,
     const double *azimuths, size_t count, snow_view *view);
@@ -80,29 +74,27 @@ SNOW_API snow_status snow_ranks_partition(const snow_volume *volume,
     const snow_transfer *transfer, double threshold, snow_partition cut,
     int slice_axis, int ranks, snow_box *parts, int64_t *loads);
 
-/* The picture, on rank 0; NULL on the others, unless it is scattered. Parts are
- * boxes with an order from front to back and the ghosts that the view needs; a
- * rank may own none. The picture is that of snow_frame_render within 1/255; to
- * the bit with settings->deterministic and parts of snow_ranks_open. Free the
- * frame before the communicator. Errors: of snow_frame_render; BAD_USAGE (parts
- * that overlap, leave voxels out, have too few ghosts or no order). */
+/* The picture, on rank 0; NULL on the others, unless it is scattered: that of
+ * snow_frame_render within 1/255, or with settings->deterministic and parts of
+ * snow_ranks_open to the bit. A rank may own no part. Free the frame before the
+ * communicator. Errors: of snow_frame_render; BAD_USAGE (parts that overlap,
+ * leave voxels out, have too few ghosts or no order from front to back). */
 SNOW_API snow_status snow_ranks_render(snow_frame *frame, snow_comm *comm,
     const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings,
     const snow_ranks_options *how, snow_image **image);
 
-/* The same bits in two halves: begin 0; begin 1, finish 0; begin 2, finish 1;
- * and so on. A picture is combined while the next is splatted; at most two are
- * in flight. All but frame and communicator may change after begin, which
- * leaves failures of the picture to finish. Errors: of snow_ranks_render. */
+/* The same bits in two halves: begin 0; begin 1, finish 0; begin 2, finish 1; a
+ * picture is combined while the next is splatted. All but frame and
+ * communicator may change after begin; finish returns the failures. */
 SNOW_API snow_status snow_ranks_begin(snow_frame *frame, snow_comm *comm,
     const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings,
     const snow_ranks_options *how);
 SNOW_API snow_status snow_ranks_finish(snow_frame *frame, snow_image **image);
 
-/* Not collective: what the last picture by several ranks took on this one, with
- * processor time of the calling thread (threads 1) or of the process. */
+/* Not collective: of the last picture by several ranks, on this one; processor
+ * time is the calling thread's (threads 1) or the process'. */
 typedef struct snow_ranks_stats {
     size_t size;
     int ranks; /* that made the picture; 1 of snow_frame_render */

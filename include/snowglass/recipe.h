@@ -39,6 +39,16 @@ typedef struct snow_recipe {
     const char *verb, *version; /* of the tool that wrote it, or NULL */
     bool scale_bar;             /* without the colour bar of `legend` */
     const char *axis, *at;      /* of the tool's slice, or NULL */
+    double symlog;              /* as in snow_look */
+    const char *title, *legend_title, *value_unit; /* annotations; or NULL */
+    const char *annotate, *time_format; /* "time"; as of snow_time_text */
+    bool outline, axes, reread; /* the box; in situ: when the file changes */
+    const char *overlay, *overlay_preset, *overlay_colormap; /* or NULL */
+    snow_range overlay_range;
+    double overlay_low, overlay_high;
+    size_t overlay_opacity_count; /* 0: the preset's */
+    snow_opacity_point overlay_opacities[SNOW_RECIPE_POINTS_MAX];
+    const char *channels; /* a list, as of the tool's --channel, or NULL */
 } snow_recipe;
 SNOW_RECORD(snow_recipe);
 
@@ -65,7 +75,7 @@ SNOW_API snow_status snow_recipe_get_settings(snow_context *context,
     const snow_recipe *recipe, const char *unit, snow_settings *out);
 
 /* Applies it all to pictures in situ, whose unit is a millimetre. Errors: as
- * above and of the setters; BAD_USAGE (a depth). */
+ * above and of the setters; BAD_USAGE (a depth). Of a file: collective. */
 SNOW_API snow_status snow_recipe_apply(
     const snow_recipe *recipe, snow_insitu *insitu);
 SNOW_API snow_status snow_recipe_apply_file(

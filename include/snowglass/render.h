@@ -97,7 +97,6 @@ typedef struct snow_settings {
     double occlusion;       /* over, iso: 0 to 1, of what is enclosed (0) */
 } snow_settings;
 SNOW_RECORD(snow_settings);
-
 /* What the last picture took, settings as chosen. Seconds are wall time. */
 typedef struct snow_stats {
     size_t size;
@@ -118,16 +117,27 @@ typedef struct snow_stats {
     uint64_t kept_bytes, kept_most; /* encodings along other slice axes */
 } snow_stats;
 SNOW_RECORD(snow_stats);
-
 SNOW_API snow_status snow_frame_new(snow_context *context, snow_frame **out);
 SNOW_API void snow_frame_free(snow_frame *frame);
 
-/* Renders one picture: figure 8 of the paper on one processor. All objects are
- * of one context; `settings` may be NULL. Errors, which leave the frame as it
- * was: BAD_USAGE, BAD_INPUT (no float can hold the geometry), STOPPED. */
+/* One picture: figure 8 of the paper on one processor. `settings` may be NULL.
+ * Errors: BAD_USAGE, BAD_INPUT (no float can hold the geometry), STOPPED. */
 SNOW_API snow_status snow_frame_render(snow_frame *frame,
     const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings, snow_image **image);
+
+/* Volumes on the grid of the picture's (dims and matrix; snow_volume_regrid),
+ * or in their files, of which parts take what they need; drawn with it, slab by
+ * slab, the last in front or, as channels, mixed (docs/model.md). They stay the
+ * caller's; 0: none. Mode over, shear-warp and raycast. */
+typedef struct snow_inlay {
+    const snow_volume *volume;
+    const snow_transfer *transfer;
+    bool mixes; /* with that before it, the first one with the volume */
+} snow_inlay;
+#define SNOW_INLAYS_MOST 7
+SNOW_API snow_status snow_frame_set_inlays(
+    snow_frame *frame, const snow_inlay *layers, int count);
 
 /* The same as bytes: red, green, blue, straight alpha, row 0 on top, rows
  * `stride` bytes apart; or opaque on a `background` of 0 to 1 (NULL: none).
@@ -137,22 +147,19 @@ SNOW_API snow_status snow_frame_render_bytes(snow_frame *frame,
     const snow_view *view, const snow_settings *settings,
     const double background[3], unsigned char *pixels, size_t stride);
 
-/* Renders a file (or phantom:NAME) with the default look. `view` and `settings`
- * may be NULL. Errors: of snow_volume_open, snow_frame_render. */
+/* A file (or phantom:NAME) with the default look; view, settings or NULL. */
 SNOW_API snow_status snow_render_file(snow_context *context, const char *path,
     const snow_view *view, const snow_settings *settings, snow_image **image);
 
 /* The view straight on the slices across a grid axis: "x", "y", "z", or the one
- * that faces the view "axial", "coronal" or "sagittal" most; *found gets it. A
- * slice fills a picture of the view's size or, where a side is 0, of its own,
- * in pixels of its smaller spacing. */
+ * that faces "axial", "coronal" or "sagittal" most; *found gets it. A slice
+ * fills the view's size, or its own where a side is 0, at its least spacing. */
 SNOW_API snow_status snow_slice_view(snow_context *context,
     const snow_volume_info *info, const char *axis, snow_view *view,
     int *found);
 
-/* Slice `index` across the axis that a view faces, between whose own voxels all
- * is linear; nearest of labels and by kernel box. Opaque colours or, `transfer`
- * NULL, data values, NaN where there are none. `settings` may be NULL. */
+/* Slice `index` across the axis that a view faces, linear between its voxels,
+ * or nearest (labels, kernel box). Opaque colours; or values (NULL). */
 SNOW_API snow_status snow_slice_render(const snow_volume *volume, int64_t index,
     const snow_transfer *transfer, const snow_view *view,
     const snow_settings *settings, snow_image **image);

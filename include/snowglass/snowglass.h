@@ -15,20 +15,13 @@
  *   snow_image_free(image);
  *   snow_context_free(context);
  *
- * For more than one picture: snow_volume_open, snow_transfer_new_for_volume,
- * snow_view_default, a frame, snow_frame_render. Free the context last.
- * Until version 1.0 each minor version may change interface and soname. */
+ * For more pictures: snow_volume_open, snow_transfer_new_for_volume, a frame,
+ * snow_frame_render. Until 1.0 each minor version may change the interface. */
 #ifndef SNOWGLASS_SNOWGLASS_H
 #define SNOWGLASS_SNOWGLASS_H
 
-#include <snowglass/context.h>
-#include <snowglass/image.h>
 #include <snowglass/overlay.h>
 #include <snowglass/render.h>
-#include <snowglass/status.h>
-#include <snowglass/transfer.h>
-#include <snowglass/view.h>
-#include <snowglass/volume.h>
 
 /* Version of these headers, for #if; snow_version: of the library, "0.1.0".
  * Instruction sets that this machine has, best last, and the one in use. */

@@ -1,11 +1,10 @@
 /* snowglass/status.h - what a call answers, and what holds for all calls.
  *
- * Every function that can fail returns a snow_status. Results leave through
- * out-parameters, which a failure does not change. New objects belong to the
- * caller, returned pointers to their object. Functions that free or close
- * accept NULL. Comments name errors without SNOW_STATUS_. Besides those, an
- * argument out of range is BAD_USAGE, and any call that makes something can
- * return NO_MEMORY. The tool exits with these values. */
+ * Results leave through out-parameters, which a failure does not change. New
+ * objects belong to the caller, returned pointers to their object. Functions
+ * that free or close accept NULL. Comments name errors without SNOW_STATUS_.
+ * Besides those, an argument out of range is BAD_USAGE, and any call that makes
+ * something can return NO_MEMORY. The tool exits with these values. */
 #ifndef SNOWGLASS_STATUS_H
 #define SNOWGLASS_STATUS_H
 

@@ -26,23 +26,21 @@ SNOW_API snow_status snow_transfer_new(snow_context *context,
     const snow_opacity_point *opacities, size_t opacity_count,
     snow_transfer **out);
 SNOW_API void snow_transfer_free(snow_transfer *transfer);
-
 /* Joins points, all above 0, by logarithms; 0 and below is transparent. */
 SNOW_API snow_status snow_transfer_set_log(snow_transfer *transfer);
 SNOW_API bool snow_transfer_is_log(const snow_transfer *transfer);
 
 /* Factors by magnitudes of central differences, in data units per unit of the
- * world; linear between points (copied), constant beyond; a count of 0 removes
- * them. The factor for a magnitude (NaN: beyond the end), 1 without. */
+ * world, of points (copied; 0: none). That of a magnitude (NaN: the last). */
 SNOW_API snow_status snow_transfer_set_gradient_opacity(
     snow_transfer *transfer, const snow_opacity_point *points, size_t count);
 SNOW_API double snow_transfer_evaluate_gradient(
     const snow_transfer *transfer, double magnitude);
 
 typedef enum snow_range {
-    SNOW_RANGE_AUTO = 0,   /* chosen from the histogram */
-    SNOW_RANGE_FULL,       /* smallest to largest finite value */
-    SNOW_RANGE_VALUES,     /* low to high, data values */
+    SNOW_RANGE_AUTO = 0,    /* chosen from the histogram */
+    SNOW_RANGE_FULL,        /* smallest to largest finite value */
+    SNOW_RANGE_VALUES,      /* low to high, data values */
     SNOW_RANGE_PERCENTILES, /* low to high, percent of the finite voxels */
     SNOW_RANGE_ROBUST       /* the file's window, else FULL but far outliers */
 } snow_range;
@@ -50,13 +48,13 @@ typedef enum snow_range {
 typedef enum snow_domain { /* what the values of control points mean */
     SNOW_DOMAIN_DATA = 0,  /* data values */
     SNOW_DOMAIN_RANGE,     /* shares 0 to 1, of smallest to largest value */
-    SNOW_DOMAIN_OBJECT /* shares, of the background's end to the brightest */
+    SNOW_DOMAIN_OBJECT,   /* shares, of the background's end to the brightest */
+    SNOW_DOMAIN_SYMMETRIC /* shares, of as far below 0 as above; 0.5 is 0 */
 } snow_domain;
 
-/* What a transfer function is made of, before there is a volume; by default all
- * is chosen from the histogram. Arrays and texts stay the caller's. Colours
- * come from `colors`, else `base`, else `preset`. Opacities without colours, in
- * the domain of data, replace those of the base or preset. */
+/* What a transfer function is made of; by default all is chosen from the
+ * histogram. Arrays and texts stay the caller's. Colours come from `colors`,
+ * else `base`, else `preset`, whose opacities others alone (data) replace. */
 typedef struct snow_look {
     size_t size;
     const char *name;             /* for people; NULL: none */
@@ -76,10 +74,10 @@ typedef struct snow_look {
     size_t opacity_count;
     const snow_opacity_point *gradient_opacities;
     size_t gradient_opacity_count;
-    double shift; /* added to all values but those of `opacities` */
+    double shift;  /* added to all values but those of `opacities` */
+    double symlog; /* linear up to it, logarithms beyond; -1: chosen */
 } snow_look;
 SNOW_RECORD(snow_look);
-
 /* For `look` (or NULL) on `volume`, the same on every machine. A preset in data
  * units (ct-*) is spread only where a range is given. Errors: BAD_USAGE
  * (unknown name, with the list; bad points), STOPPED. */
@@ -96,6 +94,10 @@ SNOW_API void snow_transfer_domain(
     const snow_transfer *transfer, double *low, double *high);
 SNOW_API snow_status snow_transfer_get_look(
     const snow_transfer *transfer, snow_look *out);
+
+/* Label `index` (from 0), rising, of what is drawn as labels; else NULL. */
+SNOW_API const snow_label *snow_transfer_label(
+    const snow_transfer *transfer, size_t index);
 
 /* Whether all colours are grey, and pictures have two channels; whether it was
  * chosen for a volume without surfaces, better drawn unshaded. */

@@ -1,11 +1,8 @@
 /* snowglass/view.h - the camera and the size of the image.
  *
- * The camera looks at the middle of the voxel boxes from a named side; azimuth
- * turns it about the up axis, elevation about the new right, roll about the
- * line of sight. With R from the middle to the farthest corner, a pixel of a
- * parallel projection is 2R / (zoom min(width, height)); in perspective the eye
- * is R / sin(fov / 2) away, and zoom scales the image. At zoom 1 all is in the
- * picture. Or place a camera by points of the world (docs/output.md). */
+ * The camera looks at the middle of the voxel boxes from a named side, turned
+ * by angles; at zoom 1 all is in the picture (docs/model.md, point 2). Or place
+ * it by points of the world (docs/output.md). */
 #ifndef SNOWGLASS_VIEW_H
 #define SNOWGLASS_VIEW_H
 
@@ -35,7 +32,6 @@ typedef struct snow_view {
                          position has +z up, or +y if it looks along z */
 } snow_view;
 SNOW_RECORD(snow_view);
-
 /* By name, of any case: a side of the world (docs/model.md), where the camera
  * is; +z is up, for z sides +y. Other fields have their defaults. */
 SNOW_API snow_status snow_view_from_name(

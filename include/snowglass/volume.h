@@ -1,9 +1,7 @@
 /* snowglass/volume.h - a regular grid of samples with its place in the world.
  *
- * Voxels have their native type, x fastest, in the machine's byte order. One
- * 4x4 matrix takes voxel indices (samples sit at integers) to the world:
- * millimetres, RAS+ for medical data. A core without formats lacks what reads
- * and writes volumes, snow_render_file, snow_ranks_open, recipes, look_file. */
+ * Voxels have their native type, x fastest, in the machine's byte order. A 4x4
+ * matrix takes indices to the world: millimetres, RAS+ for medical data. */
 #ifndef SNOWGLASS_VOLUME_H
 #define SNOWGLASS_VOLUME_H
 
@@ -37,6 +35,14 @@ SNOW_API size_t snow_type_size(snow_type type);
 SNOW_API const char *snow_type_name(snow_type type);
 SNOW_API snow_type snow_type_from_name(const char *name);
 
+/* A channel: colour, below 0: not said; data values to show, 0s: not said. */
+typedef struct snow_channel {
+    double color[3], window[2];
+    char name[40];
+    bool shown, own; /* by the file; a part of the voxels' own colours */
+} snow_channel;
+#define SNOW_CHANNELS_MAX 8
+
 typedef struct snow_volume_info {
     size_t size;
     int64_t dims[3];         /* voxels along x, y, z; each at least 1 */
@@ -49,19 +55,22 @@ typedef struct snow_volume_info {
     const char *format; /* constant: "raw", "nrrd", ..., "phantom", "memory" */
     int64_t times, time; /* steps in the file; the one read, from 0 */
     char storage[160];   /* for people: level, axes, chunks, packing; or "" */
-    char modality[17], description[65]; /* of a DICOM series; or "" */
-    double window[2];    /* data values that the file would show; 0s: none */
-    int64_t components;  /* of a vector in the file; else 0 or 1 */
+    char modality[17], description[65]; /* DICOM; its series, a long name */
+    double window[2];   /* data values that the file would show; 0s: none */
+    int64_t components; /* of a vector in the file; else 0 or 1 */
     bool hounsfield, magnitude, eight_bits; /* HU; lengths; bytes, masked */
+    double time_value; /* of the step, in time_unit; NaN: unknown */
+    char time_unit[64], calendar[24], quantity[64], value_unit[32]; /* or "" */
+    bool whole;       /* whole numbers, masked */
+    int64_t channels; /* of voxels with several values; else 0 or 1 */
+    snow_channel channel[SNOW_CHANNELS_MAX]; /* the first of them */
 } snow_volume_info;
 SNOW_RECORD(snow_volume_info);
-
 typedef enum snow_endian {   /* byte order of raw data */
     SNOW_ENDIAN_DEFAULT = 0, /* little */
     SNOW_ENDIAN_LITTLE,
     SNOW_ENDIAN_BIG
 } snow_endian;
-
 /* Labels of a mask, both ends included; the most ranges, and clip planes. */
 typedef struct snow_label_range {
     int64_t first, last;
@@ -69,6 +78,11 @@ typedef struct snow_label_range {
 #define SNOW_LABELS_MAX 256
 #define SNOW_CLIPS_MAX 6
 
+/* What a value names: red, green, blue and opacity; below 0: not said. */
+typedef struct snow_label {
+    double value, color[4];
+    char name[64]; /* or "" */
+} snow_label;
 /* How to open a volume. The defaults (zeros) suit every format but raw. */
 typedef struct snow_volume_options {
     size_t size;
@@ -77,50 +91,48 @@ typedef struct snow_volume_options {
     snow_endian endian;  /* raw */
     double spacing[3];   /* replaces the file's; raw: 0 for 1 mm */
     uint64_t offset;     /* raw: bytes to skip before the voxels */
-    int64_t time;        /* time step of a file with several, from 0 */
+    int64_t time;        /* step of a file with several, from 0; -1: the last */
     int64_t crop[3][2];  /* first voxel, one past the last or 0; zeros: all */
     int64_t channel;     /* of voxels with several values, from 0 */
     const char *dataset; /* path (HDF5, Zarr) or name (VTK, NetCDF); or NULL */
     const char *series;  /* DICOM: UID or number; NULL: the largest */
     const char *mask;   /* path, read with the same crop and spacing; or NULL */
-    const char *labels; /* of the mask (snow_labels_parse); NULL: all but 0 */
+    const char *labels; /* of the mask, else the volume; NULL: all but 0 */
     double clip[SNOW_CLIPS_MAX][4]; /* planes (snow_volume_clip) */
-    bool each_time, channel_given; /* no warning of other steps or channels */
+    bool each_time, channel_given;  /* no warning of other steps or channels */
     bool allow_gaps; /* DICOM: missing and cut slices are NaN, with a warning */
     const char *component; /* "x", "magnitude", ... or NULL (docs/formats.md) */
+    const char *label_table; /* path: names and colours of labels; or NULL */
+    bool each_channel;       /* no warning of other channels */
 } snow_volume_options;
 SNOW_RECORD(snow_volume_options);
-
 /* Opens a file (format by its first bytes, then its name; gzip is undone), "-"
  * for standard input, "phantom:NAME", or raw data where `dims` and `type` say
- * so. `options` may be NULL. A crop stays where it was in the world. Errors:
- * BAD_INPUT (missing, damaged, unsupported), BAD_USAGE (options), STOPPED. */
+ * so. Errors: BAD_INPUT (missing, damaged, unsupported), BAD_USAGE, STOPPED. */
 SNOW_API snow_status snow_volume_open(snow_context *context, const char *path,
     const snow_volume_options *options, snow_volume **out);
 SNOW_API void snow_volume_close(snow_volume *volume);
-
 /* Out of core (docs/larger.md): slabs of `slab_bytes` (0: 64 MiB) are read of a
  * file that must not change, for looks and pictures only. Seconds reading. */
-SNOW_API snow_status snow_volume_open_streamed(snow_context *context,
-    const char *path, const snow_volume_options *options, uint64_t slab_bytes,
-    snow_volume **out);
+SNOW_API snow_status snow_volume_open_streamed(snow_context *, const char *path,
+    const snow_volume_options *options, uint64_t slab_bytes, snow_volume **out);
 SNOW_API double snow_volume_read_seconds(const snow_volume *volume);
-
-/* Without voxels, from the header alone; from a file's bytes, read in the call
- * only, whose `name` serves messages and its suffix. Errors: as above. */
-SNOW_API snow_status snow_volume_inspect(snow_context *context,
-    const char *path, const snow_volume_options *options,
-    snow_volume_info *out);
-SNOW_API snow_status snow_volume_open_memory(snow_context *context,
-    const char *name, const void *bytes, size_t size,
+/* Without voxels, from the header; of bytes used in the call only, whose `name`
+ * is for messages and its suffix; or copied by a function (fewer: failure). */
+SNOW_API snow_status snow_volume_inspect(snow_context *, const char *path,
+    const snow_volume_options *options, snow_volume_info *out);
+SNOW_API snow_status snow_volume_open_memory(snow_context *, const char *name,
+    const void *, size_t size, const snow_volume_options *, snow_volume **out);
+typedef size_t snow_read_at_fn(void *user, uint64_t at, void *bytes, size_t);
+SNOW_API snow_status snow_volume_open_with(snow_context *, const char *name,
+    snow_read_at_fn *read_at, void *user, uint64_t size,
     const snow_volume_options *options, snow_volume **out);
 
-/* A volume over the caller's voxels, not copied, which must outlive it. Of
- * `info` dims, type, matrix (0s: identity), slope (0: 1), intercept, medical,
- * unit, modality, window, hounsfield and eight_bits count. */
+/* Over the caller's voxels, not copied. Of `info` dims, type, matrix (0s:
+ * identity), slope (0: 1), intercept, medical, unit, modality, window,
+ * hounsfield, eight_bits and whole count. */
 SNOW_API snow_status snow_volume_wrap(snow_context *context,
     const snow_volume_info *info, const void *voxels, snow_volume **out);
-
 /* Promises that wrapped voxels stay, until called again: encodings are kept. */
 SNOW_API void snow_volume_freeze(snow_volume *volume);
 
@@ -132,7 +144,6 @@ SNOW_API snow_status snow_volume_open_phantom(snow_context *context,
 typedef struct snow_box {
     int64_t first[3], count[3];
 } snow_box;
-
 /* A rank's part: a box, with neighbours' voxels around it. */
 typedef struct snow_extent {
     size_t size;
@@ -141,18 +152,14 @@ typedef struct snow_extent {
     int64_t first[3], count[3]; /* of the whole: its own voxels; 0: none */
 } snow_extent;
 SNOW_RECORD(snow_extent);
-
 /* Makes a volume a part, whose dims and matrix are those of what it stores; by
  * default it is the whole. Errors: BAD_USAGE (boxes not within one another). */
-SNOW_API snow_status snow_volume_set_extent(
-    snow_volume *volume, const snow_extent *part);
+SNOW_API snow_status snow_volume_set_extent(snow_volume *, const snow_extent *);
 SNOW_API snow_status snow_volume_get_extent(const snow_volume *, snow_extent *);
-
 /* The patient's name: UTF-8 or "", never written. Voxels: NULL in a file. */
 SNOW_API const snow_volume_info *snow_volume_get_info(const snow_volume *);
 SNOW_API const char *snow_volume_patient(const snow_volume *volume);
 SNOW_API const void *snow_volume_voxels(const snow_volume *volume);
-
 /* Over the finite data values, in double, in storage order. */
 typedef struct snow_volume_statistics {
     size_t size;
@@ -170,31 +177,31 @@ SNOW_API bool snow_are_hounsfield(const snow_volume_info *, double, double);
 SNOW_API snow_status snow_volume_histogram(const snow_volume *volume, double lo,
     double hi, size_t bins, uint64_t *counts);
 
-/* New volumes, independent of the given ones. Data values in another type
- * (NONE: the smallest that holds them), rounded for integers, or with `range`
- * spread over an integer type of up to 32 bits. Errors: BAD_USAGE (no fit). */
+/* New volumes. In another type (NONE: the smallest), rounded for integers, or
+ * with `range` spread over an integer of up to 32 bits. Errors: no fit. */
 SNOW_API snow_status snow_volume_convert(const snow_volume *volume,
     snow_type type, const double range[2], snow_volume **out);
 
-/* NaN, which is invisible, where the mask has none of the labels (without
- * labels: 0 or NaN). The type is float32, or float64 for integers of 32 and 64
- * bits and float64. Errors: BAD_INPUT (another grid or place). */
+/* NaN, which is invisible, where the mask has none of the labels (without any:
+ * 0 or NaN), in floats that hold the type. Another grid is resampled. */
 SNOW_API snow_status snow_volume_mask(const snow_volume *volume,
     const snow_volume *mask, const snow_label_range *labels, size_t count,
     snow_volume **out);
-
 /* The same where a x + b y + c z > d for any of `count` planes a, b, c, d of
  * the world, of at most SNOW_CLIPS_MAX. */
 SNOW_API snow_status snow_volume_clip(const snow_volume *volume,
     const double *planes, size_t count, snow_volume **out);
 
+/* Resamples *volume to a grid, unless it has it, by nearest voxels or linear.
+ * Errors: BAD_INPUT (worlds that do not compare, docs/formats.md). */
+SNOW_API snow_status snow_volume_regrid(
+    snow_volume **volume, const snow_volume *grid, bool nearest);
 /* Reads "1,4-7,-3" (below 2^53 both ways); false for other text, or no room. */
 SNOW_API bool snow_labels_parse(
     const char *text, snow_label_range *ranges, size_t room, size_t *count);
 
-/* Writes .nrrd, .nii, .nii.gz, .mha (with geometry), .npy, .raw or .raw.gz,
- * whole or not at all. Errors: BAD_OUTPUT (also an existing file, unless
- * `overwrite`), BAD_USAGE (suffix; a slope that the format cannot hold). */
+/* Writes .nrrd, .nii, .nii.gz, .mha, .npy, .raw or .raw.gz, whole or not at
+ * all. Errors: BAD_OUTPUT (an existing file, unless `overwrite`), suffix. */
 SNOW_API snow_status snow_volume_save(
     const snow_volume *volume, const char *path, bool overwrite);
 

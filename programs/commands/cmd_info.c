@@ -85,20 +85,100 @@ static void axis_letters(const snow_volume_info *info, char letters[4]) {
 
 /* --- text ----------------------------------------------------------------- */
 
-/* How many values the vectors of a file have, and which of them these are. */
+/* Names of a file, as messages print them: their control characters could forge
+ * lines. */
+static void print_name(const char *name) {
+    for (; *name; name++)
+        putchar((unsigned char)*name < ' ' || *name == 127 ? '?' : *name);
+}
+
+/* How many values the vectors of a file have, and which of them these are;
+ * their names. */
 static void print_components(const facts *f) {
     const options *opts = f->opts;
-    char which[40];
-    if (f->info->components < 2)
+    const snow_volume_info *info = f->info;
+    const bool named = *info->channel[0].name && info->channels < 2;
+    char which[80];
+    if (info->components < 2)
         return;
-    if (f->info->magnitude)
+    if (info->magnitude)
         snprintf(which, sizeof which, "the magnitude");
+    else if (named)
+        snprintf(which, sizeof which, "component ");
     else if (opts->component)
         snprintf(which, sizeof which, "component %.20s", opts->component);
     else
         snprintf(which, sizeof which, "component %" PRId64, opts->channel);
-    printf("%-14s%" PRId64 " (these values: %s)\n", "components",
-           f->info->components, which);
+    printf("%-14s%" PRId64 " (these values: %s", "components", info->components,
+           which);
+    print_name(named ? info->quantity : "");
+    printf(")\n");
+    for (int n = 0; named && n < SNOW_CHANNELS_MAX && n < info->components;
+         n++) {
+        printf("%-14s%d  ", "", n);
+        print_name(info->channel[n].name);
+        printf("\n");
+    }
+    if (named && info->components > SNOW_CHANNELS_MAX)
+        printf("%-14s...\n", "");
+}
+
+/* The number of the channel that was read. */
+static int64_t channel_of(const options *opts) {
+    static const char letters[] = "xyzw";
+    const char *given = opts->component;
+    const char *letter =
+        given && *given && !given[1] ? strchr(letters, *given) : NULL;
+    if (letter)
+        return letter - letters;
+    return given ? strtoll(given, NULL, 10) : opts->channel;
+}
+
+static unsigned byte_of(double share) {
+    return (unsigned)(255 * share + 0.5);
+}
+
+/* Those that a file shows together, and which one these are. */
+static void print_channels(const facts *f) {
+    const snow_volume_info *info = f->info;
+    if (info->channels < 2)
+        return;
+    printf("%-14s%" PRId64 " (these values: channel %" PRId64 ")\n", "channels",
+           info->channels, channel_of(f->opts));
+    for (int n = 0; n < SNOW_CHANNELS_MAX && n < info->channels; n++) {
+        const snow_channel *one = &info->channel[n];
+        printf("%-14s%d", "", n);
+        if (*one->name)
+            printf("  ");
+        print_name(one->name);
+        if (one->color[0] >= 0)
+            printf("  #%02x%02x%02x", byte_of(one->color[0]),
+                   byte_of(one->color[1]), byte_of(one->color[2]));
+        if (one->window[0] < one->window[1])
+            printf("  %g .. %g", one->window[0], one->window[1]);
+        printf("%s\n", one->shown ? "" : "  (not shown)");
+    }
+}
+
+/* The steps, and the physical time of this one. */
+static void print_times(const facts *f) {
+    const snow_volume_info *info = f->info;
+    if (info->times > 1)
+        printf("%-14s%" PRId64 " (these values: step %" PRId64 ")\n", "times",
+               info->times, info->time);
+    if (!isnan(info->time_value))
+        printf("%-14s%.10g%s%s%s%s%s\n", "time", info->time_value,
+               *info->time_unit ? " " : "", info->time_unit,
+               *info->calendar ? " (" : "", info->calendar,
+               *info->calendar ? " calendar)" : "");
+}
+
+/* What the values are. */
+static void print_quantity(const snow_volume_info *info) {
+    if (*info->quantity || *info->value_unit)
+        printf("%-14s%s%s%s%s\n", "quantity", info->quantity,
+               *info->value_unit ? " (" : "", info->value_unit,
+               *info->value_unit ? ")" : "");
 }
 
 /* The geometry of the file; scale and time steps only if they matter. */
@@ -111,6 +191,7 @@ static void print_geometry(const facts *f) {
            "dims", info->dims[0], info->dims[1], info->dims[2],
            f->measures.voxels);
     printf("%-14s%s\n", "type", snow_type_name(info->type));
+    print_quantity(info);
     printf("%-14s%g x %g x %g%s%s\n", "spacing", info->spacing[0],
            info->spacing[1], info->spacing[2], info->unit[0] ? " " : "",
            info->unit);
@@ -123,10 +204,9 @@ static void print_geometry(const facts *f) {
         printf("%-14s%12g %12g %12g %12g\n", i ? "" : "matrix",
                info->matrix[i][0], info->matrix[i][1], info->matrix[i][2],
                info->matrix[i][3]);
-    if (info->times > 1)
-        printf("%-14s%" PRId64 " (these values: step %" PRId64 ")\n", "times",
-               info->times, info->time);
+    print_times(f);
     print_components(f);
+    print_channels(f);
     if (info->slope < 1 || info->slope > 1 || info->intercept < 0 ||
         info->intercept > 0)
         printf("%-14svalue = %g * stored + %g\n", "scale", info->slope,
@@ -136,7 +216,8 @@ static void print_geometry(const facts *f) {
     if (*info->modality)
         printf("%-14s%s\n", "modality", info->modality);
     if (*info->description)
-        printf("%-14s%s\n", "series", info->description);
+        printf("%-14s%s\n", *info->modality ? "series" : "long name",
+               info->description);
     if (info->window[0] < info->window[1])
         printf("%-14s%g at level %g (%g .. %g)\n", "window",
                info->window[1] - info->window[0],
@@ -157,6 +238,12 @@ static void print_values(const facts *f) {
                m->sum / (double)m->finite,
                f->info->hounsfield ? " (Hounsfield units)" : "");
     printf("%-14s%s\n", "look", snow_transfer_description(f->transfer));
+    const snow_label *label;
+    for (size_t i = 0; (label = snow_transfer_label(f->transfer, i)); i++)
+        printf("%-14s%.10g  #%02x%02x%02x  %s%s\n", i ? "" : "labels",
+               label->value, byte_of(label->color[0]), byte_of(label->color[1]),
+               byte_of(label->color[2]), label->name,
+               label->color[3] > 0 ? "" : " (not shown)");
     for (size_t i = 0; i < f->threshold_count; i++)
         printf("%-14s%5.1f %% at threshold %g\n", i ? "" : "sparse ratio",
                100 * f->ratios[i], f->thresholds[i]);
@@ -192,6 +279,33 @@ static void print_histogram(const facts *f) {
 
 /* --- JSON ----------------------------------------------------------------- */
 
+/* Null for what the file does not say. */
+static json_t *channels_json(const snow_volume_info *info) {
+    json_t *list = json_array();
+    for (int n = 0; n < SNOW_CHANNELS_MAX && n < info->channels; n++) {
+        const snow_channel *one = &info->channel[n];
+        const bool ranged = one->window[0] < one->window[1];
+        json_t *row = json_object();
+        json_object_set_new(row, "name", json_string(one->name));
+        json_object_set_new(row, "color",
+                            one->color[0] >= 0 ? json_vector(one->color, 3)
+                                               : json_null());
+        json_object_set_new(row, "window",
+                            ranged ? json_vector(one->window, 2) : json_null());
+        json_object_set_new(row, "shown", json_boolean(one->shown));
+        json_array_append_new(list, row);
+    }
+    return list;
+}
+
+/* The first of those that have names. */
+static json_t *component_names(const snow_volume_info *info) {
+    json_t *list = json_array();
+    for (int n = 0; n < SNOW_CHANNELS_MAX && n < info->components; n++)
+        json_array_append_new(list, json_string(info->channel[n].name));
+    return list;
+}
+
 /* Scripts rely on the keys: dims has x first, matrix maps index to world, row
  * by row. */
 void info_set_geometry(json_t *object, const snow_volume_info *info) {
@@ -219,15 +333,33 @@ void info_set_geometry(json_t *object, const snow_volume_info *info) {
         object, "components",
         json_integer(info->components > 1 ? info->components : 1));
     json_object_set_new(object, "magnitude", json_boolean(info->magnitude));
-    if (info->hounsfield)
-        json_object_set_new(object, "value_unit", json_string("HU"));
+    if (info->components > 1 && *info->channel[0].name)
+        json_object_set_new(object, "component_names", component_names(info));
+    if (info->channels > 1) {
+        json_object_set_new(object, "channel_count",
+                            json_integer(info->channels));
+        json_object_set_new(object, "channels", channels_json(info));
+    }
+    if (*info->quantity)
+        json_object_set_new(object, "quantity", json_string(info->quantity));
+    if (info->hounsfield || *info->value_unit)
+        json_object_set_new(
+            object, "value_unit",
+            json_string(info->hounsfield ? "HU" : info->value_unit));
+    if (!isnan(info->time_value)) {
+        json_object_set_new(object, "time_value",
+                            json_number(info->time_value));
+        json_object_set_new(object, "time_unit", json_string(info->time_unit));
+        json_object_set_new(object, "calendar", json_string(info->calendar));
+    }
     if (*info->storage)
         json_object_set_new(object, "storage", json_string(info->storage));
     if (*info->modality)
         json_object_set_new(object, "modality", json_string(info->modality));
     if (*info->description)
-        json_object_set_new(object, "series_description",
-                            json_string(info->description));
+        json_object_set_new(
+            object, *info->modality ? "series_description" : "long_name",
+            json_string(info->description));
     if (info->window[0] < info->window[1])
         json_object_set_new(object, "window", json_vector(info->window, 2));
 }
@@ -270,6 +402,20 @@ static json_t *sparse_json(const facts *f) {
     return list;
 }
 
+static json_t *labels_json(const facts *f) {
+    json_t *list = json_array();
+    const snow_label *label;
+    for (size_t i = 0; (label = snow_transfer_label(f->transfer, i)); i++) {
+        json_t *row = json_object();
+        json_object_set_new(row, "value", json_number(label->value));
+        json_object_set_new(row, "name", json_string(label->name));
+        json_object_set_new(row, "color", json_vector(label->color, 3));
+        json_object_set_new(row, "opacity", json_number(label->color[3]));
+        json_array_append_new(list, row);
+    }
+    return list;
+}
+
 static int report_json(const facts *f) {
     json_t *object = json_object();
     info_set_geometry(object, f->info);
@@ -278,6 +424,7 @@ static int report_json(const facts *f) {
     set_values(object, &f->measures);
     json_object_set_new(object, "look",
                         json_string(snow_transfer_description(f->transfer)));
+    json_object_set_new(object, "labels", labels_json(f));
     json_object_set_new(object, "sparse_ratio", sparse_json(f));
     json_object_set_new(object, "histogram", histogram_json(f));
     return print_json(object);

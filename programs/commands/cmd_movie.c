@@ -62,7 +62,7 @@ static int run_movie(const options *opts, shot_renderer *shots,
 int cmd_movie(const options *opts) {
     double begin = seconds_now();
     shot_renderer shots = {.count = 0};
-    step_files files = {NULL, 0, 0};
+    step_files files = {.paths = NULL};
     shot_list list = {.shots = NULL};
     movie *s = NULL;
     int done = run_movie(opts, &shots, &files, &list, &s, begin);

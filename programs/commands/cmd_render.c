@@ -248,8 +248,11 @@ static snow_status make_annotations(const work *w, const options *opts,
         opts,
         s->whole,
         s->view,
-        s->transfer,
-        {painted->range[0], painted->range[1]}};
+        s->layers.transfer && snow_transfer_label(s->layers.transfer, 0)
+            ? s->layers.transfer
+            : s->transfer,
+        {painted->range[0], painted->range[1]},
+        &s->channels};
     return annotations_make(&annotations, opts->azimuth, -1, image, s->context,
                             out);
 }

@@ -5,6 +5,7 @@
 #include "commands/commands.h"
 #include "options/config.h"
 #include "picture/annotations.h"
+#include "picture/channels.h"
 #include "picture/outputs.h"
 #include "picture/render_stats.h"
 #include "picture/show.h"
@@ -28,11 +29,12 @@ typedef struct slice_work {
     const char *path;
     snow_volume_info whole; /* what the slices are counted in */
     snow_view view;
-    int axis, world;     /* of the grid, and of the world beside it */
-    int64_t index;       /* in the whole */
-    double position;     /* of its middle, in the world */
-    snow_volume *volume; /* the slice */
-    char *cut;           /* its voxels, if all came through a pipe */
+    int axis, world;      /* of the grid, and of the world beside it */
+    int64_t index;        /* in the whole */
+    double position;      /* of its middle, in the world */
+    snow_volume *volume;  /* the slice */
+    char *cut;            /* its voxels, if all came through a pipe */
+    channel_set channels; /* of colours, the first of which it is */
     snow_transfer *transfer;
     snow_image *image;
     snow_settings settings;
@@ -114,6 +116,12 @@ static int find_slice(slice_work *w) {
     return find_place(w);
 }
 
+/* Files of numbers get the values. */
+static bool has_colors(const slice_work *w) {
+    return snow_image_format_bits(w->opts.output) > 0 ||
+           strcmp(w->opts.output, "-") == 0;
+}
+
 /* --- reading -------------------------------------------------------------- */
 
 /* Standard input can be read only once, so all of it is. */
@@ -172,11 +180,15 @@ static int cut_slice(slice_work *w) {
 }
 
 static int open_piped(slice_work *w) {
+    w->opts.mixes = true;
     int done = open_input(w->context, &w->opts, w->path, &w->volume);
     if (done != CONTINUE)
         return done;
     w->whole = *snow_volume_get_info(w->volume);
-    done = find_slice(w);
+    done = channels_choose(&w->opts, &w->whole, channels_hinder(&w->opts),
+                           &w->channels);
+    if (done == CONTINUE)
+        done = find_slice(w);
     return done == CONTINUE ? cut_slice(w) : done;
 }
 
@@ -188,18 +200,45 @@ static int open_slice(slice_work *w) {
     hear_warnings(&w->opts, w->context, true);
     if (done == CONTINUE)
         done = find_slice(w);
+    snow_volume_info slice = w->whole;
+    slice.dims[w->axis] = 1;
+    if (done == CONTINUE)
+        done = channels_choose(&w->opts, &slice,
+                               has_colors(w) || w->opts.show
+                                   ? channels_hinder(&w->opts)
+                                   : "a file of numbers has one",
+                               &w->channels);
     if (done != CONTINUE)
         return done;
     crop_to_slice(w);
+    w->opts.mixes = true;
+    if (w->channels.list.count)
+        w->opts.channel = w->channels.list.picks[0].index;
     return open_input(w->context, &w->opts, w->path, &w->volume);
 }
 
 /* --- the picture ---------------------------------------------------------- */
 
-/* Files of numbers get the values. */
-static bool has_colors(const slice_work *w) {
-    return snow_image_format_bits(w->opts.output) > 0 ||
-           strcmp(w->opts.output, "-") == 0;
+/* Their light is added up, as in a composite of Fiji. */
+static snow_status add_channels(slice_work *w) {
+    const channel_set *c = &w->channels;
+    snow_image *sum = NULL;
+    snow_status status =
+        channels_add(w->context, w->image, c->list.picks[0].opacity, &sum);
+    for (int n = 1; n < c->list.count && status == SNOW_STATUS_OK; n++) {
+        snow_image_free(w->image);
+        w->image = NULL;
+        status = snow_slice_render(c->volumes[n], 0, c->looks[n], &w->view,
+                                   &w->settings, &w->image);
+        if (status == SNOW_STATUS_OK)
+            status = channels_add(w->context, w->image,
+                                  c->list.picks[n].opacity, &sum);
+    }
+    if (sum)
+        channels_limit(sum);
+    snow_image_free(w->image);
+    w->image = sum;
+    return status;
 }
 
 /* The view is that of the voxels that were read, since its zoom counts in their
@@ -216,8 +255,67 @@ static snow_status draw(slice_work *w) {
     if (status == SNOW_STATUS_OK)
         status = snow_slice_render(w->volume, 0, w->transfer, &w->view,
                                    &w->settings, &w->image);
+    if (status == SNOW_STATUS_OK && w->transfer && w->channels.list.count)
+        status = add_channels(w);
     w->frame = seconds_now() - begin;
     return status;
+}
+
+static int open_channels(slice_work *w) {
+    snow_status status =
+        channels_look(&w->opts, &w->whole, &w->channels.list.picks[0],
+                      w->volume, &w->transfer);
+    channels_close_volumes(&w->channels);
+    if (status == SNOW_STATUS_OK)
+        status = channels_open(&w->opts, w->context, w->path, &w->channels);
+    return status == SNOW_STATUS_OK
+               ? CONTINUE
+               : fail_volume(w->context, status, name_of_input(w->path));
+}
+
+/* Labels are drawn as such where nothing else is asked, as in a picture. */
+static int open_colors(slice_work *w) {
+    static options automatic; /* large */
+    const options *opts = &w->opts;
+    automatic = *opts;
+    automatic.mode = "over";
+    bool asked = opts->preset || opts->tf || opts->colormap || opts->log ||
+                 opts->symlog != 0 || opts->shift != 0 ||
+                 options_range(opts).kind != SNOW_RANGE_AUTO;
+    int done = CONTINUE;
+    if (w->channels.list.count)
+        return open_channels(w);
+    if (!asked)
+        done = open_look(w->context, &automatic, w->volume, &w->transfer);
+    if (done != CONTINUE ||
+        (w->transfer && snow_transfer_label(w->transfer, 0)))
+        return done;
+    snow_transfer_free(w->transfer);
+    w->transfer = NULL;
+    return open_look(w->context, opts, w->volume, &w->transfer);
+}
+
+/* Channels that nobody asked for, and that do not fit together, give way to the
+ * first one. */
+static int draw_first(slice_work *w) {
+    channels_note(&w->opts, &w->whole, "several need more memory");
+    channels_close(&w->channels);
+    snow_transfer_free(w->transfer);
+    snow_image_free(w->image);
+    snow_volume_close(w->volume);
+    w->transfer = NULL;
+    w->image = NULL;
+    w->volume = NULL;
+    w->opts.channel = 0;
+    int done = open_input(w->context, &w->opts, w->path, &w->volume);
+    if (done == CONTINUE)
+        done = open_colors(w);
+    if (done != CONTINUE)
+        return done;
+    snow_status status = draw(w);
+    return status == SNOW_STATUS_OK
+               ? CONTINUE
+               : fail_volume(w->context, status, name_of_input(w->path));
 }
 
 static int make_picture(slice_work *w) {
@@ -228,11 +326,14 @@ static int make_picture(slice_work *w) {
     progress_end(opts);
     w->times.read = seconds_now() - begin;
     if (done == CONTINUE && has_colors(w))
-        done = open_look(w->context, opts, w->volume, &w->transfer);
+        done = open_colors(w);
     w->times.look = seconds_now() - begin - w->times.read;
     if (done != CONTINUE)
         return done;
     snow_status status = draw(w);
+    if (status == SNOW_STATUS_NO_MEMORY && w->channels.list.count > 1 &&
+        !opts->channels.count)
+        return draw_first(w);
     return status == SNOW_STATUS_OK
                ? CONTINUE
                : fail_volume(w->context, status, name_of_input(w->path));
@@ -254,7 +355,14 @@ static void report(const slice_work *w) {
     char volume[256], colors[512];
     describe_volume(&w->whole, volume, sizeof volume);
     describe_colors(w, colors, sizeof colors);
-    config_note_slice(&w->opts, w->transfer, axis_name(w), w->index);
+    config_note_slice(&w->opts, w->channels.list.count ? NULL : w->transfer,
+                      axis_name(w), w->index);
+    if (w->transfer && w->channels.list.count) {
+        channels_describe(&w->channels, colors, sizeof colors);
+        config_note_channels(&w->opts, &w->channels.list, SNOW_SHADE_NONE,
+                             NULL);
+    }
+    annotations_report(&w->opts);
     if (w->opts.verbosity < 0)
         return;
     say("%s: %s; %s slice %" PRId64 " of 0 to %" PRId64 ", at %g%s; %s; "
@@ -270,11 +378,9 @@ static void report(const slice_work *w) {
 
 /* Letters stay at the edges: a slice fills its picture. */
 static snow_status make_overlay(slice_work *w, snow_overlay **out) {
-    picture_annotations annotations = {&w->opts,
-                                       *snow_volume_get_info(w->volume),
-                                       w->view,
-                                       w->transfer,
-                                       {0, 0}};
+    picture_annotations annotations = {
+        &w->opts, *snow_volume_get_info(w->volume), w->view, w->transfer,
+        {0, 0},   w->transfer ? &w->channels : NULL};
     annotations_find_unit(&w->opts, w->volume, false, &annotations.info);
     return annotations_make(&annotations, 0, -1, NULL, w->context, out);
 }
@@ -283,7 +389,7 @@ static snow_status make_overlay(slice_work *w, snow_overlay **out) {
 static int draw_colors(slice_work *w) {
     w->transfer = NULL;
     w->image = NULL;
-    int done = open_look(w->context, &w->opts, w->volume, &w->transfer);
+    int done = open_colors(w);
     if (done != CONTINUE)
         return done;
     snow_status status = draw(w);
@@ -426,6 +532,7 @@ int cmd_slice(const options *opts) {
     snow_image_free(w.image);
     snow_transfer_free(w.transfer);
     snow_volume_close(w.volume);
+    channels_close(&w.channels);
     free(w.cut);
     snow_context_free(w.context);
     return done;

@@ -6,6 +6,7 @@
 #include "run/log.h"
 #include "run/paths.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,6 +66,10 @@ static int find_transfer(const options *opts, const char *name, named *out) {
     int preset = snow_preset_from_name(name),
         map = snow_colormap_from_name(name);
     bool file = access(name, F_OK) == 0 || (preset < 0 && map < 0);
+    if (!file && preset >= 0 && !snow_preset_look((size_t)preset)->color_count)
+        return fail_usage("%s: is made of a volume's values and has no points; "
+                          "use it with --preset %s",
+                          name, name);
     if (!file && preset >= 0) {
         out->kind = "preset";
         out->look = *snow_preset_look((size_t)preset);
@@ -208,7 +213,10 @@ static char *text_of(const named *n, text_writer *write, size_t *length,
 static int show(const options *opts, const named *n) {
     static const char *const values[] = {
         "data values", "shares of the range of all values",
-        "shares of the range of the object's values"};
+        "shares of the range of the object's values",
+        "shares of a range that is symmetric around 0"};
+    static_assert(sizeof values / sizeof *values == SNOW_DOMAIN_SYMMETRIC + 1,
+                  "a text for each domain");
     if (opts->output)
         return save_picture(opts, n);
     if (opts->json) {

@@ -14,7 +14,11 @@ int cmd_phantom(const options *opts);
 int cmd_convert(const options *opts);
 int cmd_compare(const options *opts);
 int cmd_doctor(const options *opts);
+int cmd_export(const options *opts);
 int cmd_tf(const options *opts);
+
+/* The first of its two operands is the output. */
+void export_take(options *opts);
 
 /* The name of an input in messages: its path, or "standard input" for "-". */
 const char *name_of_input(const char *path);
@@ -36,6 +40,10 @@ int open_input(snow_context *context, const options *opts, const char *path,
 int check_input(const options *opts);
 int check_input_first(const options *opts, const char *const *outputs,
                       size_t count);
+
+/* Finds the numbers of the channels that --channel names; a list is for
+ * pictures.  Returns CONTINUE or an exit code. */
+int settle_channels(options *opts, bool pictures);
 
 /* Loads the file of --tf, if there is one, into the options; the second
  * function frees it.  Returns CONTINUE or an exit code. */

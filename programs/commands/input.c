@@ -3,6 +3,7 @@
 #include "commands/commands.h"
 #include "picture/outputs.h"
 #include "run/log.h"
+#include "run/start.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,19 +12,22 @@
 /* Values that were not given stay 0.  The library refuses options that do not
  * fit a format, so it must be able to see whether they were given. */
 snow_volume_options data_options(const options *opts) {
-    snow_volume_options data = {.size = sizeof data,
-                                .type = opts->type,
-                                .offset = opts->offset,
-                                .time = opts->time,
-                                .each_time = opts->each_time,
-                                .channel = opts->channel,
-                                .channel_given = options_given(opts, "channel"),
-                                .allow_gaps = opts->allow_gaps,
-                                .component = opts->component,
-                                .dataset = opts->dataset,
-                                .series = opts->series,
-                                .mask = opts->mask,
-                                .labels = opts->labels};
+    snow_volume_options data = {
+        .size = sizeof data,
+        .type = opts->type,
+        .offset = opts->offset,
+        .time = opts->time,
+        .each_time = opts->each_time,
+        .channel = opts->channel,
+        .channel_given = options_given(opts, "channel"),
+        .each_channel = opts->mixes,
+        .allow_gaps = opts->allow_gaps,
+        .component = opts->component,
+        .dataset = opts->dataset,
+        .series = opts->series,
+        .mask = opts->mask,
+        .labels = opts->overlay_picks ? NULL : opts->labels,
+        .label_table = opts->overlay ? NULL : opts->label_table};
     memcpy(data.clip, opts->clip, sizeof data.clip);
     for (int i = 0; i < 3; i++) {
         data.dims[i] = opts->dims[i];
@@ -76,10 +80,113 @@ int check_input_first(const options *opts, const char *const *outputs,
     return free ? CONTINUE : check_input(opts);
 }
 
-int look_load(options *opts) {
-    if (!opts->tf)
+/* A segmentation, or beside no mask whole numbers, which its labels make one.
+ */
+static int overlay_is_labels(const options *opts, const char *path, bool *is) {
+    snow_context *context = NULL; /* whose warnings come again */
+    snow_volume *volume = NULL;
+    snow_transfer *transfer = NULL;
+    const snow_look look = {.size = sizeof look};
+    int done = CONTINUE;
+    snow_status status = snow_context_new(NULL, &context);
+    if (status == SNOW_STATUS_OK)
+        status = snow_volume_open(context, path, NULL, &volume);
+    if (status == SNOW_STATUS_OK)
+        status = snow_transfer_new_for_volume(volume, &look, &transfer);
+    if (status == SNOW_STATUS_OK) {
+        const snow_volume_info *info = snow_volume_get_info(volume);
+        *is = snow_transfer_label(transfer, 0) ||
+              (!opts->mask && info->type < SNOW_TYPE_FLOAT32 &&
+               info->slope == 1 && info->intercept == 0);
+    } else
+        done = fail_status(context, status);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+    return done;
+}
+
+/* Whether --labels picks of the overlay.  What a verb does not show has no use
+ * for them, nor for their table. */
+static int share_labels(options *opts) {
+    const char *path = opts->overlay ? opts->overlay : opts->overlay_hidden;
+    bool picks = false;
+    int done = CONTINUE;
+    if (path && opts->labels &&
+        (opts->overlay || !options_typed(opts, "labels")))
+        done = overlay_is_labels(opts, path, &picks);
+    opts->overlay_picks = picks && opts->overlay;
+    if (!opts->overlay_hidden || done != CONTINUE)
+        return done;
+    if (opts->verbosity >= 0 && process_talks())
+        say("note: the overlay %s is not shown", path);
+    if (picks)
+        opts->labels = NULL;
+    if (!options_typed(opts, "label-table"))
+        opts->label_table = NULL;
+    return CONTINUE;
+}
+
+static int refuse_channel(const char *name, const snow_volume_info *info) {
+    char text[400] = "";
+    size_t used = 0;
+    for (int n = 0; n < SNOW_CHANNELS_MAX && n < info->channels; n++)
+        used += (size_t)snprintf(
+            text + used, sizeof text - used, "%s%d%s%s", n ? ", " : "", n,
+            *info->channel[n].name ? " " : "", info->channel[n].name);
+    return fail_usage("--channel: there is no channel '%s'; the file has %s",
+                      name, info->channels > 1 ? text : "no channels");
+}
+
+/* The number of each channel that was named. */
+static int find_channels(options *opts) {
+    snow_context *context = NULL;
+    const char *missing, *path = opts->operands[0];
+    snow_volume_options data = data_options(opts);
+    snow_volume_info info;
+    if (strcmp(path, "-") == 0)
+        return fail_usage("--channel: standard input is read once, so that "
+                          "names are not known; give numbers");
+    snow_volume_info_init(&info);
+    snow_status status = snow_context_new(NULL, &context);
+    if (status == SNOW_STATUS_OK)
+        status = snow_volume_inspect(context, path, &data, &info);
+    int done =
+        status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
+    if (done == CONTINUE && !channels_find(&opts->channels, &info, &missing))
+        done = refuse_channel(missing, &info);
+    snow_context_free(context);
+    return done;
+}
+
+int settle_channels(options *opts, bool pictures) {
+    channel_list *list = &opts->channels;
+    bool named = false;
+    int done = CONTINUE;
+    opts->one_channel = !pictures;
+    if (!list->count || opts->operand_count < 1)
         return CONTINUE;
-    int done = open_context(opts, &opts->tf_context);
+    if (!pictures && !list->plain)
+        return fail_usage("--channel: only pictures mix channels in colours; "
+                          "give one, by its number or name");
+    if (!list->plain && opts->component)
+        return fail_usage("--channel: conflicts with --component; give only "
+                          "one of them");
+    for (int n = 0; n < list->count; n++)
+        named |= list->picks[n].index < 0;
+    if (named)
+        done = find_channels(opts);
+    opts->channel = list->picks[0].index;
+    if (list->plain)
+        list->count = 0;
+    return done;
+}
+
+int look_load(options *opts) {
+    int done = share_labels(opts);
+    if (!opts->tf || done != CONTINUE)
+        return done;
+    done = open_context(opts, &opts->tf_context);
     if (done != CONTINUE)
         return done;
     snow_status status =
@@ -104,6 +211,9 @@ int check_look(const options *opts) {
         return fail_usage("--%s: needs --%s too; add it",
                           window ? "window" : "level",
                           window ? "level" : "window");
+    if (opts->log && opts->symlog != 0)
+        return fail_usage(
+            "--log: conflicts with --symlog; give only one of them");
     if (opts->tf && opts->preset)
         return fail_usage(
             "--tf: conflicts with --preset; give only one of them");
@@ -122,6 +232,7 @@ snow_look look_options(const options *opts) {
                       .low = range.low,
                       .high = range.high,
                       .log = opts->log,
+                      .symlog = opts->symlog,
                       .shift = opts->shift,
                       .base = opts->loaded ? snow_look_file_look(opts->loaded)
                                            : NULL};

@@ -18,6 +18,8 @@ static const struct {
     {read_text, "{'type': 'string'}"},
     {read_component, "{'anyOf': [{'enum': ['x', 'y', 'z', 'w', 'magnitude']},"
                      "{'type': 'string', 'pattern': '^[0-9]+$'}]}"},
+    {read_channels, "{'anyOf': [{'type': 'integer', 'minimum': 0}, {'type': "
+                    "'string'}]}"},
     {read_labels, "{'type': 'string'}"},
     {read_preset, "{'type': 'string'}"},
     {read_colormap, "{'type': 'string'}"},
@@ -27,8 +29,11 @@ static const struct {
     {read_method, "{'type': 'string'}"},
     {read_real, "{'type': 'number'}"},
     {read_strength, "{'type': 'number'}"},
+    {read_symlog, "{'anyOf': [{'type': 'boolean'}, {'type': 'number',"
+                  "'minimum': 1e-300, 'maximum': 1e300}]}"},
     {read_fov, "{'type': 'number'}"},
     {read_integer, "{'type': 'integer'}"},
+    {read_time, "{'anyOf': [{'type': 'integer'}, {'type': 'string'}]}"},
     {read_count, "{'type': 'integer', 'minimum': 0}"},
     {read_size,
      "{'anyOf': [{'type': 'integer', 'minimum': 1, 'maximum': 32768},"
@@ -149,6 +154,10 @@ static void add_others(json_t *properties) {
     json_object_set_new(properties, "verb",
                         parse("{'type': 'string', 'description':"
                               "'the verb that wrote the file'}"));
+    json_object_set_new(
+        properties, "reread",
+        parse("{'type': 'boolean', 'description': 'of simulations: read the "
+              "file again when it changes'}"));
     json_object_set_new(properties, "version",
                         parse("{'type': 'string', 'description':"
                               "'the version that wrote the file'}"));

@@ -54,6 +54,7 @@ struct movie {
     picture_annotations annotations; /* annotations of the frames, known from
                                 the first picture on */
     bool has_annotations;
+    double *times; /* physical ones of the frames, as their pictures come */
 };
 
 int movie_check(const options *opts) {
@@ -133,10 +134,12 @@ static snow_status make_frame(const movie *s, frame_slot *slot) {
     const movie_shot *shot = &s->list->shots[slot->index];
     snow_overlay *overlay = NULL;
     snow_image_options form = s->form;
+    picture_annotations annotations = s->annotations;
     char path[PATH_MAX];
+    annotations.info.time_value = s->times[slot->index];
     snow_status status =
-        annotations_make(&s->annotations, shot->azimuth, shot->step,
-                         slot->image, slot->context, &overlay);
+        annotations_make(&annotations, shot->azimuth, shot->step, slot->image,
+                         slot->context, &overlay);
     form.overlay = overlay;
     form.depth = slot->depth;
     place_aside(&s->place, slot->index, path, sizeof path);
@@ -233,8 +236,13 @@ static int open_parts(movie *s) {
 
 int movie_open(const options *opts, const shot_list *list, movie **out) {
     movie *s = calloc(1, sizeof *s);
-    if (!s)
+    double *times = calloc((size_t)list->count, sizeof *times);
+    if (!s || !times) {
+        free(s);
+        free(times);
         return fail_memory("out of memory at the start; close other programs");
+    }
+    s->times = times;
     s->opts = opts;
     s->list = list;
     s->encoder.pipe = -1;
@@ -255,6 +263,7 @@ void movie_close(movie *s) {
     encoder_stop(&s->encoder);
     record_close(&s->record);
     snow_context_free(s->context);
+    free(s->times);
     free(s);
 }
 
@@ -275,11 +284,20 @@ static int count_workers(const options *opts) {
     return workers < 1 ? 1 : (int)workers;
 }
 
+/* A movie of few time steps would be over in a moment. */
+static double movie_rate(const options *opts, const shot_list *list) {
+    const double shortest = 4; /* seconds */
+    double rate = (double)list->count / shortest;
+    if (options_given(opts, "fps") || !list->steps || rate >= opts->fps)
+        return opts->fps;
+    return rate < 2 ? 2 : rate;
+}
+
 static int start_encoder(movie *s) {
     encoder_job job = {.format = s->place.format,
                        .width = (int)s->opts->size[0],
                        .height = (int)s->opts->size[1],
-                       .rate = s->opts->fps,
+                       .rate = movie_rate(s->opts, s->list),
                        .threads = (int)count_threads(s->opts),
                        .path = s->place.movie,
                        .log = s->place.log};
@@ -395,6 +413,7 @@ static void hand_over(run *r, int64_t index, snow_image *image) {
                                  */
         r->renderer->annotations(r->renderer->self, &r->s->annotations);
     r->s->has_annotations = true;
+    r->s->times[index] = r->renderer->time(r->renderer->self);
     (void)frames_put(r->s->queue, index, image,
                      r->renderer->depth(r->renderer->self));
     snow_image_free(r->last);
@@ -480,7 +499,7 @@ static int join_movie(movie *s) {
     const webp_job job = {.count = s->list->count,
                           .width = (int)s->opts->size[0],
                           .height = (int)s->opts->size[1],
-                          .rate = s->opts->fps,
+                          .rate = movie_rate(s->opts, s->list),
                           .alpha = !s->form.flatten};
     int number = webp_join(&job, &s->place);
     if (number == 0)

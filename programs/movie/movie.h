@@ -31,6 +31,7 @@ typedef struct movie_shot {
 typedef struct shot_list {
     movie_shot *shots;
     int64_t count; /* at least 1 */
+    bool steps;    /* they are time steps */
     bool together; /* all frames depend on all shots, by the look: a changed
                       list is another movie */
 } shot_list;
@@ -61,6 +62,9 @@ typedef struct movie_renderer {
     /* The annotations of the pictures, known after the first one.  Called on
      * the rank that writes. */
     void (*annotations)(void *self, picture_annotations *out);
+
+    /* The physical time of the last picture, or NaN. */
+    double (*time)(void *self);
 
     /* Sends the word of the rank that writes to all.  NULL if there is one
      * rank. */

@@ -15,15 +15,20 @@ bool names_are_meant(const char *path) {
     return strchr(path, '%') != NULL;
 }
 
-/* Parses what follows a %: "d", "0Nd".  Returns its length, 0 for anything
- * else. */
+/* Whether a letter ends a number: T is that of openPMD. */
+static bool is_number(char letter) {
+    return letter == 'd' || letter == 'T';
+}
+
+/* Parses what follows a %: "d", "0Nd", or the same with T.  Returns its length,
+ * 0 for anything else. */
 static size_t read_number(const char *text, int *digits) {
-    if (text[0] == 'd') {
+    if (is_number(text[0])) {
         *digits = 0;
         return 1;
     }
     if (text[0] != '0' || text[1] < '1' || text[1] > '0' + DIGITS_MOST ||
-        text[2] != 'd')
+        !is_number(text[2]))
         return 0;
     *digits = text[1] - '0';
     return 3;
@@ -68,6 +73,24 @@ bool names_path(const frame_names *names, int64_t index, char *out,
     int length = snprintf(out, size, "%s%s%0*" PRId64 "%s", names->folder,
                           names->before, names->digits, index, names->after);
     return length >= 0 && (size_t)length < size;
+}
+
+bool names_in_set(const char *set, int64_t index, char *out, size_t size) {
+    size_t used = 0;
+    for (; *set; set++) {
+        int digits;
+        size_t length = *set == '%' ? read_number(set + 1, &digits) : 0;
+        if (*set == '%' && !length)
+            return false;
+        int more = length ? snprintf(out + used, size - used, "%0*" PRId64,
+                                     digits, index)
+                          : snprintf(out + used, size - used, "%c", *set);
+        if (more < 0 || (size_t)more >= size - used)
+            return false;
+        used += (size_t)more;
+        set += length;
+    }
+    return true;
 }
 
 /* A number has only one spelling, with zeros only up to the pattern's width, so

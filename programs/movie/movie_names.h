@@ -18,15 +18,19 @@ typedef struct frame_names {
 /* Whether a path contains a %, so that it is meant as a pattern. */
 bool names_are_meant(const char *path);
 
-/* Parses a pattern: one %d or %0Nd (N 1 to 9) in the last part of the path, %%
- * for a percent sign.  Returns NULL, or the error: the end of a sentence that
- * begins with the path. */
+/* Parses a pattern: one %d or %0Nd (N 1 to 9), or %T as openPMD writes it, in
+ * the last part of the path, %% for a percent sign.  Returns NULL, or the
+ * error: the end of a sentence that begins with the path. */
 const char *names_read(const char *path, frame_names *out);
 
 /* The path of number `index`; returns false if it needs more than `size`
  * bytes. */
 bool names_path(const frame_names *names, int64_t index, char *out,
                 size_t size);
+
+/* The name of a data set with the same number; false if it needs more than
+ * `size` bytes, or has another %. */
+bool names_in_set(const char *set, int64_t index, char *out, size_t size);
 
 /* The number in a file's name, without its folder; -1 if the name does not fit
  * the pattern. */

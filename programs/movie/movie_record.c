@@ -7,6 +7,7 @@
 #define _XOPEN_SOURCE 700
 #include "movie/movie_record.h"
 #include "run/log.h"
+#include "run/paths.h"
 #include "run/start.h"
 
 #include <errno.h>
@@ -45,13 +46,16 @@ static void print_clean(FILE *out, const char *text) {
  * input that is not a file only the name. */
 static void print_identity(FILE *out, const char *path) {
     struct stat what;
-    char real[PATH_MAX];
-    if (stat(path, &what) == 0 && realpath(path, real))
+    char real[PATH_MAX], file[PATH_MAX];
+    file_of_input(path, file, sizeof file);
+    const char *set = path + strlen(file); /* "": the file is all */
+    if (stat(file, &what) == 0 && realpath(file, real))
         fprintf(out, "of %lld %lld.%09ld ", (long long)what.st_size,
                 (long long)what.st_mtim.tv_sec, (long)what.st_mtim.tv_nsec);
     else
-        snprintf(real, sizeof real, "%s", path);
+        snprintf(real, sizeof real, "%s", file);
     print_clean(out, real);
+    print_clean(out, set);
 }
 
 /* An option that names a file (a transfer function, a mask) also records the
@@ -161,15 +165,44 @@ static bool agree_on_settings(const char **old, const char **now) {
     return begins(*old, "frame ") && begins(*now, "frame ");
 }
 
+/* Whether two lines of a frame differ only in the size of its file, which has
+ * grown, and the time of its last change. */
+static bool has_grown(const char *old, const char *now) {
+    const char *a = strstr(old, " of "), *b = strstr(now, " of ");
+    size_t ends[2] = {strcspn(old, "\n"), strcspn(now, "\n")};
+    long long sizes[2], times[2];
+    int at[2];
+    if (!a || !b || a > old + ends[0] || b > now + ends[1] ||
+        a - old != b - now || strncmp(old, now, (size_t)(a - old)) != 0 ||
+        sscanf(a, " of %lld %lld.%*d %n", &sizes[0], &times[0], &at[0]) != 2 ||
+        sscanf(b, " of %lld %lld.%*d %n", &sizes[1], &times[1], &at[1]) != 2)
+        return false;
+    a += at[0];
+    b += at[1];
+    ends[0] -= (size_t)(a - old);
+    ends[1] -= (size_t)(b - now);
+    return sizes[1] > sizes[0] && ends[0] == ends[1] &&
+           strncmp(a, b, ends[0]) == 0;
+}
+
+static int64_t count_frames(const char *text) {
+    int64_t count = 0;
+    for (; begins(text, "frame "); text += line_length(text))
+        count++;
+    return count;
+}
+
 /* Continues along the frames, each of which is made independently.  One that is
  * not kept may have changed (a broken step was repaired), and there may be more
  * than before.  `changed` is set if anything has changed. */
 static bool agree_on_frames(const char **old, const char **now,
                             const bool *kept, bool *changed) {
+    /* Steps were added to their file: those before are as they were. */
+    const bool grows = count_frames(*now) > count_frames(*old);
     for (; begins(*old, "frame ") && **now; kept++) {
         size_t length = line_length(*old), other = line_length(*now);
         bool same = length == other && strncmp(*old, *now, length) == 0;
-        if (!same && *kept)
+        if (!same && *kept && !(grows && has_grown(*old, *now)))
             return false;
         *changed |= !same;
         *old += length;

@@ -66,9 +66,36 @@ int shots_volume(shot_renderer *shots, const movie_shot *shot) {
                : done;
 }
 
+static void annotations(void *self, picture_annotations *out) {
+    const shot_renderer *shots = self;
+    const render_state *s = &shots->state;
+    *out = (picture_annotations){
+        s->opts,
+        s->drawn.whole,
+        s->view,
+        s->transfer,
+        {shots->painted.range[0], shots->painted.range[1]},
+        &s->channels};
+}
+
+/* Frames are annotated elsewhere and silently: what one has no room for is said
+ * here. */
+static void report_legend(shot_renderer *shots, const snow_image *image) {
+    const options *opts = shots->state.opts;
+    snow_context *context = NULL;
+    snow_overlay *overlay = NULL;
+    picture_annotations made;
+    if (!opts->legend || !image || open_context(opts, &context) != CONTINUE)
+        return;
+    annotations(shots, &made);
+    (void)annotations_make(&made, 0, -1, image, context, &overlay);
+    snow_overlay_free(overlay);
+    snow_context_free(context);
+}
+
 /* Prints the settings that were chosen automatically, as render does, for all
  * frames. */
-static void report_choices(const shot_renderer *shots, snow_image *image) {
+static void report_choices(shot_renderer *shots, snow_image *image) {
     const options *opts = shots->state.opts;
     char text[1024];
     render_state_choices(&shots->state, text, sizeof text);
@@ -80,6 +107,7 @@ static void report_choices(const shot_renderer *shots, snow_image *image) {
      * warns. */
     warn_picture(&shots->state, shots->state.turns ? image : NULL);
     annotations_report(opts);
+    report_legend(shots, image);
     render_state_note(&shots->state, shots->painted.range);
 }
 
@@ -117,15 +145,9 @@ static void report_picture(void *self, render_report *out) {
     *out = render_state_report(&shots->state);
 }
 
-static void annotations(void *self, picture_annotations *out) {
+static double time_of(void *self) {
     const shot_renderer *shots = self;
-    const render_state *s = &shots->state;
-    *out = (picture_annotations){
-        s->opts,
-        s->drawn.whole,
-        s->view,
-        s->transfer,
-        {shots->painted.range[0], shots->painted.range[1]}};
+    return shots->state.drawn.whole.time_value;
 }
 
 static int share_word(void *self, int word) {
@@ -141,6 +163,7 @@ movie_renderer shots_renderer(shot_renderer *shots) {
                             .depth = depth,
                             .report = report_picture,
                             .annotations = annotations,
+                            .time = time_of,
                             .share = share_word,
                             .writes = process_talks(),
                             .ranks = process_ranks()};

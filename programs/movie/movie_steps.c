@@ -3,165 +3,21 @@
 #define _XOPEN_SOURCE 700
 #include "movie/movie_steps.h"
 #include "commands/commands.h"
-#include "movie/movie_names.h"
 #include "run/log.h"
 #include "run/memory.h"
+#include "run/paths.h"
 #include "run/start.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static int fail_list(void) {
     return fail_memory("out of memory for the list of time steps; make a movie "
                        "of fewer");
-}
-
-/* Adds a copy of the path. */
-static int add_path(step_files *files, const char *path) {
-    if (files->count == files->room) {
-        int64_t room = files->room ? 2 * files->room : 64;
-        char **paths =
-            realloc(files->paths, (size_t)room * sizeof *files->paths);
-        if (!paths)
-            return fail_list();
-        files->paths = paths;
-        files->room = room;
-    }
-    char *copy = strdup(path);
-    if (!copy)
-        return fail_list();
-    files->paths[files->count++] = copy;
-    return CONTINUE;
-}
-
-void steps_free(step_files *files) {
-    for (int64_t i = 0; i < files->count; i++)
-        free(files->paths[i]);
-    free(files->paths);
-}
-
-/* The numbers of a pattern's files, in a growing list. */
-typedef struct numbers {
-    int64_t *items;
-    size_t count, room;
-} numbers;
-
-static bool add_number(numbers *list, int64_t number) {
-    if (list->count == list->room) {
-        size_t room = list->room ? 2 * list->room : 256;
-        int64_t *items = realloc(list->items, room * sizeof *items);
-        if (!items)
-            return false;
-        list->items = items;
-        list->room = room;
-    }
-    list->items[list->count++] = number;
-    return true;
-}
-
-static int by_number(const void *a, const void *b) {
-    int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-    return (x > y) - (x < y);
-}
-
-/* Finds the numbers of all existing files, in rising order. */
-static int find_numbers(const char *pattern, const frame_names *names,
-                        numbers *out) {
-    const struct dirent *entry;
-    DIR *folder = opendir(names_folder(names));
-    if (!folder) {
-        say("%s: %s; correct the folder's name", pattern, strerror(errno));
-        return SNOW_STATUS_BAD_INPUT;
-    }
-    bool good = true;
-    while (good && (entry = readdir(folder))) {
-        int64_t number = names_index(names, entry->d_name);
-        if (number >= 0)
-            good = add_number(out, number);
-    }
-    closedir(folder);
-    if (!good)
-        return fail_list();
-    if (!out->count) {
-        say("%s: no file matches this pattern; correct it", pattern);
-        return SNOW_STATUS_BAD_INPUT;
-    }
-    qsort(out->items, out->count, sizeof *out->items, by_number);
-    return CONTINUE;
-}
-
-/* Simulations may write every tenth step only, so the smallest distance between
- * two files is taken as the distance between all. */
-static int64_t step_of(const numbers *list) {
-    int64_t step = INT64_MAX;
-    for (size_t i = 1; i < list->count; i++)
-        if (list->items[i] - list->items[i - 1] < step)
-            step = list->items[i] - list->items[i - 1];
-    return step;
-}
-
-static int add_numbers(const char *pattern, const frame_names *names,
-                       const numbers *list, step_files *out) {
-    char path[PATH_MAX];
-    int64_t step = step_of(list);
-    int done = CONTINUE;
-    for (size_t i = 0; i < list->count && done == CONTINUE; i++) {
-        if (i && list->items[i] - list->items[i - 1] != step) {
-            names_path(names, list->items[i - 1] + step, path, sizeof path);
-            say("%s: this step of %s is missing; create it, or name the files "
-                "one by one",
-                path, pattern);
-            return SNOW_STATUS_BAD_INPUT;
-        }
-        if (names_path(names, list->items[i], path, sizeof path))
-            done = add_path(out, path);
-    }
-    return done;
-}
-
-static int add_pattern(const char *pattern, step_files *out) {
-    frame_names names;
-    numbers list = {NULL, 0, 0};
-    const char *fault = names_read(pattern, &names);
-    if (fault)
-        return fail_usage("%s: %s", pattern, fault);
-    int done = find_numbers(pattern, &names, &list);
-    if (done == CONTINUE)
-        done = add_numbers(pattern, &names, &list, out);
-    free(list.items);
-    return done;
-}
-
-/* A missing file must be found now, not in the ninetieth minute of the
- * movie. */
-static int add_file(const char *path, step_files *out) {
-    struct stat what;
-    if (strcmp(path, "-") == 0)
-        return fail_usage("movie: cannot read standard input, since each file "
-                          "is read twice; name files");
-    if (strncmp(path, "phantom:", 8) != 0 && stat(path, &what) != 0) {
-        say("%s: %s; a movie needs all of its steps", path, strerror(errno));
-        return SNOW_STATUS_BAD_INPUT;
-    }
-    return add_path(out, path);
-}
-
-int steps_find(const options *opts, step_files *out) {
-    int done = CONTINUE;
-    for (int i = 0; i < opts->operand_count && done == CONTINUE; i++) {
-        const char *path = opts->operands[i];
-        struct stat what;
-        done = names_are_meant(path) && stat(path, &what) != 0
-                   ? add_pattern(path, out)
-                   : add_file(path, out);
-    }
-    return done;
 }
 
 /* Whether the transfer function depends on the options alone: a preset with
@@ -176,10 +32,23 @@ static bool look_is_fixed(const options *opts) {
            (strncmp(name, "ct-", 3) == 0 && range == SNOW_RANGE_AUTO);
 }
 
+static bool names_labels(const char *preset) {
+    return snow_preset_from_name(preset) == snow_preset_from_name("labels");
+}
+
+/* The options of a step, and of one of the channels that are drawn. */
+static options options_of(const render_state *s, const movie_shot *shot,
+                          int channel) {
+    options step = render_state_step(s, shot->time);
+    if (channel < s->channels.list.count)
+        step.channel = s->channels.list.picks[channel].index;
+    return step;
+}
+
 /* Reads what the header says about a shot's volume. */
 static int inspect(const shot_renderer *shots, const movie_shot *shot,
-                   snow_volume_info *out) {
-    options step = render_state_step(&shots->state, shot->time);
+                   int channel, snow_volume_info *out) {
+    options step = options_of(&shots->state, shot, channel);
     snow_volume_options data = data_options(&step);
     snow_status status =
         snow_volume_inspect(shots->state.context, shot->path, &data, out);
@@ -190,8 +59,10 @@ static int inspect(const shot_renderer *shots, const movie_shot *shot,
 /* The last number in a file's name before its suffix: 10 for run_0010.nrrd;
  * `usual` if there is none. */
 static int64_t number_in(const char *path, int64_t usual) {
-    const char *slash = strrchr(path, '/');
-    const char *name = slash ? slash + 1 : path;
+    char file[PATH_MAX];
+    file_of_input(path, file, sizeof file);
+    const char *slash = strrchr(file, '/');
+    const char *name = slash ? slash + 1 : file;
     const char *end = strrchr(name, '.');
     int64_t number = usual;
     while (*name && name != end) {
@@ -203,21 +74,42 @@ static int64_t number_in(const char *path, int64_t usual) {
     return number;
 }
 
+/* The steps of --time A:B among `*count`: from `*from` on. */
+static int take_range(const options *opts, int64_t *from, int64_t *count) {
+    int64_t end = opts->time_end;
+    if (!opts->time_range)
+        return CONTINUE;
+    *from = opts->time < 0 ? *count + opts->time : opts->time;
+    end = end == INT64_MAX ? *count : end < 0 ? *count + end : end;
+    if (*from < 0 || end > *count || *from >= end)
+        return fail_usage("--time: there are %" PRId64
+                          " steps, counted from 0; give the first one and one "
+                          "past the last, such as 0:%" PRId64,
+                          *count, *count);
+    *count = end - *from;
+    return CONTINUE;
+}
+
 int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
     const options *opts = shots->state.opts;
     movie_shot first = {files->paths[0], opts->time, opts->azimuth, 0};
     out->count = files->count;
-    const bool given = options_given(opts, "time");
+    out->steps = true;
+    const bool given = options_given(opts, "time") && !opts->time_range;
     shots->state.steps = true;
     shots->state.each_time = files->count == 1 && !given;
     shots->whole_files = files->count > 1 && !given;
     if (shots->state.each_time) {
         snow_volume_info info = {.size = sizeof info};
-        int done = inspect(shots, &first, &info);
+        int done = inspect(shots, &first, 0, &info);
         if (done != CONTINUE)
             return done;
         out->count = info.times;
     }
+    int64_t from = 0;
+    int done = take_range(opts, &from, &out->count);
+    if (done != CONTINUE)
+        return done;
     out->together = out->count > 1 && !look_is_fixed(opts);
     out->shots = calloc((size_t)out->count, sizeof *out->shots);
     if (!out->shots)
@@ -226,10 +118,10 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
         movie_shot *shot = &out->shots[i];
         *shot = first;
         if (files->count > 1) {
-            shot->path = files->paths[i];
-            shot->step = number_in(shot->path, i);
+            shot->path = files->paths[from + i];
+            shot->step = number_in(shot->path, from + i);
         } else {
-            shot->time = given ? first.time : i;
+            shot->time = given ? first.time : from + i;
             shot->step = shot->time;
         }
     }
@@ -243,6 +135,9 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
 #define POOL_VALUES (INT64_C(1) << 22)
 #define STEP_VALUES 1024
 
+/* The most labels of a look. */
+#define LABELS_MOST 4096
+
 /* What a rank has read: the values of its share of a step, and their smallest
  * and largest. */
 typedef struct step_values {
@@ -254,10 +149,15 @@ typedef struct step_values {
 typedef struct value_pool {
     double *values;
     int64_t count;
-    double *step;      /* values of the step that this rank has read */
-    step_values given; /* describes `step` */
-    int64_t quota;     /* values of one step, without its extremes */
-    int group;         /* ranks that read a step together, one slab each */
+    double *step;        /* values of the step that this rank has read */
+    step_values given;   /* describes `step` */
+    int64_t quota;       /* values of one step, without its extremes */
+    int group;           /* ranks that read a step together, one slab each */
+    int channel;         /* of those that are drawn */
+    snow_volume *volume; /* the step, if this rank has read all of it */
+    bool labelled;       /* all steps so far are drawn as labels: */
+    snow_label *labels;  /* of all, and behind them room for those of one */
+    int64_t label_count;
 } value_pool;
 
 static int64_t common_factor(int64_t a, int64_t b) {
@@ -321,6 +221,10 @@ static int look_at_pool(render_state *s, const snow_volume_info *step,
     snow_volume_info info = {
         .size = sizeof info, .dims = {1, 1, 1}, .type = SNOW_TYPE_FLOAT64};
     int axes = 0;
+    /* Values alone do not show that this is no computed field. */
+    if (step->type < SNOW_TYPE_FLOAT32 || step->medical ||
+        strcmp(step->format, "mrc") == 0)
+        snprintf(info.modality, sizeof info.modality, "OT");
     for (int i = 0; i < 3; i++)
         axes += step->dims[i] > 1;
     for (int i = 1; i < axes; i++)
@@ -334,8 +238,59 @@ static int look_at_pool(render_state *s, const snow_volume_info *step,
         snow_volume_wrap(s->context, &info, pool->values, &volume);
     if (status != SNOW_STATUS_OK)
         return fail_status(s->context, status);
-    int done = open_look(s->context, s->opts, volume, &s->transfer);
+    const int n = pool->channel;
+    if (s->channels.list.count)
+        status =
+            channels_look(s->opts, step, &s->channels.list.picks[n], volume,
+                          n ? &s->channels.looks[n] : &s->transfer);
+    int done =
+        s->channels.list.count
+            ? (status == SNOW_STATUS_OK ? CONTINUE
+                                        : fail_status(s->context, status))
+            : open_look(s->context, s->opts, volume, &s->transfer);
     snow_volume_close(volume);
+    return done;
+}
+
+/* The same for a volume that consists of the labels, one voxel each: a sample
+ * would miss some.  A table of the options names them again. */
+static int look_at_labels(render_state *s, const value_pool *pool) {
+    static options as_labels; /* large */
+    const snow_volume_options data = {
+        .size = sizeof data, .label_table = data_options(s->opts).label_table};
+    const size_t room = 128 + (size_t)pool->label_count * 320;
+    char *text = malloc(room);
+    size_t used = 0;
+    int named = 0;
+    if (!text)
+        return fail_list();
+#define PUT(...) used += (size_t)snprintf(text + used, room - used, __VA_ARGS__)
+    PUT("NRRD0004\ntype: int64\ndimension: 3\nsizes: %" PRId64
+        " 1 1\nencoding: ascii\n",
+        pool->label_count);
+    for (int64_t n = 0; n < pool->label_count && !data.label_table; n++) {
+        const snow_label *label = &pool->labels[n];
+        if (!*label->name)
+            continue;
+        PUT("Segment%d_LabelValue:=%.0f\nSegment%d_Name:=%s\n", named,
+            label->value, named, label->name);
+        PUT("Segment%d_Color:=%.9g %.9g %.9g\n", named, label->color[0],
+            label->color[1], label->color[2]);
+        named++;
+    }
+    for (int64_t n = 0; n < pool->label_count; n++)
+        PUT("\n%.0f", pool->labels[n].value);
+#undef PUT
+    snow_volume *volume = NULL;
+    snow_status status = snow_volume_open_memory(s->context, "steps.nrrd", text,
+                                                 used, &data, &volume);
+    as_labels = *s->opts;
+    as_labels.preset = "labels";
+    int done = status == SNOW_STATUS_OK
+                   ? open_look(s->context, &as_labels, volume, &s->transfer)
+                   : fail_status(s->context, status);
+    snow_volume_close(volume);
+    free(text);
     return done;
 }
 
@@ -361,9 +316,9 @@ static int read_share(shot_renderer *shots, const movie_shot *shot, int member,
     snow_volume *volume = NULL;
     snow_volume_info whole = {.size = sizeof whole};
     int64_t slab[2];
-    options step = render_state_step(s, shot->time);
+    options step = options_of(s, shot, pool->channel);
     snow_volume_options data = data_options(&step);
-    int done = inspect(shots, shot, &whole);
+    int done = inspect(shots, shot, pool->channel, &whole);
     if (done == CONTINUE)
         done = shots_check(shots, shot->path, &whole);
     if (done != CONTINUE)
@@ -387,7 +342,7 @@ static int read_step(shot_renderer *shots, const movie_shot *shot,
                      value_pool *pool) {
     render_state *s = &shots->state;
     snow_volume *volume = NULL;
-    options step = render_state_step(s, shot->time);
+    options step = options_of(s, shot, pool->channel);
     snow_volume_options data = data_options(&step);
     int done = memory_check(&step, shot->path, &data);
     if (done == CONTINUE)
@@ -396,7 +351,7 @@ static int read_step(shot_renderer *shots, const movie_shot *shot,
         done = shots_check(shots, shot->path, snow_volume_get_info(volume));
     if (done == CONTINUE)
         pool_slab(pool, snow_volume_get_info(volume), 0, volume);
-    snow_volume_close(volume);
+    pool->volume = volume;
     return done;
 }
 
@@ -422,13 +377,71 @@ static int append_share(value_pool *pool, int rank, double ends[2]) {
                : fail_status(snow_comm_context(comm), status);
 }
 
-static int append_step(value_pool *pool, int group) {
+#define SLAB ((uint64_t)1 << 20)
+
+/* The labels of a step's own look; of a step that is shared one rank reads all,
+ * slab by slab. */
+static int find_labels(render_state *s, const movie_shot *shot,
+                       value_pool *pool, int64_t *count) {
+    const options step = render_state_step(s, shot->time);
+    const snow_volume_options data = data_options(&step);
+    snow_status status = SNOW_STATUS_OK;
+    snow_transfer *own = NULL;
+    const snow_label *label;
+    if (!pool->volume)
+        status = snow_volume_open_streamed(s->context, shot->path, &data, SLAB,
+                                           &pool->volume);
+    int done = status == SNOW_STATUS_OK
+                   ? open_look(s->context, &step, pool->volume, &own)
+                   : fail_status(s->context, status);
+    while (done == CONTINUE && *count < LABELS_MOST &&
+           (label = snow_transfer_label(own, (size_t)*count)))
+        pool->labels[LABELS_MOST + (*count)++] = *label;
+    snow_transfer_free(own);
+    return done;
+}
+
+/* Adds what a step has; one that is no labels ends the search. */
+static int append_labels(render_state *s, const movie_shot *shot, int rank,
+                         value_pool *pool) {
+    snow_label *found = pool->labels + LABELS_MOST;
+    snow_comm *comm = process_comm();
+    int64_t count = 0;
+    snow_status status = SNOW_STATUS_OK;
+    int done = CONTINUE;
+    if (rank == process_rank())
+        done = find_labels(s, shot, pool, &count);
+    done = process_agree(done);
+    if (comm && done == CONTINUE)
+        status = snow_comm_broadcast(comm, &count, sizeof count, rank);
+    if (comm && done == CONTINUE && status == SNOW_STATUS_OK)
+        status = snow_comm_broadcast(comm, found, (size_t)count * sizeof *found,
+                                     rank);
+    pool->labelled = count > 0;
+    for (int64_t n = 0; n < count; n++) {
+        int64_t at = 0;
+        while (at < pool->label_count &&
+               pool->labels[at].value != found[n].value)
+            at++;
+        if (at < LABELS_MOST)
+            pool->labels[at] = found[n];
+        pool->label_count += at == pool->label_count && at < LABELS_MOST;
+    }
+    return status == SNOW_STATUS_OK
+               ? done
+               : fail_status(snow_comm_context(comm), status);
+}
+
+static int append_step(render_state *s, const movie_shot *shot, int group,
+                       value_pool *pool) {
     double ends[2] = {NAN, NAN};
     int done = CONTINUE;
     for (int member = 0; member < pool->group && done == CONTINUE; member++)
         done = append_share(pool, group * pool->group + member, ends);
     pool->values[pool->count++] = ends[0];
     pool->values[pool->count++] = ends[1];
+    if (done == CONTINUE && pool->labelled && ends[0] < ends[1])
+        done = append_labels(s, shot, group * pool->group, pool);
     return done;
 }
 
@@ -449,7 +462,10 @@ static int pool_round(const shot_list *list, int64_t first,
     done = process_agree(done);
     for (int group = 0; group < groups && first + group < list->count; group++)
         if (done == CONTINUE)
-            done = append_step(pool, group);
+            done = append_step(&shots->state, &list->shots[first + group],
+                               group, pool);
+    snow_volume_close(pool->volume);
+    pool->volume = NULL;
     return done;
 }
 
@@ -472,7 +488,7 @@ static int choose_group(const options *opts, const snow_volume_info *step,
 static int pool_steps(const shot_list *list, shot_renderer *shots,
                       value_pool *pool) {
     snow_volume_info first = {.size = sizeof first};
-    int done = inspect(shots, &list->shots[0], &first);
+    int done = inspect(shots, &list->shots[0], pool->channel, &first);
     if (done == CONTINUE)
         done = shots_check(shots, list->shots[0].path, &first);
     done = process_agree(done);
@@ -484,30 +500,62 @@ static int pool_steps(const shot_list *list, shot_renderer *shots,
         done = pool_round(list, i, shots, pool);
     }
     hear_warnings(shots->state.opts, shots->state.context, true);
-    return done == CONTINUE
-               ? process_agree(look_at_pool(&shots->state, &first, pool))
-               : done;
+    if (done != CONTINUE)
+        return done;
+    bool labels = pool->labelled && pool->label_count > 0;
+    return process_agree(labels ? look_at_labels(&shots->state, pool)
+                                : look_at_pool(&shots->state, &first, pool));
 }
 
-int steps_look(const shot_list *list, shot_renderer *shots) {
-    if (!list->together)
-        return CONTINUE;
-    value_pool pool = {.quota = POOL_VALUES / list->count};
+/* The channels that are drawn, by the first step. */
+static int choose_channels(const shot_list *list, shot_renderer *shots) {
+    render_state *s = &shots->state;
+    snow_volume_info info = {.size = sizeof info};
+    int done = inspect(shots, &list->shots[0], 0, &info);
+    if (done == CONTINUE)
+        done = channels_choose(s->opts, &info, channels_hinder(s->opts),
+                               &s->channels);
+    return process_agree(done);
+}
+
+static int look_at_steps(const shot_list *list, shot_renderer *shots,
+                         int channel) {
+    const options *opts = shots->state.opts;
+    value_pool pool = {.quota = POOL_VALUES / list->count,
+                       .channel = channel,
+                       .labelled = shots->state.channels.list.count ? false
+                                   : opts->preset ? names_labels(opts->preset)
+                                                  : !opts->tf};
     if (pool.quota < STEP_VALUES)
         pool.quota = STEP_VALUES;
-    /* All steps are opened again later and cause the same notes.  They are
-     * printed now, except if ranks read steps that rank 0 does not see now. */
-    const bool later = process_ranks() > 1;
-    hear_warnings(shots->state.opts, shots->state.context, !later);
     int64_t room = pool.quota + 2;
     pool.values =
         malloc((size_t)(room * (list->count + 1)) * sizeof *pool.values);
-    int done = process_agree(pool.values ? CONTINUE : fail_list());
+    pool.labels = malloc(2 * LABELS_MOST * sizeof *pool.labels);
+    int done =
+        process_agree(pool.values && pool.labels ? CONTINUE : fail_list());
     if (done == CONTINUE) {
         pool.step = pool.values + room * list->count;
         done = pool_steps(list, shots, &pool);
     }
     free(pool.values);
-    hear_warnings(shots->state.opts, shots->state.context, later);
+    free(pool.labels);
+    return done;
+}
+
+int steps_look(const shot_list *list, shot_renderer *shots) {
+    render_state *s = &shots->state;
+    if (!list->together)
+        return CONTINUE;
+    /* All steps are opened again later and cause the same notes.  They are
+     * printed now, except if ranks read steps that rank 0 does not see now. */
+    const bool later = process_ranks() > 1;
+    hear_warnings(s->opts, s->context, !later);
+    int done = choose_channels(list, shots), n = 0;
+    do
+        if (done == CONTINUE)
+            done = look_at_steps(list, shots, n);
+    while (++n < s->channels.list.count && done == CONTINUE);
+    hear_warnings(s->opts, s->context, later);
     return done;
 }

@@ -3,20 +3,8 @@
 #ifndef MOVIE_STEPS_H
 #define MOVIE_STEPS_H
 
+#include "movie/movie_files.h"
 #include "movie/movie_render.h"
-
-/* The files of the movie, in order: each operand is a file, or a pattern of
- * numbered ones (run_%04d.nrrd). */
-typedef struct step_files {
-    char **paths;
-    int64_t count, room;
-} step_files;
-
-/* Finds the files.  A pattern stands for all existing files.  A missing number
- * between them is an error, as is a missing file.  Returns CONTINUE or an exit
- * code. */
-int steps_find(const options *opts, step_files *out);
-void steps_free(step_files *files);
 
 /* Makes one shot for each file.  A single file gives one shot for each time
  * step in it, unless --time selects one; the file is then inspected.  Returns

@@ -135,6 +135,7 @@ static int take_key(options *out, const verb_row *verb, const char *key,
                     const json_t *value) {
     bool nothing =
         json_is_false(value) || strcmp(key, "version") == 0 ||
+        strcmp(key, "reread") == 0 || /* of simulations */
         strcmp(key, "verb") == 0 ||
         (strcmp(key, "perspective") == 0 && json_number_value(value) == 0);
     if (nothing || gives_way(out, key))
@@ -212,6 +213,9 @@ static int take_file(options *out, const verb_row *verb) {
     config_paths_read(tree, out->config);
     fit_depth(out, verb, tree);
     done = config_take_tree(out, verb, tree);
+    const json_t *overlay = json_object_get(tree, "overlay");
+    if (overlay && !out->overlay)
+        out->overlay_hidden = config_text(out, "overlay", overlay);
     json_decref(tree);
     return done;
 }
@@ -242,8 +246,8 @@ const verb_row *config_verb(int argc, char **argv) {
         verb = name ? verb_named(name) : NULL;
         json_decref(tree);
     }
-    return verb && verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE |
-                                VERB_SLICE)
+    return verb && verb->bit &
+                       (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE | VERB_SLICE)
                ? verb
                : verb_of(VERB_RENDER);
 }

@@ -32,6 +32,10 @@ int config_check(const options *opts);
 void config_note(const options *opts, const snow_transfer *transfer,
                  snow_shade shade, const char *view, const double painted[2]);
 
+/* The same of channels; `view` NULL: of a slice. */
+void config_note_channels(const options *opts, const channel_list *list,
+                          snow_shade shade, const char *view);
+
 /* The same for a slice across an axis; `transfer` NULL: no colours. */
 void config_note_slice(const options *opts, const snow_transfer *transfer,
                        const char *axis, int64_t index);

@@ -84,8 +84,8 @@ static void convert_text(json_t *text, const char *folder, convert *how) {
 }
 
 static void convert_tree(json_t *tree, const char *config, convert *how) {
-    static const char *const keys[] = {"input", "output", "depth", "tf",
-                                       "mask"};
+    static const char *const keys[] = {"input", "output",      "depth",  "tf",
+                                       "mask",  "label-table", "overlay"};
     char folder[PATH_MAX];
     folder_of(config, folder);
     if (!*folder) /* the working folder */

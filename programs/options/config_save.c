@@ -19,7 +19,16 @@
 #include <string.h>
 
 static void fill_data(const options *opts, snow_recipe *out) {
+    static char text[1024];
     out->data = data_options(opts);
+    if (opts->channels.count) {
+        channels_text(&opts->channels, text, sizeof text);
+        out->channels = text;
+        out->data.channel = 0;
+        out->data.channel_given = false;
+    }
+    out->data.labels = opts->labels;
+    out->data.label_table = opts->label_table;
     if (!opts->component && !opts->channel && out->data.channel_given)
         out->data.component = "0"; /* a recipe has no channel 0 */
 }
@@ -29,6 +38,7 @@ static void fill_look(const options *opts, snow_recipe *out) {
     out->colormap = opts->colormap;
     out->tf = opts->tf;
     out->log = opts->log;
+    out->symlog = opts->symlog;
     const range_value range = options_range(opts);
     out->range = range.kind;
     out->low = range.low;
@@ -42,6 +52,18 @@ static void fill_look(const options *opts, snow_recipe *out) {
     out->opacity_per_mm = strcmp(opts->opacity_unit, "mm") == 0;
     out->opacity_per_voxel =
         !out->opacity_per_mm && options_given(opts, "opacity-unit");
+}
+
+static void fill_overlay(const options *opts, snow_recipe *out) {
+    out->overlay = opts->overlay;
+    out->overlay_preset = opts->overlay_preset;
+    out->overlay_colormap = opts->overlay_colormap;
+    out->overlay_range = opts->overlay_range.kind;
+    out->overlay_low = opts->overlay_range.low;
+    out->overlay_high = opts->overlay_range.high;
+    out->overlay_opacity_count = opts->overlay_opacity.count;
+    memcpy(out->overlay_opacities, opts->overlay_opacity.points,
+           opts->overlay_opacity.count * sizeof *out->overlay_opacities);
 }
 
 static void fill_place(const place_value *place, double out[3]) {
@@ -84,11 +106,19 @@ static void fill_recipe(const options *opts, const verb_row *verb,
     out->image.bits = options_bits(opts);
     fill_data(opts, out);
     fill_look(opts, out);
+    fill_overlay(opts, out);
     fill_view(opts, out);
     out->no_labels = opts->no_labels;
     out->legend = opts->legend;
     out->scale_bar = opts->scale_bar;
     out->time_label = opts->time_label;
+    out->title = opts->title;
+    out->legend_title = opts->legend_title;
+    out->value_unit = opts->unit;
+    out->annotate = opts->annotate;
+    out->time_format = opts->time_format;
+    out->outline = opts->outline;
+    out->axes = opts->axes;
     fill_settings(opts, &out->settings);
 }
 
@@ -132,14 +162,15 @@ static json_t *recipe_tree(snow_context *context, const snow_recipe *recipe) {
 
 /* What a look of the histogram and the default view came to. */
 static struct chosen {
-    json_t *preset, *colormap, *range, *opacity, *shade, *view, *axis, *at;
+    json_t *preset, *colormap, *range, *opacity, *symlog, *shade, *view, *axis,
+        *at, *channel;
 } chosen;
 
 /* Whether the transfer function has the colours of a map over its range. */
 static bool has_colors_of(const snow_look *look, size_t map) {
     snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
     size_t count = snow_colormap_points(map, points, SNOW_COLORMAP_POINTS_MAX);
-    if (count != 2 || look->color_count != 2)
+    if (count != look->color_count)
         return false;
     for (size_t i = 0; i < count; i++)
         points[i].value = look->colors[i].value;
@@ -182,8 +213,12 @@ static void note_look(const options *opts, const snow_transfer *transfer) {
     snow_look look = {.size = sizeof look};
     if (snow_transfer_get_look(transfer, &look) != SNOW_STATUS_OK)
         return;
+    if (look.symlog > 0) /* from where it was chosen */
+        chosen.symlog = json_real(look.symlog);
     if (look.name) {
         chosen.preset = json_string(look.name);
+        if (strcmp(look.name, "signed") == 0)
+            note_range(opts, transfer);
         return;
     }
     if (!map_of(opts, &look) || look.opacity_count > SNOW_RECIPE_POINTS_MAX)
@@ -211,6 +246,18 @@ void config_note(const options *opts, const snow_transfer *transfer,
         chosen.view = json_string(view);
 }
 
+/* A list says all of the look. */
+void config_note_channels(const options *opts, const channel_list *list,
+                          snow_shade shade, const char *view) {
+    char text[1024];
+    channels_text(list, text, sizeof text);
+    chosen.channel = json_string(text);
+    if (view && !options_given(opts, "shade"))
+        chosen.shade = json_string(shade == SNOW_SHADE_NONE ? "none" : "phong");
+    if (view && !opts->position.given)
+        chosen.view = json_string(view);
+}
+
 void config_note_slice(const options *opts, const snow_transfer *transfer,
                        const char *axis, int64_t index) {
     char at[24];
@@ -218,8 +265,12 @@ void config_note_slice(const options *opts, const snow_transfer *transfer,
     chosen.axis = json_string(axis);
     chosen.at = json_string(opts->at ? opts->at : at);
     if (transfer && !opts->preset && !opts->tf && !(opts->shift < 0) &&
-        !(opts->shift > 0))
-        note_range(opts, transfer);
+        !(opts->shift > 0)) {
+        if (snow_transfer_label(transfer, 0))
+            chosen.preset = json_string("labels");
+        else
+            note_range(opts, transfer);
+    }
 }
 
 static void set_chosen(json_t *tree) {
@@ -228,8 +279,9 @@ static void set_chosen(json_t *tree) {
         json_t **value;
     } rows[] = {{"preset", &chosen.preset}, {"colormap", &chosen.colormap},
                 {"range", &chosen.range},   {"opacity", &chosen.opacity},
-                {"shade", &chosen.shade},   {"view", &chosen.view},
-                {"axis", &chosen.axis},     {"at", &chosen.at}};
+                {"symlog", &chosen.symlog}, {"shade", &chosen.shade},
+                {"view", &chosen.view},     {"axis", &chosen.axis},
+                {"at", &chosen.at},         {"channel", &chosen.channel}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (*rows[i].value)
             json_object_set_new(tree, rows[i].key, *rows[i].value);

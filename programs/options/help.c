@@ -95,7 +95,7 @@ static int print_verb_page(const verb_row *row) {
     }
     printf("snowglass %s %s\n%s\n", row->name, row->usage, row->text);
     if (row->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE | VERB_SLICE |
-                    VERB_SERVE)) {
+                    VERB_SERVE | VERB_EXPORT)) {
         help_brief(row);
         return finish_stdout();
     }
@@ -168,20 +168,27 @@ static int refuse_word(const char *word) {
     return fail_usage("%s: %s; topics:%s", word, what, names);
 }
 
-/* The page of a topic or a verb, and that of an option of the same name which
- * the page does not list. */
-static int print_page(int which, const verb_row *verb, const option_row *row) {
+/* The page of a topic or a verb, and those of an option, which the page does
+ * not list, and of a preset of the same name. */
+static int print_page(int which, const verb_row *verb, const option_row *row,
+                      int preset) {
     int done = verb ? print_verb_page(verb) : print_topic_page((topic)which);
     bool listed = !row || (verb ? (row->verbs & verb->bit) != 0
                                 : (int)row->topic == which);
-    if (listed || done != SNOW_STATUS_OK)
+    if (done != SNOW_STATUS_OK)
         return done;
-    printf("\n");
-    help_option_page(row);
+    if (!listed) {
+        printf("\n");
+        help_option_page(row);
+    }
+    if (preset >= 0) {
+        printf("\n");
+        help_preset_page((size_t)preset);
+    }
     return finish_stdout();
 }
 
-/* No topic has the name of a verb, and no option that of a preset. */
+/* No topic has the name of a verb. */
 int help_print(const char *word, const verb_row *verb) {
     if (!word)
         return verb ? print_verb_page(verb) : print_overview();
@@ -189,7 +196,7 @@ int help_print(const char *word, const verb_row *verb) {
     int which = topic_named(word), preset = snow_preset_from_name(word);
     const verb_row *named = verb_named(word);
     if (which >= 0 || named)
-        return print_page(which, named, row);
+        return print_page(which, named, row, preset);
     if (row)
         help_option_page(row);
     else if (preset >= 0)

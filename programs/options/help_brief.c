@@ -11,9 +11,9 @@ enum {
     STILL = VERB_RENDER | VERB_SLICE,
     MOVIES = VERB_TURNTABLE | VERB_MOVIE,
     TURNED = RENDER | MOVIES,
-    SEEN = TURNED | VERB_SERVE,
+    SEEN = TURNED | VERB_SERVE | VERB_EXPORT,
     WRITTEN = STILL | MOVIES,
-    ANY = WRITTEN | VERB_SERVE
+    ANY = WRITTEN | VERB_SERVE | VERB_EXPORT
 };
 
 /* The common options, with shorter texts than in the table. */
@@ -24,7 +24,7 @@ static const struct {
     {STILL, "output", "file of the picture; its ending is the format"},
     {MOVIES, "output",
      "the movie, such as turn.mp4, or single frames: f_%04d.png"},
-    {WRITTEN, "overwrite", "replace the file if it exists"},
+    {WRITTEN | VERB_EXPORT, "overwrite", "replace the file if it exists"},
     {TURNED, "size", "size in pixels (default 512x512)"},
     {VERB_SLICE, "size", "size in pixels (default: that of the slice)"},
     {ANY, "preset", "look for a kind of data: ct-bone; help preset lists all"},
@@ -65,6 +65,10 @@ static const struct {
      {"snowglass serve head.nii.gz",
       "snowglass serve ct.nrrd --preset ct-bone --port 8000",
       "snowglass serve run.nrrd --socket $XDG_RUNTIME_DIR/snowglass.sock"}},
+    {VERB_EXPORT,
+     {"snowglass export head.html head.nii.gz",
+      "snowglass export knee.html dicom/ --preset ct-bone",
+      "snowglass export part.html run.h5 --crop 0:256,0:256,0:256"}},
 };
 
 /* The options that `render` does not have. */
@@ -84,7 +88,7 @@ static void print_examples(const verb_row *verb) {
 }
 
 void help_brief(const verb_row *verb) {
-    if (verb->bit != VERB_RENDER)
+    if (verb->bit != VERB_RENDER && verb->bit != VERB_EXPORT) /* have none */
         print_own(verb);
     printf("\ncommon options:\n");
     for (size_t i = 0; i < sizeof common / sizeof *common; i++)

@@ -127,6 +127,18 @@ void help_preset_page(size_t index) {
     printf("--preset %s: ", name);
     help_wrapped(snow_preset_description(index), 11 + (int)strlen(name), 2);
     printf("\n");
+    if (!look->color_count) { /* made of a volume */
+        help_wrapped(
+            "colours:  those of the file or of --label-table, else one "
+            "of a fixed palette for each number",
+            0, 10);
+        help_wrapped(
+            "opacity:  1 of every label but 0; --opacity 1:0.3,2:1 sets "
+            "others, each at its number",
+            0, 10);
+        printf("\nuse it:   snowglass INPUT -o OUT.png --preset %s\n", name);
+        return;
+    }
     print_range(look);
     print_points(look->per_mm ? "opacity of a millimetre:"
                               : "opacity of a voxel:",

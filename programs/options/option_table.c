@@ -22,7 +22,8 @@ enum {
     MOVIES = VERB_TURNTABLE | VERB_MOVIE,
     WRITTEN = VERB_RENDER | MOVIES,
     SERVE = VERB_SERVE,
-    RENDER = WRITTEN | SERVE, /* all verbs that render */
+    EXPORT = VERB_EXPORT,
+    RENDER = WRITTEN | SERVE | EXPORT, /* all verbs that render */
     INFO = VERB_INFO,
     PHANTOM = VERB_PHANTOM,
     COMPARE = VERB_COMPARE,
@@ -58,7 +59,7 @@ const option_row option_table[] = {
      "(default auto)"},
     {"bits", 0, "8|16", TOPIC_OUTPUT, FILED, read_choice, FIELD(bits), 0, 0,
      "", "bits per channel of a PNG (default 8)"},
-    {"overwrite", 'y', NULL, TOPIC_OUTPUT, FILED | PHANTOM | CONVERT | TF,
+    {"overwrite", 'y', NULL, TOPIC_OUTPUT, FILED | PHANTOM | CONVERT | TF | EXPORT,
      read_flag,
      FIELD(overwrite), 0, 0, "",
      "replace existing files of --output, --depth and --stats (default: "
@@ -168,7 +169,13 @@ const option_row option_table[] = {
      ".csv, 3D Slicer .vp or .xml, ParaView or niivue .json, Amrvis .pal; "
      "FILE#NAME selects one of several"},
     {"log", 0, NULL, TOPIC_LOOK, LOOKED, read_flag, FIELD(log), 0, 0, "",
-     "logarithmic scale for values; values of 0 and below are transparent"},
+     "logarithmic scale for values; values of 0 and below are transparent, and "
+     "a note says how many these are"},
+    {"symlog", 0, "[X]", TOPIC_LOOK, LOOKED, read_symlog, FIELD(symlog), 1e-300,
+     1e300, "",
+     "symmetric logarithmic scale for values of both signs: linear from -X to "
+     "X, logarithmic beyond (default for X: about a thousandth of the largest "
+     "magnitude, which is printed)"},
 
     {"quality", 0, "draft|normal|high", TOPIC_QUALITY, WRITTEN, read_choice,
      FIELD(quality), 0, 0, "",
@@ -225,6 +232,22 @@ const option_row option_table[] = {
     {"time-label", 0, NULL, TOPIC_LABELS, MOVIE, read_flag, FIELD(time_label),
      0, 0, "",
      "draw the number of the time step, from the file's name or in the file"},
+    {"title", 0, "TEXT", TOPIC_LABELS, PICTURE, read_text, FIELD(title), 0, 0, "",
+     "draw a line of text in the upper left"},
+    {"legend-title", 0, "TEXT", TOPIC_LABELS, PICTURE, read_text, FIELD(legend_title), 0, 0, "",
+     "the quantity that the colour bar shows (default: the file's)"},
+    {"unit", 0, "TEXT", TOPIC_LABELS, PICTURE, read_text, FIELD(unit), 0, 0, "",
+     "the unit of the values beside it (default: the file's, or HU)"},
+    {"annotate", 0, "time|step", TOPIC_LABELS, PICTURE, read_choice, FIELD(annotate), 0, 0, "",
+     "time: draw the physical time of the step, or its number where the file "
+     "has no time; step: draw its number"},
+    {"time-format", 0, "FORMAT", TOPIC_LABELS, PICTURE, read_text, FIELD(time_format), 0, 0, "",
+     "how --annotate time writes it: one number as in printf (\"t = %.2f s\"), "
+     "or a date (%Y-%m-%d %H:%M:%S) where the unit counts from one"},
+    {"outline", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(outline), 0, 0, "",
+     "draw the edges of the volume's box, which is framed then"},
+    {"axes", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(axes), 0, 0, "",
+     "draw them with ticks: coordinates in the unit of the file"},
 
     {"dims", 0, "XxYxZ", TOPIC_DATA, INPUT | PHANTOM, read_dims, FIELD(dims), 0,
      0, "", "voxels of raw data or of a phantom, x fastest"},
@@ -241,18 +264,27 @@ const option_row option_table[] = {
      0, 0, "", "byte order of raw data (default little)"},
     {"offset", 0, "BYTES", TOPIC_DATA, INPUT, read_count, FIELD(offset), 0, 0,
      "", "bytes to skip before the voxels of raw data (default 0)"},
-    {"time", 0, "N", TOPIC_DATA, INPUT, read_integer, FIELD(time), 0, 9e15, "",
-     "time step of a file with several, from 0 (default 0; movie: all)"},
+    {"time", 0, "N|last|A:B|TIME", TOPIC_DATA, INPUT, read_time, FIELD(time), 0,
+     0, "",
+     "time step of a file or series with several: from 0, or from -1, which is "
+     "last, at the end; a movie takes A up to, not including, B; a number with "
+     "a point or a unit, such as 0.3s, takes the step nearest to that physical "
+     "time (default 0; movie: all)"},
     {"dataset", 0, "PATH", TOPIC_DATA, INPUT, read_text, FIELD(dataset), 0, 0,
      "",
      "array to read from a file with several: path or name (default: the only "
      "or first one)"},
-    {"channel", 0, "N", TOPIC_DATA, INPUT, read_integer, FIELD(channel), 0,
-     9e15, "", "channel of voxels with several values, from 0 (default 0)"},
-    {"component", 0, "x|N|magnitude", TOPIC_DATA, INPUT, read_component,
+    {"channel", 0, "N|NAME|LIST", TOPIC_DATA,
+     INPUT, read_channels, FIELD(channels), 0, 0, "",
+     "channel of voxels with several values, by number from 0 or by name; or "
+     "those that a picture mixes, each with colour, range and opacity, such as "
+     "0:magenta,GFP:#00ff00:100..2000:0.5 (default: what the file shows, else "
+     "0)"},
+    {"component", 0, "x|N|NAME|magnitude", TOPIC_DATA, INPUT, read_component,
      FIELD(component), 0, 0, "",
      "component of voxels that are vectors: x, y, z, w, a number from 0, or "
-     "magnitude (default: magnitude of 2 or 3 floats, else the first)"},
+     "magnitude (default: magnitude of 2 or 3 floats, else the first); of "
+     "AMReX a number or a name"},
     {"crop", 0, "X0:X1,Y0:Y1,Z0:Z1", TOPIC_DATA, INPUT, read_crop, FIELD(crop),
      0, 0, "",
      "read only this box of the volume: first voxel and one past the last; an "
@@ -266,12 +298,31 @@ const option_row option_table[] = {
      "open a DICOM folder in which slices are missing or cut: a note names each, "
      "and its place stays transparent (default: refuse, except for info)"},
     {"mask", 0, "FILE", TOPIC_DATA, INPUT, read_text, FIELD(mask), 0, 0, "",
-     "volume on the same grid; where it is 0 or NaN, voxels of the input are "
+     "volume in the same place; where it is 0 or NaN, voxels of the input are "
      "removed: neither shown nor counted (default: none)"},
     {"labels", 0, "LIST", TOPIC_DATA, INPUT, read_labels, FIELD(labels), 0, 0,
      "",
-     "values of the mask that are kept: numbers and ranges such as 1,4-7 "
-     "(default: all but 0)"},
+     "labels that are kept, of the overlay, else of the mask, else of the input: "
+     "numbers and ranges such as 1,4:7 (default: all but 0)"},
+    {"label-table", 0, "FILE", TOPIC_DATA, INPUT, read_text, FIELD(label_table),
+     0, 0, "",
+     "names and colours of labels: a table of ITK-SNAP, FreeSurfer or 3D Slicer "
+     "(default: the file's own, or chosen by number)"},
+    {"overlay", 0, "FILE", TOPIC_DATA, WRITTEN, read_text, FIELD(overlay), 0, 0,
+     "",
+     "draw a second volume in the first, at its place in the world: a "
+     "segmentation, in colours by label, or values, as of a PET over a CT; in "
+     "mode over (default: none)"},
+    {"overlay-preset", 0, "NAME", TOPIC_DATA, WRITTEN, read_preset,
+     FIELD(overlay_preset), 0, 0, "",
+     "as --preset, of the overlay (default: from its histogram, or labels)"},
+    {"overlay-colormap", 0, "NAME", TOPIC_DATA, WRITTEN, read_colormap,
+     FIELD(overlay_colormap), 0, 0, "", "as --colormap (default hot)"},
+    {"overlay-range", 0, "LO,HI|pLO,pHI|full", TOPIC_DATA, WRITTEN, read_range,
+     FIELD(overlay_range), 0, 0, "", "as --range (default: from its histogram)"},
+    {"overlay-opacity", 0, "V:O,V:O", TOPIC_DATA, WRITTEN, read_points,
+     FIELD(overlay_opacity), 0, 0, "",
+     "as --opacity (default: from its histogram; 1 for labels)"},
     {"clip", 0, "A,B,C,D", TOPIC_DATA, INPUT, read_clip, FIELD(clip), 0, 0, "",
      "remove the voxels beyond a plane in world coordinates, where A x + B y + "
      "C z > D; up to six planes, in one list (default: none)"},
@@ -327,23 +378,24 @@ const option_row option_table[] = {
     {"frames", 0, "N", TOPIC_MORE, TURNTABLE, read_integer, FIELD(frames), 1,
      1000000, "", "number of frames in one turn (default 120)"},
     {"fps", 0, "N", TOPIC_MORE, MOVIES, read_real, FIELD(fps), 0.01, 1000, "",
-     "frames per second of the movie (default 25)"},
+     "frames per second of the movie (default 25; fewer, at least 2, for a "
+     "movie of less than 100 time steps)"},
     {"resume", 0, NULL, TOPIC_MORE, MOVIES, read_flag, FIELD(resume), 0, 0, "",
      "continue an interrupted run and keep its finished frames; all other "
      "options must be the same"},
-    {"cut", 0, "auto|equal|counted|bricks|measured", TOPIC_RANKS, WRITTEN,
+    {"cut", 0, "auto|equal|counted|bricks|measured", TOPIC_RANKS, WRITTEN | SERVE,
      read_choice, FIELD(cut), 0, 0, "",
      "how the volume is partitioned: equal slabs as in the paper; counted or "
      "bricks: slabs or bricks with equal numbers of interesting voxels; "
      "measured: as auto, and a turntable repartitions slabs by rendering time "
      "(default auto: counted, or bricks where slabs would be thin)"},
-    {"combine", 0, "auto|tree|swap|direct|radix", TOPIC_RANKS, WRITTEN,
+    {"combine", 0, "auto|tree|swap|direct|radix", TOPIC_RANKS, WRITTEN | SERVE,
      read_choice, FIELD(combine), 0, 0, "",
      "how the pictures of the ranks are combined: binary tree as in the paper, "
      "binary swap, direct send, or radix-k (default auto: by ranks and size)"},
-    {"radix", 0, "K", TOPIC_RANKS, WRITTEN, read_integer, FIELD(radix), 2, 64,
+    {"radix", 0, "K", TOPIC_RANKS, WRITTEN | SERVE, read_integer, FIELD(radix), 2, 64,
      "", "ranks per group of --combine radix (default: chosen)"},
-    {"timeout", 0, "SECONDS", TOPIC_RANKS, WRITTEN, read_real, FIELD(timeout), 0,
+    {"timeout", 0, "SECONDS", TOPIC_RANKS, WRITTEN | SERVE, read_real, FIELD(timeout), 0,
      1e9, "",
      "end the job if a rank neither sends nor waits for this long, and name "
      "the rank; 0 waits forever (default 300)"},
@@ -365,6 +417,9 @@ const option_row option_table[] = {
      0, 0, "",
      "take the secret of the URL from a file that only its owner can read; "
      "without such a file, write one (default: a new secret)"},
+    {"live", 0, "RECIPE", TOPIC_MORE, SERVE, read_text, FIELD(live), 0, 0, "",
+     "in place of a volume show the newest picture of the running simulation "
+     "that draws by this recipe, and change the recipe"},
     {"idle", 0, "TIME", TOPIC_MORE, SERVE, read_seconds, FIELD(idle), 0, 0, "",
      "end after this time without a page: seconds, or a number with m or h; 0 "
      "never ends (default 1h)"},
@@ -416,6 +471,8 @@ const verb_row verb_table[] = {
      "list, show and convert transfer functions"},
     {"serve", VERB_SERVE, -1, "[INPUT] [--port N]",
      "show a volume in a browser"},
+    {"export", VERB_EXPORT, 2, "OUT.html INPUT",
+     "make a page that shows a volume without a server"},
     {.name = NULL},
 };
 

@@ -55,6 +55,7 @@ void options_init(options *out) {
         .timeout = 300,
         .frames = 120,
         .fps = 25,
+        .moment = NAN,
         .idle = 3600,
     };
 }

@@ -6,6 +6,7 @@
 #ifndef OPTIONS_H
 #define OPTIONS_H
 
+#include "options/channels.h"
 #include "options/option_values.h"
 
 #include <snowglass/look_file.h>
@@ -32,7 +33,8 @@ enum {
     VERB_CONVERT = 1 << 9,
     VERB_TF = 1 << 10,
     VERB_SLICE = 1 << 11,
-    VERB_SERVE = 1 << 12
+    VERB_SERVE = 1 << 12,
+    VERB_EXPORT = 1 << 13
 };
 
 typedef enum topic {
@@ -78,6 +80,7 @@ typedef struct options {
     snow_look_file *loaded;   /* the content of that file, set by look_load */
     snow_context *tf_context; /* that owns it */
     bool log;
+    double symlog; /* 0: not given; -1: from where it suits */
     point_list opacities, gradient_opacities;
     double window, level; /* NaN: not given */
     double shift;         /* of the look, in data units */
@@ -98,25 +101,39 @@ typedef struct options {
     double spacing[3];  /* 0: not given */
     const char *endian; /* NULL: not given */
     uint64_t offset;
-    int64_t time;
-    int64_t channel;
+    int64_t time;          /* -1: the last */
+    int64_t time_end;      /* of a range: one past its last; INT64_MAX: all */
+    bool time_range;       /* `time` is the first of several */
+    double moment;         /* physical time of the step; NaN: not given */
+    char moment_unit[16];  /* "" or as s, ms, h */
+    char *input[1];        /* the operand, where it was a pattern of files */
+    int64_t channel;       /* the first of the list, or the only one */
+    channel_list channels; /* none: all that the file shows, or the first */
+    bool mixes;            /* the channels of the file are drawn together */
+    bool one_channel;      /* never, as in the viewer */
     const char *component; /* NULL: not given */
     const char *dataset;   /* NULL: not given */
     const char *series;    /* NULL: not given */
     bool allow_gaps;
-    int64_t crop[3][2];             /* 0: the end */
-    double clip[SNOW_CLIPS_MAX][4]; /* zeros: none */
-    const char *mask, *labels;      /* NULL: not given */
+    int64_t crop[3][2];                      /* 0: the end */
+    double clip[SNOW_CLIPS_MAX][4];          /* zeros: none */
+    const char *mask, *labels, *label_table; /* NULL: not given */
+    const char *overlay, *overlay_preset, *overlay_colormap;
+    const char *overlay_hidden; /* of a recipe; verbs that do not show it */
+    bool overlay_picks;         /* `labels` are its, not the input's */
+    range_value overlay_range;
+    point_list overlay_opacity;
     uint64_t seed;
 
     bool each_time; /* `time` is one of all steps, which are opened in turn */
 
-    const char *axis, *at; /* of a slice; NULL: not given */
+    const char *axis, *at;  /* of a slice; NULL: not given */
     int64_t port;           /* of the viewer; 0: a free one */
     const char *socket;     /* NULL: a port */
     const char *listen;     /* address; NULL: this machine alone */
     const char *allow_host; /* names, separated by commas; NULL: none */
     const char *token_file; /* NULL: none */
+    const char *live;       /* a simulation's recipe; NULL: none */
     double idle;            /* seconds without a page; 0: no end */
 
     int64_t frames; /* in a turn */
@@ -135,6 +152,9 @@ typedef struct options {
     double timeout; /* seconds; 0: none */
     bool deterministic;
     bool no_labels, legend, scale_bar, time_label;
+    const char *title, *legend_title, *unit; /* NULL: the file's, or none */
+    const char *annotate, *time_format;      /* NULL: not given */
+    bool outline, axes;                      /* of the volume's box */
     int verbosity; /* -1 quiet, 0, 1 verbose; the last one counts */
 
     bool version, help;

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <snowglass/snowglass.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -35,6 +36,12 @@ bool read_text(const option_row *row, const char *text, void *field,
 bool read_component(const option_row *row, const char *text, void *field,
                     char wrong[WRONG_BYTES]) {
     return read_text(row, text, field, wrong);
+}
+
+bool read_channels(const option_row *row, const char *text, void *field,
+                   char wrong[WRONG_BYTES]) {
+    (void)row;
+    return channels_parse(text, field, wrong);
 }
 
 /* Flags have no text; getopt has refused --flag=text already. */
@@ -147,6 +154,14 @@ bool read_strength(const option_row *row, const char *text, void *field,
     return read_real(row, *text ? text : "1", field, wrong);
 }
 
+bool read_symlog(const option_row *row, const char *text, void *field,
+                 char wrong[WRONG_BYTES]) {
+    if (*text)
+        return read_real(row, text, field, wrong);
+    *(double *)field = -1;
+    return true;
+}
+
 /* Differences are of values from 0 to 1, but people often think in steps of
  * 1/255. */
 bool read_tolerance(const option_row *row, const char *text, void *field,
@@ -167,6 +182,60 @@ bool read_integer(const option_row *row, const char *text, void *field,
         return refuse_number(row, "a whole number", wrong);
     *(int64_t *)field = value;
     return true;
+}
+
+/* A bound of A:B; an empty one is the end of all. */
+static bool read_bound(const char *text, size_t length, int64_t empty,
+                       int64_t *out) {
+    char word[24];
+    *out = empty;
+    if (!length)
+        return true;
+    if (length >= sizeof word)
+        return false;
+    memcpy(word, text, length);
+    word[length] = '\0';
+    return value_integer(word, out);
+}
+
+/* "0.3", "0.3s", "6 h": a number, and a unit or a point in it. */
+static bool read_moment(const char *text, options *out) {
+    char *end;
+    double value = strtod(text, &end);
+    bool point = memchr(text, '.', (size_t)(end - text)) != NULL;
+    end += strspn(end, " ");
+    size_t letters = strspn(end, "abcdefghijklmnopqrstuvwxyz");
+    if (end == text || !isfinite(value) || end[letters] ||
+        letters >= sizeof out->moment_unit || (!letters && !point))
+        return false;
+    out->moment = value;
+    memcpy(out->moment_unit, end, letters + 1);
+    return true;
+}
+
+bool read_time(const option_row *row, const char *text, void *field,
+               char wrong[WRONG_BYTES]) {
+    options *out = (options *)(void *)((char *)field - row->field);
+    const char *colon = strchr(text, ':');
+    int64_t value = 0;
+    out->time = 0;
+    out->time_range = colon != NULL;
+    out->moment = NAN;
+    if (colon ? read_bound(text, (size_t)(colon - text), 0, &out->time) &&
+                    read_bound(colon + 1, strlen(colon + 1), INT64_MAX,
+                               &out->time_end)
+              : value_integer(text, &value)) {
+        out->time = colon ? out->time : value;
+        return true;
+    }
+    if (strcmp(text, "last") == 0) {
+        out->time = -1;
+        return true;
+    }
+    if (!colon && read_moment(text, out))
+        return true;
+    return refuse(wrong, "is not a time step; give its number, last, a range "
+                         "such as 2:8, or a time such as 0.3s");
 }
 
 bool read_count(const option_row *row, const char *text, void *field,

@@ -5,15 +5,17 @@
 
 #include "options/options.h"
 
-option_read read_text;            /* const char * */
-option_read read_flag;            /* bool: true */
-option_read read_constant;        /* int: the row's lower limit */
-option_read read_choice;          /* const char *: one of the row's choices */
-option_read read_method;          /* const char *: one of them, or an alias */
-option_read read_real;            /* double within low..high */
-option_read read_fov;             /* double; the default for an empty text */
-option_read read_strength;        /* double; 1 for an empty text */
-option_read read_tolerance;       /* double; quotients are allowed */
+option_read read_text;      /* const char * */
+option_read read_flag;      /* bool: true */
+option_read read_constant;  /* int: the row's lower limit */
+option_read read_choice;    /* const char *: one of the row's choices */
+option_read read_method;    /* const char *: one of them, or an alias */
+option_read read_real;      /* double within low..high */
+option_read read_fov;       /* double; the default for an empty text */
+option_read read_strength;  /* double; 1 for an empty text */
+option_read read_symlog;    /* double; -1 for an empty text */
+option_read read_tolerance; /* double; quotients are allowed */
+option_read read_time;
 option_read read_integer;         /* int64_t within low..high */
 option_read read_count;           /* uint64_t */
 option_read read_bytes;           /* uint64_t; units as in 4G or 4GiB */
@@ -21,6 +23,7 @@ option_read read_window;          /* double, and the level beside it */
 option_read read_size;            /* int64_t[2] */
 option_read read_dims;            /* int64_t[3] */
 option_read read_component;       /* const char * */
+option_read read_channels;        /* channel_list */
 option_read read_labels;          /* const char * */
 option_read read_clip;            /* double[6][4] */
 option_read read_crop;            /* int64_t[3][2] */

@@ -12,6 +12,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#define TITLE_BYTES 256
+
+/* Bars of channels that there are places for: in the corners. */
+#define BARS_MOST 4
+
 /* Whether an output can show annotations: a picture of 8 or 16 bits, or a
  * movie. */
 static bool shows_annotations(const char *path) {
@@ -22,7 +27,20 @@ int annotations_check(const options *opts) {
     const char *wanted = opts->legend       ? "legend"
                          : opts->scale_bar  ? "scale-bar"
                          : opts->time_label ? "time-label"
+                         : opts->title      ? "title"
+                         : opts->outline    ? "outline"
+                         : opts->axes       ? "axes"
+                         : opts->annotate   ? "annotate"
                                             : NULL;
+    const snow_volume_info dated = {.size = sizeof dated,
+                                    .time_unit = "days since 2000-01-01"};
+    char text[TITLE_BYTES];
+    if (opts->time_format &&
+        !snow_time_text(&dated, opts->time_format, text, sizeof text))
+        return fail_usage("--time-format: '%.64s' is neither one number as in "
+                          "\"t = %%.2f s\" nor a date of %%Y, %%m, %%d, %%H, "
+                          "%%M and %%S",
+                          opts->time_format);
     if (opts->output && wanted && !shows_annotations(opts->output))
         return fail_usage("%s: --%s cannot be drawn into a file of floats; "
                           "remove it or name a .png",
@@ -30,8 +48,24 @@ int annotations_check(const options *opts) {
     return CONTINUE;
 }
 
+/* Options that change what others draw. */
+static void report_idle(const options *opts) {
+    const struct {
+        bool given, used;
+        const char *name, *needs;
+    } rows[] = {
+        {opts->time_format, opts->annotate, "time-format", "--annotate time"},
+        {opts->legend_title, opts->legend, "legend-title", "--legend"},
+        {opts->unit, opts->legend, "unit", "--legend"}};
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
+        if (rows[n].given && !rows[n].used && opts->verbosity >= 0)
+            say("note: --%s changes nothing without %s", rows[n].name,
+                rows[n].needs);
+}
+
 void annotations_report(const options *opts) {
     bool wanted = opts->legend || opts->scale_bar;
+    report_idle(opts);
     if (wanted && opts->fov > 0 && opts->verbosity >= 0)
         say("--%s: the scale bar is left out: in perspective no single length "
             "is valid",
@@ -45,7 +79,7 @@ void annotations_find_unit(const options *opts, const snow_volume *volume,
     snow_volume_statistics of;
     snow_volume_statistics_init(&of);
     double ends[2] = {INFINITY, INFINITY}; /* lowest, -highest */
-    if (!opts->legend || whole->hounsfield || !whole->medical ||
+    if (!opts->legend || opts->unit || whole->hounsfield || !whole->medical ||
         *whole->modality)
         return;
     if (snow_volume_get_statistics(volume, &of) == SNOW_STATUS_OK &&
@@ -53,11 +87,58 @@ void annotations_find_unit(const options *opts, const snow_volume *volume,
         ends[0] = of.min;
         ends[1] = -of.max;
     }
-    if (parts &&
-        snow_comm_reduce_doubles(process_comm(), ends, 2, SNOW_REDUCE_MIN) !=
-            SNOW_STATUS_OK)
+    if (parts && snow_comm_reduce_doubles(process_comm(), ends, 2,
+                                          SNOW_REDUCE_MIN) != SNOW_STATUS_OK)
         return;
     whole->hounsfield = snow_are_hounsfield(whole, ends[0], -ends[1]);
+}
+
+/* "temperature (K)", as far as it is known. */
+static void make_caption(const picture_annotations *annotations,
+                         char caption[TITLE_BYTES]) {
+    const snow_volume_info *info = &annotations->info;
+    const options *opts = annotations->opts;
+    const char *unit = opts->unit         ? opts->unit
+                       : info->hounsfield ? "HU"
+                                          : info->value_unit;
+    const char *title =
+        opts->legend_title ? opts->legend_title : info->quantity;
+    bool both = *title && *unit;
+    snprintf(caption, TITLE_BYTES, "%.100s%s%.100s%s", title, both ? " (" : "",
+             unit, both ? ")" : "");
+}
+
+/* By its name in the file, or by its number. */
+static void name_channel(const snow_volume_info *info, const channel_pick *pick,
+                         char out[64]) {
+    const bool known = pick->index < SNOW_CHANNELS_MAX &&
+                       pick->index < info->channels &&
+                       *info->channel[pick->index].name;
+    if (known)
+        snprintf(out, 64, "%s", info->channel[pick->index].name);
+    else
+        snprintf(out, 64, "channel %" PRId64, pick->index);
+}
+
+/* A bar for each, the first one on top; those without a place come last. */
+static snow_status add_channels(const picture_annotations *annotations,
+                                snow_overlay *overlay) {
+    const channel_set *c = annotations->channels;
+    const bool over = strcmp(annotations->opts->mode, "over") == 0;
+    snow_status status = SNOW_STATUS_OK;
+    const int count = c->list.count;
+    const int stacked = count < BARS_MOST ? count : BARS_MOST;
+    for (int i = 0; i < count && status == SNOW_STATUS_OK; i++) {
+        const int n = i < stacked ? stacked - 1 - i : i;
+        const snow_transfer *look = n ? c->looks[n] : annotations->transfer;
+        double range[2];
+        char name[64];
+        name_channel(&annotations->info, &c->list.picks[n], name);
+        snow_transfer_domain(look, &range[0], &range[1]);
+        status =
+            snow_overlay_color_bar(overlay, look, name, over ? NULL : range);
+    }
+    return status;
 }
 
 /* Projections show values by colour alone: the colours of the look, or those
@@ -66,31 +147,54 @@ static snow_status add_colors(const picture_annotations *annotations,
                               snow_overlay *overlay) {
     const options *opts = annotations->opts;
     double range[2] = {annotations->range[0], annotations->range[1]};
-    bool over = strcmp(opts->mode, "over") == 0;
+    bool over = strcmp(opts->mode, "over") == 0 ||
+                (strcmp(opts->mode, "slice") == 0 &&
+                 snow_transfer_label(annotations->transfer, 0));
     if (range[0] == 0 && range[1] == 0)
         snow_transfer_domain(annotations->transfer, &range[0], &range[1]);
-    return snow_overlay_color_bar(overlay, annotations->transfer,
-                                  annotations->info.hounsfield ? "HU" : NULL,
+    char caption[TITLE_BYTES];
+    make_caption(annotations, caption);
+    return snow_overlay_color_bar(overlay, annotations->transfer, caption,
                                   over ? NULL : range);
 }
 
-/* The letters come last: they have the most places to go to. */
+/* The title, and below it the time of the picture. */
+static snow_status add_title(const picture_annotations *annotations,
+                             int64_t step, snow_overlay *overlay) {
+    const options *opts = annotations->opts;
+    char text[2 * TITLE_BYTES], time[TITLE_BYTES] = "";
+    bool dated = !opts->time_label && opts->annotate &&
+                 strcmp(opts->annotate, "time") == 0 &&
+                 snow_time_text(&annotations->info, opts->time_format, time,
+                                sizeof time);
+    if (!dated && (opts->time_label || opts->annotate) && step >= 0)
+        snprintf(time, sizeof time, "step %" PRId64, step);
+    snprintf(text, sizeof text, "%.250s%s%s", opts->title ? opts->title : "",
+             opts->title && *time ? "\n" : "", time);
+    return snow_overlay_title(overlay, text);
+}
+
+/* The letters have the most places to go to.  The box has one, and what comes
+ * before does not keep off it. */
 static snow_status add_annotations(const picture_annotations *annotations,
                                    const snow_view *view, int64_t step,
                                    snow_overlay *overlay) {
     const options *opts = annotations->opts;
     snow_status status = SNOW_STATUS_OK;
-    if (opts->legend)
+    if (opts->legend && annotations->channels &&
+        annotations->channels->list.count)
+        status = add_channels(annotations, overlay);
+    else if (opts->legend)
         status = add_colors(annotations, overlay);
     if (status == SNOW_STATUS_OK && (opts->legend || opts->scale_bar))
         status = snow_overlay_scale_bar(overlay, &annotations->info, view);
-    if (status == SNOW_STATUS_OK && opts->time_label && step >= 0) {
-        char text[40];
-        snprintf(text, sizeof text, "step %" PRId64, step);
-        status = snow_overlay_title(overlay, text);
-    }
+    if (status == SNOW_STATUS_OK)
+        status = add_title(annotations, step, overlay);
     if (status == SNOW_STATUS_OK && !opts->no_labels)
         status = snow_overlay_orientation(overlay, &annotations->info, view);
+    if (status == SNOW_STATUS_OK && (opts->outline || opts->axes))
+        status =
+            snow_overlay_box(overlay, &annotations->info, view, opts->axes);
     return status;
 }
 
@@ -105,7 +209,8 @@ snow_status annotations_make(const picture_annotations *annotations,
     *out = NULL;
     if (!shows_annotations(opts->output) && strcmp(opts->output, "-") != 0)
         return SNOW_STATUS_OK;
-    if (!letters && !opts->legend && !opts->scale_bar && !opts->time_label)
+    if (!letters && !opts->legend && !opts->scale_bar && !opts->time_label &&
+        !opts->title && !opts->annotate && !opts->outline && !opts->axes)
         return SNOW_STATUS_OK;
     view.azimuth = azimuth;
     snow_status status =

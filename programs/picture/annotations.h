@@ -4,7 +4,7 @@
 #ifndef ANNOTATIONS_H
 #define ANNOTATIONS_H
 
-#include "options/options.h"
+#include "picture/channels.h"
 
 /* All that the overlays depend on, except the frame.  Several threads may read
  * it at once; the transfer function must outlive it. */
@@ -15,6 +15,7 @@ typedef struct picture_annotations {
     const snow_transfer *transfer;
     double range[2]; /* the range that mean and sum are painted over; both 0:
                         none */
+    const channel_set *channels; /* instead of that look; NULL: none */
 } picture_annotations;
 
 /* Refuses annotations for files of floats, which cannot show them.  Returns
@@ -22,9 +23,9 @@ typedef struct picture_annotations {
 int annotations_check(const options *opts);
 
 /* Makes the overlay for a picture from an azimuth; NULL if nothing is drawn.
- * `step` is a time step, or -1; letters keep off what the image shows (NULL: they
- * stay at the edges), which must outlive the overlay.  Error messages go to the
- * context. */
+ * `step` is a time step, or -1; letters keep off what the image shows (NULL:
+ * they stay at the edges), which must outlive the overlay.  Error messages go
+ * to the context. */
 snow_status annotations_make(const picture_annotations *annotations,
                              double azimuth, int64_t step,
                              const snow_image *image, snow_context *context,

@@ -27,6 +27,9 @@ typedef struct rank_figures {
 } rank_figures;
 
 int render_state_check(const options *opts) {
+    int done = layers_check(opts);
+    if (done != CONTINUE)
+        return done;
     warn_unused(opts);
     if (process_ranks() > 1 && strcmp(opts->operands[0], "-") == 0)
         return fail_usage("-: standard input cannot be shared by several "
@@ -53,6 +56,8 @@ int render_state_new(const options *opts, render_state *out) {
 void render_state_free(render_state *s) {
     snow_image_free(s->made);
     snow_frame_free(s->frame);
+    layers_close(&s->layers);
+    channels_close(&s->channels);
     snow_transfer_free(s->transfer);
     snow_volume_close(s->volume);
     free(s->figures);
@@ -80,10 +85,22 @@ static snow_status frame_turn(render_state *s, snow_comm *comm, size_t frames) {
                                  frames);
     for (size_t i = 0; i < frames; i++)
         azimuths[i] = s->opts->azimuth + 360 * (double)i / (double)frames;
-    snow_status status = snow_view_fit(
-        comm, s->volume, s->transfer, &s->settings, azimuths, frames, &s->view);
+    const bool boxed =
+        s->opts->outline || s->opts->axes || s->channels.list.count > 1;
+    snow_status status =
+        snow_view_fit(comm, s->volume, boxed ? NULL : s->transfer, &s->settings,
+                      azimuths, frames, &s->view);
     free(azimuths);
     return status;
+}
+
+/* So that the edges of a box are in the picture, and the numbers of its axes.
+ */
+#define OUTLINE_ZOOM 0.96
+#define AXES_ZOOM 0.8
+
+double render_state_margin(const options *opts) {
+    return opts->axes ? AXES_ZOOM : opts->outline ? OUTLINE_ZOOM : 1;
 }
 
 /* Frames what the look shows, once for all pictures.  What later steps show is
@@ -93,13 +110,19 @@ static snow_status frame_view(render_state *s) {
     snow_status status = SNOW_STATUS_OK;
     if (strcmp(s->opts->fit, "visible") != 0)
         return SNOW_STATUS_OK;
+    const bool boxed = s->opts->outline || s->opts->axes;
     if (!s->framed && s->turns)
         status = frame_turn(s, comm, (size_t)s->opts->frames);
     else if (!s->framed)
-        status = snow_view_fit(comm, s->volume, s->steps ? NULL : s->transfer,
+        status = snow_view_fit(comm, s->volume,
+                               s->steps || boxed || s->channels.list.count > 1
+                                   ? NULL
+                                   : s->transfer,
                                &s->settings, NULL, 0, &s->view);
     if (status != SNOW_STATUS_OK)
         return status;
+    if (!s->framed)
+        s->view.zoom *= render_state_margin(s->opts);
     if (!s->framed)
         s->frame_of = s->view;
     s->view = s->frame_of;
@@ -108,9 +131,14 @@ static snow_status frame_view(render_state *s) {
 }
 
 /* If a look was chosen automatically for a volume without surfaces, it is not
- * shaded, unless shading is requested. */
+ * shaded, unless shading is requested, or a surface. */
 static void choose_shade(render_state *s) {
+    if (s->channels.list.count && !options_given(s->opts, "shade"))
+        s->settings.shade = SNOW_SHADE_NONE;
     if (s->transfer && snow_transfer_is_unshaded(s->transfer) &&
+        s->settings.mode != SNOW_MODE_ISO &&
+        (!s->layers.transfer ||
+         snow_transfer_is_unshaded(s->layers.transfer)) &&
         !options_given(s->opts, "shade"))
         s->settings.shade = SNOW_SHADE_NONE;
 }
@@ -171,16 +199,55 @@ static bool may_leave(const render_state *s, snow_status status) {
            !s->plan.streams;
 }
 
+/* Whether channels that nobody asked for may give way: all pictures of a movie
+ * show the same. */
+static bool may_drop(const render_state *s, snow_status status) {
+    return status == SNOW_STATUS_NO_MEMORY && s->channels.list.count > 1 &&
+           !s->opts->channels.count && !s->steps && !s->drawn.path;
+}
+
+/* What is computed from several channels does not fit beside them: starts over
+ * with the first one. */
+static int drop_channels(render_state *s, const options *step) {
+    channels_note(s->opts, &s->whole, "several need more memory");
+    snow_frame_free(s->frame);
+    s->frame = NULL;
+    channels_close(&s->channels);
+    snow_transfer_free(s->transfer);
+    s->transfer = NULL;
+    s->framed = false;
+    return render_state_open(s, s->path, step->time);
+}
+
 /* Reading slabs is not counted. */
 static snow_status make_look(render_state *s, const options *step) {
     snow_look look = look_options(step);
     double begin = seconds_now(), before = snow_volume_read_seconds(s->volume);
     snow_status status =
-        snow_transfer_new_for_volume(s->volume, &look, &s->transfer);
+        s->channels.list.count
+            ? channels_look(step, &s->whole, &s->channels.list.picks[0],
+                            s->volume, &s->transfer)
+            : snow_transfer_new_for_volume(s->volume, &look, &s->transfer);
     double reading = snow_volume_read_seconds(s->volume) - before;
     s->times.look += seconds_now() - begin - reading;
     s->times.read += reading;
     return status;
+}
+
+/* The overlay lies where the volume does: in memory, or in its file. */
+static int open_layers(render_state *s, const options *step) {
+    layers *l = &s->layers;
+    l->quiet = may_leave(s, SNOW_STATUS_NO_MEMORY) ||
+               may_drop(s, SNOW_STATUS_NO_MEMORY);
+    l->slab_bytes = s->plan.slab_bytes;
+    int done = layers_open(step, s->context, s->volume, l);
+    if (done != SNOW_STATUS_NO_MEMORY || !l->quiet ||
+        may_drop(s, SNOW_STATUS_NO_MEMORY))
+        return done;
+    l->quiet = false;
+    done = leave_in_file(s, step);
+    return done == CONTINUE ? layers_open(step, s->context, s->volume, l)
+                            : done;
 }
 
 static int frame_alone(render_state *s, const options *step) {
@@ -189,9 +256,13 @@ static int frame_alone(render_state *s, const options *step) {
     int done = CONTINUE;
     if (may_leave(s, status)) {
         done = leave_in_file(s, step);
+        if (done == CONTINUE)
+            done = open_layers(s, step);
         before = 0;
         status = done == CONTINUE ? frame_view(s) : SNOW_STATUS_OK;
     }
+    if (may_drop(s, status))
+        return drop_channels(s, step);
     if (status != SNOW_STATUS_OK)
         return fail_volume(s->context, status, name_of_input(s->path));
     double reading = snow_volume_read_seconds(s->volume) - before;
@@ -200,21 +271,54 @@ static int frame_alone(render_state *s, const options *step) {
     return done;
 }
 
-/* Decompression and conversion count as reading. */
-static int open_alone(render_state *s, const options *step) {
-    int done = plan_memory(s, step);
-    double begin = seconds_now();
-    if (done == CONTINUE)
-        done = open_as_planned(s, step);
-    s->times.read += seconds_now() - begin;
+/* The volume, and which channels of its file are drawn.  Opens it again where
+ * the first of them is another. */
+static int open_first(render_state *s, options *step) {
+    const int64_t opened = step->channel;
+    const bool several = s->channels.list.count > 1;
+    s->plan.streams = s->plan.streams && !several;
+    int done = open_as_planned(s, step);
     if (done != CONTINUE)
         return done;
     s->whole = *snow_volume_get_info(s->volume);
+    done =
+        channels_choose(step, &s->whole, channels_hinder(step), &s->channels);
+    if (done != CONTINUE || !s->channels.list.count)
+        return done;
+    const bool streamed = s->plan.streams;
+    if (s->channels.list.count > 1)
+        s->plan.streams = s->plan.may_stream = false;
+    step->channel = s->channels.list.picks[0].index;
+    if (step->channel == opened && s->plan.streams == streamed)
+        return CONTINUE;
+    snow_volume_close(s->volume);
+    s->volume = NULL;
+    done = open_as_planned(s, step);
+    if (done == CONTINUE)
+        s->whole = *snow_volume_get_info(s->volume);
+    return done;
+}
+
+/* Decompression and conversion count as reading. */
+static int open_alone(render_state *s, options *step) {
+    int done = plan_memory(s, step);
+    double begin = seconds_now();
+    if (done == CONTINUE)
+        done = open_first(s, step);
+    s->times.read += seconds_now() - begin;
+    if (done != CONTINUE)
+        return done;
     snow_status status = s->transfer ? SNOW_STATUS_OK : make_look(s, step);
     if (may_leave(s, status)) {
         done = leave_in_file(s, step);
         status = done == CONTINUE ? make_look(s, step) : SNOW_STATUS_OK;
     }
+    if (status == SNOW_STATUS_OK && done == CONTINUE)
+        status = channels_open(step, s->context, s->path, &s->channels);
+    if (status == SNOW_STATUS_OK && done == CONTINUE)
+        done = open_layers(s, step);
+    if (may_drop(s, status) || may_drop(s, (snow_status)done))
+        return drop_channels(s, step);
     if (status != SNOW_STATUS_OK)
         return fail_volume(s->context, status, name_of_input(s->path));
     if (done == CONTINUE)
@@ -242,23 +346,27 @@ static snow_ranks_options how_of(const render_state *s) {
 }
 
 /* The camera comes first: the partition of the volume depends on it. */
-static int inspect(render_state *s, const snow_volume_options *data) {
+static int inspect(render_state *s, const options *step,
+                   const snow_volume_options *data) {
     snow_volume_info_init(&s->whole);
     snow_status status =
         snow_volume_inspect(s->context, s->path, data, &s->whole);
-    return status == SNOW_STATUS_OK ? place_camera(s)
-                                    : fail_status(s->context, status);
+    if (status != SNOW_STATUS_OK)
+        return fail_status(s->context, status);
+    int done =
+        channels_choose(step, &s->whole, channels_hinder(step), &s->channels);
+    return done == CONTINUE ? place_camera(s) : done;
 }
 
 /* Making the transfer function counts as reading: it needs values of all
  * parts. */
-static int open_part(render_state *s, const options *step) {
+static int open_part(render_state *s, options *step) {
     double begin = seconds_now();
     snow_volume_options data = data_options(step);
     snow_look look = look_options(step);
     snow_ranks_options how = how_of(s);
     snow_transfer *transfer = NULL;
-    int done = process_agree(inspect(s, &data));
+    int done = process_agree(inspect(s, step, &data));
     if (done != CONTINUE)
         return done;
     snow_status status =
@@ -268,6 +376,9 @@ static int open_part(render_state *s, const options *step) {
         return fail_status(s->context, status);
     if (!s->transfer)
         s->transfer = transfer;
+    done = process_agree(layers_open(step, s->context, s->volume, &s->layers));
+    if (done != CONTINUE)
+        return done;
     choose_shade(s);
     how.transfer = s->transfer;
     status = frame_view(s);
@@ -284,6 +395,9 @@ options render_state_step(const render_state *s, int64_t time) {
     options step = *s->opts;
     step.time = time;
     step.each_time = s->each_time;
+    step.mixes = true;
+    if (s->channels.list.count)
+        step.channel = s->channels.list.picks[0].index;
     return step;
 }
 
@@ -293,6 +407,7 @@ int render_state_open(render_state *s, const char *path, int64_t time) {
     s->path = path;
     snow_volume_close(s->volume);
     s->volume = NULL;
+    channels_close_volumes(&s->channels);
     int done = process_ranks() > 1 ? open_part(s, &step) : open_alone(s, &step);
     if (done == CONTINUE)
         annotations_find_unit(s->opts, s->volume, process_ranks() > 1,
@@ -365,8 +480,8 @@ static int take_figures(render_state *s) {
 
 static snow_status begin_part(render_state *s) {
     snow_ranks_options how = how_of(s);
-    snow_status status = SNOW_STATUS_OK;
-    if (s->turns)
+    snow_status status = layers_set(&s->layers, &s->channels, s->frame);
+    if (s->turns && status == SNOW_STATUS_OK)
         status = snow_ranks_rebalance(s->frame, process_comm(), s->transfer,
                                       &s->view, &s->settings, &how, s->left,
                                       &s->volume);
@@ -384,10 +499,37 @@ static int make_frame(render_state *s) {
         status == SNOW_STATUS_OK ? CONTINUE : fail_status(s->context, status));
 }
 
+/* Projections of channels are added up. */
+static snow_status project_channels(render_state *s) {
+    snow_image *sum = NULL;
+    snow_status status = SNOW_STATUS_OK;
+    for (int n = 0; n < s->channels.list.count && status == SNOW_STATUS_OK;
+         n++) {
+        snow_image_free(s->made);
+        s->made = NULL;
+        status =
+            snow_frame_render(s->frame, n ? s->channels.volumes[n] : s->volume,
+                              n ? s->channels.looks[n] : s->transfer, &s->view,
+                              &s->settings, &s->made);
+        if (status == SNOW_STATUS_OK)
+            status = channels_add(s->context, s->made,
+                                  s->channels.list.picks[n].opacity, &sum);
+    }
+    if (sum)
+        channels_limit(sum);
+    snow_image_free(s->made);
+    s->made = sum;
+    return status;
+}
+
 static snow_status draw_alone(render_state *s) {
     double before = snow_volume_read_seconds(s->volume);
-    snow_status status = snow_frame_render(s->frame, s->volume, s->transfer,
-                                           &s->view, &s->settings, &s->made);
+    if (mode_is_projection(s->opts->mode) && s->channels.list.count)
+        return project_channels(s);
+    snow_status status = layers_set(&s->layers, &s->channels, s->frame);
+    if (status == SNOW_STATUS_OK)
+        status = snow_frame_render(s->frame, s->volume, s->transfer, &s->view,
+                                   &s->settings, &s->made);
     s->times.read += snow_volume_read_seconds(s->volume) - before;
     return status;
 }
@@ -411,10 +553,17 @@ int render_state_begin(render_state *s, double azimuth) {
         options step = render_state_step(s, s->whole.time);
         done = leave_in_file(s, &step);
         if (done == CONTINUE)
+            done = open_layers(s, &step);
+        if (done == CONTINUE)
             done = make_frame(s);
         if (done != CONTINUE)
             return done;
         status = draw_alone(s);
+    }
+    if (may_drop(s, status)) {
+        options step = render_state_step(s, s->whole.time);
+        done = drop_channels(s, &step);
+        return done == CONTINUE ? render_state_begin(s, azimuth) : done;
     }
     if (status != SNOW_STATUS_OK)
         return fail_picture(s, status, s->path);
@@ -461,9 +610,14 @@ render_report render_state_report(const render_state *s) {
 
 void render_state_note(const render_state *s, const double painted[2]) {
     const char *view = s->opts->view;
-    config_note(s->opts, s->transfer, s->settings.shade,
-                view ? view : snow_view_name_for(&s->drawn.whole, NULL),
-                painted);
+    if (s->channels.list.count)
+        config_note_channels(s->opts, &s->channels.list, s->settings.shade,
+                             view ? view
+                                  : snow_view_name_for(&s->drawn.whole, NULL));
+    else
+        config_note(s->opts, s->transfer, s->settings.shade,
+                    view ? view : snow_view_name_for(&s->drawn.whole, NULL),
+                    painted);
 }
 
 /* Of a range, by which rounding may move a point. */
@@ -515,13 +669,17 @@ void render_state_choices(const render_state *s, char *out, size_t size) {
         view = place;
     }
     bool encoded = s->stats.encoding != SNOW_ENCODING_AUTO;
-    char volume[256], squeeze[160];
+    char volume[256], squeeze[160], look[640];
     describe_squeeze(s, squeeze);
+    if (s->channels.list.count)
+        channels_describe(&s->channels, look, sizeof look);
+    else
+        snprintf(look, sizeof look, "%s",
+                 snow_transfer_description(s->transfer));
     describe_volume(&s->drawn.whole, volume, sizeof volume);
     bool over = s->settings.mode == SNOW_MODE_OVER;
     snprintf(out, size, "%s: %s; %s%s%s%s%s; view %s; %s%s%smethod %s%s%s",
-             name_of_input(s->drawn.path), volume,
-             snow_transfer_description(s->transfer), squeeze,
+             name_of_input(s->drawn.path), volume, look, squeeze,
              over ? "; opacity per " : "",
              !over                            ? ""
              : s->settings.opacity_length > 0 ? "mm"

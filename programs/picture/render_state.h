@@ -5,6 +5,8 @@
 #define SCENE_H
 
 #include "options/options.h"
+#include "picture/channels.h"
+#include "picture/layers.h"
 #include "picture/render_stats.h"
 #include "run/memory.h"
 
@@ -31,6 +33,8 @@ typedef struct render_state {
     snow_volume_info whole; /* the whole volume; ranks have parts */
     snow_volume *volume;
     snow_transfer *transfer;
+    layers layers;        /* drawn with it */
+    channel_set channels; /* of its file, the first of which it is */
     snow_frame *frame;
     snow_view view, frame_of; /* the latter: as framed */
     snow_settings settings;
@@ -64,6 +68,10 @@ options render_state_step(const render_state *s, int64_t time);
 /* Opens a time step of a volume in place of the present one, and makes the
  * requested look unless the state has a transfer function already. */
 int render_state_open(render_state *s, const char *path, int64_t time);
+
+/* What the zoom of a framed box is multiplied by, so that its edges and the
+ * numbers of its axes are in the picture; 1 where neither is drawn. */
+double render_state_margin(const options *opts);
 
 /* Renders from an azimuth.  *image belongs to the caller; NULL on ranks that do
  * not print. */

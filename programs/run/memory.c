@@ -94,10 +94,11 @@ static uint64_t component_bytes(const snow_volume_info *info, uint64_t voxels) {
     return info->magnitude ? voxels : 0;
 }
 
-/* The mask, and the volume before masking or clipping, are in memory together
- * with the result. */
+/* The mask, and the volume before masking or clipping (*stored), are in memory
+ * together with the result. */
 static uint64_t masking_bytes(snow_context *context, const char *path,
-                              const snow_volume_options *data) {
+                              const snow_volume_options *data,
+                              uint64_t *stored) {
     snow_volume_options plain = *data, mask = {.size = sizeof mask};
     const double *plane = data->clip[0];
     bool clips = plane[0] != 0 || plane[1] != 0 || plane[2] != 0;
@@ -106,7 +107,8 @@ static uint64_t masking_bytes(snow_context *context, const char *path,
     plain.mask = plain.labels = NULL;
     memset(plain.clip, 0, sizeof plain.clip);
     memcpy(mask.crop, data->crop, sizeof mask.crop);
-    return native_bytes(context, path, &plain) +
+    *stored = native_bytes(context, path, &plain);
+    return *stored +
            (data->mask ? native_bytes(context, data->mask, &mask) : 0);
 }
 
@@ -139,15 +141,21 @@ static bool measure(const options *opts, const char *path,
     bool fine =
         snow_volume_inspect(context, path, data, &s.info) == SNOW_STATUS_OK;
     if (fine) {
-        s.masking = masking_bytes(context, path, data);
+        uint64_t stored = 0;
+        const uint64_t overlay =
+            opts->overlay ? native_bytes(context, opts->overlay, NULL) : 0;
+        s.masking = masking_bytes(context, path, data, &stored);
         s.need = memory_needed(opts, &s.info);
         s.voxels = s.need.least - s.picture;
         s.masking += component_bytes(&s.info, s.voxels);
         if (s.voxels + s.masking > s.need.least)
             s.need.least = s.voxels + s.masking;
+        s.need.least += overlay;
+        s.need.most += overlay;
         if (s.need.least > s.need.most)
             s.need.most = s.need.least;
-        s.packed = is_packed(path, s.voxels);
+        s.masking += overlay;
+        s.packed = is_packed(path, stored ? stored : s.voxels);
         *out = s;
     }
     snow_context_free(context);
@@ -200,7 +208,7 @@ static uint64_t slab_bytes(const sizes *s, int64_t slices) {
 /* Chooses the bytes of a slab's voxels.  Slabs are small, since most of the
  * memory is for interesting voxels.  But there is a band for each thread if it
  * fits into an eighth of the limit.  A compressed file is decompressed again
- * for each slab, so its slabs may take a third. */
+ * for each slab, and a mask applied, so these may take a third. */
 static uint64_t choose_slab(const sizes *s, uint64_t limit, int threads) {
     uint64_t room = limit > s->picture ? limit - s->picture : 0;
     uint64_t eighth = room / 8;
@@ -210,7 +218,7 @@ static uint64_t choose_slab(const sizes *s, uint64_t limit, int threads) {
         if (bands > most && bands <= eighth)
             most = bands;
     }
-    if (s->packed)
+    if (s->packed || s->masking)
         most = room / 3;
     double share = (double)s->voxels / (double)(s->voxels + s->masking);
     return (uint64_t)((double)most * share) + 1;
@@ -226,6 +234,21 @@ static uint64_t limit_of(const options *opts, bool *own) {
     if (*own)
         return opts->memory;
     return there / 10 * 9;
+}
+
+bool memory_holds(const options *opts, const snow_volume_info *info, int count,
+                  char *why, size_t size) {
+    char need[32], room[32];
+    bool own;
+    const uint64_t limit = limit_of(opts, &own), picture = picture_bytes(opts);
+    const double voxels =
+        (double)(memory_needed(opts, info).least - picture) * count;
+    if (!limit || voxels + (double)picture <= (double)limit)
+        return true;
+    snprintf(why, size, "several need %s of memory, over the %s of %s",
+             print_bytes((uint64_t)voxels + picture, need),
+             print_bytes(limit, room), own ? "--memory" : "free memory");
+    return false;
 }
 
 /* Whether the files of a folder are so small that their voxels certainly fit:

@@ -14,6 +14,11 @@ typedef struct memory_need {
 
 memory_need memory_needed(const options *opts, const snow_volume_info *info);
 
+/* Whether the limit has room for the voxels of `count` volumes of a file at
+ * once; else `why` says what they need. */
+bool memory_holds(const options *opts, const snow_volume_info *info, int count,
+                  char *why, size_t size);
+
 /* How a volume is to be opened. */
 typedef struct memory_plan {
     bool streams; /* the voxels stay in the file (snow_volume_open_streamed) */

@@ -2,6 +2,7 @@
 #define _XOPEN_SOURCE 700
 #include "run/paths.h"
 
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -18,4 +19,21 @@ bool is_file(const char *path) {
 bool ends_with(const char *text, const char *end) {
     size_t length = strlen(text), wanted = strlen(end);
     return length >= wanted && strcmp(text + length - wanted, end) == 0;
+}
+
+bool is_there(const char *path) {
+    struct stat what;
+    return stat(path, &what) == 0;
+}
+
+void file_of_input(const char *path, char *out, size_t size) {
+    const char *set = NULL;
+    for (const char *at = path; (at = strstr(at, ":/")); at++)
+        set = at;
+    snprintf(out, size, "%s", path);
+    if (!set || is_there(path) || (size_t)(set - path) >= size)
+        return;
+    out[set - path] = '\0';
+    if (!is_there(out))
+        snprintf(out, size, "%s", path);
 }

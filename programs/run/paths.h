@@ -3,11 +3,19 @@
 #define PATHS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 /* Whether a path is a folder, or a regular file, that exists.  To open another
  * file, a pipe, could take for ever. */
 bool is_folder(const char *path);
 bool is_file(const char *path);
+
+/* Whether a path names anything that exists. */
+bool is_there(const char *path);
+
+/* The file of an input that may name a data set in it: run.h5 for run.h5:/rho,
+ * if that is there; otherwise the path itself. */
+void file_of_input(const char *path, char *out, size_t size);
 
 /* Whether a text ends with another, in the same case. */
 bool ends_with(const char *text, const char *end);

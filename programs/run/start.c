@@ -97,3 +97,25 @@ int process_share(int word) {
     return given ? (int)status
                  : fail_status(snow_comm_context(now.comm), status);
 }
+
+/* Refuses what is not as on the first rank, in a few words. */
+static int refuse_other(const char *what) {
+    return fail_usage("this rank was given %s; start all ranks with the same "
+                      "command",
+                      what);
+}
+
+int process_meet(int done, int verb, int word) {
+    if (process_ranks() == 1)
+        return done;
+    done = process_agree(done);
+    if (done != CONTINUE && done != SNOW_STATUS_OK)
+        return done;
+    const int first = process_share(done == CONTINUE ? verb : -verb);
+    const bool same = first == verb ? done == CONTINUE : first == -verb;
+    const bool alike = process_share(word) == word || first < 0;
+    done = process_agree(!same    ? refuse_other("another verb or --help")
+                         : !alike ? refuse_other("other options or files")
+                                  : CONTINUE);
+    return done == CONTINUE && first < 0 ? SNOW_STATUS_OK : done;
+}

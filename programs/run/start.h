@@ -47,6 +47,11 @@ bool process_broken(void);
  * rank, whose message the printing rank has then printed. */
 int process_agree(int done);
 
+/* Collective, first of all.  process_agree on a command line that was read,
+ * whose verb, and word for its options, must be those of all ranks;
+ * SNOW_STATUS_OK on all where the first rank has nothing more to do. */
+int process_meet(int done, int verb, int word);
+
 /* Collective.  Returns the first rank's word. */
 int process_share(int word);
 

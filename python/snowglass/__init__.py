@@ -14,6 +14,8 @@ exactly what the command line tool `snowglass` has.
 """
 from __future__ import annotations
 
+from typing import Any
+
 from ._images import Difference, Image, compare
 from ._looks import Look
 from ._volumes import Step, Volume, open, render, series
@@ -22,8 +24,16 @@ from . import _snowglass
 
 __version__: str = _snowglass.version()
 __all__ = ["Difference", "Error", "Image", "Look", "SnowglassWarning", "Step",
-           "Volume", "colormaps", "compare", "open", "phantoms", "presets",
-           "render", "series", "views"]
+           "Viewer", "Volume", "colormaps", "compare", "open", "phantoms",
+           "presets", "render", "series", "views"]
+
+
+def __getattr__(name: str) -> Any:
+    """What is imported only when it is used."""
+    if name == "Viewer":
+        from .viewer import Viewer
+        return Viewer
+    raise AttributeError(f"module 'snowglass' has no attribute '{name}'")
 
 
 def presets() -> list[str]:

@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import Any, NamedTuple, Optional, Sequence
+from typing import Any, Mapping, NamedTuple, Optional, Sequence
 
-from . import _snowglass
+from . import _recipes, _snowglass
 
 
 class Wrapped(NamedTuple):
@@ -20,6 +20,22 @@ class Wrapped(NamedTuple):
     unit: str
     frozen: bool
     values: Optional[str]    #: the unit of data values, where it is known
+
+
+#: What `wrap` takes beside the array.
+OPTIONS = ("spacing", "affine", "axes", "unit", "medical", "slope", "intercept",
+           "copy", "frozen")
+
+
+def check_options(options: Mapping[str, Any]) -> None:
+    for name in options:
+        if name in OPTIONS:
+            continue
+        if name in _recipes.DATA:
+            raise TypeError(f"{name} counts for files only: save() the array as "
+                            f".nrrd and open that with it")
+        raise TypeError(f"an array has no option '{name}'; take one of "
+                        f"{', '.join(OPTIONS)}")
 
 
 def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
@@ -42,16 +58,28 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
         values = str(source.attrs.get("units", "")) or None
         source, spacing, axes, unit, affine = _of_xarray(source, spacing, axes,
                                                          unit, affine)
+    elif hasattr(source, "attrs"):  # of HDF5, Zarr
+        values = _text_of(source.attrs.get("units"))
     array = _to_array(source)
+    if axes is None and affine is not None and _is_fortran(array):
+        axes = "xyz"
+        warnings.warn("affine= with an array in Fortran order: its dimensions are "
+                      "taken for [x, y, z], as those of nibabel; axes= says so, "
+                      "or 'zyx'", _snowglass.SnowglassWarning, stacklevel=4)
     axes = axes or "zyx"
     if sorted(axes) != ["x", "y", "z"]:
         raise ValueError(f"axes '{axes}': give the order of the dimensions, "
                          f"such as 'zyx' or 'xyz'")
+    array = _without_ones(array, axes)
     if array.ndim != 3:
-        part = "image.slicer[..., 0]" if axes == "xyz" else "array[0]"
+        part = "make it one slice, such as array[None]" if array.ndim < 3 else \
+            "choose one of the others, such as " + (
+                "image.slicer[..., 0]" if axes == "xyz" else
+                "array[..., 0]" if array.shape[-1] <= 4 else "array[0]") + (
+                ", or draw all as Volume.channels" if array.ndim == 4 and
+                array.shape[0] <= 8 and array.shape[-1] > 4 else "")
         raise TypeError(f"an array of shape {array.shape}: a volume has three "
-                        f"dimensions [{', '.join(axes)}]; choose one of the "
-                        f"others, such as {part}")
+                        f"dimensions [{', '.join(axes)}]; {part}")
     if 0 in array.shape:
         raise ValueError(f"an array of shape {array.shape} has no voxels")
     array, order = _contiguous(_plain_type(array, copy), copy)
@@ -63,19 +91,42 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
                    _cut(unit or ""), frozen, values)
 
 
+def _is_fortran(array: Any) -> bool:
+    return bool(array.ndim >= 3 and array.flags.f_contiguous and
+                not array.flags.c_contiguous)
+
+
+def _without_ones(array: Any, axes: str) -> Any:
+    """Without time and components of which there is one: first dimensions, or
+    last ones."""
+    if array.ndim > 4 and array.shape[-1] == 1:  # of (t, z, y, x, channel)
+        array = array[..., 0]
+    while array.ndim > 3 and axes != "xyz" and array.shape[0] == 1:
+        array = array[0]
+    while array.ndim > 3 and array.shape[-1] == 1:
+        array = array[..., 0]
+    return array
+
+
+def _text_of(unit: Any) -> Optional[str]:
+    return (unit.decode(errors="replace") if isinstance(unit, bytes)
+            else unit if isinstance(unit, str) else "") or None
+
+
 def columns_of(order: Sequence[int], axes: str) -> list[int]:
     """Which of x, y, z each dimension in memory is, fastest first."""
     return ["xyz".index(axes[list(order).index(n)]) for n in (2, 1, 0)]
 
 
-def like(source: Any, shape: Sequence[int], order: Sequence[int]) -> Any:
+def like(source: Any, shape: Sequence[int], order: Sequence[int],
+         what: str = "a mask") -> Any:
     """An array of a shape as its dimensions lie in memory, C contiguous."""
     import numpy
     if _is_nibabel(source):
         source = source.dataobj
     array = numpy.asarray(source)
     if array.shape != tuple(shape):
-        raise ValueError(f"a mask of shape {array.shape} for a volume of shape "
+        raise ValueError(f"{what} of shape {array.shape} for a volume of shape "
                          f"{tuple(shape)}: they must be the same")
     turned = array.transpose([list(order).index(n) for n in range(3)])
     return numpy.ascontiguousarray(_plain_type(turned, True))
@@ -115,11 +166,14 @@ def _is_xarray(source: Any) -> bool:
 def _of_xarray(source: Any, spacing: Any, axes: Optional[str],
                unit: Optional[str], affine: Any) -> tuple[Any, ...]:
     import numpy
+    # Times and the like, of which there is one.
+    source = source.squeeze([name for name in source.dims if source.sizes[
+        name] == 1][:max(source.ndim - 3, 0)])
     names = [str(name) for name in source.dims]
     if axes is None:
         axes = "".join(names) if sorted(names) == ["x", "y", "z"] else "zyx"
     if spacing is None and affine is None and len(names) == 3:
-        steps, origins = {}, {}
+        steps, origins, units = {}, {}, []
         for axis, name in zip(axes, names):
             steps[axis], origins[axis] = 1.0, 0.0
             if name not in source.coords or source.sizes[name] < 2:
@@ -133,11 +187,16 @@ def _of_xarray(source: Any, spacing: Any, axes: Optional[str],
                               f"mean step is taken",
                               _snowglass.SnowglassWarning, stacklevel=4)
             steps[axis], origins[axis] = float(each.mean()), float(places[0])
-            unit = unit or str(source.coords[name].attrs.get("units", "")) \
-                or None
+            units.append(str(source.coords[name].attrs.get("units", "")))
         affine = numpy.eye(4)
         for n, axis in enumerate("xyz"):
             affine[n, n], affine[n, 3] = steps[axis], origins[axis]
+        units = [each for each in units if each]
+        if len(set(units)) > 1:
+            warnings.warn(f"coordinates have the units {', '.join(map(repr, units))}"
+                          f": their steps are taken as they are; spacing= gives "
+                          f"others", _snowglass.SnowglassWarning, stacklevel=4)
+        unit = unit or next(iter(units), None)
     return source.values, spacing, axes, unit, affine
 
 
@@ -150,17 +209,19 @@ def _to_array(source: Any) -> Any:
         return filled
     if isinstance(source, numpy.ndarray):
         return source
+    kind = type(source).__name__
+    if hasattr(source, "keys"):  # a group of HDF5 or Zarr, a Dataset, an .npz
+        names = [str(name) for name in source.keys()]
+        if hasattr(source, "attrs"):  # volumes first; an .npz would read them
+            names.sort(key=lambda name: getattr(source[name], "ndim", 0) != 3)
+        raise TypeError(f"a {kind} holds several arrays: choose one of them, "
+                        f"such as {kind.lower()}[{(names or ['name'])[0]!r}] "
+                        f"(there are {', '.join(names[:9]) or 'none'})")
     if hasattr(source, "__dlpack__") and not hasattr(source, "__array__"):
         return numpy.from_dlpack(source)
     if hasattr(source, "__array__") or hasattr(source, "__array_interface__") \
             or hasattr(source, "__dlpack__"):
         return numpy.asarray(source)
-    kind = type(source).__name__
-    if hasattr(source, "keys"):  # a group of HDF5 or Zarr, a Dataset, an .npz
-        names = [str(name) for name in source.keys()]
-        raise TypeError(f"a {kind} holds several arrays: choose one of them, "
-                        f"such as {kind.lower()}[{(names or ['name'])[0]!r}] "
-                        f"(there are {', '.join(names[:9]) or 'none'})")
     if isinstance(source, (list, tuple)) and source and \
             all(isinstance(each, (str, os.PathLike)) for each in source):
         raise TypeError("a list of files is no volume: name their folder, or a "

@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import os
 import re
-from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Optional, \
-    Sequence, Union
+from typing import TYPE_CHECKING, Any, Iterator, Mapping, NamedTuple, \
+    Optional, Sequence, Union
 
 from . import _recipes, _snowglass
 
@@ -67,10 +67,11 @@ class Image(_snowglass.Image):
         """What it was made with, as the command line's `--config` reads it;
         `snowglass.render(**recipe)` gives the same bits.  Of an array, without
         "input": `snowglass.render(volume, **recipe)`.  Raises ValueError where
-        there is none: pictures of files, slices and turntables, and looks with
-        colours of their own."""
+        there is none: pictures of files and turntables, and looks with colours
+        of their own."""
         if self._made is None:
-            raise ValueError("only a picture by Volume.render has a recipe")
+            raise ValueError("only a picture by Volume.render or Volume.slice "
+                             "has a recipe")
         return _recipes.make(*self._made)
 
     @property
@@ -133,6 +134,17 @@ class Image(_snowglass.Image):
     def _repr_png_(self) -> bytes:
         return self.png()
 
+    def show(self) -> None:
+        """Shows it in the program of this machine for PNG files; in a notebook a
+        picture shows itself."""
+        import tempfile
+        import webbrowser
+        with tempfile.NamedTemporaryFile(suffix=".png", delete=False) as file:
+            file.write(self.png())
+        if not webbrowser.open("file://" + file.name):
+            raise OSError(f"no program of this machine shows pictures; this one is "
+                          f"{file.name}, and save() writes it elsewhere")
+
     def to_rgb(self, background: Color = "auto") -> "numpy.typing.NDArray[Any]":
         """uint8 of shape (height, width, 3), on a background (None: black),
         with neither letters nor bars."""
@@ -156,6 +168,19 @@ class Image(_snowglass.Image):
             return array.astype(dtype)
         return array.copy() if copy else array
 
+    def __iter__(self) -> Iterator["Image"]:
+        """rgba, depth = volume.render(depth=True)"""
+        if self.depth is None:
+            raise TypeError("the picture has no depths: render it with "
+                            "depth=True; its rows are those of "
+                            "numpy.asarray(image)")
+        return iter((self, self.depth))
+
+    def _is_opaque(self) -> bool:
+        import numpy
+        return len(self.shape) == 3 and \
+            bool((numpy.asarray(self)[..., -1] >= 1).all())
+
     def __repr__(self) -> str:
         height, width = self.shape[:2]
         kind = {2: "grey", 4: "colour"}.get(self.shape[-1], "values") \
@@ -163,11 +188,31 @@ class Image(_snowglass.Image):
         return f"<snowglass.Image {width}x{height} {kind}>"
 
 
+def _as_in(path: Path, image: Image) -> Image:
+    """What a file of the same kind would show of a picture, on its background
+    and with its letters; the picture itself beside files that keep the pixels."""
+    expected = Image.load(path)
+    suffix = os.path.splitext(os.fsencode(path))[1]
+    if _snowglass.format_bits(os.fsencode(path)) <= 0 or not expected._is_opaque():
+        return image
+    import tempfile
+    with tempfile.TemporaryDirectory() as folder:
+        shown = os.path.join(os.fsencode(folder), b"image" + suffix)
+        image.save(os.fsdecode(shown))
+        return Image.load(os.fsdecode(shown))
+
+
 def compare(a: Union[Image, Path], b: Union[Image, Path]) -> Difference:
-    """How two pictures, or files of pictures, differ.
+    """How two pictures, or files of pictures, differ.  Beside a PNG, WebP or JPEG
+    without transparent pixels a picture counts as it would be saved: on its
+    background, and with its letters.
 
     Raises snowglass.Error when their sizes differ.
     """
+    if isinstance(a, Image) and not isinstance(b, Image):
+        a = _as_in(b, a)
+    elif isinstance(b, Image) and not isinstance(a, Image):
+        b = _as_in(a, b)
     pictures = [each if isinstance(each, Image) else Image.load(each)
                 for each in (a, b)]
     return Difference(*_snowglass.compare(*pictures))

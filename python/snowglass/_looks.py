@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import Any, Optional, Sequence, Tuple, Union
 
 Range = Union[str, Tuple[float, float]]
@@ -13,7 +14,7 @@ class Look:
     volume's histogram.
 
     preset        a name of `snowglass.presets()`
-    colormap      a name of `snowglass.colormaps()`; replaces the colours
+    colormap      a name of `snowglass.colormaps()`, reversed by _r; replaces the colours
                   (`cmap` is another name for it)
     range         (low, high): the data values over which colours and opacities
                   are spread; "full": from the smallest to the largest;
@@ -25,6 +26,8 @@ class Look:
     colors        [(value, (red, green, blue)), ...], 0 to 1
     gradient_opacity  [(magnitude, factor), ...]: factors 0 to 1 of opacities by
                   the magnitude of the gradient, in data units per unit of length
+    symlog        True: linear around 0 and logarithmic beyond, on both sides;
+                  a number: from there on
     log           points are joined by logarithms of values; 0 and below is
                   transparent
     """
@@ -35,6 +38,7 @@ class Look:
     colors: Optional[Sequence[Tuple[float, Sequence[float]]]] = None
     gradient_opacity: Optional[Sequence[Tuple[float, float]]] = None
     log: bool = False
+    symlog: Union[bool, float] = False
     cmap: dataclasses.InitVar[Optional[str]] = None
     clim: dataclasses.InitVar[Optional[Range]] = None
 
@@ -46,6 +50,9 @@ class Look:
             if getattr(self, name) is not None:
                 raise TypeError(f"give {name} or {other}, not both")
             object.__setattr__(self, name, value)
+        if self.symlog is not True and not 0 <= float(self.symlog) < math.inf:
+            raise ValueError(f"symlog {self.symlog}: must be a magnitude above "
+                             f"0, or True to have it chosen")
 
     def _arguments(self) -> tuple[Any, ...]:
         """Those of the core's `_look`."""
@@ -54,7 +61,8 @@ class Look:
         if self.colors is not None:
             colors = [(value, *color) for value, color in self.colors]
         fields = {"preset": self.preset, "colormap": self.colormap,
-                  "log": self.log, "low": low, "high": high}
+                  "log": self.log, "low": low, "high": high,
+                  "symlog": -1.0 if self.symlog is True else float(self.symlog)}
         return fields, kind, colors, self.opacity, self.gradient_opacity
 
 
@@ -66,15 +74,28 @@ def look_of(look: Union[Look, str, None]) -> Look:
         return look
     if isinstance(look, str):
         from . import colormaps, presets
-        return Look(colormap=look) if look in colormaps() and \
-            look not in presets() else Look(preset=look)
+        same = _plain(look)
+        name = _plain(look[:-2]) if look[-2:] in ("_r", "_R") else same
+        return Look(colormap=look) if name in map(_plain, colormaps()) and \
+            same not in map(_plain, presets()) else Look(preset=look)
     raise TypeError(f"a look must be a snowglass.Look or the name of a preset, "
                     f"not {type(look).__name__}")
+
+
+def _plain(name: str) -> str:
+    """What counts of a name."""
+    return name.lower().replace("-", "").replace("_", "")
 
 
 def is_ranged(look: Any) -> bool:
     """Whether a look names the range that it is spread over."""
     return isinstance(look, Look) and look.range not in (None, "auto")
+
+
+def colors_are_open(look: Look) -> bool:
+    """Whether a look says nothing of colours but what the data do."""
+    return not (look.preset or look.colormap or look.colors or look.log or
+                look.symlog or is_ranged(look))
 
 
 def _parse_range(given: Optional[Range]) -> tuple[str, float, float]:

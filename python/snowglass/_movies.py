@@ -7,6 +7,7 @@ from typing import Any, Callable, Optional
 
 from ._images import Color
 from ._looks import is_ranged
+from ._overlays import overlaid
 
 # As the command line does, in programs/movie/movie_encoder.c: 4:2:0 has even
 # sides, so that an odd one gets a black line more, and levels of BT.709.
@@ -36,7 +37,10 @@ def turntable(volume: Any, path: str, look: Any, frames: int, fps: float,
     if mode == "sum" and not is_ranged(look):
         raise ValueError("mode sum: all frames of a movie need the same range; "
                          "give Look(range=(low, high))")
-    transfer = volume._transfer(look, mode)
+    drawn = volume._mixture(look, mode, options) or \
+        volume._transfer(look, mode)
+    options["overlay"] = overlaid(volume, options.get("overlay"),
+                                  options.get("overlay_look"))
     background = options.pop("background", "auto")
     suffix = os.path.splitext(path)[1].lower()
     if re.search(r"%0?\d*d", path):
@@ -48,7 +52,7 @@ def turntable(volume: Any, path: str, look: Any, frames: int, fps: float,
                          f"files by a pattern such as turn_%04d.png")
     try:
         for n, angle in enumerate(angles):
-            image = volume.render(transfer, azimuth=angle, _azimuths=angles,
+            image = volume.render(drawn, azimuth=angle, _azimuths=angles,
                                   **options)
             image._ranged = True  # the same colours in all frames
             save(n, image)

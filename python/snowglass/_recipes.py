@@ -6,17 +6,23 @@ import os
 import shlex
 from typing import Any, Mapping, Optional
 
-from ._looks import Look
+from ._looks import Look, look_of
 
 #: Keys of the data, as options of Volume.
 DATA = ("dims", "type", "endian", "spacing", "offset", "time", "channel",
         "component", "crop", "dataset", "series", "allow_gaps", "mask",
-        "labels", "clip")
+        "labels", "label_table", "clip")
 #: Keys of the look.
-LOOK = ("preset", "colormap", "range", "opacity", "gradient_opacity", "log")
+LOOK = ("preset", "colormap", "range", "opacity", "gradient_opacity", "log",
+        "symlog")
+#: Other names of some, as of matplotlib and PyVista.
+ALSO = ("cmap", "clim")
+#: Those that an overlay has, too.
+OVERLAY = ("preset", "colormap", "range", "opacity")
 #: Keys of the file of a picture and of other verbs, which are left out.
 OTHERS = ("output", "depth", "overwrite", "background", "bits", "frames", "fps",
-          "verb", "version", "time_label", "shift")
+          "verb", "version", "time_label", "shift", "title", "legend_title",
+          "annotate", "time_format", "outline", "axes")
 #: What need not be said; some of it the command line has no words for.
 USUAL = {"azimuth": 0, "elevation": 0, "roll": 0, "perspective": 0, "zoom": 1,
          "fit": "visible", "threads": 0, "footprint": 0, "opacity_length": 0}
@@ -53,6 +59,10 @@ def _plain(value: Any) -> Any:
     return float(value) if hasattr(value, "__float__") else os.fspath(value)
 
 
+def _plain_tree(recipe: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: _plain(value) for name, value in recipe.items()}
+
+
 def _look_keys(look: Look) -> dict[str, Any]:
     if look.colors is not None:
         raise ValueError("a look with colors of its own is no recipe: name a "
@@ -68,6 +78,22 @@ def _look_keys(look: Look) -> dict[str, Any]:
             if value is not None and value is not False}
 
 
+def _overlay_keys(overlay: Any, look: Any) -> dict[str, Any]:
+    """An overlay of a path, and its look, with their long names."""
+    if overlay is None:
+        return {}
+    if not isinstance(overlay, (str, os.PathLike)):
+        raise ValueError("the overlay is an array or a Volume, which no recipe "
+                         "can name: write it by Volume.save, and give the path")
+    keys = _look_keys(look_of(look))
+    others = [name for name in keys if name not in OVERLAY]
+    if others:
+        raise ValueError(f"{', '.join(others)} of overlay_look: a recipe knows "
+                         f"only {', '.join(OVERLAY)}")
+    return {"overlay": os.fspath(overlay),
+            **{"overlay_" + name: value for name, value in keys.items()}}
+
+
 def length_of_mm(unit: str) -> float:
     """A millimetre in the unit of a volume's world."""
     if unit not in UNITS:
@@ -79,8 +105,18 @@ def length_of_mm(unit: str) -> float:
 def make(data: Optional[Mapping[str, Any]], unit: str, look: Look,
          options: Mapping[str, Any]) -> dict[str, Any]:
     """The recipe of a picture of a file's `data` (None: of an array), drawn
-    with these options of Volume.render."""
-    keys: dict[str, Any] = {**(data or {}), **_look_keys(look)}
+    with these options of Volume.render, or those of Volume.slice with a verb."""
+    colors = _look_keys(look)
+    if options.get("verb") == "slice":  # which has no opacities
+        for name in ("opacity", "gradient_opacity"):
+            colors.pop(name, None)
+    options = dict(options)
+    second = _overlay_keys(options.pop("overlay", None),
+                           options.pop("overlay_look", None))
+    if second and "labels" in (data or {}):
+        raise ValueError("labels of the volume and an overlay are no recipe: "
+                         "there labels are the overlay's")
+    keys: dict[str, Any] = {**(data or {}), **colors, **second}
     for name, value in options.items():
         value = _plain(value)
         if value is None or name in ("depth", "unit") or \
@@ -104,17 +140,30 @@ def make(data: Optional[Mapping[str, Any]], unit: str, look: Look,
             for name, value in keys.items() if value is not False}
 
 
+def take_look(options: dict[str, Any]) -> dict[str, Any]:
+    """Takes the keys of a look out of options."""
+    given = {name: options.pop(name) for name in LOOK + ALSO if name in options}
+    return {name: value for name, value in given.items() if value is not None}
+
+
 def split(options: Mapping[str, Any]) -> tuple[
         dict[str, Any], Optional[Look], dict[str, Any]]:
     """Options of Volume, the look and options of Volume.render of the keys of a
     recipe, and of any options that have these names."""
     given = {name.replace("-", "_"): value for name, value in options.items()}
     data = {name: given.pop(name) for name in DATA if name in given}
-    colors = {name: given.pop(name) for name in LOOK
-              if given.get(name, None) is not None}
+    colors = take_look(given)
     if "tf" in given:
         raise ValueError("a recipe with a file of a look (tf) cannot be drawn "
                          "here; use the command line")
+    second = {name: _range_look(value) if name == "range" else value
+              for name in OVERLAY
+              if (value := given.pop("overlay_" + name, None)) is not None}
+    if given.get("overlay") and "labels" in data:
+        raise ValueError("a recipe with an overlay and labels cannot be drawn "
+                         "here; use the command line")
+    if second:
+        given["overlay_look"] = Look(**second)
     if given.get("shift"):
         raise ValueError("a recipe with a shift cannot be drawn here; use the "
                          "command line")
@@ -141,6 +190,14 @@ def split(options: Mapping[str, Any]) -> tuple[
     return data, Look(**colors) if colors else None, given
 
 
+def with_lengths(options: Mapping[str, Any], unit: str) -> dict[str, Any]:
+    """Options of Volume.render of those of a recipe, for a world's unit."""
+    given = dict(options)
+    if given.pop("opacity_unit", None) == "mm":
+        given["opacity_length"] = length_of_mm(unit)
+    return given
+
+
 def check_slice(options: Mapping[str, Any]) -> None:
     """That Volume.slice takes all of a recipe of a slice."""
     others = [name.replace("_", "-") for name in options if name not in SLICE]
@@ -162,7 +219,7 @@ def _word(key: str, value: Any) -> str:
     between = "x" if key in ("size", "dims", "spacing") else ","
     if key == "crop":
         return ",".join(f"{low}:{high or ''}" for low, high in value)
-    pairs = ":" if key in ("opacity", "gradient-opacity") else ","
+    pairs = ":" if key.endswith("opacity") else ","
     return between.join(pairs.join(_word("", part) for part in each)
                         if isinstance(each, list) else _word("", each)
                         for each in value)
@@ -176,9 +233,9 @@ def command(recipe: Mapping[str, Any]) -> str:
     path = recipe["input"]
     if path.startswith("-") and path != "-":
         path = os.path.join(".", path)  # no option
-    words = ["snowglass", "render", path]
+    words = ["snowglass", recipe.get("verb", "render"), path]
     for key, value in recipe.items():
-        if key != "input":
+        if key not in ("input", "verb"):
             words += ["--" + key] if value is True else \
                 ["--" + key, _word(key, value)]
     return shlex.join(words)

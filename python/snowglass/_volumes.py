@@ -9,9 +9,9 @@ import sys
 from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, Optional, \
     Sequence, Union
 
-from . import _arrays, _movies, _recipes, _snowglass
+from . import _arrays, _channels, _movies, _overlays, _recipes, _snowglass
 from ._images import Image, Path
-from ._looks import Look, is_ranged, look_of
+from ._looks import Look, colors_are_open, is_ranged, look_of
 
 if TYPE_CHECKING:
     import numpy.typing
@@ -57,10 +57,17 @@ class Volume(_snowglass.Volume):
     memory      the most bytes that the library may hold; 0: no limit
 
     For files: dims, type ("uint8", "int16", ...), endian, offset (raw data),
-    time, channel, component ("x", "magnitude", or a number from 0), crop
+    time, channel (below), component ("x", "magnitude", or a number from 0), crop
     ((x0, x1), (y0, y1), (z0, z1)), dataset, series, allow_gaps (a DICOM folder
-    in which slices are missing is opened), mask (a path), labels ("1,4-7"), clip
-    (planes (a, b, c, d): what lies where a x + b y + c z > d is cut away).
+    in which slices are missing is opened), mask (a path), labels ("1,4-7"),
+    label_table (a path: names and colours), clip (planes (a, b, c, d): what lies where a x + b y + c z > d is cut away).
+
+    channel   Pictures of a file whose channels are images of one thing show all
+              of them, in its colours.  A number or a name: one, in grey.
+              "0:magenta,GFP:green:20..200:0.5", {"GFP": "green", 0: "magenta"} or
+              [0, "GFP"]: these; behind a channel stand, in any order, a colour, a
+              range and an opacity.  Arrays, statistics, slice_values, project and
+              save are those of one channel, the first.
 
     A Volume may be used by several threads; they take turns.
     """
@@ -74,12 +81,14 @@ class Volume(_snowglass.Volume):
             return cls._open(source, memory, progress, options)
         if memory:
             raise TypeError("memory counts for files only")
+        _arrays.check_options(options)
         given = _arrays.wrap(source, **options)
         made = _snowglass.wrap(cls, given.array, given.order, given.matrix,
                                given.slope, given.intercept, given.medical,
                                given.unit, None)
         made._axes, made._order = given.axes, given.order
         made._values = given.values
+        made._frozen = given.frozen
         if given.frozen:
             made._freeze()
         return made
@@ -89,6 +98,10 @@ class Volume(_snowglass.Volume):
 
     #: The file and how it was opened, as keys of a recipe; None: an array.
     _source: Optional[Mapping[str, Any]] = None
+    _memory: int = 0                         # the most bytes; 0: no limit
+    _planes: Any = None                      # that have cut it
+    _frozen: bool = True
+    _mixed: Optional[_channels.Channels] = None  # that its pictures mix
 
     @classmethod
     def _open(cls, path: Path, memory: int, progress: Progress,
@@ -98,34 +111,74 @@ class Volume(_snowglass.Volume):
         spacing = fields.get("spacing")
         if spacing is not None and not hasattr(spacing, "__len__"):
             fields["spacing"] = (spacing,) * 3
-        for name in ("mask", "dataset", "series", "labels", "component"):
+        for name in ("mask", "label_table", "dataset", "series", "labels",
+                     "component"):
             if fields.get(name) is not None:
-                fields[name] = os.fsencode(fields[name]) if name == "mask" \
-                    else str(fields[name])
+                fields[name] = os.fsencode(fields[name]) \
+                    if name in ("mask", "label_table") else str(fields[name])
         if fields.get("time") is not None:  # others need no note
             fields.setdefault("each_time", True)
         if "type" in fields and fields["type"] is not None:
             fields["type"] = str(fields["type"])
+        picks, numbers = _channels.picked(path, fields)
+        if fields.get("channel") is None:  # told when a picture is made
+            fields["each_channel"] = True
         made = _snowglass.open(cls, os.fsencode(path), fields, clip, memory,
                                _progress_of(progress))
+        made._memory, made._planes = memory, clip
+        made._mixed = _channels.of_volume(made, path, fields, clip, picks,
+                                          numbers)
         given = {**options, **fields, "mask": options.get("mask")}
+        if picks:
+            given["channel"] = _channels.text(picks, numbers)
         made._source = {"input": os.fspath(path), **{
             name: value for name, value in given.items()
-            if value is not None and name != "each_time"}}
+            if value is not None and name not in ("each_time", "each_channel")}}
+        return made
+
+    @classmethod
+    def channels(cls, arrays: Sequence[Any], *,
+                 colors: Optional[Sequence[str]] = None,
+                 names: Optional[Sequence[str]] = None,
+                 windows: Optional[Sequence[tuple[float, float]]] = None,
+                 **options: Any) -> "Volume":
+        """Arrays of one shape as channels that pictures mix: a list of them, or an
+        array of four dimensions, the channel first.  For each a colour ("green",
+        "#ff8000", or a colour map), a name for the legend, and a window (the data
+        values from dark to bright).  Options are those of Volume."""
+        if not len(arrays):
+            raise ValueError("there is no channel: give at least one array")
+        if any(isinstance(each, (str, os.PathLike)) for each in arrays):
+            raise TypeError("channels of files: Volume(path, channel=...) opens "
+                            "those of one file")
+        made = cls(arrays[0], **options)
+        voxels = [None if n == 0 else
+                  _arrays.like(each, made.shape, made._order, "a channel")
+                  for n, each in enumerate(arrays)]
+        made._mixed = _channels.of_arrays(made, voxels, colors, names, windows)
         return made
 
     def close(self) -> None:
         """Gives the memory back now, not when the last name of the volume goes.
         Pictures stay.  BufferError: arrays of the voxels are in use."""
         self._close()
+        if self._mixed is not None:
+            self._mixed.close()
 
     # --- what it is ---
 
     @property
     def info(self) -> Mapping[str, Any]:
         """dims (x, y, z), type, spacing, matrix, slope, intercept, medical,
-        unit, format, times, time, storage, modality, hounsfield."""
+        unit, format, times, time, storage, modality, hounsfield; quantity,
+        value_unit and description of the values, time_value (or NaN), time_unit
+        and calendar of the step, as far as the file names them; channel_count,
+        and channels (the first eight): name, color, window (or None), whether it
+        is shown, and whether it is a part of the voxels' own colours."""
         info = dict(self._info)
+        if self._mixed is not None:
+            info["channel_count"] = self._mixed.count
+            info["channels"] = [dict(each) for each in self._mixed.said]
         columns = _arrays.columns_of(self._order, self._axes)
         if columns != [0, 1, 2]:  # x, y, z lie in another order in memory
             x, y, z = (columns.index(axis) for axis in range(3))
@@ -228,20 +281,36 @@ class Volume(_snowglass.Volume):
         """A volume without the voxels where the mask, an array of the same
         shape, has none of the labels (by default: where it is 0)."""
         voxels = _arrays.like(mask, self.shape, self._order)
-        if labels is not None and not isinstance(labels, str):
-            labels = ",".join(str(int(each)) for each in labels)
+        picked = labels if labels is None or isinstance(labels, str) else \
+            ",".join(str(int(each)) for each in labels)
         info = self._info
         matrix = [part for row in info["matrix"] for part in row]
         other = _snowglass.wrap(Volume, voxels, (0, 1, 2), matrix, 1.0, 0.0,
                                 info["medical"], info["unit"], self)
-        made = _snowglass.masked(Volume, self, other, labels)
+        made = _snowglass.masked(Volume, self, other, picked)
+        if self._mixed is not None:
+            made._mixed = self._mixed.mapped(
+                self, lambda each: _snowglass.masked(_snowglass.Volume, each,
+                                                     other, picked))
         made._axes, made._order = self._axes, self._order
         made._values = self._values
         return made
 
     def look(self, look: Union[Look, str, None] = None) -> str:
         """What a look becomes for this volume, in one line."""
-        return self._transfer(look).description
+        mixture = self._mixture(look, "over", {})
+        return mixture.describe() if mixture else \
+            self._transfer(look).description
+
+    def _mixture(self, look: Any, mode: str, settings: Mapping[str, Any]
+                 ) -> Optional[_channels.Mixture]:
+        """The channels that a picture mixes; None: it shows the volume."""
+        if isinstance(look, _channels.Mixture):  # of the frames of a movie
+            return look
+        mixed = self._mixed
+        if mixed is None or isinstance(look, _snowglass.Transfer):
+            return None
+        return mixed.mixture(self, look_of(look), mode, settings)
 
     def _transfer(self, look: Union[Look, str, None], mode: str = "over"
                   ) -> Any:
@@ -257,12 +326,15 @@ class Volume(_snowglass.Volume):
                target: Optional[Sequence[float]] = None,
                up: Optional[Sequence[float]] = None, fit: str = "visible",
                light: Union[str, Sequence[float], None] = None,
+               overlay: Any = None,
+               overlay_look: Union[Look, str, None] = None,
                legend: bool = False, scale_bar: bool = False,
                letters: bool = True, unit: Optional[str] = None,
                progress: Progress = None, **settings: Any) -> Image:
         """A picture.
 
-        look          a Look, the name of a preset, or None: chosen
+        look          a Look, the name of a preset, or None: chosen, but for the
+                      options of Look that are given here: cmap="bone", ...
         view          a side: "anterior", "left", "+z", "iso", ...; None: chosen
         size          (width, height) in pixels, or one number for both
         azimuth, elevation, roll   degrees that the camera moves to its right
@@ -272,6 +344,10 @@ class Volume(_snowglass.Volume):
         fit           "visible": what the look shows fills the picture;
                       "volume": the whole box does; zoom multiplies either
         light         "key", "head" or (azimuth, elevation) in degrees
+        overlay       a segmentation, or a second volume of values, that is
+                      drawn in this one: a path, a Volume with its place in the
+                      world, or an array of this one's shape
+        overlay_look  its look; None: labels, else hot colours
         legend, scale_bar, letters   what is drawn when the picture is saved as
                       PNG, WebP or TIFF of 8 bits; `unit` is that of the values
         progress      called as progress(stage, fraction), or True: printed
@@ -287,13 +363,21 @@ class Volume(_snowglass.Volume):
         """
         if fit not in ("visible", "volume"):
             raise ValueError(f"fit '{fit}': give visible or volume")
+        if "background" in settings:
+            raise TypeError("background is an option of save: pictures are "
+                            "transparent until then")
+        look = _given_look(look, settings)
         mode = settings.get("mode") or "over"
-        transfer = self._transfer(look, mode)
+        mixture = self._mixture(look, mode, settings)
+        first: _snowglass.Volume = mixture.volumes[0] if mixture else self
+        transfer = mixture.transfers[0] if mixture else \
+            self._transfer(look, mode)
         width, height = _sides(size)
         asked = {"view": view, "size": (width, height), "azimuth": azimuth,
                  "elevation": elevation, "roll": roll, "zoom": zoom,
                  "perspective": perspective, "position": position,
                  "target": target, "up": up, "fit": fit, "light": light,
+                 "overlay": overlay, "overlay_look": overlay_look,
                  "legend": legend, "scale_bar": scale_bar, "letters": letters,
                  **settings}
         fields = {"width": width, "height": height, "azimuth": azimuth,
@@ -301,26 +385,39 @@ class Volume(_snowglass.Volume):
                   "fov": 30.0 if perspective is True else float(perspective),
                   "position": position, "target": target, "upward": up}
         _set_light(light, settings)
-        if transfer.unshaded and settings.get("shade") is None:
+        layer = _overlays.overlaid(self, overlay, overlay_look)
+        if mixture and settings.get("shade") is None:
+            settings["shade"] = "none"
+        if transfer.unshaded and (layer is None or layer.transfer.unshaded) \
+                and settings.get("shade") is None and \
+                settings.get("mode") != "iso":
             settings["shade"] = "none"
         azimuths = settings.pop("_azimuths", None)
-        image, depth, target, zoom, stats = self._render(
+        layers = mixture.layers() if mixture else ()
+        if layer is not None:
+            layers += ((layer.volume, layer.transfer, False, 1.0),)
+        image, depth, target, zoom, stats = first._render(
             Image, transfer, view, fields, settings, fit == "visible", azimuths,
-            _progress_of(progress))
+            _progress_of(progress), layers, mixture is not None,
+            mixture.shares[0] if mixture else 1.0)
         image.stats, image.depth, image._view = stats, depth, (target, zoom)
-        if azimuths is None and not isinstance(look, _snowglass.Transfer):
+        if azimuths is None and not isinstance(
+                look, (_snowglass.Transfer, _channels.Mixture)):
             image._made = (self._source, self._info["unit"],
                            look_of(look), asked)
         self._annotate(image, mode, transfer, look, {
             "letters": letters, "legend": legend, "unit": unit,
-            "scale_bar": scale_bar})
+            "scale_bar": scale_bar}, mixture)
         return image
 
     def _annotate(self, image: Image, mode: str, transfer: Any, look: Any,
-                  annotations: dict[str, Any]) -> None:
+                  annotations: dict[str, Any],
+                  mixture: Optional[_channels.Mixture]) -> None:
         """Notes what a saved picture will show, as the command line has it."""
         if annotations["legend"] and annotations["unit"] is None:
-            annotations["unit"] = self._unit_of_values()
+            annotations["unit"] = self._caption()
+        if mixture:
+            annotations["bars"] = mixture.bars(mode)
         image._annotations = annotations
         image._values = mode in ("mean", "sum")
         image._domain = None if mode == "over" else transfer.domain
@@ -328,13 +425,18 @@ class Volume(_snowglass.Volume):
         image._background = (20 / 255,) * 3 if mode in ("over", "iso") \
             else (0.0,) * 3
 
-    def _unit_of_values(self) -> Optional[str]:
-        """HU of a CT, which is known by its values where no modality is named."""
+    def _caption(self) -> Optional[str]:
+        """Quantity and unit.  That of a CT is known by its values where no
+        modality is named."""
         info = self._info
-        if self._values:
-            return self._values
-        return "HU" if info["hounsfield"] or not info["modality"] and \
-            self._statistics()["hounsfield"] else None
+        unit = self._values or info["value_unit"]
+        if not self._values and (info["hounsfield"] or info["medical"] and
+                                 not info["modality"] and
+                                 self._statistics()["hounsfield"]):
+            unit = "HU"
+        if info["quantity"] and unit:
+            return f"{info['quantity']} ({unit})"
+        return info["quantity"] or unit or None
 
     def project(self, mode: str = "mip", *, view: Optional[str] = None,
                 size: Union[int, Sequence[int]] = 512, **options: Any
@@ -345,8 +447,8 @@ class Volume(_snowglass.Volume):
         import numpy
         options.setdefault("fit", "volume")
         if mode in ("mean", "sum"):
-            return numpy.asarray(self.render(None, view=view, size=size,
-                                             mode=mode, **options))
+            return numpy.asarray(self.render(self._transfer(None, mode), view=view,
+                                             size=size, mode=mode, **options))
         if mode not in ("mip", "minip"):
             raise ValueError(f"mode '{mode}': give mip, minip, mean or sum")
         known = self._statistics()
@@ -355,8 +457,8 @@ class Volume(_snowglass.Volume):
             high = low + 1
         ramp = Look(colors=[(low, (0, 0, 0)), (high, (1, 1, 1))],
                     opacity=[(low, 1), (high, 1)])
-        pixels = numpy.asarray(self.render(ramp, view=view, size=size,
-                                           mode=mode, **options))
+        pixels = numpy.asarray(self.render(self._transfer(ramp, mode), view=view,
+                                           size=size, mode=mode, **options))
         with numpy.errstate(divide="ignore", invalid="ignore"):
             values = pixels[..., 0] / pixels[..., -1]
         return (low + (high - low) * values).astype(numpy.float32)
@@ -387,13 +489,27 @@ class Volume(_snowglass.Volume):
         """
         along, index, position = self._find_slice(axis, at)
         alone = self._slice_alone(along, index)
-        transfer = alone._transfer(look, "slice")
+        mixture = None
+        mixed = self._mixed
+        if mixed is not None and not isinstance(look, _snowglass.Transfer):
+            mixture = mixed.mixture(
+                self, look_of(look), "slice", {}, lambda each: alone if each is
+                self else self._slice_alone(along, index, each))
+        transfer = mixture.transfers[0] if mixture else \
+            alone._slice_transfer(look)
         image = alone._draw_slice(along, 0, transfer, size,
-                                  {"kernel": kernel, "threads": threads})
+                                  {"kernel": kernel, "threads": threads}, mixture)
         image.stats = {"axis": axis, "index": index, "position": position}
+        if not isinstance(look, _snowglass.Transfer):
+            image._made = (self._source, self._info["unit"], look_of(look), {
+                "verb": "slice", "axis": axis.lower(),
+                "at": at if isinstance(at, str) else str(index), "size":
+                None if size is None else _sides(size), "kernel": kernel,
+                "legend": legend, "scale_bar": scale_bar, "letters": letters,
+                "threads": threads})
         alone._annotate(image, "slice", transfer, look, {
             "letters": letters, "legend": legend, "unit": unit,
-            "scale_bar": scale_bar})
+            "scale_bar": scale_bar}, mixture)
         return image
 
     def slice_values(self, axis: str = "axial",
@@ -408,19 +524,35 @@ class Volume(_snowglass.Volume):
         return numpy.asarray(self._draw_slice(
             along, index, None, size, {"kernel": kernel, "threads": threads}))
 
+    def _slice_transfer(self, look: Union[Look, str, None]) -> Any:
+        """Labels are drawn as such where nothing else is asked, as in a
+        picture."""
+        if not isinstance(look, _snowglass.Transfer) and \
+                colors_are_open(look_of(look)):
+            chosen = self._transfer(look)
+            if chosen.labelled:
+                return chosen
+        return self._transfer(look, "slice")
+
     def _draw_slice(self, along: int, index: int, transfer: Any,
                     size: Union[int, Sequence[int], None],
-                    settings: Mapping[str, Any]) -> Image:
+                    settings: Mapping[str, Any],
+                    mixture: Optional[_channels.Mixture] = None) -> Image:
         width, height = _sides(0 if size is None else size)
-        return self._slice(Image, "xyz"[along], index, transfer, width, height,
-                           settings)
+        first = mixture.volumes[0] if mixture else self
+        return first._slice(Image, "xyz"[along], index, transfer, width, height,
+                            settings, mixture.layers() if mixture else (),
+                            mixture is not None,
+                            mixture.shares[0] if mixture else 1.0)
 
-    def _slice_alone(self, along: int, index: int) -> "Volume":
-        """A slice as a volume of its own, as the command line reads it: looks
-        are chosen from its values."""
+    def _slice_alone(self, along: int, index: int,
+                     channel: Optional[_snowglass.Volume] = None) -> "Volume":
+        """A slice, or one of another channel, as a volume of its own, as the
+        command line reads it: looks are chosen from its values."""
         import numpy
-        info = self._info
-        turned = numpy.asarray(self).transpose(
+        info = (channel or self)._info
+        array: Any = numpy.asarray(memoryview(channel or self))  # type: ignore[arg-type]
+        turned = array if channel else array.transpose(
             [self._order.index(n) for n in range(3)])
         voxels = numpy.take(turned, [index], axis=2 - along)
         matrix = numpy.array(info["matrix"])
@@ -471,8 +603,24 @@ class Volume(_snowglass.Volume):
         """Pictures of a whole turn, with one frame for all of them: files by a
         pattern such as "turn_%04d.png", or a movie (.mp4, .webm, .gif), for
         which ffmpeg must be installed.  Options are those of render."""
+        look = _given_look(look, options)
         _movies.turntable(self, os.fspath(path), look, frames, fps,
                           _progress_of(progress), options)
+
+    def view(self, look: Union[Look, str, None] = None, **options: Any) -> Any:
+        """A snowglass.Viewer: the volume to turn, cut and colour in a notebook;
+        a picture where the package anywidget is not installed."""
+        from .viewer import Viewer
+        return Viewer(self, look, **options)
+
+
+def _given_look(look: Union[Look, str, None], options: dict[str, Any]
+                ) -> Union[Look, str, None]:
+    """A look, or one of the keys of looks that are taken out of the options."""
+    colors = _recipes.take_look(options)
+    if look is not None and colors:
+        raise TypeError("give a look, or keys of one, not both")
+    return Look(**colors) if colors else look
 
 
 def _chosen(look: Union[Look, str, None], mode: str) -> Look:
@@ -518,8 +666,10 @@ def render(source: Any = None, look: Union[Look, str, None] = None, *,
     """A picture of a file, an array or a Volume; `open` holds options of Volume,
     the others are those of Volume.render, or keys of a recipe: what
     `Image.recipe` gives and the command line saves, `render(**recipe)` draws,
-    with the same bits.  What such a file says of its output is left out.  With
-    an axis it is a recipe of a slice, which Volume.slice draws."""
+    with the same bits.  What such a file says of its output is left out.  Of a
+    Volume clip, crop, time, channel, component and labels are taken, as its
+    viewer has them: a crop counts the Volume's voxels, and a file is read again.
+    With an axis it is a recipe of a slice, which Volume.slice draws."""
     data, colors, options = _recipes.split(options)
     sliced = "axis" in options or "at" in options
     if sliced:
@@ -531,10 +681,12 @@ def render(source: Any = None, look: Union[Look, str, None] = None, *,
     volume = source if source is not None else input
     if not isinstance(volume, Volume):
         volume = Volume(volume, **{**data, **(open or {})})
+    else:
+        from . import _drawing
+        volume = _drawing.part(volume, {**data, **(open or {})})
     if sliced:
         return volume.slice(look=colors if look is None else look, **options)
-    if options.pop("opacity_unit", None) == "mm":
-        options["opacity_length"] = _recipes.length_of_mm(volume.info["unit"])
+    options = _recipes.with_lengths(options, volume.info["unit"])
     return volume.render(colors if look is None else look, **options)
 
 

@@ -32,7 +32,7 @@ class Movie:
     origin, spacing   its place in the world
     recipe    keys of a recipe (`Image.recipe`, or a file that the command line
               has saved), and keywords the same: output, size, view, preset,
-              colormap, range, opacity, mode, legend, ...
+              colormap, range, opacity, mode, legend, title, annotate, ...
 
     Arguments are alike on all ranks.  `close` ends the movie, on all ranks and
     before MPI ends; so does leaving it as a context.
@@ -86,9 +86,11 @@ class Movie:
                       voxels.dtype.name, inner.ctypes.data, tuple(strides))
         self._arrays[id] = voxels  # as long as it is read
 
-    def step(self, number: int) -> None:
-        """Draws the fields as they are and writes a picture; collective."""
-        _insitu.step(self._movie, number)
+    def step(self, number: int, time: float = float("nan"),
+             unit: str = "") -> None:
+        """Draws the fields as they are and writes a picture; collective.  With
+        annotate="time" it shows the physical time, or else the number."""
+        _insitu.step(self._movie, number, time, unit)
 
     def close(self) -> None:
         """Ends the movie; collective."""

@@ -1,6 +1,5 @@
 /* client.c - implements client.h. */
 #include "net/client.h"
-#include "message.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -60,21 +59,6 @@ void client_queue(client *c, outbox *box, parcel *p) {
         c->queue[c->count++] = parcel_share(box, p);
 }
 
-void client_note_set(client *c, uint32_t n, uint32_t revision) {
-    c->sets[c->set_count % CLIENT_SETS].n = n;
-    c->sets[c->set_count % CLIENT_SETS].revision = revision;
-    c->set_count++;
-}
-
-/* The newest of the page's own messages that a revision has in it. */
-static uint32_t n_of(const client *c, uint32_t revision) {
-    uint32_t n = 0;
-    for (unsigned i = 0; i < CLIENT_SETS && i < c->set_count; i++)
-        if (c->sets[i].revision <= revision && c->sets[i].n > n)
-            n = c->sets[i].n;
-    return n;
-}
-
 static bool has_picture(const client *c) {
     for (int i = 0; i < c->count; i++)
         if (is_picture(c->queue[i]))
@@ -128,9 +112,9 @@ static bool send_piece(client *c) {
         length = PIECE_BYTES;
     memcpy(room + LWS_PRE, p->bytes + c->sent, length);
     if (first && is_picture(p))
-        frame_head_set_n(room + LWS_PRE, n_of(c, p->revision));
+        frame_head_set_n(room + LWS_PRE, set_log_n(&c->sets, p->revision));
     if (first && p->topic == PARCEL_STATE)
-        state_text_set_n(room + LWS_PRE, n_of(c, p->revision));
+        state_text_set_n(room + LWS_PRE, set_log_n(&c->sets, p->revision));
     int how = !first       ? LWS_WRITE_CONTINUATION
               : p->is_text ? LWS_WRITE_TEXT
                            : LWS_WRITE_BINARY;

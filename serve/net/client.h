@@ -6,13 +6,13 @@
 #ifndef CLIENT_H
 #define CLIENT_H
 
+#include "message.h"
 #include "outbox.h"
 
 #include <libwebsockets.h>
 
 #define CLIENT_QUEUE_MOST 96
 #define CLIENT_UNDER_WAY 2
-#define CLIENT_SETS 64
 
 /* lws allocates it, zeroed, for each WebSocket. */
 typedef struct client {
@@ -32,19 +32,13 @@ typedef struct client {
     double blocked; /* the share of them, of late */
     int under_way;  /* pictures that were sent and not acknowledged */
     uint32_t n;     /* the newest that the page counted */
-    struct {
-        uint32_t revision, n; /* what its own sets became */
-    } sets[CLIENT_SETS];      /* a ring */
-    unsigned set_count;
+    set_log sets;   /* of its own */
 } client;
 
 void client_free(client *c, outbox *box);
 
 /* Queues a parcel, which it shares. */
 void client_queue(client *c, outbox *box, parcel *p);
-
-/* Notes that message n of the page became a revision. */
-void client_note_set(client *c, uint32_t n, uint32_t revision);
 
 /* A picture was painted.  Whether the link counts as another kind now. */
 bool client_acknowledge(client *c);

@@ -158,7 +158,7 @@ static int greet(listener *l, client *c, const message *m) {
 static void set(listener *l, client *c, const message *m) {
     uint32_t revision;
     char *fault = state_set(l->state, m->recipe, &revision);
-    client_note_set(c, m->n, revision);
+    set_log_note(&c->sets, m->n, revision);
     if (fault) {
         answer_said(l->box, c->id, fault);
         send_state(l, c->id, 0);
@@ -194,8 +194,10 @@ static int take(listener *l, client *c, message *m) {
             count_links(l);
         break;
     case MESSAGE_ASK:
-        if (!state_ask(l->state, c->id, json_deep_copy(m->tree)))
+        if (!state_ask(l->state, c->id, json_deep_copy(m->tree))) {
+            answer_none(l->box, c->id, m->tree);
             answer_said(l->box, c->id, "ask: too many questions wait");
+        }
         break;
     }
     if (client_has_more(c))

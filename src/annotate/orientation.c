@@ -80,7 +80,8 @@ static snow_status draw_letter(snow_overlay *overlay, const double place[2],
         offsets[n][!level] = floor(0.8 / (ROW - 1) * edge * step);
         offsets[n][level] = floor(n / ROW * 5 * height * (0.5 - share[level]));
     }
-    snow_overlay_settle(overlay, first, (const double(*)[2])offsets, 3 * ROW);
+    snow_overlay_settle(overlay, first, (const double(*)[2])offsets, 3 * ROW,
+                        false);
     return SNOW_STATUS_OK;
 }
 

@@ -2,8 +2,6 @@
 #include "base/base.h"
 #include "base/thread_pool.h"
 
-#include <snowglass/extend.h>
-
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -142,18 +140,14 @@ snow_status snow_fail_in_file(snow_context *context, snow_status status,
     return status;
 }
 
-static void notify(snow_context *context, const char *format,
-                   va_list arguments) {
+void snow_context_warn(snow_context *context, const char *format, ...) {
     char text[SNOW_MESSAGE_BYTES];
+    va_list arguments;
+    if (!context->warning)
+        return;
+    va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
     keep_to_one_line(text);
     context->warning(context->warning_user, text);
-}
-
-void snow_context_warn(snow_context *context, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    if (context->warning)
-        notify(context, format, arguments);
-    va_end(arguments);
 }

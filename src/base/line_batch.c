@@ -5,30 +5,26 @@
  * image. */
 static void draw_item(void *of, int64_t item, int worker) {
     snow_line_batch *b = of;
-    const int64_t count = b->lines * b->width;
-    const int64_t place = (b->first * b->width + item) % count;
+    const int64_t width = b->order.width, count = b->order.lines * width;
+    const int64_t place = (b->first * width + item) % count;
     if (!snow_monitor_item(b->monitor, worker, item, count))
-        b->draw(b->job, place, worker);
-    atomic_fetch_add_explicit(&b->finished[place / b->width], 1,
+        b->order.draw(b->order.job, place, worker);
+    atomic_fetch_add_explicit(&b->finished[place / width], 1,
                               memory_order_release);
 }
 
 snow_status snow_line_batch_begin(snow_context *context, snow_line_batch *b,
                                   const snow_line_batch_params *params) {
-    SNOW_TRY(SNOW_RESERVE(context, b->finished, 0, params->lines));
-    for (int64_t line = 0; line < params->lines; line++)
+    const int64_t lines = params->lines;
+    SNOW_TRY(SNOW_RESERVE(context, b->finished, 0, lines));
+    for (int64_t line = 0; line < lines; line++)
         atomic_init(&b->finished[line], 0);
     b->context = context;
     b->monitor = context->monitor;
-    b->draw = params->draw;
-    b->made = params->made;
-    b->job = params->job;
-    b->whole = params->whole;
-    b->lines = params->lines;
-    b->width = params->width;
-    b->first = (int64_t)(params->begin_at * (double)b->lines) % b->lines;
+    b->order = *params;
+    b->first = (int64_t)(params->begin_at * (double)lines) % lines;
     snow_monitor_batch(b->monitor);
-    snow_parallel_begin(context, params->threads, b->lines * b->width,
+    snow_parallel_begin(context, params->threads, lines * params->width,
                         draw_item, b, &b->batch);
     return SNOW_STATUS_OK;
 }
@@ -38,11 +34,11 @@ bool snow_line_batch_step(snow_line_batch *b) {
 }
 
 bool snow_line_batch_drawn(const snow_line_batch *b, int first, int end) {
-    if (b->whole)
+    if (b->order.whole)
         return false;
     for (int line = first; line < end; line++)
         if (atomic_load_explicit(&b->finished[line], memory_order_acquire) <
-            b->width)
+            b->order.width)
             return false;
     return true;
 }
@@ -53,8 +49,8 @@ void snow_line_batch_end(snow_line_batch *b) {
     snow_parallel_end(b->context, &b->batch);
     snow_monitor_batch(b->monitor);
     b->monitor = NULL;
-    if (b->made)
-        b->made(b->job);
+    if (b->order.made)
+        b->order.made(b->order.job);
     b->batch.items = 0;
 }
 

@@ -10,19 +10,6 @@
 
 #include "base/thread_pool.h"
 
-/* All zeros: empty. */
-typedef struct snow_line_batch {
-    snow_context *context;
-    snow_batch batch;
-    snow_monitor *monitor; /* of the picture, or NULL */
-    snow_work_fn *draw;
-    void (*made)(void *job);
-    void *job;
-    int64_t lines, width, first; /* width: items of a line */
-    bool whole;
-    atomic_int *finished; /* items of each line */
-} snow_line_batch;
-
 /* What is drawn: item n is in line n / width.  `begin_at`, 0 to below 1, is the
  * share of the lines before the one that is drawn first. */
 typedef struct snow_line_batch_params {
@@ -34,6 +21,16 @@ typedef struct snow_line_batch_params {
     void (*made)(void *job); /* after the last; NULL: nothing is to be done */
     void *job;
 } snow_line_batch_params;
+
+/* All zeros: empty. */
+typedef struct snow_line_batch {
+    snow_context *context;
+    snow_batch batch;
+    snow_monitor *monitor; /* of the picture, or NULL */
+    snow_line_batch_params order;
+    int64_t first;        /* line */
+    atomic_int *finished; /* items of each line */
+} snow_line_batch;
 
 /* Begins a batch as snow_parallel_begin does; the one before has ended.  Its
  * progress is snow_monitor_next's.  Errors: SNOW_STATUS_NO_MEMORY. */

@@ -8,8 +8,6 @@
  */
 #include "base/base.h"
 
-#include <snowglass/extend.h>
-
 #include <assert.h>
 #include <string.h>
 

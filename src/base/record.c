@@ -1,7 +1,6 @@
 /* base/record.c - records that grow at their end: snowglass/extend.h. */
 #include "base/base.h"
 
-#include <snowglass/extend.h>
 #include <string.h>
 
 /* A record that is so many bytes longer than ours was not initialised. */

@@ -12,11 +12,6 @@
 #define SNOW_CLASSIFY_H
 
 #include "classify/gradient_opacity.h"
-#include "transfer/transfer.h"
-#include "transform/transform.h"
-#include "volume/volume.h"
-
-#include <snowglass/render.h>
 
 typedef struct snow_row_block {
     int64_t slice, first_row, rows;

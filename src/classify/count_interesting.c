@@ -4,6 +4,8 @@
 #include "base/thread_pool.h"
 #include "volume/stream.h"
 
+#include <string.h>
+
 /* Entries first .. end - 1 of a row block, without those of neighbours. */
 static void trim_row(const snow_extent *part, const snow_row_block *row_block,
                      size_t first, size_t end, snow_interesting_row *row) {
@@ -103,22 +105,93 @@ snow_status snow_visit_interesting(const snow_interesting_walk *walk,
 
 /* --- counts --------------------------------------------------------------- */
 
+/* A span in which nothing is drawn is looked at, for so much less. */
+#define SPARE 12
+
+/* Spans of the rows that are drawn at once: along x, or along y where the
+ * slices lie along x.  A cell between voxels is drawn if any of them is
+ * interesting: so a span costs if it, or that of the row before, has one. Those
+ * of the slice before are not looked at, since they may be another slab's. */
+typedef struct span_rows {
+    bool along_y;
+    int64_t rows, spans; /* of a slice of the file; spans of a row */
+    int64_t slice;       /* that `seen` is of; -1: none */
+    unsigned char *seen; /* whether they have interesting voxels */
+} span_rows;
+
 typedef struct counting {
     snow_block_counts *block_counts;
     int64_t *columns; /* of the whole: their blocks */
+    span_rows spans;
 } counting;
 
-static void count_row(void *of, const snow_interesting_row *row) {
-    const counting *c = of;
+static int64_t *block_at(const counting *c, int64_t x, int64_t y, int64_t z) {
     const int64_t *blocks = c->block_counts->blocks;
+    return c->block_counts->counts +
+           (snow_block_counts_find(c->block_counts, 2, z) * blocks[1] +
+            snow_block_counts_find(c->block_counts, 1, y)) *
+               blocks[0] +
+           c->columns[x];
+}
+
+/* Adds the costs of the spans of a slice, and begins another. */
+static void count_spans(counting *c, int64_t next) {
+    span_rows *s = &c->spans;
+    const int64_t *dims = c->block_counts->grid.dims;
+    const int64_t most = dims[s->along_y] - 1;
+    const int64_t all = s->rows * s->spans;
+    for (int64_t n = 0; n < all && s->slice >= 0; n++) {
+        const int64_t row = n / s->spans, above = row ? n - s->spans : n;
+        int64_t middle = n % s->spans * SNOW_COST_SPAN + SNOW_COST_SPAN / 2;
+        middle = middle < most ? middle : most;
+        *block_at(c, s->along_y ? row : middle, s->along_y ? middle : row,
+                  s->slice) += s->seen[n] | s->seen[above]
+                                   ? c->block_counts->span
+                                   : c->block_counts->span / SPARE;
+    }
+    memset(s->seen, 0, (size_t)all);
+    s->slice = next;
+}
+
+static void see_spans(counting *c, const snow_interesting_row *row) {
+    span_rows *s = &c->spans;
+    if (row->z != s->slice)
+        count_spans(c, row->z);
+    for (size_t n = 0; n < row->count; n++) {
+        int64_t x = row->stored + row->columns[n];
+        int64_t at = s->along_y ? x * s->spans + row->y / SNOW_COST_SPAN
+                                : row->y * s->spans + x / SNOW_COST_SPAN;
+        s->seen[at] = 1;
+    }
+}
+
+static void count_row(void *of, const snow_interesting_row *row) {
+    counting *c = of;
     const int64_t *columns = c->columns + row->stored;
-    int64_t *counts =
-        c->block_counts->counts +
-        (snow_block_counts_find(c->block_counts, 2, row->z) * blocks[1] +
-         snow_block_counts_find(c->block_counts, 1, row->y)) *
-            blocks[0];
+    int64_t *counts = block_at(c, 0, row->y, row->z);
     for (size_t n = 0; n < row->count; n++)
         counts[columns[row->columns[n]]]++;
+    if (c->block_counts->span)
+        see_spans(c, row);
+}
+
+static snow_status prepare_counting(snow_context *context,
+                                    const int64_t dims[3], counting *c) {
+    span_rows *s = &c->spans;
+    SNOW_TRY(SNOW_RESERVE(context, c->columns, 0, dims[0]));
+    for (int64_t x = 0; x < dims[0]; x++)
+        c->columns[x] = snow_block_counts_find(c->block_counts, 0, x);
+    if (!c->block_counts->span)
+        return SNOW_STATUS_OK;
+    const bool along_y = c->block_counts->grid.axis == 0;
+    *s = (span_rows){.along_y = along_y,
+                     .rows = dims[!along_y],
+                     .spans = (dims[along_y] - 1) / SNOW_COST_SPAN + 1,
+                     .slice = -1};
+    const int64_t all = s->rows * s->spans;
+    SNOW_TRY(SNOW_RESERVE(context, s->seen, 0, all));
+    memset(s->seen, 0, (size_t)all);
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_count_interesting_blocks(const snow_volume *volume,
@@ -128,16 +201,18 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
     counting c = {.block_counts = block_counts};
     snow_extent part;
     snow_volume_find_extent(volume, &part);
-    SNOW_TRY(SNOW_RESERVE(volume->context, c.columns, 0, part.dims[0]));
-    for (int64_t x = 0; x < part.dims[0]; x++)
-        c.columns[x] = snow_block_counts_find(block_counts, 0, x);
     const snow_interesting_walk walk = {.volume = volume,
                                         .transfer = transfer,
                                         .threshold = threshold,
                                         .exponent = 1,
                                         .isa = isa};
-    snow_status status = snow_visit_interesting(&walk, count_row, &c);
+    snow_status status = prepare_counting(volume->context, part.dims, &c);
+    if (status == SNOW_STATUS_OK)
+        status = snow_visit_interesting(&walk, count_row, &c);
+    if (status == SNOW_STATUS_OK && block_counts->span)
+        count_spans(&c, -1);
     snow_release(volume->context, c.columns);
+    snow_release(volume->context, c.spans.seen);
     return status;
 }
 

@@ -18,7 +18,6 @@
 #define SNOW_ACTIVE_H
 
 #include "combine/exchange.h"
-#include "combine/pixels.h"
 
 /* Pixels first .. last - 1 of the combined image of one rank or one subset. */
 typedef struct snow_active {

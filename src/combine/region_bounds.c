@@ -1,8 +1,6 @@
 /* combine/region_bounds.c - the partition of the picture into regions. */
 #include "combine/region_bounds.h"
 
-#include "base/base.h"
-
 /* Counted regions are measured up to this number, which takes a microsecond. A
  * larger number of regions is small anyway. */
 #define REGIONS_MEASURED 64

@@ -11,9 +11,6 @@
 
 #include "base/base.h"
 
-#include <snowglass/comm.h>
-#include <snowglass/extend.h>
-
 #define SNOW_COMM_SCRATCH 2048
 
 struct snow_comm {

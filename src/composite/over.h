@@ -6,8 +6,6 @@
 
 #include "splat/splat.h"
 
-#include <snowglass/render.h>
-
 /* Lays `count` pixels behind others. */
 typedef void snow_composite_fn(float *front, const float *back, size_t count);
 

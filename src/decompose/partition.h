@@ -21,9 +21,13 @@ typedef struct snow_partition_grid {
     int64_t count;
 } snow_partition_grid;
 
-/* Interesting voxels, counted by blocks of the grid. */
+/* What drawing costs, in interesting voxels, by blocks of the grid: one for
+ * each of them, and `span` more for each SNOW_COST_SPAN voxels of a row of a
+ * slice that hold any, since rows are drawn by so many samples at a time. */
+#define SNOW_COST_SPAN 32
 typedef struct snow_block_counts {
     snow_partition_grid grid;
+    int span;          /* 0: interesting voxels are counted */
     int64_t block[3];  /* voxels of a block; not along an axis with borders, and
                           those at the far ends may be smaller */
     int64_t blocks[3]; /* along each axis */
@@ -55,10 +59,10 @@ snow_box snow_block_counts_box(const snow_block_counts *block_counts,
 void snow_partition_equal(const snow_partition_grid *grid, int ranks,
                           snow_box *boxes);
 
-/* The cost of a part: its interesting voxels, and a little for each voxel, so
- * that no rank stores everything that is empty. Those of the whole grid
- * together cost 1 / SNOW_EMPTINESS of the interesting ones: a part is at most
- * SNOW_EMPTINESS + 1 times as large as an equal one. */
+/* The cost of a part: its blocks', and a little for each voxel, so that no rank
+ * stores everything that is empty. Those of the whole grid together cost
+ * 1 / SNOW_EMPTINESS of the blocks: a part is at most SNOW_EMPTINESS + 1 times
+ * as large as an equal one. */
 #define SNOW_EMPTINESS 64
 
 /* Slabs whose most expensive one is as cheap as possible, from block counts for
@@ -77,7 +81,7 @@ snow_status snow_partition_bricks(snow_context *context,
                                   const snow_block_counts *block_counts,
                                   int ranks, snow_box *boxes);
 
-/* The interesting voxels of boxes that are aligned with the blocks. */
+/* The counts of boxes that are aligned with the blocks. */
 void snow_partition_loads(const snow_block_counts *block_counts,
                           const snow_box *boxes, int ranks, int64_t *loads);
 

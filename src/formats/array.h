@@ -62,13 +62,24 @@ snow_status snow_array_read_text(snow_source *source,
 /* Converts an IEEE 754 binary16 number; exact. */
 float snow_half_to_float(uint16_t half);
 
+/* What a reader knows of channels before it picks one: that there are so many,
+ * each of no name and colour, of which all are shown, or the first; that the
+ * first are red, green and blue, as in a photograph, the next opacity. */
+void snow_channels_begin(snow_volume_info *info, int64_t count, bool shown);
+
+/* As many whole letters of a name as there is room for; '?' for a byte that
+ * begins none in UTF-8. */
+void snow_copy_name(const char *text, char *out, size_t size);
+void snow_channels_are_colors(snow_volume_info *info);
+
 /* For readers of voxels with several values: selects the options' channel or
  * component, which must be below `channels`, and reports the choice if there
- * are several.  Errors: SNOW_STATUS_BAD_USAGE if it does not exist, or is the
- * magnitude. */
+ * are several.  Begins the channels of info unless the reader has.  Errors:
+ * SNOW_STATUS_BAD_USAGE if it does not exist, or is the magnitude. */
 snow_status snow_volume_pick_channel(snow_context *context,
                                      const snow_volume_options *options,
-                                     int64_t channels, int64_t *out);
+                                     int64_t channels, snow_volume_info *info,
+                                     int64_t *out);
 
 /* The same for values that lie next to each other and may be a vector.  Sets
  * info->components, and info->magnitude if the options ask for the magnitude of

@@ -3,6 +3,7 @@
 #include "formats/cf.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* Coordinates are often written as floats: steps may differ by this share. */
@@ -55,11 +56,12 @@ snow_axis_hint snow_cf_hint(const cf_words *words) {
     return hint;
 }
 
-void snow_cf_measure(const double *coordinates, int64_t count,
-                     const char *units, cf_axis *out) {
-    *out = (cf_axis){.even = true};
+void snow_cf_measure(double *coordinates, int64_t count, const char *units,
+                     cf_axis *out) {
+    *out = (cf_axis){.even = true, .coordinates = coordinates};
     double first = coordinates[0], last = coordinates[count - 1];
     double step = count > 1 ? (last - first) / (double)(count - 1) : 0;
+    take_unit(units, out->unit);
     if (!isfinite(first) || !isfinite(step) || step == 0)
         return;
     out->given = true;
@@ -70,34 +72,79 @@ void snow_cf_measure(const double *coordinates, int64_t count,
         if (!(fabs(gap - step) <= EVEN * fabs(step)))
             out->even = false;
     }
-    take_unit(units, out->unit);
+    out->uneven = !out->even && snow_uneven_fits(coordinates, count);
+}
+
+void snow_cf_release(snow_context *context, cf_axis *axes, int count) {
+    for (int i = 0; i < count; i++)
+        snow_release(context, axes[i].coordinates);
+}
+
+static snow_uneven plan_grid(snow_context *context, const cf_axis axes[3],
+                             snow_volume_info *info) {
+    snow_uneven grid = {.count = {1, 1, 1}};
+    memcpy(grid.count, info->dims, sizeof grid.count);
+    for (int i = 0; i < 3; i++)
+        grid.at[i] = axes[i].uneven ? axes[i].coordinates : NULL;
+    if (snow_uneven_any(&grid)) {
+        snow_uneven_plan(context, &grid, info);
+        memcpy(info->dims, grid.even, sizeof grid.even);
+    }
+    return grid;
 }
 
 /* An axis with another unit cannot be compared with the others: a month is not
- * longer than a degree. */
+ * longer than a degree.  It is as long as if its voxels in the file had the
+ * mean distance of x. */
+static void place_axis(snow_context *context, const cf_axis axes[3], int i,
+                       const snow_uneven *grid, bool given,
+                       snow_volume_info *info) {
+    const cf_axis *x = &axes[0], *axis = &axes[i];
+    double usual = x->given ? fabs(x->step) : 1;
+    bool same = axis->given && !strcmp(axis->unit, x->unit);
+    info->matrix[i][i] = same ? axis->step : usual;
+    info->matrix[i][3] = same ? axis->first : 0;
+    if (grid->at[i])
+        info->matrix[i][i] *=
+            (double)(grid->count[i] - 1) / (double)(grid->even[i] - 1);
+    if (same && !axis->even && !grid->at[i] && !given)
+        snow_notify(context,
+                    "coordinates along %c neither rise nor fall throughout; "
+                    "their mean distance, %g, is used",
+                    "xyz"[i], axis -> step);
+    if (axis->given && !same && info->dims[i] > 1 && !given)
+        snow_notify(context,
+                    "%c has another unit than x (\"%s\"); the spacing of x "
+                    "is used for it, --spacing sets another",
+                    "xyz"[i], axis -> unit);
+}
+
 void snow_cf_place(snow_context *context, const cf_axis axes[3],
-                   const snow_volume_options *options, snow_volume_info *info) {
+                   const snow_volume_options *options, snow_volume_info *info,
+                   snow_uneven *grid) {
     bool given = snow_spacing_given(options);
     const cf_axis *x = &axes[0];
-    double usual = x->given ? fabs(x->step) : 1;
-    for (int i = 0; i < 3; i++) {
-        const cf_axis *axis = &axes[i];
-        bool same = axis->given && !strcmp(axis->unit, x->unit);
-        info->matrix[i][i] = same ? axis->step : usual;
-        info->matrix[i][3] = same ? axis->first : 0;
-        if (same && !axis->even && !given)
-            snow_notify(context,
-                        "coordinates along %c are not evenly spaced; their "
-                        "mean distance, %g, is used",
-                        "xyz"[i], axis -> step);
-        if (axis->given && !same && info->dims[i] > 1 && !given)
-            snow_notify(context,
-                        "%c has another unit than x (\"%s\"); the spacing of x "
-                        "is used for it, --spacing sets another",
-                        "xyz"[i], axis -> unit);
-    }
+    *grid = plan_grid(context, axes, info);
+    for (int i = 0; i < 3; i++)
+        place_axis(context, axes, i, grid, given, info);
     if (x->given && strlen(x->unit) < sizeof info->unit)
         memcpy(info->unit, x->unit, strlen(x->unit) + 1);
+}
+
+void snow_cf_time(const cf_axis *axis, snow_volume_info *info) {
+    if (!axis->coordinates)
+        return;
+    info->time_value = axis->coordinates[info->time];
+    memcpy(info->time_unit, axis->unit, sizeof info->time_unit);
+    memcpy(info->calendar, axis->calendar, sizeof info->calendar);
+}
+
+void snow_cf_name(const char *name, const char *units, const char *long_name,
+                  const char *standard_name, snow_volume_info *info) {
+    snprintf(info->quantity, sizeof info->quantity, "%s", name);
+    snprintf(info->value_unit, sizeof info->value_unit, "%s", units);
+    snprintf(info->description, sizeof info->description, "%s",
+             *long_name ? long_name : standard_name);
 }
 
 static snow_type float_type(snow_type type) {

@@ -5,7 +5,7 @@
 #define SNOW_FORMATS_CF_H
 
 #include "formats/axes.h"
-#include "formats/format.h"
+#include "formats/uneven/uneven.h"
 
 /* More coordinates than any drawable axis has: all are held at once. */
 #define CF_MOST_COORDINATES ((int64_t)1 << 20)
@@ -13,9 +13,11 @@
 /* The coordinates along an axis. */
 typedef struct cf_axis {
     bool given;
-    bool even; /* neighbours are equally spaced */
+    bool even;   /* neighbours are equally spaced */
+    bool uneven; /* they are not, but rise or fall throughout */
     double first, step;
-    char unit[64];
+    double *coordinates; /* all of them; NULL: none */
+    char unit[64], calendar[24];
 } cf_axis;
 
 /* The conversion of stored values to data: scale * stored + offset; a fill
@@ -38,15 +40,28 @@ typedef struct cf_words {
 snow_axis_hint snow_cf_hint(const cf_words *words);
 
 /* Measures an axis of `count` coordinates, which may fall; `given` stays false
- * if they are not finite or all equal. */
-void snow_cf_measure(const double *coordinates, int64_t count,
-                     const char *units, cf_axis *out);
+ * if they are not finite or all equal.  Keeps their block. */
+void snow_cf_measure(double *coordinates, int64_t count, const char *units,
+                     cf_axis *out);
+
+/* Releases the coordinates of axes. */
+void snow_cf_release(snow_context *context, cf_axis *axes, int count);
+
+/* Sets the time of the step that info names, from the axis of time. */
+void snow_cf_time(const cf_axis *axis, snow_volume_info *info);
+
+/* Sets what the values are: the name of a variable, and its attributes units,
+ * long_name and standard_name, which may be "". */
+void snow_cf_name(const char *name, const char *units, const char *long_name,
+                  const char *standard_name, snow_volume_info *info);
 
 /* Sets spacing, origin and unit from the coordinates of x, y and z.  Axes in
  * another unit than x (time, or height beside degrees) get x's spacing, with a
- * warning unless the options give it. */
+ * warning unless the options give it.  Plans the grid of uneven axes, whose
+ * sizes info->dims become. */
 void snow_cf_place(snow_context *context, const cf_axis axes[3],
-                   const snow_volume_options *options, snow_volume_info *info);
+                   const snow_volume_options *options, snow_volume_info *info,
+                   snow_uneven *grid);
 
 /* Sets the type that holds a type's values and NaN (floats for integers of at
  * most 32 bits), slope and intercept. */

@@ -26,10 +26,10 @@ static int64_t number_of(const char *text) {
     return snow_parse_int64(text, &number) && number >= 0 ? number : -1;
 }
 
-snow_status snow_component_check(snow_context *context,
+snow_status snow_component_check(snow_context *context, bool named,
                                  const snow_volume_options *options) {
     const char *text = options->component;
-    if (text && strcmp(text, MAGNITUDE) != 0 && number_of(text) < 0)
+    if (text && !named && strcmp(text, MAGNITUDE) != 0 && number_of(text) < 0)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "--component %.64s: not a component; give x, y, z, w, "
                          "a number from 0, or magnitude",
@@ -52,20 +52,105 @@ static snow_status refuse_magnitude(snow_context *context, int64_t count) {
                      (long long)count);
 }
 
+/* Bytes of the letter that a text begins with, in UTF-8; 0: of none. */
+static size_t letter_bytes(const unsigned char *text) {
+    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    const size_t count = *text < 0x80   ? 1
+                         : *text < 0xe0 ? 2
+                         : *text < 0xf0 ? 3
+                                        : 4;
+    uint32_t code = *text & (0xffu >> (count + 1));
+    if (count == 1)
+        return 1;
+    if (*text < 0xc2 || *text > 0xf4)
+        return 0;
+    for (size_t n = 1; n < count; n++) {
+        if ((text[n] & 0xc0) != 0x80)
+            return 0;
+        code = code << 6 | (text[n] & 0x3fu);
+    }
+    return code >= least[count] && code <= 0x10ffff &&
+                   (code & ~0x7ffu) != 0xd800
+               ? count
+               : 0;
+}
+
+void snow_copy_name(const char *text, char *out, size_t size) {
+    size_t used = 0;
+    while (*text) {
+        const size_t count = letter_bytes((const unsigned char *)text);
+        if (used + (count ? count : 1) >= size)
+            break;
+        if (count)
+            memcpy(out + used, text, count);
+        else
+            out[used] = '?';
+        used += count ? count : 1;
+        text += count ? count : 1;
+    }
+    out[used] = 0;
+}
+
+void snow_channels_begin(snow_volume_info *info, int64_t count, bool shown) {
+    info->channels = count;
+    for (int64_t n = 0; n < SNOW_CHANNELS_MAX; n++)
+        info->channel[n] = (snow_channel){.color = {-1, -1, -1},
+                                          .shown = n < count && (shown || !n)};
+}
+
+/* Levels are those of a screen: 0 to the largest, of floats 1. */
+void snow_channels_are_colors(snow_volume_info *info) {
+    const size_t bits = 8 * snow_type_size(info->type);
+    const bool floats = info->type >= SNOW_TYPE_FLOAT32;
+    const double most = floats ? 1 : ldexp(1, bits < 16 ? 8 : 16) - 1;
+    static const char *const names[] = {"red", "green", "blue", "opacity"};
+    for (int n = 0; n < 4; n++) {
+        snow_channel *one = &info->channel[n];
+        *one = (snow_channel){.window = {0, most},
+                              .color = {n == 0, n == 1, n == 2},
+                              .shown = n < 3,
+                              .own = n < 3};
+        memcpy(one->name, names[n], strlen(names[n]) + 1);
+    }
+}
+
+/* White everywhere says nothing, nor does a window that is the type's. */
+static void drop_empty_words(snow_volume_info *info) {
+    const int64_t count =
+        info->channels < SNOW_CHANNELS_MAX ? info->channels : SNOW_CHANNELS_MAX;
+    const double most = ldexp(1, 8 * (int)snow_type_size(info->type)) - 1;
+    bool white = count > 1;
+    for (int64_t n = 0; n < count; n++) {
+        snow_channel *one = &info->channel[n];
+        white = white &&
+                fmin(one->color[0], fmin(one->color[1], one->color[2])) >= 1;
+        if (!one->own && info->type < SNOW_TYPE_FLOAT32 &&
+            one->window[0] <= 0 && one->window[1] >= most)
+            memset(one->window, 0, sizeof one->window);
+    }
+    for (int64_t n = 0; n < count && white; n++)
+        info->channel[n].color[0] = -1;
+}
+
 snow_status snow_volume_pick_channel(snow_context *context,
                                      const snow_volume_options *options,
-                                     int64_t channels, int64_t *out) {
+                                     int64_t channels, snow_volume_info *info,
+                                     int64_t *out) {
     const char *text = options->component;
     const char *what = text && strcmp(text, "0") != 0 ? "component" : "channel";
     if (text && !strcmp(text, MAGNITUDE))
         return refuse_magnitude(context, channels);
     *out = text ? number_of(text) : options->channel;
+    if (!info->channels)
+        snow_channels_begin(info, channels, false);
+    drop_empty_words(info);
     if (*out < 0 || *out >= channels)
         return snow_fail(
             context, SNOW_STATUS_BAD_USAGE,
             "%s %lld does not exist; the voxels have %lld, counted from 0",
             what, (long long)*out, (long long)channels);
-    if (channels > 1 && !text && !options->channel && !options->channel_given)
+    if (channels > 1 && !text && !options->channel && !options->channel_given &&
+        !options->each_channel)
         snow_notify(context,
                     "channel 0 of %lld (counted from 0) is used; --channel N "
                     "selects another",
@@ -92,7 +177,7 @@ snow_status snow_volume_pick_component(snow_context *context,
         !options->component && !options->channel && !options->channel_given;
     info->magnitude = named || (usual && is_vector(count, info->type));
     if (!info->magnitude)
-        return snow_volume_pick_channel(context, options, count, out);
+        return snow_volume_pick_channel(context, options, count, info, out);
     *out = 0;
     return SNOW_STATUS_OK;
 }
@@ -108,8 +193,8 @@ snow_status snow_volume_pick_axes(snow_context *context,
     SNOW_TRY(roles->interleaved
                  ? snow_volume_pick_component(context, options, sizes[c], info,
                                               channel)
-                 : snow_volume_pick_channel(context, options,
-                                            c < 0 ? 1 : sizes[c], channel));
+                 : snow_volume_pick_channel(
+                       context, options, c < 0 ? 1 : sizes[c], info, channel));
     return snow_volume_pick_time(context, "time step", options, info);
 }
 

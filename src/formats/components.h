@@ -5,9 +5,9 @@
 
 #include "formats/format.h"
 
-/* Errors: SNOW_STATUS_BAD_USAGE for a component that is none, or beside a
- * channel. */
-snow_status snow_component_check(snow_context *context,
+/* Errors: SNOW_STATUS_BAD_USAGE for a component that does not exist, unless
+ * they are named, or beside a channel. */
+snow_status snow_component_check(snow_context *context, bool named,
                                  const snow_volume_options *options);
 
 /* Reads one component of a volume: that which the options name. */

@@ -29,6 +29,7 @@ typedef struct snow_format {
     bool sets;     /* heeds the option that chooses a data set */
     bool channels; /* heeds the option that chooses a channel */
     bool series;   /* heeds the option that chooses a series */
+    bool names;    /* its components have names, which the option may give */
     snow_status (*read)(snow_source *source, const snow_volume_options *options,
                         snow_volume_info *info, snow_volume **out);
     snow_status (*write)(const snow_volume *volume, const char *path,
@@ -43,6 +44,7 @@ extern const snow_format snow_format_npy;
 extern const snow_format snow_format_mrc;
 extern const snow_format snow_format_vtk;
 extern const snow_format snow_format_vti;
+extern const snow_format snow_format_vtr;
 extern const snow_format snow_format_tiff;
 extern const snow_format snow_format_png;
 extern const snow_format snow_format_hdf5;
@@ -50,6 +52,14 @@ extern const snow_format snow_format_netcdf;
 extern const snow_format snow_format_dicom;
 extern const snow_format snow_format_den;
 extern const snow_format snow_format_zarr;
+extern const snow_format snow_format_pvd;
+extern const snow_format snow_format_pvti;
+extern const snow_format snow_format_vtm;
+extern const snow_format snow_format_visit;
+extern const snow_format snow_format_bov;
+extern const snow_format snow_format_xdmf;
+extern const snow_format snow_format_amrex;
+extern const snow_format snow_format_vth;
 
 /* Whether the user gives the spacing, so that what a file lacks of it needs no
  * warning. */
@@ -72,6 +82,15 @@ snow_status snow_volume_read(snow_source *source,
                              bool big_endian, uint64_t skip,
                              snow_volume_info *info, snow_volume **out);
 
+/* Opens a volume that the file of `source` names: relative to its folder, or
+ * absolute; "run.h5:/rho" names a data set.  The box of the options is read,
+ * but the matrix is that of the whole.  Options that describe the whole, as
+ * sizes and spacing, are left out.  Errors: those of opening;
+ * SNOW_STATUS_BAD_INPUT (files that name one another without end). */
+snow_status snow_volume_open_named(snow_source *source, const char *name,
+                                   const snow_volume_options *options,
+                                   snow_volume_info *info, snow_volume **out);
+
 /* Swaps the bytes of the voxels as read when the file's order is not the
  * machine's. */
 void snow_volume_order_bytes(snow_volume *volume, bool big_endian);
@@ -83,6 +102,15 @@ void snow_volume_order_bytes(snow_volume *volume, bool big_endian);
 snow_status snow_volume_pick_time(snow_context *context, const char *what,
                                   const snow_volume_options *options,
                                   snow_volume_info *info);
+
+/* Scales the columns of the matrix to the spacing that the user gave. */
+snow_status snow_volume_replace_spacing(snow_context *context,
+                                        const snow_volume_options *options,
+                                        snow_volume_info *info);
+
+/* Crops a volume that was read as a whole. */
+snow_status snow_volume_crop(const snow_volume_options *options,
+                             snow_volume **volume);
 
 /* For readers of images, whose row 0 is the top: turns an unturned matrix half
  * around x, so that seen from +z slice 0 is in front and rows go down. */

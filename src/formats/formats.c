@@ -6,8 +6,10 @@
  * readers need not do it. */
 #include "formats/image_series.h"
 
+#include "formats/amr/amr.h"
 #include "formats/components.h"
 #include "formats/masked.h"
+#include "formats/unsupported.h"
 #include "formats/zarr/zarr.h"
 #include "io/folder.h"
 #include "phantom/phantom.h"
@@ -51,31 +53,6 @@ static snow_status check_options(snow_context *context,
                              "three sizes of at least 1",
                              (long long)options->dims[i]);
     }
-    if (options->time < 0)
-        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "time step %lld is invalid; they count from 0",
-                         (long long)options->time);
-    return snow_component_check(context, options);
-}
-
-/* Scales the columns of the matrix to the spacing that the user gave. */
-static snow_status replace_spacing(snow_context *context,
-                                   const snow_volume_options *options,
-                                   snow_volume_info *info) {
-    snow_volume_info changed = *info;
-    for (int j = 0; j < 3; j++)
-        for (int i = 0; i < 3 && options->spacing[j] > 0; i++)
-            changed.matrix[i][j] *= options->spacing[j] / info->spacing[j];
-    /* The file's own matrix was checked, so only the option can be wrong. */
-    if (snow_volume_info_check(context, &changed) != SNOW_STATUS_OK)
-        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "--spacing %gx%gx%g makes voxels too small, too large "
-                         "or too flat to compute with; give lengths in "
-                         "another unit",
-                         options->spacing[0], options->spacing[1],
-                         options->spacing[2]);
-    snow_volume_info_measure(&changed);
-    *info = changed;
     return SNOW_STATUS_OK;
 }
 
@@ -85,33 +62,10 @@ static snow_status finish_info(snow_context *context,
                                const snow_volume_options *options,
                                snow_volume_info *info) {
     snow_volume_info_measure(info);
-    SNOW_TRY(replace_spacing(context, options, info));
+    SNOW_TRY(snow_volume_replace_spacing(context, options, info));
     const int64_t first[3] = {options->crop[0][0], options->crop[1][0],
                               options->crop[2][0]};
     *info = snow_volume_info_of_box(info, first, info->dims);
-    return SNOW_STATUS_OK;
-}
-
-/* Crops a volume that was read as a whole. */
-static snow_status crop_volume(const snow_volume_options *options,
-                               snow_volume **volume) {
-    snow_context *context = (*volume)->context;
-    snow_volume_info info = (*volume)->info;
-    int64_t time = info.time, times = info.times;
-    snow_region region;
-    snow_volume *box;
-    info.time = 0;
-    info.times = 1;
-    SNOW_TRY(snow_region_lay_out(context, options, &info, &region));
-    const snow_file_part all = {&region, 0, region.all};
-    if (snow_file_part_is_all(&all))
-        return SNOW_STATUS_OK;
-    info.time = time;
-    info.times = times;
-    SNOW_TRY(snow_volume_new(context, &info, &box));
-    snow_file_part_copy(&all, (*volume)->voxels, box->owned);
-    snow_volume_close(*volume);
-    *volume = box;
     return SNOW_STATUS_OK;
 }
 
@@ -121,7 +75,7 @@ static snow_status read_whole(const snow_format *format, snow_source *source,
                               snow_volume_info *info, snow_volume **out) {
     snow_volume *volume;
     SNOW_TRY(format->read(source, options, info, &volume));
-    snow_status status = crop_volume(options, &volume);
+    snow_status status = snow_volume_crop(options, &volume);
     if (status == SNOW_STATUS_OK)
         *info = volume->info;
     if (status == SNOW_STATUS_OK && out)
@@ -145,6 +99,7 @@ static snow_status check_choice(snow_context *context,
                          "channel %lld does not exist; files of the format %s "
                          "have one value per voxel, so remove --channel",
                          (long long)options->channel, format->name);
+    SNOW_TRY(snow_component_check(context, format->names, options));
     if (options->component && strcmp(options->component, "0") != 0 &&
         !format->channels)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
@@ -268,6 +223,7 @@ static snow_status open_phantom(snow_context *context, const char *name,
 static snow_status read_folder(snow_context *context, const char *path,
                                const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **out) {
+    SNOW_TRY(snow_component_check(context, false, options));
     if (!snow_zarr_is(path))
         return snow_stack_read(context, path, options, snow_format_of_name,
                                info, out);
@@ -316,12 +272,10 @@ static const char *data_set_in(const char *path) {
     return found + 1;
 }
 
-static snow_status open_one(snow_context *context, const char *path,
-                            const snow_volume_options *options,
-                            snow_volume_info *info, snow_volume **out);
+static snow_open_named_fn open_named_path;
 
 static snow_status open_inside(snow_context *context, const char *path,
-                               const char *inside,
+                               const char *inside, int depth,
                                const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **out) {
     snow_volume_options own = *options;
@@ -337,22 +291,31 @@ static snow_status open_inside(snow_context *context, const char *path,
         return SNOW_STATUS_NO_MEMORY;
     memcpy(file, path, length);
     file[length] = 0;
-    snow_status status = open_one(context, file, &own, info, out);
+    snow_status status = open_named_path(context, file, depth, &own, info, out);
     snow_release(context, file);
     return status;
 }
 
 /* The prefix has priority over a file of that name: "./phantom:x" still opens
  * one. */
-static snow_status open_one(snow_context *context, const char *path,
-                            const snow_volume_options *options,
-                            snow_volume_info *info, snow_volume **out) {
+static snow_status open_named_path(snow_context *context, const char *path,
+                                   int depth,
+                                   const snow_volume_options *options,
+                                   snow_volume_info *info, snow_volume **out) {
     if (!strncmp(path, PHANTOM, strlen(PHANTOM)))
         return open_phantom(context, path + strlen(PHANTOM), options, info,
                             out);
     const char *inside = data_set_in(path);
+    char *header;
     if (inside)
-        return open_inside(context, path, inside, options, info, out);
+        return open_inside(context, path, inside, depth, options, info, out);
+    SNOW_TRY(snow_plotfile_header(context, path, &header));
+    if (header) {
+        snow_status status =
+            open_named_path(context, header, depth, options, info, out);
+        snow_release(context, header);
+        return status;
+    }
     if (snow_is_folder(path) || snow_is_pattern(path))
         return open_stack(context, path, options, info, out);
     snow_source *source;
@@ -360,6 +323,7 @@ static snow_status open_one(snow_context *context, const char *path,
     if (status != SNOW_STATUS_OK)
         return name_failure(context, status,
                             strcmp(path, "-") ? path : "standard input");
+    snow_source_set_opener(source, depth, open_named_path);
     return open_source(source, options, info, out);
 }
 
@@ -370,6 +334,7 @@ typedef struct input {
     bool is_file;
     const void *bytes; /* else, in memory */
     size_t size;
+    snow_bytes_behind with; /* or by a function, if there is one */
 } input;
 
 static snow_status read_input(void *user, const snow_volume_options *options,
@@ -377,9 +342,12 @@ static snow_status read_input(void *user, const snow_volume_options *options,
     const input *in = user;
     snow_source *source;
     if (in->is_file)
-        return open_one(in->context, in->path, options, info, out);
-    snow_status status = snow_source_open_memory(in->context, in->path,
-                                                 in->bytes, in->size, &source);
+        return open_named_path(in->context, in->path, 0, options, info, out);
+    snow_status status =
+        in->with.read_at
+            ? snow_source_open_with(in->context, in->path, &in->with, &source)
+            : snow_source_open_memory(in->context, in->path, in->bytes,
+                                      in->size, &source);
     return status == SNOW_STATUS_OK
                ? open_source(source, options, info, out)
                : name_failure(in->context, status, in->path);
@@ -399,9 +367,18 @@ static snow_status open_any(snow_context *context, const char *path,
                             snow_volume_info *info, snow_volume **out) {
     snow_volume_options options;
     SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_options, given, &options));
-    if (snow_mask_asked(&options))
-        return snow_masked_open(context, path, &options, open_path, info, out);
-    return open_path(context, path, &options, info, out);
+    snow_status status =
+        snow_mask_asked(&options)
+            ? snow_masked_open(context, path, &options, open_path, info, out)
+            : open_path(context, path, &options, info, out);
+    if (status != SNOW_STATUS_OK || !out || !options.label_table)
+        return status;
+    status = snow_label_table_read(context, options.label_table, *out);
+    if (status != SNOW_STATUS_OK) {
+        snow_volume_close(*out);
+        *out = NULL;
+    }
+    return status;
 }
 
 /* A slab of a picture is read under the picture's monitor. */
@@ -429,23 +406,40 @@ snow_status snow_volume_open_streamed(snow_context *context, const char *path,
     return snow_stream_open(context, path, options, slab_bytes, open_any, out);
 }
 
-snow_status snow_volume_open_memory(snow_context *context, const char *name,
-                                    const void *bytes, size_t size,
-                                    const snow_volume_options *given,
-                                    snow_volume **out) {
+/* Not of a file. */
+static snow_status open_bytes(input *in, const snow_volume_options *given,
+                              snow_volume **out) {
     snow_monitor monitor;
-    input in = {context, name, false, bytes, size};
     snow_volume_info info;
     snow_volume_options options;
-    SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_options, given, &options));
+    SNOW_TRY(
+        SNOW_RECORD_READ(in->context, snow_volume_options, given, &options));
     if (snow_mask_asked(&options))
-        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+        return snow_fail(in->context, SNOW_STATUS_BAD_USAGE,
                          "%s: bytes in memory have no file of a mask beside "
                          "them; open them and take snow_volume_mask or "
                          "snow_volume_clip",
-                         name);
-    snow_monitor_begin_reading(context, &monitor);
+                         in->path);
+    snow_monitor_begin_reading(in->context, &monitor);
     return snow_monitor_end(&monitor,
-                            snow_components_read(context, read_input, &in,
+                            snow_components_read(in->context, read_input, in,
                                                  false, &options, &info, out));
+}
+
+snow_status snow_volume_open_memory(snow_context *context, const char *name,
+                                    const void *bytes, size_t size,
+                                    const snow_volume_options *options,
+                                    snow_volume **out) {
+    input in = {.context = context, .path = name, .bytes = bytes, .size = size};
+    return open_bytes(&in, options, out);
+}
+
+snow_status snow_volume_open_with(snow_context *context, const char *name,
+                                  snow_read_at_fn *read_at, void *user,
+                                  uint64_t size,
+                                  const snow_volume_options *options,
+                                  snow_volume **out) {
+    input in = {
+        .context = context, .path = name, .with = {read_at, user, size}};
+    return open_bytes(&in, options, out);
 }

@@ -36,16 +36,14 @@ static snow_status check_options(opening *o,
     memcpy(o->clip, options->clip, sizeof o->clip);
     if (!options->mask && !options->labels)
         return SNOW_STATUS_OK;
-    if (!options->mask)
-        return snow_fail(o->context, SNOW_STATUS_BAD_USAGE,
-                         "--labels: these are of a mask; give --mask FILE "
-                         "beside it");
     if (options->labels && !snow_labels_parse(options->labels, o->labels,
                                               SNOW_LABELS_MAX, &o->count))
         return snow_fail(o->context, SNOW_STATUS_BAD_USAGE,
                          "--labels %.64s: not a list of labels; give up to %d "
                          "whole numbers and ranges, such as 1,4-7",
                          options->labels, SNOW_LABELS_MAX);
+    if (!options->mask)
+        return SNOW_STATUS_OK;
     o->mask_path = options->mask;
     memcpy(o->mask.spacing, options->spacing, sizeof options->spacing);
     if (snow_source_is_stream(o->mask_path))
@@ -72,13 +70,6 @@ static snow_status look(const opening *o, const char *path,
     return status;
 }
 
-static snow_status compare(const opening *o, const snow_volume_info *volume) {
-    snow_status status = snow_mask_check_grid(o->context, volume, &o->grid);
-    if (status != SNOW_STATUS_OK)
-        snow_fail_within(o->context, status, "%s", o->mask_path);
-    return status;
-}
-
 /* Options that a file may need are those of the volume. */
 static snow_status look_at_mask(opening *o) {
     char why[512];
@@ -92,20 +83,59 @@ static snow_status look_at_mask(opening *o) {
                      why);
 }
 
+/* Where a volume lies in the world, along its axes: "0..9 x 5..8 x 3..4". */
+static void write_box(const snow_volume_info *info, char text[128]) {
+    double ends[3][2];
+    for (int row = 0; row < 3; row++) {
+        ends[row][0] = ends[row][1] = info->matrix[row][3];
+        for (int axis = 0; axis < 3; axis++) {
+            double way =
+                info->matrix[row][axis] * (double)(info->dims[axis] - 1);
+            ends[row][way > 0] += way;
+        }
+    }
+    snprintf(text, 128, "%.5g..%.5g x %.5g..%.5g x %.5g..%.5g", ends[0][0],
+             ends[0][1], ends[1][0], ends[1][1], ends[2][0], ends[2][1]);
+}
+
+/* Of a mask on another grid its part is read that the box needs. */
+static snow_status crop_mask(opening *o, const snow_volume_info *volume) {
+    static const int64_t none[3][2];
+    char at[2][128];
+    if (snow_volume_box_of(&o->grid, volume, none, o->mask.crop)) {
+        snow_volume_box_of(&o->grid, volume,
+                           (const int64_t(*)[2])o->options.crop, o->mask.crop);
+        return SNOW_STATUS_OK;
+    }
+    write_box(&o->grid, at[0]);
+    write_box(volume, at[1]);
+    return snow_fail(o->context, SNOW_STATUS_BAD_INPUT,
+                     "%s: the mask lies at %s of the world, and the volume at "
+                     "%s: they do not meet; give the mask of this volume",
+                     o->mask_path, at[0], at[1]);
+}
+
 /* Boxes of two grids are the same box only if the grids are the same, so the
  * whole ones are compared.  A stream is compared when it was read. */
 static snow_status look_at_both(opening *o) {
     snow_volume_options whole = o->options;
     snow_volume_info info;
+    bool same;
     SNOW_TRY(look_at_mask(o));
     if (o->grid.times > 1)
         o->mask.time = o->options.time;
-    memcpy(o->mask.crop, o->options.crop, sizeof o->mask.crop);
     if (o->stream)
         return SNOW_STATUS_OK;
     memset(whole.crop, 0, sizeof whole.crop);
     SNOW_TRY(look(o, o->path, &whole, &info));
-    return compare(o, &info);
+    snow_status status =
+        snow_grids_compare(o->context, &info, &o->grid, "mask", &same);
+    if (status != SNOW_STATUS_OK)
+        return snow_fail_within(o->context, status, "%s", o->mask_path);
+    if (!same)
+        return crop_mask(o, &info);
+    memcpy(o->mask.crop, o->options.crop, sizeof o->mask.crop);
+    return SNOW_STATUS_OK;
 }
 
 /* An empty picture must not pass for one of an empty volume.  A box may be
@@ -144,29 +174,58 @@ static snow_status leave_out_of(const opening *o, const snow_volume *volume,
 static snow_status read_mask(const opening *o, const snow_volume *volume,
                              snow_volume **out) {
     snow_volume_info info;
-    snow_volume *mask = NULL;
-    if (o->mask_path && o->stream)
-        SNOW_TRY(compare(o, &volume->info));
-    if (o->mask_path)
-        SNOW_TRY(o->open(o->context, o->mask_path, &o->mask, &info, &mask));
-    snow_status status = leave_out_of(o, volume, mask, out);
+    snow_volume *mask = NULL, *fitted = NULL;
+    if (!o->mask_path)
+        return leave_out_of(o, volume, NULL, out);
+    SNOW_TRY(o->open(o->context, o->mask_path, &o->mask, &info, &mask));
+    snow_status status =
+        snow_volume_resample(mask, volume, true, "mask", &fitted);
+    if (status == SNOW_STATUS_OK)
+        status = leave_out_of(o, volume, fitted ? fitted : mask, out);
+    else
+        snow_fail_within(o->context, status, "%s", o->mask_path);
+    snow_volume_close(fitted);
     snow_volume_close(mask);
     return status;
 }
 
+/* Whether a mask or planes leave something out, not labels alone. */
+static bool is_cut(const opening *o) {
+    static const double none[SNOW_CLIPS_MAX][4];
+    return o->mask_path || memcmp(o->clip, none, sizeof none) != 0;
+}
+
 static snow_status open_both(opening *o, snow_volume_info *info,
                              snow_volume **out) {
+    const bool picks = o->count && !o->mask_path;
     snow_volume_info whole;
     snow_volume *volume;
     if (o->mask_path)
         SNOW_TRY(look_at_both(o));
     if (!out) {
         SNOW_TRY(o->open(o->context, o->path, &o->options, info, NULL));
-        snow_mask_info(info);
+        if (picks) /* of the numbers that are there before a cut */
+            SNOW_TRY(snow_labels_check(o->context, info));
+        if (is_cut(o))
+            snow_mask_info(info);
         return SNOW_STATUS_OK;
     }
     SNOW_TRY(o->open(o->context, o->path, &o->options, &whole, &volume));
-    snow_status status = read_mask(o, volume, out);
+    snow_status status = SNOW_STATUS_OK;
+    if (picks)
+        status = snow_labels_check(o->context, &whole);
+    if (picks && status == SNOW_STATUS_OK &&
+        !snow_labels_pick(volume, o->labels, o->count) &&
+        !is_cropped(&o->options))
+        snow_notify(o->context,
+                    "--labels: no voxel has such a label; info lists those "
+                    "that there are");
+    if (status == SNOW_STATUS_OK && !is_cut(o)) {
+        *out = volume;
+        return SNOW_STATUS_OK;
+    }
+    if (status == SNOW_STATUS_OK)
+        status = read_mask(o, volume, out);
     snow_volume_close(volume);
     return status;
 }

@@ -15,4 +15,9 @@ snow_status snow_masked_open(snow_context *context, const char *path,
                              snow_open_fn *open, snow_volume_info *info,
                              snow_volume **out);
 
+/* Gives a volume the names and colours of a file.  Errors:
+ * SNOW_STATUS_BAD_INPUT (no such file, or no table). */
+snow_status snow_label_table_read(snow_context *context, const char *path,
+                                  snow_volume *volume);
+
 #endif

@@ -1,5 +1,5 @@
 /* formats/read.c - what readers share: voxels that lie in a file as they do in
- * memory, and the choice of a time step. */
+ * memory, the choice of a time step, another spacing, a box. */
 #include "formats/format.h"
 
 /* The bytes are compared with the source before the voxels get their memory: a
@@ -47,18 +47,60 @@ void snow_volume_order_bytes(snow_volume *volume, bool big_endian) {
 snow_status snow_volume_pick_time(snow_context *context, const char *what,
                                   const snow_volume_options *options,
                                   snow_volume_info *info) {
-    if (options->time < 0 || options->time >= info->times)
+    const int64_t time = options->time, all = info->times;
+    if (time < -all || time >= all)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "there is no %s %lld; the file has %lld, counted from "
-                         "0",
-                         what, (long long)options->time,
-                         (long long)info->times);
-    info->time = options->time;
-    if (info->times > 1 && !options->each_time)
+                         "0, or from -1 at its end",
+                         what, (long long)time, (long long)all);
+    info->time = time < 0 ? all + time : time;
+    if (all > 1 && !options->each_time)
         snow_notify(context,
                     "%s %lld of %lld (counted from 0) is taken; --time N takes "
                     "another",
-                    what, (long long)info->time, (long long)info->times);
+                    what, (long long)info->time, (long long)all);
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_volume_replace_spacing(snow_context *context,
+                                        const snow_volume_options *options,
+                                        snow_volume_info *info) {
+    snow_volume_info changed = *info;
+    for (int j = 0; j < 3; j++)
+        for (int i = 0; i < 3 && options->spacing[j] > 0; i++)
+            changed.matrix[i][j] *= options->spacing[j] / info->spacing[j];
+    /* The file's own matrix was checked, so only the option can be wrong. */
+    if (snow_volume_info_check(context, &changed) != SNOW_STATUS_OK)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--spacing %gx%gx%g makes voxels too small, too large "
+                         "or too flat to compute with; give lengths in "
+                         "another unit",
+                         options->spacing[0], options->spacing[1],
+                         options->spacing[2]);
+    snow_volume_info_measure(&changed);
+    *info = changed;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_volume_crop(const snow_volume_options *options,
+                             snow_volume **volume) {
+    snow_context *context = (*volume)->context;
+    snow_volume_info info = (*volume)->info;
+    int64_t time = info.time, times = info.times;
+    snow_region region;
+    snow_volume *box;
+    info.time = 0;
+    info.times = 1;
+    SNOW_TRY(snow_region_lay_out(context, options, &info, &region));
+    const snow_file_part all = {&region, 0, region.all};
+    if (snow_file_part_is_all(&all))
+        return SNOW_STATUS_OK;
+    info.time = time;
+    info.times = times;
+    SNOW_TRY(snow_volume_new(context, &info, &box));
+    snow_file_part_copy(&all, (*volume)->voxels, box->owned);
+    snow_volume_close(*volume);
+    *volume = box;
     return SNOW_STATUS_OK;
 }
 

@@ -63,20 +63,83 @@ static const char *const glyphs[] = {
 static_assert(sizeof glyphs / sizeof *glyphs == 127 - ' ',
               "a glyph for each character");
 
-/* The micro sign, and other bytes outside ASCII. */
-static const char micro[] = "-080w~08026062-6860";
+/* What else has a glyph; dashes, too. */
+static const struct {
+    unsigned code;
+    const char *glyph;
+} symbols[] = {{0xa0, ""},
+               {0xb0, "o090c3c39"},
+               {0xb1, "-3a34-0767-0161"},
+               {0xb2, "~0b0c3c3b07-0737"},
+               {0xb3, "~0c3c3a1a~1a3a3707"},
+               {0xb5, "-080w~08026062-6860"},
+               {0xb7, ".06"},
+               {0xb9, "-0b1c17"},
+               {0xd7, "-0862-0268"},
+               {0xf7, "-0565.38.32"},
+               {0x3bc, "-080w~08026062-6860"},
+               {0x2013, "-0565"},
+               {0x2014, "-0595"},
+               {0x2019, "-0c09"},
+               {0x207b, "-0939"},
+               {0x2212, "-0565"}};
+
 static const char box[] = "-000c7c7000";
 
-static const char *glyph_of(char letter) {
-    unsigned char code = (unsigned char)letter;
-    if (code == 0xb5)
-        return micro;
-    return code >= 32 && code < 127 ? glyphs[code - 32] : box;
+/* Latin-1 from U+C0 on: letters without their marks, and which marks. */
+static const char bases[] = "AAAAAAACEEEEIIIIDNOOOOO OUUUUYPs"
+                            "aaaaaaaceeeeiiiidnooooo ouuuuypy";
+static const char marked[] = "gactdr ,gacdgacd tgactd  gacda  "
+                             "gactdr ,gacdgacd tgactd  gacda d";
+
+/* Above a small letter 6 wide: grave, acute, circumflex, tilde, diaeresis and
+ * ring; and the cedilla. */
+static const char *mark_named(char name) {
+    static const char names[] = "gactdr,";
+    static const char *const marks[] = {"-2c4a",     "-4c2a",  "-1a3c5a",
+                                        "~0a2c4a6c", ".1b.5b", "o1a1d5d5a",
+                                        "-303z2y"};
+    const char *at = strchr(names, name);
+    return at && *at ? marks[at - names] : "";
 }
 
-/* Passes the first of the two bytes that UTF-8 has for the micro sign. */
-static const char *next_letter(const char *text) {
-    return text + (text[0] == '\xc2' && text[1] == '\xb5');
+/* A mark belongs over the glyph's middle, and higher over a capital. */
+typedef struct marked_letter {
+    const char *glyph, *mark;
+    double lift;
+} marked_letter;
+
+/* Passes a character of UTF-8; a byte that begins none is of Latin-1. */
+static unsigned decode(const char **text) {
+    const unsigned char *at = (const unsigned char *)*text;
+    int more = *at >= 0xf0 ? 3 : *at >= 0xe0 ? 2 : *at >= 0xc2;
+    unsigned code = more ? *at & (0x3fU >> more) : *at;
+    for (int n = 1; n <= more; n++) {
+        if ((at[n] & 0xc0) != 0x80) {
+            (*text)++;
+            return *at;
+        }
+        code = code << 6 | (at[n] & 0x3f);
+    }
+    *text += more + 1;
+    return code;
+}
+
+static marked_letter next_letter(const char **text) {
+    unsigned code = decode(text);
+    marked_letter found = {box, "", 0};
+    if (code >= 32 && code < 127)
+        found.glyph = glyphs[code - 32];
+    if (code >= 0xc0 && code <= 0xff) {
+        char base = bases[code - 0xc0], mark = marked[code - 0xc0];
+        found.glyph = base == 'i' ? "-0800" : glyphs[base - 32];
+        found.mark = mark_named(mark);
+        found.lift = base < 'a' && mark != ',' ? 3 : 0;
+    }
+    for (size_t n = 0; n < sizeof symbols / sizeof *symbols; n++)
+        if (symbols[n].code == code)
+            found.glyph = symbols[n].glyph;
+    return found;
 }
 
 static double column(char digit) {
@@ -109,9 +172,19 @@ static double glyph_width(const char *glyph) {
 
 double snow_font_width(const char *text) {
     double width = 0;
-    for (const char *at = next_letter(text); *at; at = next_letter(at + 1))
-        width += glyph_width(glyph_of(*at)) + SPACE;
+    while (*text)
+        width += glyph_width(next_letter(&text).glyph) + SPACE;
     return fmax(width - SPACE, 0) / CAPITAL;
+}
+
+void snow_font_shorten(double width, char *text) {
+    size_t end = strlen(text), length = end;
+    while (end > 0 && snow_font_width(text) > width) {
+        do
+            end--;
+        while (end > 0 && ((text[end] & 0xc0) == 0x80 || end + 3 > length));
+        strcpy(text + end, end + 3 > length ? "" : "...");
+    }
 }
 
 /* The position at which a glyph is drawn. */
@@ -207,10 +280,14 @@ static snow_status draw_glyph(pen *p, const char *glyph) {
 snow_status snow_font_draw(snow_overlay *overlay, double x, double y,
                            double height, const char *text) {
     pen p = {.overlay = overlay, .x = x, .y = y, .unit = height / CAPITAL};
-    for (text = next_letter(text); *text; text = next_letter(text + 1)) {
-        const char *glyph = glyph_of(*text);
-        SNOW_TRY(draw_glyph(&p, glyph));
-        p.x += (glyph_width(glyph) + SPACE) * p.unit;
+    while (*text) {
+        marked_letter l = next_letter(&text);
+        pen above = p;
+        above.x += (glyph_width(l.glyph) - 6) / 2 * p.unit;
+        above.y -= l.lift * p.unit;
+        SNOW_TRY(draw_glyph(&p, l.glyph));
+        SNOW_TRY(draw_glyph(&above, l.mark));
+        p.x += (glyph_width(l.glyph) + SPACE) * p.unit;
     }
     return SNOW_STATUS_OK;
 }

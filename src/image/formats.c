@@ -13,8 +13,8 @@
 
 /* The first is used for standard output. */
 static const snow_image_format *const formats[] = {
-    &snow_image_png, &snow_image_npy,  &snow_image_pfm,
-    &snow_image_exr, &snow_image_tiff, &snow_image_webp, &snow_image_jpeg,
+    &snow_image_png,  &snow_image_npy,  &snow_image_pfm,  &snow_image_exr,
+    &snow_image_tiff, &snow_image_webp, &snow_image_jpeg,
 };
 
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
@@ -77,10 +77,11 @@ static snow_status choose_format(snow_context *context, const char *path,
         *out = format;
         return SNOW_STATUS_OK;
     }
-    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                     "%s: has no suffix of a picture format; use .png, .jpg, .webp, "
-                     ".npy, .exr, .tif or .pfm",
-                     path);
+    return snow_fail(
+        context, SNOW_STATUS_BAD_USAGE,
+        "%s: has no suffix of a picture format; use .png, .jpg, .webp, "
+        ".npy, .exr, .tif or .pfm",
+        path);
 }
 
 static snow_status check_overlay(snow_context *context, const char *path,

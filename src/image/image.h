@@ -2,7 +2,6 @@
 #ifndef SNOW_IMAGE_H
 #define SNOW_IMAGE_H
 
-#include "base/base.h"
 #include "io/source.h"
 #include "io/writer.h"
 

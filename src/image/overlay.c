@@ -124,7 +124,12 @@ static void bounds_of(const snow_overlay *overlay, size_t first,
     }
 }
 
-/* 0: a box covers an earlier shape; 1: the object of the picture; 2: none. */
+/* What is clear, and what is more than a veil. */
+#define CLEAR 0.05F
+#define VEIL 0.5F
+
+/* 0: a box covers an earlier shape; 1: the object of the picture; 2: a veil; 3:
+ * nothing. */
 static int room_at(const snow_overlay *overlay, size_t first,
                    const double box[4]) {
     const snow_image *below = overlay->below;
@@ -136,14 +141,16 @@ static int room_at(const snow_overlay *overlay, size_t first,
             box[1] - gap < other[3] && other[1] < box[3] + gap)
             return 0;
     }
+    float most = 0;
     for (int y = (int)fmax(box[1], 0);
          channels > 1 && y < fmin(box[3], below->height); y++)
         for (int x = (int)fmax(box[0], 0); x < fmin(box[2], below->width); x++)
-            if (below->pixels[((size_t)y * (size_t)below->width + (size_t)x) *
+            most = fmaxf(
+                most,
+                below->pixels[((size_t)y * (size_t)below->width + (size_t)x) *
                                   (size_t)channels +
-                              (size_t)channels - 1] > 0.5f)
-                return 1;
-    return 2;
+                              (size_t)channels - 1]);
+    return most > VEIL ? 1 : most > CLEAR ? 2 : 3;
 }
 
 static void move_shape(snow_overlay *overlay, snow_shape *shape,
@@ -156,11 +163,12 @@ static void move_shape(snow_overlay *overlay, snow_shape *shape,
 }
 
 void snow_overlay_settle(snow_overlay *overlay, size_t first,
-                         const double (*offsets)[2], int count) {
+                         const double (*offsets)[2], int count, bool clear) {
+    const int enough = clear ? 3 : 2;
     int best = 0, most = 0;
     if (first == overlay->shape_count)
         return;
-    for (int n = 0; n < count && most < 2; n++) {
+    for (int n = 0; n < count && most < enough; n++) {
         double box[4];
         bounds_of(overlay, first, offsets[n], box);
         int room = room_at(overlay, first, box);
@@ -181,7 +189,8 @@ void snow_overlay_settle_mirrored(snow_overlay *overlay, size_t first,
     double y = floor(overlay->height - box[1] - box[3]);
     offsets[sideways ? 1 : 2][0] = offsets[3][0] = x;
     offsets[sideways ? 2 : 1][1] = offsets[3][1] = y;
-    snow_overlay_settle(overlay, first, (const double(*)[2])offsets, 4);
+    snow_overlay_settle(overlay, first, (const double(*)[2])offsets, 4,
+                        !sideways);
 }
 
 /* --- drawing -------------------------------------------------------------- */

@@ -40,21 +40,25 @@ snow_status snow_overlay_rows(snow_overlay *overlay, int x0, int y0, int x1,
                               int y1, const float *colors);
 
 /* Moves the shapes from `first` on by the first of some offsets at which they
- * cover no earlier one, and if it is possible nothing of the picture below.
+ * cover no earlier one, and if it is possible no object of the picture below,
+ * nor, if `clear`, a veil.
  * Without such an offset they are removed. */
 void snow_overlay_settle(snow_overlay *overlay, size_t first,
-                         const double (*offsets)[2], int count);
+                         const double (*offsets)[2], int count, bool clear);
 
 /* The same with the four places that mirror the present one: beside it first
  * if `sideways`, otherwise above or below it. */
 void snow_overlay_settle_mirrored(snow_overlay *overlay, size_t first,
                                   bool sideways);
 
-/* --- font.c: a stroke font of any size: ASCII and the micro sign ---
+/* --- font.c: a stroke font of any size: letters of Latin-1, as UTF-8 ---
 
  * Width of a line of text whose capitals are 1 high, between the middles of the
  * outermost strokes of its first and last letter. */
 double snow_font_width(const char *text);
+
+/* Ends a text that is wider with "...". */
+void snow_font_shorten(double width, char *text);
 
 /* Adds a line of text to the current shape: (x, y) is the beginning of its base
  * line, y downwards. */

@@ -26,6 +26,7 @@ typedef struct png_job {
     snow_status refusal; /* the status of libpng's own errors */
     const char *prefix;  /* the beginning of their messages */
     const char *remedy;  /* and their end */
+    const char *comment; /* when writing; NULL: none */
     snow_source *source; /* when reading */
     snow_writer *writer; /* when writing */
     png_structp png;
@@ -107,6 +108,19 @@ static snow_status refuse_library(png_job *job) {
 
 /* --- writing -------------------------------------------------------------- */
 
+/* A page's libpng is built without texts. */
+static void set_comment(png_job *job) {
+#ifdef PNG_WRITE_tEXt_SUPPORTED
+    char *text = (char *)(uintptr_t)job->comment, key[] = "Snowglass";
+    png_text chunk = {
+        .compression = PNG_TEXT_COMPRESSION_NONE, .key = key, .text = text};
+    if (text)
+        png_set_text(job->png, job->info, &chunk, 1);
+#else
+    (void)job;
+#endif
+}
+
 /* Level 1, the filter "up" and only runs (Z_RLE) were measured as the best
  * trade-off for renderings: as fast as deflate's quickest matching at 8 bits
  * and a third faster at 16, in somewhat less space.  Level 6 takes four times
@@ -124,6 +138,7 @@ static void write_header(png_job *job, snow_levels *levels) {
                  (png_uint_32)levels->image->height, levels->bits,
                  types[levels->samples], PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    set_comment(job);
     png_write_info(job->png, job->info);
 }
 
@@ -153,6 +168,7 @@ static snow_status write_png(const snow_image *image,
                    .refusal = SNOW_STATUS_FAILED,
                    .prefix = "the PNG file cannot be written",
                    .remedy = "write a .npy instead",
+                   .comment = options->comment,
                    .writer = writer};
     snow_status status = snow_levels_begin(image, options, false, &levels);
     if (status == SNOW_STATUS_OK)

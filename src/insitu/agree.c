@@ -6,51 +6,103 @@
 #include <string.h>
 
 /* FNV-1a over bytes. */
-static uint64_t add_print(uint64_t print, const void *bytes, size_t count) {
+static void add_bytes(uint64_t *print, const void *bytes, size_t count) {
     const unsigned char *at = bytes;
     for (size_t i = 0; i < count; i++)
-        print = (print ^ at[i]) * UINT64_C(0x100000001b3);
-    return print;
+        *print = (*print ^ at[i]) * UINT64_C(0x100000001b3);
 }
 
-/* Points that place the camera, where there are any. */
-static uint64_t add_points(uint64_t print, const snow_view *view) {
-    const bool has[] = {view->has_position, view->has_target, view->has_up};
-    const double *points[] = {view->position, view->target, view->upward};
-    for (int n = 0; n < 3; n++)
-        if (has[n])
-            print = add_print(add_print(print, &n, sizeof n), points[n],
-                              sizeof view->position);
-    return print;
+/* NULL differs from "". */
+static void add_text(uint64_t *print, const char *text) {
+    bool given = text != NULL;
+    add_bytes(print, &given, sizeof given);
+    if (given)
+        add_bytes(print, text, strlen(text) + 1);
 }
 
-/* A print of what must be the same everywhere, as numbers, since records have
- * gaps between their fields. */
-static int64_t print_of(const snow_insitu *insitu, const snow_view *view) {
-    const snow_settings *s = &insitu->settings;
+#define ADD_ALL(print, array) add_bytes(print, array, sizeof(array))
+
+/* Points are made of doubles alone. */
+static void add_points(uint64_t *print, const void *points, size_t count,
+                       size_t size) {
+    add_bytes(print, &count, sizeof count);
+    if (points)
+        add_bytes(print, points, count * size);
+}
+
+static void add_look(uint64_t *print, const snow_look *look) {
+    const double reals[] = {look->low, look->high, look->shift, look->symlog};
+    const int64_t wholes[] = {look->range, look->log, look->domain,
+                              look->per_mm, look->base != NULL};
+    add_text(print, look->preset);
+    add_text(print, look->colormap);
+    ADD_ALL(print, reals);
+    ADD_ALL(print, wholes);
+    add_points(print, look->colors, look->color_count, sizeof *look->colors);
+    add_points(print, look->opacities, look->opacity_count,
+               sizeof *look->opacities);
+    add_points(print, look->gradient_opacities, look->gradient_opacity_count,
+               sizeof *look->gradient_opacities);
+    if (look->base)
+        add_look(print, look->base);
+}
+
+static void add_view(uint64_t *print, const snow_view *view) {
+    const double reals[] = {view->back[0], view->back[1],   view->back[2],
+                            view->up[0],   view->up[1],     view->up[2],
+                            view->azimuth, view->elevation, view->roll,
+                            view->zoom,    view->fov};
+    const int64_t wholes[] = {view->width, view->height, view->has_position,
+                              view->has_target, view->has_up};
+    ADD_ALL(print, reals);
+    ADD_ALL(print, wholes);
+    if (view->has_position)
+        ADD_ALL(print, view->position);
+    if (view->has_target)
+        ADD_ALL(print, view->target);
+    if (view->has_up)
+        ADD_ALL(print, view->upward);
+}
+
+/* All but threads and instruction sets, which machines may have of their
+ * own. */
+static void add_settings(uint64_t *print, const snow_settings *s) {
     const double reals[] = {
-        view->back[0],     view->back[1],        view->back[2], view->up[0],
-        view->up[1],       view->up[2],          view->azimuth, view->elevation,
-        view->roll,        view->zoom,           view->fov,     s->threshold,
-        s->opacity_length, insitu->limit_seconds};
-    const int64_t wholes[] = {view->width,
-                              view->height,
-                              (int64_t)s->method,
-                              (int64_t)s->kernel,
-                              s->footprint,
-                              (int64_t)s->quality,
-                              s->deterministic,
-                              (int64_t)insitu->limit_bytes,
+        s->threshold, s->opacity_length,  s->ambient,       s->diffuse,
+        s->specular,  s->shininess,       s->light_azimuth, s->light_elevation,
+        s->iso,       s->depth_darkening, s->occlusion};
+    const int64_t wholes[] = {
+        s->method,  s->encoding,      s->kernel, s->footprint, s->shade,
+        s->quality, s->deterministic, s->mode,   s->depth,     s->light};
+    ADD_ALL(print, reals);
+    ADD_ALL(print, wholes);
+}
+
+/* A print of what must be the same everywhere, field by field, since records
+ * have gaps between them. */
+static int64_t print_of(const snow_insitu *insitu, const snow_view *view) {
+    const snow_ranks_options *how = &insitu->how;
+    const double reals[] = {insitu->limit_seconds};
+    const int64_t wholes[] = {(int64_t)insitu->limit_bytes,
                               (int64_t)insitu->ghosts,
                               (int64_t)insitu->balance,
                               insitu->pattern != NULL,
-                              insitu->transfer != NULL};
+                              insitu->transfer != NULL,
+                              insitu->shaded,
+                              how->cut,
+                              how->combining,
+                              how->radix,
+                              how->pixel_bits,
+                              how->turns,
+                              how->scattered};
     uint64_t print = UINT64_C(0xcbf29ce484222325);
-    print = add_print(print, reals, sizeof reals);
-    print = add_print(print, wholes, sizeof wholes);
-    print = add_points(print, view);
-    print = add_print(print, insitu->whole.dims, sizeof insitu->whole.dims);
-    print = add_print(print, insitu->whole.matrix, sizeof insitu->whole.matrix);
+    ADD_ALL(&print, reals);
+    ADD_ALL(&print, wholes);
+    add_view(&print, view);
+    add_settings(&print, &insitu->settings);
+    add_look(&print, &insitu->look.look);
+    ADD_ALL(&print, insitu->whole.dims);
+    ADD_ALL(&print, insitu->whole.matrix);
     return (int64_t)(print >> 2);
 }
 
@@ -58,10 +110,10 @@ static snow_status check_prints(snow_insitu *insitu, int64_t least,
                                 int64_t most) {
     if (least == most)
         return SNOW_STATUS_OK;
-    return snow_context_fail(
-        insitu->context, SNOW_STATUS_BAD_USAGE,
-        "grids, views, settings or limits differ between ranks; call the "
-        "setters with the same values on all ranks");
+    return snow_context_fail(insitu->context, SNOW_STATUS_BAD_USAGE,
+                             "grids, looks, views, settings or limits differ "
+                             "between ranks; call the "
+                             "setters with the same values on all ranks");
 }
 
 snow_status snow_insitu_check(snow_insitu *insitu) {
@@ -120,6 +172,7 @@ snow_status snow_insitu_share_facts(snow_insitu *insitu, const snow_view *view,
     facts[SNOW_FACT_UNITED] = united;
     facts[SNOW_FACT_HALOS] = snow_insitu_halos_suffice(insitu, layers);
     facts[SNOW_FACT_BOXES] = insitu->boxes_known;
+    facts[SNOW_FACT_EVEN] = snow_insitu_is_even(insitu);
     INSITU_TRY(snow_comm_reduce_ints(insitu->comm, facts, SNOW_INSITU_FACTS,
                                      SNOW_REDUCE_MIN));
     INSITU_TRY(check_facts(insitu, facts));

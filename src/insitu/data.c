@@ -41,7 +41,8 @@ bool snow_insitu_box_holds(const snow_box *outer, const snow_box *inner) {
 /* --- taking --------------------------------------------------------------- */
 
 /* The only brick's voxels where they lie, where that is how a volume wants
- * them: dense, halo included, all of it within the grid. */
+ * them: dense, halo included, all of it within the grid but slices before the
+ * first one and behind the last, which are left out. */
 static const void *in_place(const snow_insitu *insitu, snow_box *memory) {
     const snow_insitu_brick *brick = NULL;
     for (int id = 0; id < insitu->brick_count; id++)
@@ -51,15 +52,15 @@ static const void *in_place(const snow_insitu *insitu, snow_box *memory) {
         insitu->ghosts == SNOW_GHOSTS_NONE)
         return NULL;
     int64_t step = 1, back = 0;
+    *memory = snow_insitu_grow_box(&brick->box, brick->halo.low,
+                                   brick->halo.high, insitu->whole.dims);
     for (int i = 0; i < 3; i++) {
-        memory->first[i] = brick->box.first[i] - brick->halo.low[i];
-        memory->count[i] =
+        int64_t all =
             brick->halo.low[i] + brick->box.count[i] + brick->halo.high[i];
-        if (brick->stride[i] != step || memory->first[i] < 0 ||
-            memory->first[i] + memory->count[i] > insitu->whole.dims[i])
+        if (brick->stride[i] != step || (i < 2 && memory->count[i] != all))
             return NULL;
-        back += brick->halo.low[i] * step;
-        step *= memory->count[i];
+        back += (brick->box.first[i] - memory->first[i]) * step;
+        step *= all;
     }
     if (!snow_insitu_box_holds(memory, &insitu->layout.stored))
         return NULL;

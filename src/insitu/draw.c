@@ -1,6 +1,7 @@
 /* insitu/draw.c - pictures of a simulation's voxels, and their figures. */
 #include "insitu/internal.h"
 
+#include <math.h>
 #include <string.h>
 
 /* --- update and draw ------------------------------------------------------ */
@@ -28,13 +29,167 @@ static snow_status update(snow_insitu *insitu) {
     return status;
 }
 
-/* Collective.  The transfer function, if it is not there yet. */
-static snow_status choose_look(snow_insitu *insitu) {
-    double start = snow_comm_seconds(insitu->comm);
-    if (insitu->transfer)
+/* Whether a look spreads over the values that there are. */
+static bool is_spread(const snow_look *look) {
+    const char *preset = look->preset;
+    if (look->range == SNOW_RANGE_VALUES)
+        return false;
+    return look->range != SNOW_RANGE_AUTO || !preset ||
+           snow_preset_look((size_t)snow_preset_from_name(preset))->domain !=
+               SNOW_DOMAIN_DATA;
+}
+
+/* The finite extremes of voxels, in a fifth of the time that statistics take.
+ */
+#define EXTREMES(type)                                            \
+    static void find_##type(const type *voxels, int64_t count,    \
+                            double least[2]) {                    \
+        type low = (type)INFINITY, high = -(type)INFINITY;        \
+        for (int64_t n = 0; n < count; n++) {                     \
+            bool finite = voxels[n] - voxels[n] == 0;             \
+            low = finite && voxels[n] < low ? voxels[n] : low;    \
+            high = finite && voxels[n] > high ? voxels[n] : high; \
+        }                                                         \
+        least[0] = (double)low;                                   \
+        least[1] = -(double)high;                                 \
+    }
+EXTREMES(float)
+EXTREMES(double)
+
+/* The least value and minus the most of this rank's part, with its ghosts. */
+static snow_status find_own_values(const snow_insitu *insitu, double least[2]) {
+    const void *voxels = snow_volume_voxels(insitu->volume);
+    const int64_t *dims = snow_volume_get_info(insitu->volume)->dims;
+    const int64_t count = dims[0] * dims[1] * dims[2];
+    snow_volume_statistics here;
+    least[0] = least[1] = INFINITY;
+    if (snow_box_voxels(&insitu->layout.owned) == 0)
         return SNOW_STATUS_OK;
-    INSITU_TRY(snow_ranks_new_transfer(insitu->comm, insitu->volume,
-                                       &insitu->look.look, &insitu->transfer));
+    if (insitu->type == SNOW_TYPE_FLOAT32)
+        find_float(voxels, count, least);
+    else if (insitu->type == SNOW_TYPE_FLOAT64)
+        find_double(voxels, count, least);
+    else {
+        snow_volume_statistics_init(&here);
+        INSITU_TRY(snow_volume_get_statistics(insitu->volume, &here));
+        least[0] = here.min;
+        least[1] = -here.max;
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Collective.  Smallest and largest value of all ranks' parts. */
+static snow_status find_values(snow_insitu *insitu, double ends[2]) {
+    double least[2];
+    INSITU_TRY(
+        snow_comm_agree_status(insitu->comm, find_own_values(insitu, least)));
+    INSITU_TRY(
+        snow_comm_reduce_doubles(insitu->comm, least, 2, SNOW_REDUCE_MIN));
+    ends[0] = least[0];
+    ends[1] = -least[1];
+    return SNOW_STATUS_OK;
+}
+
+/* Values beyond those that the look was chosen from, by a share of their range,
+ * choose it anew. */
+#define BEYOND 0.01
+
+static bool has_grown(const snow_insitu *insitu, const double ends[2]) {
+    const double *seen = insitu->seen;
+    double room = BEYOND * (seen[1] - seen[0]);
+    return !(ends[0] >= seen[0] - room && ends[1] <= seen[1] + room) &&
+           ends[0] <= ends[1];
+}
+
+static void take_look(snow_insitu *insitu, snow_transfer *now) {
+    snow_transfer_free(insitu->transfer);
+    insitu->transfer = now;
+}
+
+/* Whether a look knows all labels of another; both are in rising order. */
+static bool knows_labels(const snow_transfer *look, const snow_transfer *now) {
+    const snow_label *label, *known;
+    size_t at = 0;
+    for (size_t n = 0; (label = snow_transfer_label(now, n)) != NULL; n++) {
+        while ((known = snow_transfer_label(look, at)) != NULL &&
+               known->value < label->value)
+            at++;
+        if (!known || known->value > label->value)
+            return false;
+    }
+    return true;
+}
+
+/* Collective.  Colours are those of the labels' numbers, and stay with them:
+ * where there are new ones the look is made anew. */
+static snow_status learn_labels(snow_insitu *insitu) {
+    snow_look look = insitu->look.look;
+    snow_transfer *now = NULL;
+    look.preset = "labels"; /* also where that was found by itself */
+    snow_status status =
+        snow_ranks_new_transfer(insitu->comm, insitu->volume, &look, &now);
+    if (status == SNOW_STATUS_BAD_USAGE)
+        return SNOW_STATUS_OK; /* one value, or too many: as they were */
+    if (status == SNOW_STATUS_OK && !knows_labels(insitu->transfer, now))
+        take_look(insitu, now);
+    else
+        snow_transfer_free(now);
+    return status;
+}
+
+/* Collective.  A look for the values as they are, over a range that holds that
+ * of the look before, if that had one, so that no colour means less than it
+ * did. */
+static snow_status widen_look(snow_insitu *insitu, bool had_range) {
+    snow_look look = insitu->look.look;
+    snow_transfer *now = NULL;
+    double range[2], before[2];
+    snow_transfer_domain(insitu->transfer, &before[0], &before[1]);
+    INSITU_TRY(
+        snow_ranks_new_transfer(insitu->comm, insitu->volume, &look, &now));
+    snow_transfer_domain(now, &range[0], &range[1]);
+    if (had_range && !snow_transfer_label(now, 0)) {
+        look.low = range[0] = fmin(range[0], before[0]);
+        look.high = range[1] = fmax(range[1], before[1]);
+        look.range = SNOW_RANGE_VALUES;
+        snow_transfer_free(now);
+        if (range[0] == before[0] && range[1] == before[1])
+            return SNOW_STATUS_OK;
+        INSITU_TRY(
+            snow_ranks_new_transfer(insitu->comm, insitu->volume, &look, &now));
+    }
+    take_look(insitu, now);
+    snow_insitu_report(insitu,
+                       "values go beyond those before: colours are spread over "
+                       "%.5g to %.5g from here on, in place of %.5g to %.5g",
+                       range[0], range[1], before[0], before[1]);
+    return SNOW_STATUS_OK;
+}
+
+/* Collective.  The transfer function, if it is not there yet, or too narrow. */
+static snow_status choose_look(snow_insitu *insitu) {
+    double start = snow_comm_seconds(insitu->comm), ends[2] = {0, 0};
+    double *seen = insitu->seen;
+    const bool spread = is_spread(&insitu->look.look);
+    const bool labels =
+        insitu->transfer && snow_transfer_label(insitu->transfer, 0);
+    if (insitu->transfer && !spread && !labels)
+        return SNOW_STATUS_OK;
+    if (spread && !labels)
+        INSITU_TRY(find_values(insitu, ends));
+    if (!insitu->transfer) {
+        INSITU_TRY(snow_ranks_new_transfer(insitu->comm, insitu->volume,
+                                           &insitu->look.look,
+                                           &insitu->transfer));
+        memcpy(seen, ends, sizeof ends);
+    } else if (labels) {
+        INSITU_TRY(learn_labels(insitu));
+    } else if (has_grown(insitu, ends)) {
+        const bool had_range = seen[0] < seen[1];
+        INSITU_TRY(widen_look(insitu, had_range));
+        seen[0] = had_range ? fmin(seen[0], ends[0]) : ends[0];
+        seen[1] = had_range ? fmax(seen[1], ends[1]) : ends[1];
+    }
     insitu->seconds.look = snow_comm_seconds(insitu->comm) - start;
     return SNOW_STATUS_OK;
 }
@@ -50,6 +205,9 @@ static snow_status make_picture(snow_insitu *insitu, snow_image **out) {
         status = snow_frame_new(insitu->context, &insitu->frame);
     INSITU_TRY(snow_comm_agree_status(insitu->comm, status));
     INSITU_TRY(choose_look(insitu));
+    if (!insitu->shaded && snow_transfer_is_unshaded(insitu->transfer) &&
+        settings.mode != SNOW_MODE_ISO)
+        settings.shade = SNOW_SHADE_NONE; /* as the tool */
     INSITU_TRY(snow_ranks_render(insitu->frame, insitu->comm, insitu->volume,
                                  insitu->transfer, &view, &settings,
                                  &insitu->how, &image));
@@ -113,8 +271,10 @@ static snow_status draw(snow_insitu *insitu, snow_image **out) {
 
 snow_status snow_insitu_update(snow_insitu *insitu) {
     snow_status status = snow_insitu_begin(insitu);
-    if (status == SNOW_STATUS_OK)
+    if (status == SNOW_STATUS_OK) {
+        snow_insitu_refresh(insitu);
         status = update(insitu);
+    }
     return snow_insitu_end(insitu, status);
 }
 
@@ -142,6 +302,15 @@ static snow_status check_output(const snow_insitu *insitu) {
     return SNOW_STATUS_OK;
 }
 
+/* What steps take beside what lies between them. */
+static void add_cost(snow_insitu *insitu, double start) {
+    if (insitu->ended > 0) {
+        insitu->between += start - insitu->ended;
+        insitu->within += insitu->seconds.step;
+    }
+    insitu->ended = snow_comm_seconds(insitu->comm);
+}
+
 static snow_status make_step(snow_insitu *insitu, int64_t step) {
     double start = snow_comm_seconds(insitu->comm);
     snow_image *image = NULL;
@@ -151,6 +320,7 @@ static snow_status make_step(snow_insitu *insitu, int64_t step) {
             insitu->context, SNOW_STATUS_BAD_USAGE,
             "cannot write a scattered picture, whose parts are on several "
             "ranks; call snow_insitu_render and write the parts");
+    snow_insitu_refresh(insitu);
     INSITU_TRY(update(insitu));
     INSITU_TRY(draw(insitu, &image));
     snow_status status = SNOW_STATUS_OK;
@@ -158,6 +328,7 @@ static snow_status make_step(snow_insitu *insitu, int64_t step) {
         status = snow_insitu_write(insitu, step, image);
     snow_image_free(image);
     insitu->seconds.step = snow_comm_seconds(insitu->comm) - start;
+    add_cost(insitu, start);
     return status;
 }
 

@@ -62,6 +62,9 @@ static snow_status reserve_bricks(snow_insitu *insitu, int id) {
     INSITU_TRY(snow_context_reserve(insitu->context, &insitu->bricks, had,
                                     count, size));
     memset(insitu->bricks + had, 0, (count - had) * size);
+    for (size_t n = had; n < count; n++)
+        for (int i = 0; i < 3; i++)
+            insitu->bricks[n].cells[i] = 1;
     insitu->brick_count = (int)count;
     return SNOW_STATUS_OK;
 }
@@ -107,7 +110,7 @@ snow_status snow_insitu_set_brick(snow_insitu *insitu, int id,
     INSITU_TRY(check_brick(insitu, id, first, count, halo));
     INSITU_TRY(snow_insitu_set_error(insitu, reserve_bricks(insitu, id)));
     snow_insitu_brick *brick = &insitu->bricks[id];
-    *brick = (snow_insitu_brick){.halo = *halo};
+    *brick = (snow_insitu_brick){.halo = *halo, .cells = {1, 1, 1}};
     bool none_left = !count[0] || !count[1] || !count[2];
     for (int i = 0; i < 3 && !none_left; i++) {
         brick->box.first[i] = first[i];
@@ -133,7 +136,8 @@ snow_status snow_insitu_set_voxels(snow_insitu *insitu, int id, snow_type type,
     int64_t step = 1;
     for (int i = 0; i < 3; i++) {
         brick->stride[i] = stride ? stride[i] : step;
-        step *= brick->halo.low[i] + brick->box.count[i] + brick->halo.high[i];
+        step *= brick->halo.low[i] + brick->box.count[i] / brick->cells[i] +
+                brick->halo.high[i];
     }
     brick->type = type;
     brick->voxels = voxels;

@@ -5,6 +5,7 @@
  * collective calls alone. */
 #include "insitu/internal.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -16,7 +17,9 @@ snow_status snow_insitu_new(snow_comm *comm, snow_insitu **out) {
         *insitu = (snow_insitu){0};
         insitu->comm = comm;
         insitu->context = context;
-        insitu->whole = snow_insitu_empty_grid();
+        insitu->whole = insitu->says = snow_insitu_empty_grid();
+        insitu->says.time_value = NAN;
+        insitu->seen[0] = insitu->seen[1] = NAN;
         snow_settings_init(&insitu->settings);
         snow_ranks_options_init(&insitu->how);
         snow_image_options_init(&insitu->form);
@@ -42,10 +45,25 @@ void snow_insitu_forget(snow_insitu *insitu) {
     snow_frame_free(insitu->frame);
     snow_voxels_clear(insitu->voxels);
     snow_context_release(context, insitu->dense);
+    snow_context_release(context, insitu->refined);
+    insitu->refined = NULL;
     insitu->volume = NULL;
     insitu->frame = NULL;
     insitu->dense = NULL;
     insitu->layout.planned = insitu->taken = false;
+}
+
+/* What pictures took, beside the simulation. */
+static void report_cost(snow_insitu *insitu) {
+    double all = insitu->between + insitu->within;
+    if (insitu->pictures > 1 && all > 0 && insitu->limit_seconds == 0)
+        snow_insitu_report(insitu,
+                           "%lld pictures took %.2g %% of the time, %.3g s "
+                           "beside %.3g s between two of them",
+                           (long long)insitu->pictures,
+                           100 * insitu->within / all,
+                           insitu->within / (double)(insitu->pictures - 1),
+                           insitu->between / (double)(insitu->pictures - 1));
 }
 
 void snow_insitu_free(snow_insitu *insitu) {
@@ -55,6 +73,7 @@ void snow_insitu_free(snow_insitu *insitu) {
     snow_context *context = insitu->context;
     bool owns_comm = insitu->owns_comm;
     bool owns_context = insitu->owns_context;
+    report_cost(insitu);
     if (insitu->voxels)
         snow_insitu_forget(insitu);
     snow_transfer_free(insitu->transfer);
@@ -64,6 +83,7 @@ void snow_insitu_free(snow_insitu *insitu) {
     snow_context_release(context, insitu->moved);
     snow_context_release(context, insitu->bricks);
     snow_insitu_free_look(context, &insitu->look);
+    snow_insitu_set_refresh(insitu, NULL, NULL);
     snow_context_release(context, insitu->pattern);
     snow_context_release(context, insitu);
     if (owns_comm)
@@ -113,6 +133,33 @@ snow_status snow_insitu_set_error(snow_insitu *insitu, snow_status status) {
     return status;
 }
 
+snow_status snow_insitu_set_recipe_status(snow_insitu *insitu,
+                                          snow_status status) {
+    insitu->recipe = status;
+    snprintf(insitu->recipe_message, sizeof insitu->recipe_message, "%s",
+             status == SNOW_STATUS_OK ? ""
+                                      : snow_context_message(insitu->context));
+    return status;
+}
+
+void snow_insitu_set_refresh(snow_insitu *insitu, snow_refresh_fn *refresh,
+                             void *user) {
+    if (insitu->refresh)
+        insitu->refresh(NULL, insitu->refresh_user);
+    insitu->refresh = refresh;
+    insitu->refresh_user = user;
+}
+
+void snow_insitu_refresh(snow_insitu *insitu) {
+    snow_status status = SNOW_STATUS_OK;
+    if (insitu->refresh)
+        status = insitu->refresh(insitu, insitu->refresh_user);
+    insitu->given = SNOW_STATUS_OK; /* what its setters refuse is a warning */
+    if (status != SNOW_STATUS_OK)
+        snow_insitu_report(insitu, "%s; pictures stay as they were",
+                           snow_context_message(insitu->context));
+}
+
 snow_status snow_insitu_refuse(snow_insitu *insitu, const char *format, ...) {
     char text[SNOW_INSITU_MESSAGE];
     va_list arguments;
@@ -126,9 +173,14 @@ snow_status snow_insitu_refuse(snow_insitu *insitu, const char *format, ...) {
 
 snow_status snow_insitu_begin(snow_insitu *insitu) {
     snow_status given = insitu->given;
+    const char *message = insitu->message;
     insitu->given = SNOW_STATUS_OK;
+    if (insitu->recipe != SNOW_STATUS_OK) { /* others may follow from it */
+        given = insitu->recipe;
+        message = insitu->recipe_message;
+    }
     if (given != SNOW_STATUS_OK)
-        snow_context_fail(insitu->context, given, "%s", insitu->message);
+        snow_context_fail(insitu->context, given, "%s", message);
     return snow_comm_agree_status(insitu->comm, given);
 }
 
@@ -142,8 +194,7 @@ snow_status snow_insitu_end(snow_insitu *insitu, snow_status status) {
 
 snow_status snow_insitu_set_view(snow_insitu *insitu, const snow_view *given) {
     snow_view view;
-    INSITU_TRY(snow_insitu_set_error(
-        insitu, SNOW_RECORD_READ(insitu->context, snow_view, given, &view)));
+    INSITU_TRY(INSITU_READ(insitu, snow_view, given, &view));
     if (view.width < 1 || view.height < 1)
         return snow_insitu_refuse(
             insitu,
@@ -157,19 +208,19 @@ snow_status snow_insitu_set_view(snow_insitu *insitu, const snow_view *given) {
 snow_status snow_insitu_set_settings(snow_insitu *insitu,
                                      const snow_settings *settings) {
     snow_settings known;
-    INSITU_TRY(snow_insitu_set_error(
-        insitu,
-        SNOW_RECORD_READ(insitu->context, snow_settings, settings, &known)));
+    INSITU_TRY(INSITU_READ(insitu, snow_settings, settings, &known));
     insitu->settings = known;
     return SNOW_STATUS_OK;
+}
+
+void snow_insitu_set_shaded(snow_insitu *insitu, bool shaded) {
+    insitu->shaded = shaded;
 }
 
 snow_status snow_insitu_set_ranks(snow_insitu *insitu,
                                   const snow_ranks_options *how) {
     snow_ranks_options known;
-    INSITU_TRY(snow_insitu_set_error(
-        insitu,
-        SNOW_RECORD_READ(insitu->context, snow_ranks_options, how, &known)));
+    INSITU_TRY(INSITU_READ(insitu, snow_ranks_options, how, &known));
     insitu->how = known;
     return SNOW_STATUS_OK;
 }

@@ -5,6 +5,7 @@
  *   look.c    the look                   place.c   bricks by their positions
  *   data.c    takes voxels, by way of    agree.c   what all ranks know
  *                                        layout.c  who draws what
+ *                                        levels.c  cells that are wider
  *   draw.c    makes pictures of them     limits.c  with less and less work
  *   output.c  and writes them            enlarge.c at the size asked for */
 #ifndef SNOW_INSITU_INTERNAL_H
@@ -15,6 +16,7 @@
 #include <snowglass/snowglass.h>
 
 #define SNOW_INSITU_MESSAGE 512
+#define TEXT_BYTES 256
 
 /* Leaves a function when a call in it fails. */
 #define INSITU_TRY(call)                         \
@@ -29,6 +31,8 @@
 typedef struct snow_insitu_brick {
     snow_box box; /* empty: there is none of this number */
     snow_halo halo;
+    int64_t cells[3]; /* voxels of one of its cells */
+    int pieces[2];    /* the first in `held`, and behind the last (levels.c) */
     snow_type type;
     const void *voxels;
     int64_t stride[3];
@@ -64,8 +68,12 @@ struct snow_insitu {
     snow_warning_fn *warning;
     void *warning_user;
     char message[SNOW_INSITU_MESSAGE];
-    snow_status given; /* of the first setter that failed since the last
-                         collective call; message is its */
+    snow_status given;  /* of the first setter that failed since the last
+                          collective call; message is its */
+    snow_status recipe; /* of the last recipe, and its message */
+    char recipe_message[SNOW_INSITU_MESSAGE];
+    snow_refresh_fn *refresh; /* before voxels are taken; NULL: none */
+    void *refresh_user;
 
     /* As given by the setters. */
     snow_volume_info whole; /* dims 0 until there is a grid */
@@ -77,10 +85,14 @@ struct snow_insitu {
     snow_view view;
     bool has_view;
     snow_settings settings;
+    bool shaded; /* as they say, whatever the look */
     snow_ranks_options how;
     char *pattern; /* NULL: no output */
     snow_image_options form;
     bool legend, scale_bar, step_label; /* drawn over them */
+    snow_insitu_texts texts;
+    snow_volume_info says; /* quantity, unit, time: all else is `whole` */
+    char title[TEXT_BYTES], time_format[TEXT_BYTES]; /* of the texts */
     double limit_seconds;
     uint64_t limit_bytes, outer_bytes; /* the latter the context's own */
 
@@ -94,6 +106,7 @@ struct snow_insitu {
     snow_box *held;   /* the bricks' boxes, and the bricks, in one order */
     snow_brick *moved;
     int held_count;
+    char *refined; /* voxels of wider cells (levels.c) */
     char *dense;
     bool copied;
     snow_volume *volume; /* NULL: none yet */
@@ -102,6 +115,7 @@ struct snow_insitu {
     /* Pictures of them. */
     snow_frame *frame;
     snow_transfer *transfer; /* NULL: to be chosen */
+    double seen[2];          /* the values that it was chosen from; NaN: none */
 
     /* The limits: the same on all ranks. */
     snow_degradation lowering;
@@ -113,6 +127,8 @@ struct snow_insitu {
     snow_insitu_seconds seconds;
     uint64_t sent_before; /* bytes, before the step */
     int64_t pictures, skipped;
+    double ended;           /* the last step did, by the communicator's clock */
+    double between, within; /* seconds of all: of the simulation, of steps */
     snow_degradation last_lowering;
 };
 
@@ -120,6 +136,11 @@ struct snow_insitu {
  * message. */
 snow_status snow_insitu_refuse(snow_insitu *insitu, const char *format, ...)
     SNOW_PRINTF(2, 3);
+
+/* For setters: reads a record of the caller. */
+#define INSITU_READ(insitu, type, given, copy) \
+    snow_insitu_set_error(                     \
+        insitu, SNOW_RECORD_READ((insitu)->context, type, given, copy))
 
 /* Frees what a look holds (look.c). */
 void snow_insitu_free_look(snow_context *context, snow_own_look *look);
@@ -131,6 +152,9 @@ void snow_insitu_report(snow_insitu *insitu, const char *format, ...)
 /* Collective: whatever setters found wrong on any rank.  To be called before
  * all else in a collective call. */
 snow_status snow_insitu_begin(snow_insitu *insitu);
+
+/* Collective: whatever is to be done before voxels are taken. */
+void snow_insitu_refresh(snow_insitu *insitu);
 
 /* Ends a collective call: keeps its message. */
 snow_status snow_insitu_end(snow_insitu *insitu, snow_status status);
@@ -166,6 +190,7 @@ enum {
     SNOW_FACT_UNITED,     /* 1: the bricks are one box together, or none */
     SNOW_FACT_HALOS,      /* 1: halos are as wide as the layers */
     SNOW_FACT_BOXES,      /* 1: every rank's bricks united are known */
+    SNOW_FACT_EVEN,       /* 1: cells are voxels everywhere */
     SNOW_INSITU_FACTS
 };
 /* Collective.  What is found here is the same everywhere, failures too. */
@@ -176,6 +201,11 @@ snow_status snow_insitu_share_facts(snow_insitu *insitu, const snow_view *view,
 /* Collective.  Looks whether the plan still holds, and makes a new one where it
  * does not. */
 snow_status snow_insitu_lay_out(snow_insitu *insitu);
+
+/* Whether all cells of this rank are voxels; collective: the bricks that were
+ * listed become those of wider cells refined to voxels (levels.c). */
+bool snow_insitu_is_even(const snow_insitu *insitu);
+snow_status snow_insitu_refine(snow_insitu *insitu);
 
 /* A box with so many layers more on all sides, as far as the grid goes. */
 snow_box snow_insitu_grow_box(const snow_box *box, const int64_t low[3],

@@ -192,7 +192,8 @@ static snow_status decide_recut(snow_insitu *insitu, const snow_view *view,
     bool ordered = true;
     *out = true;
     if (insitu->balance == SNOW_BALANCE_REPARTITION ||
-        !facts[SNOW_FACT_UNITED] || slab_axis(insitu, slice_axis) >= 0)
+        !facts[SNOW_FACT_UNITED] || !facts[SNOW_FACT_EVEN] ||
+        slab_axis(insitu, slice_axis) >= 0)
         return SNOW_STATUS_OK;
     if (!facts[SNOW_FACT_BOXES])
         INSITU_TRY(share_boxes(insitu, united));
@@ -219,6 +220,8 @@ snow_status snow_insitu_lay_out(snow_insitu *insitu) {
     bool is_united = unite_bricks(insitu, &united);
     INSITU_TRY(
         snow_insitu_share_facts(insitu, &view, l.layers, is_united, facts));
+    if (!facts[SNOW_FACT_EVEN])
+        INSITU_TRY(snow_insitu_refine(insitu));
     INSITU_TRY(decide_recut(insitu, &lowered, needs.slice_axis, &united, facts,
                             &l.recut));
     l.recut_axis = slab_axis(insitu, needs.slice_axis);

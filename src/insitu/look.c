@@ -50,12 +50,8 @@ static snow_status keep_points(snow_insitu *insitu, snow_look *look,
 /* The look and its base, with points of their own. */
 static snow_status keep_look(snow_insitu *insitu, const snow_look *given,
                              snow_own_look *own) {
-    snow_context *context = insitu->context;
-    INSITU_TRY(snow_insitu_set_error(
-        insitu, SNOW_RECORD_READ(context, snow_look, given, &own->look)));
-    INSITU_TRY(snow_insitu_set_error(
-        insitu,
-        SNOW_RECORD_READ(context, snow_look, own->look.base, &own->base)));
+    INSITU_TRY(INSITU_READ(insitu, snow_look, given, &own->look));
+    INSITU_TRY(INSITU_READ(insitu, snow_look, own->look.base, &own->base));
     INSITU_TRY(keep_points(insitu, &own->look, &own->blocks[0]));
     return own->look.base ? keep_points(insitu, &own->base, &own->blocks[1])
                           : SNOW_STATUS_OK;

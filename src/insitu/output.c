@@ -10,8 +10,14 @@
 
 #define PATH_BYTES 4096
 
+/* Points of the opacity that a comment has, at most; a number has at most 24
+ * characters. */
+#define POINTS_MOST 64
+#define NUMBER_BYTES 32
+#define COMMENT_BYTES (NUMBER_BYTES * (20 + 2 * POINTS_MOST))
+
 /* The place of the step's number: "%d", or "%0Nd" with N up to 18; the only
- * sign of per cent.  NULL where the text is none such. */
+ * sign of per cent.  NULL where the text is no such pattern. */
 static const char *find_number(const char *pattern, int *digits, size_t *end) {
     const char *at = strchr(pattern, '%');
     if (!at || strchr(at + 1, '%'))
@@ -30,9 +36,7 @@ snow_status snow_insitu_set_output(snow_insitu *insitu, const char *pattern,
     snow_image_options form;
     int digits;
     size_t end, bytes = strlen(pattern) + 1;
-    INSITU_TRY(snow_insitu_set_error(
-        insitu,
-        SNOW_RECORD_READ(insitu->context, snow_image_options, options, &form)));
+    INSITU_TRY(INSITU_READ(insitu, snow_image_options, options, &form));
     if (!find_number(pattern, &digits, &end))
         return snow_insitu_refuse(
             insitu,
@@ -57,6 +61,55 @@ snow_status snow_insitu_set_annotations(snow_insitu *insitu, bool legend,
     return SNOW_STATUS_OK;
 }
 
+/* The title, the time or number of a step in lines. */
+static void write_title(const snow_insitu *insitu, int64_t step, char *text,
+                        size_t room) {
+    const char *title = insitu->texts.title;
+    const char *format = insitu->texts.time_format;
+    char time[TEXT_BYTES] = "";
+    if (insitu->step_label &&
+        ((format && !*format) ||
+         !snow_time_text(&insitu->says, format, time, sizeof time)))
+        snprintf(time, sizeof time, "step %" PRId64, step);
+    snprintf(text, room, "%s%s%s", title ? title : "",
+             title && *time ? "\n" : "", time);
+}
+
+snow_status snow_insitu_set_texts(snow_insitu *insitu,
+                                  const snow_insitu_texts *given) {
+    snow_insitu_texts texts;
+    snow_volume_info *says = &insitu->says;
+    INSITU_TRY(INSITU_READ(insitu, snow_insitu_texts, given, &texts));
+    const struct {
+        const char *from;
+        char *to;
+        size_t room;
+    } kept[] = {{texts.title, insitu->title, TEXT_BYTES},
+                {texts.time_format, insitu->time_format, TEXT_BYTES},
+                {texts.quantity, says->quantity, sizeof says->quantity},
+                {texts.unit, says->value_unit, sizeof says->value_unit}};
+    for (size_t n = 0; n < sizeof kept / sizeof *kept; n++)
+        snprintf(kept[n].to, kept[n].room, "%s",
+                 kept[n].from ? kept[n].from : "");
+    texts.title = texts.title ? insitu->title : NULL;
+    texts.time_format = texts.time_format ? insitu->time_format : NULL;
+    texts.quantity = texts.unit = NULL;
+    insitu->texts = texts;
+    return SNOW_STATUS_OK;
+}
+
+void snow_insitu_texts_init_sized(snow_insitu_texts *texts, size_t size) {
+    snow_record_init(texts, size, NULL, sizeof *texts);
+}
+
+snow_status snow_insitu_set_time(snow_insitu *insitu, double time,
+                                 const char *unit) {
+    insitu->says.time_value = time;
+    snprintf(insitu->says.time_unit, sizeof insitu->says.time_unit, "%s",
+             unit ? unit : "");
+    return SNOW_STATUS_OK;
+}
+
 static bool format_path(const snow_insitu *insitu, int64_t step, char *out,
                         size_t room) {
     int digits = 0;
@@ -75,28 +128,90 @@ static bool format_path(const snow_insitu *insitu, int64_t step, char *out,
 static snow_status add_marks(snow_insitu *insitu, int64_t step,
                              const double range[2], snow_overlay *overlay) {
     snow_view view = snow_insitu_view(insitu);
-    char text[40];
+    const snow_volume_info *says = &insitu->says;
+    char text[2 * TEXT_BYTES];
+    bool both = *says->quantity && *says->value_unit;
+    snprintf(text, sizeof text, "%s%s%s%s", says->quantity, both ? " (" : "",
+             says->value_unit, both ? ")" : "");
     if (insitu->legend)
         INSITU_TRY(
-            snow_overlay_color_bar(overlay, insitu->transfer, NULL, range));
+            snow_overlay_color_bar(overlay, insitu->transfer, text, range));
     if (insitu->scale_bar)
         INSITU_TRY(snow_overlay_scale_bar(overlay, &insitu->whole, &view));
-    if (!insitu->step_label)
-        return SNOW_STATUS_OK;
-    snprintf(text, sizeof text, "step %" PRId64, step);
-    return snow_overlay_title(overlay, text);
+    write_title(insitu, step, text, sizeof text);
+    INSITU_TRY(snow_overlay_title(overlay, text));
+    if (insitu->texts.outline || insitu->texts.axes)
+        INSITU_TRY(snow_overlay_box(overlay, &insitu->whole, &view,
+                                    insitu->texts.axes));
+    return SNOW_STATUS_OK;
+}
+
+/* Adds a number in JSON, whatever the locale of the simulation. */
+static char *add_number(char *at, double value, char end) {
+    char *begin = at;
+    at += snprintf(at, NUMBER_BYTES, "%.17g", value);
+    for (char *c = begin; c < at; c++)
+        if (!strchr("0123456789+-e", *c))
+            *c = '.';
+    *at++ = end;
+    *at = 0;
+    return at;
+}
+
+static char *add_points(char *at, const snow_opacity_point *points,
+                        size_t count) {
+    at += snprintf(at, NUMBER_BYTES, ",\"opacity\":[");
+    for (size_t i = 0; i < count; i++) {
+        *at++ = '[';
+        at = add_number(at, points[i].value, ',');
+        at = add_number(at, points[i].opacity, ']');
+        *at++ = i + 1 < count ? ',' : ']';
+    }
+    *at = 0;
+    return at;
+}
+
+/* What a viewer of the picture must know (docs/insitu.md): {"step": 60, "dims":
+ * [48, 40, 56], "range": [0, 1], "matrix": [1, 0, 0, 0, 0, 1, ...], "opacity":
+ * [[0, 0], [1, 0.5]]}, the last for looks of few points. */
+static void describe(const snow_insitu *insitu, int64_t step,
+                     char out[COMMENT_BYTES]) {
+    const snow_volume_info *grid = &insitu->whole;
+    double range[2];
+    snow_transfer_domain(insitu->transfer, &range[0], &range[1]);
+    char *at =
+        out + snprintf(out, COMMENT_BYTES,
+                       "{\"step\":%" PRId64 ",\"dims\":[%" PRId64 ",%" PRId64
+                       ",%" PRId64 "],\"range\":[",
+                       step, grid->dims[0], grid->dims[1], grid->dims[2]);
+    at = add_number(at, range[0], ',');
+    at = add_number(at, range[1], ']');
+    at += snprintf(at, NUMBER_BYTES, ",\"matrix\":[");
+    for (int i = 0; i < 12; i++)
+        at = add_number(at, grid->matrix[i / 4][i % 4], i < 11 ? ',' : ']');
+    snow_look look = {.size = sizeof look};
+    if (snow_transfer_get_look(insitu->transfer, &look) == SNOW_STATUS_OK &&
+        look.opacity_count && look.opacity_count <= POINTS_MOST)
+        at = add_points(at, look.opacities, look.opacity_count);
+    snprintf(at, NUMBER_BYTES, "}");
 }
 
 static snow_status save_colors(snow_insitu *insitu, int64_t step,
                                const char *path, const snow_image *image,
                                const double range[2]) {
+    char comment[COMMENT_BYTES];
     snow_image_options form = insitu->form;
+    describe(insitu, step, comment);
+    form.comment = form.comment ? form.comment : comment;
     snow_overlay *overlay = NULL;
-    bool marked = insitu->scale_bar || insitu->step_label;
+    bool marked = insitu->scale_bar || insitu->step_label ||
+                  insitu->texts.title || insitu->texts.outline ||
+                  insitu->texts.axes;
     if (!marked || form.overlay || snow_image_format_bits(path) <= 0)
         return snow_image_save(image, path, &form);
     INSITU_TRY(snow_overlay_new(insitu->context, snow_image_width(image),
                                 snow_image_height(image), &overlay));
+    snow_overlay_keep_off(overlay, image);
     snow_status status = add_marks(insitu, step, range, overlay);
     form.overlay = overlay;
     if (status == SNOW_STATUS_OK)
@@ -121,6 +236,22 @@ static snow_status save_picture(snow_insitu *insitu, int64_t step,
     return status;
 }
 
+/* A picture that is there already stays; what to do is said in words of these
+ * calls, not of the tool. */
+static snow_status check_free(const snow_insitu *insitu, const char *path) {
+    snow_context *context = insitu->context;
+    snow_status status =
+        snow_image_check_path(context, path, insitu->form.overwrite);
+    if (status != SNOW_STATUS_BAD_OUTPUT ||
+        snow_image_check_path(context, path, true) != SNOW_STATUS_OK)
+        return status;
+    return snow_context_fail(
+        context, status,
+        "%s: exists; remove it, choose another output, or set overwrite (of "
+        "snow_image_options, or in the recipe)",
+        path);
+}
+
 snow_status snow_insitu_write(snow_insitu *insitu, int64_t step,
                               const snow_image *image) {
     char path[PATH_BYTES];
@@ -130,6 +261,8 @@ snow_status snow_insitu_write(snow_insitu *insitu, int64_t step,
         status = snow_context_fail(
             insitu->context, SNOW_STATUS_BAD_USAGE,
             "%.100s...: the path is too long; shorten it", insitu->pattern);
+    if (image && status == SNOW_STATUS_OK)
+        status = check_free(insitu, path);
     if (image && status == SNOW_STATUS_OK)
         status = save_picture(insitu, step, path, image);
     insitu->seconds.write = snow_comm_seconds(insitu->comm) - start;

@@ -33,6 +33,17 @@ snow_status snow_source_open_memory(snow_context *context, const char *name,
                                     const void *bytes, size_t size,
                                     snow_source **out);
 
+/* The same for bytes that a function copies from any place on
+ * (snowglass/volume.h). */
+typedef struct snow_bytes_behind {
+    size_t (*read_at)(void *user, uint64_t at, void *bytes, size_t size);
+    void *user;
+    uint64_t size;
+} snow_bytes_behind;
+snow_status snow_source_open_with(snow_context *context, const char *name,
+                                  const snow_bytes_behind *bytes,
+                                  snow_source **out);
+
 /* Opens the file `name`, given by the header that `source` reads: relative to
  * its folder, or absolute. Rejected for sources without siblings, and if it is
  * not a regular file. The _as_is variant leaves gzip packed, for headers that
@@ -41,6 +52,32 @@ snow_status snow_source_open_sibling(const snow_source *source,
                                      const char *name, snow_source **out);
 snow_status snow_source_open_sibling_as_is(const snow_source *source,
                                            const char *name, snow_source **out);
+
+/* How many files have led to this one, each named by the one before; 0 at
+ * first. */
+int snow_source_depth(const snow_source *source);
+
+/* Opens a volume by a path without a mask, to which so many files have led. */
+typedef snow_status snow_open_named_fn(snow_context *context, const char *path,
+                                       int depth,
+                                       const snow_volume_options *options,
+                                       snow_volume_info *info,
+                                       snow_volume **out);
+
+/* How files that this one names are opened, and how many have led to it. */
+void snow_source_set_opener(snow_source *source, int depth,
+                            snow_open_named_fn *opener);
+
+/* Opens a file that this one names, by its whole path.  Errors: those of
+ * opening; SNOW_STATUS_BAD_INPUT (a source without an opener). */
+snow_status snow_source_open_named(const snow_source *source, const char *path,
+                                   const snow_volume_options *options,
+                                   snow_volume_info *info, snow_volume **out);
+
+/* The path of the file `name` beside the one of `source`, in a block that the
+ * caller releases. Errors: SNOW_STATUS_BAD_INPUT (no siblings, no name). */
+snow_status snow_source_path_beside(const snow_source *source, const char *name,
+                                    char **out);
 
 /* Declares that from here on the bytes are a gzip or zlib stream, which all
  * later calls unpack. */

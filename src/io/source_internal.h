@@ -10,7 +10,9 @@ struct snow_source {
     snow_context *context;
     char *name;             /* in the same block */
     snow_filter_stage *top; /* top filter stage, which is read from */
-    bool siblings;          /* other files can be opened by name */
+    int depth;              /* of files that led here by name */
+    snow_open_named_fn *opener;
+    bool siblings; /* other files can be opened by name */
 };
 
 #endif

@@ -150,13 +150,9 @@ bool snow_source_is_stream(const char *path) {
             (S_ISFIFO(about.st_mode) || S_ISSOCK(about.st_mode)));
 }
 
-snow_status snow_source_open_memory(snow_context *context, const char *name,
-                                    const void *bytes, size_t size,
-                                    snow_source **out) {
-    snow_source *source;
-    SNOW_TRY(new_source(context, name, strlen(name), &source));
-    snow_status status = snow_filter_stage_open_memory(
-        context, source->name, bytes, size, &source->top);
+/* Completes a source without siblings, whose bottom stage was made. */
+static snow_status finish_open(snow_source *source, snow_status status,
+                               snow_source **out) {
     if (status == SNOW_STATUS_OK)
         status = unpack_gzip(source);
     if (status != SNOW_STATUS_OK) {
@@ -167,11 +163,54 @@ snow_status snow_source_open_memory(snow_context *context, const char *name,
     return SNOW_STATUS_OK;
 }
 
+int snow_source_depth(const snow_source *source) {
+    return source->depth;
+}
+
+void snow_source_set_opener(snow_source *source, int depth,
+                            snow_open_named_fn *opener) {
+    source->depth = depth;
+    source->opener = opener;
+}
+
+snow_status snow_source_open_named(const snow_source *source, const char *path,
+                                   const snow_volume_options *options,
+                                   snow_volume_info *info, snow_volume **out) {
+    if (!source->opener)
+        return snow_fail(source->context, SNOW_STATUS_BAD_INPUT,
+                         "names another file, which is not followed here; "
+                         "open it alone");
+    return source->opener(source->context, path, source->depth + 1, options,
+                          info, out);
+}
+
+snow_status snow_source_open_memory(snow_context *context, const char *name,
+                                    const void *bytes, size_t size,
+                                    snow_source **out) {
+    snow_source *source;
+    SNOW_TRY(new_source(context, name, strlen(name), &source));
+    return finish_open(source,
+                       snow_filter_stage_open_memory(context, source->name,
+                                                     bytes, size, &source->top),
+                       out);
+}
+
+snow_status snow_source_open_with(snow_context *context, const char *name,
+                                  const snow_bytes_behind *bytes,
+                                  snow_source **out) {
+    snow_source *source;
+    SNOW_TRY(new_source(context, name, strlen(name), &source));
+    return finish_open(
+        source,
+        snow_filter_stage_open_with(context, source->name, bytes, &source->top),
+        out);
+}
+
 /* The path is the header's folder and the name, joined as a shell would; an
  * absolute name is used as it is. Names that leave the folder are permitted:
  * the caller decides what may be read. */
-static snow_status open_beside(const snow_source *source, const char *name,
-                               bool unpack, snow_source **out) {
+snow_status snow_source_path_beside(const snow_source *source, const char *name,
+                                    char **out) {
     snow_context *context = source->context;
     if (!source->siblings)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
@@ -191,8 +230,16 @@ static snow_status open_beside(const snow_source *source, const char *name,
         return SNOW_STATUS_NO_MEMORY;
     memcpy(path, source->name, folder);
     memcpy(path + folder, name, length + 1);
-    snow_status status = open_path(context, path, false, unpack, out);
-    snow_release(context, path);
+    *out = path;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status open_beside(const snow_source *source, const char *name,
+                               bool unpack, snow_source **out) {
+    char *path = NULL;
+    SNOW_TRY(snow_source_path_beside(source, name, &path));
+    snow_status status = open_path(source->context, path, false, unpack, out);
+    snow_release(source->context, path);
     return status;
 }
 

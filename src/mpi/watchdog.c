@@ -7,10 +7,21 @@
 #include <sched.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 /* This many tests run before the processor is given to other processes. */
 #define EAGER_TURNS 50
+
+/* Waits longer than these seconds sleep between tests, a share of what they
+ * have lasted, and at most so long: a rank that waits for a page, or for one
+ * that reads, leaves its processor to others. */
+#define AWAKE_SECONDS 0.02
+#define SLEEP_SHARE 16
+#define SLEEP_SECONDS 0.004
+
+/* Waits of these seconds get a line. */
+#define TELL_SECONDS 20
 
 /* The most notes in flight from a rank. Beyond that notes are not sent;
  * questions are asked again. */
@@ -41,11 +52,13 @@ struct mpi_watchdog {
     double limit;
     place *places;           /* of all ranks */
     unsigned char *answered; /* of all ranks, in this round of questions */
-    /* The current wait: when it began, this round of questions, the last
-     * questions, and when the verdict was sent; seconds, 0: not yet. */
-    double since, round, asked, given;
+    /* The current wait: when it began, and after this rank was stopped, this
+     * round of questions, the last questions, and when the verdict was sent;
+     * seconds, 0: not yet. */
+    double began, since, round, asked, given;
     double looked; /* last check for notes */
     double turned; /* time of the last turn */
+    bool told;     /* that a rank is waited for */
     int64_t turns;
     int waits_for; /* a rank */
     char verdict[TEXT_BYTES];
@@ -213,11 +226,12 @@ static const char *guess(char state) {
     if (state == 'T' || state == 't')
         return "it is stopped; let it continue (kill -CONT)";
     if (state == 'R')
-        return "it works or hangs; if it works, allow a longer timeout";
+        return "it works or hangs; if it works, allow a longer --timeout";
     if (state == 'S' || state == 'D')
         return "it sleeps, or waits for a disk; if that is slow, allow a "
-               "longer timeout";
-    return "it is stopped, hangs or works; if it works, allow a longer timeout";
+               "longer --timeout";
+    return "it is stopped, hangs or works; if it works, allow a longer "
+           "--timeout";
 }
 
 static bool is_stopped(const mpi_watchdog *watchdog, int rank) {
@@ -306,31 +320,60 @@ static snow_status give_verdict(const mpi_watchdog *watchdog) {
                : SNOW_STATUS_OK;
 }
 
+/* Once a job, long before the timeout. */
+static void tell_wait(mpi_watchdog *watchdog, double now) {
+    const place *there = &watchdog->places[watchdog->waits_for];
+    if (watchdog->told || now - watchdog->since < TELL_SECONDS ||
+        watchdog->limit < 2 * TELL_SECONDS)
+        return;
+    watchdog->told = true;
+    snow_context_warn(watchdog->context,
+                      "rank %d waits for rank %d (process %d on %s), as others "
+                      "may; if that does not answer, the job ends after %.3g s "
+                      "(--timeout)",
+                      watchdog->rank, watchdog->waits_for, there->process,
+                      there->host, watchdog->limit);
+}
+
 /* A rank that never waits long is asked too, and looks for notes at times. */
 snow_status snow_watchdog_begin(mpi_watchdog *watchdog) {
+    double now = MPI_Wtime();
     watchdog->turns = 0;
+    watchdog->began = watchdog->since = watchdog->round = watchdog->turned =
+        now;
     if (watchdog->limit <= 0)
         return SNOW_STATUS_OK;
-    double now = MPI_Wtime();
-    watchdog->since = watchdog->round = watchdog->turned = now;
     watchdog->asked = watchdog->given = 0;
     if (now - watchdog->looked > watchdog->limit / 16)
         read_notes(watchdog, now);
     return give_verdict(watchdog);
 }
 
+/* Lets other processes run, in a wait that has lasted some seconds. */
+static void rest(double waited) {
+    const double share = waited / SLEEP_SHARE;
+    const struct timespec some = {
+        .tv_nsec =
+            (long)(1e9 * (share < SLEEP_SECONDS ? share : SLEEP_SECONDS))};
+    if (waited > AWAKE_SECONDS)
+        nanosleep(&some, NULL);
+    else
+        sched_yield();
+}
+
 snow_status snow_watchdog_turn(mpi_watchdog *watchdog, const int *peers,
                                int count) {
     if (++watchdog->turns < EAGER_TURNS)
         return SNOW_STATUS_OK;
-    sched_yield();
-    if (watchdog->limit <= 0)
-        return SNOW_STATUS_OK;
     const double now = MPI_Wtime(), limit = watchdog->limit;
+    rest(now - watchdog->began);
+    if (limit <= 0)
+        return SNOW_STATUS_OK;
     watchdog->waits_for = peers[0];
     if (now - watchdog->turned > limit / 8) /* this rank itself was stopped */
         watchdog->since = watchdog->round = now;
     watchdog->turned = now;
+    tell_wait(watchdog, now);
     if (now - watchdog->looked > (limit < 6.4 ? limit / 64 : 0.1))
         read_notes(watchdog, now);
     if (watchdog->given > 0) {

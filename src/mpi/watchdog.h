@@ -35,7 +35,8 @@ void snow_watchdog_limit(mpi_watchdog *watchdog, double seconds);
 snow_status snow_watchdog_begin(mpi_watchdog *watchdog);
 
 /* Call after a test that has found nothing: waits for messages to or from
- * `peers`, of which there is at least one. Yields the processor. Errors:
+ * `peers`, of which there is at least one. Yields the processor, and sleeps in
+ * long waits. Errors:
  * SNOW_STATUS_FAILED, naming the ranks that do not answer. */
 snow_status snow_watchdog_turn(mpi_watchdog *watchdog, const int *peers,
                                int count);

@@ -1,5 +1,5 @@
-/* parallel/deterministic.c - the exchange of deterministic pictures: over, in
- * an order of operations that does not depend on the number of ranks.
+/* parallel/deterministic.c - the exchange of deterministic pictures: over, or
+ * sums, in an order of operations that does not depend on the number of ranks.
  *
  * Each rank has made the nodes of the tree of groups
  * (decompose/deterministic.h) that its slices hold in full, and sends each rank
@@ -9,8 +9,6 @@
  *
  * which is a direct send: for reproducible pictures, not for the fastest. */
 #include "parallel/internal.h"
-
-#include "composite/over.h"
 
 #include <string.h>
 
@@ -202,8 +200,10 @@ static void reduce_tree(const tree_reduction *w, snow_group_node node,
     float *back = w->ranks->region + (size_t)node.rank * w->floats;
     reduce_tree(w, near, region);
     reduce_tree(w, far, back);
-    snow_over_row(region, back, w->floats / (size_t)w->local->image.channels,
-                  w->local->image.channels);
+    snow_composite_fn *composite = w->local->composite_op == SNOW_COMPOSITE_SUM
+                                       ? snow_add_up
+                                       : snow_over_of(w->local->image.channels);
+    composite(region, back, w->floats / (size_t)w->local->image.channels);
 }
 
 snow_status snow_layers_exchange(snow_ranks *r, const snow_local *local,

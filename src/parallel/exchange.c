@@ -2,9 +2,6 @@
  * rank 0: lines 14 to 20 of figure 8, for any boxes in the place of slabs. */
 #include "parallel/internal.h"
 
-#include "decompose/order.h"
-#include "image/image.h"
-
 #include <string.h>
 
 /* --- the local image ------------------------------------------------------ */
@@ -115,10 +112,9 @@ static bool is_empty(const snow_in_flight *p) {
     return p->picture.pass->method->warps && !p->picture.local.image.width;
 }
 
-snow_status snow_in_flight_prepare(snow_in_flight *p, const snow_job *job) {
+static snow_status prepare(snow_in_flight *p, const snow_job *job) {
     const snow_placement *placement = placement_of(p, job);
     const bool warps = p->picture.pass->method->warps;
-    snow_viewer viewer;
     if (is_empty(p))
         return SNOW_STATUS_OK;
     p->local = warps
@@ -129,9 +125,15 @@ snow_status snow_in_flight_prepare(snow_in_flight *p, const snow_job *job) {
         SNOW_TRY(snow_lines_prepare(p->ranks, &p->picture.local.image));
     if (job->settings.deterministic)
         return snow_layers_prepare(p->ranks, &p->local, placement);
-    snow_clip_viewer(placement, &viewer);
-    return snow_order_boxes(job->context, p->ranks->boxes, p->ranks->ranks,
-                            &viewer, p->ranks->order);
+    return snow_ranks_put_in_order(p->ranks, placement);
+}
+
+/* What is kept for the next picture makes room. */
+snow_status snow_in_flight_prepare(snow_in_flight *p, const snow_job *job) {
+    snow_value_path *path = p->picture.frame->value_path;
+    if (path && job->volume && job->volume->stream)
+        snow_value_leave_room(path);
+    return prepare(p, job);
 }
 
 static void set_rounds(snow_in_flight *p, const snow_exchange_figures *given) {

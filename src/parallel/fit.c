@@ -10,8 +10,6 @@
 #include "render/job.h"
 #include "volume/stream.h"
 
-#include <snowglass/ranks.h>
-
 #include <math.h>
 #include <string.h>
 

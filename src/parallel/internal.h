@@ -32,6 +32,7 @@ typedef struct snow_in_flight {
     snow_picture picture;
     snow_ranks *ranks;
     snow_ranks_options how;
+    snow_volume *held; /* while it is drawn; or NULL */
     /* Copied from the volume, which may be freed before they are sent. */
     snow_extent part;
     uint64_t generation;
@@ -75,7 +76,9 @@ struct snow_ranks {
     uint64_t generation; /* of the volume that `parts` were shared for */
     snow_extent *parts;
     snow_box *boxes;
-    int *order; /* ranks from front to back */
+    int *order;         /* ranks from front to back, */
+    snow_viewer viewer; /* for him, */
+    uint64_t ordered;   /* of the parts of that generation; 0: of none */
     /* Pieces of the combined image, pixels. */
     int64_t *firsts, *counts;
     /* The range of values that all have agreed on, for a volume of which this
@@ -102,7 +105,6 @@ struct snow_ranks {
 
 /* Collective.  Makes frame->ranks that of a communicator. */
 snow_status snow_ranks_of(snow_frame *frame, snow_comm *comm);
-void snow_ranks_free(snow_ranks *ranks);
 
 /* The n-th picture under way, the oldest first. */
 static inline snow_in_flight *snow_in_flight_at(const snow_ranks *r, int n) {
@@ -176,12 +178,14 @@ snow_status snow_in_flight_deliver(snow_in_flight *in_flight,
                                    const snow_job *job, int pixel_bits,
                                    snow_image *image);
 
+/* Local work: ranks->order for a view, kept from picture to picture.  Errors:
+ * those of snow_order_boxes. */
+snow_status snow_ranks_put_in_order(snow_ranks *ranks,
+                                    const snow_placement *placement);
+
 /* Cleared room in ranks->images for layers of a job's local pixels. */
 snow_status snow_in_flight_room(snow_in_flight *in_flight, const snow_job *job,
                                 int layers);
-
-/* Not collective: whether the mode can be one of many ranks. */
-snow_status snow_in_flight_check_mode(const snow_in_flight *in_flight);
 
 /* Collective.  The range of all parts into the frame's ramp. */
 snow_status snow_in_flight_agree_range(snow_in_flight *in_flight);

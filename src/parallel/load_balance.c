@@ -1,10 +1,9 @@
 /* parallel/load_balance.c - see load_balance.h. */
 #include "parallel/load_balance.h"
 
-#include "classify/gradient_opacity.h"
 #include "parallel/internal.h"
 #include "parallel/part.h"
-#include "volume/volume.h"
+#include "transfer/transfer.h"
 
 #include <math.h>
 
@@ -297,7 +296,7 @@ snow_status snow_ranks_rebalance(snow_frame *frame, snow_comm *comm,
     snow_volume_whole(*volume, &b.whole);
     snow_status status = snow_partition_params_make(
         b.context, &b.whole, view, settings, how,
-        snow_transfer_has_gradient_opacity(transfer), b.ranks, &b.order);
+        snow_transfer_slopes(transfer, &b.whole), b.ranks, &b.order);
     snow_status found = ask_all(&b, status);
     if (found == SNOW_STATUS_OK)
         found = drain(&b, status, left);

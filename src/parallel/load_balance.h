@@ -3,19 +3,17 @@
  *
  * Interesting voxels of one rank may cost more than those of another: their
  * kernels fall on more pixels, or hide one another less.  So each slice has a
- * cost, at first its interesting voxels.  Where a slab took longer than its
- * slices should have, all of them get that much dearer, and the next cut is by
- * the costs.  What was learned of thinner or other slabs stays in them, so that
- * a few cuts find costs that change within a slab (the multiplicative algebraic
- * reconstruction of R. Gordon, R. Bender and G. T. Herman, 1970, along one
- * axis).  Bricks keep their partition: voxels of their borders are drawn by
- * several ranks, so no cost per voxel fits their times. */
+ * cost, at first its count (decompose/partition.h).  Where a slab took longer
+ * than its slices should have, all of them get that much dearer, and the next
+ * cut is by the costs.  What was learned of thinner or other slabs stays in
+ * them, so that a few cuts find costs that change within a slab (the
+ * multiplicative algebraic reconstruction of R. Gordon, R. Bender and G. T.
+ * Herman, 1970, along one axis).  Bricks keep their partition: voxels of their
+ * borders are drawn by several ranks, so no cost per voxel fits their times. */
 #ifndef SNOW_PARALLEL_LOAD_BALANCE_H
 #define SNOW_PARALLEL_LOAD_BALANCE_H
 
 #include "base/base.h"
-
-#include <snowglass/render.h>
 
 /* Pictures whose times are kept, the last ones; fewer than
  * SNOW_LOAD_BALANCE_LEAST say nothing. */

@@ -1,7 +1,8 @@
 /* parallel/modes.c - modes other than over by many processors, and depths.
  *
  *   mip, minip   pairs (value, 1): the larger of two    bit for bit the serial
- *   mean, sum    pairs of sums: their sum               but for rounding
+ *   mean, sum    pairs of sums: their sum               but for rounding; the
+ *                                                       same if deterministic
  *   iso          opaque pixels: what is in front, which is over's business
  *   depth        pairs (depth, 1): the same
  *
@@ -16,24 +17,8 @@
  * values of them. */
 #include "parallel/internal.h"
 
-#include "decompose/order.h"
-#include "image/image.h"
-#include "volume/volume.h"
-
 #include <math.h>
 #include <string.h>
-
-snow_status snow_in_flight_check_mode(const snow_in_flight *f) {
-    const snow_settings *s = &f->picture.job.settings;
-    if (s->deterministic &&
-        (s->mode == SNOW_MODE_MEAN || s->mode == SNOW_MODE_SUM))
-        return snow_fail(
-            f->picture.job.context, SNOW_STATUS_BAD_USAGE,
-            "mode %s cannot be deterministic on several ranks, since sums are "
-            "rounded part by part; render on one rank",
-            snow_mode_name(s->mode));
-    return SNOW_STATUS_OK;
-}
 
 snow_status snow_in_flight_agree_range(snow_in_flight *f) {
     enum { MINUS_LOW, HIGH, HOLES, COUNT };
@@ -55,56 +40,88 @@ snow_status snow_in_flight_agree_range(snow_in_flight *f) {
                                         words[HOLES] == 0);
 }
 
-/* A part without voxels of its own has none that count. */
+/* Of the volume and of its layers.  A part without voxels of its own has none
+ * that count. */
 static snow_status measure_values(snow_in_flight *f, snow_data_range *range) {
     const snow_extent *part = &f->part;
     const snow_job *job = &f->picture.job;
     snow_frame *frame = f->picture.frame;
     const snow_transfer *look =
         job->settings.mode == SNOW_MODE_OVER ? job->transfer : NULL;
-    *range = (snow_data_range){
-        .low = INFINITY, .high = -INFINITY, .log = look && look->log};
+    for (int n = 0; n <= job->layer_count; n++) {
+        const snow_transfer *of = n ? job->layers[n - 1].transfer : look;
+        range[n] = (snow_data_range){.low = INFINITY,
+                                     .high = -INFINITY,
+                                     .log = of && of->log,
+                                     .linear = of ? of->linear : 0};
+    }
     SNOW_TRY(snow_value_path_new(frame->context, &frame->value_path));
     if (!part->count[0] || !part->count[1] || !part->count[2])
         return SNOW_STATUS_OK;
+    for (int n = 0; n < job->layer_count; n++)
+        SNOW_TRY(snow_value_measure_layer(frame->value_path, n, &job->layers[n],
+                                          job->settings.threads,
+                                          &range[n + 1]));
     return snow_value_measure(frame->value_path, job->volume, look,
                               job->settings.threads, range);
 }
 
+/* Collective.  What all parts have together; *lost: some rank has no planes. */
+static snow_status join_values(snow_in_flight *f, snow_data_range *range,
+                               bool *lost) {
+    enum { LOST, FIRST, MINUS_LOW = 0, HIGH, HOLES, COUNT };
+    const int count = 1 + f->picture.job.layer_count;
+    double all[FIRST + COUNT * (1 + SNOW_INLAYS_MOST)];
+    all[LOST] = f->picture.job.volume->lost_clip;
+    for (int n = 0; n < count; n++) {
+        double *words = all + FIRST + COUNT * n;
+        words[MINUS_LOW] = -range[n].low;
+        words[HIGH] = range[n].high;
+        words[HOLES] = range[n].holes;
+    }
+    SNOW_TRY(snow_comm_reduce_doubles(
+        f->ranks->comm, all, (size_t)(FIRST + COUNT * count), SNOW_REDUCE_MAX));
+    *lost = all[LOST] > 0;
+    for (int n = 0; n < count; n++) {
+        const double *words = all + FIRST + COUNT * n;
+        range[n].low = -words[MINUS_LOW];
+        range[n].high = words[HIGH];
+        range[n].holes = words[HOLES] > 0;
+    }
+    return SNOW_STATUS_OK;
+}
+
 snow_status snow_in_flight_agree_values(snow_in_flight *f) {
-    enum { MINUS_LOW, HIGH, HOLES, LOST, COUNT };
-    snow_comm *comm = f->ranks->comm;
-    snow_data_range range;
+    snow_value_path **path = &f->picture.frame->value_path;
+    snow_data_range range[1 + SNOW_INLAYS_MOST];
+    bool lost;
     f->ranks->values_of = 0;
-    SNOW_TRY(snow_comm_agree_status(comm, measure_values(f, &range)));
-    double words[COUNT] = {-range.low, range.high, range.holes,
-                           f->picture.job.volume->lost_clip};
-    SNOW_TRY(snow_comm_reduce_doubles(comm, words, COUNT, SNOW_REDUCE_MAX));
-    range.low = -words[MINUS_LOW];
-    range.high = words[HIGH];
-    range.holes = words[HOLES] > 0;
-    if (words[LOST] > 0)
+    SNOW_TRY(snow_comm_agree_status(f->ranks->comm, measure_values(f, range)));
+    SNOW_TRY(join_values(f, range, &lost));
+    if (lost)
         return snow_fail(
             f->ranks->context, SNOW_STATUS_BAD_USAGE,
             "method shear-warp needs the clip planes on every rank, and some "
             "have none; clip all parts of the volume");
-    f->ranks->values = range;
+    f->ranks->values = range[0];
     f->ranks->values_of = f->generation;
-    snow_value_set_range(f->picture.frame->value_path, &range);
-    return SNOW_STATUS_OK;
+    snow_value_set_range(*path, range);
+    const int layers = f->picture.job.layer_count;
+    const snow_status status = snow_value_set_layers(*path, range + 1, layers);
+    return layers ? snow_comm_agree_status(f->ranks->comm, status) : status;
 }
 
 bool snow_in_flight_knows_values(const snow_in_flight *f) {
     const snow_ranks *r = f->ranks;
     return r->values_of && r->values_of == f->generation &&
-           r->values.log == f->picture.job.transfer->log;
+           snow_data_range_is_of(&r->values, f->picture.job.transfer);
 }
 
 snow_status snow_in_flight_recall_values(snow_in_flight *f) {
     snow_data_range own; /* labels are a part's own, too */
     SNOW_TRY(measure_values(f, &own));
     snow_value_set_range(f->picture.frame->value_path, &f->ranks->values);
-    return SNOW_STATUS_OK;
+    return snow_value_set_layers(f->picture.frame->value_path, NULL, 0);
 }
 
 /* --- pairs ---------------------------------------------------------------- */
@@ -196,21 +213,14 @@ static snow_status prepare_turn(snow_in_flight *f) {
     snow_frame *frame = p->frame;
     const snow_job *job = &p->pass->job;
     snow_job alphas = *job;
-    snow_viewer viewer;
     alphas.channels = 1;
     SNOW_TRY(snow_in_flight_room(f, &alphas, 1));
     SNOW_TRY(
         snow_reserve(job->context, &frame->layer, 0, 1, snow_job_bytes(job)));
-    SNOW_TRY(snow_image_new(job->context, p->view.width, p->view.height, 1,
-                            &p->near));
+    SNOW_TRY(snow_picture_new_depths(p, &p->near));
     memset(frame->layer, 0, snow_job_bytes(job));
-    for (int64_t n = 0; n < (int64_t)p->view.width * p->view.height; n++)
-        p->near->pixels[n] = NAN;
     p->local.pixels = frame->layer;
-    p->local.depths = p->near->pixels;
-    snow_clip_viewer(&job->placement, &viewer);
-    return snow_order_boxes(job->context, f->ranks->boxes, f->ranks->ranks,
-                            &viewer, f->ranks->order);
+    return snow_ranks_put_in_order(f->ranks, &job->placement);
 }
 
 snow_status snow_in_flight_take_turn(snow_in_flight *f, snow_status status) {

@@ -1,11 +1,9 @@
 /* parallel/needs.c - what a picture by many ranks asks of the parts, for those
  * who cut them (snowglass/extend.h). */
-#include "decompose/deterministic.h"
 
 #include "render/ghosts.h"
 #include "render/job.h"
 #include "transfer/look.h"
-#include "transform/clip.h"
 
 SNOW_RECORD_OF_ZEROS(snow_ranks_needs);
 
@@ -27,7 +25,7 @@ snow_ranks_find_needs(snow_context *context, const snow_volume_info *whole,
     SNOW_TRY(snow_placement_make(context, &info, &seen, &placement));
     needs.slice_axis = placement.slice_axis;
     SNOW_TRY(snow_ghosts_needed(context, &info, &seen, &how,
-                                snow_look_has_gradient_opacity(&known), true,
+                                snow_look_slopes(&known, &info), true,
                                 needs.layers));
     return SNOW_RECORD_FILL(context, snow_ranks_needs, &needs, out);
 }

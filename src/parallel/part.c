@@ -1,10 +1,9 @@
 /* parallel/part.c - a rank's part of a volume, made of what all ranks hold. */
 #include "parallel/part.h"
 
-#include "classify/gradient_opacity.h"
+#include "transfer/transfer.h"
 #include "volume/clip_planes.h"
 #include "volume/mask.h"
-#include "volume/volume.h"
 
 #include <string.h>
 
@@ -25,13 +24,19 @@ snow_part_place snow_part_place_of(const snow_volume_info *whole,
     return p;
 }
 
-snow_status snow_part_set(snow_volume *volume, const snow_volume_info *whole,
-                          const snow_part_place *p, snow_volume **out) {
+snow_extent snow_part_extent(const snow_volume_info *whole,
+                             const snow_part_place *p) {
     snow_extent part = {.size = sizeof part};
     memcpy(part.dims, whole->dims, sizeof part.dims);
     memcpy(part.stored, p->stored.first, sizeof part.stored);
     memcpy(part.first, p->owned.first, sizeof part.first);
     memcpy(part.count, p->owned.count, sizeof part.count);
+    return part;
+}
+
+snow_status snow_part_set(snow_volume *volume, const snow_volume_info *whole,
+                          const snow_part_place *p, snow_volume **out) {
+    const snow_extent part = snow_part_extent(whole, p);
     snow_status status = snow_volume_set_extent(volume, &part);
     if (status == SNOW_STATUS_OK)
         status = snow_volume_set_whole(volume, whole);
@@ -124,6 +129,15 @@ static snow_status move_voxels(snow_comm *comm, const snow_volume *from,
     return all ? snow_comm_agree_status(comm, status) : status;
 }
 
+/* Collective.  Other boxes of the file that all ranks' parts stay in. */
+static snow_status open_again(snow_comm *comm, const snow_volume_info *whole,
+                              const snow_part_place *p, const snow_volume *held,
+                              snow_volume **out) {
+    const snow_extent part = snow_part_extent(whole, p);
+    return snow_comm_agree_status(
+        comm, snow_stream_open_part(held, &part, p->stored.count, out));
+}
+
 /* Collective.  Voxels that all ranks hold go where the boxes say. */
 static snow_status send_share(snow_comm *comm, const snow_volume_info *whole,
                               const snow_partition_params *order,
@@ -132,6 +146,8 @@ static snow_status send_share(snow_comm *comm, const snow_volume_info *whole,
     snow_volume *volume = NULL;
     snow_part_place p =
         snow_part_place_of(whole, &boxes[snow_comm_rank(comm)], order->layers);
+    if (held->stream)
+        return open_again(comm, whole, &p, held, out);
     snow_status status = snow_comm_agree_status(
         comm, snow_part_new(snow_comm_context(comm), whole, &p, &volume));
     if (status == SNOW_STATUS_OK)
@@ -211,8 +227,7 @@ snow_ranks_repartition(snow_comm *comm, const snow_transfer *transfer,
     snow_volume_whole(*volume, &whole);
     snow_status status = snow_partition_params_make(
         snow_comm_context(comm), &whole, view, settings, how,
-        snow_transfer_has_gradient_opacity(transfer), snow_comm_size(comm),
-        &order);
+        snow_transfer_slopes(transfer, &whole), snow_comm_size(comm), &order);
     /* One round: 0, all serve; 1, some do not; 2, some failed. */
     int64_t worst =
         status != SNOW_STATUS_OK ? 2 : !snow_part_serves(*volume, &order);

@@ -15,6 +15,10 @@ snow_part_place snow_part_place_of(const snow_volume_info *whole,
                                    const snow_box *owned,
                                    const int64_t layers[3]);
 
+/* The same as a record. */
+snow_extent snow_part_extent(const snow_volume_info *whole,
+                             const snow_part_place *place);
+
 /* Makes a volume the part of a whole, and *out that; closes it on failure. */
 snow_status snow_part_set(snow_volume *volume, const snow_volume_info *whole,
                           const snow_part_place *place, snow_volume **out);

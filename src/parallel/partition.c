@@ -5,11 +5,16 @@
 #include "render/ghosts.h"
 #include "render/job.h"
 #include "simd/isa.h"
+#include "volume/stream.h"
 
 #include <string.h>
 
 /* Slabs of fewer slices on the average are too coarse to be made equal. */
-#define LEAST_SLICES 5
+#define LEAST_SLICES 3
+
+/* What a span of a row costs to be drawn, in interesting voxels (measured:
+ * docs/measurements/ranks.md). */
+#define COST_OF_SPAN 24
 
 SNOW_RECORD_OF_ZEROS(snow_ranks_options);
 
@@ -39,10 +44,11 @@ static void set_borders(snow_partition_params *order) {
     grid->borders = order->borders;
 }
 
-snow_status snow_partition_params_make(
-    snow_context *context, const snow_volume_info *whole, const snow_view *view,
-    const snow_settings *settings, const snow_ranks_options *asked,
-    bool gradient_factors, int ranks, snow_partition_params *out) {
+snow_status
+snow_partition_params_make(snow_context *context, const snow_volume_info *whole,
+                           const snow_view *view, const snow_settings *settings,
+                           const snow_ranks_options *asked, int slopes,
+                           int ranks, snow_partition_params *out) {
     snow_view known;
     snow_ranks_options how;
     snow_settings resolved;
@@ -63,9 +69,11 @@ snow_status snow_partition_params_make(
                                    .grid = {.axis = placement.slice_axis},
                                    .threshold = resolved.threshold,
                                    .isa = resolved.isa};
+    if (resolved.method == SNOW_METHOD_SHEAR_WARP)
+        out->span = COST_OF_SPAN;
     memcpy(out->grid.dims, whole->dims, sizeof out->grid.dims);
-    SNOW_TRY(snow_ghosts_needed(context, whole, &known, &unresolved,
-                                gradient_factors, how.turns, out->layers));
+    SNOW_TRY(snow_ghosts_needed(context, whole, &known, &unresolved, slopes,
+                                how.turns, out->layers));
     if (resolved.deterministic)
         set_borders(out);
     /* Groups of slices are laid over one another as such. */
@@ -81,19 +89,35 @@ snow_status snow_partition_params_make(
     return SNOW_STATUS_OK;
 }
 
+/* What is counted of slabs. */
+typedef struct counting {
+    const snow_partition_params *order;
+    const snow_transfer *transfer;
+    snow_block_counts *counts;
+} counting;
+
+static snow_status count_slab(const snow_volume *slab, void *user) {
+    const counting *c = user;
+    return snow_count_interesting_blocks(slab, c->transfer, c->order->threshold,
+                                         c->order->isa, c->counts);
+}
+
 /* Collective.  Local counts become those of all ranks. */
 static snow_status count_all(snow_comm *comm,
                              const snow_partition_params *order,
                              const snow_volume *volume,
                              const snow_transfer *transfer,
                              snow_block_counts *counts) {
+    const snow_slab_cut cut = {
+        .ghosts = transfer && snow_transfer_has_gradient_opacity(transfer)};
+    counting c = {order, transfer, counts};
     size_t blocks = snow_block_counts_blocks(counts);
+    counts->span = order->span;
     snow_status status =
         SNOW_RESERVE(volume->context, counts->counts, 0, blocks);
     if (status == SNOW_STATUS_OK) {
         memset(counts->counts, 0, blocks * sizeof *counts->counts);
-        status = snow_count_interesting_blocks(
-            volume, transfer, order->threshold, order->isa, counts);
+        status = snow_slabs_visit(volume, &cut, count_slab, &c);
     }
     if (!comm)
         return status;

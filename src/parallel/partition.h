@@ -7,8 +7,6 @@
 #include "decompose/deterministic.h"
 #include "decompose/partition.h"
 
-#include <snowglass/ranks.h>
-
 typedef struct snow_partition_params {
     snow_partition cut; /* EQUAL, COUNTED or BRICKS */
     int ranks;
@@ -21,21 +19,22 @@ typedef struct snow_partition_params {
                           not give the same bits, or were not asked for */
     double threshold;
     snow_isa isa;
+    int span; /* of the counts (decompose/partition.h); 0: voxels are counted */
 } snow_partition_params;
 
-/* What picture and ranks ask for; `fades` as in render/ghosts.h.  Not to be
+/* What picture and ranks ask for; `slopes` as in render/ghosts.h.  Not to be
  * copied, for its borders. Errors: SNOW_STATUS_BAD_USAGE (view, settings,
  * options), SNOW_STATUS_BAD_INPUT. */
 snow_status
 snow_partition_params_make(snow_context *context, const snow_volume_info *whole,
                            const snow_view *view, const snow_settings *settings,
-                           const snow_ranks_options *how, bool gradient_factors,
-                           int ranks, snow_partition_params *out);
+                           const snow_ranks_options *how, int slopes, int ranks,
+                           snow_partition_params *out);
 
-/* The boxes of all ranks, and (unless NULL) their interesting voxels, which are
- * 0 for equal slabs unless asked for.  Counted are the voxels that the volumes
- * of all ranks of `comm` answer for; NULL: of this one.  Collective then.
- * Errors: SNOW_STATUS_NO_MEMORY, those of the transport; agreed on. */
+/* The boxes of all ranks, and (unless NULL) their counts.  Counted are the
+ * voxels that the volumes of all ranks of `comm` answer for; NULL: of this one.
+ * Collective then. Errors: SNOW_STATUS_NO_MEMORY, those of the transport;
+ * agreed on. */
 snow_status snow_partition_boxes(snow_comm *comm,
                                  const snow_partition_params *order,
                                  const snow_volume *volume,
@@ -43,7 +42,7 @@ snow_status snow_partition_boxes(snow_comm *comm,
                                  int64_t *loads);
 
 /* Slabs by costs of their slices, of which an order has so many.  First they
- * are numbers of interesting voxels: collective, as above.  Cutting by them is
+ * are counts: collective, as above.  Cutting by them is
  * not; the boxes are a function of the costs. */
 int64_t snow_partition_slices(const snow_partition_params *order);
 snow_status snow_partition_count(snow_comm *comm,

@@ -17,8 +17,6 @@
  * same in the same order. */
 #include "parallel/internal.h"
 
-#include "parallel/partition.h"
-
 #include <string.h>
 
 static bool draw_meanwhile(void *of) {
@@ -101,6 +99,8 @@ void snow_pipeline_begun(snow_picture *p, snow_status status) {
     p->stats.cpu_frame = snow_cpu_seconds() - f->mark_cpu;
     if (!p->ahead)
         return;
+    if (p->drawing)
+        f->held = snow_volume_hold(p->job.volume);
     p->job.volume = p->pass->job.volume = NULL;
     p->job.transfer = p->pass->job.transfer = NULL;
     if (p->drawing) {
@@ -179,8 +179,7 @@ snow_status snow_pipeline_take(snow_frame *frame, snow_image **image) {
     r->first = (r->first + 1) % SNOW_PICTURES_MOST;
     r->in_flight--;
     snow_in_flight_end(f);
-    SNOW_TRY(snow_picture_end(&f->picture, f->status, image) == SNOW_STATUS_OK
-                 ? SNOW_STATUS_OK
-                 : snow_fail(frame->context, f->status, "%s", f->message));
-    return SNOW_STATUS_OK;
+    return snow_picture_end(&f->picture, f->status, image) == SNOW_STATUS_OK
+               ? SNOW_STATUS_OK
+               : snow_fail(frame->context, f->status, "%s", f->message);
 }

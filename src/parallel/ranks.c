@@ -1,12 +1,17 @@
 /* parallel/ranks.c - what a frame keeps for pictures by many ranks. */
+#include "decompose/order.h"
 #include "parallel/internal.h"
 #include "parallel/load_balance.h"
+
+#include <string.h>
 
 void snow_in_flight_end(snow_in_flight *f) {
     snow_context *context = f->ranks->context;
     if (f->picture.drawing)
         snow_line_batch_end(f->picture.drawing);
     f->picture.drawing = NULL;
+    snow_volume_close(f->held);
+    f->held = NULL;
     snow_image_free(f->gathered);
     f->gathered = NULL;
     SNOW_DROP(context, f->bytes);
@@ -25,7 +30,7 @@ static void end_in_flight(snow_ranks *r) {
         snow_comm_occupy(r->comm, NULL, NULL);
 }
 
-void snow_ranks_free(snow_ranks *r) {
+static void free_ranks(snow_ranks *r) {
     if (!r)
         return;
     snow_context *context = r->context;
@@ -69,14 +74,37 @@ static snow_status new_ranks(snow_frame *frame, snow_comm *comm) {
 snow_status snow_ranks_of(snow_frame *frame, snow_comm *comm) {
     if (frame->ranks && frame->ranks->comm == comm)
         return SNOW_STATUS_OK;
-    snow_ranks_free(frame->ranks);
+    free_ranks(frame->ranks);
     frame->ranks = NULL;
     snow_status status = snow_comm_agree_status(comm, new_ranks(frame, comm));
     if (status != SNOW_STATUS_OK) {
-        snow_ranks_free(frame->ranks);
+        free_ranks(frame->ranks);
         frame->ranks = NULL;
     }
     return status;
+}
+
+/* --- the order of parts --------------------------------------------------- */
+
+static bool is_same_viewer(const snow_viewer *a, const snow_viewer *b) {
+    return a->perspective == b->perspective &&
+           memcmp(a->eye, b->eye, sizeof a->eye) == 0 &&
+           memcmp(a->along, b->along, sizeof a->along) == 0;
+}
+
+snow_status snow_ranks_put_in_order(snow_ranks *r,
+                                    const snow_placement *placement) {
+    snow_viewer viewer = {0};
+    snow_clip_viewer(placement, &viewer);
+    if (r->ordered && r->ordered == r->generation &&
+        is_same_viewer(&r->viewer, &viewer))
+        return SNOW_STATUS_OK;
+    r->ordered = 0;
+    SNOW_TRY(
+        snow_order_boxes(r->context, r->boxes, r->ranks, &viewer, r->order));
+    r->viewer = viewer;
+    r->ordered = r->generation;
+    return SNOW_STATUS_OK;
 }
 
 /* --- frames, of one process and of many ranks ----------------------------- */
@@ -97,7 +125,7 @@ snow_status snow_frame_new(snow_context *context, snow_frame **out) {
 void snow_frame_free(snow_frame *frame) {
     if (!frame)
         return;
-    snow_ranks_free(frame->ranks);
+    free_ranks(frame->ranks);
     snow_load_balance_free(frame->context, frame->work);
     snow_buffers_free(frame);
 }

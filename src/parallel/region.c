@@ -11,9 +11,6 @@
  * Pixels are the same as if one processor had warped them all. */
 #include "parallel/internal.h"
 
-#include "base/thread_pool.h"
-#include "image/image.h"
-
 #include <string.h>
 
 /* Transparent pixels that a run goes on over: a new one costs as much as a few
@@ -125,7 +122,7 @@ snow_status snow_lines_exchange(snow_ranks *r,
             SNOW_TRY(begin_sends(r, image, rank, line, region, &t));
     SNOW_TRY(snow_comm_wait_all(r->comm, r->messages, t.count));
     snow_slab mine = region_lines(r, r->rank, image->width);
-    snow_shear_warp_empty(image);
+    memset(image->drawn, 0, image->layer_tiles);
     snow_shear_warp_put_lines(image, (int)mine.first, (int)mine.count,
                               region->pixels);
     put_lines(r, image, line);

@@ -22,22 +22,23 @@
  * Every rank begins behind its own piece, so that nobody gets all messages at
  * once, and what is drawn last need not be sent.  Other local images are made
  * when it is their picture's turn. */
+#include "base/fingerprint.h"
 #include "parallel/internal.h"
-
-#include "image/image.h"
-#include "volume/volume.h"
+#include "volume/stream_internal.h"
 
 #include <string.h>
 
 /* --- the beginning -------------------------------------------------------- */
 
-/* Whether a picture has one pass, whose method leaves its local image to be
- * drawn, and needs no word of others first.  Ranks that have failed, or have a
- * new volume alone, may differ: synchronize_all finds out. */
+/* Whether a picture has one pass and one volume, whose method leaves its local
+ * image to be drawn, of voxels in memory, and needs no word of others first.
+ * Ranks that have failed, or have a new volume alone, may differ:
+ * synchronize_all finds out. */
 static bool is_ahead(const snow_in_flight *f) {
     const snow_picture *p = &f->picture;
     return p->job.settings.mode == SNOW_MODE_OVER && p->pass_count == 1 &&
-           p->passes[0].method->ahead &&
+           !p->job.layer_count && p->passes[0].method->ahead &&
+           !p->job.volume->stream &&
            (p->job.settings.method != SNOW_METHOD_SHEAR_WARP ||
             snow_in_flight_knows_values(f));
 }
@@ -54,7 +55,6 @@ static snow_status make_images(snow_in_flight *f) {
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "invalid pixel_bits %d: must be 8, or 0 for floats",
                          f->how.pixel_bits);
-    SNOW_TRY(snow_in_flight_check_mode(f));
     if (is_sum(p->job.settings.mode) || !snow_in_flight_keeps(f))
         return SNOW_STATUS_OK;
     SNOW_TRY(snow_image_new(context, p->view.width, p->view.height,
@@ -85,11 +85,19 @@ static snow_status begin(snow_picture *p, snow_status status) {
 
 /* --- meeting -------------------------------------------------------------- */
 
-/* Mixes bytes into a number of 62 bits (Fowler, Noll and Vo's hash). */
-static void mix(uint64_t *hash, const void *bytes, size_t count) {
-    const unsigned char *at = bytes;
-    for (size_t n = 0; n < count; n++)
-        *hash = (*hash ^ at[n]) * UINT64_C(1099511628211);
+/* Mixes the volumes that are drawn with the first one into a hash; those that
+ * stay in their files may be others on other machines. */
+static uint64_t mix_layers(uint64_t hash, const snow_frame *frame) {
+    for (int n = 0; n < frame->layer_count; n++) {
+        const snow_inlay *layer = &frame->layers[n];
+        const snow_volume *volume = layer->volume;
+        const int64_t facts[] = {
+            layer->mixes,         (int64_t)volume->info.type,
+            volume->info.dims[0], volume->info.dims[1],
+            volume->info.dims[2], volume->stream ? volume->stream->print : 0};
+        hash = snow_hash_mix(hash, facts, sizeof facts);
+    }
+    return hash;
 }
 
 /* What must be the same on all ranks, as a number. */
@@ -103,7 +111,8 @@ static int64_t terms_of(const snow_in_flight *p) {
         s->deterministic,   place->width,      place->height,
         (int)s->mode,       s->depth,          (int)p->how.combining,
         p->how.radix,       p->how.pixel_bits, place->slice_axis,
-        place->perspective, p->how.scattered,  (int)s->light};
+        place->perspective, p->how.scattered,  (int)s->light,
+        job->layer_count};
     const double reals[] = {
         place->back[0],   place->back[1],     place->back[2],
         place->up[0],     place->up[1],       place->up[2],
@@ -114,9 +123,9 @@ static int64_t terms_of(const snow_in_flight *p) {
         s->diffuse,       s->specular,        s->shininess,
         s->light_azimuth, s->light_elevation, s->depth_darkening,
         s->occlusion};
-    uint64_t hash = UINT64_C(14695981039346656037);
-    mix(&hash, numbers, sizeof numbers);
-    mix(&hash, reals, sizeof reals);
+    uint64_t hash = snow_hash_mix(SNOW_HASH_START, numbers, sizeof numbers);
+    hash = snow_hash_mix(hash, reals, sizeof reals);
+    hash = mix_layers(hash, p->picture.frame);
     return (int64_t)(hash >> 2);
 }
 
@@ -146,7 +155,7 @@ static snow_status check_parts(const snow_ranks *r) {
 
 /* Collective.  Every rank's part to all. */
 static snow_status share_parts(snow_ranks *r, const snow_in_flight *p) {
-    r->generation = 0;
+    r->generation = r->ordered = 0;
     SNOW_TRY(snow_comm_allgather(r->comm, &p->part, sizeof p->part, r->parts));
     for (int rank = 0; rank < r->ranks; rank++) {
         const snow_extent *part = &r->parts[rank];
@@ -202,7 +211,8 @@ static snow_status synchronize_all(snow_in_flight *p, snow_status status,
     if (words[TERMS] != -words[MINUS_TERMS])
         return snow_fail(
             r->context, SNOW_STATUS_BAD_USAGE,
-            "views or settings differ between ranks; give all ranks the same");
+            "views, settings or overlays differ between ranks; give all ranks "
+            "the same");
     *new_parts = words[NEW] != 0;
     return *new_parts ? share_parts(r, p) : SNOW_STATUS_OK;
 }
@@ -263,10 +273,7 @@ static snow_status place(snow_picture *p, snow_status status) {
     SNOW_TRY(place_layers(f));
     if (!job->settings.depth || job->settings.mode != SNOW_MODE_ISO)
         return SNOW_STATUS_OK;
-    SNOW_TRY(snow_image_new(job->context, p->view.width, p->view.height, 1,
-                            &p->near));
-    p->local.depths = p->near->pixels;
-    return SNOW_STATUS_OK;
+    return snow_picture_new_depths(p, &p->near);
 }
 
 /* --- combination ---------------------------------------------------------- */

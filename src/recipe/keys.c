@@ -59,6 +59,11 @@ static const char *fit_name(int value) {
     return of_list(names, 3, value);
 }
 
+static const char *annotate_name(int value) {
+    static const char *const names[] = {"time", "step"};
+    return of_list(names, 2, value);
+}
+
 /* --- the table ------------------------------------------------------------ */
 
 #define AT(name) offsetof(snow_recipe, name)
@@ -95,6 +100,7 @@ const recipe_key recipe_keys[] = {
     KNOWN("colormap", colormap, colormap_name, snow_colormap_from_name),
     TEXT("tf", tf),
     MADE("log", flag, log, 0, 0, 0),
+    MADE("symlog", symlog, symlog, 1e-300, 1e300, 0),
     MADE("opacity", points, opacity_count, 0, 0, 0),
     MADE("gradient-opacity", points, gradient_opacity_count, 0, 0, 0),
     MADE("range", range, range, 0, 0, 0),
@@ -123,6 +129,13 @@ const recipe_key recipe_keys[] = {
     MADE("legend", flag, legend, 0, 0, 0),
     MADE("scale-bar", flag, scale_bar, 0, 0, 0),
     MADE("time-label", flag, time_label, 0, 0, 0),
+    TEXT("title", title),
+    TEXT("legend-title", legend_title),
+    TEXT("unit", value_unit),
+    KNOWN("annotate", annotate, annotate_name, NULL),
+    TEXT("time-format", time_format),
+    MADE("outline", flag, outline, 0, 0, 0),
+    MADE("axes", flag, axes, 0, 0, 0),
     MADE("threads", int, settings.threads, 1, 4096, 0),
     MADE("deterministic", flag, settings.deterministic, 0, 0, 0),
     NAME("isa", settings.isa, isa_name, snow_isa_from_name),
@@ -132,21 +145,28 @@ const recipe_key recipe_keys[] = {
     GIVEN("endian", data.endian, endian_name, NULL),
     MADE("offset", long, data.offset, 0, 9e15, 0),
     MADE("crop", crop, data.crop, 0, 9e15, 2),
-    MADE("channel", long, data.channel, 0, 9e15, 0),
+    MADE("channel", channel, channels, 0, 9e15, 0),
     TEXT("component", data.component),
     TEXT("dataset", data.dataset),
     TEXT("series", data.series),
     MADE("allow-gaps", flag, data.allow_gaps, 0, 0, 0),
     TEXT("mask", data.mask),
     MADE("labels", labels, data.labels, 0, 0, 0),
+    TEXT("label-table", data.label_table),
+    TEXT("overlay", overlay),
+    KNOWN("overlay-preset", overlay_preset, preset_name, snow_preset_from_name),
+    KNOWN("overlay-colormap", overlay_colormap, colormap_name, snow_colormap_from_name),
+    MADE("overlay-range", range, overlay_range, 0, 0, 0),
+    MADE("overlay-opacity", points, overlay_opacity_count, 0, 0, 0),
     MADE("clip", clip, data.clip, 0, 0, 4),
-    MADE("time", long, data.time, 0, 9e15, 0),
+    MADE("time", long, data.time, -9e15, 9e15, 0),
     MADE("frames", int, frames, 1, 1000000, 0),
     REAL("fps", fps, 0.01, 1000),
     TEXT("axis", axis),
     TEXT("at", at),
     TEXT("verb", verb),
     TEXT("version", version),
+    MADE("reread", flag, reread, 0, 0, 0),
     {NULL, NULL, 0, 0, 0, 0, NULL, NULL},
 };
 /* clang-format on */

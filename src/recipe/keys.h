@@ -40,4 +40,9 @@ struct recipe_key {
 /* Ends with a row without a name. */
 extern const recipe_key recipe_keys[];
 
+/* The bytes of a recipe's file, to be released.  Errors: BAD_INPUT, NO_MEMORY.
+ */
+snow_status recipe_read_file(snow_context *context, const char *path,
+                             char **text, size_t *bytes);
+
 #endif

@@ -6,7 +6,8 @@
 
 /* Numbers. Those that may be 0 in the record are omitted then, but for reals:
  * "int" and "long" of scalars.c, "given_reals" of arrays.c. */
-extern const recipe_kind recipe_real, recipe_int, recipe_long, recipe_flag;
+extern const recipe_kind recipe_real, recipe_int, recipe_long, recipe_flag,
+    recipe_symlog;
 
 /* Arrays of `count` numbers; a point is NaN if it is not given. A size is width
  * and height, which follow each other in the record. */
@@ -19,7 +20,7 @@ extern const recipe_kind recipe_text, recipe_input, recipe_labels, recipe_known,
     recipe_name, recipe_given_name;
 
 extern const recipe_kind recipe_unit, recipe_iso, recipe_range, recipe_points,
-    recipe_color, recipe_bits, recipe_light;
+    recipe_color, recipe_bits, recipe_light, recipe_channel;
 
 /* --- for other kinds ------------------------------------------------------ */
 

@@ -119,19 +119,13 @@ static json_t *write_range(const recipe_key *key, const void *field) {
     }
 }
 
-/* A count followed by the points. */
-typedef struct point_fields {
-    size_t count;
-    snow_opacity_point points[SNOW_RECIPE_POINTS_MAX];
-} point_fields;
-
-static_assert(offsetof(snow_recipe, opacities) -
-                          offsetof(snow_recipe, opacity_count) ==
-                      offsetof(point_fields, points) &&
-                  offsetof(snow_recipe, gradient_opacities) -
-                          offsetof(snow_recipe, gradient_opacity_count) ==
-                      offsetof(point_fields, points),
-              "the fields of the record have the same order");
+/* The points behind a count: where sizes have 32 bits, the one may follow the
+ * other with a gap or without. */
+static snow_opacity_point *points_of(const void *count) {
+    const uintptr_t step = _Alignof(snow_opacity_point);
+    uintptr_t end = (uintptr_t)count + sizeof(size_t);
+    return (snow_opacity_point *)((end + step - 1) / step * step);
+}
 
 static bool read_point(const json_t *pair, const snow_opacity_point *before,
                        snow_opacity_point *out) {
@@ -149,30 +143,30 @@ static bool read_point(const json_t *pair, const snow_opacity_point *before,
 static bool read_points(const recipe_key *key, const json_t *value, void *field,
                         char wrong[WRONG_BYTES]) {
     (void)key;
-    point_fields *points = field;
+    snow_opacity_point *points = points_of(field);
     size_t count = json_array_size(value);
     bool good = count > 0 && count <= SNOW_RECIPE_POINTS_MAX;
     for (size_t i = 0; i < count && good; i++)
-        good =
-            read_point(json_array_get(value, i),
-                       i ? &points->points[i - 1] : NULL, &points->points[i]);
+        good = read_point(json_array_get(value, i), i ? points + i - 1 : NULL,
+                          points + i);
     if (!good)
         return recipe_refuse(wrong,
                              "[[value, opacity], ...], up to 256 of them, "
                              "values that do not decrease, opacities 0 to 1");
-    points->count = count;
+    *(size_t *)field = count;
     return true;
 }
 
 static json_t *write_points(const recipe_key *key, const void *field) {
     (void)key;
-    const point_fields *points = field;
-    if (!points->count)
+    size_t count = *(const size_t *)field;
+    const snow_opacity_point *points = points_of(field);
+    if (!count)
         return NULL;
     json_t *array = json_array();
-    for (size_t i = 0; i < points->count; i++)
-        json_array_append_new(array, json_pack("[f,f]", points->points[i].value,
-                                               points->points[i].opacity));
+    for (size_t i = 0; i < count; i++)
+        json_array_append_new(
+            array, json_pack("[f,f]", points[i].value, points[i].opacity));
     return array;
 }
 

@@ -9,9 +9,9 @@
 #include <snowglass/look_file.h>
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 void snow_recipe_init_sized(snow_recipe *recipe, size_t size) {
     snow_recipe defaults = {.width = 512, .height = 512, .zoom = 1, .fps = 25};
@@ -128,16 +128,32 @@ snow_status snow_recipe_parse(snow_context *context, const char *name,
     return finish_recipe(context, name, tree, &error, out);
 }
 
-snow_status snow_recipe_load(snow_context *context, const char *path,
-                             snow_recipe *out) {
-    json_error_t error;
+snow_status recipe_read_file(snow_context *context, const char *path,
+                             char **text, size_t *bytes) {
     struct stat about; /* to open a pipe could take for ever */
-    if (stat(path, &about) || !S_ISREG(about.st_mode) || access(path, R_OK))
+    FILE *file = NULL;
+    if (stat(path, &about) == 0 && S_ISREG(about.st_mode))
+        file = fopen(path, "rb");
+    if (!file)
         return snow_context_fail(context, SNOW_STATUS_BAD_INPUT,
                                  "%s: cannot be opened; name a readable recipe",
                                  path);
-    json_t *tree = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
-    return finish_recipe(context, path, tree, &error, out);
+    size_t room = (size_t)about.st_size + 1;
+    *text = snow_context_allocate(context, room);
+    *bytes = *text ? fread(*text, 1, room, file) : 0;
+    fclose(file);
+    return *text ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+}
+
+snow_status snow_recipe_load(snow_context *context, const char *path,
+                             snow_recipe *out) {
+    char *text = NULL;
+    size_t bytes = 0;
+    snow_status status = recipe_read_file(context, path, &text, &bytes);
+    if (status == SNOW_STATUS_OK)
+        status = snow_recipe_parse(context, path, text, bytes, out);
+    snow_context_release(context, text);
+    return status;
 }
 
 /* --- writing -------------------------------------------------------------- */
@@ -180,6 +196,7 @@ snow_status snow_recipe_get_look(snow_context *context,
                       .low = recipe->low,
                       .high = recipe->high,
                       .log = recipe->log,
+                      .symlog = recipe->symlog,
                       .shift = recipe->shift};
     if (recipe->opacity_count) {
         look.opacities = recipe->opacities;
@@ -251,58 +268,4 @@ snow_status snow_recipe_get_settings(snow_context *context,
                                      unit);
     }
     return SNOW_RECORD_FILL(context, snow_settings, &settings, out);
-}
-
-snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
-    snow_context *context = snow_comm_context(snow_insitu_comm(insitu));
-    snow_look look;
-    snow_view usual, view;
-    snow_settings settings;
-    snow_look_file *tf = NULL;
-    if (recipe->depth || recipe->axis)
-        return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
-                                 "\"%s\" is for pictures of files; remove it "
-                                 "from a recipe for a simulation",
-                                 recipe->depth ? "depth" : "axis");
-    snow_look_init(&look);
-    snow_view_init(&usual);
-    snow_view_init(&view);
-    snow_settings_init(&settings);
-    snow_status status = snow_recipe_get_look(context, recipe, &look);
-    if (status == SNOW_STATUS_OK && recipe->tf)
-        status = snow_look_load(context, recipe->tf, &tf);
-    if (status == SNOW_STATUS_OK && tf)
-        look.base = snow_look_file_look(tf);
-    if (status == SNOW_STATUS_OK)
-        status = snow_recipe_get_view(context, recipe, &usual, &view);
-    if (status == SNOW_STATUS_OK)
-        status = snow_recipe_get_settings(context, recipe, "", &settings);
-    if (status == SNOW_STATUS_OK && tf && look.base->per_mm &&
-        !recipe->opacity_per_voxel)
-        settings.opacity_length = length_of_mm("");
-    if (status == SNOW_STATUS_OK)
-        status = snow_insitu_set_look(insitu, &look);
-    snow_look_file_free(tf);
-    if (status == SNOW_STATUS_OK)
-        status = snow_insitu_set_view(insitu, &view);
-    if (status == SNOW_STATUS_OK)
-        status = snow_insitu_set_settings(insitu, &settings);
-    if (status == SNOW_STATUS_OK)
-        status = snow_insitu_set_annotations(
-            insitu, recipe->legend, recipe->scale_bar, recipe->time_label);
-    if (status == SNOW_STATUS_OK && recipe->output)
-        status = snow_insitu_set_output(insitu, recipe->output, &recipe->image);
-    return status;
-}
-
-snow_status snow_recipe_apply_file(snow_insitu *insitu, const char *path) {
-    snow_recipe recipe;
-    snow_context *context = snow_comm_context(snow_insitu_comm(insitu));
-    snow_recipe_init(&recipe);
-    snow_status status = snow_recipe_load(context, path, &recipe);
-    if (status == SNOW_STATUS_OK) {
-        status = snow_recipe_apply(&recipe, insitu);
-        snow_recipe_clear(&recipe);
-    }
-    return snow_insitu_set_error(insitu, status);
 }

@@ -2,6 +2,7 @@
 #include "recipe/kinds.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 
 bool recipe_refuse(char wrong[WRONG_BYTES], const char *text) {
@@ -78,6 +79,25 @@ static json_t *write_told_long(const recipe_key *key, const void *field) {
     return value ? json_integer(value) : NULL;
 }
 
+/* A number, or a list of them as text. */
+static bool read_channel(const recipe_key *key, const json_t *value,
+                         void *field, char wrong[WRONG_BYTES]) {
+    snow_recipe *recipe =
+        (snow_recipe *)((char *)field - offsetof(snow_recipe, channels));
+    if (json_is_integer(value))
+        return recipe_read_whole(key, value, &recipe->data.channel, wrong);
+    return recipe_text.read(key, value, field, wrong) ||
+           recipe_refuse(wrong, "a number, or a list as text");
+}
+
+static json_t *write_channel(const recipe_key *key, const void *field) {
+    const snow_recipe *recipe =
+        (const snow_recipe *)(const void *)((const char *)field -
+                                            offsetof(snow_recipe, channels));
+    return recipe->channels ? recipe_text.write(key, field)
+                            : write_told_long(key, &recipe->data.channel);
+}
+
 static bool read_flag(const recipe_key *key, const json_t *value, void *field,
                       char wrong[WRONG_BYTES]) {
     (void)key;
@@ -92,7 +112,25 @@ static json_t *write_flag(const recipe_key *key, const void *field) {
     return *(const bool *)field ? json_true() : NULL;
 }
 
+/* true: where it begins is chosen, which is -1 in the record. */
+static bool read_symlog(const recipe_key *key, const json_t *value, void *field,
+                        char wrong[WRONG_BYTES]) {
+    if (!json_is_boolean(value))
+        return recipe_read_real(key, value, field, wrong);
+    *(double *)field = json_is_true(value) ? -1 : 0;
+    return true;
+}
+
+static json_t *write_symlog(const recipe_key *key, const void *field) {
+    double value = *(const double *)field;
+    return value < 0   ? json_true()
+           : value > 0 ? recipe_write_real(key, field)
+                       : NULL;
+}
+
+const recipe_kind recipe_symlog = {read_symlog, write_symlog};
 const recipe_kind recipe_real = {recipe_read_real, recipe_write_real};
 const recipe_kind recipe_int = {recipe_read_int, recipe_write_given_int};
+const recipe_kind recipe_channel = {read_channel, write_channel};
 const recipe_kind recipe_long = {read_long, write_told_long};
 const recipe_kind recipe_flag = {read_flag, write_flag};

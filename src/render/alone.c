@@ -2,11 +2,8 @@
  * image is the picture.  Slabs of a file come in turn, from front to back: each
  * is drawn on top of what the slabs in front of it have left, which is over in
  * order. */
-#include "image/image.h"
 #include "render/picture.h"
-#include "transfer/transfer.h"
 
-#include <math.h>
 #include <string.h>
 
 /* --- before the local image ----------------------------------------------- */
@@ -33,14 +30,18 @@ static snow_status fail_part(const snow_picture *p, const char *what,
 
 static snow_status find_values(snow_picture *p) {
     snow_frame *frame = p->frame;
-    snow_data_range range;
+    snow_data_range range, layers[SNOW_INLAYS_MOST];
     SNOW_TRY(snow_value_path_new(frame->context, &frame->value_path));
     SNOW_TRY(snow_value_measure(
         frame->value_path, p->job.volume,
         p->job.settings.mode == SNOW_MODE_OVER ? p->job.transfer : NULL,
         p->job.settings.threads, &range));
     snow_value_set_range(frame->value_path, &range);
-    return SNOW_STATUS_OK;
+    for (int n = 0; n < p->job.layer_count; n++)
+        SNOW_TRY(snow_value_measure_layer(frame->value_path, n,
+                                          &p->job.layers[n],
+                                          p->job.settings.threads, &layers[n]));
+    return snow_value_set_layers(frame->value_path, layers, p->job.layer_count);
 }
 
 static snow_status synchronize(snow_picture *p, snow_status status) {
@@ -59,14 +60,6 @@ static snow_status synchronize(snow_picture *p, snow_status status) {
 }
 
 /* --- places --------------------------------------------------------------- */
-
-static snow_status new_depths(const snow_picture *p, snow_image **out) {
-    SNOW_TRY(
-        snow_image_new(p->job.context, p->view.width, p->view.height, 1, out));
-    for (int64_t n = 0; n < (int64_t)p->view.width * p->view.height; n++)
-        (*out)->pixels[n] = NAN;
-    return SNOW_STATUS_OK;
-}
 
 /* The frame's layer, cleared for what is drawn into it. */
 static snow_status take_layer(snow_picture *p, size_t bytes, bool clear) {
@@ -92,27 +85,23 @@ static snow_status make_image(snow_picture *p) {
 
 static snow_status place_over(snow_picture *p) {
     const snow_job *job = &p->pass->job;
-    const snow_group_node root = {SNOW_GROUP_RANKS, 0};
     SNOW_TRY(make_image(p));
-    if (job->settings.depth && p->pass->method->depths) {
-        SNOW_TRY(new_depths(p, &p->depth));
-        p->local.depths = p->depth->pixels;
-    }
+    if (job->settings.depth && p->pass->method->depths)
+        SNOW_TRY(snow_picture_new_depths(p, &p->depth));
     p->local.pixels = p->image ? p->image->pixels : NULL;
-    p->local.layers = 1;
-    p->local.nodes[0] = root;
-    if (p->pass->method == &snow_method_groups &&
-        job->slab.count != job->placement.slices)
-        return fail_part(p, "deterministic rendering", "");
     return SNOW_STATUS_OK;
 }
 
 static snow_status place(snow_picture *p, snow_status status) {
     const snow_job *job = &p->pass->job;
     SNOW_TRY(status);
+    p->local.layers = 1;
+    p->local.nodes[0] = (snow_group_node){SNOW_GROUP_RANKS, 0};
+    if (p->pass->method == &snow_method_groups &&
+        job->slab.count != job->placement.slices)
+        return fail_part(p, "deterministic rendering", "");
     if (p->pass->depth) {
-        SNOW_TRY(new_depths(p, &p->depth));
-        p->local.depths = p->depth->pixels;
+        SNOW_TRY(snow_picture_new_depths(p, &p->depth));
         return take_layer(p, snow_job_bytes(job), true);
     }
     if (job->settings.mode == SNOW_MODE_OVER ||
@@ -146,8 +135,7 @@ static snow_status warp(snow_picture *p) {
 }
 
 static snow_status paint(snow_picture *p) {
-    if (p->pass->method->show)
-        SNOW_TRY(p->pass->method->show(p, &p->pass->job));
+    SNOW_TRY(snow_step(p->pass->method->show, p, &p->pass->job));
     return snow_modes_paint(p->frame, &p->job, p->local.pixels, &p->image);
 }
 

@@ -1,8 +1,6 @@
 /* render/buffers.c - what a frame keeps from picture to picture. */
-#include "render/job.h"
 
-#include "image/image.h"
-#include "render/exact/exact.h"
+#include "render/picture.h"
 
 void snow_buffers_free(snow_frame *frame) {
     snow_exact_free(frame->exact);
@@ -12,7 +10,21 @@ void snow_buffers_free(snow_frame *frame) {
     snow_identity_transfer_fini(&frame->identity);
     snow_value_path_free(frame->value_path);
     snow_image_free(frame->depth);
+    snow_inlays_drop(frame, 0);
     snow_release(frame->context, frame);
+}
+
+snow_status snow_frame_set_inlays(snow_frame *frame, const snow_inlay *layers,
+                                  int count) {
+    if (count < 0 || count > SNOW_INLAYS_MOST)
+        return snow_fail(frame->context, SNOW_STATUS_BAD_USAGE,
+                         "%d layers; up to %d are drawn with a volume", count,
+                         SNOW_INLAYS_MOST);
+    for (int n = 0; n < count; n++)
+        frame->layers[n] = layers[n];
+    frame->layer_count = count;
+    snow_inlays_drop(frame, count);
+    return SNOW_STATUS_OK;
 }
 
 const snow_image *snow_frame_depth(const snow_frame *frame) {

@@ -19,9 +19,7 @@
 #include "render/job.h"
 #include "render/shear_warp/lattice.h"
 #include "splat/kernel.h"
-#include "splat/values/value_splat.h"
 #include "transform/shear_perspective.h"
-#include "volume/volume.h"
 
 #include <math.h>
 #include <string.h>
@@ -32,7 +30,7 @@ typedef struct question {
     const snow_volume_info *whole;
     const snow_view *view;
     const snow_settings *settings; /* resolved */
-    bool gradients;                /* of voxels are wanted */
+    int gradients;                 /* of voxels are wanted: how far they look */
 } question;
 
 static void at_least(int64_t *layers, double wanted, int64_t most) {
@@ -48,7 +46,7 @@ static void at_least(int64_t *layers, double wanted, int64_t most) {
 static double values_beside(const question *q, double ratio) {
     if (!q->gradients || q->view->fov == 0)
         return q->gradients;
-    return fmax(2, fmin(ceil(ratio), SNOW_VALUE_SPREAD_MOST));
+    return fmax(q->gradients + 1, fmin(ceil(ratio), SNOW_VALUE_SPREAD_MOST));
 }
 
 /* A cubic kernel reaches one voxel more, in the plane and across it. */
@@ -284,15 +282,23 @@ static snow_status ask_all(const question *q, int64_t layers[3]) {
     return SNOW_STATUS_OK;
 }
 
-snow_status
-snow_ghosts_needed(snow_context *context, const snow_volume_info *whole,
-                   const snow_view *view, const snow_settings *settings,
-                   bool gradient_factors, bool any_turn, int64_t layers[3]) {
+/* Those of labels are smooth. */
+static int reach_of(int slopes, const snow_settings *settings) {
+    if (!(slopes & SNOW_SLOPES_FADE) && settings->shade != SNOW_SHADE_PHONG)
+        return 0;
+    return slopes & SNOW_SLOPES_WIDE && settings->mode == SNOW_MODE_OVER ? 2
+                                                                         : 1;
+}
+
+snow_status snow_ghosts_needed(snow_context *context,
+                               const snow_volume_info *whole,
+                               const snow_view *view,
+                               const snow_settings *settings, int slopes,
+                               bool any_turn, int64_t layers[3]) {
     snow_settings resolved = *settings;
     int64_t found[3] = {0, 0, 0};
     SNOW_TRY(snow_settings_resolve(context, whole, &resolved));
-    question q = {context, whole, view, &resolved,
-                  gradient_factors || resolved.shade == SNOW_SHADE_PHONG};
+    question q = {context, whole, view, &resolved, reach_of(slopes, &resolved)};
     SNOW_TRY(any_turn ? ask_all(&q, found) : ask_view(&q, found));
     memcpy(layers, found, sizeof found);
     return SNOW_STATUS_OK;
@@ -328,8 +334,7 @@ static snow_status check_layers(snow_context *context,
 /* A part without voxels of its own makes no samples. */
 snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
                               const snow_view *view,
-                              const snow_settings *settings,
-                              bool gradient_factors) {
+                              const snow_settings *settings, int slopes) {
     int64_t layers[3] = {0, 0, 0};
     snow_volume_info whole;
     snow_extent part;
@@ -337,8 +342,7 @@ snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
     snow_volume_find_extent(volume, &part);
     if (!part.count[0] || !part.count[1] || !part.count[2])
         return SNOW_STATUS_OK;
-    question q = {context, &whole, view, settings,
-                  gradient_factors || settings->shade == SNOW_SHADE_PHONG};
+    question q = {context, &whole, view, settings, reach_of(slopes, settings)};
     SNOW_TRY(ask_view(&q, layers));
     return check_layers(context, volume, layers);
 }

@@ -1,7 +1,7 @@
 /* render/groups.c - deterministic pictures of the exact methods: each group of
- * slices is drawn by itself, and groups are laid over one another by one binary
+ * slices is drawn by itself, and groups are composited by one binary
  * tree (decompose/deterministic.h). */
-#include "render/exact/exact.h"
+#include "render/picture.h"
 
 #include <string.h>
 
@@ -14,22 +14,14 @@ static snow_status draw(snow_picture *p, snow_job *job) {
     return snow_exact_count(p->frame->exact, job);
 }
 
-/* One group, as a slab: what is counted of it is added to what was. */
+/* One group, as a slab. */
 static snow_status render_group(snow_picture *p, const snow_job *job,
                                 snow_slab slab, float *pixels) {
-    snow_stats *stats = job->stats, before = *stats;
     snow_job group = *job;
     group.slab = group.stored_slab = slab;
     group.stored_slab.first -= job->clip.stored[2];
     group.pixels = pixels;
-    stats->interesting = 0;
-    stats->ea_bytes = stats->ia_bytes = stats->pa_bytes = 0;
-    SNOW_TRY(draw(p, &group));
-    stats->interesting += before.interesting;
-    stats->ea_bytes += before.ea_bytes;
-    stats->ia_bytes += before.ia_bytes;
-    stats->pa_bytes += before.pa_bytes;
-    return SNOW_STATUS_OK;
+    return draw(p, &group);
 }
 
 bool snow_group_rises(const snow_placement *p, snow_group_node node) {
@@ -60,7 +52,7 @@ static snow_status render_node(snow_picture *p, const snow_job *job,
     snow_group_node far = {node.rank - 1, 2 * node.index + rises};
     SNOW_TRY(render_node(p, job, near, pixels));
     SNOW_TRY(render_node(p, job, far, *spare));
-    snow_over_row(pixels, *spare, count, job->channels);
+    snow_job_composite(job)(pixels, *spare, count);
     return SNOW_STATUS_OK;
 }
 

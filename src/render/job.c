@@ -2,9 +2,7 @@
 #include "render/job.h"
 
 #include "classify/count_interesting.h"
-#include "classify/gradient_opacity.h"
 #include "render/ghosts.h"
-#include "transfer/transfer.h"
 
 #include <string.h>
 
@@ -28,9 +26,9 @@ static snow_status check_part(const snow_job *job) {
             "deterministic pictures need slabs along %c, and this part of the "
             "volume is not one; partition the volume into slabs",
             "xyz"[job->placement.slice_axis]);
-    return snow_ghosts_check(job->context, job->volume, job->view,
-                             &job->settings,
-                             snow_transfer_has_gradient_opacity(job->transfer));
+    return snow_ghosts_check(
+        job->context, job->volume, job->view, &job->settings,
+        snow_transfer_slopes(job->transfer, &job->volume->info));
 }
 
 /* Rays are walked from end to end by one process; only surfaces are met by
@@ -74,6 +72,8 @@ snow_status snow_job_begin(snow_context *context, const snow_request *request,
         .view = request->view,
         .settings = *request->settings,
         .channels = request->transfer->grey ? 2 : 4,
+        .layers = request->layers,
+        .layer_count = request->layer_count,
         .stats = stats,
     };
     snow_volume_whole(job->volume, &whole);
@@ -83,6 +83,7 @@ snow_status snow_job_begin(snow_context *context, const snow_request *request,
     choose_method(job, &whole);
     place_slab(job);
     SNOW_TRY(check_raycast(job));
+    SNOW_TRY(snow_inlays_check(job));
     return check_part(job);
 }
 
@@ -118,8 +119,8 @@ static snow_status count_own(snow_frame *frame, const snow_job *job) {
     snow_stats *stats = job->stats;
     const int64_t *count = job->clip.count;
     stats->voxels = count[0] * count[1] * count[2];
-    if (job->settings.method ==
-        SNOW_METHOD_SHEAR_WARP) /* its own count serves */
+    if (job->settings.method == SNOW_METHOD_SHEAR_WARP ||
+        job->volume->stream) /* what was counted serves, of slabs too */
         return SNOW_STATUS_OK;
     SNOW_TRY(snow_count_interesting(job->volume, job->transfer,
                                     job->settings.threshold, job->settings.isa,

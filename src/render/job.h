@@ -4,21 +4,23 @@
 #ifndef SNOW_RENDER_JOB_H
 #define SNOW_RENDER_JOB_H
 
-#include "base/base.h"
 #include "composite/over.h"
 #include "decompose/slab.h"
 #include "render/modes/modes.h"
 #include "render/shear_warp/shear_warp.h"
-#include "splat/splat.h"
-#include "transform/clip.h"
 
 #include <snowglass/ranks.h>
-#include <snowglass/render.h>
 
 typedef struct snow_exact snow_exact; /* render/exact/exact.c */
 typedef struct snow_ranks snow_ranks; /* parallel/internal.h */
 typedef struct snow_load_balance
     snow_load_balance; /* parallel/load_balance.h */
+
+/* What was read of a layer in its file (inlays.c); `of` it and for `part`. */
+typedef struct snow_taken {
+    snow_volume *volume; /* or NULL */
+    uint64_t of, part;   /* generations */
+} snow_taken;
 
 /* Buffers of the methods, kept from picture to picture. */
 struct snow_frame {
@@ -33,6 +35,10 @@ struct snow_frame {
     snow_mode_colors mode_colors;
     snow_image *depth;           /* of the last picture; NULL: not asked for */
     snow_value_path *value_path; /* of method shear-warp; NULL until needed */
+    snow_inlay layers[SNOW_INLAYS_MOST]; /* as the caller gave them; */
+    snow_inlay placed[SNOW_INLAYS_MOST]; /* what the present part has of them */
+    snow_taken taken[SNOW_INLAYS_MOST];
+    int layer_count;
     snow_ranks *ranks;       /* of pictures by many ranks; NULL until needed */
     snow_load_balance *work; /* of the same */
 };
@@ -54,6 +60,8 @@ typedef struct snow_job {
     snow_placement stored;
     snow_slab stored_slab;
     int channels;
+    const snow_inlay *layers; /* volumes on the same grid, or their files */
+    int layer_count;
     snow_composite_fn *composite; /* in the place of over; NULL: over */
     float *pixels; /* the local image: transparent, to be filled */
     float
@@ -74,9 +82,26 @@ typedef struct snow_request {
     const snow_transfer *transfer;
     const snow_view *view;
     const snow_settings *settings; /* of the caller, or resolved */
+    const snow_inlay *layers;
+    int layer_count;
 } snow_request;
 
-/* Settings, camera and part.  Fills a job as far as it gets: method and slice
+/* --- inlays.c ---
+
+ * Places what the request's volume, in memory, needs of the frame's layers.
+ * Errors: of snow_volume_take_box, and of views. */
+snow_status snow_inlays_place(snow_frame *frame, const snow_request *request);
+
+/* What was read of layers from `first` on. */
+void snow_inlays_drop(snow_frame *frame, int first);
+
+/* Refuses layers that cannot be drawn; where one has colours, so has the
+ * picture. */
+snow_status snow_inlays_check(snow_job *job);
+
+/* --- job.c ---
+
+ * Settings, camera and part.  Fills a job as far as it gets: method and slice
  * axis are known where settings and view are right. */
 snow_status snow_job_begin(snow_context *context, const snow_request *request,
                            snow_stats *stats, snow_job *job);

@@ -1,25 +1,28 @@
 /* render/parts.c - see parts.h. */
 #include "render/parts.h"
 
-#include "classify/gradient_opacity.h"
 #include "render/ghosts.h"
 #include "render/modes/depth.h"
 
 #include <math.h>
 
-/* The slice along z that the eye is level with, or the one nearest to it. */
+/* The own slice along z that the eye is level with, or the one nearest to it.
+ */
 static int64_t nearest_slice(const snow_job *job) {
     const snow_placement *p = &job->placement;
     const int axes[3] = {p->u_axis, p->v_axis, p->slice_axis};
-    int64_t last = job->volume->info.dims[2] - 1;
+    snow_extent part;
     double of[4], level = 0;
+    snow_volume_find_extent(job->volume, &part);
+    const int64_t first = part.first[2], last = first + part.count[2] - 1;
     snow_depth_place(job, of);
     for (int n = 0; n < 3; n++)
         if (axes[n] == 2)
             level = p->perspective ? p->eye.at[n]
                     : of[n] < 0    ? (double)last
                                    : 0;
-    return level > 0 ? (int64_t)fmin(floor(level + 0.5), (double)last) : 0;
+    level = fmin(floor(level + 0.5), (double)last) - (double)first;
+    return level > 0 ? (int64_t)level : 0;
 }
 
 /* Bytes that shear-warp encodes a voxel in at most, but for margins:
@@ -28,13 +31,22 @@ static int64_t nearest_slice(const snow_job *job) {
  */
 #define VALUE_BYTES 8
 
+/* Those of the layers, which are read beside it and perhaps resampled. */
+static int64_t layer_bytes(const snow_job *job) {
+    int64_t bytes = 0;
+    for (int n = 0; n < job->layer_count; n++)
+        bytes += VALUE_BYTES +
+                 2 * (int64_t)snow_type_size(job->layers[n].volume->info.type);
+    return bytes;
+}
+
 /* How many times a slab's bytes its samples take: floats of all voxels that
  * footprints are made of; 0: few. */
 static int64_t made_of(const snow_job *job) {
     int64_t sample = job->channels * (int64_t)sizeof(float);
     int64_t voxel = (int64_t)snow_type_size(job->volume->info.type);
     if (job->settings.method == SNOW_METHOD_SHEAR_WARP)
-        return VALUE_BYTES / voxel;
+        return (VALUE_BYTES + layer_bytes(job)) / voxel;
     if (job->settings.mode == SNOW_MODE_ISO ||
         job->settings.method != SNOW_METHOD_FOOTPRINT)
         return 0;
@@ -54,7 +66,8 @@ static snow_status open_slabs(snow_parts *parts) {
                        parts->whole));
     SNOW_TRY(snow_ghosts_needed(
         job->context, &job->volume->info, job->view, &job->settings,
-        snow_transfer_has_gradient_opacity(job->transfer), false, layers));
+        snow_transfer_slopes(job->transfer, &job->volume->info), false,
+        layers));
     parts->cut = (snow_slab_cut){
         .ghosts = layers[2],
         .made = made_of(job),
@@ -116,10 +129,17 @@ static snow_status end_slab(snow_parts *parts) {
 /* The slab's job is the whole's, of its own voxels. */
 static snow_status begin_slab(snow_parts *parts, const snow_volume *volume) {
     const snow_job *whole = parts->whole;
+    snow_frame *frame = parts->picture->frame;
     const snow_request request = {.volume = volume,
                                   .transfer = whole->transfer,
                                   .view = whole->view,
-                                  .settings = &whole->settings};
+                                  .settings = &whole->settings,
+                                  .layers = frame->placed,
+                                  .layer_count = whole->layer_count};
+    snow_status placed = snow_inlays_place(frame, &request);
+    if (frame->value_path && snow_value_lacks_room(frame->value_path, placed))
+        placed = snow_inlays_place(frame, &request);
+    SNOW_TRY(placed);
     SNOW_TRY(
         snow_job_begin(whole->context, &request, &parts->stats, &parts->slab));
     parts->slab.channels = whole->channels;
@@ -134,7 +154,11 @@ static snow_status next_slab(snow_parts *parts, bool *any) {
     if (parts->part)
         SNOW_TRY(end_slab(parts));
     parts->part = &parts->slab;
-    SNOW_TRY(snow_slabs_next(&parts->slabs, &volume));
+    snow_value_path *path = parts->picture->frame->value_path;
+    snow_status read = snow_slabs_next(&parts->slabs, &volume);
+    if (path && snow_value_lacks_room(path, read))
+        read = snow_slabs_next(&parts->slabs, &volume);
+    SNOW_TRY(read);
     *any = volume != NULL;
     return volume ? begin_slab(parts, volume) : SNOW_STATUS_OK;
 }
@@ -171,5 +195,6 @@ snow_status snow_parts_close(snow_parts *parts, snow_status status) {
     if (!parts->many)
         return status;
     snow_slabs_close(&parts->slabs);
+    snow_inlays_drop(parts->picture->frame, 0);
     return status == SNOW_STATUS_NO_MEMORY ? fail_room(parts) : status;
 }

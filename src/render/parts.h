@@ -20,7 +20,6 @@
 #define SNOW_RENDER_PARTS_H
 
 #include "render/picture.h"
-#include "volume/stream.h"
 
 typedef struct snow_parts {
     snow_picture *picture;

@@ -2,16 +2,25 @@
  * is made in. */
 #include "render/picture.h"
 
-#include "image/image.h"
 #include "render/modes/depth.h"
 
+#include <math.h>
 #include <string.h>
 
 /* --- passes --------------------------------------------------------------- */
 
+static const snow_render_method *method_of(const snow_job *job) {
+    const snow_settings *s = &job->settings;
+    if (s->method == SNOW_METHOD_RAYCAST)
+        return &snow_method_raycast;
+    if (s->method == SNOW_METHOD_SHEAR_WARP)
+        return &snow_method_shear_warp;
+    return s->deterministic ? &snow_method_groups : &snow_method_exact;
+}
+
 static snow_render_pass *add_pass(snow_picture *p, const snow_job *job) {
     snow_render_pass *pass = &p->passes[p->pass_count++];
-    *pass = (snow_render_pass){.job = *job, .method = snow_method_of(job)};
+    *pass = (snow_render_pass){.job = *job, .method = method_of(job)};
     return pass;
 }
 
@@ -27,7 +36,7 @@ static void add_depth(snow_picture *p) {
     pass->job.settings.shade = SNOW_SHADE_NONE;
     pass->job.settings.deterministic =
         false; /* it has one order of operations */
-    pass->method = snow_method_of(&pass->job);
+    pass->method = method_of(&pass->job);
 }
 
 /* What fails has a pass too, for other ranks wait for this one in it. */
@@ -40,21 +49,14 @@ snow_status snow_picture_plan_mode(snow_picture *p) {
         status = snow_modes_value_weight(p->frame, &p->job, &job);
     else if (job.settings.method == SNOW_METHOD_SHEAR_WARP)
         status = snow_identity_transfer_above(&job, &p->frame->identity);
-    job.settings.deterministic = false; /* bits do not depend on parts */
+    if (job.settings.mode != SNOW_MODE_MEAN &&
+        job.settings.mode != SNOW_MODE_SUM)
+        job.settings.deterministic = false; /* bits do not depend on parts */
     const snow_render_pass *pass = add_pass(p, &job);
     if (job.settings.mode == SNOW_MODE_ISO && job.settings.depth &&
         !pass->method->depths)
         add_depth(p);
     return status;
-}
-
-const snow_render_method *snow_method_of(const snow_job *job) {
-    const snow_settings *s = &job->settings;
-    if (s->method == SNOW_METHOD_RAYCAST)
-        return &snow_method_raycast;
-    if (s->method == SNOW_METHOD_SHEAR_WARP)
-        return &snow_method_shear_warp;
-    return s->deterministic ? &snow_method_groups : &snow_method_exact;
 }
 
 /* --- the plan ------------------------------------------------------------- */
@@ -68,8 +70,16 @@ static snow_status check_depth(const snow_job *job) {
                      snow_mode_name(mode));
 }
 
-static snow_status plan_job(snow_picture *p, const snow_request *request) {
+static snow_status plan_job(snow_picture *p, snow_request *request) {
+    snow_status status = SNOW_STATUS_OK;
+    if (!request->volume->stream) {
+        status = snow_inlays_place(p->frame, request);
+        request->layers = p->frame->placed;
+    }
+    if (status != SNOW_STATUS_OK)
+        request->layer_count = 0;
     SNOW_TRY(snow_job_begin(p->frame->context, request, &p->stats, &p->job));
+    SNOW_TRY(status);
     SNOW_TRY(check_depth(&p->job));
     if (p->job.settings.mode != SNOW_MODE_OVER)
         return SNOW_STATUS_OK;
@@ -143,6 +153,15 @@ snow_status snow_picture_check_bytes(snow_context *context,
                          "mode %s makes data values, not colours; use "
                          "snow_frame_render and snow_image_apply_colormap",
                          snow_mode_name(settings.mode));
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_picture_new_depths(snow_picture *p, snow_image **out) {
+    SNOW_TRY(
+        snow_image_new(p->job.context, p->view.width, p->view.height, 1, out));
+    for (int64_t n = 0; n < (int64_t)p->view.width * p->view.height; n++)
+        (*out)->pixels[n] = NAN;
+    p->local.depths = (*out)->pixels;
     return SNOW_STATUS_OK;
 }
 

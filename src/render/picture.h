@@ -12,11 +12,7 @@
 #ifndef SNOW_RENDER_PICTURE_H
 #define SNOW_RENDER_PICTURE_H
 
-#include "base/monitor.h"
 #include "render/job.h"
-#include "volume/stream.h"
-
-#include <snowglass/extend.h>
 
 typedef struct snow_picture snow_picture;
 
@@ -126,6 +122,10 @@ snow_status snow_picture_check_bytes(snow_context *context,
 /* The passes of other modes, when the range of values is known. */
 snow_status snow_picture_plan_mode(snow_picture *picture);
 
+/* Depths that the local image gets, NaN as yet.  Errors: SNOW_STATUS_NO_MEMORY.
+ */
+snow_status snow_picture_new_depths(snow_picture *picture, snow_image **out);
+
 /* A step of a method, which may have none. */
 static inline snow_status snow_step(snow_method_fn *step, snow_picture *picture,
                                     snow_job *job) {
@@ -142,11 +142,14 @@ static inline snow_status snow_method_figures(const snow_render_method *method,
 /* Whether of a node's two halves the one of lower slices is in front. */
 bool snow_group_rises(const snow_placement *placement, snow_group_node node);
 
-/* The method that a pass by such a job takes. */
-const snow_render_method *snow_method_of(const snow_job *job);
-
 extern const snow_render_method snow_method_exact, snow_method_groups,
     snow_method_raycast, snow_method_shear_warp;
+
+/* Of snow_method_exact (exact/exact.c): frees its buffers, which are kept from
+ * picture to picture; adds a job's voxels and bytes to job->stats, once its
+ * image is made.  Errors: SNOW_STATUS_NO_MEMORY. */
+void snow_exact_free(snow_exact *exact);
+snow_status snow_exact_count(snow_exact *exact, const snow_job *job);
 
 /* Of one process. */
 extern const snow_combine_ops snow_combine_alone;

@@ -1,10 +1,6 @@
 /* render/settings_resolve.c - settings made definite for a volume (job.h). */
 #include "render/job.h"
 
-#include "base/thread_pool.h"
-#include "simd/isa.h"
-#include "splat/kernel.h"
-
 #include <math.h>
 #include <snowglass/snowglass.h>
 

@@ -3,7 +3,6 @@
  *
  * A pixel is the mean of the slice's own voxels, weighted by a tent of two
  * voxels, or of two pixels where these are larger. */
-#include "base/base.h"
 #include "base/thread_pool.h"
 #include "base/vec3.h"
 #include "image/image.h"
@@ -111,6 +110,7 @@ typedef struct slice_job {
     snow_placement place;
     int64_t first, step[2], count[2]; /* voxels: of the slice; along u, v */
     double reach[2]; /* half a tent's width; infinite: the nearest voxel */
+    bool labels;     /* of the transfer function */
 } slice_job;
 
 /* The voxels within reach of a place along u or v; false outside. */
@@ -154,7 +154,7 @@ static void draw_line(void *of, int64_t y, int worker) {
     float *pixel = job->image->pixels + y * width * channels;
     (void)worker;
     for (int x = 0; x < width; x++, pixel += channels) {
-        double right = x + 0.5 - p->origin[0], at[2], rgb[3];
+        double right = x + 0.5 - p->origin[0], at[2], rgb[3], rgba[4];
         double down = (double)y + 0.5 - p->origin[1];
         for (int i = 0; i < 2; i++)
             at[i] = rint(PARTS *
@@ -164,6 +164,10 @@ static void draw_line(void *of, int64_t y, int worker) {
         if (!transfer)
             *pixel = (float)value;
         if (!transfer || isnan(value) || (transfer->log && !(value > 0)))
+            continue;
+        if (job->labels) /* what is hidden is clear */
+            snow_transfer_evaluate(transfer, value, rgba);
+        if (job->labels && !(rgba[3] > 0))
             continue;
         snow_transfer_color(transfer, value, rgb);
         for (int c = 0; c + 1 < channels; c++)
@@ -209,7 +213,8 @@ snow_status snow_slice_render(const snow_volume *volume, int64_t index,
     SNOW_TRY(SNOW_RECORD_READ(context, snow_settings, settings, &how));
     bool nearest =
         how.kernel == SNOW_KERNEL_BOX ||
-        (transfer && snow_transfer_has_labels(transfer, volume->info.type));
+        (transfer && snow_transfer_has_labels(transfer, &volume->info));
+    job.labels = nearest && transfer && transfer->label_count > 0;
     SNOW_TRY(place_slice(index, &seen, nearest, &job));
     SNOW_TRY(snow_image_new(context, seen.width, seen.height,
                             !transfer        ? 1

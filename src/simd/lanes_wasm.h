@@ -52,4 +52,30 @@ static inline snow_scalar_eighth snow_lanes_narrow(snow_scalar_vec low,
         wasm_i32x4_trunc_sat_f32x4(wasm_f32x4_nearest((v128_t)high)));
 }
 
+/* Four entries of 64 bits, and their words 0 and 1, and 2 and 3, side by side.
+ */
+static inline void snow_wasm_gather4(const uint64_t *table, const uint16_t *at,
+                                     v128_t out[2]) {
+    v128_t a = wasm_v128_load64_zero(table + at[0]);
+    v128_t b = wasm_v128_load64_zero(table + at[1]);
+    a = wasm_v128_load64_lane(table + at[2], a, 1);
+    b = wasm_v128_load64_lane(table + at[3], b, 1);
+    out[0] = wasm_i16x8_shuffle(a, b, 0, 8, 4, 12, 1, 9, 5, 13);
+    out[1] = wasm_i16x8_shuffle(a, b, 2, 10, 6, 14, 3, 11, 7, 15);
+}
+
+/* Eight entries of a table, word by word. */
+static inline void snow_lanes_gather(const uint64_t *table, const uint16_t *at,
+                                     snow_scalar_eighth out[4]) {
+    v128_t first[2], second[2];
+    snow_wasm_gather4(table, at, first);
+    snow_wasm_gather4(table, at + 4, second);
+    for (int n = 0; n < 2; n++) {
+        out[2 * n] =
+            (snow_scalar_eighth)wasm_i64x2_shuffle(first[n], second[n], 0, 2);
+        out[2 * n + 1] =
+            (snow_scalar_eighth)wasm_i64x2_shuffle(first[n], second[n], 1, 3);
+    }
+}
+
 #endif

@@ -35,7 +35,6 @@
 #define snow_v128_row_max snow_scalar_row_max
 #define snow_v128_row_srl snow_scalar_row_srl
 #define snow_v128_row_sll snow_scalar_row_sll
-#define snow_v128_row_gather snow_scalar_row_gather
 #define snow_v128_row_pairs snow_scalar_row_pairs
 #define snow_v128_rows_window snow_scalar_rows_window
 #define snow_v128_rows_and snow_scalar_rows_and
@@ -95,6 +94,23 @@ static inline snow_v128_row snow_v128_row_expand(const int16_t *p,
     }
     return a;
 }
+
+#if defined(__aarch64__)
+#define snow_v128_row_gather snow_scalar_row_gather
+#else
+static inline void snow_v128_row_gather(const uint64_t *table,
+                                        snow_v128_row index,
+                                        snow_v128_row out[4]) {
+    uint16_t at[32];
+    memcpy(at, &index, sizeof at);
+    for (int n = 0; n < 4; n++) {
+        snow_scalar_eighth words[4];
+        snow_lanes_gather(table, at + 8 * n, words);
+        for (int c = 0; c < 4; c++)
+            out[c].part[n] = words[c];
+    }
+}
+#endif
 
 static inline void snow_v128_row_widen(snow_v128_row a, snow_v128_vec out[8]) {
     for (int n = 0; n < 4; n++)

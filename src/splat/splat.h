@@ -11,7 +11,6 @@
 
 #include "encode/encode.h"
 #include "splat/footprint_table.h"
-#include "splat/kernel.h"
 
 /* The buffer of one slice for a band of the image: its rows top .. bottom - 1,
  * all of them with a single thread. Only the pixels from (x0, y0) up to, but

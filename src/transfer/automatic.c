@@ -29,6 +29,8 @@
 #include "transfer/look.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define BINS 1024
@@ -130,7 +132,7 @@ static bool fills_volume(const uint64_t *counts, uint64_t all, const split *s,
            explained(counts, s) < ONE_HEAP && low > -ABOUT_0 * high;
 }
 
-static void read_counts(const uint64_t *counts, uint64_t all, bool log,
+static void read_counts(const uint64_t *counts, uint64_t all, snow_scale scale,
                         double low, double high, snow_histogram_split *out) {
     split s = {0}, veil = {0};
     out->top = out->high = high;
@@ -147,13 +149,13 @@ static void read_counts(const uint64_t *counts, uint64_t all, bool log,
             break;
         s = upper;
     }
-    out->background = snow_between_on(log, low, high, s.below / BINS);
-    out->threshold = snow_between_on(log, low, high, s.at / BINS);
-    out->object = snow_between_on(log, low, high, s.above / BINS);
+    out->background = snow_between_on(scale, low, high, s.below / BINS);
+    out->threshold = snow_between_on(scale, low, high, s.at / BINS);
+    out->object = snow_between_on(scale, low, high, s.above / BINS);
     if (share_of(counts, (int)s.at, BINS, all) > VEIL_OBJECT ||
         !part_bins(counts, 0, (int)s.at, &veil))
         return;
-    out->faint = snow_between_on(log, low, high, veil.at / BINS);
+    out->faint = snow_between_on(scale, low, high, veil.at / BINS);
     out->with_faint =
         share_of(counts, (int)veil.at, (int)s.at, all) <= VEIL_MOST &&
         out->faint < out->threshold;
@@ -178,7 +180,7 @@ snow_status snow_histogram_split_at(const snow_histogram *histogram,
     }
     uint64_t counts[BINS], all;
     SNOW_TRY(snow_count_bins(histogram, ends[0], ends[1], BINS, counts, &all));
-    read_counts(counts, all, histogram->log, ends[0], ends[1], out);
+    read_counts(counts, all, histogram->scale, ends[0], ends[1], out);
     return SNOW_STATUS_OK;
 }
 
@@ -204,18 +206,18 @@ static void build_grey(snow_transfer_builder *builder, const char *name,
 
 /* One slice is drawn as a picture that shows everything but its darkest values.
  * Several slices are solid but let some light through. */
-static void build_solid(const snow_histogram_split *p, bool slice, bool log,
-                        snow_transfer_builder *builder) {
+static void build_solid(const snow_histogram_split *p, bool slice,
+                        snow_scale scale, snow_transfer_builder *builder) {
     build_grey(builder, "dim-grey", p->low, p->high, 0, LIGHTEST);
     builder->unshaded = true;
     add_opacity(builder, p->low, 0);
     if (slice) {
-        add_opacity(builder, snow_between_on(log, p->low, p->high, 0.05), 0);
-        add_opacity(builder, snow_between_on(log, p->low, p->high, 0.06), 1);
+        add_opacity(builder, snow_between_on(scale, p->low, p->high, 0.05), 0);
+        add_opacity(builder, snow_between_on(scale, p->low, p->high, 0.06), 1);
         return;
     }
-    add_opacity(builder, snow_between_on(log, p->low, p->high, 0.15), 0);
-    add_opacity(builder, snow_between_on(log, p->low, p->high, 0.30), 0.30);
+    add_opacity(builder, snow_between_on(scale, p->low, p->high, 0.15), 0);
+    add_opacity(builder, snow_between_on(scale, p->low, p->high, 0.30), 0.30);
     add_opacity(builder, p->high, 0.70);
 }
 
@@ -249,7 +251,7 @@ static snow_status hounsfield_preset(const snow_histogram *histogram,
                                      int *preset) {
     const snow_volume_info *info = &histogram->volume->info;
     uint64_t counts[BINS_HU], all;
-    if (histogram->log ||
+    if (histogram->scale.log ||
         !snow_are_hounsfield(info, histogram->min, histogram->max))
         return SNOW_STATUS_OK;
     SNOW_TRY(snow_count_bins(histogram, -1100, 2900, BINS_HU, counts, &all));
@@ -262,10 +264,113 @@ static snow_status hounsfield_preset(const snow_histogram *histogram,
     return SNOW_STATUS_OK;
 }
 
+/* Whether values may be those of a computed field rather than of a scan:
+ * numbers with fractions, in no patient and no format of microscopes. */
+static bool is_field(const snow_histogram *histogram) {
+    static const char *const images[] = {"mrc", "tiff", "zarr"};
+    const snow_volume_info *info = &histogram->volume->info;
+    bool found = histogram->fractions && !info->whole && !info->eight_bits &&
+                 !info->medical && !*info->modality;
+    for (size_t n = 0; n < sizeof images / sizeof *images; n++)
+        found = found && strcmp(info->format, images[n]) != 0;
+    return found;
+}
+
+/* Voxels of either sign that are left out of a field's reach, as those of noise
+ * and of a few sources are. */
+#define FAR 0.002
+
+/* A field is around 0 if the middle one of its values is that near to it, and
+ * its weaker side reaches that far, relative to its reach. */
+#define NEAR 0.3
+#define WEAKER 0.2
+
+snow_status snow_is_signed_field(const snow_histogram *histogram,
+                                 bool *is_signed, double *reach) {
+    const double shares[3] = {FAR, 0.5, 1 - FAR};
+    double q[3];
+    SNOW_TRY(snow_quantiles(histogram, SNOW_HISTOGRAM_SAMPLED, shares, 3, q));
+    *reach = fmax(fabs(q[0]), fabs(q[2]));
+    if (!(*reach > 0))
+        *reach = fmax(fabs(histogram->min), fabs(histogram->max));
+    char text[40]; /* what is reported is used, as of other looks */
+    snprintf(text, sizeof text, "%.5g", *reach);
+    if (isfinite(strtod(text, NULL)))
+        *reach = strtod(text, NULL);
+    if (!(*reach > 0))
+        *reach = 1;
+    *is_signed = is_field(histogram) && !histogram->scale.log &&
+                 fmin(-q[0], q[2]) > 0 &&
+                 snow_share_on(histogram->scale, 0, *reach,
+                               fmin(-q[0], q[2])) >= WEAKER &&
+                 snow_share_on(histogram->scale, 0, *reach, fabs(q[1])) <= NEAR;
+    return SNOW_STATUS_OK;
+}
+
+/* Whether the look is that of a field, and of one of both signs. */
+static snow_status find_field(const snow_histogram *histogram,
+                              const snow_look *look,
+                              const snow_histogram_split *p, bool *field,
+                              bool *is_signed) {
+    double reach;
+    bool is_scan;
+    *field = is_field(histogram) && axes_of_one(histogram) == 0 &&
+             !look->base && !look->preset;
+    if (!*field)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_is_signed_field(histogram, is_signed, &reach));
+    SNOW_TRY(snow_is_scan(histogram, p->low, p->high, *is_signed, &is_scan));
+    *field = !is_scan;
+    return SNOW_STATUS_OK;
+}
+
+/* The preset of that name, with its reason. */
+static snow_status build_preset(const snow_histogram *histogram, int preset,
+                                const char *note,
+                                snow_transfer_builder *builder) {
+    builder->reason = builder->preset = snow_preset_name((size_t)preset);
+    strcpy(builder->range_note, note);
+    return snow_transfer_builder_points(snow_preset_look((size_t)preset),
+                                        histogram, builder);
+}
+
+/* A few values are left out at the top of a field. */
+#define FIELD_TOP 0.9995
+
+/* Fields have no surfaces to shade: a veil through which one sees denser parts,
+ * in colours that show the values.  Where all is one cluster its lower half is
+ * clear. */
+static snow_status build_field(const snow_histogram *histogram,
+                               const snow_histogram_split *p,
+                               snow_transfer_builder *builder) {
+    const double share = FIELD_TOP;
+    double top, start, threshold = p->threshold, object = p->object;
+    SNOW_TRY(
+        snow_quantiles(histogram, SNOW_HISTOGRAM_SAMPLED, &share, 1, &top));
+    top = fmax(top, p->top);
+    start = p->with_faint ? p->faint
+                          : snow_between_on(histogram->scale, p->background,
+                                            p->threshold, 0.6);
+    if (p->fills_volume) {
+        start = snow_between_on(histogram->scale, p->low, top, 0.45);
+        threshold = snow_between_on(histogram->scale, p->low, top, 0.6);
+        object = snow_between_on(histogram->scale, p->low, top, 0.75);
+    }
+    builder->name = builder->colormap = "viridis";
+    builder->unshaded = true;
+    builder->low = start;
+    builder->high = top;
+    add_opacity(builder, start, 0);
+    add_opacity(builder, threshold, 0.025);
+    add_opacity(builder, object, 0.08);
+    add_opacity(builder, top, 0.5);
+    return SNOW_STATUS_OK;
+}
+
 snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
-                                            bool any_range,
+                                            const snow_look *look,
                                             snow_transfer_builder *builder) {
-    bool log = histogram->log;
+    snow_scale scale = histogram->scale;
     snow_histogram_split p;
     SNOW_TRY(snow_histogram_split_at(histogram, &p));
     builder->reason = "from the histogram";
@@ -278,26 +383,32 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
     int preset = -1;
     if (slice)
         snow_window_of(histogram, builder, &p.low, &p.high);
-    else if (any_range && !p.fills_volume)
+    else if (look->range == SNOW_RANGE_AUTO && !p.fills_volume)
         SNOW_TRY(hounsfield_preset(histogram, &preset));
-    if (preset >= 0) {
-        builder->reason = builder->preset = snow_preset_name((size_t)preset);
-        strcpy(builder->range_note, ", for Hounsfield units");
-        return snow_transfer_builder_points(snow_preset_look((size_t)preset),
-                                            histogram, builder);
-    }
+    if (preset >= 0)
+        return build_preset(histogram, preset, ", for Hounsfield units",
+                            builder);
+    bool is_signed = false, field;
+    SNOW_TRY(find_field(histogram, look, &p, &field, &is_signed));
+    if (look->range == SNOW_RANGE_VALUES)
+        is_signed = is_signed && look->low < 0 && look->high > 0;
+    if (field && is_signed)
+        return build_preset(histogram, snow_preset_from_name("signed"),
+                            ", for both signs", builder);
+    if (field && !look->opacities)
+        return build_field(histogram, &p, builder);
     if (slice || p.fills_volume) {
-        build_solid(&p, slice, log, builder);
+        build_solid(&p, slice, scale, builder);
         return SNOW_STATUS_OK;
     }
     builder->unshaded = axes_of_one(histogram) > 1;
     double start = p.with_faint
                        ? p.faint
-                       : snow_between_on(log, p.background, p.threshold, 0.6);
+                       : snow_between_on(scale, p.background, p.threshold, 0.6);
     add_opacity(builder, start, 0);
     if (p.with_faint)
         add_opacity(builder, p.threshold, 0.05);
-    add_opacity(builder, snow_between_on(log, p.threshold, p.object, 0.15),
+    add_opacity(builder, snow_between_on(scale, p.threshold, p.object, 0.15),
                 0.25);
     add_opacity(builder, p.object, 0.4);
     add_opacity(builder, p.top, 0.8);

@@ -1,9 +1,8 @@
 /* transfer/builder.c - transfer functions under construction: positions of
- * values in a range, on a linear or logarithmic scale, and control points.
+ * values in a range, and control points.
  *
  * Values of points never decrease: errors of rounding logarithms are
  * corrected. */
-#include "base/exp_log.h"
 #include "transfer/look.h"
 
 #include <math.h>
@@ -11,43 +10,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double between(double low, double high, double share) {
-    if (share >= 1)
-        return high;
-    double value = isfinite(high - low) ? low + share * (high - low)
-                                        : low * (1 - share) + high * share;
-    return value < high ? value : high;
-}
-
-double snow_between_on(bool log, double low, double high, double share) {
-    if (!log || share >= 1)
-        return between(low, high, share);
-    if (share == 0)
-        return low;
-    double from = snow_log2_rising(low), to = snow_log2_rising(high);
-    double value = snow_exp2(from + share * (to - from));
-    return value < high ? value : high;
-}
-
-double snow_share_on(bool log, double low, double high, double value) {
-    if (log)
-        return (snow_log2_rising(value) - snow_log2_rising(low)) /
-               (snow_log2_rising(high) - snow_log2_rising(low));
-    /* Uses halves if the range exceeds the largest double. */
-    double scale = isfinite(high - low) ? 1 : 0.5;
-    return (scale * value - scale * low) / (scale * high - scale * low);
-}
-
 void snow_full_range(const snow_histogram *histogram, double *low,
                      double *high) {
     *low = histogram->finite ? histogram->min : 0;
     *high = histogram->finite ? histogram->max : 1;
-    if (histogram->log && !(*low > 0))
+    if (histogram->scale.log && !(*low > 0))
         *low = *high / 10;
     if (*low < *high)
         return;
     /* If there is one value, it shows if it is above 0; 0 and less is empty. */
-    if (histogram->log)
+    if (histogram->scale.log)
         *low = *high / 10;
     else if (*high > 0)
         *low = 0;
@@ -58,7 +30,7 @@ void snow_full_range(const snow_histogram *histogram, double *low,
 bool snow_window_of(const snow_histogram *histogram,
                     snow_transfer_builder *builder, double *low, double *high) {
     const double *window = histogram->volume->info.window;
-    if (histogram->log || !(window[0] < window[1]) ||
+    if (histogram->scale.log || !(window[0] < window[1]) ||
         !(window[0] < histogram->max && window[1] > histogram->min))
         return false;
     *low = window[0];
@@ -75,7 +47,7 @@ snow_status snow_robust_range(const snow_histogram *histogram, double *low,
     const double shares[2] = {FEW, 1 - FEW}, full[2] = {*low, *high};
     const double half = (full[1] - full[0]) / 2;
     double ends[2];
-    if (snow_window_of(histogram, builder, low, high) || histogram->log ||
+    if (snow_window_of(histogram, builder, low, high) || histogram->scale.log ||
         !histogram->finite)
         return SNOW_STATUS_OK;
     SNOW_TRY(
@@ -93,7 +65,34 @@ snow_status snow_robust_range(const snow_histogram *histogram, double *low,
     return SNOW_STATUS_OK;
 }
 
+void snow_transfer_builder_symlog(snow_histogram *histogram,
+                                  const snow_look *look,
+                                  snow_transfer_builder *builder) {
+    double low = look->low, high = look->high;
+    if (!(look->symlog < 0))
+        return;
+    if (look->range != SNOW_RANGE_VALUES)
+        snow_full_range(histogram, &low, &high);
+    histogram->scale.linear = builder->scale.linear =
+        snow_round_below(fmax(fabs(low), fabs(high)) / 1000);
+}
+
 /* --- points --------------------------------------------------------------- */
+
+snow_status snow_transfer_builder_reserve(snow_context *context, size_t colors,
+                                          size_t opacities, size_t gradients,
+                                          snow_transfer_builder *builder) {
+    uint64_t bytes;
+    if (!snow_mul_u64(opacities + gradients, sizeof(snow_opacity_point),
+                      &bytes) ||
+        !snow_add_u64(bytes, colors * sizeof(snow_color_point), &bytes))
+        bytes = UINT64_MAX;
+    SNOW_TRY(snow_reserve(context, &builder->block, 0, bytes, 1));
+    builder->colors = builder->block;
+    builder->opacities = (void *)(builder->colors + colors);
+    builder->gradients = builder->opacities + opacities;
+    return SNOW_STATUS_OK;
+}
 
 snow_status snow_object_range(const snow_histogram *histogram, double *low,
                               double *high) {
@@ -101,7 +100,8 @@ snow_status snow_object_range(const snow_histogram *histogram, double *low,
     SNOW_TRY(snow_histogram_split_at(histogram, &p));
     snow_full_range(histogram, low, high);
     if (!p.constant) {
-        *low = snow_between_on(histogram->log, p.background, p.threshold, 0.6);
+        *low =
+            snow_between_on(histogram->scale, p.background, p.threshold, 0.6);
         *high = p.top;
     }
     return SNOW_STATUS_OK;
@@ -109,7 +109,7 @@ snow_status snow_object_range(const snow_histogram *histogram, double *low,
 
 /* Copies points; their values are shares of a range unless they are data
  * values. */
-static void copy_points(const snow_look *points, bool log, double low,
+static void copy_points(const snow_look *points, snow_scale scale, double low,
                         double high, snow_transfer_builder *builder) {
     bool shares = points->domain != SNOW_DOMAIN_DATA;
     if (points->color_count)
@@ -120,14 +120,23 @@ static void copy_points(const snow_look *points, bool log, double low,
         builder->colors[i] = points->colors[i];
         if (shares)
             builder->colors[i].value =
-                snow_between_on(log, low, high, points->colors[i].value);
+                snow_between_on(scale, low, high, points->colors[i].value);
     }
     for (size_t i = 0; i < points->opacity_count; i++) {
         builder->opacities[i] = points->opacities[i];
         if (shares)
             builder->opacities[i].value =
-                snow_between_on(log, low, high, points->opacities[i].value);
+                snow_between_on(scale, low, high, points->opacities[i].value);
     }
+}
+
+double snow_transfer_builder_place(const snow_transfer_builder *builder,
+                                   double low, double high, double share) {
+    if (!builder->around_0 || !(low < 0) || !(high > 0))
+        return snow_between_on(builder->scale, low, high, share);
+    return share < 0.5
+               ? snow_between_on(builder->scale, low, 0, 2 * share)
+               : snow_between_on(builder->scale, 0, high, 2 * share - 1);
 }
 
 /* Extends the range of colours to all values that have opacities. */
@@ -158,12 +167,17 @@ snow_status snow_transfer_builder_points(const snow_look *points,
         SNOW_TRY(snow_object_range(histogram, &low, &high));
     else if (points->domain == SNOW_DOMAIN_RANGE)
         snow_full_range(histogram, &low, &high);
-    else
+    else if (points->domain == SNOW_DOMAIN_SYMMETRIC) {
+        bool is_signed;
+        builder->around_0 = true;
+        SNOW_TRY(snow_is_signed_field(histogram, &is_signed, &high));
+        low = -high;
+    } else
         own_range(points, &low, &high);
     builder->name = points->name;
     builder->low = low;
     builder->high = high;
-    copy_points(points, histogram->log, low, high, builder);
+    copy_points(points, histogram->scale, low, high, builder);
     builder->gradient_count = points->gradient_opacity_count;
     if (points->gradient_opacity_count)
         memcpy(builder->gradients, points->gradient_opacities,

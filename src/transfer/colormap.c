@@ -11,9 +11,13 @@
  *              visualization", ISVC 2009: computed by its formula from
  *              (59, 76, 192) to (180, 4, 38)
  *   hot        black over red and yellow to white, as matplotlib's
+ *   RdBu       C. Brewer's eleven colours, joined (matplotlib)
+ *   seismic, bwr  blue over white to red, as matplotlib's
+ *   red, green, blue, cyan, magenta, yellow  from black, of channels
  *   light-grey, dim-grey  parts of grey, of looks made from the histogram
  *   tab10      ten colours for categories, Tableau's of 2016 (matplotlib)
- * A new map needs a table here and a line in `maps`. */
+ * A new map needs a table here and a line in `maps`.  With an index that is
+ * larger by their number it is reversed, and its name ends in _r. */
 #include "transfer/look.h"
 
 /* A colour at `at` / 510 of the map (entry n of 256 is at 2 n). */
@@ -27,6 +31,14 @@ typedef struct map_point {
 static const map_point grey[] = {{0, 0x000000}, {510, 0xffffff}};
 static const map_point dim_grey[] = {{0, 0x000000}, {510, 0xf7f7f7}};
 static const map_point light_grey[] = {{0, 0xa6a6a6}, {510, 0xffffff}};
+
+/* Of channels. */
+static const map_point red[] = {{0, 0x000000}, {510, 0xff0000}};
+static const map_point green[] = {{0, 0x000000}, {510, 0x00ff00}};
+static const map_point blue[] = {{0, 0x000000}, {510, 0x0000ff}};
+static const map_point cyan[] = {{0, 0x000000}, {510, 0x00ffff}};
+static const map_point magenta[] = {{0, 0x000000}, {510, 0xff00ff}};
+static const map_point yellow[] = {{0, 0x000000}, {510, 0xffff00}};
 
 static const map_point hot[] = {
     {0, 0x0b0000}, {186, 0xff0000}, {380, 0xffff00}, {510, 0xffffff}};
@@ -76,6 +88,18 @@ static const map_point cool_warm[] = {
     {348, 0xf8b395}, {393, 0xf39272}, {443, 0xe0644e}, {484, 0xc73734},
     {502, 0xba1b2a}, {508, 0xb50b27}, {510, 0xb40426}};
 
+static const map_point rdbu[] = {
+    {0, 0x67001f},   {51, 0xb2182b},  {102, 0xd6604d}, {153, 0xf4a582},
+    {204, 0xfddbc7}, {255, 0xf7f7f7}, {306, 0xd1e5f0}, {357, 0x92c5de},
+    {408, 0x4393c3}, {459, 0x2166ac}, {510, 0x053061}};
+
+static const map_point seismic[] = {
+    {0, 0x00004d},   {127, 0x0000fe}, {128, 0x0101ff}, {255, 0xffffff},
+    {382, 0xff0101}, {383, 0xfe0000}, {510, 0x800000}};
+
+static const map_point bwr[] = {
+    {0, 0x0000ff}, {255, 0xffffff}, {510, 0xff0000}};
+
 /* Ten equal steps without interpolation. */
 static const map_point category[] = {
     {0, 0x1f77b4},   {51, 0x1f77b4},  {51, 0xff7f0e},  {102, 0xff7f0e},
@@ -85,53 +109,56 @@ static const map_point category[] = {
     {408, 0xbcbd22}, {459, 0xbcbd22}, {459, 0x17becf}, {510, 0x17becf}};
 
 #define MAP(name, points) \
-    { name, points, sizeof points / sizeof *points }
+    { {name, name "_r"}, points, sizeof points / sizeof *points }
 
 static const struct {
-    const char *name;
+    const char *names[2]; /* and reversed */
     const map_point *points;
     size_t count;
 } maps[] = {
-    MAP("grey", grey),
-    MAP("viridis", viridis),
-    MAP("inferno", inferno),
-    MAP("cool-warm", cool_warm),
-    MAP("turbo", turbo),
-    MAP("magma", magma),
-    MAP("plasma", plasma),
-    MAP("cividis", cividis),
-    MAP("hot", hot),
-    MAP("tab10", category),
-    MAP("light-grey", light_grey),
-    MAP("dim-grey", dim_grey),
+    MAP("grey", grey),         MAP("viridis", viridis),
+    MAP("inferno", inferno),   MAP("cool-warm", cool_warm),
+    MAP("turbo", turbo),       MAP("magma", magma),
+    MAP("plasma", plasma),     MAP("cividis", cividis),
+    MAP("hot", hot),           MAP("RdBu", rdbu),
+    MAP("seismic", seismic),   MAP("bwr", bwr),
+    MAP("tab10", category),    MAP("light-grey", light_grey),
+    MAP("dim-grey", dim_grey), MAP("red", red),
+    MAP("green", green),       MAP("blue", blue),
+    MAP("cyan", cyan),         MAP("magenta", magenta),
+    MAP("yellow", yellow),
 };
 
 static const size_t map_count = sizeof maps / sizeof *maps;
 
 const char *snow_colormap_name(size_t index) {
-    return index < map_count ? maps[index].name : NULL;
+    return index < map_count ? maps[index].names[0] : NULL;
 }
 
 int snow_colormap_from_name(const char *name) {
-    if (snow_same_name(name, "gray"))
-        name = "grey";
-    if (snow_same_name(name, "light-gray"))
-        name = "light-grey";
-    for (size_t i = 0; i < map_count; i++)
-        if (snow_same_name(name, maps[i].name))
+    static const char *const others[][2] = {
+        {"gray", "grey"}, {"gray_r", "grey_r"}, {"light-gray", "light-grey"}};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (snow_same_name(name, others[i][0]))
+            name = others[i][1];
+    for (size_t i = 0; i < 2 * map_count; i++)
+        if (snow_same_name(name, maps[i % map_count].names[i / map_count]))
             return (int)i;
     return -1;
 }
 
 size_t snow_colormap_points(size_t index, snow_color_point *points,
                             size_t room) {
-    if (index >= map_count)
+    if (index >= 2 * map_count)
         return 0;
-    size_t count = maps[index].count < room ? maps[index].count : room;
+    const bool reversed = index >= map_count;
+    const size_t map = index % map_count, all = maps[map].count;
+    const size_t count = all < room ? all : room;
     for (size_t i = 0; i < count; i++) {
-        const map_point *p = maps[index].points + i;
+        const map_point *p = maps[map].points + (reversed ? all - 1 - i : i);
+        int at = reversed ? MAP_END - p->at : p->at;
         points[i] = (snow_color_point){
-            p->at / (double)MAP_END, (p->rgb >> 16) / 255.0,
+            at / (double)MAP_END, (p->rgb >> 16) / 255.0,
             (p->rgb >> 8 & 255) / 255.0, (p->rgb & 255) / 255.0};
     }
     return count;
@@ -139,10 +166,11 @@ size_t snow_colormap_points(size_t index, snow_color_point *points,
 
 void snow_transfer_builder_colormap(snow_transfer_builder *builder,
                                     int colormap, double low, double high) {
-    builder->name = maps[colormap].name;
+    const size_t map = (size_t)colormap % map_count;
+    builder->name = maps[map].names[(size_t)colormap / map_count];
     builder->color_count = snow_colormap_points(
         (size_t)colormap, builder->colors, SNOW_TRANSFER_BUILDER_POINTS);
     for (size_t i = 0; i < builder->color_count; i++)
-        builder->colors[i].value =
-            snow_between_on(builder->log, low, high, builder->colors[i].value);
+        builder->colors[i].value = snow_transfer_builder_place(
+            builder, low, high, builder->colors[i].value);
 }

@@ -153,7 +153,8 @@ static bool same_color(const snow_color_point *a, const snow_color_point *b) {
 
 /* Whether values are the numbers of things rather than quantities: the colours
  * of categories have steps, and do not change in between. */
-bool snow_transfer_has_labels(const snow_transfer *transfer, snow_type type) {
+bool snow_transfer_has_labels(const snow_transfer *transfer,
+                              const snow_volume_info *info) {
     const snow_color_point *c = transfer->colors;
     bool steps = false;
     for (size_t n = 1; n < transfer->color_count; n++) {
@@ -163,5 +164,12 @@ bool snow_transfer_has_labels(const snow_transfer *transfer, snow_type type) {
             return false;
         steps = true;
     }
-    return steps && type < SNOW_TYPE_FLOAT32;
+    return steps &&
+           (transfer->labels || info->whole || info->type < SNOW_TYPE_FLOAT32);
+}
+
+int snow_transfer_slopes(const snow_transfer *transfer,
+                         const snow_volume_info *info) {
+    return (transfer->gradient_count ? SNOW_SLOPES_FADE : 0) |
+           (snow_transfer_has_labels(transfer, info) ? SNOW_SLOPES_WIDE : 0);
 }

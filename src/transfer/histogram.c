@@ -16,11 +16,16 @@
 /* Allocates the sample of a volume that stays in its file, with no more than a
  * quarter of what the limit leaves; without it passes read the file.  Every
  * pass reads rows no longer than two samples completely. */
-static void make_sample(snow_histogram *histogram) {
+static void make_own_sample(snow_histogram *histogram) {
     const snow_volume *volume = histogram->volume;
     snow_context *context = volume->context;
     const int64_t *dims = volume->info.dims;
-    if (!volume->stream)
+    snow_extent part;
+    snow_volume_find_extent(volume, &part);
+    /* of other boxes passes read the file, of a part without voxels nothing */
+    const bool empty = !part.count[0] || !part.count[1] || !part.count[2];
+    if (!empty &&
+        (part.count[0] != part.dims[0] || part.count[1] != part.dims[1]))
         return;
     snow_voxel_walk w =
         snow_voxel_walk_begin(volume, false, SNOW_HISTOGRAM_SAMPLED);
@@ -28,6 +33,8 @@ static void make_sample(snow_histogram *histogram) {
     uint64_t rest =
         all % w.stride < SNOW_WALK_BLOCK ? all % w.stride : SNOW_WALK_BLOCK;
     uint64_t count = all / w.stride * SNOW_WALK_BLOCK + rest;
+    if (volume->is_part) /* it may begin and end within blocks */
+        count += 2 * SNOW_WALK_BLOCK;
     uint64_t bytes = count * snow_type_size(volume->info.type);
     if (context->limit && (context->bytes > context->limit ||
                            bytes > (context->limit - context->bytes) / 4))
@@ -37,6 +44,23 @@ static void make_sample(snow_histogram *histogram) {
     info.dims[1] = info.dims[2] = 1;
     if (snow_volume_new(context, &info, &histogram->sample) != SNOW_STATUS_OK)
         histogram->sample = NULL;
+}
+
+/* Ranks, which agree in passes that read the file, use samples only where all
+ * of them have one. */
+static snow_status make_sample(snow_histogram *histogram) {
+    if (!histogram->volume->stream)
+        return SNOW_STATUS_OK;
+    make_own_sample(histogram);
+    if (!histogram->comm)
+        return SNOW_STATUS_OK;
+    int64_t all = histogram->sample != NULL;
+    SNOW_TRY(snow_comm_reduce_ints(histogram->comm, &all, 1, SNOW_REDUCE_MIN));
+    if (!all) {
+        snow_volume_close(histogram->sample);
+        histogram->sample = NULL;
+    }
+    return SNOW_STATUS_OK;
 }
 
 /* Adds to the sample what a sampled pass sees of a slab; it has `at` voxels
@@ -55,6 +79,9 @@ static void keep_sample(const snow_volume *slab, const snow_volume *sample,
     }
 }
 
+/* From here on neighbouring numbers of double are whole. */
+#define WHOLE_FROM 0x1p52
+
 /* The state of measuring a volume. */
 typedef struct measuring {
     snow_histogram *histogram;
@@ -68,7 +95,7 @@ static snow_status measure_values(const snow_volume *slab, void *user) {
     double values[SNOW_WALK_BLOCK];
     size_t count;
     snow_voxel_walk w =
-        snow_voxel_walk_begin(slab, histogram->log, SNOW_HISTOGRAM_EXACT);
+        snow_voxel_walk_begin(slab, histogram->scale.log, SNOW_HISTOGRAM_EXACT);
     if (histogram->sample)
         keep_sample(slab, histogram->sample, &m->sampled);
     while ((count = snow_voxel_walk_next_block(&w, values))) {
@@ -83,10 +110,13 @@ static snow_status measure_values(const snow_volume *slab, void *user) {
                 histogram->at_min = 0;
             }
             histogram->at_min += value == histogram->min;
+            if (!histogram->fractions && fabs(value) < WHOLE_FROM)
+                histogram->fractions = value != (double)(int64_t)value;
             if (value > histogram->max)
                 histogram->max = value;
         }
     }
+    histogram->dropped += w.dropped;
     return SNOW_STATUS_OK;
 }
 
@@ -101,10 +131,13 @@ static snow_status join_measures(snow_histogram *histogram) {
     }
     SNOW_TRY(
         snow_comm_reduce_doubles(histogram->comm, ends, 2, SNOW_REDUCE_MIN));
-    uint64_t counts[2] = {histogram->finite, 0};
+    uint64_t counts[4] = {histogram->finite, 0, histogram->dropped,
+                          histogram->fractions};
     if (histogram->finite && histogram->min == ends[0])
         counts[1] = histogram->at_min;
-    SNOW_TRY(snow_histogram_sum(histogram, counts, 2));
+    SNOW_TRY(snow_histogram_sum(histogram, counts, 4));
+    histogram->dropped = counts[2];
+    histogram->fractions = counts[3] > 0;
     if (counts[0]) {
         histogram->min = ends[0];
         histogram->max = -ends[1];
@@ -122,7 +155,7 @@ static void note_range(const snow_histogram *histogram) {
                                           .finite = (int64_t)histogram->finite,
                                           .min = histogram->min,
                                           .max = histogram->max};
-    if (histogram->volume->stream && !histogram->log)
+    if (histogram->volume->stream && !histogram->scale.log && !histogram->comm)
         snow_stream_note_range(histogram->volume, &range);
 }
 
@@ -139,15 +172,25 @@ static snow_status count_as_needed(snow_histogram *histogram) {
     return snow_stored_values_count(histogram);
 }
 
+static void tell_dropped(const snow_histogram *histogram) {
+    if (histogram->dropped)
+        snow_notify(
+            histogram->volume->context,
+            "logarithms leave out %llu of %llu voxels, whose values "
+            "are 0 or below; symlog shows them",
+            (unsigned long long)histogram->dropped,
+            (unsigned long long)(histogram->dropped + histogram->finite));
+}
+
 snow_status snow_histogram_new(const snow_volume *volume, snow_comm *comm,
-                               bool log, snow_histogram_need need,
+                               snow_scale scale, snow_histogram_need need,
                                snow_histogram *out) {
     snow_histogram histogram = {.need = need,
                                 .volume = volume,
                                 .comm = comm,
                                 .min = NAN,
                                 .max = NAN,
-                                .log = log};
+                                .scale = scale};
     snow_status status;
     if (need == SNOW_NEED_NOTHING) {
         *out = histogram;
@@ -158,9 +201,12 @@ snow_status snow_histogram_new(const snow_volume *volume, snow_comm *comm,
     else {
         histogram.need = SNOW_NEED_COUNTS;
         measuring m = {&histogram, 0};
-        make_sample(&histogram);
-        status = snow_histogram_visit(&histogram, SNOW_HISTOGRAM_EXACT,
-                                      measure_values, &m);
+        status = make_sample(&histogram);
+        if (status == SNOW_STATUS_OK)
+            status = snow_histogram_visit(&histogram, SNOW_HISTOGRAM_EXACT,
+                                          measure_values, &m);
+        if (histogram.sample)
+            histogram.sample->info.dims[0] = (int64_t)m.sampled;
         if (status == SNOW_STATUS_OK)
             status = join_measures(&histogram);
     }
@@ -173,6 +219,7 @@ snow_status snow_histogram_new(const snow_volume *volume, snow_comm *comm,
     histogram.max += 0.0;
     if (histogram.need == SNOW_NEED_COUNTS)
         note_range(&histogram);
+    tell_dropped(&histogram);
     *out = histogram;
     return SNOW_STATUS_OK;
 }
@@ -183,16 +230,17 @@ void snow_histogram_free(snow_histogram *histogram) {
 }
 
 /* The bin of a value; -1 outside. */
-static int bin_of(bool log, double value, double low, double high, int bins) {
+static int bin_of(snow_scale scale, double value, double low, double high,
+                  int bins) {
     if (!(value >= low && value <= high))
         return -1;
-    int bin = (int)(snow_share_on(log, low, high, value) * bins);
+    int bin = (int)(snow_share_on(scale, low, high, value) * bins);
     return bin < bins ? bin : bins - 1;
 }
 
 /* The state of counting bins. */
 typedef struct bin_count {
-    bool log;
+    snow_scale scale;
     double low, high;
     int bins;
     uint64_t *counts, all;
@@ -204,10 +252,10 @@ static snow_status count_sampled(const snow_volume *slab, void *user) {
     double values[SNOW_WALK_BLOCK];
     size_t got;
     snow_voxel_walk w =
-        snow_voxel_walk_begin(slab, b->log, SNOW_HISTOGRAM_SAMPLED);
+        snow_voxel_walk_begin(slab, b->scale.log, SNOW_HISTOGRAM_SAMPLED);
     while ((got = snow_voxel_walk_next_block(&w, values)))
         for (size_t i = 0; i < got; i++) {
-            int bin = bin_of(b->log, values[i], b->low, b->high, b->bins);
+            int bin = bin_of(b->scale, values[i], b->low, b->high, b->bins);
             b->all += isfinite(values[i]) != 0;
             if (bin >= 0)
                 b->counts[bin]++;
@@ -220,7 +268,7 @@ snow_status snow_count_bins(const snow_histogram *histogram, double low,
                             uint64_t *all) {
     memset(counts, 0, (size_t)bins * sizeof *counts);
     if (!histogram->counts) {
-        bin_count b = {histogram->log, low, high, bins, counts, 0};
+        bin_count b = {histogram->scale, low, high, bins, counts, 0};
         SNOW_TRY(snow_histogram_visit(histogram, SNOW_HISTOGRAM_SAMPLED,
                                       count_sampled, &b));
         *all = b.all;
@@ -230,7 +278,7 @@ snow_status snow_count_bins(const snow_histogram *histogram, double low,
     for (int n = 0; n < SNOW_DIGITS; n++) {
         double value;
         uint64_t count = snow_stored_values_nth(histogram, n, &value);
-        int bin = count ? bin_of(histogram->log, value, low, high, bins) : -1;
+        int bin = count ? bin_of(histogram->scale, value, low, high, bins) : -1;
         if (bin >= 0)
             counts[bin] += count;
     }

@@ -4,6 +4,7 @@
 #define SNOW_TRANSFER_LOOK_H
 
 #include "comm/comm.h"
+#include "transfer/scale.h"
 #include "transfer/transfer.h"
 #include "volume/volume.h"
 
@@ -13,21 +14,30 @@
 /* A transfer function under construction, in data values.  There is memory for
  * SNOW_TRANSFER_BUILDER_POINTS points, or as many as the source has. */
 typedef struct snow_transfer_builder {
-    const char *name;    /* of the colours, for messages */
-    const char *reason;  /* why these values, for messages */
-    const char *preset;  /* that was chosen; NULL: none */
-    char range_note[64]; /* how the range was chosen, for messages; or "" */
-    double low, high;    /* the range of data values */
-    bool unshaded;       /* for pictures without shading */
-    bool log;            /* logarithmic scale */
+    const char *name;     /* of the colours, for messages */
+    const char *reason;   /* why these values, for messages */
+    const char *preset;   /* that was chosen; NULL: none */
+    const char *colormap; /* that gives the colours; NULL: they are there */
+    char range_note[64];  /* how the range was chosen, for messages; or "" */
+    double low, high;     /* the range of data values */
+    bool unshaded;        /* for pictures without shading */
+    snow_scale scale;     /* on which points are joined */
+    bool around_0;        /* half of the points stays at 0 */
     snow_color_point *colors;
     size_t color_count;
     snow_opacity_point *opacities;
     size_t opacity_count;
     snow_opacity_point *gradients;
     size_t gradient_count;
-    void *block; /* the memory of the points */
+    void *block;        /* the memory of the points */
+    snow_label *labels; /* whose colours these are; NULL: of no labels */
+    size_t label_count;
 } snow_transfer_builder;
+
+/* Room for points. */
+snow_status snow_transfer_builder_reserve(snow_context *context, size_t colors,
+                                          size_t opacities, size_t gradients,
+                                          snow_transfer_builder *builder);
 
 /* How much of a volume's values has to be known, in rising order. */
 typedef enum snow_histogram_need {
@@ -50,8 +60,9 @@ typedef struct snow_histogram {
     uint64_t at_min;     /* number of voxels with the smallest value */
     snow_volume *sample; /* for a volume that stays in its file: the voxels of a
                             sampled pass, as one row; NULL: it reads the file */
-    bool log; /* values that are not above 0 are ignored, and histograms have
-                 bins that are equal in the logarithm */
+    snow_scale scale; /* of the bins; logarithms ignore what is not above 0 */
+    uint64_t dropped; /* voxels that these ignore, where all are counted */
+    bool fractions;   /* values of floats that are no whole numbers */
 } snow_histogram;
 
 /* Counts the voxels that a volume is responsible for.  With a communicator
@@ -59,7 +70,7 @@ typedef struct snow_histogram {
  * other functions do the same.  Errors: SNOW_STATUS_NO_MEMORY (on all ranks),
  * those of the transport.  Free with snow_histogram_free. */
 snow_status snow_histogram_new(const snow_volume *volume, snow_comm *comm,
-                               bool log, snow_histogram_need need,
+                               snow_scale scale, snow_histogram_need need,
                                snow_histogram *out);
 
 void snow_histogram_free(snow_histogram *histogram);
@@ -104,17 +115,40 @@ typedef struct snow_histogram_split {
 snow_status snow_histogram_split_at(const snow_histogram *histogram,
                                     snow_histogram_split *out);
 
-/* The automatic look; over values of its own only if these may have any range.
+/* The automatic look, of which `look` says whether it may have any range.
  * Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
-                                            bool any_range,
+                                            const snow_look *look,
                                             snow_transfer_builder *builder);
+
+/* The look of labels; the builder stays empty for a volume without labels,
+ * unless it is asked for.  Opacities of the look are those of its labels.
+ * Errors: SNOW_STATUS_NO_MEMORY, SNOW_STATUS_BAD_USAGE (too many labels,
+ * fractions). */
+snow_status snow_transfer_builder_labels(const snow_histogram *histogram,
+                                         const snow_look *look, bool asked,
+                                         snow_transfer_builder *builder);
 
 /* Builds from points; if they lack colours or opacities, the builder's stay.
  * Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_transfer_builder_points(const snow_look *points,
                                          const snow_histogram *histogram,
                                          snow_transfer_builder *builder);
+
+/* The value at a share of low..high on the builder's scale; around 0, where
+ * that is within, half of the shares are below 0 and half above. */
+double snow_transfer_builder_place(const snow_transfer_builder *builder,
+                                   double low, double high, double share);
+
+/* Whether a field has values of both signs around 0 that matter, as velocities
+ * and charges have; *reach gets how far, but for a few. */
+snow_status snow_is_signed_field(const snow_histogram *histogram,
+                                 bool *is_signed, double *reach);
+
+/* Whether floats with fractions, with robust ends, are those of a scan. Errors:
+ * SNOW_STATUS_NO_MEMORY, those of the transport. */
+snow_status snow_is_scan(const snow_histogram *histogram, double low,
+                         double high, bool is_signed, bool *is_scan);
 
 /* Rounds all values to what a line reports; adds to all values, so that a
  * preset suits data with another offset. */
@@ -126,9 +160,14 @@ void snow_transfer_builder_shift(snow_transfer_builder *builder, double shift);
 void snow_full_range(const snow_histogram *histogram, double *low,
                      double *high);
 
-/* Whether a look (NULL allowed) has a gradient opacity; false if its preset
- * does not exist. */
-bool snow_look_has_gradient_opacity(const snow_look *look);
+/* Whether a look is the preset of labels; and whether it leaves all to the
+ * volume, but opacities perhaps, and gradients'. */
+bool snow_look_is_of_labels(const snow_look *look);
+bool snow_look_is_free(const snow_look *look);
+
+/* The slopes that a look may have on a volume (transfer.h); NULL: on one that
+ * has no labels. */
+int snow_look_slopes(const snow_look *look, const snow_volume_info *info);
 
 /* From the end of the background to the brightest value of the object. */
 snow_status snow_object_range(const snow_histogram *histogram, double *low,
@@ -141,15 +180,20 @@ bool snow_window_of(const snow_histogram *histogram,
 snow_status snow_robust_range(const snow_histogram *histogram, double *low,
                               double *high, snow_transfer_builder *builder);
 
+/* "grey 72..213; opacity 0 at 72, 0.4 at 213 (from the histogram)", for
+ * snow_transfer_describe. */
+void snow_transfer_builder_describe(const snow_transfer_builder *builder,
+                                    const snow_look *look,
+                                    snow_transfer *transfer);
+
+/* Where the symmetric logarithms of a look begin: as asked, or at about a
+ * thousandth of the largest magnitude. */
+void snow_transfer_builder_symlog(snow_histogram *histogram,
+                                  const snow_look *look,
+                                  snow_transfer_builder *builder);
+
 /* Replaces the colours by a map over low..high. */
 void snow_transfer_builder_colormap(snow_transfer_builder *builder,
                                     int colormap, double low, double high);
-
-/* low + share * (high - low), for any finite ends: exactly high from share 1
- * on, and never decreasing as share grows, whatever the rounding; on a
- * logarithmic scale if `log` is set (0 < low < high).  The inverse: the share
- * at which a value lies. */
-double snow_between_on(bool log, double low, double high, double share);
-double snow_share_on(bool log, double low, double high, double value);
 
 #endif

@@ -6,13 +6,9 @@
  * used only if requested. */
 #include "transfer/look.h"
 
-#include "volume/stream.h"
-
 #include <snowglass/ranks.h>
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 SNOW_RECORD_OF_ZEROS(snow_look);
@@ -37,6 +33,15 @@ static snow_status check_look(snow_context *context, const snow_look *look) {
     if (look->colormap && snow_colormap_from_name(look->colormap) < 0)
         return refuse_name(context, "colour map", look->colormap,
                            snow_colormap_name);
+    if (snow_look_is_of_labels(look) && !snow_look_is_free(look))
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "labels have a colour each, and no range; leave out "
+                         "the colour map, range, shift and log");
+    if ((look->log && look->symlog != 0) || !isfinite(look->symlog))
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "logarithms and symmetric ones from %g on exclude one "
+                         "another; give one of them, with a finite number",
+                         look->symlog);
     if (look->opacities && !look->opacity_count)
         return snow_fail(
             context, SNOW_STATUS_BAD_USAGE,
@@ -91,26 +96,28 @@ static snow_status resolve_range(const snow_histogram *histogram,
 
 /* The new position of `value` when the points are stretched over low..high.
  * Points whose range rounding has reduced to nothing become a step. */
-static double stretched(const snow_transfer_builder *builder, bool log,
+static double stretched(const snow_transfer_builder *builder, snow_scale scale,
                         double value, double low, double high) {
     if (!(builder->low < builder->high))
         return low;
-    double share = snow_share_on(log, builder->low, builder->high, value);
-    return snow_between_on(builder->log, low, high, share);
+    double share = snow_share_on(scale, builder->low, builder->high, value);
+    return snow_transfer_builder_place(builder, low, high, share);
 }
 
-/* `log` is true if the values were interpolated by logarithms: for shares and
- * the histogram they are, for data values only if their source says so.
+/* `scale` is what the values were interpolated on: for shares and the histogram
+ * the builder's, for data values that of their source.
  * Gradients are stretched by the same factor as the values. */
-static void stretch(snow_transfer_builder *builder, bool log, double low,
-                    double high) {
+static void stretch(snow_transfer_builder *builder, snow_scale scale,
+                    double low, double high) {
     double steeper = (high - low) / (builder->high - builder->low);
+    if (builder->around_0 && low == builder->low && high == builder->high)
+        return; /* as it is, to the last bit */
     for (size_t i = 0; i < builder->color_count; i++)
         builder->colors[i].value =
-            stretched(builder, log, builder->colors[i].value, low, high);
+            stretched(builder, scale, builder->colors[i].value, low, high);
     for (size_t i = 0; i < builder->opacity_count; i++)
         builder->opacities[i].value =
-            stretched(builder, log, builder->opacities[i].value, low, high);
+            stretched(builder, scale, builder->opacities[i].value, low, high);
     for (size_t i = 0; i < builder->gradient_count && isfinite(steeper); i++)
         builder->gradients[i].value *= steeper;
     builder->low = low;
@@ -136,18 +143,10 @@ static snow_status begin_builder(snow_context *context, const snow_look *look,
     if (points && points->opacity_count > opacities)
         opacities = points->opacity_count;
     size_t gradients = points ? points->gradient_opacity_count : 0;
-    uint64_t bytes;
-    if (!snow_mul_u64(opacities + gradients, sizeof(snow_opacity_point),
-                      &bytes) ||
-        !snow_add_u64(bytes, colors * sizeof(snow_color_point), &bytes))
-        bytes = UINT64_MAX;
-    *builder =
-        (snow_transfer_builder){.log = look->log || (points && points->log)};
-    SNOW_TRY(snow_reserve(context, &builder->block, 0, bytes, 1));
-    builder->colors = builder->block;
-    builder->opacities = (void *)(builder->colors + colors);
-    builder->gradients = builder->opacities + opacities;
-    return SNOW_STATUS_OK;
+    *builder = (snow_transfer_builder){
+        .scale = {look->log || (points && points->log), fmax(look->symlog, 0)}};
+    return snow_transfer_builder_reserve(context, colors, opacities, gradients,
+                                         builder);
 }
 
 /* Checks that the values suit those of a preset or a file.  Values of 8 bits
@@ -159,14 +158,14 @@ static snow_status fit_values(const snow_histogram *histogram,
     double low, high;
     if (points->domain != SNOW_DOMAIN_DATA || look->range != SNOW_RANGE_AUTO)
         return SNOW_STATUS_OK;
-    if (builder->log && !(builder->low > 0))
+    if (builder->scale.log && !(builder->low > 0))
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "%.64s has values of 0 and below, which a logarithmic "
                          "scale cannot show; give a range too",
                          points->name);
     if (look->base || look->shift != 0 || !(histogram->min >= 0))
         return SNOW_STATUS_OK;
-    if (!snow_has_8_bits(&histogram->volume->info) || builder->log ||
+    if (!snow_has_8_bits(&histogram->volume->info) || builder->scale.log ||
         histogram->max > 255) {
         snow_notify(context,
                     "%s is for Hounsfield units, but the smallest value is %g: "
@@ -176,7 +175,7 @@ static snow_status fit_values(const snow_histogram *histogram,
         return SNOW_STATUS_OK;
     }
     SNOW_TRY(snow_object_range(histogram, &low, &high));
-    stretch(builder, false, low, high);
+    stretch(builder, (snow_scale){0}, low, high);
     snow_notify(context,
                 "%s is for Hounsfield units, and the values are of 8 bits: it "
                 "is spread over the object's, %g to %g; --range sets others",
@@ -191,9 +190,11 @@ static snow_histogram_need need_of_range(const snow_volume *volume,
                                          const snow_look *points) {
     snow_domain values = points ? points->domain : SNOW_DOMAIN_DATA;
     if (look->range == SNOW_RANGE_PERCENTILES ||
-        look->range == SNOW_RANGE_ROBUST || values == SNOW_DOMAIN_OBJECT)
+        look->range == SNOW_RANGE_ROBUST || values == SNOW_DOMAIN_OBJECT ||
+        values == SNOW_DOMAIN_SYMMETRIC)
         return SNOW_NEED_COUNTS;
-    if (look->range == SNOW_RANGE_FULL || values == SNOW_DOMAIN_RANGE)
+    if (look->range == SNOW_RANGE_FULL || values == SNOW_DOMAIN_RANGE ||
+        (look->symlog < 0 && look->range != SNOW_RANGE_VALUES))
         return SNOW_NEED_RANGE;
     /* Hounsfield units (fit_values). */
     bool preset = look->range == SNOW_RANGE_AUTO && !look->base;
@@ -222,18 +223,24 @@ static snow_status fill_builder(const snow_histogram *histogram,
                                 const snow_look *look,
                                 snow_transfer_builder *builder) {
     const snow_look *points = points_of(look);
+    const bool asked = snow_look_is_of_labels(look);
+    if (asked || (!points && snow_look_is_free(look)))
+        SNOW_TRY(snow_transfer_builder_labels(histogram, look, asked, builder));
+    if (builder->labels)
+        return SNOW_STATUS_OK;
     builder->high = 1; /* without points, until it is stretched */
     if (need_of(histogram->volume, look) == SNOW_NEED_COUNTS &&
         (!points || !points->color_count || !points->opacity_count))
-        SNOW_TRY(snow_transfer_builder_automatic(
-            histogram, look->range == SNOW_RANGE_AUTO, builder));
-    snow_transfer_builder_round(builder);
+        SNOW_TRY(snow_transfer_builder_automatic(histogram, look, builder));
+    if (!builder->around_0) /* whose reach is round */
+        snow_transfer_builder_round(builder);
     if (!points)
         return SNOW_STATUS_OK;
     builder->reason = !look->base  ? look->preset
                       : look->name ? look->name
                                    : "from the file";
     builder->preset = NULL;
+    builder->colormap = points->color_count ? NULL : builder->colormap;
     double low = builder->low, high = builder->high;
     SNOW_TRY(snow_transfer_builder_points(points, histogram, builder));
     builder->unshaded = builder->unshaded && !points->opacity_count;
@@ -241,8 +248,8 @@ static snow_status fill_builder(const snow_histogram *histogram,
     /* Colours without values and opacities use the range of the histogram. */
     if (!points->opacity_count && points->domain != SNOW_DOMAIN_DATA) {
         for (size_t i = 0; i < builder->color_count; i++)
-            builder->colors[i].value = snow_between_on(builder->log, low, high,
-                                                       points->colors[i].value);
+            builder->colors[i].value = snow_between_on(
+                builder->scale, low, high, points->colors[i].value);
         builder->low = low;
         builder->high = high;
     }
@@ -268,92 +275,48 @@ static snow_status build_look(const snow_histogram *histogram,
         double low, high;
         bool data = points && points->domain == SNOW_DOMAIN_DATA;
         SNOW_TRY(resolve_range(histogram, look, &low, &high, builder));
-        if (builder->log && !(low > 0))
+        if (builder->scale.log && !(low > 0))
             return snow_fail(histogram->volume->context, SNOW_STATUS_BAD_USAGE,
                              "a range from %g has no logarithm; begin above 0",
                              low);
-        stretch(builder, data ? points->log : builder->log, low, high);
+        stretch(builder, data ? (snow_scale){points->log, 0} : builder->scale,
+                low, high);
     }
     snow_transfer_builder_shift(builder, look->shift);
-    if (look->colormap)
-        snow_transfer_builder_colormap(builder,
-                                       snow_colormap_from_name(look->colormap),
+    const char *map = look->colormap ? look->colormap : builder->colormap;
+    if (map)
+        snow_transfer_builder_colormap(builder, snow_colormap_from_name(map),
                                        builder->low, builder->high);
     keep_rising(builder);
     return SNOW_STATUS_OK;
 }
 
-/* The source of the look: only what was not requested was chosen. */
-static void set_reason(const snow_transfer_builder *builder,
-                       const snow_look *look, char *text, size_t room) {
-    bool all_asked =
-        look->opacities && look->range != SNOW_RANGE_AUTO && !look->preset;
-    char shift[40] = "";
-    if (look->shift < 0 || look->shift > 0)
-        snprintf(shift, sizeof shift, " shifted by %.9g", look->shift);
-    snprintf(text, room, " (%s%s%s%s)",
-             all_asked ? "as requested" : builder->reason, shift,
-             builder->range_note,
-             look->opacities && !all_asked ? "; opacities as requested" : "");
-}
-
-/* Writes a value so that reading it gives the same, if twelve digits do; then
- * it was chosen or given.  Others are rounded. */
-static const char *spell(double value, char text[40]) {
-    for (int digits = 5; digits <= 12; digits++) {
-        snprintf(text, 40, "%.*g", digits, value);
-        double again = strtod(text, NULL);
-        if (again <= value && again >= value)
-            return text;
-    }
-    snprintf(text, 40, "%.5g", value);
-    return text;
-}
-
-/* "grey 72..213; opacity 0 at 72, 0.4 at 213 (from the histogram)" */
-static void describe_look(snow_transfer *transfer,
-                          const snow_transfer_builder *builder,
-                          const snow_look *look) {
-    char text[SNOW_TRANSFER_TEXT_BYTES / 2]; /* the rest is for the gradients */
-    size_t room = sizeof text, used;
-    char low[40], value[40], opacity[40];
-    snprintf(text, room, "%.64s %s..%s%s; opacity", builder->name,
-             spell(builder->low, low), spell(builder->high, value),
-             builder->log ? " logarithmic" : "");
-    for (size_t i = 0; i < transfer->opacity_count; i++) {
-        used = strlen(text);
-        /* The end is reserved for the reason. */
-        if (used + 120 > room) {
-            snprintf(text + used, room - used, ", ...");
-            break;
-        }
-        snprintf(text + used, room - used, "%s %s at %s", i ? "," : "",
-                 spell(transfer->opacities[i].opacity, opacity),
-                 spell(transfer->opacities[i].value, value));
-    }
-    used = strlen(text);
-    set_reason(builder, look, text + used, room - used);
-    snow_transfer_describe(transfer, text);
-}
-
 /* The same on all ranks, except for errors of memory. */
 static snow_status build(const snow_volume *volume,
-                         const snow_transfer_builder *builder,
-                         const snow_look *look, snow_transfer **out) {
+                         snow_transfer_builder *builder, const snow_look *look,
+                         snow_transfer **out) {
     snow_transfer *transfer;
+    const bool given = look->opacities && !builder->labels;
     SNOW_TRY(snow_transfer_new(
         volume->context, builder->colors, builder->color_count,
-        look->opacities ? look->opacities : builder->opacities,
-        look->opacities ? look->opacity_count : builder->opacity_count,
-        &transfer));
-    describe_look(transfer, builder, look);
+        given ? look->opacities : builder->opacities,
+        given ? look->opacity_count : builder->opacity_count, &transfer));
+    snow_status refined = snow_transfer_refine(transfer, builder->scale.linear);
+    if (refined != SNOW_STATUS_OK) {
+        snow_transfer_free(transfer);
+        return refined;
+    }
+    transfer->labels = builder->labels;
+    transfer->label_count = builder->label_count;
+    snow_transfer_builder_describe(builder, look, transfer);
+    builder->labels = NULL;
     bool own = look->gradient_opacities != NULL;
     snow_status status = snow_transfer_set_gradient_opacity(
         transfer, own ? look->gradient_opacities : builder->gradients,
         own ? look->gradient_opacity_count : builder->gradient_count);
     transfer->unshaded = builder->unshaded && !look->opacities;
     transfer->preset = builder->preset;
-    if (status == SNOW_STATUS_OK && builder->log)
+    if (status == SNOW_STATUS_OK && builder->scale.log)
         status = snow_transfer_set_log(transfer);
     if (status != SNOW_STATUS_OK) {
         snow_transfer_free(transfer);
@@ -363,15 +326,27 @@ static snow_status build(const snow_volume *volume,
     return SNOW_STATUS_OK;
 }
 
-bool snow_look_has_gradient_opacity(const snow_look *look) {
-    if (!look || look->gradient_opacities)
-        return look != NULL;
+static bool has_gradient_opacity(const snow_look *look) {
+    if (look->gradient_opacities)
+        return true;
     if (look->preset && snow_preset_from_name(look->preset) < 0)
         return false;
     snow_look base;
     return SNOW_RECORD_READ(NULL, snow_look, points_of(look), &base) ==
                SNOW_STATUS_OK &&
            base.gradient_opacity_count > 0;
+}
+
+/* Colours with steps are of labels; `info` NULL: none are. */
+int snow_look_slopes(const snow_look *look, const snow_volume_info *info) {
+    bool asked = snow_look_is_of_labels(look);
+    bool labels = asked || look->base || look->colors || look->colormap ||
+                  (!look->preset && snow_look_is_free(look));
+    return (has_gradient_opacity(look) ? SNOW_SLOPES_FADE : 0) |
+           (labels && info &&
+                    (asked || info->whole || info->type < SNOW_TYPE_FLOAT32)
+                ? SNOW_SLOPES_WIDE
+                : 0);
 }
 
 /* A look, and the points that stand for a preset. */
@@ -402,7 +377,7 @@ static snow_status read_look(snow_context *context, const snow_look *given,
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "a look has two sources of colours; give only one of "
                          "colors, base and preset");
-    if (look->domain < SNOW_DOMAIN_DATA || look->domain > SNOW_DOMAIN_OBJECT)
+    if (look->domain < SNOW_DOMAIN_DATA || look->domain > SNOW_DOMAIN_SYMMETRIC)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "domain %d is out of range; take a value of "
                          "snow_domain",
@@ -428,20 +403,22 @@ static snow_status make_among(snow_comm *comm, const snow_volume *volume,
         status = check_look(volume->context, look);
     if (status == SNOW_STATUS_OK)
         status = begin_builder(volume->context, look, &builder);
-    if (comm && status == SNOW_STATUS_OK)
-        status = snow_volume_need_voxels(volume);
+    if (comm && status == SNOW_STATUS_OK && !volume->is_part)
+        status = snow_volume_need_voxels(volume); /* all parts are alike */
     if (comm)
         status = snow_comm_agree_status(comm, status);
     if (status == SNOW_STATUS_OK)
-        status = snow_histogram_new(volume, comm, builder.log,
+        status = snow_histogram_new(volume, comm, builder.scale,
                                     need_of(volume, look), &histogram);
     if (status == SNOW_STATUS_OK) {
+        snow_transfer_builder_symlog(&histogram, look, &builder);
         status = build_look(&histogram, look, &builder);
         snow_histogram_free(&histogram);
         if (status == SNOW_STATUS_OK)
             status = build(volume, &builder, look, &transfer);
     }
     snow_release(volume->context, builder.block);
+    snow_release(volume->context, builder.labels);
     if (comm)
         status = snow_comm_agree_status(comm, status);
     if (status != SNOW_STATUS_OK) {
@@ -452,8 +429,7 @@ static snow_status make_among(snow_comm *comm, const snow_volume *volume,
     return SNOW_STATUS_OK;
 }
 
-/* Slabs of a file are read for it. */
-/* For one volume if the communicator is NULL. */
+/* Of one volume without a communicator; slabs of a file are read for it. */
 snow_status snow_ranks_new_transfer(snow_comm *comm, const snow_volume *volume,
                                     const snow_look *look,
                                     snow_transfer **out) {

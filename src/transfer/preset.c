@@ -255,6 +255,20 @@ typedef struct preset_row {
 #define SHARES(name, text, word, spread, colors, opacities) \
     { name, text, LOOK(word, spread, colors, opacities, NULL, 0) }
 
+/* --- simulations ---------------------------------------------------------- */
+
+/* The map cool-warm.  Nothing at 0; both signs alike. */
+static const color signed_colors[] = {
+    {0, 0.230, 0.299, 0.754},    {0.125, 0.384, 0.510, 0.918},
+    {0.25, 0.555, 0.690, 0.996}, {0.375, 0.722, 0.816, 0.976},
+    {0.5, 0.865, 0.865, 0.865},  {0.625, 0.957, 0.769, 0.678},
+    {0.75, 0.957, 0.604, 0.482}, {0.875, 0.871, 0.376, 0.302},
+    {1, 0.706, 0.016, 0.150},
+};
+static const opacity signed_opacities[] = {
+    {0, 0.7},  {0.25, 0.12},  {0.38, 0.012}, {0.45, 0},
+    {0.55, 0}, {0.62, 0.012}, {0.75, 0.12},  {1, 0.7}};
+
 /* clang-format off */
 static const preset_row presets[] = {
     SHARES("linear", "grey and opacity 0 to 1 over the range, as in the paper",
@@ -311,6 +325,10 @@ static const preset_row presets[] = {
            SNOW_DOMAIN_OBJECT, t2_colors, t2_opacities),
     SHARES("dti-fa-brain", "fractional anisotropy: tracts", "tracts",
            SNOW_DOMAIN_RANGE, fa_colors, fa_opacities),
+    SHARES("signed", "fields of both signs, symmetric around 0", "cool-warm",
+           SNOW_DOMAIN_SYMMETRIC, signed_colors, signed_opacities),
+    {"labels", "a colour for each whole number, as of a segmentation",
+     {.size = sizeof(snow_look), .name = "labels"}},
 };
 /* clang-format on */
 

@@ -91,8 +91,8 @@ static snow_status select_digits(const snow_histogram *histogram,
     for (int shift = 64 - SNOW_DIGIT_BITS; shift >= 0;
          shift -= SNOW_DIGIT_BITS) {
         memset(counts, 0, count * SNOW_DIGITS * sizeof *counts);
-        digit_count d = {histogram->log, histogram_mode, searches,
-                         count,          shift,          0};
+        digit_count d = {
+            histogram->scale.log, histogram_mode, searches, count, shift, 0};
         SNOW_TRY(
             snow_histogram_visit(histogram, histogram_mode, count_digits, &d));
         SNOW_TRY(snow_histogram_sum(histogram, &d.all, 1));

@@ -65,7 +65,7 @@ uint64_t snow_stored_values_nth(const snow_histogram *histogram, int n,
     int place = info->slope < 0 ? SNOW_DIGITS - 1 - n : n;
     *value =
         info->slope * (place + snow_type_lowest(info->type)) + info->intercept;
-    return histogram->log && !(*value > 0) ? 0 : histogram->counts[place];
+    return histogram->scale.log && !(*value > 0) ? 0 : histogram->counts[place];
 }
 
 static void measure_counts(snow_histogram *histogram) {
@@ -81,6 +81,9 @@ static void measure_counts(snow_histogram *histogram) {
         histogram->max = value;
         histogram->finite += count;
     }
+    for (int n = 0; n < SNOW_DIGITS && histogram->scale.log; n++)
+        histogram->dropped += histogram->counts[n];
+    histogram->dropped -= histogram->scale.log ? histogram->finite : 0;
 }
 
 snow_status snow_stored_values_count(snow_histogram *histogram) {
@@ -161,6 +164,6 @@ snow_status snow_stored_values_range(snow_histogram *histogram, bool *found) {
     histogram->min = low < high ? low : high;
     histogram->max = low < high ? high : low;
     histogram->finite = 1;
-    *found = !histogram->log || histogram->min > 0;
+    *found = !histogram->scale.log || histogram->min > 0;
     return SNOW_STATUS_OK;
 }

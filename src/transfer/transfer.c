@@ -104,6 +104,7 @@ void snow_transfer_free(snow_transfer *transfer) {
     snow_release(transfer->context, transfer->colors);
     snow_release(transfer->context, transfer->opacities);
     snow_release(transfer->context, transfer->gradients);
+    snow_release(transfer->context, transfer->labels);
     snow_release(transfer->context, transfer);
 }
 
@@ -172,6 +173,7 @@ snow_status snow_transfer_get_look(const snow_transfer *transfer,
         .size = sizeof look,
         .name = transfer->preset,
         .log = transfer->log,
+        .symlog = transfer->linear,
         .colors = transfer->colors,
         .color_count = transfer->color_count,
         .opacities = transfer->opacities,
@@ -204,4 +206,9 @@ bool snow_transfer_is_unshaded(const snow_transfer *transfer) {
 
 bool snow_transfer_is_log(const snow_transfer *transfer) {
     return transfer->log;
+}
+
+const snow_label *snow_transfer_label(const snow_transfer *transfer,
+                                      size_t index) {
+    return index < transfer->label_count ? &transfer->labels[index] : NULL;
 }

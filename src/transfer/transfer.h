@@ -16,9 +16,12 @@ struct snow_transfer {
     size_t opacity_count;
     const char *preset; /* that was chosen for a volume; NULL: none */
     bool unshaded;      /* made for pictures without shading */
-    bool log; /* interpolated in the logarithm of values, all above 0 */
-    snow_opacity_point *gradients;       /* factors by gradient magnitude */
-    size_t gradient_count;               /* 0: no gradient opacity */
+    bool log;      /* interpolated in the logarithm of values, all above 0 */
+    double linear; /* above 0: points follow a symmetric logarithm (scale.h) */
+    snow_opacity_point *gradients; /* factors by gradient magnitude */
+    size_t gradient_count;         /* 0: no gradient opacity */
+    snow_label *labels;            /* whose colours these are, or NULL */
+    size_t label_count;
     bool grey;                           /* red = green = blue everywhere */
     char text[SNOW_TRANSFER_TEXT_BYTES]; /* a description for people: */
     size_t
@@ -35,6 +38,10 @@ void snow_transfer_color(const snow_transfer *transfer, double value,
  * text. */
 void snow_transfer_describe(snow_transfer *transfer, const char *chosen);
 
+/* Adds points, so that straight lines between them follow a symmetric logarithm
+ * from `linear` on; 0: none.  Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_transfer_refine(snow_transfer *transfer, double linear);
+
 /* Both, for a value that is not NaN, equal to snow_transfer_evaluate, but
  * faster for values in order.  The hint begins as zeros and is passed on. */
 typedef struct snow_transfer_hint {
@@ -50,7 +57,15 @@ double snow_part_of_decades(double value, double a, double b);
 
 /* Whether values are labels: whole numbers that are shown in colours of
  * categories, without any in between. */
-bool snow_transfer_has_labels(const snow_transfer *transfer, snow_type type);
+bool snow_transfer_has_labels(const snow_transfer *transfer,
+                              const snow_volume_info *info);
+
+/* What gradients a picture wants besides those of shading; and of labels, which
+ * are smooth and look farther. */
+#define SNOW_SLOPES_FADE 1
+#define SNOW_SLOPES_WIDE 2
+int snow_transfer_slopes(const snow_transfer *transfer,
+                         const snow_volume_info *info);
 
 /* So that rounding never decides whether a voxel is above the threshold. */
 #define SNOW_THRESHOLD_MARGIN 0.0001

@@ -61,8 +61,10 @@ size_t snow_voxel_walk_next_block(snow_voxel_walk *w,
     snow_volume_stored(w->volume, first, count, values);
     for (size_t i = 0; i < count; i++)
         values[i] = info->slope * values[i] + info->intercept;
-    for (size_t i = 0; i < count && w->log; i++)
+    for (size_t i = 0; i < count && w->log; i++) {
+        w->dropped += values[i] <= 0;
         values[i] = values[i] > 0 ? values[i] : (double)NAN;
+    }
     return count;
 }
 
@@ -72,7 +74,11 @@ snow_status snow_histogram_visit(const snow_histogram *histogram,
     static const snow_slab_cut cut = {0};
     if (histogram_mode == SNOW_HISTOGRAM_SAMPLED && histogram->sample)
         return visit(histogram->sample, user);
-    return snow_slabs_visit(histogram->volume, &cut, visit, user);
+    const snow_status status =
+        snow_slabs_visit(histogram->volume, &cut, visit, user);
+    return histogram->comm && histogram->volume->stream
+               ? snow_comm_agree_status(histogram->comm, status)
+               : status;
 }
 
 snow_status snow_histogram_sum(const snow_histogram *histogram,

@@ -22,7 +22,8 @@ typedef struct snow_voxel_walk {
     int64_t runs, run; /* number of runs; index of the next one */
     uint64_t at, end;  /* of the current run: voxels of the whole volume */
     int64_t ahead; /* from a voxel of the whole volume to its place in memory */
-    uint64_t stride; /* distance of sampled blocks in the whole volume */
+    uint64_t dropped; /* values that became NaN */
+    uint64_t stride;  /* distance of sampled blocks in the whole volume */
 } snow_voxel_walk;
 
 snow_voxel_walk snow_voxel_walk_begin(const snow_volume *volume, bool log,
@@ -42,8 +43,8 @@ size_t snow_voxel_walk_next_block(snow_voxel_walk *walk,
                                   double values[SNOW_WALK_BLOCK]);
 
 /* Makes one pass over all slabs of a volume, each with a walk of its own, or
- * over the sample.  Many ranks have their voxels in memory, where it cannot
- * fail. */
+ * over the sample.  Ranks whose voxels stay in their file agree on the
+ * status; in memory it cannot fail. */
 snow_status snow_histogram_visit(const snow_histogram *histogram,
                                  snow_histogram_mode histogram_mode,
                                  snow_slab_fn *visit, void *user);

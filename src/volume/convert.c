@@ -196,6 +196,13 @@ snow_status snow_volume_convert(const snow_volume *volume, snow_type type,
         return refuse(volume, &c);
     }
     report(volume, &c, range);
-    *out = made;
-    return SNOW_STATUS_OK;
+    snow_status status =
+        volume->labelled && !range
+            ? snow_volume_set_labels(made, volume->labels, volume->label_count)
+            : SNOW_STATUS_OK;
+    if (status == SNOW_STATUS_OK)
+        *out = made;
+    else
+        snow_volume_close(made);
+    return status;
 }

@@ -47,7 +47,7 @@ static bool read_range(const char **text, snow_label_range *out) {
     if (!read_label(text, &range.first))
         return false;
     range.last = range.first;
-    if (**text == '-') {
+    if (**text == '-' || **text == ':') {
         (*text)++;
         if (!read_label(text, &range.last) || range.last < range.first)
             return false;
@@ -98,11 +98,10 @@ static void place_of(const snow_volume_info *info, const int64_t at[3],
     }
 }
 
-/* The corner of the grid at which two matrices differ most, and by how much. */
+/* How far apart two matrices put a corner of the grid, at most. */
 static double find_difference(const snow_volume_info *a,
-                              const snow_volume_info *b, int64_t corner[3]) {
+                              const snow_volume_info *b) {
     double most = 0;
-    memset(corner, 0, 3 * sizeof *corner);
     for (int n = 0; n < 8; n++) {
         int64_t at[3];
         double p[3], q[3], off = 0;
@@ -112,48 +111,33 @@ static double find_difference(const snow_volume_info *a,
         place_of(b, at, q);
         for (int row = 0; row < 3; row++)
             off += (p[row] - q[row]) * (p[row] - q[row]);
-        if (off > most) {
-            most = off;
-            memcpy(corner, at, sizeof at);
-        }
+        most = fmax(most, off);
     }
     return sqrt(most);
 }
 
 /* Worlds of patients and others cannot be compared. */
-static snow_status check_place(snow_context *context,
+snow_status snow_grids_compare(snow_context *context,
                                const snow_volume_info *volume,
-                               const snow_volume_info *mask) {
-    int64_t at[3] = {0, 0, 0};
-    double p[3], q[3];
+                               const snow_volume_info *other, const char *what,
+                               bool *same) {
+    const int64_t *v = volume->dims, *m = other->dims;
     const double *spacing = volume->spacing;
     double least = fmin(fmin(spacing[0], spacing[1]), spacing[2]);
-    if (!has_place(volume) || !has_place(mask) ||
-        volume->medical != mask->medical ||
-        find_difference(volume, mask, at) <= PLACE_TOLERANCE * least)
+    bool placed = has_place(volume) && has_place(other) &&
+                  volume->medical == other->medical;
+    *same =
+        memcmp(v, m, sizeof volume->dims) == 0 &&
+        (!placed || find_difference(volume, other) <= PLACE_TOLERANCE * least);
+    if (*same || placed)
         return SNOW_STATUS_OK;
-    place_of(volume, at, p);
-    place_of(mask, at, q);
-    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                     "the mask has another position: its voxel %lld,%lld,%lld "
-                     "is at %g,%g,%g in the world, the volume's at %g,%g,%g; "
-                     "resample it onto the volume's grid",
-                     (long long)at[0], (long long)at[1], (long long)at[2], q[0],
-                     q[1], q[2], p[0], p[1], p[2]);
-}
-
-snow_status snow_mask_check_grid(snow_context *context,
-                                 const snow_volume_info *volume,
-                                 const snow_volume_info *mask) {
-    const int64_t *v = volume->dims, *m = mask->dims;
-    if (memcmp(v, m, sizeof volume->dims) != 0)
-        return snow_fail(
-            context, SNOW_STATUS_BAD_INPUT,
-            "the mask has %lldx%lldx%lld voxels, the volume %lldx%lldx%lld; "
-            "resample the mask onto the volume's grid",
-            (long long)m[0], (long long)m[1], (long long)m[2], (long long)v[0],
-            (long long)v[1], (long long)v[2]);
-    return check_place(context, volume, mask);
+    return snow_fail(
+        context, SNOW_STATUS_BAD_INPUT,
+        "the %s has %lldx%lldx%lld voxels, the volume %lldx%lldx%lld, and not "
+        "both have a place in one world; resample the %s onto the volume's "
+        "grid",
+        what, (long long)m[0], (long long)m[1], (long long)m[2],
+        (long long)v[0], (long long)v[1], (long long)v[2], what);
 }
 
 /* --- voxels --------------------------------------------------------------- */
@@ -166,6 +150,7 @@ snow_type snow_masked_type(snow_type type) {
 
 void snow_mask_info(snow_volume_info *info) {
     info->eight_bits |= snow_type_size(info->type) == 1;
+    info->whole |= info->type < SNOW_TYPE_FLOAT32;
     info->type = snow_masked_type(info->type);
 }
 
@@ -251,6 +236,39 @@ static snow_status leave_out(const snow_volume *volume, const snow_cuts *by,
     return SNOW_STATUS_OK;
 }
 
+snow_status snow_labels_check(snow_context *context,
+                              const snow_volume_info *info) {
+    if (info->type < SNOW_TYPE_FLOAT32 && info->slope == 1 &&
+        info->intercept == 0)
+        return SNOW_STATUS_OK;
+    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                     "--labels: picks whole numbers, and these values are %s; "
+                     "give --mask FILE beside it, or convert the volume",
+                     info->type < SNOW_TYPE_FLOAT32 ? "scaled" : "fractions");
+}
+
+bool snow_labels_pick(snow_volume *volume, const snow_label_range *labels,
+                      size_t count) {
+    const size_t size = snow_type_size(volume->info.type);
+    const int64_t *dims = volume->info.dims;
+    const int64_t all = dims[0] * dims[1] * dims[2];
+    inside in = {.labels = labels, .count = count, .last = NAN};
+    double values[BLOCK];
+    bool any = false;
+    for (int64_t first = 0; first < all; first += BLOCK) {
+        size_t many = all - first < BLOCK ? (size_t)(all - first) : BLOCK;
+        snow_volume_stored(volume, first, many, values);
+        for (size_t i = 0; i < many; i++)
+            if (is_inside(&in, values[i]))
+                any = true;
+            else
+                memset((char *)volume->owned + ((size_t)first + i) * size, 0,
+                       size);
+    }
+    volume->labelled = true;
+    return any;
+}
+
 snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
                             bool *any, snow_volume **out) {
     inside in = {.labels = by->labels, .count = by->label_count, .last = NAN};
@@ -265,8 +283,12 @@ snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
     memcpy(made->origin, volume->origin, sizeof made->origin);
     memcpy(made->patient, volume->patient, sizeof made->patient);
     snow_status status =
-        snow_clip_planes_new(volume->context, &info, volume->clip, by->planes,
-                             by->plane_count, &made->clip);
+        volume->labelled
+            ? snow_volume_set_labels(made, volume->labels, volume->label_count)
+            : SNOW_STATUS_OK;
+    if (status == SNOW_STATUS_OK)
+        status = snow_clip_planes_new(volume->context, &info, volume->clip,
+                                      by->planes, by->plane_count, &made->clip);
     if (status == SNOW_STATUS_OK)
         status = leave_out(volume, by, &in, made, any);
     if (status == SNOW_STATUS_OK)
@@ -292,10 +314,14 @@ snow_status snow_volume_mask(const snow_volume *volume, const snow_volume *mask,
         .keeps_clipped = !volume->is_part,
     };
     bool any;
+    snow_volume *fitted;
+    snow_cuts fitting = by;
     SNOW_TRY(snow_volume_need_voxels(volume));
-    SNOW_TRY(snow_volume_need_voxels(mask));
-    SNOW_TRY(snow_mask_check_grid(volume->context, &volume->info, &mask->info));
-    return snow_mask_apply(volume, &by, &any, out);
+    SNOW_TRY(snow_volume_resample(mask, volume, true, "mask", &fitted));
+    fitting.mask = fitted ? fitted : mask;
+    snow_status status = snow_mask_apply(volume, &fitting, &any, out);
+    snow_volume_close(fitted);
+    return status;
 }
 
 snow_status snow_volume_clip(const snow_volume *volume, const double *planes,

@@ -22,11 +22,13 @@ snow_type snow_masked_type(snow_type type);
 /* Gives a volume that type. */
 void snow_mask_info(snow_volume_info *info);
 
-/* Whether mask and volume have the same voxels.  Errors: SNOW_STATUS_BAD_INPUT
- * (other sizes, another place). */
-snow_status snow_mask_check_grid(snow_context *context,
-                                 const snow_volume_info *volume,
-                                 const snow_volume_info *mask);
+/* Whether a volume's values can be picked as labels; makes voxels of other
+ * labels 0: whether any are left.  Errors: SNOW_STATUS_BAD_USAGE (fractions).
+ */
+snow_status snow_labels_check(snow_context *context,
+                              const snow_volume_info *info);
+bool snow_labels_pick(snow_volume *volume, const snow_label_range *labels,
+                      size_t count);
 
 /* The volume without what is cut off; *any: whether a voxel is left. */
 snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,

@@ -11,7 +11,6 @@
 #ifndef SNOW_VOLUME_REGION_H
 #define SNOW_VOLUME_REGION_H
 
-#include "base/base.h"
 #include "io/source.h"
 
 #include <snowglass/volume.h>

@@ -4,7 +4,6 @@
  * per scalar type.  What follows sees data values (after slope and intercept)
  * in storage order, so that sums have one order of additions on all machines.
  */
-#include "base/monitor.h"
 #include "volume/stream.h"
 
 #include <math.h>

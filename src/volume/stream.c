@@ -6,7 +6,7 @@
  * file that was replaced in between is noticed by its sizes at the latest. */
 #include "volume/stream_internal.h"
 
-#include "base/monitor.h"
+#include "base/fingerprint.h"
 #include "io/source.h"
 #include "volume/mask.h"
 
@@ -29,14 +29,14 @@ static void warn_once(void *user, const char *text) {
         stream->warning(stream->warning_user, text);
 }
 
-/* Begins and ends telling through warn_once. */
-static void listen_once(snow_context *context, snow_stream *stream) {
+void snow_stream_listen(snow_context *context, snow_stream *stream) {
     stream->warning = context->warning;
     stream->warning_user = context->warning_user;
     snow_context_set_warning(context, warn_once, stream);
 }
 
-static void listen_again(snow_context *context, const snow_stream *stream) {
+void snow_stream_listen_no_more(snow_context *context,
+                                const snow_stream *stream) {
     snow_context_set_warning(context, stream->warning, stream->warning_user);
 }
 
@@ -61,7 +61,8 @@ static snow_status new_stream(snow_context *context, const char *path,
     size_t bytes = sizeof **out + text_bytes(path) +
                    text_bytes(options->dataset) + text_bytes(options->series) +
                    text_bytes(options->component) + text_bytes(options->mask) +
-                   text_bytes(options->labels);
+                   text_bytes(options->labels) +
+                   text_bytes(options->label_table);
     snow_stream *stream = snow_allocate_clear(context, bytes);
     if (!stream)
         return SNOW_STATUS_NO_MEMORY;
@@ -72,6 +73,7 @@ static snow_status new_stream(snow_context *context, const char *path,
     stream->options.component = keep(options->component, &at);
     stream->options.mask = keep(options->mask, &at);
     stream->options.labels = keep(options->labels, &at);
+    stream->options.label_table = keep(options->label_table, &at);
     stream->path = at;
     keep(path, &at);
     stream->slab_bytes = slab_bytes ? slab_bytes : SNOW_SLAB_BYTES;
@@ -93,9 +95,9 @@ snow_status snow_stream_open(snow_context *context, const char *path,
                          "several times; copy it to a file",
                          strcmp(path, "-") ? path : "standard input");
     SNOW_TRY(new_stream(context, path, &known, slab_bytes, &stream));
-    listen_once(context, stream);
+    snow_stream_listen(context, stream);
     snow_status status = open(context, path, &known, &info, NULL);
-    listen_again(context, stream);
+    snow_stream_listen_no_more(context, stream);
     snow_volume *volume = NULL;
     if (status == SNOW_STATUS_OK) {
         volume = snow_allocate_clear(context, sizeof *volume);
@@ -108,11 +110,34 @@ snow_status snow_stream_open(snow_context *context, const char *path,
     volume->context = context;
     volume->info = info;
     stream->open = open;
+    stream->print = snow_fingerprint_of(path).hash;
     volume->stream = stream;
     volume->path = stream->path;
     snow_volume_freeze(volume);
     *out = volume;
     return SNOW_STATUS_OK;
+}
+
+snow_status snow_stream_open_part(const snow_volume *volume,
+                                  const snow_extent *part,
+                                  const int64_t stored[3], snow_volume **out) {
+    const snow_stream *stream = volume->stream;
+    snow_volume_options options = stream->options;
+    snow_volume_info whole;
+    snow_volume *opened;
+    snow_extent from;
+    snow_volume_find_extent(volume, &from);
+    snow_volume_whole(volume, &whole);
+    for (int i = 0; i < 3; i++) {
+        options.crop[i][0] += part->stored[i] - from.stored[i];
+        options.crop[i][1] = options.crop[i][0] + stored[i];
+    }
+    SNOW_TRY(snow_stream_open(volume->context, stream->path, &options,
+                              stream->slab_bytes, stream->open, &opened));
+    opened->part = *part;
+    opened->is_part = true;
+    *out = opened;
+    return snow_volume_set_whole(opened, &whole);
 }
 
 double snow_volume_read_seconds(const snow_volume *volume) {
@@ -126,7 +151,7 @@ snow_status snow_stream_open_slab(snow_context *context, snow_stream *stream,
                                   bool clipped, snow_volume **out) {
     snow_volume_info info;
     double begin = snow_seconds();
-    listen_once(context, stream);
+    snow_stream_listen(context, stream);
     /* A remark on what a mask or plane leaves does not hold for the volume. */
     if (snow_mask_asked(options))
         snow_context_set_warning(context, NULL, NULL);
@@ -134,7 +159,7 @@ snow_status snow_stream_open_slab(snow_context *context, snow_stream *stream,
     snow_status status =
         stream->open(context, stream->path, options, &info, out);
     context->leaves_clipped = false;
-    listen_again(context, stream);
+    snow_stream_listen_no_more(context, stream);
     stream->seconds += snow_seconds() - begin;
     return status;
 }

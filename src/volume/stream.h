@@ -26,6 +26,12 @@ snow_status snow_stream_open(snow_context *context, const char *path,
                              uint64_t slab_bytes, snow_open_fn *open,
                              snow_volume **out);
 
+/* Makes a volume in its file that of a box of the same file, which is a part of
+ * the whole: its slabs are parts of that.  Errors: of snow_stream_open. */
+snow_status snow_stream_open_part(const snow_volume *volume,
+                                  const snow_extent *part,
+                                  const int64_t stored[3], snow_volume **out);
+
 /* What was kept of a slab (snow_slabs_keep), which stores so many slices with
  * its ghosts: the record that is handed out again, without its voxels; NULL:
  * the slab is read. */
@@ -49,6 +55,7 @@ typedef struct snow_slab_cut {
 typedef struct snow_slabs {
     const snow_volume *volume;
     snow_slab_cut cut;
+    int64_t slices;         /* of all slabs */
     int64_t count, nearest; /* slices of a slab; the first that is read */
     int64_t next;           /* the next slab's first slice */
     bool begun, falls;

@@ -21,6 +21,7 @@ struct snow_stream {
     bool measured;               /* `range` is known */
     snow_volume_statistics range;
     char *path;
+    int64_t print; /* of the file (base/fingerprint.h) */
     /* Warnings of reading, each of which is given once: a hash of each. */
     snow_warning_fn *warning;
     void *warning_user;
@@ -30,6 +31,11 @@ struct snow_stream {
 
 /* Without a wish: small beside any memory, and long enough to be read fast. */
 #define SNOW_SLAB_BYTES ((uint64_t)64 << 20)
+
+/* Begins and ends telling each remark once. */
+void snow_stream_listen(snow_context *context, snow_stream *stream);
+void snow_stream_listen_no_more(snow_context *context,
+                                const snow_stream *stream);
 
 /* The box of the file that the options ask for; `clipped`: with the values next
  * to clip planes.  Errors: those of snow_volume_open. */

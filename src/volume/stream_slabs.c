@@ -1,7 +1,6 @@
 /* volume/stream_slabs.c - the walk over the slabs of a volume (stream.h). */
 #include "volume/stream_internal.h"
 
-#include "base/monitor.h"
 #include "volume/mask.h"
 
 #include <math.h>
@@ -33,18 +32,27 @@ static uint64_t slab_room(const snow_volume *volume, int64_t made) {
     return room < most ? room : most;
 }
 
+/* The slices that are walked over: a volume's own, or one of a part that has
+ * none, which makes no sample. */
+static int64_t own_slices(const snow_extent *own) {
+    return own->count[2] > 0 ? own->count[2] : 1;
+}
+
 /* Slices of a slab, without its ghosts. */
 static int64_t slab_slices(const snow_volume *volume,
                            const snow_slab_cut *cut) {
     const int64_t *dims = volume->info.dims;
+    snow_extent own;
     if (cut->slices)
         return cut->slices;
+    snow_volume_find_extent(volume, &own);
     uint64_t slice = (uint64_t)(dims[0] * dims[1]) *
                      (uint64_t)snow_type_size(volume->info.type);
     uint64_t room = slab_room(volume, cut->made) / slice;
     uint64_t around = 2 * (uint64_t)cut->ghosts;
     uint64_t slices = room > around ? room - around : 1;
-    return slices < (uint64_t)dims[2] ? (int64_t)slices : dims[2];
+    return slices < (uint64_t)own_slices(&own) ? (int64_t)slices
+                                               : own_slices(&own);
 }
 
 uint64_t snow_slab_bytes(const snow_volume *volume, const snow_slab_cut *cut) {
@@ -72,22 +80,28 @@ static snow_status compare(const snow_volume *volume, const snow_volume *slab,
                      volume->stream->path, (long long)part->stored[2]);
 }
 
-/* Slices first .. first + count - 1 of a volume; from its first ghost on. */
+/* Own slices first .. first + count - 1 of a volume; from its first ghost on.
+ */
 static snow_extent part_of(const snow_volume *volume, int64_t ghosts,
                            int64_t first, int64_t count) {
-    const int64_t *dims = volume->info.dims;
-    int64_t from = first > ghosts ? first - ghosts : 0;
-    return (snow_extent){.size = sizeof(snow_extent),
-                         .dims = {dims[0], dims[1], dims[2]},
-                         .stored = {0, 0, from},
-                         .first = {0, 0, first},
-                         .count = {dims[0], dims[1], count}};
+    snow_extent part;
+    snow_volume_find_extent(volume, &part);
+    const int64_t begin = part.first[2] + first;
+    if (begin - ghosts > part.stored[2])
+        part.stored[2] = begin - ghosts;
+    part.first[2] = begin;
+    part.count[2] = count;
+    return part;
 }
 
 /* Its slices, with ghosts on both sides. */
-static int64_t stored_slices(const snow_extent *part, int64_t ghosts) {
+static int64_t stored_slices(const snow_volume *volume, const snow_extent *part,
+                             int64_t ghosts) {
+    snow_extent all;
+    snow_volume_find_extent(volume, &all);
     int64_t end = part->first[2] + part->count[2] + ghosts;
-    return (end < part->dims[2] ? end : part->dims[2]) - part->stored[2];
+    int64_t last = all.stored[2] + volume->info.dims[2];
+    return (end < last ? end : last) - part->stored[2];
 }
 
 /* A slab with its ghosts, as a part of the volume. */
@@ -95,9 +109,13 @@ static snow_status read_slab(const snow_volume *volume,
                              const snow_slab_cut *cut, const snow_extent *part,
                              snow_volume **out) {
     snow_context *context = volume->context;
-    int64_t slices = stored_slices(part, cut->ghosts);
+    int64_t slices = stored_slices(volume, part, cut->ghosts);
     snow_volume_options options = volume->stream->options;
-    options.crop[2][0] += part->stored[2];
+    snow_volume_info whole;
+    snow_extent all;
+    snow_volume_whole(volume, &whole);
+    snow_volume_find_extent(volume, &all);
+    options.crop[2][0] += part->stored[2] - all.stored[2];
     options.crop[2][1] = options.crop[2][0] + slices;
     snow_volume *slab;
     SNOW_TRY(snow_stream_open_slab(context, volume->stream, &options,
@@ -106,7 +124,7 @@ static snow_status read_slab(const snow_volume *volume,
     if (status == SNOW_STATUS_OK)
         status = snow_volume_set_extent(slab, part);
     if (status == SNOW_STATUS_OK)
-        status = snow_volume_set_whole(slab, &volume->info);
+        status = snow_volume_set_whole(slab, &whole);
     if (status != SNOW_STATUS_OK) {
         snow_volume_close(slab);
         return status;
@@ -120,7 +138,8 @@ static void warn_empty(const snow_volume *volume) {
     static const int64_t none[3][2];
     snow_stream *stream = volume->stream;
     const snow_volume_options *options = &stream->options;
-    if (stream->left || stream->told_empty || !snow_mask_asked(options) ||
+    if (stream->left || stream->told_empty || volume->is_part ||
+        !snow_mask_asked(options) ||
         memcmp(options->crop, none, sizeof none) != 0)
         return;
     stream->told_empty = true;
@@ -130,7 +149,10 @@ static void warn_empty(const snow_volume *volume) {
 void snow_slabs_open(const snow_volume *volume, const snow_slab_cut *cut,
                      snow_slabs *slabs) {
     snow_stream *stream = volume->stream;
-    *slabs = (snow_slabs){.volume = volume, .cut = *cut};
+    snow_extent own;
+    snow_volume_find_extent(volume, &own);
+    *slabs =
+        (snow_slabs){.volume = volume, .cut = *cut, .slices = own_slices(&own)};
     if (!stream)
         return;
     slabs->count = slab_slices(volume, cut);
@@ -164,7 +186,7 @@ snow_volume *snow_slabs_keep(snow_slabs *slabs) {
 
 /* Whether a slab of a file is left, from `next` on. */
 static bool any_left(snow_slabs *slabs) {
-    if (!slabs->falls && slabs->next >= slabs->volume->info.dims[2]) {
+    if (!slabs->falls && slabs->next >= slabs->slices) {
         slabs->falls = true;
         slabs->next = slabs->nearest - slabs->count;
     }
@@ -190,15 +212,16 @@ snow_status snow_slabs_next(snow_slabs *slabs, const snow_volume **slab) {
         warn_empty(volume);
         return SNOW_STATUS_OK;
     }
-    int64_t all = volume->info.dims[2], left = all - slabs->next;
+    int64_t all = slabs->slices, left = all - slabs->next;
     slabs->whole =
         snow_monitor_divide(volume->context->monitor, (double)slabs->number++,
                             (double)((all + slabs->count - 1) / slabs->count));
     const snow_extent part = part_of(volume, slabs->cut.ghosts, slabs->next,
                                      left < slabs->count ? left : slabs->count);
     if (slabs->cut.kept)
-        *slab = slabs->cut.kept(slabs->cut.user, &part,
-                                stored_slices(&part, slabs->cut.ghosts));
+        *slab =
+            slabs->cut.kept(slabs->cut.user, &part,
+                            stored_slices(volume, &part, slabs->cut.ghosts));
     if (!*slab) {
         SNOW_TRY(read_slab(volume, &slabs->cut, &part, &slabs->slab));
         *slab = slabs->slab;

@@ -35,7 +35,8 @@ const char *snow_type_name(snow_type type) {
     return "none";
 }
 
-/* Case does not matter; the many spellings of NRRD and raw names are those readers' matter. */
+/* Case does not matter; the many spellings of NRRD and raw names are those
+ * readers' matter. */
 snow_type snow_type_from_name(const char *name) {
     static const struct {
         const char *name;

@@ -7,6 +7,7 @@
 #include "volume/clip_planes.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 SNOW_RECORD_OF_ZEROS(snow_volume_info);
@@ -26,7 +27,8 @@ snow_volume_info snow_volume_info_default(const char *format) {
                              .slope = 1,
                              .format = format,
                              .times = 1,
-                             .components = 1};
+                             .components = 1,
+                             .time_value = NAN};
     for (int i = 0; i < 4; i++)
         info.matrix[i][i] = 1;
     return info;
@@ -270,6 +272,7 @@ snow_status snow_volume_wrap(snow_context *context,
     own.medical = info.medical;
     own.hounsfield = info.hounsfield;
     own.eight_bits = info.eight_bits;
+    own.whole = info.whole;
     memcpy(own.unit, info.unit, sizeof own.unit);
     own.unit[sizeof own.unit - 1] = 0;
     memcpy(own.modality, info.modality, sizeof own.modality - 1);
@@ -280,12 +283,37 @@ snow_status snow_volume_wrap(snow_context *context,
     return wrap(context, &own, voxels, out);
 }
 
+static int compare_labels(const void *a, const void *b) {
+    double x = ((const snow_label *)a)->value;
+    double y = ((const snow_label *)b)->value;
+    return (x > y) - (x < y);
+}
+
+snow_status snow_volume_set_labels(snow_volume *volume,
+                                   const snow_label *labels, size_t count) {
+    volume->labelled = true;
+    if (!count)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(SNOW_RESERVE(volume->context, volume->labels, 0, count));
+    memcpy(volume->labels, labels, count * sizeof *labels);
+    qsort(volume->labels, count, sizeof *labels, compare_labels);
+    volume->label_count = count;
+    return SNOW_STATUS_OK;
+}
+
+snow_volume *snow_volume_hold(const snow_volume *volume) {
+    snow_volume *held = (snow_volume *)volume;
+    held->holders++;
+    return held;
+}
+
 /* Shared voxels are not owned and stay. */
 void snow_volume_close(snow_volume *volume) {
-    if (volume) {
+    if (volume && volume->holders-- == 0) {
         snow_clip_planes_free(volume->clip);
         snow_release(volume->context, volume->stream);
         snow_release(volume->context, volume->owned);
+        snow_release(volume->context, volume->labels);
         snow_release(volume->context, volume);
     }
 }

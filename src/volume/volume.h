@@ -6,9 +6,6 @@
 #include "base/monitor.h"
 #include "volume/region.h"
 
-#include <snowglass/extend.h>
-#include <snowglass/volume.h>
-
 typedef struct snow_stream snow_stream;           /* volume/stream.h */
 typedef struct snow_clip_planes snow_clip_planes; /* volume/clip_planes.h */
 
@@ -22,6 +19,7 @@ struct snow_volume {
                       NULL: none */
     bool lost_clip;         /* there were some, but its voxels have moved */
     void *owned; /* the block to free, NULL when the voxels are shared */
+    int holders; /* beside its owner: each closes it, too */
     /* A number that no other volume of the context ever had, by which a frame
      * knows that it has encoded this one; 0 while the voxels may change. */
     uint64_t generation;
@@ -30,7 +28,11 @@ struct snow_volume {
     bool knows_origin;
     double origin[3];  /* the last column of the whole's matrix, where known */
     char patient[256]; /* "" when unknown */
-    bool emptied;      /* a mask or planes have left no voxel: */
+    bool labelled;     /* values are labels, say the file or the options; */
+    snow_label
+        *labels; /* what they say of them, values rising; NULL: nothing */
+    size_t label_count;
+    bool emptied;         /* a mask or planes have left no voxel: */
     double mask_range[2]; /* the mask's values, NaN where there is none */
 };
 
@@ -69,9 +71,45 @@ snow_status snow_volume_info_check(snow_context *context,
 snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
                             snow_volume **out);
 
+/* Makes values labels, of which copies of these are known, if any. */
+snow_status snow_volume_set_labels(snow_volume *volume,
+                                   const snow_label *labels, size_t count);
+
+/* Whether two volumes have the same voxels.  Errors: SNOW_STATUS_BAD_INPUT
+ * (they have not, nor do their worlds tell where). */
+snow_status snow_grids_compare(snow_context *context,
+                               const snow_volume_info *volume,
+                               const snow_volume_info *other, const char *what,
+                               bool *same);
+
+/* The same on the grid of another volume, `what` it is for; with a note where
+ * that is no other order of its axes.  *out is NULL where it has the grid.
+ * Of masks and labels the nearest voxels are taken.  Errors: as above. */
+snow_status snow_volume_resample(const snow_volume *volume,
+                                 const snow_volume *grid, bool nearest,
+                                 const char *what, snow_volume **out);
+
+/* The voxels of a volume that this reads for a box of the grid (as of options:
+ * ends of 0 are its last); false where the two do not meet. */
+bool snow_volume_box_of(const snow_volume_info *volume,
+                        const snow_volume_info *grid, const int64_t crop[3][2],
+                        int64_t box[3][2]);
+
+/* Reads what a volume in its file has for a part of a grid, `count` voxels from
+ * part->stored on: that part, on the grid, cut by the file's planes.  Errors:
+ * of snow_volume_resample and of reading. */
+snow_status snow_volume_take_box(const snow_volume *volume,
+                                 const snow_volume_info *whole,
+                                 const snow_extent *part,
+                                 const int64_t count[3], bool nearest,
+                                 snow_volume **out);
+
 /* For what needs all voxels at once.  Errors: SNOW_STATUS_BAD_USAGE (these stay
  * in their file). */
 snow_status snow_volume_need_voxels(const snow_volume *volume);
+
+/* A volume stays until its holder, too, has closed it. */
+snow_volume *snow_volume_hold(const snow_volume *volume);
 
 /* snow_volume_get_extent of the library itself. */
 void snow_volume_find_extent(const snow_volume *volume, snow_extent *out);

@@ -69,18 +69,21 @@ static void check_corpus(const char *subject, const char *name) {
 static void no_reader_is_lost_without_memory(void **state) {
     (void)state;
     static const char *const subjects[][2] = {
-        {"npy_volume", "a.npy"}, {"mrc", "a.mrc"},       {"vtk", "a.vtk"},
-        {"vti", "a.vti"},        {"tiff", "a.tif"},      {"png_slice", "a.png"},
-        {"hdf5", "a.h5"},        {"netcdf", "a.nc"},     {"nrrd", "a.nrrd"},
-        {"nifti", "a.nii"},      {"metaimage", "a.mha"}, {"den", "a.den"},
+        {"vtr", "a.vtr"},       {"pvd", "a.pvd"},        {"pvti", "a.pvti"},
+        {"vtm", "a.vtm"},       {"xdmf", "a.xmf"},       {"visit", "a.visit"},
+        {"bov", "a.bov"},       {"npy_volume", "a.npy"}, {"mrc", "a.mrc"},
+        {"vtk", "a.vtk"},       {"vti", "a.vti"},        {"tiff", "a.tif"},
+        {"png_slice", "a.png"}, {"hdf5", "a.h5"},        {"netcdf", "a.nc"},
+        {"nrrd", "a.nrrd"},     {"nifti", "a.nii"},      {"metaimage", "a.mha"},
+        {"den", "a.den"},       {"vth", "a.vth"},
     };
     const size_t count = sizeof subjects / sizeof *subjects;
     for (size_t i = 0; i < count; i++)
         check_corpus(subjects[i][0], subjects[i][1]);
-    /* Those, and three that no single file without options shows: DICOM (its
-     * library allocates for itself), Zarr (folders) and raw. */
-    if (snow_format_name(count + 3 - 1) == NULL ||
-        snow_format_name(count + 3) != NULL)
+    /* Those, and four that no single file without options shows: DICOM (its
+     * library allocates for itself), Zarr and AMReX (folders) and raw. */
+    if (snow_format_name(count + 4 - 1) == NULL ||
+        snow_format_name(count + 4) != NULL)
         fail_msg("a format has no line above: it needs its corpus there");
 }
 

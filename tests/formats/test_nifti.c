@@ -176,9 +176,9 @@ static void types_that_are_no_numbers_are_refused_by_name(void **state) {
     static const struct {
         int code;
         const char *part;
-    } types[] = {{1, "bits"},       {32, "complex"},          {128, "RGB"},
-                 {1536, "128-bit"}, {1792, "complex"},        {2048, "complex"},
-                 {2304, "RGBA"},    {0, "type 0 is unknown"}, {77, "type 77"}};
+    } types[] = {{1, "bits"},       {32, "complex"},   {1536, "128-bit"},
+                 {1792, "complex"}, {2048, "complex"}, {0, "type 0 is unknown"},
+                 {77, "type 77"}};
     for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
         file f = make_file(1, false);
         put_datatype(&f, types[i].code, 0);
@@ -287,33 +287,74 @@ static void units_of_length_become_millimetres(void **state) {
     }
 }
 
-static void the_time_step_that_is_asked_for_is_read(void **state) {
+/* Time is the fourth axis; axes behind it count values of a voxel. */
+static void the_step_and_channel_that_are_asked_for_are_read(void **state) {
     support_place *place = *state;
     file f = make_file(1, false);
     const int64_t dim[8] = {6, 2, 1, 1, 2, 1, 3, 99};
     for (size_t i = 0; i < 8; i++)
         put_dim(&f, i, dim[i]);
-    for (int64_t time = 0; time < 6; time++) {
-        const snow_volume_options options = {.size = sizeof options,
-                                             .time = time};
+    for (int64_t n = 0; n < 6; n++) {
+        const snow_volume_options options = {
+            .size = sizeof options, .time = n % 2, .channel = n / 2};
         snow_volume *volume = NULL;
         assert_int_equal(snow_volume_open_memory(place->context, "a.nii",
                                                  f.bytes, f.size, &options,
                                                  &volume),
                          SNOW_STATUS_OK);
-        assert_int_equal(snow_volume_get_info(volume)->times, 6);
-        assert_int_equal(snow_volume_get_info(volume)->time, time);
+        const snow_volume_info *info = snow_volume_get_info(volume);
+        assert_int_equal(info->times, 2);
+        assert_int_equal(info->time, n % 2);
+        assert_int_equal(info->channels, 3);
+        assert_false(info->channel[1].shown);
         assert_int_equal(*(const int16_t *)snow_volume_voxels(volume),
-                         100 + 2 * time);
+                         100 + 2 * n);
         snow_volume_close(volume);
     }
-    assert_non_null(strstr(place->warnings, "volume 0 of 6"));
-    const snow_volume_options beyond = {.size = sizeof beyond, .time = 6};
-    snow_volume *volume = NULL;
-    assert_int_equal(snow_volume_open_memory(place->context, "a.nii", f.bytes,
-                                             f.size, &beyond, &volume),
-                     SNOW_STATUS_BAD_USAGE);
-    assert_null(volume);
+    assert_non_null(strstr(place->warnings, "channel 0 of 3"));
+    const snow_volume_options beyond[] = {
+        {.size = sizeof *beyond, .time = 2},
+        {.size = sizeof *beyond, .channel = 3}};
+    for (int n = 0; n < 2; n++) {
+        snow_volume *volume = NULL;
+        assert_int_equal(snow_volume_open_memory(place->context, "a.nii",
+                                                 f.bytes, f.size, &beyond[n],
+                                                 &volume),
+                         SNOW_STATUS_BAD_USAGE);
+        assert_null(volume);
+    }
+}
+
+static void colours_are_channels(void **state) {
+    support_place *place = *state;
+    for (int samples = 3; samples <= 4; samples++) {
+        file f = make_file(1 + samples % 2, false);
+        put_dim(&f, 1, 2);
+        put_dim(&f, 2, 1);
+        put_dim(&f, 3, 2);
+        put_datatype(&f, samples == 3 ? 128 : 2304, (size_t)samples);
+        for (int64_t n = 0; n < samples; n++) {
+            const snow_volume_options options = {.size = sizeof options,
+                                                 .channel = n};
+            snow_volume *volume = NULL;
+            if (snow_volume_open_memory(place->context, "a.nii", f.bytes,
+                                        f.size, &options,
+                                        &volume) != SNOW_STATUS_OK)
+                fail_msg("%s", snow_context_message(place->context));
+            const snow_volume_info *info = snow_volume_get_info(volume);
+            const snow_channel *one = &info->channel[n];
+            const unsigned char *voxels = snow_volume_voxels(volume);
+            const unsigned char *stored = f.bytes + f.size - 24;
+            assert_int_equal(info->channels, samples);
+            assert_int_equal(info->type, SNOW_TYPE_UINT8);
+            assert_true(one->own == (n < 3) && one->shown == (n < 3));
+            for (int c = 0; c < 3; c++)
+                assert_true(one->color[c] == (c == n));
+            for (int i = 0; i < 4; i++)
+                assert_int_equal(voxels[i], stored[i * samples + n]);
+            snow_volume_close(volume);
+        }
+    }
 }
 
 static void only_the_fourth_axis_is_called_time(void **state) {
@@ -537,7 +578,7 @@ static const struct real_file {
     {"classic/fuel.nii.gz", {64, 33, 32}, 1, SNOW_TYPE_UINT8, 0, 255},
     {"formats/nifti/5D_zeros.nii.gz",
      {256, 256, 170},
-     3,
+     1,
      SNOW_TYPE_UINT8,
      0,
      0},
@@ -628,21 +669,23 @@ static void real_files_have_their_known_figures(void **state) {
     }
 }
 
-/* Stored range over all time steps. */
+/* Stored range over all time steps, or channels. */
 static void range_of_all_steps(support_place *place, const char *name,
                                int64_t steps, double slope, double intercept,
                                double range[2]) {
     range[0] = INFINITY;
     range[1] = -INFINITY;
-    for (int64_t time = 0; time < steps; time++) {
+    for (int64_t n = 0; n < steps; n++) {
+        const bool times = !strstr(name, "5D");
         const snow_volume_options options = {.size = sizeof options,
-                                             .time = time};
+                                             .time = times ? n : 0,
+                                             .channel = times ? 0 : n};
         snow_volume *volume = NULL;
         assert_int_equal(snow_volume_open(place->context, support_data(name),
                                           &options, &volume),
                          SNOW_STATUS_OK);
         const snow_volume_info *info = snow_volume_get_info(volume);
-        assert_int_equal(info->times, steps);
+        assert_int_equal(times ? info->times : info->channels, steps);
         assert_true(fabs(info->slope - slope) < 1e-12);
         assert_true(fabs(info->intercept - intercept) < 1e-12);
         snow_volume_statistics m = {.size = sizeof m};
@@ -721,7 +764,8 @@ int main(void) {
         UNIT(bad_geometry_falls_back_with_a_warning),
         UNIT(an_impossible_spacing_becomes_1_with_a_warning),
         UNIT(units_of_length_become_millimetres),
-        UNIT(the_time_step_that_is_asked_for_is_read),
+        UNIT(the_step_and_channel_that_are_asked_for_are_read),
+        UNIT(colours_are_channels),
         UNIT(only_the_fourth_axis_is_called_time),
         UNIT(few_axes_and_extensions_are_read),
         UNIT(cut_files_are_refused_at_every_length),

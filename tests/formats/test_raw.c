@@ -223,7 +223,7 @@ static void options_out_of_range_are_refused(void **state) {
     bad[1].spacing[0] = NAN;
     bad[2].spacing[1] = -1;
     bad[3].time = 1;
-    bad[4].time = -1;
+    bad[4].time = -2; /* one step: -1 is it */
     for (int i = 0; i < 5; i++)
         support_refused(&files, path, &bad[i], SNOW_STATUS_BAD_USAGE, "",
                         70000);

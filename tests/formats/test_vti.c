@@ -93,7 +93,7 @@ static void appended_arrays_lie_at_their_offsets(void **state) {
 static void what_is_no_image_is_refused(void **state) {
     support_files *files = *state;
     static const char *const cases[][2] = {
-        {"<VTKFile type=\"PolyData\"/>", "not of image data"},
+        {"<VTKFile type=\"PolyData\"/>", "is a VTK file of surfaces"},
         {"<a><VTKFile/></a>", "not a VTK file"},
         {"<VTKFile type=\"ImageData\"><", "XML is damaged"},
         {FILE_TAG, "XML is damaged"},

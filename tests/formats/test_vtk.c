@@ -106,7 +106,7 @@ static void what_is_no_image_is_refused(void **state) {
     (void)state;
     static const char *const cases[][2] = {
         {HEAD "DATASET POLYDATA\n", "POLYDATA"},
-        {HEAD "DATASET RECTILINEAR_GRID\n", "resample"},
+        {HEAD "DATASET STRUCTURED_GRID\n", "resample"},
         {HEAD "DIMENSIONS 3 2 1\n", "is not valid in this place"},
         {"# vtk DataFile Version 3.0\nx\nHEX\n", "is not valid in this place"},
         {"# vtk DataFile Version 3.0\n", "end of file"},

@@ -3,6 +3,7 @@
 #include "image/overlay.h"
 #include "reference/model.h"
 #include "support/image.h"
+#include "support/looks.h"
 #include "transform/transform.h"
 
 #include <math.h>
@@ -425,6 +426,93 @@ static void the_color_bar_has_the_transfer_functions_colors(void **state) {
     snow_transfer_free(transfer);
 }
 
+/* The row whose colour is that of a value, on a bar of a look whose red falls
+ * from 1 at its top to 0 at its bottom, by the place of the value on it. */
+static void check_scale(image_fixture *f, snow_look look, const double ends[2],
+                        double (*place)(double value)) {
+    const snow_color_point colors[] = {{0, 0, 0, 0}, {1, 1, 0, 0}};
+    const snow_opacity_point opacities[] = {{0, 1}, {1, 1}};
+    snow_volume *volume = support_row(f->context, SNOW_TYPE_FLOAT64, ends, 2);
+    look.size = sizeof look;
+    look.domain = SNOW_DOMAIN_RANGE;
+    look.colors = colors;
+    look.color_count = 2;
+    look.opacities = opacities;
+    look.opacity_count = 2;
+    snow_transfer *transfer = support_look(volume, look);
+    snow_overlay *overlay = overlay_of(f->context, 300, 400);
+    assert_int_equal(snow_overlay_color_bar(overlay, transfer, NULL, NULL),
+                     SNOW_STATUS_OK);
+    size_t rows = 0;
+    double top = 0, bottom = 0;
+    for (size_t n = 0; n < overlay->shape_count; n++) {
+        const snow_shape *shape = &overlay->shapes[n];
+        for (size_t row = 0; shape->filled && row < shape->count; row++) {
+            double red = (double)overlay->numbers[shape->first + 3 * row];
+            double share = 1 - ((double)row + 0.5) / (double)shape->count;
+            assert_near(red, share, 0.003);
+            rows++;
+        }
+        if (shape->filled) {
+            top = shape->box[1];
+            bottom = shape->box[3];
+        }
+    }
+    assert_true(rows > 100);
+    /* Every tick is at a whole power of ten, or at 0, and has the right place:
+     * the strokes follow the opacity's. */
+    const snow_shape *ticks = NULL;
+    for (size_t n = 0; n < overlay->shape_count && !ticks; n++)
+        if (overlay->shapes[n].filled)
+            ticks = &overlay->shapes[n + 2];
+    for (size_t n = 0; n < ticks->count; n++) {
+        const float *stroke = overlay->numbers + ticks->first + 4 * n;
+        double share = (bottom - (double)stroke[1]) / (bottom - top);
+        double best = 1, value;
+        for (int power = -12; power < 12; power++)
+            for (int side = -1; side <= 1; side++)
+                for (int digit = 1; digit < 10; digit++) {
+                    value = side * digit * pow(10, power);
+                    double at = (place(value) - place(ends[0])) /
+                                (place(ends[1]) - place(ends[0]));
+                    best = fmin(best, fabs(at - share));
+                }
+        assert_true(best < 1.1 / (bottom - top));
+    }
+    assert_true(ticks->count >= 3);
+    /* Numbers have room beside each other. */
+    const snow_shape *end = overlay->shapes + overlay->shape_count;
+    for (const snow_shape *a = ticks + 1; a < end; a++)
+        for (const snow_shape *b = a + 1; b < end; b++)
+            assert_true(fabs(a->box[1] + a->box[3] - b->box[1] - b->box[3]) >
+                        0.7 * (a->box[3] - a->box[1] + b->box[3] - b->box[1]));
+    snow_overlay_free(overlay);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+}
+
+static double by_log(double value) {
+    return value > 0 ? log(value) : -1e9;
+}
+
+static double by_symlog(double value) {
+    double size = fabs(value) / 0.1;
+    return copysign(size > 1 ? 1 + log(size) : size, value);
+}
+
+static void a_bar_of_logarithms_has_decades(void **state) {
+    const double decades[] = {1e-5, 300}, few[] = {20, 90},
+                 signs[] = {-300, 300}, above[] = {0, 1e4};
+    check_scale(*state, (snow_look){.log = true}, decades, by_log);
+    check_scale(*state, (snow_look){.log = true}, few, by_log);
+    check_scale(*state, (snow_look){.symlog = 0.1}, signs, by_symlog);
+    check_scale(*state, (snow_look){.symlog = 0.1}, above, by_symlog);
+    for (double top = 300; top < 1e11; top *= 3) {
+        const double wide[] = {-top, top};
+        check_scale(*state, (snow_look){.symlog = 0.1}, wide, by_symlog);
+    }
+}
+
 /* One value, huge and tiny ranges: ticks are found for all. */
 static void any_range_has_ticks(void **state) {
     image_fixture *f = *state;
@@ -586,6 +674,7 @@ int main(void) {
         HERE(a_perspective_view_has_no_scale_bar),
         HERE(the_color_bar_has_the_transfer_functions_colors),
         HERE(any_range_has_ticks),
+        HERE(a_bar_of_logarithms_has_decades),
         HERE(files_show_it_and_the_picture_stays),
         HERE(a_grey_picture_with_a_colored_bar_is_colored),
         HERE(it_fails_cleanly_without_memory),

@@ -119,6 +119,42 @@ static decoded store_row(image_fixture *f, const float *pixels, int width,
 
 /* --- writing -------------------------------------------------------------- */
 
+/* What libpng reads of a file's only text. */
+static void read_text(const char *path, char out[256]) {
+    FILE *file = fopen(path, "rb");
+    png_textp texts = NULL;
+    int count = 0;
+    assert_non_null(file);
+    png_structp png =
+        png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(png);
+    png_init_io(png, file);
+    png_read_info(png, info);
+    png_get_text(png, info, &texts, &count);
+    snprintf(out, 256, "%d", count);
+    if (count)
+        snprintf(out, 256, "%s: %s", texts[0].key, texts[0].text);
+    png_destroy_read_struct(&png, &info, NULL);
+    fclose(file);
+}
+
+static void a_comment_is_a_text_and_no_pixel(void **state) {
+    const float pixels[] = {0.25f, 0.5f, 0.1f, 0.5f};
+    image_fixture *f = *state;
+    char text[256];
+    snow_image_options options;
+    snow_image_options_init(&options);
+    options.overwrite = true;
+    decoded plain = store_row(f, pixels, 1, 4, &options);
+    read_text(f->path, text);
+    assert_string_equal(text, "0");
+    options.comment = "{\"step\": 1}";
+    decoded other = store_row(f, pixels, 1, 4, &options);
+    read_text(f->path, text);
+    assert_string_equal(text, "Snowglass: {\"step\": 1}");
+    assert_memory_equal(plain.bytes, other.bytes, 4);
+}
+
 static void alpha_is_divided_out_and_rounded(void **state) {
     const float pixels[] = {0.25f, 0.5f, 0.1f, 0.5f, /* 0.5, 1, 0.2 */
                             0.0f,  0.0f, 0.0f, 0.0f, /* transparent */
@@ -593,6 +629,7 @@ static void bytes_after_the_end_are_told(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(alpha_is_divided_out_and_rounded),
+        TEST(a_comment_is_a_text_and_no_pixel),
         TEST(sixteen_bits_are_rounded_likewise),
         TEST(grey_pictures_are_stored_as_grey),
         TEST(a_background_shows_through_and_takes_alpha_away),

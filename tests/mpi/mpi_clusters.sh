@@ -35,7 +35,8 @@ count=0
 while read -r line; do
     is_open_mpi || [[ $line != *--bind-to* ]] || continue
     count=$((count + 1))
-    run 0 "$line" in_copy sh -c "$line"
+    # Places that this machine has not.
+    run 0 "$line" in_copy sh -c "$(sed 's/--map-by [^ ]* --bind-to core/-n 2/' <<<"$line")"
     case $line in
     *doctor*) prints '^mpi .*, 2 ranks' ;;
     *' -o big.png'*) run 0 "is the same picture" "$TOOL" compare run/big.png \

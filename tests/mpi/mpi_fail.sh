@@ -34,6 +34,41 @@ run 0 "another volume" "$TOOL" phantom head --dims 40x40x31 -q -y -o b/v.nrrd
 fails 3 "machines with different files" '^snowglass: .*v.nrrd' \
     job v.nrrd -o out.png -q
 
+# poke FILE FROM_END: another byte there.
+poke() {
+    local size
+    size=$(stat -c %s "$1")
+    printf '\252' | dd of="$1" bs=1 seek=$((size - $2)) conv=notrunc 2>/dev/null
+}
+run 0 "large" "$TOOL" phantom head --dims 256x200x150 -q -o a/large.nrrd
+cp a/large.nrrd b/large.nrrd
+"$TOOL" convert a/v.nrrd -q -y -o a/raw.raw
+cp a/raw.raw b/raw.raw
+printf 'NDims = 3\nDimSize = 40 40 30\nElementType = MET_UCHAR\nElementDataFile = raw.raw\n' |
+    tee a/v.mhd >b/v.mhd
+poke b/large.nrrd 1
+fails 3 "the last voxel is another" '^snowglass: large.nrrd: is not the same' \
+    job large.nrrd -o out.png -q
+cp a/large.nrrd b/large.nrrd
+touch -d '2020-01-01' b/large.nrrd b/v.mhd b/raw.raw
+run 0 "a copy" job large.nrrd -o ../out.png
+says "was changed at another time on some ranks"
+rm -f out.png
+poke b/raw.raw 1
+fails 3 "voxels beside a header" '^snowglass: v.mhd: is not the same' \
+    job v.mhd -o out.png -q
+fails 3 "the same, clipped" '^snowglass: v.mhd: is not the same' \
+    job v.mhd -o out.png -q --clip=1,0,0,20
+cp a/v.nrrd b/v.nrrd
+"$TOOL" convert a/v.nrrd -q -y -o a/mask.nrrd
+cp a/mask.nrrd b/mask.nrrd
+poke b/mask.nrrd 5000
+fails 3 "another mask" '^snowglass: mask.nrrd: is not the same' \
+    job v.nrrd --mask mask.nrrd -o out.png -q
+
+fails 2 "another overlay" '^snowglass: .*overlays differ between ranks' \
+    job v.nrrd --overlay mask.nrrd -o out.png -q
+
 fails 3 "a file that is missing" '^snowglass: .*none.nrrd: ' \
     launch 3 "$MPI_TOOL" none.nrrd -o out.png
 fails 2 "a wrong option" '^snowglass: --cut: ' \
@@ -43,9 +78,39 @@ fails 2 "standard input" '^snowglass: -: ' \
 fails 4 "a folder that is missing" '^snowglass: none/out.png: ' \
     launch 2 "$MPI_TOOL" a/v.nrrd -o none/out.png -q
 
+# Another command on one rank ends the job before the others wait for it.
+differ() {
+    timeout -k 5 "$LIMIT" "$MPIEXEC" -n 2 "$MPI_TOOL" render a/v.nrrd -o out.png \
+        -q : -n 1 "$MPI_TOOL" "$@"
+}
+for word in --wrong render\ --wrong render\ a/v.nrrd\ --cut\ wide; do
+    # shellcheck disable=SC2086
+    fails 2 "rank 2 with '$word'" '^snowglass: rank 2: ' differ $word
+done
+for word in "info a/v.nrrd" "turntable a/v.nrrd -o x_%d.png" "help" \
+    "render --help" "bench combine"; do
+    # The other MPI's benchmarks are not built.
+    [ "$word" != "bench combine" ] || [ -e "$(dirname "$MPI_TOOL")/snowglass-bench-mpi" ] ||
+        continue
+    # shellcheck disable=SC2086
+    fails 2 "rank 2 with '$word'" 'rank 2: .*same command' differ $word
+done
+for word in "--mode mip" "--size 64x64"; do
+    # shellcheck disable=SC2086
+    fails 2 "rank 2 with '$word' too" 'rank 2: .*other options' \
+        differ a/v.nrrd -o out.png -q $word
+done
+fails 2 "rank 2 with another file" 'rank 2: .*other options or files' \
+    differ b/v.nrrd -o out.png -q
+run 0 "rank 2 with other threads" differ render a/v.nrrd -o out.png --threads 2
+rm out.png
+fails 2 "rank 0 with another verb" 'another verb' \
+    timeout -k 5 "$LIMIT" "$MPIEXEC" -n 1 "$MPI_TOOL" info a/v.nrrd : \
+    -n 2 "$MPI_TOOL" render a/v.nrrd -o out.png -q
+
 # A sparse file of zeros: much memory, little time.
-truncate -s 300000000 zeros.raw
-zeros="zeros.raw --dims 1000x1000x300 --type uint8 -o out.png -q"
+truncate -s 1000000000 zeros.raw
+zeros="zeros.raw --dims 1000x1000x1000 --type uint8 -o out.png -q"
 little() {
     # shellcheck disable=SC2086
     timeout -k 5 "$LIMIT" "$MPIEXEC" -n 1 "$MPI_TOOL" $zeros : -n 1 \

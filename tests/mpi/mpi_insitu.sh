@@ -47,6 +47,14 @@ if [ -x "$EXAMPLES/heat" ]; then
         run 0 "$ranks ranks: frame and picture differ by rounding" \
             "$TOOL" compare heat_0240.png tool.png --tolerance $STEP
     done
+    printf '{"colormap": "plasma", "range": [0, 1], "size": [400, 300],
+        "opacity": [[0.05, 0], [0.5, 0.1], [1, 0.9]], "azimuth": 30,
+        "elevation": 20, "title": "Heat", "legend": true, "annotate": "time",
+        "output": "said_%%04d.png"}' >said.json
+    run 0 "heat described by calls" launch 2 "$EXAMPLES/heat" -
+    run 0 "heat described by a recipe" launch 2 "$EXAMPLES/heat" said.json
+    run 0 "both are one picture" \
+        "$TOOL" compare told_0120.png said_0120.png
 else
     echo "       no Fortran: heat is not tried"
 fi

@@ -1,15 +1,16 @@
 #!/bin/bash
-# mpi_kill.sh - one rank of four is killed, while it draws and in the middle of
-# a movie: the job ends at once, tells which, and leaves nothing unfinished.
+# mpi_kill.sh - one rank of four is killed, or told to end, while it draws and in
+# the middle of a movie: the job ends at once, tells which, and leaves nothing
+# unfinished.
 . "$(dirname "$0")/../support/mpi.sh"
 need_proc
 LIMIT=60
 
-# killed NAME WHEN COMMAND...: kills rank 2 once WHEN is true, and looks how
-# long the others go on.
-killed() {
-    local name=$1 when=$2 job victim="" tries=0 begin
-    shift 2
+# ended SIGNAL NAME WHEN COMMAND...: sends rank 2 a signal once WHEN is true, and
+# looks how long the others go on.
+ended() {
+    local signal=$1 name=$2 when=$3 job victim="" tries=0 begin code
+    shift 3
     launch 4 "$@" >"$OUT" 2>"$ERR" </dev/null &
     job=$!
     while [ -z "$victim" ] && [ $tries -lt 300 ]; do
@@ -19,12 +20,15 @@ killed() {
         victim=$(process_of_rank 2)
     done
     check "$name: there is a rank 2" [ -n "$victim" ]
-    [ -n "$victim" ] && kill -KILL "$victim"
+    [ -n "$victim" ] && kill "-$signal" "$victim"
     begin=$(date +%s)
     wait "$job"
-    check "$name: the job fails" [ $? -ne 0 ]
+    code=$?
+    check "$name: the job fails" [ $code -ne 0 ]
     check "$name: within 10 s" [ $(($(date +%s) - begin)) -le 10 ]
-    if is_open_mpi; then
+    if [ "$signal" = TERM ]; then
+        is_open_mpi && check "$name: as when one process is" [ $code -eq 130 ]
+    elif is_open_mpi; then
         check "$name: mpirun names the rank" grep -q 'rank 2 .*Killed' "$ERR"
     else # MPICH's names the process and the machine
         check "$name: mpirun tells of it" \
@@ -34,11 +38,15 @@ killed() {
         [ -z "$(find . -name '*snow-*' -o -name out.png)" ]
 }
 
-killed "a picture" 'sleep 1' "$MPI_TOOL" phantom:head --dims 600x600x600 \
-    -o out.png -q
-killed "a movie" '[ -e f_000003.png ]' "$MPI_TOOL" turntable phantom:head \
+for signal in KILL TERM; do
+    ended $signal "a picture, $signal" 'sleep 1' "$MPI_TOOL" phantom:head \
+        --dims 600x600x600 -o out.png -q
+done
+ended TERM "a movie that is to end" '[ -e g_000003.png ]' "$MPI_TOOL" turntable \
+    phantom:head --dims 40x40x40 -s 64x64 --frames 100000 -q -o g_%06d.png
+ended KILL "a movie" '[ -e f_000003.png ]' "$MPI_TOOL" turntable phantom:head \
     --dims 40x40x40 -s 64x64 --frames 100000 -q -o f_%06d.png
-for frame in f_*.png; do
+for frame in f_*.png g_*.png; do
     "$TOOL" compare "$frame" "$frame" >/dev/null 2>&1 ||
         fail "$frame is whole"
 done

@@ -74,8 +74,13 @@ run 0 "are those of one" "$TOOL" compare one.png many.png --tolerance 0
 run 2 "a mip has no depth" launch 3 "$MPI_TOOL" $head -m mip -o deep.png \
     --depth deep.npy
 says "mode mip has no depth; use mode over or iso"
-# shellcheck disable=SC2086
-run 2 "a deterministic mean" launch 3 "$MPI_TOOL" $head -m mean -o d.npy \
-    --deterministic
-says "cannot be deterministic on several ranks"
+for mode in mean sum; do
+    # shellcheck disable=SC2086
+    run 0 "a deterministic $mode of one" "$TOOL" $head -m $mode -o one.npy -y \
+        --deterministic
+    # shellcheck disable=SC2086
+    run 0 "a deterministic $mode of three" launch 3 "$MPI_TOOL" $head \
+        -m $mode -o many.npy -y --deterministic
+    run 0 "are the same" cmp one.npy many.npy
+done
 finish

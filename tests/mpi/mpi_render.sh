@@ -2,7 +2,7 @@
 # mpi_render.sh - the tool as many ranks makes the pictures of one process, from
 # all sides, however the volume is cut and the pictures are combined.
 . "$(dirname "$0")/../support/mpi.sh"
-long_tier || COUNTS=3
+long_tier || COUNTS=3 MOST=3
 head="phantom:head --dims 40x36x44 -s 160x120 -q"
 
 # render N NAME OPTION...: a picture by N ranks, and as alone.
@@ -16,10 +16,9 @@ render() {
         many.npy --tolerance "${TOLERANCE:-1/255}"
 }
 
-others=("--view -y" "--view +z")
+others=("--view +x" "--view -y" "--view +z" "--view iso --perspective")
 long_tier || others=()
-for view in "--view +x" "${others[@]}" \
-    "--azimuth 33 --elevation 21 --roll 10 --zoom 1.3" "--view iso --perspective"; do
+for view in "${others[@]}" "--azimuth 33 --elevation 21 --roll 10 --zoom 1.3"; do
     # shellcheck disable=SC2086
     run 0 "$view alone" "$TOOL" $head $view -y -o one.npy
     for ranks in $COUNTS; do
@@ -29,7 +28,7 @@ for view in "--view +x" "${others[@]}" \
 done
 
 # What falls on the picture itself is shared in any boxes as well.
-for method in footprint original; do
+for method in footprint $(long_tier && echo original); do
     way="--method $method --azimuth 33 --elevation 21 --perspective 60"
     # shellcheck disable=SC2086
     run 0 "$way alone" "$TOOL" $head $way -y -o one.npy
@@ -38,10 +37,10 @@ for method in footprint original; do
 done
 
 # The last view is oblique enough for bricks.
-ways=("--cut equal" "--combine tree" "--combine swap")
+ways=("--cut equal" "--combine tree" "--combine swap" "--combine direct"
+    "--cut bricks")
 long_tier || ways=()
-for way in "${ways[@]}" "--cut bricks" "--combine direct" \
-    "--combine radix --radix 3"; do
+for way in "${ways[@]}" "--combine radix --radix 3"; do
     # shellcheck disable=SC2086
     run 0 "a picture alone" "$TOOL" $head --azimuth 70 -y -o one.npy
     # shellcheck disable=SC2086
@@ -55,7 +54,9 @@ check "it has the same bits" cmp -s one.npy many.npy
 
 # Shear-warp: ranks agree on the range of values, and share a lattice.
 value="--method shear-warp --azimuth 33 --elevation 21"
-for way in "" "--perspective" "--quality high"; do
+ways=("" "--quality high")
+long_tier || ways=()
+for way in "${ways[@]}" "--perspective"; do
     # shellcheck disable=SC2086
     run 0 "by value $way alone" "$TOOL" $head $value $way -y -o one.npy
     # shellcheck disable=SC2086
@@ -64,11 +65,19 @@ done
 clip="--clip 1,0.5,0,30"
 # shellcheck disable=SC2086
 run 0 "a plane by value alone" "$TOOL" $head $value $clip -y -o one.npy
-# shellcheck disable=SC2086
-for cut in equal counted bricks; do
+cuts="equal counted bricks"
+long_tier || cuts=bricks
+for cut in $cuts; do
     # shellcheck disable=SC2086
     render "$MOST" "a plane, --cut $cut" $value $clip --cut $cut
 done
+# Ranks without voxels of their own know the planes too.
+run 0 "a thin volume" "$TOOL" phantom head --dims 12x10x3 -o thin.nrrd -y
+run 0 "cut" "$TOOL" thin.nrrd --clip=1,0,0,1 -s 64 -y -o one.npy
+run 0 "cut by ranks with nothing" launch 5 "$MPI_TOOL" thin.nrrd \
+    --clip=1,0,0,1 -s 64 -y -o many.npy
+run 0 "are the same" "$TOOL" compare one.npy many.npy --tolerance 1/255
+
 # shellcheck disable=SC2086
 run 0 "deterministic by value" "$TOOL" $head $value --deterministic -y \
     -o one.npy
@@ -87,10 +96,10 @@ check "bytes of EA are those of one process" [ "$(number ea)" = \
     "$(sed -n 's/.*"ea": \([0-9]*\).*/\1/p' one.json)" ]
 
 # Drafts of few pixels, which are means of many samples.
-drafts=("64x64 --view +x --cut counted"
+drafts=("40x50 --azimuth 33 --cut bricks" "64x64 --view +x --cut counted"
     "64x64 --azimuth 70 --roll 20 --perspective --cut equal")
 long_tier || drafts=()
-for draft in "40x50 --azimuth 33 --cut bricks" "${drafts[@]}"; do
+for draft in "${drafts[@]}"; do
     # shellcheck disable=SC2086
     set -- phantom:engine --dims 131x144x127 --quality draft -q -s $draft
     run 0 "a draft alone, $draft" "$TOOL" "${@:1:$(($# - 2))}" -y -o one.npy
@@ -105,7 +114,7 @@ done
 # Files of which each rank reads its part, and unpacks all.
 run 0 "a file" "$TOOL" phantom engine --dims 40x40x40 -o v.nrrd
 run 0 "a packed file" "$TOOL" phantom engine --dims 40x40x40 -o v.nii.gz
-for file in v.nrrd v.nii.gz; do
+for file in $(long_tier && echo v.nrrd) v.nii.gz; do
     run 0 "$file alone" "$TOOL" $file -q -y -o one.npy
     run 0 "$file by 3" launch 3 "$MPI_TOOL" $file -q -y -o many.npy
     run 0 "$file by 3 is as by one" "$TOOL" compare one.npy many.npy \
@@ -191,6 +200,38 @@ for box in "" "--crop 4:,:30,9:40"; do
 done
 refused 3 "a mask of another grid" 'the mask has 40x36x44 voxels' \
     "$MPI_TOOL" phantom:head --dims 40x36x40 --mask mask.nrrd -o x.png
+
+# What a limit has no room for stays in the file: the pictures have the same
+# bits, with every view, mode, cut and turn, and no rank takes more.
+"$TOOL" phantom engine --dims 160x150x170 -q -o slab.nrrd
+"$TOOL" convert slab.nrrd -o packed.nii.gz -q
+ways=("" "--azimuth 70 --shade phong" "--cut equal --mode mip"
+    "--mode iso --iso 90 --perspective" "--view +x --mode mean")
+long_tier || ways=("--azimuth 70 --shade phong")
+for way in "${ways[@]}"; do
+    for file in slab.nrrd packed.nii.gz; do
+        # shellcheck disable=SC2086
+        run 0 "$file in memory, $way" launch 3 "$MPI_TOOL" $file $way \
+            -s 64x64 -q -y -o one.npy
+        # shellcheck disable=SC2086
+        run 0 "$file in its file, $way" launch 3 "$MPI_TOOL" $file $way \
+            -s 64x64 -q -y -o many.npy --memory 5M --stats many.json
+        check "it has the same bits" cmp -s one.npy many.npy
+        check "no rank takes more" \
+            [ "$(grep -o '"peak": [0-9]*' many.json | grep -o '[0-9]*')" -le 5242880 ]
+    done
+done
+if long_tier; then
+    turn="turntable slab.nrrd --frames 5 -s 64x64 -y -q --background black"
+    # shellcheck disable=SC2086
+    run 0 "a turn in memory" launch 3 "$MPI_TOOL" $turn -o one_%d.png
+    # shellcheck disable=SC2086
+    run 0 "a turn in its file" launch 3 "$MPI_TOOL" $turn -o many_%d.png \
+        --memory 6M
+    for frame in 0 1 2 3 4; do
+        check "frame $frame" cmp -s one_$frame.png many_$frame.png
+    done
+fi
 
 # That it leaves nothing is told once, whoever has read what.
 for way in "render mask.nrrd -o x.png" "render mask.nrrd -o x.png --cut equal" \

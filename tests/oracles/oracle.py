@@ -135,6 +135,31 @@ def refuse(path, part, options=(), status=3):
              f"{done.stderr.strip()!r} lacks {part!r}")
 
 
+def voxels_of(path, options=()):
+    """The voxels that are stored (z, y, x), and the upper rows of the matrix;
+    None where the tool fails.  A box has those of the whole."""
+    global checked
+    checked += 1
+    done = run(path, *options)
+    made = subprocess.run([TOOL, "convert", "-q", "-y", path, "-o", "out.npy",
+                           *map(str, options)], capture_output=True, text=True)
+    if done.returncode or made.returncode:
+        fail(path, done.stderr.strip() or made.stderr.strip())
+        return None, None
+    found = json.loads(done.stdout)
+    values = np.load("out.npy")
+    if list(values.shape[::-1]) != found["dims"]:
+        fail(path, f"dims {found['dims']}, but the file has {values.shape}")
+    return values, np.array(found["matrix"])[:3]
+
+
+def world(values, matrix):
+    """Where each voxel lies: x, y and z."""
+    z, y, x = np.indices(values.shape)
+    return [matrix[i, 0] * x + matrix[i, 1] * y + matrix[i, 2] * z +
+            matrix[i, 3] for i in range(3)]
+
+
 def affine(step, origin=(0, 0, 0), direction=None):
     matrix = np.eye(4)
     turn = np.eye(3) if direction is None else np.asarray(direction, float)

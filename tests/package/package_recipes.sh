@@ -130,6 +130,7 @@ for list in "$PACKAGING"/debian/*.install "$PACKAGING"/debian/*.manpages; do
     done <"$list"
 done
 [ -e "$(find usr -name 'snowglass-mpi.pc')" ] || sed -i '/mpi/d' idle 2>/dev/null
+[ -e usr/share/snowglass/web/viewer.html ] || sed -i '/viewer[.]html/d' idle 2>/dev/null
 [ -e usr/bin/snowglass-serve ] || sed -i '/serve/d' idle 2>/dev/null
 [ -n "$(find usr -name '_snowglass*.so')" ] || sed -i '/python3/d' idle 2>/dev/null
 check "each line of the lists names a file" [ ! -s idle ]

@@ -11,7 +11,7 @@ PYTHON=/usr/bin/python3
 # A copy, since documents are spoilt below.
 (cd "$SOURCE" && cp -r --parents ./*.md LICENSE docs include examples/minimal.c \
     python/snowglass src/README.md bench/peers/README.md scripts/site "$WORK")
-make_site() { "$PYTHON" -B scripts/site "$MANUAL" "$WORK/site"; }
+make_site() { "$PYTHON" -B scripts/site "$MANUAL" "$WORK/site" "$@"; }
 run 0 "the site is made" make_site
 prints '^site: [0-9]{2} pages, [0-9]{4} links, 0 faults$'
 page() { cat "site/$1"; }
@@ -45,6 +45,30 @@ if command -v tidy >/dev/null; then
 else
     skipped "the pages' HTML" "there is no tidy"
 fi
+
+# The demo has scripts, and nothing else has.  Its page of ./dev web stands in.
+mkdir -p bin share/snowglass/web
+cp "$TOOL" bin
+run 0 "without the page of ./dev web" make_site bin/snowglass
+says 'no demo: .*viewer.html is missing'
+check "no menu names a demo" [ -z "$(grep -rl demo.html site)" ]
+echo '<html><script></script>' >share/snowglass/web/viewer.html
+run 0 "with it" make_site bin/snowglass
+prints ', 0 faults$'
+check "a page shows it" grep -q '<iframe src="../demo/engine.html"' site/docs/demo.html
+check "menus name it" grep -q 'href="docs/demo.html">Try it' site/index.html
+check "it has a volume" grep -q 'data-name="head" data-recipe' site/demo/head.html
+check "scripts are there alone" [ "$(grep -rlE '<script|javascript:' site | sort)" = \
+    "$(printf 'site/demo/%s.html\n' engine head)" ]
+cat >bin/half <<'END'
+#!/bin/sh
+case $2 in *head*) echo "no room" >&2 && exit 1 ;; esac
+exec "$(dirname "$0")/snowglass" "$@"
+END
+chmod +x bin/half
+run 0 "where a later one cannot be made" make_site bin/half
+says 'no demo: no room'
+check "no half of a demo is left" [ ! -e site/demo ]
 
 # What is broken is found.
 echo 'See [nothing](docs/nothing.md), [no part](docs/usage.md#no-part).' >>README.md

@@ -142,9 +142,12 @@ static snow_image *serial_picture(snow_context *context, const scene *s,
     assert_int_equal(snow_transfer_new_for_volume(volume, look, &transfer),
                      SNOW_STATUS_OK);
     assert_int_equal(snow_frame_new(context, &frame), SNOW_STATUS_OK);
-    assert_int_equal(snow_frame_render(frame, volume, transfer, &s->view,
-                                       &s->settings, &image),
-                     SNOW_STATUS_OK);
+    snow_settings settings = s->settings; /* as the tool chooses */
+    if (snow_transfer_is_unshaded(transfer))
+        settings.shade = SNOW_SHADE_NONE;
+    assert_int_equal(
+        snow_frame_render(frame, volume, transfer, &s->view, &settings, &image),
+        SNOW_STATUS_OK);
     snow_frame_free(frame);
     snow_transfer_free(transfer);
     snow_volume_close(volume);
@@ -431,7 +434,7 @@ static void every_mode_does(void **state) {
                                   {3, 1, 2, 3}, {8, 2, 2, 2}, {12, 3, 2, 2}};
     static const snow_type types[] = {SNOW_TYPE_FLOAT32, SNOW_TYPE_UINT8,
                                       SNOW_TYPE_INT16, SNOW_TYPE_FLOAT64};
-    for (int n = 0; n < 60; n += (int)support_stride(7)) {
+    for (int n = 0; n < 60; n += (int)support_stride(13)) {
         const int *cut = cuts[n / 5 % 6];
         scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
         s.settings.mode = modes[n % 5];
@@ -454,7 +457,7 @@ static void every_mode_does(void **state) {
 static void a_gradient_opacity_does(void **state) {
     (void)state;
     static const int cuts[][4] = {{1, 1, 1, 1}, {3, 1, 3, 1}, {4, 2, 2, 1}};
-    for (int n = 0; n < 12; n += (int)support_stride(5)) {
+    for (int n = 0; n < 12; n += (int)support_stride(11)) {
         const int *cut = cuts[n % 3];
         scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
         s.fades = true;
@@ -1206,6 +1209,9 @@ typedef enum fault {
     FAULT_VOXELS,  /* no voxels told */
     FAULT_TYPE,    /* another type */
     FAULT_VIEW,    /* another view */
+    FAULT_LOOK,    /* another colour map */
+    FAULT_OPACITY, /* another opacity of one point */
+    FAULT_LIGHT,   /* another setting */
     FAULT_OVERLAP, /* voxels held twice */
     FAULT_LACK,    /* voxels that nobody holds */
     FAULT_NO_GRID, /* everywhere */
@@ -1217,6 +1223,9 @@ static const char *const fault_words[FAULTS] = {
     "rank 1: brick 0 has voxels 20 to 48 along axis 0",
     "rank 1: brick 0 has no voxels",
     "voxels are float32 on one rank and float64 on another",
+    "differ between ranks",
+    "differ between ranks",
+    "differ between ranks",
     "differ between ranks",
     "belongs to two ranks",
     "no rank holds",
@@ -1247,6 +1256,22 @@ static void make_fault(snow_insitu *insitu, faulty *f, int rank) {
         view.azimuth++;
         snow_insitu_set_view(insitu, &view);
     }
+    snow_opacity_point ramp[] = {{0, 0}, {1, 0.5}};
+    snow_look look = {.size = sizeof look,
+                      .colormap = "viridis",
+                      .opacities = ramp,
+                      .opacity_count = 2};
+    snow_settings settings = {.size = sizeof settings};
+    if (f->fault == FAULT_LOOK)
+        look.colormap = "magma";
+    if (f->fault == FAULT_OPACITY)
+        ramp[1].opacity = 0.75;
+    if (f->fault == FAULT_LOOK || f->fault == FAULT_OPACITY)
+        snow_insitu_set_look(insitu, &look);
+    snow_settings_init(&settings);
+    settings.diffuse = 0.5;
+    if (f->fault == FAULT_LIGHT)
+        snow_insitu_set_settings(insitu, &settings);
     if (f->fault == FAULT_OVERLAP)
         count[2]++;
     if (f->fault == FAULT_LACK)

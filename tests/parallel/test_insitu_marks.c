@@ -1,9 +1,30 @@
-/* tests/parallel/test_insitu_marks.c - bars and the step's number over the
- * pictures of a running simulation. */
+/* tests/parallel/test_insitu_marks.c - a running simulation of one rank: bars
+ * and the step's number over its pictures, recipes from files, ranges. */
 #include "support/image.h"
 
 #include <snowglass/recipe.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+/* The text that a PNG has for viewers. */
+static char comment[1024];
+
+static void read_comment(const char *path) {
+    static const char key[] = "tEXtSnowglass";
+    static char bytes[65536];
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    size_t size = fread(bytes, 1, sizeof bytes, file), at = 0;
+    fclose(file);
+    while (at + sizeof key < size && memcmp(bytes + at, key, sizeof key) != 0)
+        at++;
+    unsigned length =
+        (unsigned char)bytes[at - 2] * 256U + (unsigned char)bytes[at - 1] - 10;
+    assert_true(length < sizeof comment && at + sizeof key + length < size);
+    snprintf(comment, sizeof comment, "%.*s", (int)length,
+             bytes + at + sizeof key);
+}
 
 /* Two steps of a field that does not change, as `recipe` says.  `sums` are of
  * the files' pixels. */
@@ -39,11 +60,21 @@ static void make_steps(image_fixture *f, const char *recipe, uint64_t sums[2]) {
             SNOW_STATUS_OK);
         sums[step] = snow_image_checksum(image);
         snow_image_free(image);
+        read_comment(f->path);
         remove(f->path);
     }
     snow_recipe_clear(&r);
     snow_insitu_free(insitu);
     snow_comm_free(comm);
+}
+
+static void a_picture_tells_its_grid_and_look(void **state) {
+    uint64_t sums[2];
+    make_steps(*state, "{\"range\": [0, 8], \"opacity\": [[0, 0], [8, 0.5]]}",
+               sums);
+    assert_string_equal(
+        comment, "{\"step\":1,\"dims\":[12,12,12],\"range\":[0,8],\"matrix\":"
+                 "[1,0,0,0,0,1,0,0,0,0,1,0],\"opacity\":[[0,0],[8,0.5]]}");
 }
 
 static void a_recipes_legend_and_step_are_drawn(void **state) {
@@ -57,32 +88,380 @@ static void a_recipes_legend_and_step_are_drawn(void **state) {
     assert_true(label[0] != label[1] && label[0] != plain[0]);
 }
 
-static void a_depth_is_refused_in_situ(void **state) {
+static void others_are_refused_in_situ(void **state) {
     image_fixture *f = *state;
-    static const char text[] = "{\"depth\": \"d.npy\"}";
-    snow_comm *comm = NULL;
-    snow_insitu *insitu = NULL;
-    snow_recipe r = {.size = sizeof r};
-    assert_int_equal(snow_comm_new_self(f->context, &comm), SNOW_STATUS_OK);
-    assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_STATUS_OK);
+    static const char *const texts[][2] = {
+        {"{\"depth\": \"d.npy\"}", "\"depth\" is for pictures of files"},
+        {"{\"overlay\": \"o.nii\"}", "\"overlay\" is for pictures of files"}};
+    for (size_t n = 0; n < 2; n++) {
+        snow_comm *comm = NULL;
+        snow_insitu *insitu = NULL;
+        snow_recipe r = {.size = sizeof r};
+        const char *text = texts[n][0];
+        assert_int_equal(snow_comm_new_self(f->context, &comm), SNOW_STATUS_OK);
+        assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_STATUS_OK);
+        assert_int_equal(
+            snow_recipe_parse(f->context, "text", text, strlen(text), &r),
+            SNOW_STATUS_OK);
+        assert_int_equal(snow_recipe_apply(&r, insitu), SNOW_STATUS_BAD_USAGE);
+        assert_non_null(
+            strstr(snow_context_message(snow_comm_context(comm)), texts[n][1]));
+        snow_recipe_clear(&r);
+        snow_insitu_free(insitu);
+        snow_comm_free(comm);
+    }
+}
+
+/* --- recipes in files ------------------------------------------------------
+ */
+
+/* A movie of one rank over a field that the test changes. */
+typedef struct fixture {
+    float field[12 * 12 * 12];
+    snow_comm *comm;
+    snow_insitu *insitu;
+    char recipe[512], said[512];
+} fixture;
+
+static void keep_text(void *user, const char *text) {
+    snprintf(user, 512, "%s", text);
+}
+
+static fixture *open_movie(image_fixture *f) {
+    static fixture m;
+    const int64_t dims[3] = {12, 12, 12}, first[3] = {0, 0, 0};
+    m = (fixture){.comm = NULL};
+    for (int i = 0; i < 12 * 12 * 12; i++)
+        m.field[i] = (float)(i % 12);
+    snprintf(m.recipe, sizeof m.recipe, "%s", support_image_path(f, "r.json"));
+    assert_int_equal(snow_comm_new_self(f->context, &m.comm), SNOW_STATUS_OK);
+    assert_int_equal(snow_insitu_new(m.comm, &m.insitu), SNOW_STATUS_OK);
+    snow_insitu_set_warning(m.insitu, keep_text, m.said);
+    assert_int_equal(snow_insitu_set_grid(m.insitu, dims, NULL, NULL),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_insitu_set_brick(m.insitu, 0, first, dims, NULL),
+                     SNOW_STATUS_OK);
     assert_int_equal(
-        snow_recipe_parse(f->context, "text", text, strlen(text), &r),
+        snow_insitu_set_voxels(m.insitu, 0, SNOW_TYPE_FLOAT32, m.field, NULL),
         SNOW_STATUS_OK);
-    assert_int_equal(snow_recipe_apply(&r, insitu), SNOW_STATUS_BAD_USAGE);
-    assert_non_null(strstr(snow_context_message(snow_comm_context(comm)),
-                           "\"depth\" is for pictures of files"));
-    snow_recipe_clear(&r);
+    return &m;
+}
+
+static void close_movie(fixture *m) {
+    snow_insitu_free(m->insitu);
+    snow_comm_free(m->comm);
+    remove(m->recipe);
+}
+
+/* Files of other lengths differ, whatever the clock's steps. */
+static void write_recipe(const fixture *m, const char *text) {
+    FILE *file = fopen(m->recipe, "w");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* The picture's pixels as a number. */
+static uint64_t draw(const fixture *m) {
+    snow_image *image = NULL;
+    assert_int_equal(snow_insitu_update(m->insitu), SNOW_STATUS_OK);
+    assert_int_equal(snow_insitu_render(m->insitu, &image), SNOW_STATUS_OK);
+    uint64_t sum = snow_image_checksum(image);
+    snow_image_free(image);
+    return sum;
+}
+
+static void a_wrong_recipe_makes_no_picture(void **state) {
+    fixture *m = open_movie(*state);
+    snow_image *image = NULL;
+    write_recipe(m, "{\"colour\": 3}");
+    assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
+                     SNOW_STATUS_BAD_INPUT);
+    for (int step = 0; step < 3; step++) {
+        assert_int_equal(snow_insitu_update(m->insitu), SNOW_STATUS_BAD_INPUT);
+        assert_non_null(strstr(snow_insitu_message(m->insitu), "colour"));
+        assert_int_equal(snow_insitu_render(m->insitu, &image),
+                         SNOW_STATUS_BAD_INPUT);
+        assert_null(image);
+    }
+    write_recipe(m, "{\"size\": 64}");
+    assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
+                     SNOW_STATUS_OK);
+    draw(m);
+    close_movie(m);
+}
+
+static void a_recipe_that_changes_is_read_again(void **state) {
+    fixture *m = open_movie(*state);
+    write_recipe(m, "{\"size\": 64, \"reread\": true}");
+    assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
+                     SNOW_STATUS_OK);
+    uint64_t before = draw(m);
+    assert_true(draw(m) == before);
+    write_recipe(m, "{\"size\": 64, \"reread\": true, \"azimuth\": 40}");
+    uint64_t turned = draw(m);
+    assert_true(turned != before);
+    write_recipe(m, "{\"size\": 64, \"reread\": true, \"azimut\": 40, ");
+    assert_true(draw(m) == turned);
+    assert_non_null(strstr(m->said, "pictures stay as they were"));
+    m->said[0] = 0;
+    assert_true(draw(m) == turned); /* and says so once */
+    assert_string_equal(m->said, "");
+    write_recipe(m, "{\"size\": 64, \"output\": \"all.png\"}");
+    assert_true(draw(m) == turned); /* which updates, and renders */
+    assert_non_null(strstr(m->said, "one %d or %04d"));
+    write_recipe(m, "{\"size\": 64}");
+    assert_true(draw(m) == before);
+    write_recipe(m, "{\"size\": 64, \"azimuth\": 40.0}");
+    assert_true(draw(m) == before); /* it asked for nothing more */
+    close_movie(m);
+}
+
+static void a_range_is_kept_and_widened_with_a_note(void **state) {
+    fixture *m = open_movie(*state);
+    write_recipe(m, "{\"size\": 64, \"preset\": \"linear\"}");
+    assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
+                     SNOW_STATUS_OK);
+    uint64_t before = draw(m);
+    for (int i = 0; i < 12 * 12 * 12; i++)
+        m->field[i] *= 0.5F;
+    uint64_t darker = draw(m);
+    assert_true(darker != before);
+    assert_string_equal(m->said, "");
+    for (int i = 0; i < 12 * 12 * 12; i++)
+        m->field[i] *= 8;
+    draw(m);
+    assert_non_null(strstr(m->said, "spread over 0 to 44"));
+    m->said[0] = 0;
+    for (int i = 0; i < 12 * 12 * 12; i++)
+        m->field[i] /= 4;
+    assert_true(draw(m) != before); /* 11 is no longer white */
+    assert_string_equal(m->said, "");
+    close_movie(m);
+}
+
+static void a_range_begins_where_values_differ(void **state) {
+    fixture *m = open_movie(*state);
+    write_recipe(m, "{\"size\": 64, \"preset\": \"linear\"}");
+    assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
+                     SNOW_STATUS_OK);
+    for (int step = 0; step < 3; step++) { /* 300, 400, and 300 to 400 */
+        for (int i = 0; i < 12 * 12 * 12; i++)
+            m->field[i] =
+                (float)(step == 2 ? 300 + 100 * (i % 2) : 300 + 100 * step);
+        draw(m);
+    }
+    assert_non_null(strstr(m->said, "spread over 300 to 400"));
+    close_movie(m);
+}
+
+/* The picture of blocks of labels; in a movie that began with others, or not.
+ */
+static uint64_t draw_blocks(image_fixture *f, const char *recipe, int first) {
+    static uint8_t field[8 * 8 * 512];
+    static const uint8_t labels[2][8] = {{0, 7, 0, 3, 0, 3, 0, 7},
+                                         {0, 7, 0, 3, 0, 5, 0, 9}};
+    const int64_t dims[3] = {8, 8, 512}, none[3] = {0, 0, 0};
+    fixture *m = open_movie(f);
+    uint64_t sum = 0;
+    write_recipe(m, recipe);
+    assert_int_equal(snow_insitu_set_grid(m->insitu, dims, NULL, NULL),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_insitu_set_brick(m->insitu, 0, none, dims, NULL),
+                     SNOW_STATUS_OK);
+    assert_int_equal(
+        snow_insitu_set_voxels(m->insitu, 0, SNOW_TYPE_UINT8, field, NULL),
+        SNOW_STATUS_OK);
+    assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
+                     SNOW_STATUS_OK);
+    for (int step = first; step < 2; step++) {
+        for (int i = 0; i < 8 * 8 * 512; i++)
+            field[i] = labels[step][i / (8 * 8 * 64)];
+        sum = draw(m);
+    }
+    close_movie(m);
+    return sum;
+}
+
+static void labels_that_appear_have_their_colours(void **state) {
+    static const char *const recipes[] = {
+        "{\"size\": 64, \"view\": \"iso\"}",
+        "{\"size\": 64, \"view\": \"iso\", \"preset\": \"labels\"}"};
+    uint64_t sums[2][2];
+    for (int n = 0; n < 2; n++)
+        for (int first = 0; first < 2; first++)
+            sums[n][first] = draw_blocks(*state, recipes[n], first);
+    assert_true(sums[0][0] == sums[0][1] && sums[1][0] == sums[1][1]);
+    assert_true(sums[0][0] == sums[1][0]);
+}
+
+/* The picture of a field, which is best unshaded. */
+static uint64_t draw_field(image_fixture *f, const char *recipe) {
+    fixture *m = open_movie(f);
+    write_recipe(m, recipe);
+    for (int i = 0; i < 12 * 12 * 12; i++)
+        m->field[i] = (float)(i % 12) + 0.5F;
+    assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
+                     SNOW_STATUS_OK);
+    uint64_t sum = draw(m);
+    close_movie(m);
+    return sum;
+}
+
+static void a_shade_that_is_named_is_kept(void **state) {
+    uint64_t plain = draw_field(*state, "{\"size\": 64}");
+    assert_true(draw_field(*state, "{\"size\": 64, \"shade\": \"none\"}") ==
+                plain);
+    assert_true(draw_field(*state, "{\"size\": 64, \"shade\": \"phong\"}") !=
+                plain);
+}
+
+/* A halo along z that reaches beyond the grid, where nonsense lies. */
+static void slices_beyond_the_grid_are_left_out_in_place(void **state) {
+    fixture *m = open_movie(*state);
+    static float more[14 * 12 * 12];
+    const int64_t dims[3] = {12, 12, 12}, first[3] = {0, 0, 0};
+    const snow_halo halo = {{0, 0, 1}, {0, 0, 1}};
+    snow_insitu_stats figures = {.size = sizeof figures};
+    write_recipe(m,
+                 "{\"size\": 64, \"preset\": \"linear\", \"view\": \"iso\"}");
+    assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
+                     SNOW_STATUS_OK);
+    for (int i = 0; i < 12 * 12 * 12; i++)
+        m->field[i] = (float)(i % 12 + i / 144);
+    uint64_t plain = draw(m);
+    for (int i = 0; i < 14 * 12 * 12; i++)
+        more[i] = 1e9F;
+    memcpy(more + 144, m->field, sizeof m->field);
+    assert_int_equal(snow_insitu_set_brick(m->insitu, 0, first, dims, &halo),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_insitu_set_voxels(m->insitu, 0, SNOW_TYPE_FLOAT32,
+                                            more + 144, NULL),
+                     SNOW_STATUS_OK);
+    assert_true(draw(m) == plain);
+    assert_int_equal(snow_insitu_get_stats(m->insitu, &figures),
+                     SNOW_STATUS_OK);
+    assert_int_equal(figures.ranks_copied, 0);
+    close_movie(m);
+}
+
+/* --- two ranks -------------------------------------------------------------
+ */
+
+/* A file of a look that rank 1 has no memory for. */
+#define TF_BYTES (3 << 20)
+
+static _Thread_local bool has_little;
+
+static void *allocate_little(void *user, size_t bytes) {
+    (void)user;
+    return has_little && bytes >= TF_BYTES ? NULL : malloc(bytes);
+}
+
+static void release(void *user, void *block) {
+    (void)user;
+    free(block);
+}
+
+typedef struct rereading {
+    fixture files; /* the recipe's name, and what is said */
+    char texts[5][512];
+    uint64_t sums[5];
+} rereading;
+
+static snow_status describe_half(snow_insitu *insitu, const float *field) {
+    const int rank = snow_comm_rank(snow_insitu_comm(insitu));
+    const int64_t dims[3] = {12, 12, 12}, half[3] = {12, 12, 6},
+                  first[3] = {0, 0, 6 * rank};
+    SNOW_TRY(snow_insitu_set_grid(insitu, dims, NULL, NULL));
+    SNOW_TRY(snow_insitu_set_brick(insitu, 0, first, half, NULL));
+    return snow_insitu_set_voxels(insitu, 0, SNOW_TYPE_FLOAT32,
+                                  field + rank * 6 * 144, NULL);
+}
+
+static snow_status reread_rank(snow_comm *comm, void *user) {
+    rereading *r = user;
+    snow_insitu *insitu = NULL;
+    snow_status status = SNOW_STATUS_OK;
+    has_little = snow_comm_rank(comm) == 1;
+    SNOW_TRY(snow_insitu_new(comm, &insitu));
+    snow_insitu_set_warning(insitu, keep_text, r->files.said);
+    for (int n = 0; n < 5 && status == SNOW_STATUS_OK; n++) {
+        snow_image *image = NULL;
+        if (!has_little)
+            write_recipe(&r->files, r->texts[n]);
+        if (n == 0)
+            status = snow_recipe_apply_file(insitu, r->files.recipe);
+        if (status == SNOW_STATUS_OK)
+            status = describe_half(insitu, r->files.field);
+        if (status == SNOW_STATUS_OK)
+            status = snow_insitu_update(insitu);
+        if (status == SNOW_STATUS_OK)
+            status = snow_insitu_render(insitu, &image);
+        if (image)
+            r->sums[n] = snow_image_checksum(image);
+        snow_image_free(image);
+    }
     snow_insitu_free(insitu);
-    snow_comm_free(comm);
+    return status;
+}
+
+/* The recipes one after another; the second and third are refused. */
+static void write_texts(rereading *r, const char *tf) {
+    static const char *const texts[5] = {
+        "{\"size\": 64, \"reread\": true}",
+        "{\"size\": 64, \"reread\": true, \"tf\": \"%s\"}",
+        "{\"size\": 64, \"tf\": \"%s\"}", "{\"size\": 64, \"azimuth\": 40}",
+        "{\"size\": 64, \"azimuth\": 80.0}"};
+    for (int n = 0; n < 5; n++)
+        snprintf(r->texts[n], sizeof *r->texts, texts[n], tf);
+}
+
+/* With and without "reread": nothing of it is applied, and all go on to look
+ * at the file, until a recipe asks them not to. */
+static void a_recipe_that_fails_on_one_rank_is_applied_on_none(void **state) {
+    image_fixture *f = *state;
+    static rereading r;
+    const snow_allocator allocator = {allocate_little, release, NULL};
+    snow_context *context = NULL;
+    char tf[128];
+    for (int i = 0; i < 12 * 12 * 12; i++)
+        r.files.field[i] = (float)(i % 12);
+    snprintf(r.files.recipe, sizeof r.files.recipe, "%s/r.json", f->folder);
+    snprintf(tf, sizeof tf, "%s/look.csv", f->folder);
+    FILE *file = fopen(tf, "w");
+    assert_non_null(file);
+    fprintf(file, "0 0\n11 1\n#%*s\n", TF_BYTES, "");
+    assert_int_equal(fclose(file), 0);
+    write_texts(&r, tf);
+    assert_int_equal(snow_context_new(&allocator, &context), SNOW_STATUS_OK);
+    snow_status status = snow_comm_run_threads(context, 2, reread_rank, &r);
+    if (status != SNOW_STATUS_OK)
+        fail_msg("%s", snow_context_message(context));
+    snow_context_free(context);
+    assert_non_null(strstr(r.files.said, "rank 1: out of memory"));
+    assert_non_null(strstr(r.files.said, "pictures stay as they were"));
+    assert_true(r.sums[1] == r.sums[0] && r.sums[2] == r.sums[0]);
+    assert_true(r.sums[3] != r.sums[0] && r.sums[4] == r.sums[3]);
+    remove(tf);
+    remove(r.files.recipe);
 }
 
 int main(void) {
+#define HERE(test)                                             \
+    cmocka_unit_test_setup_teardown(test, support_image_setup, \
+                                    support_image_teardown)
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_depth_is_refused_in_situ,
-                                        support_image_setup,
-                                        support_image_teardown),
-        cmocka_unit_test_setup_teardown(a_recipes_legend_and_step_are_drawn,
-                                        support_image_setup,
-                                        support_image_teardown)};
+        HERE(others_are_refused_in_situ),
+        HERE(a_picture_tells_its_grid_and_look),
+        HERE(a_recipes_legend_and_step_are_drawn),
+        HERE(a_wrong_recipe_makes_no_picture),
+        HERE(a_recipe_that_changes_is_read_again),
+        HERE(a_range_is_kept_and_widened_with_a_note),
+        HERE(a_shade_that_is_named_is_kept),
+        HERE(a_range_begins_where_values_differ),
+        HERE(labels_that_appear_have_their_colours),
+        HERE(a_recipe_that_fails_on_one_rank_is_applied_on_none),
+        HERE(slices_beyond_the_grid_are_left_out_in_place)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -224,7 +224,7 @@ static void pictures_sent_early_have_the_same_bits(void **state) {
     support_folder_make(folder);
     pipeline *f = pipeline_new(folder);
     for (int ranks = 2; ranks <= 33;
-         ranks += ranks < 5 ? 1 : (int)support_stride(7)) {
+         ranks += ranks < 5 ? 1 : (int)support_stride(13)) {
         f->view.azimuth = 11 * ranks;
         f->view.elevation = 5 * (ranks % 7);
         f->view.zoom = ranks % 4 ? 1 : 0.1;

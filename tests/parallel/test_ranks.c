@@ -134,13 +134,13 @@ static void sweep(const char *title, int scenes, double fov,
 static void any_number_of_ranks_makes_the_serial_picture(void **state) {
     (void)state;
     const snow_method sheared = SNOW_METHOD_SHEAR_WARP;
-    sweep("sheared", 30, 0, &sheared, 1);
+    sweep("sheared", (int)support_sweep(30, 15), 0, &sheared, 1);
 }
 
 static void so_it_does_in_perspective(void **state) {
     (void)state;
     const snow_method sheared = SNOW_METHOD_SHEAR_WARP;
-    sweep("perspective", 20, 35, &sheared, 1);
+    sweep("perspective", (int)support_sweep(20, 10), 35, &sheared, 1);
 }
 
 static void so_it_does_by_the_exact_methods(void **state) {
@@ -216,11 +216,13 @@ static void mode_pictures(snow_mode mode, double bound, double depth_bound) {
     snow_context *context = support_context();
     double most = 0;
     int shown = 0, all = 0;
-    for (int n = 0; n < 2 * TURNS; n++, all++) {
+    for (int n = 0; n < 2 * TURNS; n += (int)support_stride(3), all++) {
         reference_scene scene;
         scenario p = scenario_of(n, 24, &scene);
         p.settings.mode = mode;
-        p.settings.method = methods[n % 4];
+        p.settings.method = mode == SNOW_MODE_ISO && n % 4 == 3
+                                ? SNOW_METHOD_RAYCAST
+                                : methods[n % 4];
         p.settings.depth = mode == SNOW_MODE_ISO || mode == SNOW_MODE_OVER;
         p.settings.iso = 60;
         p.view.fov = n % 5 == 4 ? 35 : 0;
@@ -409,7 +411,7 @@ static void real_volumes_are_seen_alike_by_many_ranks(void **state) {
     };
     if (!support_data(files[0].path) || !support_data(files[1].path))
         skip();
-    for (int n = 0; n < 2; n++) {
+    for (int n = 0; n < support_sweep(2, 1); n++) {
         snow_context *context = support_context();
         snow_volume *volume = NULL;
         if (snow_volume_open(context, support_data(files[n].path),
@@ -425,16 +427,18 @@ static void real_volumes_are_seen_alike_by_many_ranks(void **state) {
 
 /* --- deterministic pictures ----------------------------------------------- */
 
-/* Bits, over methods and views. */
+/* Bits, over modes, methods and views. */
 static void deterministic_pictures_are_the_same_bit_for_bit(void **state) {
     (void)state;
     snow_context *context = support_context();
     static const snow_method methods[] = {
         SNOW_METHOD_SHEAR_WARP, SNOW_METHOD_SHEAR_WARP, SNOW_METHOD_FOOTPRINT,
         SNOW_METHOD_SHEAR_WARP, SNOW_METHOD_TESTED};
+    static const snow_mode modes[] = {SNOW_MODE_OVER, SNOW_MODE_MEAN,
+                                      SNOW_MODE_OVER, SNOW_MODE_SUM};
     int pictures = 0;
     double moved = 0;
-    for (int n = 0; n < 24; n++) {
+    for (int n = 0; n < 24; n += (int)support_stride(5)) {
         reference_scene scene;
         snow_transfer *transfer = NULL;
         double strongest;
@@ -443,6 +447,10 @@ static void deterministic_pictures_are_the_same_bit_for_bit(void **state) {
             p.settings.quality = SNOW_QUALITY_NORMAL;
         p.view.fov = n % 3 == 2 ? 40 : 0;
         p.settings.method = methods[n % 5];
+        p.settings.mode = modes[n % 4];
+        if (p.settings.mode != SNOW_MODE_OVER &&
+            p.settings.method == SNOW_METHOD_TESTED)
+            p.settings.method = SNOW_METHOD_FOOTPRINT;
         transfer = model_transfer(context, &scene);
         p.transfer = transfer;
         float *usual = scenario_alone(context, &p, &strongest);
@@ -670,7 +678,7 @@ static void ranks_without_memory_fail_together(void **state) {
         /* Each of the first ones, then some. */
         for (long failing = -1; failing < last;
              failing +=
-             failing < support_sweep(30, 8) ? 1 : support_sweep(5, 29)) {
+             failing < support_sweep(30, 8) ? 1 : support_sweep(5, 61)) {
             miser m = {.failing = failing, .for_good = failing % 2};
             const snow_allocator allocator = {give_or_not, take_back, &m};
             snow_context *context = NULL;

@@ -24,7 +24,8 @@ typedef struct order {
     snow_volume_options options;
     snow_view view, turned;
     bool turn;
-    snow_look look; /* zeros: automatic */
+    uint64_t memory; /* of each rank; 0: no limit */
+    snow_look look;  /* zeros: automatic */
     snow_settings settings;
     snow_ranks_options how;
     const snow_volume *whole;
@@ -148,6 +149,7 @@ static snow_status open_part(snow_comm *comm, void *user) {
     int rank = snow_comm_rank(comm);
     snow_volume *volume;
     snow_transfer *transfer;
+    snow_context_set_memory_limit(snow_comm_context(comm), o->memory);
     SNOW_TRY(snow_ranks_open(comm, rank == o->odd ? o->wrong : o->path,
                              &o->options, &o->look, &o->view, &o->settings,
                              &o->how, &volume, &transfer));
@@ -159,7 +161,7 @@ static snow_status open_part(snow_comm *comm, void *user) {
     status = snow_comm_agree_status(comm, status);
     if (status == SNOW_STATUS_OK && o->turn)
         status = turn_part(comm, o, transfer, &volume);
-    if (status == SNOW_STATUS_OK)
+    if (status == SNOW_STATUS_OK && !volume->stream)
         status = check_voxels(comm, o, volume);
     snow_volume_get_extent(volume, &o->parts[rank]);
     o->stored[rank] =
@@ -512,6 +514,79 @@ static void a_file_that_differs_on_one_rank_is_refused(void **state) {
     snow_volume_close(whole);
 }
 
+/* Writes a ramp of square slices, of floats or bytes, with the header in a file
+ * of its own. */
+static const char *put_ramp(support_place *place, int side, int slices,
+                            bool floats, bool packed) {
+    static const char *const kinds[2][2] = {{"raw", ""}, {"gzip", ".gz"}};
+    const size_t count = (size_t)side * (size_t)side * (size_t)slices;
+    char header[256], command[512];
+    float *values = malloc(count * sizeof *values);
+    assert_non_null(values);
+    for (size_t i = 0; i < count; i++)
+        if (floats)
+            values[i] = (float)(i * i % 65521);
+        else
+            ((unsigned char *)values)[i] =
+                (unsigned char)(i % 16 ? i >> 16 : i * i * 2654435761U >> 24);
+    const char *data = support_place_put(place, "ramp", values,
+                                         count * (floats ? sizeof *values : 1));
+    free(values);
+    snprintf(command, sizeof command, "gzip -kf1 '%s'", data);
+    assert_int_equal(packed ? system(command) : 0, 0);
+    snprintf(header, sizeof header,
+             "NRRD0004\ntype: %s\ndimension: 3\nsizes: %d %d %d\n"
+             "endian: little\nencoding: %s\ndata file: ramp%s\n\n",
+             floats ? "float" : "uint8", side, side, slices, kinds[packed][0],
+             kinds[packed][1]);
+    return support_place_put(place, "ramp.nhdr", header, strlen(header));
+}
+
+/* Of two slices the third rank has none; of eight one rank has fewer. */
+static void ranks_with_unequal_room_for_samples_agree(void **state) {
+    support_place *place = *state;
+    for (int slices = 2; slices <= 8; slices += 6) {
+        char path[256];
+        snow_transfer *expected;
+        snprintf(path, sizeof path, "%s",
+                 put_ramp(place, 512, slices, true, false));
+        snow_volume *whole = support_place_open(place, path);
+        assert_int_equal(snow_transfer_new_for_volume(whole, NULL, &expected),
+                         SNOW_STATUS_OK);
+        order o;
+        begin_order(&o, whole);
+        o.path = path;
+        o.expected = expected;
+        o.memory = 11 << 20;
+        open_by(place, &o, 3);
+        snow_transfer_free(expected);
+        snow_volume_close(whole);
+    }
+}
+
+/* What is packed is unpacked from its beginning for each slab, so it is read to
+ * see that it is packed, and as a share; what is plain is read in slabs. */
+static void packed_data_beside_a_header_are_not_read_in_slabs(void **state) {
+    support_place *place = *state;
+    for (int packed = 0; packed < 2; packed++) {
+        char path[256];
+        struct stat about;
+        order o;
+        snprintf(path, sizeof path, "%s",
+                 put_ramp(place, 1024, 17, false, packed));
+        snow_volume *whole = support_place_open(place, path);
+        begin_order(&o, whole);
+        o.path = path;
+        open_by(place, &o, 1);
+        const char *data =
+            support_place_path(place, packed ? "ramp.gz" : "ramp");
+        assert_int_equal(stat(data, &about), 0);
+        const uint64_t twice = 2 * (uint64_t)about.st_size + 4 * 65536;
+        assert_int_equal(o.read[0] <= twice, packed);
+        snow_volume_close(whole);
+    }
+}
+
 /* Writes a file into a pipe. */
 static void *feed(void *user) {
     const char *const *names = user;
@@ -561,7 +636,7 @@ static void memory_that_is_missing_fails_all_ranks(void **state) {
         snow_status status = SNOW_STATUS_NO_MEMORY;
         int64_t tries = 0;
         for (; status != SNOW_STATUS_OK && tries < 6000;
-             tries += 3 * (int64_t)support_stride(7)) {
+             tries += 3 * (int64_t)support_stride(13)) {
             order o;
             begin_order(&o, whole);
             o.path = path;
@@ -786,6 +861,8 @@ int main(void) {
         TEST(every_method_is_cut_into_bricks_but_deterministic_pictures),
         TEST(a_file_that_one_rank_lacks_fails_all),
         TEST(a_file_that_differs_on_one_rank_is_refused),
+        TEST(ranks_with_unequal_room_for_samples_agree),
+        TEST(packed_data_beside_a_header_are_not_read_in_slabs),
         TEST(a_pipe_is_read_by_one_rank_and_sent_to_all),
         TEST(memory_that_is_missing_fails_all_ranks),
         TEST(a_plan_tells_parts_and_loads),

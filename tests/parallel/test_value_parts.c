@@ -183,7 +183,7 @@ static void check_slabs(support_place *place, scene_fn *scene) {
     static const int slices[] = {1, 7, 12, 1000};
     snow_frame *frame;
     assert_int_equal(snow_frame_new(place->context, &frame), SNOW_STATUS_OK);
-    for (int n = 0; n < 48; n += (int)support_stride(7)) {
+    for (int n = 0; n < 48; n += (int)support_stride(13)) {
         reference_scene s = scene(n, 29);
         snow_volume *volume;
         assert_int_equal(
@@ -247,7 +247,7 @@ static void check_ranks(scene_fn *scene) {
     snow_context *context = support_context();
     double most = 0, seen = 0;
     int scenes = 0;
-    for (int n = 0; n < 72; n += (int)support_stride(13), scenes++) {
+    for (int n = 0; n < 72; n += (int)support_stride(29), scenes++) {
         reference_scene s = scene(n, 24);
         snow_transfer *transfer = model_transfer(context, &s);
         scenario p = scenario_of(&s, n, transfer);
@@ -287,7 +287,7 @@ static void ranks_project_what_one_does(void **state) {
 static void deterministic_pictures_have_the_same_bytes(void **state) {
     (void)state;
     snow_context *context = support_context();
-    for (int n = 0; n < 36; n += (int)support_stride(11)) {
+    for (int n = 0; n < 36; n += (int)support_stride(23)) {
         reference_scene s = numbered(n, n % 2 ? 24 : 47);
         snow_transfer *transfer = model_transfer(context, &s);
         scenario p = scenario_of(&s, n, transfer);

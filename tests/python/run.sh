@@ -1,6 +1,7 @@
 #!/bin/bash
-# run.sh PYTHON TOOL FOLDER: the tests of the package in FOLDER, and those of its
-# documents and types (by mypy, where that is installed) in the long tier.
+# run.sh PYTHON TOOL FOLDER: the tests of the package in FOLDER, and in the
+# long tier those of its slices, documents and types (by mypy, where that and
+# pytest are), and those that hold it against the tool.
 set -eu
 python=$1 here=$(cd "$(dirname "$0")" && pwd)
 export SNOWGLASS=$2 PYTHONPATH=$3
@@ -8,12 +9,13 @@ export SNOWGLASS=$2 PYTHONPATH=$3
     echo "skipped: $python has no NumPy"
     exit 77
 }
+[ -z "${SNOW_PRELOAD-}" ] || export LD_PRELOAD=$SNOW_PRELOAD
 if [ "${SNOW_TIER:-short}" = short ]; then
-    "$python" -m unittest discover -s "$here" -p 'test_[st]*.py'
+    "$python" -m unittest discover -s "$here" -p test_snowglass.py
     exit
 fi
 "$python" -m unittest discover -s "$here" -p 'test_*.py'
-if "$python" -c 'import mypy' 2>/dev/null; then
+if "$python" -c 'import mypy, pytest' 2>/dev/null; then
     cd "$PYTHONPATH"
     "$python" -m mypy --strict --no-warn-return-any snowglass
 fi

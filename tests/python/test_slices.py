@@ -253,8 +253,9 @@ class Recipes(InFolder):
         with self.assertRaisesRegex(ValueError, "colors of its own"):
             volume.render(sg.Look(colors=[(0, (0, 0, 0)), (9, (1, 1, 1))]),
                           size=16).recipe
+        image.save("a.npy")
         with self.assertRaisesRegex(ValueError, "Volume.render"):
-            volume.slice().recipe
+            sg.Image.load("a.npy").recipe
         with self.assertRaises(TypeError):
             sg.render()
         with self.assertRaises(TypeError):

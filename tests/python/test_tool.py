@@ -3,6 +3,7 @@ byte: the same defaults, letters, bars, background, colours of values.
 
     SNOWGLASS=build/snowglass PYTHONPATH=build/python python3 -m unittest -v
 """
+import json
 import os
 import shlex
 import shutil
@@ -233,6 +234,43 @@ class Commands(Same):
                                  self.bytes_of("p.png"))
                 again = sg.render(**image.recipe)
                 self.assertEqual(sg.compare(again, image).largest, 0)
+
+    def test_slices(self):
+        patient().save(self.path("a.nrrd"))
+        here = os.getcwd()
+        os.chdir(self.folder.name)
+        self.addCleanup(os.chdir, here)
+        volume = sg.Volume("a.nrrd")
+        for axis, at, look, options in [
+                ("axial", None, None, {}),
+                ("Coronal", 18, "ct-bone", {"legend": True}),
+                ("x", "-3mm", sg.Look(range=(-200, 900)), {"size": (90, 80)}),
+                ("sagittal", 15, sg.Look(cmap="viridis", range=(0, 90), opacity=[
+                    (0, 0), (90, 0.4)]), {"kernel": "box", "size": 120,
+                                          "letters": False, "threads": 1})]:
+            with self.subTest(axis, at=at, options=options):
+                image = volume.slice(axis, at, look, **options)
+                image.save("p.png")
+                words = shlex.split(image.command)
+                self.assertEqual(words[:3], ["snowglass", "slice", "a.nrrd"])
+                subprocess.run([TOOL, *words[1:], "-o", "t.png", "-y", "-q"],
+                               check=True)
+                self.assertEqual(self.bytes_of("t.png"),
+                                 self.bytes_of("p.png"))
+                with open("r.json", "w", encoding="utf-8") as file:
+                    json.dump({**image.recipe, "output": "c.png"}, file)
+                subprocess.run([TOOL, "slice", "--config", "r.json", "-y", "-q"],
+                               check=True)
+                self.assertEqual(self.bytes_of("c.png"),
+                                 self.bytes_of("p.png"))
+                again = sg.render(**image.recipe)
+                self.assertEqual(again.stats, image.stats | {
+                    "axis": axis.lower()})
+                self.assertEqual(sg.compare(again, image).largest, 0)
+        recipe = patient().slice("y", 5, size=40).recipe  # of an array
+        self.assertNotIn("input", recipe)
+        self.assertEqual(sg.compare(sg.render(patient(), **recipe),
+                                    patient().slice("y", 5, size=40)).largest, 0)
 
 
 class Movies(Same):

@@ -173,18 +173,39 @@ static double label_at(const reference_cast *cast, const double at[3]) {
 
 /* --- gradients ------------------------------------------------------------ */
 
+typedef struct member {
+    const reference_cast *cast;
+    double label;
+} member;
+
+static bool is_member(const void *of, const int64_t voxel[3]) {
+    const member *m = of;
+    return voxel_value(m->cast, voxel) == m->label;
+}
+
+static void label_gradient_at(const reference_cast *cast, const double at[3],
+                              double label, double gradient[3]) {
+    const member m = {cast, label};
+    reference_membership_gradient(cast->scene->info.dims, is_member, &m, at,
+                                  gradient);
+    for (int a = 0; a < 3; a++)
+        gradient[a] = fabs(gradient[a]) < 1e-9 ? 0 : gradient[a];
+}
+
 static void gradient_at(const reference_cast *cast, const double at[3],
                         double label, double gradient[3]) {
     double here = reference_field(cast, at);
+    if (cast->labels) {
+        label_gradient_at(cast, at, label, gradient);
+        return;
+    }
     for (int n = 0; n < 3; n++) {
         double before[3] = {at[0], at[1], at[2]};
         double after[3] = {at[0], at[1], at[2]};
         before[n] -= 1;
         after[n] += 1;
-        double a = cast->labels ? share_of(cast, before, label)
-                                : reference_field(cast, before);
-        double b = cast->labels ? share_of(cast, after, label)
-                                : reference_field(cast, after);
+        double a = reference_field(cast, before);
+        double b = reference_field(cast, after);
         gradient[n] = (b - a) / 2;
         if (isnan(a))
             gradient[n] = b - here;
@@ -343,14 +364,19 @@ static void sample_at(const walk *w, const double at[3], double rgba[4]) {
 static void cast_over(const walk *w, double pixel[4], double *depth) {
     double length = reference_opacity_length(w->cast->scene);
     for (int64_t i = 0; i < w->steps; i++) {
-        double at[3], rgba[4], through = 1 - pixel[3];
+        double at[3], color[3] = {0, 0, 0}, alpha = 0, through = 1 - pixel[3];
         at_step(w, (double)i + 0.5, at);
-        sample_at(w, at, rgba);
-        if (!(rgba[3] > 0))
-            continue;
-        double alpha = 1 - pow(1 - rgba[3], w->step / length);
+        for (walk one = *w; one.cast; one.cast = one.cast->next) {
+            double rgba[4];
+            sample_at(&one, at, rgba);
+            double own =
+                rgba[3] > 0 ? 1 - pow(1 - rgba[3], w->step / length) : 0;
+            for (int c = 0; c < 3 && own > 0; c++)
+                color[c] += rgba[c] * own;
+            alpha = fmax(alpha, own);
+        }
         for (int c = 0; c < 3; c++)
-            pixel[c] += through * rgba[c] * alpha;
+            pixel[c] += through * color[c];
         pixel[3] += through * alpha;
         /* through (1 - alpha)^share = 1/2 */
         if (depth && through > 0.5 && pixel[3] >= 0.5)
@@ -358,6 +384,8 @@ static void cast_over(const walk *w, double pixel[4], double *depth) {
                 w, (double)i +
                        (alpha < 1 ? log(0.5 / through) / log1p(-alpha) : 0));
     }
+    for (int c = 0; c < 3 && w->cast->next; c++)
+        pixel[c] = fmin(pixel[c], pixel[3]);
 }
 
 /* --- other modes ---------------------------------------------------------- */

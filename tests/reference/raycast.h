@@ -16,6 +16,7 @@ typedef struct reference_cast {
     const double (
         *planes)[4]; /* of the world: a x + b y + c z > d is cut off */
     int plane_count;
+    const struct reference_cast *next; /* another channel, in mode over */
 } reference_cast;
 
 /* Values are those of the field at an index position, up to one voxel beyond

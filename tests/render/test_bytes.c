@@ -120,8 +120,8 @@ static void bytes_are_those_of_the_png(void **state) {
         {.name = "occlusion", .settings = {.occlusion = 0.7}},
     };
     for (size_t n = 0; n < sizeof scenes / sizeof *scenes; n++)
-        for (size_t look = support_start(n, 3); look < 8;
-             look += support_stride(3)) {
+        for (size_t look = support_start(n, 7); look < 8;
+             look += support_stride(7)) {
             scene s = scenes[n];
             s.settings.size = sizeof s.settings;
             s.background = (int)(look % 4) - 1;

@@ -492,8 +492,10 @@ static flat splat(const stage *s, const snow_volume *volume) {
     snow_shear_warp_image image;
     snow_stats stats;
     snow_job job;
-    const snow_request request = {volume, s->transfer, &s->scene.view,
-                                  &s->settings};
+    const snow_request request = {.volume = volume,
+                                  .transfer = s->transfer,
+                                  .view = &s->scene.view,
+                                  .settings = &s->settings};
     snow_status status = snow_job_begin(s->context, &request, &stats, &job);
     const snow_value_params params = {.volume = volume,
                                       .transfer = s->transfer,
@@ -515,7 +517,7 @@ static flat splat(const stage *s, const snow_volume *volume) {
     if (status == SNOW_STATUS_OK)
         status = snow_value_encode(path, &params, &stats);
     if (status == SNOW_STATUS_OK)
-        status = snow_value_draw(path, &params, &stats, &image);
+        status = snow_value_draw(path, &params, &stats, &image, NULL);
     if (status != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(s->context));
     flat out = pack(&image);
@@ -625,7 +627,7 @@ static reference_scene valued_scene(int n, double fov) {
 
 static void sweep(const char *title, int scenes, double fov) {
     part_summary summary = {0};
-    for (int n = 0; n < scenes; n += (int)support_stride(7)) {
+    for (int n = 0; n < scenes; n += (int)support_stride(13)) {
         stage s = {.scene = valued_scene(n, fov)};
         open_whole(&s);
         snow_placement p;
@@ -652,7 +654,7 @@ static void sweep(const char *title, int scenes, double fov) {
                   "opaque pixels by %.2g; strongest opacity %.2f in the mean\n",
                   title, summary.clear, summary.clear_most, summary.opaque,
                   summary.opaque_most, summary.strongest / all);
-    assert_true(summary.clear * (int)support_stride(7) > scenes &&
+    assert_true(summary.clear * (int)support_stride(13) > scenes &&
                 summary.strongest / all > 0.3);
 }
 
@@ -704,7 +706,7 @@ static void parts_by_exact_methods_make_up_the_picture(void **state) {
     static const snow_method methods[] = {
         SNOW_METHOD_ORIGINAL, SNOW_METHOD_TESTED, SNOW_METHOD_FOOTPRINT};
     part_summary summary = {0};
-    for (int n = 0; n < 66; n += (int)support_stride(7)) {
+    for (int n = 0; n < 66; n += (int)support_stride(13)) {
         stage s = {.scene = scene_of(n, n % 4 == 3 ? 40 : 0)};
         s.scene.settings.method = methods[n % 3];
         s.scene.settings.quality = SNOW_QUALITY_NORMAL;

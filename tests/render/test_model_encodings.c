@@ -160,8 +160,8 @@ static void runs_around_the_longest_that_a_byte_holds(void **state) {
                                       509, 510, 511, 512, 765, 766};
     model_stage stage = model_open();
     for (size_t a = 0; a < sizeof lengths / sizeof *lengths; a++)
-        for (size_t b = support_start(a, 5);
-             b < sizeof lengths / sizeof *lengths; b += support_stride(5)) {
+        for (size_t b = support_start(a, 11);
+             b < sizeof lengths / sizeof *lengths; b += support_stride(11)) {
             /* Lengths a and b take turns; every second row begins with an
              * interesting run. */
             reference_scene scene = small_scene((int64_t[]){1600, 2, 2}, false);
@@ -215,7 +215,7 @@ static void one_voxel_anywhere(void **state) {
     (void)state;
     model_stage stage = model_open();
     reference_scene scene = small_scene((int64_t[]){65, 3, 3}, true);
-    for (size_t n = 0; n < voxel_count(&scene); n += 4 * support_stride(7)) {
+    for (size_t n = 0; n < voxel_count(&scene); n += 4 * support_stride(13)) {
         model_voxels(&scene)[n] = 1;
         assert_true(check_sides(&stage, &scene));
         model_voxels(&scene)[n] = 0;
@@ -228,7 +228,7 @@ static void every_kernel_footprint_threshold_and_view(void **state) {
     (void)state;
     model_stage stage = model_open();
     uint64_t random = 22;
-    for (int n = 0; n < 4 * 8 * 6; n += (int)support_stride(7)) {
+    for (int n = 0; n < 4 * 8 * 6; n += (int)support_stride(13)) {
         reference_scene scene =
             model_scene((int64_t[]){17, 12, 14},
                         n % 2 ? SNOW_TYPE_INT16 : SNOW_TYPE_FLOAT32, n % 3 == 0,

@@ -77,8 +77,8 @@ static void every_kernel_and_footprint_from_every_side(void **state) {
     model_summary summary = {0};
     for (size_t k = 0; k < COUNT(kernels); k++)
         for (int footprint = 2; footprint <= 9; footprint++)
-            for (size_t n = support_start(k + (size_t)footprint, 11);
-                 n < COUNT(stands) * COUNT(zooms); n += support_stride(11)) {
+            for (size_t n = support_start(k + (size_t)footprint, 23);
+                 n < COUNT(stands) * COUNT(zooms); n += support_stride(23)) {
                 reference_scene scene = drawn_scene(&random);
                 scene.settings.kernel = kernels[k];
                 scene.settings.footprint = footprint;
@@ -108,7 +108,7 @@ static void pixels_that_lie_on_the_grid(void **state) {
     uint64_t random = 7;
     model_summary summary = {0};
     size_t pictures = COUNT(kernels) * 8 * COUNT(lengths) * 9;
-    for (size_t n = 0; n < pictures; n += support_stride(11)) {
+    for (size_t n = 0; n < pictures; n += support_stride(23)) {
         reference_scene scene = drawn_scene(&random);
         size_t rest = n / 9;
         /* Odd and even sizes move pixels by half a voxel. */
@@ -136,7 +136,7 @@ static void every_type_matrix_threshold_and_shading(void **state) {
     uint64_t random = 2;
     model_summary summary = {0};
     size_t n = 0;
-    for (; n < COUNT(types) * MODEL_MATRICES * 12; n += support_stride(7)) {
+    for (; n < COUNT(types) * MODEL_MATRICES * 12; n += support_stride(13)) {
         reference_scene drawn = drawn_scene(&random);
         size_t rest = n / COUNT(types) / MODEL_MATRICES;
         reference_scene scene =
@@ -212,7 +212,7 @@ static void small_kernels_that_are_widened_a_little(void **state) {
     model_stage stage = model_open();
     model_summary summary = {0};
     uint64_t random = 5;
-    for (int n = 0; n < 600; n += (int)support_stride(7)) {
+    for (int n = 0; n < 600; n += (int)support_stride(13)) {
         reference_scene scene = model_blank((int64_t[]){40, 40, 1}, 1);
         for (int at = 0; at < 40 * 40; at++)
             model_voxels(&scene)[at] = support_uniform(&random) < 0.1;

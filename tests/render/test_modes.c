@@ -125,7 +125,7 @@ static void exact_pictures(double fov_share) {
     for (size_t m = 0; m < COUNT(modes); m++) {
         mode_summary t = {0};
         for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 3;
-             n += support_stride(7)) {
+             n += support_stride(13)) {
             reference_scene scene = mode_scene(&random, n, modes[m]);
             if (fov_share > 0)
                 scene.view.fov = fovs[draw(&random, COUNT(fovs))];
@@ -182,7 +182,7 @@ static void depths_of_over(void **state) {
     uint64_t random = 31;
     mode_summary t = {0};
     for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 3;
-         n += support_stride(7)) {
+         n += support_stride(13)) {
         reference_scene scene = mode_scene(&random, n, SNOW_MODE_OVER);
         scene.settings.depth = 1;
         if (n % 3 == 1) /* its depths are those of footprints, too */

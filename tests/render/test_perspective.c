@@ -187,8 +187,8 @@ static void every_kernel_and_method_from_every_side(void **state) {
     model_summary summary = {0};
     for (int kernel = 0; kernel < 4; kernel++)
         for (size_t f = 0; f < COUNT(fovs); f++)
-            for (size_t n = support_start((size_t)kernel + f, 7);
-                 n < COUNT(stands) * COUNT(zooms); n += support_stride(7)) {
+            for (size_t n = support_start((size_t)kernel + f, 13);
+                 n < COUNT(stands) * COUNT(zooms); n += support_stride(13)) {
                 reference_scene scene = drawn_scene(&random);
                 scene.settings.kernel = (snow_kernel)kernel;
                 scene.settings.footprint = 2 + (int)draw(&random, 6);

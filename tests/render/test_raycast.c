@@ -40,8 +40,24 @@ static snow_image *render(const model_stage *stage,
     snow_volume *volume = open_cut(stage->context, cast);
     snow_transfer *transfer = model_transfer(stage->context, scene);
     snow_image *image = NULL;
+    snow_volume *volumes[SNOW_INLAYS_MOST];
+    snow_transfer *looks[SNOW_INLAYS_MOST];
+    snow_inlay channels[SNOW_INLAYS_MOST];
+    int count = 0;
+    for (const reference_cast *c = cast->next; c; c = c->next, count++) {
+        volumes[count] = open_cut(stage->context, c);
+        looks[count] = model_transfer(stage->context, c->scene);
+        channels[count] = (snow_inlay){volumes[count], looks[count], true};
+    }
+    assert_int_equal(snow_frame_set_inlays(stage->frame, channels, count),
+                     SNOW_STATUS_OK);
     snow_status status = snow_frame_render(
         stage->frame, volume, transfer, &scene->view, &scene->settings, &image);
+    snow_frame_set_inlays(stage->frame, NULL, 0);
+    for (int n = 0; n < count; n++) {
+        snow_transfer_free(looks[n]);
+        snow_volume_close(volumes[n]);
+    }
     snow_transfer_free(transfer);
     snow_volume_close(volume);
     if (status != SNOW_STATUS_OK)
@@ -153,7 +169,8 @@ static void every_placement_and_view(void **state) {
     (void)state;
     model_stage stage = model_open();
     for (int matrix = 0; matrix < MODEL_MATRICES; matrix++)
-        for (int side = 0; side < 3; side++) {
+        for (int side = (int)support_start((size_t)matrix, 3); side < 3;
+             side += (int)support_stride(3)) {
             reference_scene scene =
                 scene_of(SNOW_TYPE_UINT8, false, (model_matrix)matrix);
             model_look(&scene, backs[side],
@@ -178,6 +195,56 @@ static void every_quality_and_kernel(void **state) {
         scene.settings.footprint = n < 3 ? 0 : 4;
         check(&stage, &scene);
         model_free(&scene);
+    }
+    model_close(&stage);
+}
+
+/* Moves a scene's voxels on, so that it has other values in each place. */
+static void turn_values(reference_scene *scene, int by) {
+    const int64_t *dims = scene->info.dims;
+    size_t size = snow_type_size(scene->info.type);
+    size_t bytes = (size_t)(dims[0] * dims[1] * dims[2]) * size;
+    size_t first = (size_t)by * size;
+    char *from = malloc(bytes), *to = (char *)(uintptr_t)scene->voxels;
+    assert_non_null(from);
+    memcpy(from, to, bytes);
+    memcpy(to, from + first, bytes - first);
+    memcpy(to + bytes - first, from, first);
+    free(from);
+}
+
+/* Up to four, each with data and colours of its own. */
+static void channels_are_mixed(void **state) {
+    static const snow_color_point colors[][2] = {{{0, 0, 0, 0}, {100, 1, 0, 1}},
+                                                 {{0, 0, 0, 0}, {100, 0, 1, 0}},
+                                                 {{0, 0, 0, 0}, {100, 1, 1, 1}},
+                                                 {{0, 0, 0, 0}, {90, 0, 1, 1}}};
+    static const snow_opacity_point opacities[][2] = {
+        {{20, 0}, {100, 0.7}}, {{50, 0}, {80, 1}}, {{0, 0.1}, {90, 0.4}}};
+    model_stage stage = model_open();
+    (void)state;
+    for (int n = 0; n < 12; n++) {
+        reference_scene scenes[4];
+        reference_cast casts[4];
+        for (int i = 3; i >= 0; i--) {
+            scenes[i] = scene_of(i % 2 ? SNOW_TYPE_INT16 : SNOW_TYPE_FLOAT32,
+                                 false, n % 2 ? MODEL_OBLIQUE : MODEL_PLAIN);
+            turn_values(&scenes[i], 7 * i + n);
+            scenes[i].view.fov = n % 3 == 1 ? 40 : 0;
+            scenes[i].settings.shade =
+                n % 4 < 2 ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
+            scenes[i].colors = colors[i];
+            scenes[i].color_count = 2;
+            scenes[i].opacities = opacities[(i + n) % 3];
+            scenes[i].opacity_count = 2;
+            casts[i] =
+                (reference_cast){.scene = &scenes[i],
+                                 .planes = none,
+                                 .next = i < 1 + n % 3 ? &casts[i + 1] : NULL};
+        }
+        check_cast(&stage, &casts[0], BOUND);
+        for (int i = 0; i < 4; i++)
+            free((void *)(uintptr_t)scenes[i].voxels);
     }
     model_close(&stage);
 }
@@ -221,7 +288,7 @@ static void every_mode(void **state) {
     (void)state;
     model_stage stage = model_open();
     for (int mode = SNOW_MODE_MIP; mode <= SNOW_MODE_ISO; mode++)
-        for (int n = 0; n < 4; n++) {
+        for (int n = 0; n < 4; n += (int)support_stride(3)) {
             reference_scene scene =
                 scene_of(n & 1 ? SNOW_TYPE_FLOAT32 : SNOW_TYPE_UINT8, n == 2,
                          MODEL_OBLIQUE);
@@ -414,13 +481,38 @@ static void equal_shares_of_labels(void **state) {
     model_close(&stage);
 }
 
+/* A label's surface at the volume's sides has no direction, so that none comes
+ * from rounding. */
+static void labels_at_the_sides_are_lit_evenly(void **state) {
+    static const snow_color_point colors[] = {
+        {0, 1, 0, 0}, {2, 1, 0, 0}, {2, 0, 1, 0}, {9, 0, 1, 0}};
+    static const snow_opacity_point opaque = {0, 0.9};
+    (void)state;
+    model_stage stage = model_open();
+    reference_scene scene = scene_of(SNOW_TYPE_UINT8, false, MODEL_PLAIN);
+    const reference_cast cast = {
+        .scene = &scene, .labels = true, .planes = none};
+    memset((void *)(uintptr_t)scene.voxels, 1, 14 * 11 * 9);
+    scene.info.slope = 1;
+    scene.colors = colors;
+    scene.color_count = 4;
+    scene.opacities = &opaque;
+    scene.opacity_count = 1;
+    scene.view.width = 20;
+    scene.view.height = 16;
+    check_cast(&stage, &cast, BOUND);
+    free((void *)(uintptr_t)scene.voxels);
+    model_close(&stage);
+}
+
 /* Most of a volume is not seen, and is skipped: that must not show. */
 static void empty_space_is_skipped_and_nothing_else(void **state) {
     static const snow_opacity_point step[] = {{55, 0}, {55, 0.3}};
     (void)state;
     model_stage stage = model_open();
     for (int mode = SNOW_MODE_OVER; mode <= SNOW_MODE_ISO; mode++)
-        for (int cubic = 0; cubic < 2; cubic++) {
+        for (int cubic = (int)support_start((size_t)mode, 2); cubic < 2;
+             cubic += (int)support_stride(2)) {
             reference_scene scene =
                 scene_of(SNOW_TYPE_FLOAT32, false, MODEL_ANISOTROPIC);
             const reference_cast cast = {.scene = &scene, .planes = none};
@@ -811,6 +903,7 @@ int main(void) {
         cmocka_unit_test(every_type_of_voxel),
         cmocka_unit_test(every_placement_and_view),
         cmocka_unit_test(every_quality_and_kernel),
+        cmocka_unit_test(channels_are_mixed),
         cmocka_unit_test(every_light),
         cmocka_unit_test(thresholds_gradient_opacity_and_logarithms),
         cmocka_unit_test(every_mode),
@@ -821,6 +914,7 @@ int main(void) {
         cmocka_unit_test(planes_after_planes),
         cmocka_unit_test(labels_are_not_interpolated),
         cmocka_unit_test(equal_shares_of_labels),
+        cmocka_unit_test(labels_at_the_sides_are_lit_evenly),
         cmocka_unit_test(empty_space_is_skipped_and_nothing_else),
         cmocka_unit_test(opacity_is_that_of_the_length),
         cmocka_unit_test(a_ramp_is_a_ramp),

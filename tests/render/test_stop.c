@@ -221,8 +221,8 @@ static void stop_ways(const char *path, int threads, bool streamed) {
         int count = all.asked + 1000000;
         assert_true(count >= 2);
         const int at[] = {1, 2, count / 3, 2 * count / 3, count - 1, count};
-        for (size_t k = support_start(n, 3); k < sizeof at / sizeof *at;
-             k += support_stride(3))
+        for (size_t k = support_start(n, 5); k < sizeof at / sizeof *at;
+             k += support_stride(5))
             if (at[k] > 0)
                 stop_at(&s, at[k], whole, k % 2);
         snow_image_free(whole);

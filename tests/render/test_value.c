@@ -20,7 +20,7 @@ static const snow_opacity_point above[] = {
 static void pictures_are_the_references(void **state) {
     (void)state;
     model_stage stage = model_open();
-    for (int n = 0; n < VALUE_PICTURES; n += (int)support_stride(11)) {
+    for (int n = 0; n < VALUE_PICTURES; n += (int)support_stride(23)) {
         reference_scene s = value_picture_scene(n);
         float *picture = model_picture(&stage, &s);
         double *expected = value_picture_expected(&(value_scene){.base = s});
@@ -45,7 +45,7 @@ static void same_bits(int n, const float *first, float *other, size_t count) {
 
 static void threads_and_encodings_give_the_same_bits(void **state) {
     (void)state;
-    for (int n = 0; n < VALUE_PICTURES; n += (int)support_stride(11)) {
+    for (int n = 0; n < VALUE_PICTURES; n += (int)support_stride(23)) {
         model_stage stage = model_open();
         reference_scene s = value_picture_scene(n);
         size_t count = 4 * (size_t)s.view.width * (size_t)s.view.height;
@@ -73,7 +73,7 @@ static void threads_and_encodings_give_the_same_bits(void **state) {
 static void all_vector_levels_give_the_same_image(void **state) {
     (void)state;
     model_stage stage = model_open();
-    for (int n = 0; n < VALUE_PICTURES; n += (int)support_stride(7)) {
+    for (int n = 0; n < VALUE_PICTURES; n += (int)support_stride(13)) {
         reference_scene s = value_picture_scene(n);
         size_t count = 4 * (size_t)s.view.width * (size_t)s.view.height;
         s.settings.isa = SNOW_ISA_SCALAR;

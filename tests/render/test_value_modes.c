@@ -43,24 +43,24 @@ static value_scene punched(int n) {
 
 static void projections_are_the_references(void **state) {
     (void)state;
-    value_pictures_check(0, (int)support_stride(5), projected);
+    value_pictures_check(0, (int)support_stride(11), projected);
 }
 
 static void surfaces_are_the_references(void **state) {
     (void)state;
-    value_pictures_check(0, (int)support_stride(5), surface);
-    value_pictures_check(2, 5 * (int)support_stride(5), punched_surface);
+    value_pictures_check(0, (int)support_stride(11), surface);
+    value_pictures_check(2, 5 * (int)support_stride(11), punched_surface);
 }
 
 static void holes_are_the_references(void **state) {
     (void)state;
-    value_pictures_check(2, 5 * (int)support_stride(5), punched);
+    value_pictures_check(2, 5 * (int)support_stride(11), punched);
 }
 
 static void clip_planes_are_the_references(void **state) {
     (void)state;
     model_stage stage = model_open();
-    for (int n = 0; n < VALUE_PICTURES; n += 4 * (int)support_stride(7)) {
+    for (int n = 0; n < VALUE_PICTURES; n += 4 * (int)support_stride(13)) {
         value_scene scene = n % 3 ? projected(n) : surface(n);
         double planes[2][4];
         value_picture_clip(&scene, n % 2 ? 2 : 1, planes);
@@ -72,9 +72,9 @@ static void clip_planes_are_the_references(void **state) {
 
 static void nothing_changes_a_bit(void **state) {
     (void)state;
-    value_pictures_check_bits(1, 3 * (int)support_stride(11), projected);
-    value_pictures_check_bits(2, 7 * (int)support_stride(11), surface);
-    value_pictures_check_bits(2, 15 * (int)support_stride(11), punched);
+    value_pictures_check_bits(1, 3 * (int)support_stride(23), projected);
+    value_pictures_check_bits(2, 7 * (int)support_stride(23), surface);
+    value_pictures_check_bits(2, 15 * (int)support_stride(23), punched);
 }
 
 int main(void) {

@@ -38,20 +38,22 @@ def drive(*words):
     check("the page", done.returncode == 0, done.returncode)
 
 
-def same_bytes():
-    words = shlex.split(open(os.path.join(shots, "command.txt")).read())
+def same_bytes(command="command.txt", picture="rest.png"):
+    words = shlex.split(open(os.path.join(shots, command)).read())
     words[0] = TOOL
     out = words[words.index("--output") + 1] = os.path.join(shots, "again.png")
     subprocess.run([*words, "-y", "-q"], check=True)
-    check("the saved picture has the bytes of the copied command",
+    check(f"{picture} has the bytes of the copied command",
           open(out, "rb").read() ==
-          open(os.path.join(shots, "rest.png"), "rb").read())
+          open(os.path.join(shots, picture), "rb").read())
 
 
 def watch(what, *volume):
     server = Server(*volume)
     drive(server.url, shots, what)
     same_bytes()
+    if what != "short":
+        same_bytes("slice.txt", "slice.png")
     code, said = server.stop()
     check("it ends in order", code == 0, f"{code} {said}")
 
@@ -66,9 +68,16 @@ def many_points():
     server.stop()
 
 
+def masked():
+    server = Server("phantom:head", "--mask", "phantom:head", "--labels", "60-255")
+    drive(server.url, shots, "mask")
+    server.stop()
+
+
 watch("short" if SHORT else "long", "phantom:head")
 if not SHORT:
     many_points()
+    masked()
 scan = os.path.join(DATA, "classic", "CThead_256x256x113_u16be.raw.gz")
 if not SHORT and os.path.exists(scan):
     watch("film", scan, "--dims", "256x256x113", "--type", "uint16", "--endian",

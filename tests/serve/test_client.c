@@ -66,13 +66,13 @@ static void n_is_the_newest_that_a_revision_has(void **state) {
     (void)state;
     client c = {.id = 1};
     for (uint32_t i = 1; i <= 100; i++)
-        client_note_set(&c, i, 10 * i);
-    assert_int_equal(n_of(&c, 1000), 100);
-    assert_int_equal(n_of(&c, 999), 99);
-    assert_int_equal(n_of(&c, 371), 37);
-    assert_int_equal(n_of(&c, 9), 0);
-    client_note_set(&c, 101, 1000); /* a refused one */
-    assert_int_equal(n_of(&c, 1000), 101);
+        set_log_note(&c.sets, i, 10 * i);
+    assert_int_equal(set_log_n(&c.sets, 1000), 100);
+    assert_int_equal(set_log_n(&c.sets, 999), 99);
+    assert_int_equal(set_log_n(&c.sets, 371), 37);
+    assert_int_equal(set_log_n(&c.sets, 9), 0);
+    set_log_note(&c.sets, 101, 1000); /* a refused one */
+    assert_int_equal(set_log_n(&c.sets, 1000), 101);
 }
 
 int main(void) {

@@ -82,7 +82,7 @@ static void what_is_no_message_is_refused(void **state) {
 static void a_page_names_no_file(void **state) {
     (void)state;
     static const char *const foreign[] = {
-        "input",   "output",    "depth",   "mask",       "tf",   "dataset",
+        "input",   "output",    "depth",   "overlay",    "tf",   "dataset",
         "series",  "overwrite", "threads", "isa",        "dims", "type",
         "offset",  "endian",    "spacing", "allow-gaps", "verb", "version",
         "quality", "method",    "config",  "",           "x"};
@@ -95,6 +95,17 @@ static void a_page_names_no_file(void **state) {
         assert_refused(text, strlen(text));
     }
     assert_true(message_may_set("azimuth"));
+    static const char *const masks[] = {"\"m.nrrd\"", "\"\"", "[]",
+                                        "{}",         "1",    "false"};
+    for (size_t i = 0; i < sizeof masks / sizeof *masks; i++) {
+        snprintf(text, sizeof text,
+                 "{\"t\":\"set\",\"n\":1,\"recipe\":{\"mask\":%s}}", masks[i]);
+        assert_refused(text, strlen(text));
+    }
+    message m = read_good("{\"t\":\"set\",\"n\":1,\"recipe\":{\"mask\":true}}");
+    message_free(&m);
+    m = read_good("{\"t\":\"set\",\"n\":1,\"recipe\":{\"mask\":null}}");
+    message_free(&m);
 }
 
 static void pictures_have_a_largest_size(void **state) {

@@ -17,6 +17,8 @@ import time
 
 TOOL = os.path.abspath(sys.argv[1])
 DATA = sys.argv[2] if len(sys.argv) > 2 else ""
+SANITIZED = "SNOW_SANITIZED" in os.environ
+PATIENCE = 120 if SANITIZED else 20  # seconds
 SHORT = os.environ.get("SNOW_TIER", "short") == "short"  # docs/testing.md
 HELLO = ["jpeg", "png"]
 wrong = 0
@@ -41,13 +43,13 @@ def finish():
 class Server:
     """A viewer of its own; `url` is what it prints."""
 
-    def __init__(self, *arguments):
+    def __init__(self, *arguments, tool=(TOOL,)):
         if not os.path.exists(os.path.join(os.path.dirname(TOOL),
                                            "snowglass-serve")):
             skip("snowglass-serve is not built: libwebsockets or libturbojpeg "
                  "is missing")
         self.process = subprocess.Popen(
-            [TOOL, "serve", *arguments], stdout=subprocess.PIPE,
+            [*tool, "serve", *arguments], stdout=subprocess.PIPE,
             stderr=subprocess.PIPE, text=True)
         self.url = self.process.stdout.readline().strip()
         if not self.url:
@@ -63,7 +65,7 @@ class Server:
             made.connect(self.path)
         else:
             made = socket.create_connection(("127.0.0.1", self.port))
-        made.settimeout(20)
+        made.settimeout(PATIENCE)
         return made
 
     def get(self, path="/", host=None, method="GET", **headers):
@@ -91,9 +93,12 @@ class Server:
         return 0
 
     def stop(self):
+        """With sanitizers the end says what was not freed."""
         self.process.terminate()
-        code = self.process.wait(20)
-        return code, self.process.stderr.read()
+        code, said = self.process.wait(60), self.process.stderr.read()
+        if code:
+            check("a server ends in order", False, f"{code} {said}")
+        return code, said
 
 
 class ThinLink:
@@ -235,7 +240,7 @@ class Page:
                 return ("text", json.loads(whole)) if kind == 1 else \
                     ("picture", whole)
 
-    def hear_text(self, kind, seconds=20):
+    def hear_text(self, kind, seconds=PATIENCE):
         """The next text of a kind; None when the page was closed."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
@@ -246,9 +251,9 @@ class Page:
                 return message
         return None
 
-    def hear_picture(self, level, n=None, seconds=60):
+    def hear_picture(self, level, n=None, seconds=60, head=False):
         """Bytes of the next picture of a quality or a finer one, as a busy machine
-        may leave out a draft; it is acknowledged."""
+        may leave out a draft; or its head.  It is acknowledged."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             what, message = self.hear()
@@ -259,7 +264,7 @@ class Page:
             got, = struct.unpack("<I", message[4:8])
             self.say({"t": "ack", "n": got})
             if message[8] >= level and (n is None or got == n):
-                return message[32:]
+                return message[:32] if head else message[32:]
         return None
 
     def hear_small(self, pane):
@@ -289,3 +294,30 @@ class Page:
 
     def close(self):
         self.socket.close()
+
+
+def drag_over(server, link, side, seconds):
+    """Turns the view through a link: pictures a second after the first quarter,
+    their kinds and sizes."""
+    page = Page(server, port=link.port, wants=("jpeg", "png", "webp"))
+    page.say({"t": "set", "n": 1, "recipe": {"size": [side, side]}})
+    page.hear_picture(2, 1)
+    page.say({"t": "moving", "on": True})
+    stop, kinds, sizes = time.monotonic() + seconds, [], []
+
+    def move():
+        n = 2
+        while time.monotonic() < stop:
+            page.say({"t": "set", "n": n, "recipe": {"azimuth": n % 360}})
+            n += 1
+            time.sleep(0.03)
+
+    threading.Thread(target=move).start()
+    while time.monotonic() < stop:
+        what, message = page.hear()
+        if what == "picture":
+            page.say({"t": "ack", "n": 0})
+            kinds.append(message[9])
+            sizes.append(len(message))
+    page.close()
+    return len(kinds[len(kinds) // 4:]) / (0.75 * seconds), kinds, sizes

@@ -296,7 +296,7 @@ every_method_gives_the_picture_of_a_chain_for_1_to_33_ranks(void **state) {
     (void)state;
     snow_context *context = support_context();
     for (int ranks = 1; ranks <= RANKS_MOST;
-         ranks += ranks < 5 ? 1 : (int)support_stride(7))
+         ranks += ranks < 5 ? 1 : (int)support_stride(13))
         for (int turn = 0; turn < 2; turn++) {
             int first = turn * 1000;
             snow_status status =

@@ -94,7 +94,7 @@ static void every_level_gives_the_scalar_picture(void **state) {
     uint64_t random = 31;
     double largest = 0, usual = 0;
     int seen = 0;
-    for (int n = 0; n < 4 * 8 * 24; n += (int)support_stride(7)) {
+    for (int n = 0; n < 4 * 8 * 24; n += (int)support_stride(13)) {
         reference_scene scene = random_scene(&random, n / 2 % 2 == 0);
         random_view(&random, n, &scene);
         scene.settings.kernel = (snow_kernel)(n / 8 % 4);
@@ -125,7 +125,7 @@ static void every_level_gives_the_scalar_picture(void **state) {
     print_message("             levels differ by up to %.2g, %.2g where no "
                   "kernel is widened; %d pictures show something\n",
                   largest, usual, seen);
-    assert_true(seen * (int)support_stride(7) > 4 * 8 * 24 / 2);
+    assert_true(seen * (int)support_stride(13) > 4 * 8 * 24 / 2);
     model_close(&stage);
 }
 
@@ -135,7 +135,7 @@ static void vector_levels_give_the_same_bits(void **state) {
         skip();
     model_stage stage = model_open();
     uint64_t random = 32;
-    for (int n = 0; n < 300; n += (int)support_stride(7)) {
+    for (int n = 0; n < 300; n += (int)support_stride(13)) {
         reference_scene scene = random_scene(&random, n % 2 == 0);
         random_view(&random, n, &scene);
         scene.settings.kernel = (snow_kernel)(n % 4);

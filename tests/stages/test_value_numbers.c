@@ -117,8 +117,9 @@ static void check_measured(snow_type type, int low, int high) {
         memcpy(voxels + (size_t)(n ? COUNT - 1 : 5) * size,
                size == 1 ? (void *)&narrow : (void *)&native, size);
     }
-    assert_int_equal(snow_data_range_measure(&volume, false, 2, &range),
-                     SNOW_STATUS_OK);
+    assert_int_equal(
+        snow_data_range_measure(&volume, (snow_scale){0}, 2, &range),
+        SNOW_STATUS_OK);
     assert_true(range.low == 1 - 2 * fmax(high, 0));
     assert_true(range.high == 1 - 2 * fmin(low, 0));
     snow_context_free(volume.context);

@@ -66,8 +66,8 @@ snow_status scenario_open_part(snow_context *context, const scenario *p,
     snow_extent part = {sizeof part, {0}, {0}, {0}, {0}};
     bool none = !snow_box_voxels(box);
     SNOW_TRY(snow_ghosts_needed(context, &p->info, &p->view, &p->settings,
-                                p->transfer->gradient_count > 0, false,
-                                layers));
+                                snow_transfer_slopes(p->transfer, &p->info),
+                                false, layers));
     for (int axis = 0; axis < 3; axis++) {
         int64_t low = none ? 0 : box->first[axis] - layers[axis];
         int64_t high =
@@ -107,13 +107,30 @@ snow_status scenario_copy_transfer(snow_context *context,
                                               t->gradient_count);
 }
 
+snow_status scenario_add_layer(const scenario *p, snow_frame *frame,
+                               const snow_volume *grid, snow_volume **volume,
+                               snow_transfer **look) {
+    snow_context *context = frame->context;
+    if (!p->layer)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(scenario_copy_transfer(context, p->layer_look, look));
+    SNOW_TRY(grid ? snow_volume_open(context, p->layer, NULL, volume)
+                  : snow_volume_open_streamed(context, p->layer, NULL, 3000,
+                                              volume));
+    if (grid)
+        SNOW_TRY(snow_volume_regrid(
+            volume, grid, snow_transfer_has_labels(*look, &(*volume)->info)));
+    const snow_inlay layer = {.volume = *volume, .transfer = *look};
+    return snow_frame_set_inlays(frame, &layer, 1);
+}
+
 snow_status scenario_perform(snow_comm *comm, void *user) {
     scenario *p = user;
     snow_context *context = snow_comm_context(comm);
     int rank = snow_comm_rank(comm);
     void *voxels = NULL;
-    snow_volume *volume = NULL;
-    snow_transfer *transfer = NULL;
+    snow_volume *volume = NULL, *layer = NULL;
+    snow_transfer *transfer = NULL, *look = NULL;
     snow_frame *frame = NULL;
     snow_status status =
         scenario_open_part(context, p, &p->boxes[rank], &voxels, &volume);
@@ -121,6 +138,8 @@ snow_status scenario_perform(snow_comm *comm, void *user) {
         status = scenario_copy_transfer(context, p->transfer, &transfer);
     if (status == SNOW_STATUS_OK)
         status = snow_frame_new(context, &frame);
+    if (status == SNOW_STATUS_OK)
+        status = scenario_add_layer(p, frame, NULL, &layer, &look);
     for (int n = 0; n < p->pictures && status == SNOW_STATUS_OK; n++) {
         snow_image *image = NULL;
         status = snow_ranks_render(frame, comm, volume, transfer, &p->view,
@@ -144,14 +163,16 @@ snow_status scenario_perform(snow_comm *comm, void *user) {
         p->each[rank] = *snow_frame_stats(frame);
     snow_frame_free(frame);
     snow_transfer_free(transfer);
+    snow_transfer_free(look);
+    snow_volume_close(layer);
     snow_volume_close(volume);
     free(voxels);
     return status;
 }
 
 float *scenario_alone(snow_context *context, scenario *p, double *strongest) {
-    snow_volume *volume = NULL;
-    snow_transfer *transfer = NULL;
+    snow_volume *volume = NULL, *layer = NULL;
+    snow_transfer *transfer = NULL, *look = NULL;
     snow_frame *frame = NULL;
     snow_image *image = NULL;
     assert_int_equal(snow_volume_wrap(context, &p->info, p->voxels, &volume),
@@ -159,6 +180,8 @@ float *scenario_alone(snow_context *context, scenario *p, double *strongest) {
     assert_int_equal(scenario_copy_transfer(context, p->transfer, &transfer),
                      SNOW_STATUS_OK);
     assert_int_equal(snow_frame_new(context, &frame), SNOW_STATUS_OK);
+    if (scenario_add_layer(p, frame, volume, &layer, &look) != SNOW_STATUS_OK)
+        fail_msg("%s", snow_context_message(context));
     if (snow_frame_render(frame, volume, transfer, &p->view, &p->settings,
                           &image) != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(context));
@@ -179,6 +202,8 @@ float *scenario_alone(snow_context *context, scenario *p, double *strongest) {
     snow_image_free(image);
     snow_frame_free(frame);
     snow_transfer_free(transfer);
+    snow_transfer_free(look);
+    snow_volume_close(layer);
     snow_volume_close(volume);
     return pixels;
 }

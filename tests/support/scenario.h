@@ -28,6 +28,8 @@ typedef struct scenario {
     snow_volume_info info;
     const void *voxels;
     const snow_transfer *transfer; /* whose points every rank copies */
+    const char *layer; /* file of another volume in the picture, or NULL: */
+    const snow_transfer *layer_look;
     snow_view view;
     snow_settings settings;
     snow_ranks_options how;
@@ -56,6 +58,12 @@ snow_status scenario_open_part(snow_context *context, const scenario *p,
 
 snow_status scenario_copy_transfer(snow_context *context,
                                    const snow_transfer *t, snow_transfer **out);
+
+/* Gives a frame the layer: of one process in memory, on the volume's grid; of
+ * ranks in its file.  Both are to be freed, NULL where there is none. */
+snow_status scenario_add_layer(const scenario *p, snow_frame *frame,
+                               const snow_volume *grid, snow_volume **volume,
+                               snow_transfer **look);
 
 /* The picture by one process, to be freed; its strongest opacity. */
 float *scenario_alone(snow_context *context, scenario *p, double *strongest);

@@ -51,8 +51,24 @@ check() {
     if "$@"; then pass "$name"; else fail "$name"; fi
 }
 
+# matches PATTERN FILE: whether a line matches, as of grep -Eq, but without a
+# process, of which the scripts would start thousands; long texts are grep's.
+matches() {
+    local line
+    local -a lines
+    mapfile -t -n 200 lines <"$2"
+    if [ ${#lines[@]} -eq 200 ]; then
+        grep -Eq -- "$1" "$2"
+        return
+    fi
+    for line in "${lines[@]}"; do
+        [[ $line =~ $1 ]] && return
+    done
+    return 1
+}
+
 says() {
-    if grep -Eq -- "$1" "$ERR"; then
+    if matches "$1" "$ERR"; then
         pass "$NAME: says '$1'"
     else
         fail "$NAME: says '$1'" "$(head -c 300 "$ERR")"
@@ -60,7 +76,7 @@ says() {
 }
 
 prints() {
-    if grep -Eq -- "$1" "$OUT"; then
+    if matches "$1" "$OUT"; then
         pass "$NAME: prints '$1'"
     else
         fail "$NAME: prints '$1'" "$(head -c 600 "$OUT")"
@@ -69,13 +85,15 @@ prints() {
 
 # An error is one to five lines on standard error and no data.
 plain_error() {
-    local lines
-    lines=$(wc -l <"$ERR")
-    if [ "$lines" -ge 1 ] && [ "$lines" -le 5 ] && [ ! -s "$OUT" ] &&
-        grep -q '^snowglass: ' "$ERR"; then
+    local -a lines
+    mapfile lines <"$ERR"
+    if [ ${#lines[@]} -ge 1 ] && [ ${#lines[@]} -le 5 ] && [ ! -s "$OUT" ] &&
+        [[ ${lines[-1]} == *$'\n' ]] &&
+        matches '^snowglass: ' "$ERR"; then
         pass "$NAME: one clear line"
     else
-        fail "$NAME: one clear line" "$lines lines, $(wc -c <"$OUT") bytes out"
+        fail "$NAME: one clear line" \
+            "${#lines[@]} lines, $(wc -c <"$OUT") bytes out"
     fi
 }
 
@@ -121,8 +139,8 @@ need_modules() {
 # await PATTERN FILE: until a line of the file matches; fails after minutes.
 await() {
     local i
-    for i in $(seq 6000); do
-        grep -Eqs -- "$1" "$2" && return 0
+    for ((i = 0; i < 6000; i++)); do
+        [ -e "$2" ] && matches "$1" "$2" && return 0
         sleep 0.02
     done
     return 1
@@ -135,14 +153,15 @@ number() {
     sed -n 's/.*"'"$1"'": \(-\{0,1\}[0-9.e+-]*\).*/\1/p' "$OUT"
 }
 
-# raw FILE DIMENSION: a uint8 cube of that side, of the bytes 0, 1, 2, ...
+# raw_cube FILE SIDE: a uint8 cube of that side, of the bytes 0, 1, 2, ...
 raw_cube() {
-    local count=$(($2 * $2 * $2)) i=0
-    while [ $i -lt $count ]; do
-        # shellcheck disable=SC2059
-        printf "\\$(printf %o $((i % 251)))"
-        i=$((i + 1))
-    done >"$1"
+    local count=$(($2 * $2 * $2)) i byte bytes=
+    for ((i = 0; i < count; i++)); do
+        printf -v byte '\\%03o' $((i % 251))
+        bytes+=$byte
+    done
+    # shellcheck disable=SC2059
+    printf "$bytes" >"$1"
 }
 
 finish() {

@@ -3,6 +3,8 @@
 #include "support/looks.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 static double opacity_at(const snow_transfer *transfer, double value) {
     double rgba[4];
@@ -104,6 +106,295 @@ static void what_has_no_logarithm_is_refused(void **state) {
         assert_non_null(strstr(snow_context_message(context), "logarithm"));
     }
     snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+/* --- symmetric logarithms --------------------------------------------------
+ */
+
+/* The place of a value, as docs/looks.md has it. */
+static double symlog_of(double value, double linear) {
+    double size = fabs(value) / linear;
+    return copysign(size > 1 ? 1 + log(size) : size, value);
+}
+
+/* Opacity and colour follow the scale, on both sides and in the middle. */
+static void a_symmetric_logarithm_is_linear_around_0(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    const double wide[] = {-1000, 1000, 0, 1, -1};
+    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT64, wide, 5);
+    const double linears[] = {0.01, 0.5, 20, 5000};
+    for (size_t n = 0; n < 4; n++) {
+        const double linear = linears[n], end = symlog_of(1000, linear);
+        snow_look look = {
+            .size = sizeof look, .preset = "linear", .symlog = linear};
+        snow_transfer *transfer = support_look(volume, look);
+        assert_false(snow_transfer_is_log(transfer));
+        for (double value = -1000; value <= 1000;
+             value += fmax(0.003, fabs(value) / 70)) {
+            double share = (symlog_of(value, linear) / end + 1) / 2;
+            assert_true(fabs(opacity_at(transfer, value) - share) < 0.002);
+            assert_true(fabs(red_at(transfer, value) - share) < 0.002);
+        }
+        assert_true(opacity_at(transfer, -1000) == 0);
+        assert_true(near(opacity_at(transfer, 0), 0.5));
+        assert_true(opacity_at(transfer, 1000) == 1);
+        snow_transfer_free(transfer);
+    }
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+static void a_symmetric_logarithm_begins_where_it_says(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    const float wide[] = {-300, 2500, 0, 1, -1};
+    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, wide, 5);
+    snow_look look = {.size = sizeof look, .preset = "linear", .symlog = -1};
+    snow_transfer *transfer = support_look(volume, look);
+    assert_non_null(strstr(snow_transfer_description(transfer),
+                           " -300..2500 logarithmic beyond -2..2;"));
+    snow_transfer_free(transfer);
+    look.range = SNOW_RANGE_VALUES;
+    look.low = -7;
+    look.high = 70;
+    transfer = support_look(volume, look);
+    assert_non_null(strstr(snow_transfer_description(transfer),
+                           " -7..70 logarithmic beyond -0.05..0.05;"));
+    snow_transfer_free(transfer);
+    look.log = true;
+    assert_int_equal(snow_transfer_new_for_volume(volume, &look, &transfer),
+                     SNOW_STATUS_BAD_USAGE);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+static void keep_text(void *user, const char *text) {
+    snprintf(user, 200, "%s", text);
+}
+
+static void logarithms_say_what_they_leave_out(void **state) {
+    (void)state;
+    char said[200] = "";
+    const int16_t narrow[] = {-3, 0, 0, 1, 2, 30};
+    const float nan_too[] = {-3, 0, 0, 1, 2, 30, NAN};
+    snow_context *context = support_context();
+    snow_context_set_warning(context, keep_text, said);
+    for (int n = 0; n < 2; n++) {
+        snow_volume *volume =
+            n ? support_row(context, SNOW_TYPE_FLOAT32, nan_too, 7)
+              : support_row(context, SNOW_TYPE_INT16, narrow, 6);
+        snow_transfer_free(support_look(
+            volume, (snow_look){.size = sizeof(snow_look), .log = true}));
+        assert_non_null(strstr(said, "leave out 3 of 6 voxels"));
+        said[0] = 0;
+        snow_transfer_free(support_look(
+            volume, (snow_look){.size = sizeof(snow_look), .symlog = -1}));
+        assert_string_equal(said, "");
+        snow_volume_close(volume);
+    }
+    snow_context_free(context);
+}
+
+/* --- fields -----------------------------------------------------------------
+ */
+
+#define SIDE 16
+
+/* A block of a field of floats. */
+static snow_volume *field_of(snow_context *context, float *values,
+                             double (*f)(double x, double y, double z)) {
+    const snow_volume_info info = {.size = sizeof info,
+                                   .dims = {SIDE, SIDE, SIDE},
+                                   .type = SNOW_TYPE_FLOAT32};
+    snow_volume *volume = NULL;
+    for (int n = 0; n < SIDE * SIDE * SIDE; n++)
+        values[n] =
+            (float)f((n % SIDE + 0.5) / SIDE, (n / SIDE % SIDE + 0.5) / SIDE,
+                     (n / SIDE / SIDE + 0.5) / SIDE);
+    assert_int_equal(snow_volume_wrap(context, &info, values, &volume),
+                     SNOW_STATUS_OK);
+    return volume;
+}
+
+static double wave(double x, double y, double z) {
+    return 3 * sin(6.28 * x) * sin(6.28 * y) + 0.5 * cos(6.28 * z);
+}
+
+static double blob(double x, double y, double z) {
+    double r = (x - 0.5) * (x - 0.5) + (y - 0.5) * (y - 0.5);
+    return exp(-10 * (r + (z - 0.5) * (z - 0.5)));
+}
+
+/* Grey, blue and red, as much on both sides. */
+static void check_signed(const snow_transfer *transfer, double low,
+                         double high) {
+    double at[4], rgba[4];
+    assert_true(opacity_at(transfer, 0) == 0);
+    for (int n = 1; n <= 10; n++) {
+        snow_transfer_evaluate(transfer, low * n / 10, at);
+        snow_transfer_evaluate(transfer, high * n / 10, rgba);
+        assert_true(fabs(at[3] - rgba[3]) < 1e-12);
+        assert_true(n < 3 || (at[2] > at[0] && rgba[0] > rgba[2]));
+        assert_true(n < 6 || rgba[3] > 0.05);
+    }
+}
+
+static void a_field_of_both_signs_is_diverging_around_0(void **state) {
+    (void)state;
+    static float values[SIDE * SIDE * SIDE];
+    snow_context *context = support_context();
+    snow_volume *volume = field_of(context, values, wave);
+    snow_look look = {.size = sizeof look};
+    double low, high;
+    snow_transfer *transfer = support_look(volume, look);
+    snow_transfer_domain(transfer, &low, &high);
+    assert_true(near(low, -high) && high > 3 && high < 3.5);
+    check_signed(transfer, low, high);
+    snow_transfer_free(transfer);
+    look.range = SNOW_RANGE_VALUES; /* the shape stays, and 0 where it is */
+    look.low = -2.5;
+    look.high = 5;
+    transfer = support_look(volume, look);
+    check_signed(transfer, -2.5, 5);
+    snow_transfer_free(transfer);
+    look.colormap = "RdBu_r";
+    transfer = support_look(volume, look);
+    check_signed(transfer, -2.5, 5);
+    assert_true(fabs(red_at(transfer, 0) - 0xf7 / 255.0) < 1e-9);
+    snow_transfer_free(transfer);
+    look.low = 1; /* no sign but one */
+    transfer = support_look(volume, look);
+    assert_true(opacity_at(transfer, 1) == 0);
+    assert_true(opacity_at(transfer, 5) > 0);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+/* Noise of -1 to 1, the same for a place. */
+static double noise_at(double x, double y, double z) {
+    uint32_t n = (uint32_t)(x * 977 + y * 977 * SIDE + z * 977 * SIDE * SIDE);
+    n = (n ^ n >> 15) * 0x2c1b3c6du;
+    n = (n ^ n >> 12) * 0x297a2d39u;
+    return (double)(n ^ n >> 15) / 0x1p31 - 1;
+}
+
+static double noisy_blob(double x, double y, double z) {
+    return blob(x, y, z) + 0.2 * noise_at(x, y, z);
+}
+
+/* In steps of a scanner, divided by the largest. */
+static double stepped_blob(double x, double y, double z) {
+    return rint(2047 * blob(x, y, z) + 100 * noise_at(x, y, z)) / 2047;
+}
+
+static double smooth_steps(double x, double y, double z) {
+    return rint(255 * (x + y + z)) / 255;
+}
+
+static double noisy_wave(double x, double y, double z) {
+    return wave(x, y, z) + 2 * noise_at(x, y, z);
+}
+
+static void a_scan_in_floats_is_grey_and_shaded(void **state) {
+    (void)state;
+    static const struct {
+        double (*f)(double x, double y, double z);
+        bool scan;
+    } cases[] = {{noisy_blob, true},
+                 {stepped_blob, true},
+                 {blob, false},
+                 {smooth_steps, false},
+                 {noisy_wave, false}};
+    static float values[SIDE * SIDE * SIDE];
+    snow_context *context = support_context();
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        snow_volume *volume = field_of(context, values, cases[n].f);
+        snow_transfer *transfer =
+            support_look(volume, (snow_look){.size = sizeof(snow_look)});
+        assert_int_equal(snow_transfer_is_grey(transfer), cases[n].scan);
+        assert_false(cases[n].scan && snow_transfer_is_unshaded(transfer));
+        snow_transfer_free(transfer);
+        snow_volume_close(volume);
+    }
+    snow_context_free(context);
+}
+
+static void a_field_is_a_veil_in_colours(void **state) {
+    (void)state;
+    static float values[SIDE * SIDE * SIDE];
+    static int16_t whole[SIDE * SIDE * SIDE];
+    const snow_volume_info info = {.size = sizeof info,
+                                   .dims = {SIDE, SIDE, SIDE},
+                                   .type = SNOW_TYPE_INT16};
+    snow_context *context = support_context();
+    snow_volume *volume = field_of(context, values, blob), *scan = NULL;
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.size = sizeof(snow_look)});
+    assert_false(snow_transfer_is_grey(transfer));
+    assert_true(snow_transfer_is_unshaded(transfer));
+    assert_true(opacity_at(transfer, 0) == 0);
+    assert_true(opacity_at(transfer, 0.5) < 0.3);
+    assert_true(opacity_at(transfer, 1) > 0.4);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    for (int n = 0; n < SIDE * SIDE * SIDE; n++)
+        whole[n] = (int16_t)(1000 * values[n]);
+    assert_int_equal(snow_volume_wrap(context, &info, whole, &scan),
+                     SNOW_STATUS_OK);
+    transfer = support_look(scan, (snow_look){.size = sizeof(snow_look)});
+    assert_true(snow_transfer_is_grey(transfer));
+    snow_transfer_free(transfer);
+    snow_volume_close(scan);
+    snow_context_free(context);
+}
+
+/* matplotlib's definitions of three maps, at all 256 entries. */
+static void maps_agree_with_their_definitions(void **state) {
+    (void)state;
+    static const double rdbu[11][3] = {
+        {103, 0, 31},    {178, 24, 43},   {214, 96, 77},   {244, 165, 130},
+        {253, 219, 199}, {247, 247, 247}, {209, 229, 240}, {146, 197, 222},
+        {67, 147, 195},  {33, 102, 172},  {5, 48, 97}};
+    static const double seismic[5][3] = {
+        {0, 0, 76.5}, {0, 0, 255}, {255, 255, 255}, {255, 0, 0}, {127.5, 0, 0}};
+    static const double bwr[3][3] = {{0, 0, 255}, {255, 255, 255}, {255, 0, 0}};
+    const struct {
+        const char *names[2];
+        const double (*table)[3];
+        int count;
+    } maps[] = {{{"RdBu", "rdbu_r"}, rdbu, 11},
+                {{"seismic", "seismic_r"}, seismic, 5},
+                {{"bwr", "BWR_R"}, bwr, 3}};
+    static const snow_opacity_point one = {0, 1};
+    snow_context *context = support_context();
+    for (int m = 0; m < 6; m++) {
+        snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
+        snow_transfer *transfer = NULL;
+        int index = snow_colormap_from_name(maps[m / 2].names[m % 2]);
+        assert_true(index >= 0);
+        size_t count = snow_colormap_points((size_t)index, points,
+                                            SNOW_COLORMAP_POINTS_MAX);
+        assert_int_equal(
+            snow_transfer_new(context, points, count, &one, 1, &transfer),
+            SNOW_STATUS_OK);
+        for (int n = 0; n < 256; n++) {
+            double rgba[4], at = (m % 2 ? 255 - n : n) / 255.0;
+            double place = at * (maps[m / 2].count - 1);
+            int below = (int)fmin(floor(place), maps[m / 2].count - 2);
+            snow_transfer_evaluate(transfer, n / 255.0, rgba);
+            for (int c = 0; c < 3; c++) {
+                double a = maps[m / 2].table[below][c];
+                double b = maps[m / 2].table[below + 1][c];
+                double wanted = a + (b - a) * (place - below);
+                assert_true(fabs(255 * rgba[c] - wanted) <= 1);
+            }
+        }
+        snow_transfer_free(transfer);
+    }
+    assert_int_equal(snow_colormap_from_name("viridis_q"), -1);
     snow_context_free(context);
 }
 
@@ -295,8 +586,13 @@ static void presets_and_colour_maps_are_data(void **state) {
     snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
     for (size_t i = 0; snow_preset_name(i); i++) {
         const snow_look *preset = snow_preset_look(i);
+        if (!strcmp(snow_preset_name(i), "labels")) /* made of a volume */
+            continue;
         assert_true(preset->color_count && preset->opacity_count);
-        assert_true(preset->opacities[0].opacity == 0);
+        size_t clear = preset->domain == SNOW_DOMAIN_SYMMETRIC
+                           ? preset->opacity_count / 2
+                           : 0;
+        assert_true(preset->opacities[clear].opacity == 0);
     }
     assert_null(snow_preset_look(1000));
     for (size_t i = 0; snow_colormap_name(i); i++) {
@@ -335,11 +631,13 @@ static void categories_are_not_mixed(void **state) {
 
 /* --- volumes without surfaces --------------------------------------------- */
 
+/* Of a scan: without the modality they would be a computed field. */
 static snow_transfer *look_at_block(snow_context *context, const float *values,
                                     const int64_t dims[3]) {
     snow_volume_info info = {.size = sizeof info,
                              .dims = {dims[0], dims[1], dims[2]},
-                             .type = SNOW_TYPE_FLOAT32};
+                             .type = SNOW_TYPE_FLOAT32,
+                             .modality = "MR"};
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_wrap(context, &info, values, &volume),
                      SNOW_STATUS_OK);
@@ -521,6 +819,13 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(linear_over_decades_is_linear_in_decades),
         cmocka_unit_test(a_range_is_spread_by_decades),
+        cmocka_unit_test(a_field_of_both_signs_is_diverging_around_0),
+        cmocka_unit_test(a_scan_in_floats_is_grey_and_shaded),
+        cmocka_unit_test(a_field_is_a_veil_in_colours),
+        cmocka_unit_test(maps_agree_with_their_definitions),
+        cmocka_unit_test(a_symmetric_logarithm_is_linear_around_0),
+        cmocka_unit_test(a_symmetric_logarithm_begins_where_it_says),
+        cmocka_unit_test(logarithms_say_what_they_leave_out),
         cmocka_unit_test(what_has_no_logarithm_is_refused),
         cmocka_unit_test(counted_types_give_the_same_look_by_decades),
         cmocka_unit_test(odd_volumes_have_a_logarithmic_look_too),

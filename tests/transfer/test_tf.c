@@ -312,6 +312,8 @@ static void presets_survive_our_json_and_tables(void **state) {
     for (size_t n = 0; snow_preset_name(n); n++) {
         const snow_look *preset = snow_preset_look(n);
         size_t length;
+        if (!preset->color_count) /* made of a volume */
+            continue;
         assert_int_equal(
             snow_look_write_json(context, preset, text, sizeof text, &length),
             SNOW_STATUS_OK);

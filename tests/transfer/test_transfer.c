@@ -366,9 +366,9 @@ static void quantiles_are_those_of_sorted_values(void **state) {
     const double shares[4] = {0, 0.01, 0.5, 1};
     double found[4];
     snow_histogram census;
-    assert_int_equal(
-        snow_histogram_new(volume, NULL, false, SNOW_NEED_COUNTS, &census),
-        SNOW_STATUS_OK);
+    assert_int_equal(snow_histogram_new(volume, NULL, (snow_scale){0},
+                                        SNOW_NEED_COUNTS, &census),
+                     SNOW_STATUS_OK);
     assert_int_equal(
         snow_quantiles(&census, SNOW_HISTOGRAM_EXACT, shares, 4, found),
         SNOW_STATUS_OK);
@@ -887,6 +887,8 @@ static void check_all_looks(snow_type type, const void *values, int64_t n) {
                               .low = 1,
                               .high = 99,
                               .colormap = "turbo"};
+            if (p && !strcmp(look.preset, "labels")) /* has no range */
+                continue;
             snow_transfer *transfer = support_look(volume, look);
             for (int64_t i = 0; i < n; i++) {
                 double rgba[4];

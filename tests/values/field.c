@@ -120,6 +120,10 @@ static size_t offset(const value_plan *plan, int64_t i, int64_t j, int64_t k) {
     return (size_t)((k * plan->dims[1] + j) * plan->dims[0] + i);
 }
 
+int value_code(const value_field *field, const int64_t at[3]) {
+    return field->codes[offset(field->plan, at[0], at[1], at[2])];
+}
+
 static value_part slice_voxel(const value_field *field, int64_t i, int64_t j,
                               int64_t k) {
     int code = field->codes[offset(field->plan, i, j, k)];

@@ -106,11 +106,23 @@ static void compute_sample(value_model *model, int64_t a, int64_t b,
         return;
     }
     for (int slab = 0; slab + 1 < plan->sheets; slab++) {
-        double rgba[4], through = 1 - out[3];
-        if (!draw_slab(model, &ray, slab, rgba))
-            continue;
+        double mixed[4] = {0, 0, 0, 0}, through = 1 - out[3];
+        for (value_model *m = model->front ? model->front : model; m;
+             m = m == model ? NULL : model) {
+            double rgba[4];
+            if (!draw_slab(m, &ray, slab, rgba))
+                continue;
+            for (int c = 0; c < 4; c++)
+                if (!plan->scene->mixes)
+                    out[c] += (c ? through : (through = 1 - out[3])) * rgba[c];
+                else
+                    mixed[c] =
+                        c < 3 ? mixed[c] + rgba[c] : fmax(mixed[c], rgba[c]);
+            if (out[3] >= model->close_at)
+                return;
+        }
         for (int c = 0; c < 4; c++)
-            out[c] += through * rgba[c];
+            out[c] += through * mixed[c];
         if (out[3] >= model->close_at)
             return;
     }

@@ -12,6 +12,9 @@
 reference_scene value_picture_scene(int n);
 void value_picture_free(reference_scene *scene);
 
+/* Layers of a scene's structure become labels, 0, 1, 2, 3 and 5. */
+void value_picture_name(const reference_scene *scene);
+
 /* Makes holes of voxels of a scene of floats here and there, or of all beyond a
  * surface. */
 void value_picture_punch(reference_scene *scene, int n);
@@ -39,6 +42,11 @@ void value_picture_check_bits(const model_stage *stage, int n,
 typedef value_scene value_scene_fn(int n);
 void value_pictures_check(int first, int step, value_scene_fn *scene);
 void value_pictures_check_bits(int first, int step, value_scene_fn *scene);
+
+/* As value_picture_check, as if the strongest pixel were of 1/8: nothing may
+ * hide in faintness. */
+void value_picture_check_faint(const model_stage *stage, int n,
+                               const value_scene *scene);
 
 /* The test fails, with the scene's number, where a picture is too far from the
  * reference's. */

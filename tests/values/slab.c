@@ -132,8 +132,28 @@ static int slope_across(const value_field *field, const value_ray *ray,
     return quotient(before, beside(field, sheet, at), after);
 }
 
+static bool is_member(const void *of, const int64_t voxel[3]) {
+    const value_field *field = of;
+    return value_code(field, voxel) == field->member;
+}
+
+/* Twice that of the smooth membership of the field's label. */
+static void label_gradient(const value_field *field, const double at[3],
+                           double gradient[3]) {
+    reference_membership_gradient(field->plan->dims, is_member, field, at,
+                                  gradient);
+    for (int a = 0; a < 3; a++)
+        gradient[a] = floor(2 * VALUE_MOST * gradient[a] + 0.5);
+}
+
 void value_gradient(const value_field *field, const value_ray *ray, int slab,
                     int place, double gradient[3]) {
+    if (field->plan->scene->labels) {
+        double at[3];
+        value_ray_at(field->plan, ray, slab + place / 32768.0, at);
+        label_gradient(field, at, gradient);
+        return;
+    }
     for (int n = 0; n < 3; n++) {
         int ends[2];
         for (int end = 0; end < 2; end++)
@@ -222,7 +242,8 @@ void value_lengthen(double rgba[4], double share) {
 void value_fade(const value_plan *plan, const double gradient[3], double v,
                 double rgba[4]) {
     const reference_scene *scene = &plan->scene->base;
-    double unit = (plan->high - plan->low) / VALUE_MOST, native[3], factor;
+    double range = plan->scene->labels ? 1 : plan->high - plan->low;
+    double unit = range / VALUE_MOST, native[3], factor;
     if (!scene->gradient_count)
         return;
     for (int n = 0; n < 3; n++)

@@ -13,7 +13,7 @@ static value_scene smoothed(int n) {
 
 static void pictures_are_the_references(void **state) {
     (void)state;
-    value_pictures_check((int)support_sweep(3, 59), 8 * (int)support_stride(12),
+    value_pictures_check((int)support_sweep(3, 59), 8 * (int)support_stride(25),
                          smoothed);
 }
 
@@ -26,12 +26,12 @@ static value_scene punched(int n) {
 /* Also where holes leave less than all weights. */
 static void holes_are_the_references(void **state) {
     (void)state;
-    value_pictures_check(2, 15 * (int)support_stride(12), punched);
+    value_pictures_check(2, 15 * (int)support_stride(25), punched);
 }
 
 static void bits_are_the_same(void **state) {
     (void)state;
-    value_pictures_check_bits(4, 23 * (int)support_stride(8), smoothed);
+    value_pictures_check_bits(4, 23 * (int)support_stride(17), smoothed);
 }
 
 int main(void) {

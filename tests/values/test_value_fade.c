@@ -23,7 +23,7 @@ static value_scene faded(int n) {
 
 static void pictures_are_the_references(void **state) {
     (void)state;
-    value_pictures_check(1, 7 * (int)support_stride(13), faded);
+    value_pictures_check(1, 7 * (int)support_stride(29), faded);
 }
 
 /* A cut takes a part of the length, and the gradient is that of the field. */

@@ -14,7 +14,7 @@ static void holes_are_the_references(void **state) {
     (void)state;
     model_stage stage = model_open();
     for (int k = (int)support_sweep(0, 10); k < SCENES;
-         k += (int)support_stride(17)) {
+         k += (int)support_stride(37)) {
         int n = FLOATS(k);
         value_scene scene = {.base = value_picture_scene(n)};
         value_picture_punch(&scene.base, k);

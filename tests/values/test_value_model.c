@@ -90,7 +90,7 @@ static void block_sample(value_model *model, const value_ray *ray, int64_t a,
 static void a_uniform_block_has_the_opacity_of_its_chord(void **state) {
     (void)state;
     const int64_t sizes[][3] = {{9, 11, 8}, {1, 9, 7}, {12, 2, 1}};
-    for (int n = 0; n < POSES; n += (int)support_stride(7)) {
+    for (int n = 0; n < POSES; n += (int)support_stride(13)) {
         value_scene scene =
             value_scene_of(sizes[n % 7 / 3], constant, BLOCK_OPACITY);
         pose(&scene, n);
@@ -104,7 +104,7 @@ static void a_uniform_block_has_the_opacity_of_its_chord(void **state) {
 
 static void the_middle_of_a_block_has_it_too(void **state) {
     (void)state;
-    for (int n = 0; n < POSES; n += (int)support_stride(11)) {
+    for (int n = 0; n < POSES; n += (int)support_stride(23)) {
         /* Sizes so that no view's middle ray leaves through an edge. */
         value_scene scene =
             value_scene_of((int64_t[]){21, 22, 23}, constant, 0.04);
@@ -207,7 +207,7 @@ static void linear_sample(value_model *model, const value_ray *ray, int64_t a,
 
 static void a_linear_field_is_exact_with_its_gradient(void **state) {
     (void)state;
-    for (int n = 0; n < POSES; n += (int)support_stride(7)) {
+    for (int n = 0; n < POSES; n += (int)support_stride(13)) {
         value_scene scene =
             value_scene_of((int64_t[]){9, 11, 8}, linear, BLOCK_OPACITY);
         pose(&scene, n);
@@ -277,7 +277,7 @@ static void projections_of_a_linear_field_are_exact(void **state) {
     (void)state;
     static const snow_mode modes[] = {SNOW_MODE_MIP, SNOW_MODE_MINIP,
                                       SNOW_MODE_MEAN, SNOW_MODE_SUM};
-    for (int n = 0; n < POSES; n += (int)support_stride(7)) {
+    for (int n = 0; n < POSES; n += (int)support_stride(13)) {
         value_scene scene = value_scene_of((int64_t[]){9, 11, 8}, linear, 1);
         pose(&scene, n);
         /* Not beyond one voxel outside, where the field is not linear. */
@@ -321,7 +321,7 @@ static double phong(const reference_camera *camera, const double normal[3],
 
 static void a_plane_is_lit_as_phong_says(void **state) {
     (void)state;
-    for (int n = 0; n < POSES; n += (int)support_stride(7)) {
+    for (int n = 0; n < POSES; n += (int)support_stride(13)) {
         value_scene scene = value_scene_of((int64_t[]){13, 14, 12}, linear, 1);
         pose(&scene, n);
         value_scene_space(&scene, 1, 1, 1);
@@ -403,7 +403,7 @@ static value_scene reordered(const value_scene *from, int number) {
 
 static void data_turned_and_reordered_give_the_same_picture(void **state) {
     (void)state;
-    for (int n = 1; n < 144; n += (int)support_stride(13)) {
+    for (int n = 1; n < 144; n += (int)support_stride(29)) {
         value_scene scene = value_scene_of((int64_t[]){15, 17, 14}, ripples, 0);
         show_hill(&scene);
         value_scene_space(&scene, 1, 1.2, 1.4);

@@ -45,7 +45,7 @@ static void pictures_are_the_references(void **state) {
     (void)state;
     model_stage stage = model_open();
     for (int n = (int)support_sweep(0, 10); n < VALUE_PICTURES;
-         n += 5 * (int)support_stride(5)) {
+         n += 5 * (int)support_stride(11)) {
         reference_scene s = seen_from_an_eye(n);
         value_picture_check(&stage, n, &(value_scene){.base = s});
         value_picture_free(&s);
@@ -66,7 +66,7 @@ static void punch(reference_scene *s, int n) {
 static void holes_are_the_references(void **state) {
     (void)state;
     model_stage stage = model_open();
-    for (int n = 2; n < VALUE_PICTURES; n += 15 * (int)support_stride(5)) {
+    for (int n = 2; n < VALUE_PICTURES; n += 15 * (int)support_stride(11)) {
         reference_scene s = seen_from_an_eye(n); /* of floats */
         punch(&s, n);
         value_picture_check(&stage, n, &(value_scene){.base = s});
@@ -78,7 +78,7 @@ static void holes_are_the_references(void **state) {
 static void clip_planes_are_the_references(void **state) {
     (void)state;
     model_stage stage = model_open();
-    for (int n = 0; n < VALUE_PICTURES; n += 9 * (int)support_stride(7)) {
+    for (int n = 0; n < VALUE_PICTURES; n += 9 * (int)support_stride(13)) {
         value_scene scene = {.base = seen_from_an_eye(n)};
         double planes[2][4];
         value_picture_clip(&scene, n % 2 ? 2 : 1, planes);
@@ -91,7 +91,7 @@ static void clip_planes_are_the_references(void **state) {
 static void nothing_changes_a_bit(void **state) {
     (void)state;
     model_stage stage = model_open();
-    for (int n = 3; n < VALUE_PICTURES; n += 7 * (int)support_stride(11)) {
+    for (int n = 3; n < VALUE_PICTURES; n += 7 * (int)support_stride(23)) {
         reference_scene s = seen_from_an_eye(n);
         if (s.info.type == SNOW_TYPE_FLOAT32)
             punch(&s, n);

@@ -46,7 +46,7 @@ static const snow_color_point tints[] = {{30, 0.9, 0.2, 0.1},
 
 static void every_axis_and_projection_is_near_the_truth(void **state) {
     (void)state;
-    for (int n = 0; n < 36; n += (int)support_stride(5)) {
+    for (int n = 0; n < 36; n += (int)support_stride(11)) {
         value_scene scene = value_scene_of((int64_t[]){20, 22, 21}, planet, 0);
         free((void *)(uintptr_t)scene.base.opacities);
         scene.base.opacities = soft;
@@ -76,7 +76,7 @@ static void projections_are_near_the_truth(void **state) {
     (void)state;
     static const snow_mode modes[] = {SNOW_MODE_MIP, SNOW_MODE_MINIP,
                                       SNOW_MODE_MEAN, SNOW_MODE_SUM};
-    for (int n = 0; n < 24; n += (int)support_stride(5)) {
+    for (int n = 0; n < 24; n += (int)support_stride(11)) {
         value_scene scene = value_scene_of((int64_t[]){20, 22, 21}, wave, 1);
         static const snow_color_point grey[] = {{0, 0, 0, 0}, {100, 1, 1, 1}};
         scene.base.colors = grey;

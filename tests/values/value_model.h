@@ -21,8 +21,10 @@ typedef struct value_scene {
     reference_scene base; /* method, encoding, kernel, threads do not matter */
     bool cubic;           /* --kernel bspline */
     bool labels;          /* voxels are labels */
-    bool cropped;         /* the field is seen within `keep` only, which are */
-    double keep[3][2];    /* index positions along x, y, z */
+    const struct value_scene *front; /* a layer on the same grid, or NULL */
+    bool mixes;                      /* that is mixed with it, as a channel */
+    bool cropped;      /* the field is seen within `keep` only, which are */
+    double keep[3][2]; /* index positions along x, y, z */
     const double (*clips)[4]; /* seen is a x + b y + c z <= d of the world */
     size_t clip_count;
 } value_scene;
@@ -115,6 +117,9 @@ double value_data(const value_scene *scene, const int64_t at[3]);
 void value_field_make(const value_plan *plan, value_field *field);
 void value_field_free(value_field *field);
 
+/* The number of a voxel of the box. */
+int value_code(const value_field *field, const int64_t at[3]);
+
 /* What a sheet has at (u, v): V, or VALUE_HOLE; the number of the nearest
  * label, or VALUE_HOLE. */
 int value_sheet(const value_field *field, int sheet, double u, double v);
@@ -198,7 +203,8 @@ typedef struct value_model {
     value_plan plan;
     value_field field;
     value_table table;
-    double close_at; /* rays end at this alpha; above 1: never */
+    struct value_model *front; /* of the layer in front, or NULL */
+    double close_at;           /* rays end at this alpha; above 1: never */
     /* Lattice samples that were computed. */
     int64_t first[2], size[2];
     double (*samples)[4];

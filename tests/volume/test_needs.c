@@ -31,15 +31,15 @@ static void a_range_is_that_of_the_counts(void **state) {
         snow_histogram all, range, sign;
         assert_int_equal(snow_volume_wrap(context, &info, bits, &volume),
                          SNOW_STATUS_OK);
-        assert_int_equal(
-            snow_histogram_new(volume, NULL, log, SNOW_NEED_COUNTS, &all),
-            SNOW_STATUS_OK);
-        assert_int_equal(
-            snow_histogram_new(volume, NULL, log, SNOW_NEED_RANGE, &range),
-            SNOW_STATUS_OK);
-        assert_int_equal(
-            snow_histogram_new(volume, NULL, log, SNOW_NEED_SIGN, &sign),
-            SNOW_STATUS_OK);
+        assert_int_equal(snow_histogram_new(volume, NULL, (snow_scale){log, 0},
+                                            SNOW_NEED_COUNTS, &all),
+                         SNOW_STATUS_OK);
+        assert_int_equal(snow_histogram_new(volume, NULL, (snow_scale){log, 0},
+                                            SNOW_NEED_RANGE, &range),
+                         SNOW_STATUS_OK);
+        assert_int_equal(snow_histogram_new(volume, NULL, (snow_scale){log, 0},
+                                            SNOW_NEED_SIGN, &sign),
+                         SNOW_STATUS_OK);
         assert_int_equal(all.finite > 0, range.finite > 0);
         if (all.finite) {
             assert_true(all.min == range.min && all.max == range.max);

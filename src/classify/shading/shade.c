@@ -133,19 +133,17 @@ static inline float shaded(float color, double factor, double white) {
 #define TEMPLATE "classify/shading/shade.tmpl.h"
 #include "simd/each_isa.h"
 
-typedef void shade_block_fn(const snow_shader *shader,
-                            const double gradients[3][SHADE_BLOCK], int count,
-                            int channels, float *samples);
-
-static shade_block_fn *block_of(snow_isa isa) {
-    return SNOW_OF_ISA(isa, shade_block);
+void snow_shade_gradients(const snow_shader *shader,
+                          const double gradients[3][SHADE_BLOCK], int count,
+                          int channels, float *samples) {
+    SNOW_OF_ISA(shader->isa, shade_block)
+    (shader, gradients, count, channels, samples);
 }
 
 void snow_shade_row_block(const snow_shader *shader, int channels,
                           snow_row_block *row_block) {
     const snow_placement *p = shader->placement;
     const snow_volume *volume = shader->volume;
-    shade_block_fn *shade_block = block_of(shader->isa);
     double gradients[3][SHADE_BLOCK];
     memset(gradients, 0, sizeof gradients);
     snow_gradient_row row = {.volume = volume, .axis = p->u_axis};
@@ -158,16 +156,10 @@ void snow_shade_row_block(const snow_shader *shader, int channels,
             count = count < SHADE_BLOCK ? count : SHADE_BLOCK;
             snow_gradients_of_row(&row, row_block->columns + n, count,
                                   SHADE_BLOCK, gradients[0]);
-            shade_block(shader, (const double(*)[SHADE_BLOCK])gradients,
-                        (int)count, channels,
-                        row_block->samples + n * (size_t)channels);
+            snow_shade_gradients(
+                shader, (const double(*)[SHADE_BLOCK])gradients, (int)count,
+                channels, row_block->samples + n * (size_t)channels);
             n += count;
         }
     }
-}
-
-void snow_shade_gradients(const snow_shader *shader,
-                          const double gradients[3][SNOW_SHADE_BLOCK],
-                          int count, int channels, float *samples) {
-    block_of(shader->isa)(shader, gradients, count, channels, samples);
 }

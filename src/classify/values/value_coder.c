@@ -26,14 +26,17 @@ static int16_t scaled(const snow_value_scale14 *scale, double value) {
     if (!(scale->high > scale->low))
         return 0;
     return number_of(scale->low, scale->high,
-                     scale->log ? log10(value) : value);
+                     scale->log ? log10(value)
+                                : snow_place_of(scale->linear, value));
 }
 
 /* The number of a data value, or of the label that it is. */
 static int16_t coded(const snow_value_coder *coder, double value) {
-    return coder->names ? (int16_t)snow_value_label_of(coder->names,
-                                                       coder->name_count, value)
-                        : scaled(&coder->scale, value);
+    if (!coder->names)
+        return scaled(&coder->scale, value);
+    return isnan(value) ? SNOW_VALUE_HOLE
+                        : (int16_t)snow_value_label_of(
+                              coder->names, coder->name_count, value);
 }
 
 snow_status snow_value_coder_make(const snow_volume *volume,
@@ -86,8 +89,8 @@ CODE_NARROW(UINT16, uint16_t)
                             size_t count, int16_t *out) {                      \
         const snow_value_scale14 scale = coder->scale;                         \
         const double slope = coder->slope, intercept = coder->intercept;       \
-        const bool plain =                                                     \
-            scale.high > scale.low && !scale.log && !coder->names;             \
+        const bool plain = scale.high > scale.low && !scale.log &&             \
+                           !(scale.linear > 0) && !coder->names;               \
         for (size_t n = 0; n < count; n++) {                                   \
             double value = slope * (double)stored[n] + intercept;              \
             out[n] = plain && value == value                                   \
@@ -126,7 +129,6 @@ void snow_value_code_clipped(const snow_value_coder *coder,
             continue;
         double native =
             snow_clip_planes_value_at(volume->clip, volume->info.dims, here);
-        out[n] =
-            scaled(&coder->scale, coder->slope * native + coder->intercept);
+        out[n] = coded(coder, coder->slope * native + coder->intercept);
     }
 }

@@ -1,10 +1,16 @@
 /* classify/values/value_labels.c - see value_labels.h. */
 #include "classify/values/value_labels.h"
 
+#include "volume/clip_planes.h"
+
 #include <math.h>
 #include <string.h>
 
 #define BLOCK 1024
+
+/* All slabs of a label have one alpha, whose rounding adds up where that of
+ * values does not. */
+#define FAINTEST 0.0625
 
 /* --- names ---------------------------------------------------------------- */
 
@@ -20,8 +26,8 @@ int snow_value_label_of(const double *names, int count, double value) {
     return low;
 }
 
-static snow_status add_name(snow_context *context, snow_value_labels *labels,
-                            double value) {
+snow_status snow_value_labels_name(snow_context *context,
+                                   snow_value_labels *labels, double value) {
     int at = snow_value_label_of(labels->names, labels->count, value);
     if (at < labels->count && labels->names[at] == value)
         return SNOW_STATUS_OK;
@@ -50,13 +56,18 @@ snow_status snow_value_labels_add(const snow_volume *volume,
         size_t count = all - first < BLOCK ? (size_t)(all - first) : BLOCK;
         snow_volume_stored(volume, first, count, stored);
         for (size_t n = 0; n < count; n++) {
-            if (stored[n] == last)
+            if (stored[n] == last || isnan(stored[n]))
                 continue;
             last = stored[n];
-            SNOW_TRY(add_name(volume->context, labels,
-                              info->slope * last + info->intercept));
+            SNOW_TRY(snow_value_labels_name(
+                volume->context, labels, info->slope * last + info->intercept));
         }
     }
+    /* And those next to planes that cut it, which are drawn up to there. */
+    for (size_t n = 0; volume->clip && n < volume->clip->voxel_count; n++)
+        SNOW_TRY(snow_value_labels_name(
+            volume->context, labels,
+            info->slope * volume->clip->voxels[n].native + info->intercept));
     return SNOW_STATUS_OK;
 }
 
@@ -69,19 +80,24 @@ static void find_look(const snow_value_look *look, snow_value_labels *labels,
     snow_transfer_evaluate(look->transfer, labels->names[n], rgba);
     memcpy(out->rgb, rgba, sizeof out->rgb);
     out->opacity = snow_is_interesting(rgba[3], look->threshold) ? rgba[3] : 0;
-    out->step = 1 - pow(1 - out->opacity, labels->exponent);
+    out->step = -expm1(labels->exponent * log1p(-out->opacity));
 }
 
 snow_status snow_value_labels_look(snow_context *context,
                                    const snow_value_look *look,
                                    snow_value_labels *labels,
                                    snow_value_table *table) {
+    double most = 0;
     SNOW_TRY(SNOW_RESERVE(context, labels->looks, 0, labels->count));
     labels->steps = look->steps;
     labels->exponent = look->exponent / look->steps;
     snow_value_table_begin(look, table);
-    for (int n = 0; n < labels->count; n++)
+    for (int n = 0; n < labels->count; n++) {
         find_look(look, labels, n);
+        most = fmax(most, labels->looks[n].opacity);
+    }
+    snow_value_table_scale(table, -expm1(look->exponent * log1p(-most)),
+                           FAINTEST);
     for (int n = 0, first = 0; n < labels->count; n++) {
         bool seen = labels->looks[n].step > 0, last = n + 1 == labels->count;
         if ((seen || last) && n - seen >= first)

@@ -25,8 +25,10 @@ typedef struct snow_value_labels {
 /* The first name that is not below a value. */
 int snow_value_label_of(const double *names, int count, double value);
 
-/* Adds the labels of a volume to a set that may be empty.  Errors:
+/* Adds a label, or those of a volume, to a set that may be empty.  Errors:
  * SNOW_STATUS_NO_MEMORY, SNOW_STATUS_BAD_USAGE (too many). */
+snow_status snow_value_labels_name(snow_context *context,
+                                   snow_value_labels *labels, double value);
 snow_status snow_value_labels_add(const snow_volume *volume,
                                   snow_value_labels *labels);
 

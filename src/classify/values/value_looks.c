@@ -115,8 +115,10 @@ static bool is_steep(const snow_value_look *look) {
         most = fmax(most, p->opacity);
         if (n + 1 == t->opacity_count)
             break;
+        const double linear = look->scale.linear;
         double length = look->scale.log ? log10(p[1].value) - log10(p[0].value)
-                                        : p[1].value - p[0].value;
+                                        : snow_place_of(linear, p[1].value) -
+                                              snow_place_of(linear, p[0].value);
         if (length > 0)
             steepest =
                 fmax(steepest, fabs(p[1].opacity - p[0].opacity) / length);

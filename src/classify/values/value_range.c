@@ -23,6 +23,7 @@ typedef struct found_range {
 typedef struct range_job {
     const snow_volume *volume;
     bool log;
+    double linear;
     int64_t voxels;
     found_range *found; /* of each worker */
 } range_job;
@@ -111,17 +112,24 @@ static void put_together(const range_job *job, int threads,
     double a = job->log ? log10(all.low) : info->slope * all.low;
     double b = job->log ? log10(all.high) : info->slope * all.high;
     double from = job->log ? 0 : info->intercept;
+    if (job->linear > 0) {
+        a = snow_place_of(job->linear, a + from);
+        b = snow_place_of(job->linear, b + from);
+        from = 0;
+    }
     bool any = all.low <= all.high;
     *out = (snow_data_range){any ? fmin(a + from, b + from) : INFINITY,
                              any ? fmax(a + from, b + from) : -INFINITY,
-                             job->log, all.holes};
+                             job->log, all.holes, job->linear};
 }
 
-snow_status snow_data_range_measure(const snow_volume *volume, bool log,
+snow_status snow_data_range_measure(const snow_volume *volume, snow_scale scale,
                                     int threads, snow_data_range *out) {
     const int64_t *dims = volume->info.dims;
-    range_job job = {
-        .volume = volume, .log = log, .voxels = dims[0] * dims[1] * dims[2]};
+    range_job job = {.volume = volume,
+                     .log = scale.log,
+                     .linear = scale.linear,
+                     .voxels = dims[0] * dims[1] * dims[2]};
     int64_t items = (job.voxels + ITEM - 1) / ITEM;
     threads = threads < items ? threads : (int)items;
     SNOW_TRY(SNOW_RESERVE(volume->context, job.found, 0, threads));
@@ -140,7 +148,7 @@ snow_status snow_data_range_measure(const snow_volume *volume, bool log,
 
 /* A point of a look on the range's scale. */
 static double point_of(const snow_data_range *data, double value) {
-    return data->log ? log10(value) : value;
+    return data->log ? log10(value) : snow_place_of(data->linear, value);
 }
 
 /* The hull of the data's values that have an opacity, but for those beyond the
@@ -208,8 +216,10 @@ static void make_whole(snow_value_scale14 *scale,
 snow_value_scale14 snow_value_scale_of(const snow_data_range *data,
                                        const snow_transfer *transfer,
                                        const snow_volume_info *info) {
-    snow_value_scale14 scale = {
-        .low = data->low, .high = data->high, .log = data->log};
+    snow_value_scale14 scale = {.low = data->low,
+                                .high = data->high,
+                                .log = data->log,
+                                .linear = data->linear};
     double visible[2] = {data->low, data->high};
     if (transfer)
         find_visible(data, transfer, visible);
@@ -219,12 +229,14 @@ snow_value_scale14 snow_value_scale_of(const snow_data_range *data,
         scale.high = fmin(data->high, visible[1] + 4 * length);
         scale.clamps = true;
     }
-    if (snow_type_size(info->type) <= 2 && !data->log)
+    if (snow_type_size(info->type) <= 2 && !data->log && !(data->linear > 0))
         make_whole(&scale, info);
     return scale;
 }
 
 double snow_value_of(const snow_value_scale14 *scale, double v) {
     double x = scale->low + v * (scale->high - scale->low) / SNOW_VALUE_MOST;
+    if (scale->linear > 0)
+        return snow_scale_value((snow_scale){false, scale->linear}, x);
     return scale->log ? pow(10, x) : x;
 }

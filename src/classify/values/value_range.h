@@ -3,6 +3,7 @@
 #ifndef SNOW_CLASSIFY_VALUE_RANGE_H
 #define SNOW_CLASSIFY_VALUE_RANGE_H
 
+#include "transfer/scale.h"
 #include "transfer/transfer.h"
 #include "volume/volume.h"
 
@@ -10,16 +11,25 @@
 #define SNOW_VALUE_MOST 16383
 #define SNOW_VALUE_HOLE INT16_MIN
 
-/* The finite data values of a volume, or their decimal logarithms. */
+/* The finite data values of a volume, or their decimal logarithms, or their
+ * places on a symmetric scale (transfer/scale.h). */
 typedef struct snow_data_range {
     double low, high; /* low > high: there is none */
     bool log;
-    bool holes; /* some voxels are NaN, or have no logarithm */
+    bool holes;    /* some voxels are NaN, or have no logarithm */
+    double linear; /* of a symmetric scale; 0: of none */
 } snow_data_range;
+
+/* Whether a range is of a look's scale; NULL: of data values. */
+static inline bool snow_data_range_is_of(const snow_data_range *range,
+                                         const snow_transfer *look) {
+    return range->log == (look && look->log) &&
+           range->linear == (look ? look->linear : 0);
+}
 
 /* Reads all voxels, and those next to clip planes.  `threads` as in
  * base/thread_pool.h.  Errors: SNOW_STATUS_STOPPED. */
-snow_status snow_data_range_measure(const snow_volume *volume, bool log,
+snow_status snow_data_range_measure(const snow_volume *volume, snow_scale scale,
                                     int threads, snow_data_range *out);
 
 /* Integers of 8 and 16 bits become numbers by a multiplication, which vectors
@@ -46,20 +56,22 @@ static inline int16_t snow_value_by_rule(const snow_value_rule *rule,
 }
 
 /* Number V stands for the data value low + V (high - low) / SNOW_VALUE_MOST, or
- * for its decimal logarithm; values beyond the ends are clamped. */
+ * for its decimal logarithm, or its place on a symmetric scale; values beyond
+ * the ends are clamped. */
 typedef struct snow_value_scale14 {
     double low, high;
     bool log;
-    bool whole;  /* numbers are made by the rule */
-    bool clamps; /* there are values beyond the ends */
+    double linear; /* as in snow_data_range */
+    bool whole;    /* numbers are made by the rule */
+    bool clamps;   /* there are values beyond the ends */
     snow_value_rule rule;
 } snow_value_scale14;
 
 static inline bool snow_value_same_scale(const snow_value_scale14 *a,
                                          const snow_value_scale14 *b) {
     return a->low == b->low && a->high == b->high && a->log == b->log &&
-           a->whole == b->whole && a->rule.bottom == b->rule.bottom &&
-           a->rule.top == b->rule.top;
+           a->linear == b->linear && a->whole == b->whole &&
+           a->rule.bottom == b->rule.bottom && a->rule.top == b->rule.top;
 }
 
 /* The scale of a look: all of the data, or, where the look shows less than 1/64
@@ -69,6 +81,12 @@ static inline bool snow_value_same_scale(const snow_value_scale14 *a,
 snow_value_scale14 snow_value_scale_of(const snow_data_range *data,
                                        const snow_transfer *transfer,
                                        const snow_volume_info *info);
+
+/* A data value, or its place on a symmetric scale. */
+static inline double snow_place_of(double linear, double value) {
+    return linear > 0 ? snow_scale_place((snow_scale){false, linear}, value)
+                      : value;
+}
 
 /* The data value of any number V. */
 double snow_value_of(const snow_value_scale14 *scale, double v);

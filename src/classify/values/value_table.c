@@ -7,7 +7,7 @@
 
 /* The largest alpha of tables whose words count smaller parts, and how often
  * these are halved at most. */
-#define FAINTEST 0.004F
+#define FAINTEST 0.004
 #define HALVINGS_MOST 96
 
 /* --- entries -------------------------------------------------------------- */
@@ -27,7 +27,6 @@ typedef struct entry_ways {
 typedef struct table_job {
     const snow_value_look *look;
     snow_value_table *table;
-    float full;                   /* the word of an alpha of 1 */
     float most[SNOW_VALUE_PITCH]; /* alpha, of each row */
 } table_job;
 
@@ -59,7 +58,7 @@ static void fill_some(const table_job *job, int64_t first, const int *backs,
         for (int c = 0; c < 5; c++)
             sums[c][w] = c < 4 ? ways.sum[w][c] : ways.places[w][3];
     SNOW_OF_ISA(look->isa, pack)
-    (sums, (float)look->steps, job->full, look->placed, entries);
+    (sums, (float)look->steps, job->table->full, look->placed, entries);
     for (int w = 0; w < count; w++) {
         *most = sums[3][w] > *most ? sums[3][w] : *most;
         row[backs[w]] = entries[w];
@@ -108,7 +107,7 @@ static void fill_rows(void *of, int64_t item, int worker) {
         SNOW_OF_ISA(look->isa, collect_diagonal)
         (job->table, look->steps, front, apart, sums);
         SNOW_OF_ISA(look->isa, pack)
-        (sums, (float)look->steps, job->full, look->placed, entries);
+        (sums, (float)look->steps, job->table->full, look->placed, entries);
         for (int w = first < 0 ? -first : 0; w < count && first + w < nodes;
              w++) {
             row[w * SNOW_VALUE_PITCH + first + w] = entries[w];
@@ -118,25 +117,34 @@ static void fill_rows(void *of, int64_t item, int worker) {
     job->most[front] = most;
 }
 
-/* All entries; again in smaller parts where all are faint, of which there may
- * be eight times as many: rays of other pixels are longer in perspective. */
+/* Words count smaller parts where all is faint, of which there may be eight
+ * times as many: rays of other pixels are longer in perspective. */
+void snow_value_table_scale(snow_value_table *table, double most,
+                            double faintest) {
+    double full = 32767;
+    table->faint = most > 0 && most < faintest;
+    for (int n = 0; table->faint && n < HALVINGS_MOST && most <= 0.0625; n++) {
+        most *= 2;
+        full *= 2;
+    }
+    table->unit = (float)(1 / full);
+    table->full = (float)full;
+}
+
+/* All entries; again where all are faint. */
 static snow_status fill_entries(snow_context *context,
                                 const snow_value_look *look,
                                 snow_value_table *table) {
-    table_job job = {.look = look, .table = table, .full = 32767};
+    table_job job = {.look = look, .table = table};
     snow_work_fn *work = table->nodes ? fill_row : fill_rows;
     int items =
         table->nodes ? look->nodes : (look->nodes + ENTRIES - 1) / ENTRIES;
     float most = 0;
+    snow_value_table_scale(table, 1, 0);
     SNOW_TRY(snow_parallel(context, look->threads, items, work, &job));
     for (int n = 0; n < look->nodes; n++)
         most = job.most[n] > most ? job.most[n] : most;
-    table->faint = most > 0 && most < FAINTEST;
-    for (int n = 0; table->faint && n < HALVINGS_MOST && most <= 0.0625F; n++) {
-        most *= 2;
-        job.full *= 2;
-    }
-    table->unit = 1 / job.full;
+    snow_value_table_scale(table, most, FAINTEST);
     return table->faint
                ? snow_parallel(context, look->threads, items, work, &job)
                : SNOW_STATUS_OK;
@@ -254,8 +262,7 @@ void snow_value_table_begin(const snow_value_look *look,
     table->made = *look;
     table->made.nodes = 0;
     table->run_count = 0;
-    table->faint = false;
-    table->unit = 1.0F / 32767;
+    snow_value_table_scale(table, 1, 0);
 }
 
 void snow_value_table_fini(snow_context *context, snow_value_table *table) {

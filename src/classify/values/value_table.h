@@ -58,7 +58,7 @@ typedef struct snow_value_table {
     int run_count;
     bool faint; /* the words count parts of 2^-15 / 2^n, for slabs show little:
                  */
-    float unit; /* an alpha of 1 in a word */
+    float unit, full; /* the alpha of a word of 1; the word of an alpha of 1 */
     /* What was made last. */
     snow_value_look made;
     double *key, *next_key;
@@ -70,6 +70,11 @@ typedef struct snow_value_table {
 snow_status snow_value_table_make(snow_context *context,
                                   const snow_value_look *look,
                                   snow_value_table *table);
+/* Sets the unit of words of which the largest is an alpha of `most`: a smaller
+ * one below `faintest`. */
+void snow_value_table_scale(snow_value_table *table, double most,
+                            double faintest);
+
 /* A table without entries, of labels and of values that have no colours yet: no
  * number is invisible until it is hidden.  Runs rise. */
 void snow_value_table_begin(const snow_value_look *look,

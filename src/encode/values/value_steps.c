@@ -1,7 +1,6 @@
 /* encode/values/value_steps.c - an encoding is made step by step, and a step
  * item by item: all at once, or some bands at a time. */
 #include "encode/values/value_encode.h"
-#include "encode/values/value_store.h"
 
 #include "base/thread_pool.h"
 

@@ -157,7 +157,12 @@ void snow_value_store_add_up(snow_value_store *s) {
 void snow_value_store_count(const snow_value_store *s, int64_t first,
                             int64_t count, uint64_t *ea, uint64_t *ia,
                             uint64_t *pa) {
-    *ea = *ia = 0;
+    *ea = *ia = *pa = 0;
+    if (s->in_place) { /* all slices take as much */
+        *ea = s->ea_bytes / (uint64_t)s->slices * (uint64_t)count;
+        *ia = s->ia_bytes / (uint64_t)s->slices * (uint64_t)count;
+        return;
+    }
     for (int64_t n = 0; n < s->band_count; n++) {
         const snow_slice_pointer *from = &s->bands[n].pa[first];
         *ea += from[count].ea - from->ea;

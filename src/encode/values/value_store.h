@@ -160,7 +160,7 @@ int64_t snow_value_store_left(const snow_value_store *store);
 uint64_t snow_value_store_bytes(const snow_value_store *store);
 uint64_t snow_value_store_expect(const snow_value_store_params *params);
 
-/* Bytes of EA, IA and PA of `count` slices from `first` on; not in place. */
+/* Bytes of EA, IA and PA of `count` slices from `first` on. */
 void snow_value_store_count(const snow_value_store *store, int64_t first,
                             int64_t count, uint64_t *ea, uint64_t *ia,
                             uint64_t *pa);

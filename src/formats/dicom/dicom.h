@@ -12,6 +12,7 @@
  *           spacing.c  their distances
  *     |
  *   voxels  voxels.c   frames scaled and put in place
+ *           segments.c those of a segmentation: a volume of labels
  *     |
  *   pixels  palette.c  the brightness of palette colours
  *           pixels.c   a frame's words, plain or compressed
@@ -29,6 +30,7 @@
 /* What distinguishes images at one position; the first difference counts:
  * indices of time, then other variations, then the order of acquisition. */
 enum {
+    DICOM_KEY_SEGMENT, /* whose voxels these are, from 1 */
     DICOM_KEY_TIME,    /* temporal position */
     DICOM_KEY_TRIGGER, /* ms within the heartbeat */
     DICOM_KEY_ECHO,    /* ms */
@@ -37,6 +39,15 @@ enum {
     DICOM_KEY_INSTANCE,
     DICOM_KEYS
 };
+
+/* What the pixels of a segmentation are (PS3.3, C.8.20.2). */
+typedef enum dicom_segments {
+    DICOM_NO_SEGMENTS, /* other images */
+    DICOM_BINARY,
+    DICOM_FRACTIONAL, /* probabilities, or shares of a voxel */
+    DICOM_LABELMAP,   /* numbers of segments */
+    DICOM_UNKNOWN_SEGMENTS
+} dicom_segments;
 
 /* One file with an image, as described by its header. */
 typedef struct dicom_image {
@@ -47,6 +58,8 @@ typedef struct dicom_image {
     int64_t columns, rows, frames;
     int64_t series_number;
     int samples, allocated, stored, high;
+    dicom_segments segments;
+    unsigned whole;         /* the fraction that is all, of segments */
     bool is_signed, planes; /* samples of a pixel are not interleaved */
     bool pads;              /* stored values within padding are not data */
     double padding[2];
@@ -171,10 +184,18 @@ snow_status snow_dicom_inflate_to(dicom_inflater *inflater, uint64_t wanted,
 
 bool snow_dicom_inflate_ended(const dicom_inflater *inflater);
 
+/* --- values.c ------------------------------------------------------------- */
+
 /* Finds the first element with a tag from list index `begin` up to `end`, not
  * within others; an item of a sequence counts from 0; NULL if there is none. */
 const dicom_element *snow_dicom_find(const dicom_reader *reader, size_t begin,
                                      size_t end, uint32_t tag);
+
+/* The same of an item, NULL for none. */
+const dicom_element *snow_dicom_find_in(const dicom_reader *reader,
+                                        const dicom_element *item,
+                                        uint32_t tag);
+
 /* The place of a value: an element of the file itself, or of the first item of
  * a sequence.  A sequence is searched among the functional groups of a frame
  * (from 0), then among those that all frames share, then in the file itself. */
@@ -184,10 +205,25 @@ typedef struct dicom_place {
     uint32_t tag;
 } dicom_place;
 
-/* Copies up to `room` bytes of a value as stored; returns their number, 0 if
- * there is no such value. */
-size_t snow_dicom_value(dicom_reader *reader, dicom_place place, void *out,
-                        size_t room);
+const dicom_element *snow_dicom_locate(dicom_reader *reader, dicom_place place);
+
+/* Copies up to `room` bytes of an element's value as stored; returns their
+ * number, 0 if there is no element. */
+size_t snow_dicom_bytes(const dicom_reader *reader,
+                        const dicom_element *element, void *out, size_t room);
+
+static inline size_t snow_dicom_value(dicom_reader *reader, dicom_place place,
+                                      void *out, size_t room) {
+    return snow_dicom_bytes(reader, snow_dicom_locate(reader, place), out,
+                            room);
+}
+
+/* Reads a text of the file itself; text for people, in UTF-8 as far as it
+ * fits. */
+void snow_dicom_text(dicom_reader *reader, uint32_t tag, char *out,
+                     size_t room);
+void snow_dicom_words(dicom_reader *reader, const dicom_element *element,
+                      char *out, size_t room);
 
 /* --- series.c ------------------------------------------------------- */
 
@@ -208,12 +244,15 @@ typedef struct dicom_slice {
 } dicom_slice;
 
 /* How the frames of a group form a volume: `places` of `times` frames each, in
- * the order of the frames, and slices at them or between them. */
+ * the order of the frames, and slices at them or between them.  Segments are
+ * sparse: a place has as many frames as there are segments at it, and slices
+ * without any are missing because they are empty. */
 typedef struct dicom_stack {
     snow_context *context;
     const dicom_frame
         *frames; /* of one group, in the order of positions, then times */
     size_t places, times;
+    size_t *starts;      /* sparse: first frames of the places, and the end */
     dicom_slice *slices; /* NULL: one at each position */
     size_t slice_count;
     bool gaps;      /* missing slices are allowed */
@@ -227,7 +266,9 @@ typedef struct dicom_stack {
 
 static inline const double *snow_dicom_position(const dicom_stack *stack,
                                                 size_t index) {
-    return stack->frames[index * stack->times].position;
+    return stack
+        ->frames[stack->starts ? stack->starts[index] : index * stack->times]
+        .position;
 }
 
 double snow_dicom_distance(const double a[3], const double b[3]);
@@ -264,6 +305,10 @@ snow_status snow_dicom_read_files(snow_context *context, snow_folder *files,
 snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
                                   dicom_image *out);
 
+/* Reads whole numbers of 16 bits; returns how many there are. */
+int snow_dicom_shorts(const dicom_reader *reader, const dicom_element *element,
+                      double *out, int most);
+
 /* Describes one of its frames. */
 void snow_dicom_read_frame(dicom_reader *reader, const dicom_image *image,
                            int64_t number, dicom_frame *out);
@@ -283,7 +328,8 @@ typedef struct dicom_words {
     bool planes; /* one plane per sample, not interleaved */
 } dicom_words;
 
-/* Bytes of a frame: columns * rows * samples words. */
+/* Bytes of a frame: columns * rows * samples words, of single bits a byte for
+ * each. */
 uint64_t snow_dicom_frame_bytes(const dicom_image *image);
 
 /* Reads a frame's words in the machine's byte order into `out`, of the size
@@ -337,5 +383,15 @@ snow_status snow_dicom_read_stack(const dicom_input *input,
                                   const dicom_stack *stack,
                                   const snow_volume_options *options,
                                   snow_volume_info *info, snow_volume **out);
+
+/* --- segments.c ----------------------------------------------------------- */
+
+/* The same of a segmentation: a volume of labels.  Errors:
+ * SNOW_STATUS_BAD_INPUT (frames without a place or segment, another type of
+ * segmentation), SNOW_STATUS_NO_MEMORY. */
+snow_status snow_dicom_read_segments(const dicom_input *input,
+                                     const dicom_stack *stack,
+                                     const snow_volume_options *options,
+                                     snow_volume_info *info, snow_volume **out);
 
 #endif

@@ -229,15 +229,20 @@ static bool is_index(const char *text, size_t count, size_t *out) {
     return true;
 }
 
-/* The largest group that `series` allows, a UID or NULL; `count` if it allows
- * none. */
-static size_t largest(const choice *all, const char *series) {
-    size_t best = all->count;
-    for (size_t i = 0; i < all->count; i++)
-        if ((!series || !strcmp(image_of(all, i)->series, series)) &&
-            (best == all->count ||
-             all->groups[i].count > all->groups[best].count))
-            best = i;
+/* The group that a folder is opened for, of those that `series` allows, a UID
+ * or NULL: the largest, of segmentations only where there are no other images;
+ * `count` if none is allowed. */
+static size_t best_group(const choice *all, const char *series) {
+    size_t best = all->count, most = 0;
+    for (size_t i = 0; i < all->count; i++) {
+        const dicom_image *image = image_of(all, i);
+        size_t rank =
+            all->groups[i].count + (image->segments ? 0 : all->c->frame_count);
+        if ((series && strcmp(image->series, series) != 0) || rank <= most)
+            continue;
+        best = i;
+        most = rank;
+    }
     return best;
 }
 
@@ -246,7 +251,7 @@ static snow_status choose_group(const choice *all, const char *series,
     char text[1024];
     size_t taken = all->count;
     if (!series || !is_index(series, all->count, &taken))
-        taken = largest(all, series);
+        taken = best_group(all, series);
     list_series(all, taken, text, sizeof text);
     if (taken == all->count)
         return snow_fail(all->c->context, SNOW_STATUS_BAD_USAGE,
@@ -281,7 +286,9 @@ static snow_status read_chosen(collection *c, snow_seekable *store,
             snow_dicom_stack(c->context, c->frames + all.groups[taken].first,
                              all.groups[taken].count, c->gaps, &stack);
     if (status == SNOW_STATUS_OK) {
-        status = snow_dicom_read_stack(&input, &stack, options, info, out);
+        status = (stack.frames->image->segments ? snow_dicom_read_segments
+                                                : snow_dicom_read_stack)(
+            &input, &stack, options, info, out);
         snow_dicom_stack_free(&stack);
     }
     snow_release(c->context, all.groups);
@@ -445,7 +452,8 @@ static snow_status read_dicom(snow_source *source,
                            "is a DICOM file without an image; open one with "
                            "an image, or their folder");
     if (status == SNOW_STATUS_OK && c.frame_count == 1 && c.frames[0].placed &&
-        *c.images[0]->series && snow_source_has_siblings(source))
+        *c.images[0]->series && !c.images[0]->segments &&
+        snow_source_has_siblings(source))
         status =
             read_with_siblings(&c, source, store, options, info, out, &done);
     if (status == SNOW_STATUS_OK && !done)

@@ -27,6 +27,10 @@ static int compare_images(const dicom_image *a, const dicom_image *b) {
         by = a->allocated - b->allocated;
     if (!by)
         by = a->is_signed - b->is_signed;
+    if (!by)
+        by = (int)a->segments - (int)b->segments;
+    if (!by && a->segments)
+        by = strcmp(a->instance, b->instance); /* each has its own numbers */
     return by ? by : strcmp(a->photometric, b->photometric);
 }
 

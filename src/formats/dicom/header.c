@@ -1,6 +1,7 @@
 /* formats/dicom/header.c - reads a file's image and its frames from the header
  * (PS3.3: C.7.6.2 and C.7.6.3 image plane and pixels, C.7.6.16 functional
- * groups of frames, C.8.4 nuclear medicine, C.8.8.3 doses). */
+ * groups of frames, C.8.4 nuclear medicine, C.8.8.3 doses, C.8.20
+ * segmentations). */
 #include "formats/dicom/dicom.h"
 
 #include <math.h>
@@ -43,6 +44,7 @@ static const number_field width_field = {0x00289132, 0x00281051, TEXT,
                                          0x00281051, TEXT};
 
 static const number_field key_fields[DICOM_KEYS] = {
+    [DICOM_KEY_SEGMENT] = {0x0062000a, 0x0062000b, SHORTS, 0, TEXT},
     [DICOM_KEY_TIME] = {0x00209111, 0x00209128, LONGS, 0x00200100, TEXT},
     [DICOM_KEY_TRIGGER] = {0x00189118, 0x00209153, DOUBLES, 0x00181060, TEXT},
     [DICOM_KEY_ECHO] = {0x00189114, 0x00189082, DOUBLES, 0x00180081, TEXT},
@@ -85,18 +87,19 @@ static double binary(const unsigned char *bytes, size_t size, bool big) {
     return size == 2 ? s : size == 4 ? l : d;
 }
 
-static int numbers_at(dicom_reader *reader, dicom_place place, storage kind,
-                      double *out, int most) {
+static int numbers_of(const dicom_reader *reader, const dicom_element *element,
+                      storage kind, double *out, int most) {
     static const size_t sizes[] = {[SHORTS] = 2, [LONGS] = 4, [DOUBLES] = 8};
     char text[1024];
     if (kind == TEXT) {
-        size_t length = snow_dicom_value(reader, place, text, sizeof text - 1);
+        size_t length =
+            snow_dicom_bytes(reader, element, text, sizeof text - 1);
         text[length] = 0;
         return length ? parse_numbers(text, out, most) : 0;
     }
     size_t size = sizes[kind], room = (size_t)most * size;
     room = room < sizeof text ? room : sizeof text;
-    int count = (int)(snow_dicom_value(reader, place, text, room) / size);
+    int count = (int)(snow_dicom_bytes(reader, element, text, room) / size);
     for (int i = 0; i < count; i++) {
         out[i] = binary((const unsigned char *)text + (size_t)i * size, size,
                         reader->big_endian);
@@ -104,6 +107,17 @@ static int numbers_at(dicom_reader *reader, dicom_place place, storage kind,
             return i;
     }
     return count;
+}
+
+static int numbers_at(dicom_reader *reader, dicom_place place, storage kind,
+                      double *out, int most) {
+    return numbers_of(reader, snow_dicom_locate(reader, place), kind, out,
+                      most);
+}
+
+int snow_dicom_shorts(const dicom_reader *reader, const dicom_element *element,
+                      double *out, int most) {
+    return numbers_of(reader, element, SHORTS, out, most);
 }
 
 /* Reads numbers of a frame, or of the file; returns how many there are. */
@@ -129,38 +143,9 @@ static double number(dicom_reader *reader, uint32_t tag, storage kind,
                : otherwise;
 }
 
-/* Text without blanks around it. */
-static void text(dicom_reader *reader, uint32_t tag, char *out, size_t room) {
-    size_t length =
-        snow_dicom_value(reader, (dicom_place){0, 0, tag}, out, room - 1);
-    out[length] = 0;
-    length = strlen(out);
-    while (length && (out[length - 1] == ' ' || out[length - 1] == '\n'))
-        out[--length] = 0;
-    size_t blanks = strspn(out, " ");
-    memmove(out, out + blanks,
-            length - (blanks < length ? blanks : length) + 1);
-}
-
-/* Text for people in UTF-8 if the file declares UTF-8 or Latin 1, as most do;
- * otherwise '?' replaces characters outside ASCII. */
 static void words(dicom_reader *reader, uint32_t tag, char *out, size_t room) {
-    char set[65], raw[128];
-    size_t used = 0;
-    text(reader, 0x00080005, set, sizeof set);
-    text(reader, tag, raw, sizeof raw);
-    bool utf8 = !strcmp(set, "ISO_IR 192"), latin = !strcmp(set, "ISO_IR 100");
-    for (const char *at = raw; *at && used + 3 < room; at++) {
-        unsigned char c = (unsigned char)*at;
-        if (c >= 0x80 && latin) {
-            out[used++] = (char)(0xc0 | c >> 6);
-            out[used++] = (char)(0x80 | (c & 0x3f));
-        } else {
-            out[used++] =
-                c < ' ' || c == 127 || (c >= 0x80 && !utf8) ? '?' : *at;
-        }
-    }
-    out[used] = 0;
+    snow_dicom_words(
+        reader, snow_dicom_locate(reader, (dicom_place){0, 0, tag}), out, room);
 }
 
 /* --- the file ------------------------------------------------------------- */
@@ -202,7 +187,7 @@ static bool can_hold(const dicom_reader *reader, const dicom_image *image) {
         !snow_mul_u64(bits, samples * (uint64_t)image->allocated, &bits))
         return false;
     if (!reader->packed)
-        return bits / 8 <= reader->pixel_bytes;
+        return bits / 8 + (bits % 8 > 0) <= reader->pixel_bytes;
     return frames <= size / FRAGMENT_HEAD &&
            snow_mul_u64(size, 8 * SNOW_DEFLATE_RATIO, &most) &&
            bits / 8 <= most + ((uint64_t)1 << 31);
@@ -247,6 +232,23 @@ static bool says_image(const dicom_reader *reader) {
     return true;
 }
 
+/* The type of a segmentation, known by the class of the file's contents. */
+static dicom_segments segments_of(dicom_reader *reader) {
+    static const char *const names[] = {[DICOM_BINARY] = "BINARY",
+                                        [DICOM_FRACTIONAL] = "FRACTIONAL",
+                                        [DICOM_LABELMAP] = "LABELMAP"};
+    char given[65];
+    snow_dicom_text(reader, 0x00080016, given, sizeof given);
+    if (strcmp(given, "1.2.840.10008.5.1.4.1.1.66.4") != 0 &&
+        strcmp(given, "1.2.840.10008.5.1.4.1.1.66.7") != 0)
+        return DICOM_NO_SEGMENTS;
+    snow_dicom_text(reader, 0x00620001, given, sizeof given);
+    for (int i = DICOM_BINARY; i <= DICOM_LABELMAP; i++)
+        if (!strcmp(given, names[i]))
+            return (dicom_segments)i;
+    return DICOM_UNKNOWN_SEGMENTS;
+}
+
 snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
                                   dicom_image *out) {
     dicom_image image = {0};
@@ -274,15 +276,21 @@ snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
     image.high = (int)number(reader, 0x00280102, SHORTS, image.stored - 1);
     image.is_signed = number(reader, 0x00280103, SHORTS, 0) > 0;
     image.planes = number(reader, 0x00280006, SHORTS, 0) > 0;
+    image.segments = segments_of(reader);
+    image.whole = 1;
+    if (image.segments == DICOM_FRACTIONAL)
+        image.whole = (unsigned)number(reader, 0x0062000e, SHORTS, 255);
     double series = number(reader, 0x00200011, TEXT, 0);
     image.series_number = fabs(series) < 1e15 ? (int64_t)series : 0;
-    text(reader, 0x0020000e, image.series, sizeof image.series);
-    text(reader, 0x00080018, image.instance, sizeof image.instance);
-    text(reader, 0x00280004, image.photometric, sizeof image.photometric);
-    text(reader, 0x00080060, image.modality, sizeof image.modality);
+    snow_dicom_text(reader, 0x0020000e, image.series, sizeof image.series);
+    snow_dicom_text(reader, 0x00080018, image.instance, sizeof image.instance);
+    snow_dicom_text(reader, 0x00280004, image.photometric,
+                    sizeof image.photometric);
+    snow_dicom_text(reader, 0x00080060, image.modality, sizeof image.modality);
     words(reader, 0x00100010, image.patient, sizeof image.patient);
     words(reader, 0x0008103e, image.description, sizeof image.description);
-    text(reader, 0x00281054, image.rescale_type, sizeof image.rescale_type);
+    snow_dicom_text(reader, 0x00281054, image.rescale_type,
+                    sizeof image.rescale_type);
     read_padding(reader, &image);
     SNOW_TRY(check_sizes(context, reader, &image));
     *out = image;

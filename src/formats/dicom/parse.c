@@ -425,6 +425,8 @@ snow_status snow_dicom_open(snow_context *context, snow_seekable *store,
     if (image && !snow_mul_u64(snow_dicom_frame_bytes(image),
                                (uint64_t)image->frames, &w.pixels))
         w.pixels = UINT64_MAX;
+    if (image && image->allocated == 1)
+        w.pixels = w.pixels / 8 + 1;
     snow_status status = walk_file(&w);
     if (status == SNOW_STATUS_OK && w.inflater)
         status = keep_inflated(&w);

@@ -14,11 +14,49 @@
 #define RUN_LENGTHS "1.2.840.10008.1.2.5"
 
 uint64_t snow_dicom_frame_bytes(const dicom_image *image) {
+    uint64_t bits = image->allocated == 1 ? 8 : (uint64_t)image->allocated;
     return (uint64_t)image->columns * (uint64_t)image->rows *
-           ((uint64_t)image->samples * (uint64_t)image->allocated / 8);
+           ((uint64_t)image->samples * bits / 8);
 }
 
 /* --- plain ---------------------------------------------------------------- */
+
+static snow_status fail_short(dicom_reader *reader, const dicom_image *image,
+                              const dicom_element *pixels, uint64_t bytes) {
+    return snow_fail(
+        reader->context, SNOW_STATUS_BAD_INPUT,
+        "is truncated or damaged: its pixels have %lu bytes, but %lld "
+        "frames of %lldx%lld need %llu; get the file again",
+        (unsigned long)pixels->length, (long long)image->frames,
+        (long long)image->columns, (long long)image->rows,
+        (unsigned long long)bytes);
+}
+
+/* Single bits, the lowest of a byte first; frames follow one another without a
+ * gap, also within a byte (PS3.5, 8.1.1).  Each becomes a byte, 0 or
+ * 1. */
+static snow_status read_bits(dicom_reader *reader, const dicom_image *image,
+                             const dicom_element *pixels, int64_t number,
+                             unsigned char *out) {
+    uint64_t count = snow_dicom_frame_bytes(image);
+    uint64_t first = (uint64_t)number * count;
+    unsigned char piece[4096];
+    /* words of a big endian file are two bytes swapped */
+    uint64_t swap = pixels->words && reader->big_endian ? 1 : 0;
+    for (uint64_t i = 0; i < count;) {
+        uint64_t at = (first + i) / 16 * 2;
+        size_t held = at < pixels->length ? pixels->length - (size_t)at : 0;
+        held = held < sizeof piece ? held : sizeof piece;
+        held = snow_seekable_read(reader->store, pixels->at + at, piece, held);
+        uint64_t bit = first + i - 8 * at, end = 8 * (uint64_t)(held & ~swap);
+        if (bit >= end)
+            return fail_short(reader, image, pixels,
+                              (count * (uint64_t)image->frames + 7) / 8);
+        for (; bit < end && i < count; bit++, i++)
+            out[i] = piece[(bit / 8) ^ swap] >> bit % 8 & 1;
+    }
+    return SNOW_STATUS_OK;
+}
 
 static snow_status read_plain(dicom_reader *reader, const dicom_image *image,
                               const dicom_element *pixels, int64_t number,
@@ -28,13 +66,8 @@ static snow_status read_plain(dicom_reader *reader, const dicom_image *image,
     if (first + bytes > pixels->length ||
         snow_seekable_read(reader->store, pixels->at + first, out,
                            (size_t)bytes) < bytes)
-        return snow_fail(
-            reader->context, SNOW_STATUS_BAD_INPUT,
-            "is truncated or damaged: its pixels have %lu bytes, but %lld "
-            "frames of %lldx%lld need %llu; get the file again",
-            (unsigned long)pixels->length, (long long)image->frames,
-            (long long)image->columns, (long long)image->rows,
-            (unsigned long long)(bytes * (uint64_t)image->frames));
+        return fail_short(reader, image, pixels,
+                          bytes * (uint64_t)image->frames);
     size_t size = (size_t)image->allocated / 8;
     /* bytes that were written as words are swapped like them */
     if (size == 1 && pixels->words && reader->big_endian)
@@ -242,6 +275,12 @@ static snow_status read_packed(dicom_reader *reader, const dicom_image *image,
     span where;
     unsigned char *bytes;
     size_t size;
+    if (image->allocated == 1)
+        return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
+                         "its single bits are compressed (transfer syntax "
+                         "%.64s), which is not supported; decompress it, for "
+                         "example with gdcmconv --raw",
+                         reader->syntax);
     if (!find_span(reader, image, pixels, number, &where))
         return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
                          "has %lld compressed pieces of pixels, but frame %lld "
@@ -265,7 +304,8 @@ snow_status snow_dicom_read_words(dicom_reader *reader,
                                   void *out, dicom_words *words) {
     const dicom_element *pixels =
         snow_dicom_find(reader, 0, reader->count, DICOM_TAG_PIXELS);
-    *words = (dicom_words){.size = image->allocated / 8,
+    bool single = image->allocated == 1;
+    *words = (dicom_words){.size = single ? 1 : image->allocated / 8,
                            .stored = image->stored,
                            .high = image->high,
                            .is_signed = image->is_signed,
@@ -274,7 +314,8 @@ snow_status snow_dicom_read_words(dicom_reader *reader,
         return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
                          "has no pixels; it is truncated");
     if (!reader->packed)
-        return read_plain(reader, image, pixels, number, out);
+        return (single ? read_bits : read_plain)(reader, image, pixels, number,
+                                                 out);
     SNOW_TRY(read_packed(reader, image, pixels, number, out, words));
     if (words->stored < 1 || words->stored > image->allocated ||
         words->high < words->stored - 1 || words->high >= image->allocated)

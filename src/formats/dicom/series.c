@@ -72,9 +72,11 @@ static snow_status share_places(dicom_stack *s, ranked *all, size_t count) {
             continue;
         }
         size_t here = i - first;
-        if (!s->places)
+        if (s->starts)
+            s->starts[s->places + 1] = i;
+        else if (!s->places)
             s->times = here;
-        if (here != s->times)
+        if (!s->starts && here != s->times)
             return snow_fail(s->context, SNOW_STATUS_BAD_INPUT,
                              "has %zu images at the position of %s (frame "
                              "%lld) but %zu at others; remove images that do "
@@ -168,10 +170,16 @@ static snow_status lay_stack(dicom_stack *s, dicom_frame *frames, ranked *all,
 snow_status snow_dicom_stack(snow_context *context, dicom_frame *frames,
                              size_t count, bool gaps, dicom_stack *out) {
     dicom_stack stack = {.context = context, .gaps = gaps};
+    bool sparse = frames->image->segments != DICOM_NO_SEGMENTS;
     ranked *all = snow_allocate_array(context, count, sizeof *all);
-    if (!all)
-        return SNOW_STATUS_NO_MEMORY;
-    snow_status status = lay_stack(&stack, frames, all, count);
+    if (sparse)
+        stack.starts =
+            snow_allocate_array(context, count + 1, sizeof *stack.starts);
+    snow_status status = SNOW_STATUS_NO_MEMORY;
+    if (stack.starts)
+        stack.starts[0] = 0;
+    if (all && (stack.starts || !sparse))
+        status = lay_stack(&stack, frames, all, count);
     snow_release(context, all);
     if (status == SNOW_STATUS_OK)
         *out = stack;
@@ -182,5 +190,7 @@ snow_status snow_dicom_stack(snow_context *context, dicom_frame *frames,
 
 void snow_dicom_stack_free(dicom_stack *stack) {
     snow_release(stack->context, stack->slices);
+    snow_release(stack->context, stack->starts);
     stack->slices = NULL;
+    stack->starts = NULL;
 }

@@ -15,6 +15,9 @@
 /* Resampling uneven slices makes at most this many times as many. */
 #define MOST_FINER 8
 
+/* Slices that sparse ones may become anyhow: two can be far apart. */
+#define MOST_SPARSE 4096
+
 double snow_dicom_distance(const double a[3], const double b[3]) {
     const double d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     return sqrt(snow_dicom_dot(d, d));
@@ -48,6 +51,11 @@ static snow_status usual_gap(const dicom_stack *s, const double normal[3],
 static double multiple(double gap, double usual) {
     double times = floor(gap / usual + 0.5);
     return fabs(gap - times * usual) <= SAME_GAP * usual ? times : 0;
+}
+
+static double most_slices(const dicom_stack *s) {
+    double most = (double)MOST_FINER * (double)s->places;
+    return s->starts && most < MOST_SPARSE ? MOST_SPARSE : most;
 }
 
 /* Finds a single gap of twice or three times the usual one between usual ones:
@@ -87,17 +95,21 @@ static snow_status refuse_missing(const dicom_stack *s, const double normal[3],
         gap, usual, lost > 1 ? "them" : "it");
 }
 
-/* The number of slices if the missing ones were there, 0 if the others then did
- * not lie on an even grid, or if it is too large. */
+/* The number of slices if the missing ones were there, 0 if the others do not
+ * lie on an even grid then, or if it is too large. */
 static size_t full_count(const dicom_stack *s, const double normal[3],
                          double usual) {
     double first = snow_dicom_dot(snow_dicom_position(s, 0), normal);
     double all =
         snow_dicom_dot(snow_dicom_position(s, s->places - 1), normal) - first;
     double steps = 0, at = 0;
-    for (size_t i = 0; i + 1 < s->places; i++)
-        steps += multiple(gap_at(s, normal, i), usual);
-    if (steps >= (double)MOST_FINER * (double)s->places)
+    for (size_t i = 0; i + 1 < s->places; i++) {
+        double times = multiple(gap_at(s, normal, i), usual);
+        if (!(times >= 1))
+            return 0;
+        steps += times;
+    }
+    if (!(steps < most_slices(s)))
         return 0;
     for (size_t i = 0; i + 1 < s->places; i++) {
         double off = snow_dicom_dot(snow_dicom_position(s, i), normal) - first -
@@ -112,10 +124,8 @@ static size_t full_count(const dicom_stack *s, const double normal[3],
 /* Makes a slice of each position, and one without values where one is
  * missing: what lies there is not known. */
 static snow_status leave_gaps(dicom_stack *s, const double normal[3],
-                              double usual, size_t found) {
-    size_t count = full_count(s, normal, usual), n = 0;
-    if (!count)
-        return refuse_missing(s, normal, usual, found);
+                              double usual, size_t count) {
+    size_t n = 0;
     s->slices = snow_allocate_array(s->context, count, sizeof *s->slices);
     if (!s->slices)
         return SNOW_STATUS_NO_MEMORY;
@@ -162,9 +172,8 @@ static snow_status even_out(dicom_stack *s, const double normal[3]) {
     double first = snow_dicom_dot(snow_dicom_position(s, 0), normal);
     double all =
         snow_dicom_dot(snow_dicom_position(s, s->places - 1), normal) - first;
-    double most = (double)MOST_FINER * (double)s->places;
     double steps = ceil(all / s->gap_least - 1e-3);
-    if (!(steps < most))
+    if (!(steps < most_slices(s)))
         return snow_fail(s->context, SNOW_STATUS_BAD_INPUT,
                          "its slices lie %g to %g mm apart, too unevenly for "
                          "resampling; open a part of them",
@@ -189,6 +198,34 @@ static snow_status even_out(dicom_stack *s, const double normal[3]) {
     return SNOW_STATUS_OK;
 }
 
+/* Empties slices that are farther from any position than positions usually are
+ * from one another: nothing says that a segment reaches as far. */
+static snow_status empty_far(dicom_stack *s, const double normal[3]) {
+    double usual;
+    SNOW_TRY(usual_gap(s, normal, &usual));
+    for (size_t i = 0; i < s->slice_count; i++) {
+        dicom_slice *slice = &s->slices[i];
+        double nearer = fmin(slice->weight, 1 - slice->weight);
+        if (nearer * gap_at(s, normal, slice->low) > usual)
+            slice->weight = NAN;
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Of segments only slices that are not empty need be there.  The distance is
+ * the given one, or that of the closest two, if all lie on its grid. */
+static snow_status space_sparse(dicom_stack *s, const double normal[3]) {
+    const double steps[2] = {fabs(s->frames->depth), s->gap_least};
+    for (int i = 0; i < 2; i++) {
+        size_t count = steps[i] > 0 ? full_count(s, normal, steps[i]) : 0;
+        if (count)
+            return count == s->places ? SNOW_STATUS_OK
+                                      : leave_gaps(s, normal, steps[i], count);
+    }
+    SNOW_TRY(even_out(s, normal));
+    return empty_far(s, normal);
+}
+
 /* Measures the distances of neighbours, and decides whether an even grid
  * fits. */
 snow_status snow_dicom_space_slices(dicom_stack *s, const double normal[3]) {
@@ -202,7 +239,7 @@ snow_status snow_dicom_space_slices(dicom_stack *s, const double normal[3]) {
         s->gap_most = gap > s->gap_most ? gap : s->gap_most;
     }
     s->given = true;
-    if (farthest(s, normal, false) <= EVEN * s->gap)
+    if (!s->starts && farthest(s, normal, false) <= EVEN * s->gap)
         return SNOW_STATUS_OK;
     double beside = farthest(s, normal, true);
     if (!(beside <= snow_dicom_smallest_pixel(s->frames) / 2) &&
@@ -211,11 +248,14 @@ snow_status snow_dicom_space_slices(dicom_stack *s, const double normal[3]) {
                          "its slices are not aligned: one is %g mm off the "
                          "line from the first to the last; open a part of them",
                          beside);
+    if (s->starts)
+        return space_sparse(s, normal);
     double usual;
     size_t found;
     SNOW_TRY(find_missing(s, normal, &usual, &found));
     if (found == s->places)
         return even_out(s, normal);
-    return s->gaps ? leave_gaps(s, normal, usual, found)
-                   : refuse_missing(s, normal, usual, found);
+    size_t count = s->gaps ? full_count(s, normal, usual) : 0;
+    return count ? leave_gaps(s, normal, usual, count)
+                 : refuse_missing(s, normal, usual, found);
 }

@@ -494,7 +494,10 @@ static snow_status describe_stack(const dicom_input *input,
            sizeof info->window);
     SNOW_TRY(remark_lost(context, stack));
     remark(context, stack, snow_spacing_given(options));
-    SNOW_TRY(snow_volume_pick_channel(context, options, image->samples,
+    snow_channels_begin(info, image->samples, false);
+    if (image->samples == 3 && strcmp(image->photometric, "RGB") == 0)
+        snow_channels_are_colors(info);
+    SNOW_TRY(snow_volume_pick_channel(context, options, image->samples, info,
                                       &d->channel));
     return snow_volume_pick_time(context, "volume", options, info);
 }

@@ -213,4 +213,25 @@ uint64_t snow_hdf5_size(const hdf5_file *file) {
     return snow_seekable_size(file->bytes);
 }
 
+snow_seekable *snow_hdf5_bytes(const hdf5_file *file, uint64_t *base) {
+    hsize_t before = 0;
+    hid_t plan = H5Fget_create_plist(file->id);
+    if (plan >= 0) {
+        H5Pget_userblock(plan, &before);
+        H5Pclose(plan);
+    }
+    *base = before;
+    return file->bytes;
+}
+
+bool snow_hdf5_is_usual(const hdf5_file *file) {
+    size_t address = 0, length = 0;
+    hid_t plan = H5Fget_create_plist(file->id);
+    if (plan >= 0) {
+        H5Pget_sizes(plan, &address, &length);
+        H5Pclose(plan);
+    }
+    return address == 8 && length == 8;
+}
+
 #endif

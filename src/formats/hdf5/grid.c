@@ -22,9 +22,7 @@
 /* The most data sets that use one scale. */
 #define MOST_USES 65536
 
-/* Reads up to `most` numbers of an attribute; returns how many there are, 0 if
- * it is missing or has other values. */
-static int read_numbers(hid_t object, const char *name, int most, double *out) {
+int snow_hdf5_numbers(hid_t object, const char *name, int most, double *out) {
     if (H5Aexists(object, name) <= 0)
         return 0;
     hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
@@ -42,27 +40,9 @@ static int read_numbers(hid_t object, const char *name, int most, double *out) {
     return right ? (int)count : 0;
 }
 
-/* Reads a text of fixed length; "" if it is missing.  Texts of variable length
- * are ignored: they are in the file's global heap, and libhdf5 1.10 crashes if
- * that is damaged, as fuzzing shows at once. */
-static void read_text(hid_t object, const char *name, char *out, size_t room) {
-    *out = 0;
-    if (H5Aexists(object, name) <= 0)
-        return;
-    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
-    if (attribute < 0)
-        return;
-    hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
-    size_t size = H5Tget_size(type);
-    if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 &&
-        size < room && H5Sget_simple_extent_npoints(space) == 1 &&
-        H5Aread(attribute, type, out) >= 0)
-        out[size] = 0;
-    else
-        *out = 0;
-    H5Sclose(space);
-    H5Tclose(type);
-    H5Aclose(attribute);
+static void read_text(const hdf5_file *file, hid_t object, const char *name,
+                      char *out, size_t room) {
+    snow_hdf5_text(file, object, name, 0, out, room);
 }
 
 static bool all_above_0(const double *values) {
@@ -82,13 +62,13 @@ static bool place_by_size(const hdf5_set *set, snow_volume_info *info) {
                  {"spacing", ""}};
     double size[3], offset[3];
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
-        if (read_numbers(set->id, sizes[i].name, 3, size) != 3 ||
+        if (snow_hdf5_numbers(set->id, sizes[i].name, 3, size) != 3 ||
             !all_above_0(size))
             continue;
         for (int a = 0; a < 3; a++)
             info->matrix[a][a] = size[2 - a];
         memcpy(info->unit, sizes[i].unit, strlen(sizes[i].unit) + 1);
-        if (read_numbers(set->id, "offset", 3, offset) == 3)
+        if (snow_hdf5_numbers(set->id, "offset", 3, offset) == 3)
             for (int a = 0; a < 3; a++)
                 if (isfinite(offset[a]))
                     info->matrix[2 - a][3] = offset[a];
@@ -99,62 +79,54 @@ static bool place_by_size(const hdf5_set *set, snow_volume_info *info) {
 
 /* The axis x y z that a label names, or -1. */
 static int axis_of(const char *label) {
-    return label[1] ? -1 : *label >= 'x' && *label <= 'z' ? *label - 'x' : -1;
+    return !*label || label[1]              ? -1
+           : *label >= 'x' && *label <= 'z' ? *label - 'x'
+                                            : -1;
 }
 
-/* Reads the letters of the axes in the order of the array, three of fixed
- * length. */
-static bool read_labels(hid_t group, int order[3]) {
-    char text[3 * 8 + 1] = "";
-    if (H5Aexists(group, "axisLabels") <= 0)
-        return false;
-    hid_t attribute = H5Aopen(group, "axisLabels", H5P_DEFAULT);
-    hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
-    size_t size = H5Tget_size(type);
-    bool right = H5Tget_class(type) == H5T_STRING &&
-                 H5Tis_variable_str(type) == 0 && size <= 8 &&
-                 H5Sget_simple_extent_npoints(space) == 3 &&
-                 H5Aread(attribute, type, text) >= 0;
+/* Reads the letters of the three axes in the order of the array. */
+static bool read_labels(const hdf5_file *file, hid_t group, int order[3]) {
     int seen = 0;
-    for (size_t i = 0; i < 3 && right; i++) {
-        char label[9] = "";
-        memcpy(label, text + i * size, size);
+    for (size_t i = 0; i < 3; i++) {
+        char label[9];
+        if (snow_hdf5_text(file, group, "axisLabels", i, label, sizeof label) !=
+            3)
+            return false;
         order[i] = axis_of(label);
-        right = order[i] >= 0;
-        seen |= right ? 1 << order[i] : 0;
+        if (order[i] < 0)
+            return false;
+        seen |= 1 << order[i];
     }
-    H5Sclose(space);
-    H5Tclose(type);
-    H5Aclose(attribute);
-    return right && seen == 7;
+    return seen == 7;
 }
 
 /* Whether the labels, and all in their order, begin with the fastest axis: the
  * array was written by a program that counts indices as Fortran does. */
-static bool is_fortran(hid_t object) {
+static bool is_fortran(const hdf5_file *file, hid_t object) {
     char text[4];
     double code = 0;
-    read_text(object, "dataOrder", text, sizeof text);
+    read_text(file, object, "dataOrder", text, sizeof text);
     return *text == 'F' ||
-           (read_numbers(object, "dataOrder", 1, &code) == 1 && code == 'F');
+           (snow_hdf5_numbers(object, "dataOrder", 1, &code) == 1 &&
+            code == 'F');
 }
 
 /* openPMD (openpmd.org, 1.1.0): the group of a mesh, or the data set itself,
  * has spacing and offset in the order of the labels.  That is the order of the
  * array, with the fastest axis last, or by dataOrder "F" first.  The labels
  * assign x, y and z of the world. */
-static bool place_by_mesh(hid_t object, const hdf5_set *set,
-                          snow_volume_info *info) {
+static bool place_by_mesh(const hdf5_file *file, hid_t object,
+                          const hdf5_set *set, snow_volume_info *info) {
     int order[3];
     double spacing[3], offset[3] = {0}, unit = 1, position[3] = {0};
-    if (read_numbers(object, "gridSpacing", 3, spacing) != 3 ||
-        !all_above_0(spacing) || !read_labels(object, order))
+    if (snow_hdf5_numbers(object, "gridSpacing", 3, spacing) != 3 ||
+        !all_above_0(spacing) || !read_labels(file, object, order))
         return false;
-    read_numbers(object, "gridGlobalOffset", 3, offset);
-    read_numbers(set->id, "position", 3, position);
-    if (read_numbers(object, "gridUnitSI", 1, &unit) == 1 && unit == 1)
+    snow_hdf5_numbers(object, "gridGlobalOffset", 3, offset);
+    snow_hdf5_numbers(set->id, "position", 3, position);
+    if (snow_hdf5_numbers(object, "gridUnitSI", 1, &unit) == 1 && unit == 1)
         memcpy(info->unit, "m", 2);
-    bool fortran = is_fortran(object);
+    bool fortran = is_fortran(file, object);
     for (int b = 0; b < 3; b++) {
         int label = fortran ? b : 2 - b; /* of x, y and z of the array */
         for (int a = 0; a < 3; a++)
@@ -167,15 +139,27 @@ static bool place_by_mesh(hid_t object, const hdf5_set *set,
     return true;
 }
 
+/* The state of a walk over the file's scales. */
+typedef struct scales {
+    snow_context *context;
+    const hdf5_file *file;
+    const hdf5_set *set;
+    haddr_t address;    /* address of the data set */
+    snow_status status; /* the walk ends if memory does */
+    snow_axis_hint hints[HDF5_MOST_AXES];
+    cf_axis *axes;
+} scales;
+
 /* Reads the coordinates of a dimension scale, if it has one for each index. */
-static snow_status read_scale(snow_context *context, hid_t scale, hsize_t count,
+static snow_status read_scale(const scales *s, hid_t scale, hsize_t count,
                               cf_axis *out) {
+    snow_context *context = s->context;
     char name[64], units[64];
     hid_t space = H5Dget_space(scale);
     hssize_t points = H5Sget_simple_extent_npoints(space);
     H5Sclose(space);
-    read_text(scale, "NAME", name, sizeof name);
-    read_text(scale, "units", units, sizeof units);
+    read_text(s->file, scale, "NAME", name, sizeof name);
+    read_text(s->file, scale, "units", units, sizeof units);
     if (points < 1 || (hsize_t)points != count ||
         points > CF_MOST_COORDINATES ||
         !strncmp(name, "This is a netCDF dimension but not", 34))
@@ -184,21 +168,16 @@ static snow_status read_scale(snow_context *context, hid_t scale, hsize_t count,
     if (!values)
         return SNOW_STATUS_NO_MEMORY;
     if (H5Dread(scale, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                values) >= 0)
-        snow_cf_measure(values, points, units, out);
-    snow_release(context, values);
+                values) < 0) {
+        snow_release(context, values);
+        return SNOW_STATUS_OK;
+    }
+    snow_cf_release(context, out,
+                    1); /* of a damaged file that lists it twice */
+    snow_cf_measure(values, points, units, out);
+    read_text(s->file, scale, "calendar", out->calendar, sizeof out->calendar);
     return SNOW_STATUS_OK;
 }
-
-/* The state of a walk over the file's scales. */
-typedef struct scales {
-    snow_context *context;
-    const hdf5_set *set;
-    haddr_t address;    /* address of the data set */
-    snow_status status; /* the walk ends if memory does */
-    snow_axis_hint hints[HDF5_MOST_AXES];
-    cf_axis *axes;
-} scales;
 
 /* An entry of a scale's REFERENCE_LIST: the data set and axis that use it. */
 typedef struct scale_use {
@@ -207,14 +186,15 @@ typedef struct scale_use {
 } scale_use;
 
 /* What an axis is, by its scale's name in the file and its attributes. */
-static snow_axis_hint hint_of(hid_t scale, const char *path) {
+static snow_axis_hint hint_of(const scales *s, hid_t scale, const char *path) {
     char units[64], axis[64], standard_name[64];
     const char *slash = strrchr(path, '/');
     const cf_words words = {slash ? slash + 1 : path, units, axis,
                             standard_name};
-    read_text(scale, "units", units, sizeof units);
-    read_text(scale, "axis", axis, sizeof axis);
-    read_text(scale, "standard_name", standard_name, sizeof standard_name);
+    read_text(s->file, scale, "units", units, sizeof units);
+    read_text(s->file, scale, "axis", axis, sizeof axis);
+    read_text(s->file, scale, "standard_name", standard_name,
+              sizeof standard_name);
     return snow_cf_hint(&words);
 }
 
@@ -225,8 +205,8 @@ static void use_scale(scales *s, hid_t scale, const char *path,
         int from_end = s->set->axes - 1 - uses[i].axis;
         if (uses[i].set != s->address || uses[i].axis < 0 || from_end < 0)
             continue;
-        s->hints[from_end] = hint_of(scale, path);
-        s->status = read_scale(s->context, scale, s->set->sizes[uses[i].axis],
+        s->hints[from_end] = hint_of(s, scale, path);
+        s->status = read_scale(s, scale, s->set->sizes[uses[i].axis],
                                &s->axes[from_end]);
     }
 }
@@ -284,7 +264,7 @@ static herr_t look_at_scale(hid_t file, const char *name,
     hid_t id = H5Dopen2(file, name, H5P_DEFAULT);
     if (id < 0)
         return 0;
-    read_text(id, "CLASS", kind, sizeof kind);
+    read_text(s->file, id, "CLASS", kind, sizeof kind);
     if (!strcmp(kind, "DIMENSION_SCALE") && H5Aexists(id, "REFERENCE_LIST") > 0)
         read_uses(s, id, name);
     H5Dclose(id);
@@ -294,35 +274,37 @@ static herr_t look_at_scale(hid_t file, const char *name,
 /* NetCDF-4 and h5py: axes and scales refer to each other.  The references of
  * the scales are read, because those of the axes are in the global heap, where
  * libhdf5 crashes if it is damaged. */
-static snow_status read_scales(hid_t file, scales *s) {
+static snow_status read_scales(scales *s) {
     H5O_info_t about;
     if (H5Aexists(s->set->id, "DIMENSION_LIST") <= 0 ||
         H5Oget_info2(s->set->id, &about, H5O_INFO_BASIC) < 0)
         return SNOW_STATUS_OK;
     s->address = about.addr;
-    SNOW_TRY(snow_hdf5_visit(s->context, file, look_at_scale, s));
+    SNOW_TRY(
+        snow_hdf5_visit(s->context, snow_hdf5_id(s->file), look_at_scale, s));
     return s->status;
 }
 
 /* HDF5's own convention for images: colours are the last axis. */
-static bool is_coloured(hid_t set) {
+static bool is_coloured(const hdf5_file *file, hid_t set) {
     char kind[32], colours[32], order[32];
-    read_text(set, "CLASS", kind, sizeof kind);
-    read_text(set, "IMAGE_SUBCLASS", colours, sizeof colours);
-    read_text(set, "INTERLACE_MODE", order, sizeof order);
+    read_text(file, set, "CLASS", kind, sizeof kind);
+    read_text(file, set, "IMAGE_SUBCLASS", colours, sizeof colours);
+    read_text(file, set, "INTERLACE_MODE", order, sizeof order);
     return !strcmp(kind, "IMAGE") && !strcmp(colours, "IMAGE_TRUECOLOR") &&
            (!*order || !strcmp(order, "INTERLACE_PIXEL"));
 }
 
-snow_status snow_hdf5_read_axes(snow_context *context, hid_t file,
+snow_status snow_hdf5_read_axes(snow_context *context, const hdf5_file *file,
                                 const hdf5_set *set, hdf5_axes *out) {
-    scales s = {.context = context, .set = set, .axes = out->scales};
+    scales s = {
+        .context = context, .file = file, .set = set, .axes = out->scales};
     int64_t sizes[HDF5_MOST_AXES];
     memset(out, 0, sizeof *out);
-    SNOW_TRY(read_scales(file, &s));
+    SNOW_TRY(read_scales(&s));
     for (int i = 0; i < HDF5_MOST_AXES; i++)
         sizes[i] = i < set->axes ? (int64_t)set->sizes[set->axes - 1 - i] : 1;
-    s.hints[0].components = is_coloured(set->id);
+    out->colors = s.hints[0].components = is_coloured(file, set->id);
     if (snow_axes_assign(set->axes, sizes, s.hints, &out->roles))
         return SNOW_STATUS_OK;
     return snow_fail(context, SNOW_STATUS_BAD_INPUT,
@@ -333,7 +315,7 @@ snow_status snow_hdf5_read_axes(snow_context *context, hid_t file,
 
 static void place_by_scales(snow_context *context, const hdf5_axes *axes,
                             const snow_volume_options *options,
-                            snow_volume_info *info) {
+                            snow_volume_info *info, snow_uneven *grid) {
     cf_axis space[3] = {{0}};
     bool any = false;
     for (int i = 0; i < 3; i++) {
@@ -342,40 +324,42 @@ static void place_by_scales(snow_context *context, const hdf5_axes *axes,
         any |= space[i].given;
     }
     if (any)
-        snow_cf_place(context, space, options, info);
+        snow_cf_place(context, space, options, info, grid);
 }
 
 static void read_values(const hdf5_set *set, cf_values *out) {
     static const char *const fills[] = {"_FillValue", "missing_value"};
     double value;
-    if (read_numbers(set->id, "scale_factor", 1, &value) == 1 &&
+    if (snow_hdf5_numbers(set->id, "scale_factor", 1, &value) == 1 &&
         isfinite(value) && value != 0)
         out->scale = value;
-    if (read_numbers(set->id, "add_offset", 1, &value) == 1 && isfinite(value))
+    if (snow_hdf5_numbers(set->id, "add_offset", 1, &value) == 1 &&
+        isfinite(value))
         out->offset = value;
     for (int i = 0; i < 2; i++)
-        if (read_numbers(set->id, fills[i], 1, &value) == 1 &&
+        if (snow_hdf5_numbers(set->id, fills[i], 1, &value) == 1 &&
             (!out->fills || value != out->fill[0]))
             out->fill[out->fills++] = value;
 }
 
-void snow_hdf5_place(snow_context *context, hid_t file, const hdf5_set *set,
-                     const hdf5_axes *axes, const snow_volume_options *options,
-                     snow_volume_info *info, cf_values *values) {
+void snow_hdf5_place(snow_context *context, const hdf5_file *file,
+                     const hdf5_set *set, const hdf5_axes *axes,
+                     const snow_volume_options *options, snow_volume_info *info,
+                     cf_values *values, snow_uneven *grid) {
     char group[HDF5_NAME_BYTES];
     *values = snow_cf_values_default();
     read_values(set, values);
-    if (place_by_size(set, info) || place_by_mesh(set->id, set, info))
+    if (place_by_size(set, info) || place_by_mesh(file, set->id, set, info))
         return;
     memcpy(group, set->path, sizeof group);
     char *slash = strrchr(group, '/');
     slash[slash == group] = 0;
-    hid_t parent = H5Oopen(file, group, H5P_DEFAULT);
-    bool placed = parent >= 0 && place_by_mesh(parent, set, info);
+    hid_t parent = H5Oopen(snow_hdf5_id(file), group, H5P_DEFAULT);
+    bool placed = parent >= 0 && place_by_mesh(file, parent, set, info);
     if (parent >= 0)
         H5Oclose(parent);
     if (!placed)
-        place_by_scales(context, axes, options, info);
+        place_by_scales(context, axes, options, info, grid);
 }
 
 #endif

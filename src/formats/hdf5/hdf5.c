@@ -7,6 +7,7 @@
 #include "formats/array.h"
 #include "formats/features.h"
 
+#include <math.h>
 #include <string.h>
 
 static bool probe_hdf5(const unsigned char *bytes, size_t size) {
@@ -91,9 +92,10 @@ static snow_status refuse_minc(snow_context *context, hid_t file) {
 
 /* The sizes, and the requested channel or component and time. */
 static snow_status pick(snow_context *context, const hdf5_set *set,
-                        const snow_axes *roles,
+                        const hdf5_axes *axes,
                         const snow_volume_options *options,
                         snow_volume_info *info, hsize_t start[HDF5_MOST_AXES]) {
+    const snow_axes *roles = &axes->roles;
     int64_t sizes[HDF5_MOST_AXES], channel;
     for (int i = 0; i < set->axes; i++) {
         sizes[i] = (int64_t)set->sizes[set->axes - 1 - i];
@@ -105,6 +107,10 @@ static snow_status pick(snow_context *context, const hdf5_set *set,
     info->type = set->type;
     SNOW_TRY(
         snow_volume_pick_axes(context, options, roles, sizes, info, &channel));
+    if (axes->colors && roles->interleaved && sizes[roles->channel] >= 3) {
+        snow_channels_begin(info, sizes[roles->channel], false);
+        snow_channels_are_colors(info);
+    }
     memset(start, 0, HDF5_MOST_AXES * sizeof *start);
     if (roles->time >= 0)
         start[set->axes - 1 - roles->time] = (hsize_t)info->time;
@@ -157,34 +163,91 @@ static snow_status check_size(snow_context *context, const hdf5_file *file,
                      (unsigned long long)snow_hdf5_size(file));
 }
 
-static snow_status read_set(snow_context *context, const hdf5_file *file,
-                            const hdf5_set *set,
-                            const snow_volume_options *options,
-                            snow_volume_info *info, snow_volume **out) {
-    hsize_t start[HDF5_MOST_AXES];
-    snow_region region;
-    cf_values values;
+/* A data set on the way to be read. */
+typedef struct hdf5_job {
+    snow_context *context;
+    const hdf5_file *file;
+    const hdf5_set *set;
     hdf5_axes axes;
-    SNOW_TRY(check_storage(context, set->id));
-    SNOW_TRY(snow_hdf5_read_axes(context, snow_hdf5_id(file), set, &axes));
-    SNOW_TRY(pick(context, set, &axes.roles, options, info, start));
-    snow_hdf5_place(context, snow_hdf5_id(file), set, &axes, options, info,
-                    &values);
-    SNOW_TRY(snow_region_lay_out(context, options, info, &region));
-    SNOW_TRY(check_size(context, file, &region));
+    hsize_t start[HDF5_MOST_AXES];
+    cf_values values;
+    snow_uneven grid;
+} hdf5_job;
+
+/* Reads a box of the file's own voxels as data, with missing ones. */
+static snow_status read_voxels(void *user, const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
+    hdf5_job *job = user;
+    snow_context *context = job->context;
+    snow_region region;
     snow_volume *volume = NULL;
+    SNOW_TRY(snow_region_lay_out(context, options, info, &region));
+    SNOW_TRY(check_size(context, job->file, &region));
     if (out) {
         SNOW_TRY(snow_volume_new(context, info, &volume));
         snow_status status =
-            read_slab(set, &axes.roles, &region, start, volume);
+            read_slab(job->set, &job->axes.roles, &region, job->start, volume);
         if (status != SNOW_STATUS_OK) {
             snow_volume_close(volume);
             return status;
         }
-        SNOW_TRY(snow_cf_blank(&values, &volume));
+        SNOW_TRY(snow_cf_blank(&job->values, &volume));
         *out = volume;
     }
-    snow_cf_apply(&values, info);
+    snow_cf_apply(&job->values, info);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status read_job(hdf5_job *job, const snow_volume_options *options,
+                            snow_volume_info *info, snow_volume **out) {
+    const hdf5_file *file = job->file;
+    SNOW_TRY(snow_hdf5_read_axes(job->context, file, job->set, &job->axes));
+    SNOW_TRY(
+        pick(job->context, job->set, &job->axes, options, info, job->start));
+    snow_hdf5_place(job->context, file, job->set, &job->axes, options, info,
+                    &job->values, &job->grid);
+    snow_hdf5_mean(file, job->set, &job->axes, info, &job->values);
+    return snow_uneven_any(&job->grid)
+               ? snow_uneven_read(job->context, &job->grid, options,
+                                  read_voxels, job, info, out)
+               : read_voxels(job, options, info, out);
+}
+
+static snow_status read_set(snow_context *context, const hdf5_file *file,
+                            const hdf5_set *set,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, snow_volume **out) {
+    hdf5_job job = {.context = context, .file = file, .set = set};
+    SNOW_TRY(check_storage(context, set->id));
+    snow_status status = read_job(&job, options, info, out);
+    snow_cf_release(context, job.axes.scales, HDF5_MOST_AXES);
+    return status;
+}
+
+/* A pattern of names is a series, whose steps are files' own. */
+static snow_status read_step(snow_context *context, const hdf5_file *file,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    const hid_t id = snow_hdf5_id(file);
+    snow_volume_options own = *options;
+    hdf5_series series;
+    hdf5_set set;
+    SNOW_TRY(snow_hdf5_find_step(context, id, options, &series));
+    if (series.given) {
+        own.dataset = series.path;
+        own.time = 0;
+    }
+    SNOW_TRY(snow_hdf5_find(context, id, own.dataset, &set));
+    snow_status status = read_set(context, file, &set, &own, info, out);
+    H5Dclose(set.id);
+    if (status != SNOW_STATUS_OK || !series.given)
+        return status;
+    info->times = series.count;
+    info->time = series.step;
+    if (isnan(info->time_value)) {
+        info->time_value = (double)series.number;
+        memcpy(info->time_unit, "step", 5);
+    }
     return SNOW_STATUS_OK;
 }
 
@@ -193,17 +256,11 @@ static snow_status read_hdf5(snow_source *source,
                              snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
     hdf5_file *file;
-    hdf5_set set;
     *info = snow_volume_info_default("hdf5");
     SNOW_TRY(snow_hdf5_open(source, &file));
     snow_status status = refuse_minc(context, snow_hdf5_id(file));
     if (status == SNOW_STATUS_OK)
-        status =
-            snow_hdf5_find(context, snow_hdf5_id(file), options->dataset, &set);
-    if (status == SNOW_STATUS_OK) {
-        status = read_set(context, file, &set, options, info, out);
-        H5Dclose(set.id);
-    }
+        status = read_step(context, file, options, info, out);
     snow_hdf5_close(file);
     return status;
 }

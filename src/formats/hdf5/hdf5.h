@@ -2,12 +2,16 @@
  *
  *   driver.c  bytes of a source -> an open file of libhdf5
  *   find.c    names -> the data set to read
+ *   series.c  patterns of names -> the data set of a step
+ *   text.c    texts of attributes
  *   grid.c    attributes -> geometry and value conversion
+ *   meaning.c attributes -> quantity, unit, time
  *   hdf5.c    a box of the data set -> the volume */
 #ifndef SNOW_FORMATS_HDF5_HDF5_H
 #define SNOW_FORMATS_HDF5_HDF5_H
 
 #include "formats/cf.h"
+#include "io/seekable.h"
 
 #if SNOW_HAVE_HDF5
 
@@ -42,6 +46,16 @@ void snow_hdf5_close(hdf5_file *file); /* NULL is accepted */
 hid_t snow_hdf5_id(const hdf5_file *file);
 uint64_t snow_hdf5_size(const hdf5_file *file); /* bytes */
 
+/* The file's bytes, and where its addresses count from; whether addresses and
+ * lengths have eight bytes. */
+snow_seekable *snow_hdf5_bytes(const hdf5_file *file, uint64_t *base);
+bool snow_hdf5_is_usual(const hdf5_file *file);
+
+/* Reads text `index` of an attribute, of fixed or variable length; "" if it is
+ * missing or damaged.  Returns how many texts the attribute has. */
+size_t snow_hdf5_text(const hdf5_file *file, hid_t object, const char *name,
+                      size_t index, char *out, size_t room);
+
 /* "what (libhdf5: why); the file is damaged ..." */
 snow_status snow_hdf5_fail(snow_context *context, const char *what);
 
@@ -57,21 +71,51 @@ snow_status snow_hdf5_visit(snow_context *context, hid_t file,
 snow_status snow_hdf5_find(snow_context *context, hid_t file, const char *asked,
                            hdf5_set *out);
 
+/* The steps that a pattern of names stands for: /step_%04d/rho,
+ * /data/%T/fields/rho. */
+typedef struct hdf5_series {
+    bool given;     /* the name is a pattern */
+    int64_t count;  /* of steps */
+    int64_t step;   /* the one that is taken, from 0 */
+    int64_t number; /* in its name */
+    char path[HDF5_NAME_BYTES];
+} hdf5_series;
+
+/* Finds the step of the options.  Errors: SNOW_STATUS_BAD_USAGE (nothing fits;
+ * no such step), SNOW_STATUS_NO_MEMORY. */
+snow_status snow_hdf5_find_step(snow_context *context, hid_t file,
+                                const snow_volume_options *options,
+                                hdf5_series *out);
+
 /* The axes of a data set, counted from the last one. */
 typedef struct hdf5_axes {
     cf_axis scales[HDF5_MOST_AXES]; /* coordinates by dimension scales */
     snow_axes roles;
+    bool colors; /* the components are red, green, blue and perhaps opacity */
 } hdf5_axes;
 
-/* Finds the meaning of each axis.  Errors: SNOW_STATUS_BAD_INPUT (too many
- * axes of space), SNOW_STATUS_NO_MEMORY. */
-snow_status snow_hdf5_read_axes(snow_context *context, hid_t file,
+/* Finds the meaning of each axis; the caller releases the scales
+ * (snow_cf_release) whatever the status.  Errors: SNOW_STATUS_BAD_INPUT (too
+ * many axes of space), SNOW_STATUS_NO_MEMORY. */
+snow_status snow_hdf5_read_axes(snow_context *context, const hdf5_file *file,
                                 const hdf5_set *set, hdf5_axes *out);
 
-/* Sets matrix and unit of info, and how values are stored. */
-void snow_hdf5_place(snow_context *context, hid_t file, const hdf5_set *set,
-                     const hdf5_axes *axes, const snow_volume_options *options,
-                     snow_volume_info *info, cf_values *values);
+/* Sets matrix and unit of info, how values are stored, and the grid of uneven
+ * axes. */
+void snow_hdf5_place(snow_context *context, const hdf5_file *file,
+                     const hdf5_set *set, const hdf5_axes *axes,
+                     const snow_volume_options *options, snow_volume_info *info,
+                     cf_values *values, snow_uneven *grid);
+
+/* Reads up to `most` numbers of an attribute; returns how many there are, 0 if
+ * it is missing or has other values. */
+int snow_hdf5_numbers(hid_t object, const char *name, int most, double *out);
+
+/* Sets what the values are, and the time of the step; values that have a factor
+ * to SI (openPMD) are scaled by it. */
+void snow_hdf5_mean(const hdf5_file *file, const hdf5_set *set,
+                    const hdf5_axes *axes, snow_volume_info *info,
+                    cf_values *values);
 
 #endif
 #endif

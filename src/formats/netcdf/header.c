@@ -151,25 +151,40 @@ static void keep_fill(cf_values *values, double fill) {
         values->fill[values->fills++] = fill;
 }
 
+/* Copies a text to a room, of which a longer one fills all. */
+static void keep_text(const char *from, char *to, size_t room) {
+    size_t length = strlen(from) < room ? strlen(from) : room - 1;
+    memcpy(to, from, length);
+    to[length] = 0;
+}
+
+/* Stores a text of a variable; the position stays. */
+static void keep_words(cursor *c, const char *name, int64_t count,
+                       netcdf_variable *v) {
+    char text[65] = "";
+    uint64_t begin = c->at;
+    copy_bytes(c, text, count < 64 ? (size_t)count : 64);
+    c->at = begin;
+    if (!strcmp(name, "units"))
+        keep_text(text, v->units, sizeof v->units);
+    if (!strcmp(name, "standard_name"))
+        keep_text(text, v->standard_name, sizeof v->standard_name);
+    if (!strcmp(name, "long_name"))
+        keep_text(text, v->long_name, sizeof v->long_name);
+    if (!strcmp(name, "calendar"))
+        keep_text(text, v->calendar, sizeof v->calendar);
+    if (!strcmp(name, "axis"))
+        keep_text(text, v->axis_name, sizeof v->axis_name);
+    /* Version 1 has no unsigned bytes; they are marked this way. */
+    if (!strcmp(name, "_Unsigned") && !strcmp(text, "true"))
+        v->is_unsigned = true;
+}
+
 /* Stores an attribute of a variable. */
 static void keep_attribute(cursor *c, const char *name, uint64_t type,
                            int64_t count, netcdf_variable *v) {
-    char text[64] = "";
-    if (type == CHAR && count < (int64_t)sizeof text) {
-        uint64_t begin = c->at;
-        copy_bytes(c, text, (size_t)count);
-        text[count] = 0;
-        c->at = begin;
-        if (!strcmp(name, "units"))
-            memcpy(v->units, text, sizeof text);
-        if (!strcmp(name, "standard_name"))
-            memcpy(v->standard_name, text, sizeof text);
-        if (!strcmp(name, "axis"))
-            memcpy(v->axis_name, text, sizeof text);
-        /* Version 1 has no unsigned bytes; they are marked this way. */
-        if (!strcmp(name, "_Unsigned") && !strcmp(text, "true"))
-            v->is_unsigned = true;
-    }
+    if (type == CHAR)
+        keep_words(c, name, count, v);
     if (type == CHAR || count != 1)
         return;
     double value = value_of(c, type);

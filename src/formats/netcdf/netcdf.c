@@ -166,10 +166,13 @@ static snow_status read_axis(const netcdf_header *header, snow_seekable *bytes,
     SNOW_TRY(snow_volume_new(header->context, &info, &line));
     double *values =
         snow_allocate_array(header->context, (uint64_t)count, sizeof *values);
-    if (values && read_coordinates(header, v, bytes, line, values))
-        snow_cf_measure(values, count, v->units, out);
-    snow_release(header->context, values);
+    bool read = values && read_coordinates(header, v, bytes, line, values);
     snow_volume_close(line);
+    if (read) {
+        snow_cf_measure(values, count, v->units, out);
+        memcpy(out->calendar, v->calendar, sizeof out->calendar);
+    } else
+        snow_release(header->context, values);
     return values ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
 }
 
@@ -198,13 +201,25 @@ static snow_status assign_axes(const netcdf_header *header,
                      v->name);
 }
 
+/* A variable on the way to be read. */
+typedef struct netcdf_job {
+    snow_source *source;
+    snow_seekable *bytes;
+    const netcdf_header *header;
+    const netcdf_variable *variable;
+    cf_axis axes[4]; /* x, y, z, time */
+    snow_uneven grid;
+    snow_array array;
+} netcdf_job;
+
 /* Fills info, and finds where the voxels are. */
-static snow_status
-describe_variable(const netcdf_header *header, const netcdf_variable *v,
-                  snow_seekable *bytes, const snow_volume_options *options,
-                  snow_volume_info *info, snow_array *array) {
+static snow_status describe_variable(netcdf_job *job,
+                                     const snow_volume_options *options,
+                                     snow_volume_info *info) {
+    const netcdf_header *header = job->header;
+    const netcdf_variable *v = job->variable;
+    snow_array *array = &job->array;
     uint64_t steps[NETCDF_MOST_AXES];
-    cf_axis axes[3] = {{0}};
     int64_t sizes[NETCDF_MOST_AXES], channel;
     snow_axes roles;
     if (!lay_out(header, v, steps, &array->all))
@@ -213,63 +228,81 @@ describe_variable(const netcdf_header *header, const netcdf_variable *v,
                          "another with --dataset",
                          v->name);
     SNOW_TRY(assign_axes(header, v, sizes, &roles));
-    for (int i = 0; i < 3; i++)
-        if (roles.space[i] >= 0)
-            SNOW_TRY(read_axis(header, bytes,
-                               v->axis[v->axes - 1 - roles.space[i]],
-                               &axes[i]));
+    for (int i = 0; i < 4; i++) {
+        int role = i < 3 ? roles.space[i] : roles.time;
+        if (role >= 0)
+            SNOW_TRY(read_axis(header, job->bytes, v->axis[v->axes - 1 - role],
+                               &job->axes[i]));
+    }
     info->type = v->type;
     SNOW_TRY(snow_volume_pick_axes(header->context, options, &roles, sizes,
                                    info, &channel));
+    snow_cf_time(&job->axes[3], info);
+    snow_cf_name(v->name, v->units, v->long_name, v->standard_name, info);
     array->first = v->begin;
     snow_array_place(&roles, steps, channel, info, array);
     array->big_endian = true;
     array->more = true;
-    if (axes[0].given || axes[1].given || axes[2].given)
-        snow_cf_place(header->context, axes, options, info);
+    if (job->axes[0].given || job->axes[1].given || job->axes[2].given)
+        snow_cf_place(header->context, job->axes, options, info, &job->grid);
     return SNOW_STATUS_OK;
 }
 
 /* Reads from the source if it is still before the bytes, otherwise from the
  * part that was kept. */
-static snow_status read_array(snow_source *source, snow_seekable *bytes,
+static snow_status read_array(const netcdf_job *job,
                               const snow_volume_options *options,
-                              const snow_array *array, snow_volume_info *info,
-                              snow_volume **out) {
-    snow_source *held = NULL;
-    if (snow_seekable_held(bytes)) {
+                              snow_volume_info *info, snow_volume **out) {
+    snow_source *source = job->source, *held = NULL;
+    if (snow_seekable_held(job->bytes)) {
         SNOW_TRY(snow_source_open_memory(
             snow_source_context(source), snow_source_name(source),
-            snow_seekable_held(bytes), (size_t)snow_seekable_size(bytes),
-            &held));
+            snow_seekable_held(job->bytes),
+            (size_t)snow_seekable_size(job->bytes), &held));
         source = held;
     }
-    snow_status status = snow_array_read(source, options, array, info, out);
+    snow_status status =
+        snow_array_read(source, options, &job->array, info, out);
     snow_source_close(held);
     return status;
+}
+
+/* Reads a box of the file's own voxels as data, with missing ones. */
+static snow_status read_voxels(void *user, const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
+    const netcdf_job *job = user;
+    SNOW_TRY(read_array(job, options, info, out));
+    if (out)
+        SNOW_TRY(snow_cf_blank(&job->variable->values, out));
+    snow_cf_apply(&job->variable->values, info);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status read_job(netcdf_job *job, const snow_volume_options *options,
+                            snow_volume_info *info, snow_volume **out) {
+    SNOW_TRY(describe_variable(job, options, info));
+    return snow_uneven_any(&job->grid)
+               ? snow_uneven_read(job->header->context, &job->grid, options,
+                                  read_voxels, job, info, out)
+               : read_voxels(job, options, info, out);
 }
 
 static snow_status read_file(snow_source *source, snow_seekable *bytes,
                              const snow_volume_options *options,
                              const netcdf_header *header,
                              snow_volume_info *info, snow_volume **out) {
-    const netcdf_variable *v;
-    snow_array array = {0};
+    netcdf_job job = {.source = source, .bytes = bytes, .header = header};
+    snow_volume *volume = NULL;
     if (header->minc)
         return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
                          "is a MINC file, whose values are scaled slice by "
                          "slice; convert it with mnc2nii");
-    SNOW_TRY(find_variable(header, options->dataset, &v));
-    SNOW_TRY(describe_variable(header, v, bytes, options, info, &array));
-    snow_volume *volume = NULL;
-    SNOW_TRY(
-        read_array(source, bytes, options, &array, info, out ? &volume : NULL));
-    if (out) {
-        SNOW_TRY(snow_cf_blank(&v->values, &volume));
+    SNOW_TRY(find_variable(header, options->dataset, &job.variable));
+    snow_status status = read_job(&job, options, info, out ? &volume : NULL);
+    snow_cf_release(header->context, job.axes, 4);
+    if (status == SNOW_STATUS_OK && out)
         *out = volume;
-    }
-    snow_cf_apply(&v->values, info);
-    return SNOW_STATUS_OK;
+    return status;
 }
 
 static snow_status read_netcdf(snow_source *source,

@@ -34,7 +34,8 @@ typedef struct netcdf_variable {
     bool records;                   /* its first axis counts records */
     uint64_t bytes; /* of the variable, or of its part of a record */
     uint64_t begin;
-    char units[64], standard_name[64], axis_name[64];
+    char units[64], standard_name[64], axis_name[64], long_name[65];
+    char calendar[24];
     bool is_unsigned; /* set by an attribute, whatever the type */
     cf_values values;
 } netcdf_variable;

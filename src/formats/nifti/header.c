@@ -23,6 +23,9 @@
 
 snow_type nifti_type(int datatype) {
     switch (datatype) {
+    case 128:
+    case 2304:
+        return SNOW_TYPE_UINT8;
 #define TO_TYPE(code, name) \
     case code:              \
         return SNOW_TYPE_##name;
@@ -31,6 +34,11 @@ snow_type nifti_type(int datatype) {
     default:
         return SNOW_TYPE_NONE;
     }
+}
+
+/* RGB24 and RGBA32. */
+int nifti_samples(int datatype) {
+    return datatype == 128 ? 3 : datatype == 2304 ? 4 : 1;
 }
 
 int nifti_code(snow_type type) {
@@ -49,16 +57,12 @@ const char *nifti_type_name(int datatype) {
         return "single bits";
     case 32:
         return "complex numbers (2 x 32 bits)";
-    case 128:
-        return "RGB colours";
     case 1536:
         return "128-bit floats";
     case 1792:
         return "complex numbers (2 x 64 bits)";
     case 2048:
         return "complex numbers (2 x 128 bits)";
-    case 2304:
-        return "RGBA colours";
     default:
         return NULL;
     }
@@ -133,18 +137,24 @@ size_t nifti_header_size(const unsigned char *bytes, size_t size) {
     return 0;
 }
 
+#define INTENT_LABEL 1002
+#define INTENT_DISPLACEMENT 1006
+#define INTENT_VECTOR 1007
+
 /* The offsets and widths of a version's fields. */
 typedef struct nifti_layout {
     size_t float_bytes, dim_bytes, code_bytes;
     size_t datatype, bitpix, dim, pixdim, slope, intercept, units, units_bytes;
-    size_t descrip, qform_code, sform_code, quatern, qoffset, srow;
+    size_t intent, descrip, qform_code, sform_code, quatern, qoffset, srow;
 } nifti_layout;
 
 /* In the order of the members above, from the comments of nifti1.h and
  * nifti2.h; version 2 widens most fields and moves all. */
 static const nifti_layout layouts[] = {
-    {4, 2, 2, 70, 72, 40, 76, 112, 116, 123, 1, 148, 252, 254, 256, 268, 280},
-    {8, 8, 4, 12, 14, 16, 104, 176, 184, 500, 4, 240, 344, 348, 352, 376, 400},
+    {4, 2, 2, 70, 72, 40, 76, 112, 116, 123, 1, 68, 148, 252, 254, 256, 268,
+     280},
+    {8, 8, 4, 12, 14, 16, 104, 176, 184, 500, 4, 504, 240, 344, 348, 352, 376,
+     400},
 };
 
 static void read_floats(const unsigned char *at, size_t count,
@@ -166,6 +176,9 @@ static void read_fields(const unsigned char *bytes, nifti_header *header) {
     header->units = (int)(number_at(bytes + l->units, l->units_bytes, big) & 7);
     header->qform_code = (int)int_at(bytes + l->qform_code, l->code_bytes, big);
     header->sform_code = (int)int_at(bytes + l->sform_code, l->code_bytes, big);
+    const int64_t intent = int_at(bytes + l->intent, l->code_bytes, big);
+    header->labels = intent == INTENT_LABEL;
+    header->vectors = intent == INTENT_DISPLACEMENT || intent == INTENT_VECTOR;
     header->no_patient = !memcmp(bytes + l->descrip, NIFTI_NO_PATIENT,
                                  sizeof NIFTI_NO_PATIENT - 1);
     read_floats(bytes + l->pixdim, 8, l, big, header->pixdim);
@@ -236,10 +249,12 @@ static snow_status check_type(snow_context *context,
                          name);
     if (type == SNOW_TYPE_NONE)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "data type %d is unknown; NIfTI's scalar types are "
-                         "2, 4, 8, 16, 64, 256, 512, 768, 1024 and 1280",
+                         "data type %d is unknown; NIfTI's types are 2, 4, 8, "
+                         "16, 64, 128, 256, 512, 768, 1024, 1280 and 2304",
                          header->datatype);
-    if (header->bitpix && header->bitpix != 8 * (int)snow_type_size(type))
+    const int bits =
+        8 * nifti_samples(header->datatype) * (int)snow_type_size(type);
+    if (header->bitpix && header->bitpix != bits)
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,
             "has %d bits per voxel but type %s; write the file again",

@@ -1,11 +1,14 @@
 /* formats/nifti/nifti.c - NIfTI-1 and NIfTI-2 volumes: .nii, and .hdr with
  * .img.
  *
- * Axes beyond the third are time steps, of which one is read.  Either file of a
+ * The fourth axis is time, of which one step is read; those behind it are
+ * components of a voxel, one volume after another.  Colours are three or four
+ * bytes in each voxel.  Either file of a
  * pair may be opened.  Analyze 7.5, NIfTI's predecessor with the same header
  * size but without the magic, is refused: it does not distinguish left from
  * right. */
 #include "formats/nifti/nifti.h"
+#include "formats/array.h"
 #include "formats/write.h"
 #include "io/folder.h"
 
@@ -18,35 +21,51 @@ static bool probe_nifti(const unsigned char *bytes, size_t size) {
     return nifti_header_size(bytes, size) != 0;
 }
 
-/* Fills info from the header. */
-static snow_status describe_volume(snow_context *context,
-                                   const nifti_header *header,
-                                   const snow_volume_options *options,
-                                   snow_volume_info *info) {
-    int64_t voxels;
-    uint64_t step;
+/* Fills info from the header; the sizes of the array are samples of a voxel, x,
+ * y, z, time and components. */
+static void describe_volume(const nifti_header *header, snow_context *context,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, int64_t sizes[6]) {
     *info = snow_volume_info_default("nifti");
     memcpy(info->dims, header->dim + 1, sizeof info->dims);
     info->type = nifti_type(header->datatype);
     info->slope = header->slope;
     info->intercept = header->intercept;
+    info->whole = header->labels;
     nifti_geometry(context, header, options, info);
-    uint64_t times = 1, all;
-    /* Five products of numbers that any header of 348 bytes can claim. */
-    bool fits = snow_volume_count(info->dims, info->type, &voxels, &step);
-    for (int i = 4; i < 8; i++)
-        fits = fits && snow_mul_u64(times, (uint64_t)header->dim[i], &times);
-    fits =
-        fits && snow_mul_u64(times, step, &all) && all <= (uint64_t)INT64_MAX;
-    if (!fits)
-        return snow_fail(
-            context, SNOW_STATUS_BAD_INPUT,
-            "its sizes (dim) are too large for any file; correct the header");
-    info->times = (int64_t)times;
-    /* Axes 5 to 7 are directions or components, never time. */
-    bool time_alone = header->dim[5] * header->dim[6] * header->dim[7] == 1;
-    return snow_volume_pick_time(context, time_alone ? "time step" : "volume",
-                                 options, info);
+    sizes[0] = nifti_samples(header->datatype);
+    memcpy(sizes + 1, header->dim + 1, 4 * sizeof *sizes);
+    /* Numbers that any header of 348 bytes can claim. */
+    uint64_t last = (uint64_t)header->dim[5];
+    if (!snow_mul_u64(last, (uint64_t)header->dim[6], &last) ||
+        !snow_mul_u64(last, (uint64_t)header->dim[7], &last) ||
+        last > INT64_MAX)
+        last = INT64_MAX;
+    sizes[5] = (int64_t)last;
+    info->times = sizes[4];
+}
+
+/* Which of the values of a voxel. */
+static snow_status pick(const nifti_header *header, snow_context *context,
+                        const snow_volume_options *options,
+                        const int64_t sizes[6], snow_volume_info *info,
+                        int64_t *channel) {
+    const bool colors = sizes[0] > 1;
+    if (!header->vectors || colors)
+        snow_channels_begin(info, colors ? sizes[0] : sizes[5], false);
+    if (colors)
+        snow_channels_are_colors(info);
+    if (colors && sizes[5] > 1)
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "has %lld colours in each voxel (dim); one is "
+                         "supported",
+                         (long long)sizes[5]);
+    SNOW_TRY(header->vectors && !colors
+                 ? snow_volume_pick_component(context, options, sizes[5], info,
+                                              channel)
+                 : snow_volume_pick_channel(context, options, info->channels,
+                                            info, channel));
+    return snow_volume_pick_time(context, "time step", options, info);
 }
 
 /* Reads the voxels from a source of which `taken` bytes were read. */
@@ -54,10 +73,30 @@ static snow_status read_voxels(snow_source *source, const nifti_header *header,
                                const snow_volume_options *options,
                                uint64_t taken, snow_volume_info *info,
                                snow_volume **out) {
-    SNOW_TRY(
-        describe_volume(snow_source_context(source), header, options, info));
-    return snow_volume_read(source, options, header->big_endian,
-                            header->vox_offset - taken, info, out);
+    snow_context *context = snow_source_context(source);
+    const uint64_t skip = header->vox_offset - taken;
+    int64_t sizes[6], channel = 0;
+    uint64_t steps[6], all;
+    describe_volume(header, context, options, info, sizes);
+    const uint64_t size = snow_type_size(info->type);
+    if (!snow_array_steps(sizes, 6, size, steps, &all))
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "its sizes (dim) are too large for any file; correct the header");
+    SNOW_TRY(pick(header, context, options, sizes, info, &channel));
+    if (info->channels <= 1 && info->components <= 1) {
+        SNOW_TRY(snow_volume_read(source, options, header->big_endian, skip,
+                                  info, out));
+    } else {
+        snow_array array = {.big_endian = header->big_endian, .all = all};
+        memcpy(array.step, steps + 1, sizeof array.step);
+        array.first = (uint64_t)info->time * steps[4] +
+                      (uint64_t)channel * steps[sizes[0] > 1 ? 0 : 5];
+        SNOW_TRY(snow_source_skip(source, skip, "the voxels"));
+        SNOW_TRY(snow_array_read(source, options, &array, info, out));
+    }
+    return out && header->labels ? snow_volume_set_labels(*out, NULL, 0)
+                                 : SNOW_STATUS_OK;
 }
 
 /* Reads the header from the front of a source. */
@@ -178,6 +217,7 @@ const snow_format snow_format_nifti = {
     .suffixes = {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"},
     .probe = probe_nifti,
     .crops = true,
+    .channels = true,
     .read = read_nifti,
     .write = snow_nifti_write,
 };

@@ -24,7 +24,8 @@ typedef struct nifti_header {
     bool pair; /* the voxels are in a file of their own (.img) */
     int64_t dim[8];
     int datatype, bitpix;
-    double pixdim[8]; /* [0] is qfac, the sign of the third axis */
+    bool labels, vectors; /* intent_code says that values are */
+    double pixdim[8];     /* [0] is qfac, the sign of the third axis */
     uint64_t vox_offset;
     double slope, intercept;
     int units; /* xyzt_units */
@@ -52,6 +53,7 @@ void nifti_geometry(snow_context *context, const nifti_header *header,
  * there is none.  The name of a code that is not a scalar, NULL if unknown. */
 int nifti_code(snow_type type);
 snow_type nifti_type(int datatype);
+int nifti_samples(int datatype); /* of a voxel: 3 and 4 of colours, else 1 */
 const char *nifti_type_name(int datatype);
 
 #endif

@@ -3,6 +3,7 @@
 #include "formats/nrrd/nrrd.h"
 #include "formats/write.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* Accepts any version, so that a newer one is refused as such and not read as
@@ -23,10 +24,16 @@ static snow_status read_parsed(snow_source *source, const nrrd_text *text,
     *info = snow_volume_info_default("nrrd");
     SNOW_TRY(snow_nrrd_parse_header(context, text, &header));
     SNOW_TRY(snow_nrrd_lay_out(context, &header, options, info, &region));
+    const char *unit = snow_nrrd_value(text, NRRD_SAMPLE_UNITS);
+    if (unit && sscanf(unit + (*unit == '"'), "%31[^\"]", info->value_unit) < 1)
+        *info->value_unit = 0;
     SNOW_TRY(snow_nrrd_find_files(context, text, &header, &files));
     if (!out)
         return snow_nrrd_check_data(source, &header, &files, &region);
-    return snow_nrrd_read_data(source, &header, &files, info, &region, out);
+    SNOW_TRY(snow_nrrd_read_data(source, &header, &files, info, &region, out));
+    return text->labels
+               ? snow_volume_set_labels(*out, text->labels, text->label_count)
+               : SNOW_STATUS_OK;
 }
 
 /* Owns the text, so that the early returns below leak nothing. */
@@ -38,6 +45,7 @@ static snow_status read_nrrd(snow_source *source,
     if (status == SNOW_STATUS_OK)
         status = read_parsed(source, &text, options, info, out);
     snow_release(snow_source_context(source), text.block);
+    snow_release(snow_source_context(source), text.labels);
     return status;
 }
 

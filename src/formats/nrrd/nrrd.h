@@ -69,6 +69,8 @@ typedef struct nrrd_text {
     size_t value[NRRD_FIELD_COUNT]; /* offset in block, 0: no such field */
     size_t list;                    /* offset of the listed names */
     uint64_t listed;                /* number of names; each is a string */
+    snow_label *labels;             /* 3D Slicer's segments; NULL: none */
+    size_t label_count;
 } nrrd_text;
 
 typedef enum nrrd_encoding { NRRD_RAW, NRRD_GZIP, NRRD_ASCII } nrrd_encoding;

@@ -6,6 +6,9 @@
 #include "formats/nrrd/nrrd.h"
 
 #include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Programs store whole protocols in key/value pairs, but nothing near this
@@ -82,8 +85,53 @@ static snow_status take_field(snow_context *context, nrrd_text *text,
                   &text->value[field]);
 }
 
-/* A line that is not a comment: a field, or a key with a value, which is
- * ignored. */
+/* The colour of a segment: three shares. */
+static bool read_color(const char *text, double color[4]) {
+    char words[3][32];
+    bool good =
+        sscanf(text, "%31s %31s %31s", words[0], words[1], words[2]) == 3;
+    for (int c = 0; c < 3 && good; c++)
+        good = snow_parse_double(words[c], &color[c]) && color[c] >= 0 &&
+               color[c] <= 1;
+    return good;
+}
+
+/* A key of 3D Slicer's segmentations, "Segment0_Name": its segment is made
+ * before. */
+static snow_status take_segment(snow_context *context, nrrd_text *text,
+                                const char *line) {
+    char key[16], digits[5];
+    int at = 0;
+    if (sscanf(line, "Segment%4[0-9]_%15[A-Za-z]:=%n", digits, key, &at) != 2 ||
+        !at)
+        return SNOW_STATUS_OK;
+    size_t number = (size_t)strtoul(digits, NULL, 10);
+    SNOW_TRY(
+        SNOW_RESERVE(context, text->labels, text->label_count, number + 1));
+    for (; text->label_count <= number; text->label_count++)
+        text->labels[text->label_count] =
+            (snow_label){(double)text->label_count + 1, {-1, 0, 0, -1}, ""};
+    snow_label *label = &text->labels[number];
+    bool good = true;
+    if (!strcmp(key, "LabelValue"))
+        good = snow_parse_double(line + at, &label->value) &&
+               isfinite(label->value);
+    else if (!strcmp(key, "Name"))
+        snprintf(label->name, sizeof label->name, "%s", line + at);
+    else if (!strcmp(key, "Opacity"))
+        good = snow_parse_double(line + at, &label->color[3]) &&
+               label->color[3] >= 0 && label->color[3] <= 1;
+    else if (!strcmp(key, "Color"))
+        good = read_color(line + at, label->color);
+    if (good)
+        return SNOW_STATUS_OK;
+    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                     "the header's line \"%.60s\" is wrong; a label is a "
+                     "number, a colour three numbers of 0 to 1, an opacity one",
+                     line);
+}
+
+/* A line that is not a comment: a field, or a key with a value. */
 static snow_status take_line(snow_context *context, nrrd_text *text,
                              const char *line) {
     const char *colon = strchr(line, ':');
@@ -93,7 +141,7 @@ static snow_status take_line(snow_context *context, nrrd_text *text,
             return take_field(context, text, field, colon + 1);
     }
     if (strstr(line, ":="))
-        return SNOW_STATUS_OK;
+        return take_segment(context, text, line);
     return snow_fail(
         context, SNOW_STATUS_BAD_INPUT,
         "the header's line \"%.60s\" is not a field of the format; correct it, "

@@ -48,6 +48,31 @@ static int print_geometry(char *text, size_t room,
     return used;
 }
 
+/* The keys of 3D Slicer's segmentations, and one for opacity. */
+static snow_status write_labels(const snow_volume *volume,
+                                snow_writer *writer) {
+    for (size_t n = 0; n < volume->label_count; n++) {
+        const snow_label *label = &volume->labels[n];
+        char text[512];
+        int used = snprintf(text, sizeof text,
+                            "Segment%zu_LabelValue:=%.17g\n"
+                            "Segment%zu_Name:=%s\n",
+                            n, label->value, n, label->name);
+        if (label->color[0] >= 0) {
+            used += snprintf(text + used, sizeof text - (size_t)used,
+                             "Segment%zu_Color:=", n);
+            used += snow_print_numbers(text + used, sizeof text - (size_t)used,
+                                       label->color, 3, " ");
+            used += snprintf(text + used, sizeof text - (size_t)used, "\n");
+        }
+        if (label->color[3] >= 0)
+            used += snprintf(text + used, sizeof text - (size_t)used,
+                             "Segment%zu_Opacity:=%.17g\n", n, label->color[3]);
+        SNOW_TRY(snow_writer_write(writer, text, (size_t)used));
+    }
+    return SNOW_STATUS_OK;
+}
+
 snow_status snow_nrrd_write(const snow_volume *volume, const char *path,
                             snow_writer *writer) {
     const snow_volume_info *info = &volume->info;
@@ -68,9 +93,12 @@ snow_status snow_nrrd_write(const snow_volume *volume, const char *path,
     used += snprintf(text + used, sizeof text - (size_t)used,
                      "kinds: domain domain domain\n"
                      "encoding: raw\n"
-                     "%s"
-                     "\n",
-                     snow_type_size(info->type) > 1 ? "endian: little\n" : "");
+                     "%s%s%s%s",
+                     snow_type_size(info->type) > 1 ? "endian: little\n" : "",
+                     *info->value_unit ? "sample units: " : "",
+                     info->value_unit, *info->value_unit ? "\n" : "");
     SNOW_TRY(snow_writer_write(writer, text, (size_t)used));
+    SNOW_TRY(write_labels(volume, writer));
+    SNOW_TRY(snow_writer_write(writer, "\n", 1));
     return snow_write_voxels(volume, writer);
 }

@@ -222,8 +222,11 @@ static snow_status read_png(snow_source *source,
     info->dims[0] = shape.width;
     info->dims[1] = shape.height;
     info->type = shape.depth == 16 ? SNOW_TYPE_UINT16 : SNOW_TYPE_UINT8;
-    SNOW_TRY(
-        snow_volume_pick_channel(context, options, shape.samples, &channel));
+    snow_channels_begin(info, shape.samples, false);
+    if (shape.samples > 2)
+        snow_channels_are_colors(info);
+    SNOW_TRY(snow_volume_pick_channel(context, options, shape.samples, info,
+                                      &channel));
     SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
     SNOW_TRY(snow_region_lay_out(context, options, info, &region));
     if (!out)

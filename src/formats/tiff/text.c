@@ -10,9 +10,11 @@
  *
  * From OME-XML the attributes of the first Pixels element are used.  They are
  * found by name: no other part of the text can contain them there. */
+#include "formats/array.h"
 #include "formats/tiff/tiff.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define VALUE_BYTES 64
@@ -152,6 +154,31 @@ static bool is_order(const char *text) {
            strchr(text, 'Z') && strchr(text, 'T');
 }
 
+/* A colour is red, green, blue and alpha, the bytes of a number with a sign. */
+static void read_ome_channel(const char *text, snow_channel *out) {
+    char value[VALUE_BYTES];
+    int64_t rgba;
+    if (attribute(text, "Name", value))
+        snow_copy_name(value, out->name, sizeof out->name);
+    if (!attribute(text, "Color", value) || !snow_parse_int64(value, &rgba))
+        return;
+    for (int c = 0; c < 3; c++)
+        out->color[c] = (double)((uint32_t)rgba >> (24 - 8 * c) & 255) / 255;
+}
+
+/* Elements "Channel" of the same Pixels, in its order. */
+static void read_ome_channels(const char *pixels, tiff_shape *out) {
+    const char *end = strstr(pixels, "Pixels>");
+    const char *at = pixels;
+    for (int n = 0; n < SNOW_CHANNELS_MAX; at++) {
+        at = strstr(at, "Channel ");
+        if (!at || (end && at > end))
+            return;
+        if ((at[-1] == '<' || at[-1] == ':') && strchr(at, '>'))
+            read_ome_channel(at + 7, &out->channel[n++]);
+    }
+}
+
 static void read_ome(const char *pixels, tiff_shape *out) {
     char value[VALUE_BYTES];
     if (attribute(pixels, "SizeC", value))
@@ -165,10 +192,13 @@ static void read_ome(const char *pixels, tiff_shape *out) {
     else
         memcpy(out->order, "XYCZT", sizeof out->order);
     read_ome_spacing(pixels, out);
+    read_ome_channels(pixels, out);
 }
 
 void snow_tiff_read_text(const char *text, tiff_shape *out) {
     *out = (tiff_shape){0};
+    for (int n = 0; n < SNOW_CHANNELS_MAX; n++)
+        out->channel[n].color[0] = -1;
     if (!text)
         return;
     const char *ome = strstr(text, "<OME");

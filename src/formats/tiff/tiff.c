@@ -158,6 +158,22 @@ static void set_spacing(snow_tiff *file, tiff_plan *plan,
     memcpy(info->unit, shape->unit, sizeof info->unit);
 }
 
+/* Of samples that are colours the names are known. */
+static void tell_channels(const tiff_plan *plan, snow_volume_info *info) {
+    const tiff_shape *shape = &plan->shape;
+    const int64_t samples = plan->page.samples;
+    snow_channels_begin(info, plan->channels * samples, true);
+    for (int n = 0; n < SNOW_CHANNELS_MAX && n < info->channels; n++) {
+        info->channel[n] = shape->channel[n];
+        info->channel[n].shown = true;
+    }
+    if (plan->channels == 1 && shape->colors)
+        snow_channels_are_colors(info);
+    else if (plan->channels == 1 && shape->opacity && samples > 1 &&
+             samples <= SNOW_CHANNELS_MAX)
+        info->channel[samples - 1].shown = false;
+}
+
 static snow_status make_plan(snow_tiff *file, tiff_plan *plan,
                              snow_volume_info *info) {
     char *text = NULL;
@@ -165,6 +181,7 @@ static snow_status make_plan(snow_tiff *file, tiff_plan *plan,
     TIFFGetField(file->tiff, TIFFTAG_IMAGEDESCRIPTION, &text);
     snow_tiff_read_text(text, &plan->shape);
     set_spacing(file, plan, info);
+    snow_tiff_read_channels(file, &plan->page, &plan->shape);
     SNOW_TRY(count_pages(file, plan));
     find_raw(plan);
     share_images(file->context, plan);
@@ -173,6 +190,7 @@ static snow_status make_plan(snow_tiff *file, tiff_plan *plan,
     info->dims[2] = plan->slices;
     info->type = plan->page.type;
     info->times = plan->times;
+    tell_channels(plan, info);
     return SNOW_STATUS_OK;
 }
 
@@ -246,8 +264,9 @@ static snow_status read_open(snow_tiff *file,
         !(plan.shape.spacing[2] > 0) && !snow_spacing_given(options))
         snow_notify(file->context, SNOW_WIDTH_IS_DISTANCE, info->matrix[0][0]);
     SNOW_TRY(check_size(file, &plan));
-    SNOW_TRY(snow_volume_pick_channel(
-        file->context, options, plan.channels * plan.page.samples, &channel));
+    SNOW_TRY(snow_volume_pick_channel(file->context, options,
+                                      plan.channels * plan.page.samples, info,
+                                      &channel));
     SNOW_TRY(snow_volume_pick_time(file->context, "time step", options, info));
     SNOW_TRY(snow_region_lay_out(file->context, options, info, &region));
     if (!out)

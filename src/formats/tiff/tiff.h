@@ -2,6 +2,7 @@
  *
  *   tiff.c   the file -> the pages that are slices, the volume
  *   text.c   descriptions by ImageJ and OME -> tiff_shape
+ *   channels.c   what it says of channels
  *   page.c   a page -> voxels of a slice, by libtiff */
 #ifndef SNOW_FORMATS_TIFF_TIFF_H
 #define SNOW_FORMATS_TIFF_TIFF_H
@@ -17,6 +18,8 @@ typedef struct tiff_shape {
     char order[6];     /* the order of C, Z and T, "XYCZT" */
     double spacing[3]; /* ImageJ stores x and y elsewhere */
     char unit[16];
+    snow_channel channel[SNOW_CHANNELS_MAX];
+    bool colors, opacity; /* of samples of a pixel: they are; the last is */
 } tiff_shape;
 
 /* Reads the text of the ImageDescription, which may be NULL. */
@@ -44,6 +47,10 @@ typedef struct tiff_page {
 /* Describes the current page.  Errors: SNOW_STATUS_BAD_INPUT if it is not
  * supported. */
 snow_status snow_tiff_describe(snow_tiff *file, tiff_page *out);
+
+/* Adds what the current page says of channels beside its description. */
+void snow_tiff_read_channels(const snow_tiff *file, const tiff_page *page,
+                             tiff_shape *shape);
 
 /* A lower bound for the size of a file with so many bytes of pixels, from the
  * compression. */

@@ -1,23 +1,29 @@
-/* formats/vtk/vti.c - image data of VTK's XML files: .vti. */
+/* formats/vtk/vti.c - image data and rectilinear grids of VTK's XML files: .vti
+ * and .vtr. */
 #include "formats/vtk/vti.h"
 #include "io/filters/filters.h"
 
+#include <math.h>
 #include <string.h>
 
-static snow_status read_vti(snow_source *source,
-                            const snow_volume_options *options,
-                            snow_volume_info *info, snow_volume **out) {
+/* Reads the values; the source stands at its first byte. */
+static snow_status read_values(snow_source *source, vti_header *header,
+                               const vti_small *small,
+                               const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
-    vti_header header;
     int64_t channel;
-    *info = snow_volume_info_default("vti");
-    SNOW_TRY(snow_vti_read_header(source, options, &header));
-    SNOW_TRY(snow_vtk_describe(context, &header.grid, &header.array, info));
-    SNOW_TRY(snow_volume_pick_component(context, options, header.array.channels,
-                                        info, &channel));
+    SNOW_TRY(snow_vti_read_header(source, options, header));
+    memcpy(header->grid.coordinates, small->coordinates,
+           sizeof small->coordinates);
+    SNOW_TRY(snow_vtk_describe(context, &header->grid, &header->array, options,
+                               info));
+    SNOW_TRY(snow_volume_pick_component(
+        context, options, header->array.channels, info, &channel));
     SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
+    info->time_value = small->time;
     snow_volume *volume = NULL;
-    SNOW_TRY(snow_vti_read_data(source, &header, options, channel, info,
+    SNOW_TRY(snow_vti_read_data(source, header, options, channel, info,
                                 out ? &volume : NULL));
     if (!out)
         return SNOW_STATUS_OK;
@@ -30,17 +36,65 @@ static snow_status read_vti(snow_source *source,
     return SNOW_STATUS_OK;
 }
 
-/* Looks for the element that all XML files of VTK have near their front,
- * whatever their type: the reader reports what a .vtp is. */
+/* The same from the bytes, if they are held and the source is read. */
+static snow_status read_beside(snow_source *source, snow_seekable *bytes,
+                               vti_header *header, const vti_small *small,
+                               const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
+    snow_source *held = NULL;
+    if (!bytes || !snow_seekable_held(bytes))
+        return read_values(source, header, small, options, info, out);
+    SNOW_TRY(snow_source_open_memory(
+        snow_source_context(source), snow_source_name(source),
+        snow_seekable_held(bytes), (size_t)snow_seekable_size(bytes), &held));
+    snow_status status = read_values(held, header, small, options, info, out);
+    snow_source_close(held);
+    return status;
+}
+
+/* A packed file of image data is not held for its time alone. */
+static snow_status read_xml(snow_source *source, bool rectilinear,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    vti_header header = {.grid = {.rectilinear = rectilinear}};
+    vti_small small = {.time = NAN};
+    snow_seekable *bytes = NULL;
+    snow_status status = SNOW_STATUS_OK;
+    *info = snow_volume_info_default(rectilinear ? "vtr" : "vti");
+    if (rectilinear || snow_source_remaining(source) >= 0) {
+        SNOW_TRY(snow_seekable_open(source, &bytes));
+        status = snow_vti_survey(source, bytes, rectilinear, &small);
+    }
+    if (status == SNOW_STATUS_OK)
+        status =
+            read_beside(source, bytes, &header, &small, options, info, out);
+    memcpy(header.grid.coordinates, small.coordinates,
+           sizeof small.coordinates);
+    snow_vtk_release(context, &header.grid);
+    snow_seekable_close(bytes);
+    return status;
+}
+
+static snow_status read_vti(snow_source *source,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, snow_volume **out) {
+    return read_xml(source, false, options, info, out);
+}
+
+static snow_status read_vtr(snow_source *source,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, snow_volume **out) {
+    return read_xml(source, true, options, info, out);
+}
+
+static bool probe_vtr(const unsigned char *bytes, size_t size) {
+    return snow_vtk_probe_xml(bytes, size, "RectilinearGrid");
+}
+
+/* Also files of other types: the reader reports what a .vtp is. */
 static bool probe_vti(const unsigned char *bytes, size_t size) {
-    static const char tag[] = "<VTKFile";
-    size_t near = size < 1024 ? size : 1024;
-    if (!size || (*bytes != '<' && *bytes != 0xef && *bytes > ' '))
-        return false;
-    for (size_t i = 0; i + sizeof tag - 1 <= near; i++)
-        if (!memcmp(bytes + i, tag, sizeof tag - 1))
-            return true;
-    return false;
+    return snow_vtk_probe_xml(bytes, size, NULL);
 }
 
 const snow_format snow_format_vti = {
@@ -52,4 +106,15 @@ const snow_format snow_format_vti = {
     .sets = true,
     .channels = true,
     .read = read_vti,
+};
+
+const snow_format snow_format_vtr = {
+    .name = "vtr",
+    .text = "VTK rectilinear grids in XML (.vtr)",
+    .suffixes = {".vtr", ".vtr.gz"},
+    .probe = probe_vtr,
+    .crops = true,
+    .sets = true,
+    .channels = true,
+    .read = read_vtr,
 };

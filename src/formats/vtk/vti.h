@@ -1,5 +1,7 @@
-/* formats/vtk/vti.h - the parts of the VTI reader, private to vti*.c.
+/* formats/vtk/vti.h - the parts of the reader of VTK's XML files of image data
+ * and rectilinear grids, private to vti*.c.
  *
+ *   vti_survey.c  the time and the coordinates, wherever they stand
  *   vti_header.c  the XML text up to the requested array -> vti_header
  *   vti_data.c    the array's bytes -> voxels
  *
@@ -8,6 +10,7 @@
 #define SNOW_FORMATS_VTK_VTI_H
 
 #include "formats/vtk/vtk.h"
+#include "io/seekable.h"
 
 typedef enum vti_form {
     VTI_ASCII,   /* numbers in the element */
@@ -27,9 +30,40 @@ typedef struct vti_header {
     bool packed;     /* as blocks of zlib */
 } vti_header;
 
+/* An attribute's value, NULL if it is missing; "x0 x1 y0 y1 z0 z1", the first
+ * and last index on each axis, false for anything else. */
+const char *snow_vti_attribute(const char **attributes, const char *name);
+bool snow_vti_take_extent(const char *value, int64_t first[3],
+                          int64_t points[3]);
+
+/* What the first element says of the form of all numbers; what an array's
+ * element says, false if that is invalid. */
+void snow_vti_file_form(vti_header *header, const char **attributes);
+bool snow_vti_keep_array(vti_header *header, const char **attributes,
+                         const char *name, bool cells);
+
+/* The small arrays of a file: its time, NaN if there is none; the coordinates
+ * of a rectilinear grid, which the caller releases whatever the status. */
+typedef struct vti_small {
+    double time;
+    double *coordinates[3];
+} vti_small;
+
+/* Reads them beside the source, of which nothing was read yet.  Errors:
+ * SNOW_STATUS_BAD_INPUT, SNOW_STATUS_NO_MEMORY. */
+snow_status snow_vti_survey(snow_source *source, snow_seekable *bytes,
+                            bool rectilinear, vti_small *out);
+
+/* Leaves the source, which stands at an array's numbers in an element or at its
+ * offset of the appended data, at their bytes, and checks that there are
+ * `needed`. */
+snow_status snow_vti_begin_numbers(snow_source *source,
+                                   const vti_header *header, uint64_t needed);
+
 /* Reads the text and leaves the source at the requested array's numbers, or at
- * the appended data.  Errors: SNOW_STATUS_BAD_INPUT, SNOW_STATUS_BAD_USAGE (no
- * such array). */
+ * the appended data.  `header` is set before but for grid.rectilinear, which
+ * says what the file must hold.  Errors: SNOW_STATUS_BAD_INPUT,
+ * SNOW_STATUS_BAD_USAGE (no such array). */
 snow_status snow_vti_read_header(snow_source *source,
                                  const snow_volume_options *options,
                                  vti_header *header);

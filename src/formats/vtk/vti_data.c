@@ -88,15 +88,9 @@ static snow_status find_appended(snow_source *source,
     return snow_source_skip(source, header->offset, "the voxels");
 }
 
-/* Leaves the source at the array's bytes and checks that there are `needed`. */
-static snow_status begin_bytes(snow_source *source, const vti_header *header,
-                               uint64_t needed) {
-    bool text = true;
-    if (header->form == VTI_APPENDED) {
-        text = !header->raw;
-        SNOW_TRY(find_appended(source, header));
-    }
-    if (text)
+snow_status snow_vti_begin_numbers(snow_source *source,
+                                   const vti_header *header, uint64_t needed) {
+    if (header->form != VTI_APPENDED || !header->raw)
         SNOW_TRY(snow_source_unpack_base64(source));
     uint64_t has;
     if (header->packed) {
@@ -110,25 +104,46 @@ static snow_status begin_bytes(snow_source *source, const vti_header *header,
     return has == needed ? SNOW_STATUS_OK : fail_size(source, has, needed);
 }
 
+/* The array's numbers, which the source stands before. */
+typedef struct vti_numbers {
+    snow_source *source;
+    const vti_header *header;
+    int64_t channel;
+    snow_array array;
+} vti_numbers;
+
+static snow_status read_numbers(void *user, const snow_volume_options *options,
+                                snow_volume_info *info, snow_volume **out) {
+    const vti_numbers *n = user;
+    return n->header->form == VTI_ASCII
+               ? snow_array_read_text(n->source, options,
+                                      n->header->array.channels, n->channel,
+                                      info, out)
+               : snow_array_read(n->source, options, &n->array, info, out);
+}
+
 snow_status snow_vti_read_data(snow_source *source, const vti_header *header,
                                const snow_volume_options *options,
                                int64_t channel, snow_volume_info *info,
                                snow_volume **out) {
     uint64_t steps[4];
     size_t size = snow_type_size(info->type);
-    snow_array array = {.big_endian = header->big_endian,
-                        .first = (uint64_t)channel * size,
-                        .more = true};
-    const int64_t sizes[4] = {header->array.channels, info->dims[0],
-                              info->dims[1], info->dims[2]};
-    if (!snow_array_steps(sizes, 4, size, steps, &array.all))
+    vti_numbers n = {.source = source, .header = header, .channel = channel};
+    const int64_t *dims = header->grid.uneven.count;
+    const int64_t sizes[4] = {header->array.channels, dims[0], dims[1],
+                              dims[2]};
+    n.array = (snow_array){.big_endian = header->big_endian,
+                           .first = (uint64_t)channel * size,
+                           .more = true};
+    if (!snow_array_steps(sizes, 4, size, steps, &n.array.all))
         return snow_fail(
             snow_source_context(source), SNOW_STATUS_BAD_INPUT,
             "its extent is too large for any file; write it again");
-    if (header->form == VTI_ASCII)
-        return snow_array_read_text(source, options, header->array.channels,
-                                    channel, info, out);
-    SNOW_TRY(begin_bytes(source, header, array.all));
-    memcpy(array.step, steps + 1, sizeof array.step);
-    return snow_array_read(source, options, &array, info, out);
+    if (header->form == VTI_APPENDED)
+        SNOW_TRY(find_appended(source, header));
+    if (header->form != VTI_ASCII)
+        SNOW_TRY(snow_vti_begin_numbers(source, header, n.array.all));
+    memcpy(n.array.step, steps + 1, sizeof n.array.step);
+    return snow_vtk_read(snow_source_context(source), &header->grid, options,
+                         read_numbers, &n, info, out);
 }

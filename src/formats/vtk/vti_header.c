@@ -40,8 +40,7 @@ typedef struct vti_text {
     char seen[512];         /* names of arrays so far, for messages */
 } vti_text;
 
-/* An attribute's value, NULL if it is missing. */
-static const char *value_of(const char **attributes, const char *name) {
+const char *snow_vti_attribute(const char **attributes, const char *name) {
     for (; *attributes; attributes += 2)
         if (!strcmp(*attributes, name))
             return attributes[1];
@@ -85,9 +84,8 @@ static bool take_reals(const char *value, int count, double *out) {
     return !value[strspn(value, " \t\r\n")];
 }
 
-/* "x0 x1 y0 y1 z0 z1", first and last index on each axis. */
-static bool take_extent(const char *value, int64_t first[3],
-                        int64_t points[3]) {
+bool snow_vti_take_extent(const char *value, int64_t first[3],
+                          int64_t points[3]) {
     char word[64];
     int64_t ends[6];
     if (!value)
@@ -105,20 +103,26 @@ static bool take_extent(const char *value, int64_t first[3],
     return true;
 }
 
-static void begin_file(vti_text *text, const char **attributes) {
-    const char *type = value_of(attributes, "type");
-    const char *order = value_of(attributes, "byte_order");
-    const char *count = value_of(attributes, "header_type");
-    const char *compressor = value_of(attributes, "compressor");
-    vti_header *header = text->header;
-    text->file = true;
+void snow_vti_file_form(vti_header *header, const char **attributes) {
+    const char *order = snow_vti_attribute(attributes, "byte_order");
+    const char *count = snow_vti_attribute(attributes, "header_type");
+    const char *compressor = snow_vti_attribute(attributes, "compressor");
     header->big_endian = order && !strcmp(order, "BigEndian");
     header->count_bytes = count && !strcmp(count, "UInt64") ? 8 : 4;
     header->packed = compressor && *compressor;
-    if (!type || strcmp(type, "ImageData") != 0)
-        refuse(text, "is a VTK file, but not of image data; resample it to "
-                     "image data (.vti) first");
-    else if (header->packed && strcmp(compressor, "vtkZLibDataCompressor") != 0)
+}
+
+static void begin_file(vti_text *text, const char **attributes) {
+    const char *type = snow_vti_attribute(attributes, "type");
+    const char *compressor = snow_vti_attribute(attributes, "compressor");
+    const char *wanted =
+        text->header->grid.rectilinear ? "RectilinearGrid" : "ImageData";
+    text->file = true;
+    snow_vti_file_form(text->header, attributes);
+    if (!type || strcmp(type, wanted) != 0)
+        refuse(text, snow_vtk_other(type));
+    else if (text->header->packed &&
+             strcmp(compressor, "vtkZLibDataCompressor") != 0)
         refuse(text, "its data are not compressed by zlib; write it again "
                      "with vtkZLibDataCompressor or without compression");
 }
@@ -127,11 +131,13 @@ static void begin_grid(vti_text *text, const char **attributes) {
     vtk_grid *grid = &text->header->grid;
     double direction[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     text->grid = true;
-    if (!take_extent(value_of(attributes, "WholeExtent"), grid->first,
-                     grid->points) ||
-        !take_reals(value_of(attributes, "Origin"), 3, grid->origin) ||
-        !take_reals(value_of(attributes, "Spacing"), 3, grid->spacing) ||
-        !take_reals(value_of(attributes, "Direction"), 9, direction))
+    if (!snow_vti_take_extent(snow_vti_attribute(attributes, "WholeExtent"),
+                              grid->first, grid->points) ||
+        !take_reals(snow_vti_attribute(attributes, "Origin"), 3,
+                    grid->origin) ||
+        !take_reals(snow_vti_attribute(attributes, "Spacing"), 3,
+                    grid->spacing) ||
+        !take_reals(snow_vti_attribute(attributes, "Direction"), 9, direction))
         refuse(text, "its WholeExtent, Origin, Spacing or Direction is empty "
                      "or not a row of numbers; write the file again");
     for (int i = 0; i < 9; i++)
@@ -144,7 +150,8 @@ static void begin_piece(vti_text *text, const char **attributes) {
     const vtk_grid *grid = &text->header->grid;
     int64_t first[3], points[3];
     bool whole = text->grid && !text->piece &&
-                 take_extent(value_of(attributes, "Extent"), first, points) &&
+                 snow_vti_take_extent(snow_vti_attribute(attributes, "Extent"),
+                                      first, points) &&
                  !memcmp(first, grid->first, sizeof first) &&
                  !memcmp(points, grid->points, sizeof points);
     text->piece = true;
@@ -155,7 +162,7 @@ static void begin_piece(vti_text *text, const char **attributes) {
 
 static void begin_section(vti_text *text, const char **attributes,
                           bool points) {
-    const char *scalars = value_of(attributes, "Scalars");
+    const char *scalars = snow_vti_attribute(attributes, "Scalars");
     text->points = points;
     text->cells = !points;
     *text->scalars = 0;
@@ -195,17 +202,15 @@ static snow_type type_named(const char *name) {
     return SNOW_TYPE_NONE;
 }
 
-/* Copies the array's attributes to the header; returns false if they are
- * invalid. */
-static bool keep_array(vti_header *header, const char **attributes,
-                       const char *name, bool cells) {
-    const char *form = value_of(attributes, "format");
-    const char *channels = value_of(attributes, "NumberOfComponents");
-    const char *offset = value_of(attributes, "offset");
+bool snow_vti_keep_array(vti_header *header, const char **attributes,
+                         const char *name, bool cells) {
+    const char *form = snow_vti_attribute(attributes, "format");
+    const char *channels = snow_vti_attribute(attributes, "NumberOfComponents");
+    const char *offset = snow_vti_attribute(attributes, "offset");
     int64_t at = 0;
     header->array = (vtk_array){
         .cells = cells,
-        .type = type_named(value_of(attributes, "type")),
+        .type = type_named(snow_vti_attribute(attributes, "type")),
         .channels = 1,
     };
     if (strlen(name) >= sizeof header->array.name || !form)
@@ -229,7 +234,7 @@ static bool keep_array(vti_header *header, const char **attributes,
 }
 
 static void begin_array(vti_text *text, const char **attributes) {
-    const char *name = value_of(attributes, "Name");
+    const char *name = snow_vti_attribute(attributes, "Name");
     if (!text->points && !text->cells)
         return;
     if (!name)
@@ -239,7 +244,7 @@ static void begin_array(vti_text *text, const char **attributes) {
     remember(text, name);
     if (choice <= text->choice)
         return;
-    if (!keep_array(text->header, attributes, name, text->cells)) {
+    if (!snow_vti_keep_array(text->header, attributes, name, text->cells)) {
         if (choice == WANTED)
             refuse(text, "its array has an unknown type, format, offset or "
                          "number of components; choose another with --dataset");
@@ -255,7 +260,7 @@ static void begin_array(vti_text *text, const char **attributes) {
 }
 
 static void begin_appended(vti_text *text, const char **attributes) {
-    const char *encoding = value_of(attributes, "encoding");
+    const char *encoding = snow_vti_attribute(attributes, "encoding");
     text->header->raw = encoding && !strcmp(encoding, "raw");
     if (!text->header->raw && (!encoding || strcmp(encoding, "base64") != 0))
         refuse(text, "its appended data are neither raw nor base64; write the "
@@ -273,7 +278,7 @@ static void XMLCALL begin_element(void *user, const char *name,
         refuse(text, "is XML, but not a VTK file; give a .vti file");
     else if (!strcmp(name, "VTKFile"))
         begin_file(text, attributes);
-    else if (!strcmp(name, "ImageData"))
+    else if (!strcmp(name, "ImageData") || !strcmp(name, "RectilinearGrid"))
         begin_grid(text, attributes);
     else if (!strcmp(name, "Piece"))
         begin_piece(text, attributes);
@@ -368,7 +373,9 @@ snow_status snow_vti_read_header(snow_source *source,
                                  vti_header *header) {
     snow_context *context = snow_source_context(source);
     vti_text text = {.context = context, .options = options, .header = header};
+    const bool rectilinear = header->grid.rectilinear;
     *header = (vti_header){.grid = snow_vtk_grid_default()};
+    header->grid.rectilinear = rectilinear;
     text.parser = XML_ParserCreate(NULL);
     if (!text.parser)
         return snow_fail(context, SNOW_STATUS_NO_MEMORY,

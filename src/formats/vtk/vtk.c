@@ -1,12 +1,15 @@
-/* formats/vtk/vtk.c - VTK's legacy files of structured points: .vtk.
+/* formats/vtk/vtk.c - VTK's legacy files of structured points and of
+ * rectilinear grids: .vtk.
  *
  * After "VTK File Formats" (docs.vtk.org), legacy files of versions 1 to 5:
  *
  *     # vtk DataFile Version 3.0
  *     title
  *     ASCII or BINARY                  binary numbers are big-endian
- *     DATASET STRUCTURED_POINTS
+ *     DATASET STRUCTURED_POINTS        or RECTILINEAR_GRID
+ *     FIELD, with TIME and CYCLE of VisIt
  *     DIMENSIONS nx ny nz, ORIGIN, SPACING
+ *     X_COORDINATES n type, numbers; Y_, Z_
  *     POINT_DATA n, or CELL_DATA n
  *     SCALARS name type [channels], LOOKUP_TABLE name, numbers
  *     VECTORS, FIELD and others, numbers
@@ -19,6 +22,7 @@
 #include "io/filters/filters.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <string.h>
 
 #define LINE_BYTES 1024
@@ -39,6 +43,7 @@ typedef struct vtk_reader {
     snow_volume_info *info;
     snow_volume *volume; /* NULL if none is requested */
     bool inspect;
+    double time;      /* NaN: not given */
     bool shares;      /* numbers from 0 to 1 that stand for bytes 0 to 255 */
     bool found, done; /* an array was read; no better one can follow */
     char line[LINE_BYTES];
@@ -165,29 +170,45 @@ static void make_bytes(vtk_reader *reader) {
     volume->info.type = SNOW_TYPE_UINT8;
 }
 
+/* An array's numbers, which the source stands before. */
+typedef struct vtk_numbers {
+    vtk_reader *reader;
+    const vtk_array *array;
+    int64_t channel;
+    snow_array bytes;
+} vtk_numbers;
+
+static snow_status read_numbers(void *user, const snow_volume_options *options,
+                                snow_volume_info *info, snow_volume **out) {
+    const vtk_numbers *n = user;
+    const vtk_reader *reader = n->reader;
+    return reader->binary
+               ? snow_array_read(reader->source, options, &n->bytes, info, out)
+               : snow_array_read_text(reader->source, options,
+                                      n->array->channels, n->channel, info,
+                                      out);
+}
+
 /* If a better array may follow, reading continues after this one. */
 static snow_status read_array(vtk_reader *reader, const vtk_array *array,
                               int64_t channel) {
     uint64_t steps[4];
-    snow_array bytes = {.big_endian = true, .more = true};
+    vtk_numbers n = {.reader = reader, .array = array, .channel = channel};
     size_t size = snow_type_size(array->type);
-    snow_volume_info *info = reader->info;
     snow_volume **out = reader->inspect ? NULL : &reader->volume;
-    const int64_t sizes[4] = {array->channels, info->dims[0], info->dims[1],
-                              info->dims[2]};
-    int64_t tuples = info->dims[0] * info->dims[1] * info->dims[2];
+    const int64_t *dims = reader->grid.uneven.count;
+    const int64_t sizes[4] = {array->channels, dims[0], dims[1], dims[2]};
+    int64_t tuples = dims[0] * dims[1] * dims[2];
+    n.bytes = (snow_array){.big_endian = true, .more = true};
     snow_volume_close(reader->volume);
     reader->volume = NULL;
-    if (!snow_array_steps(sizes, 4, size, steps, &bytes.all))
+    if (!snow_array_steps(sizes, 4, size, steps, &n.bytes.all))
         return fail_line(reader);
-    memcpy(bytes.step, steps + 1, sizeof bytes.step);
-    bytes.first = (uint64_t)channel * size;
+    memcpy(n.bytes.step, steps + 1, sizeof n.bytes.step);
+    n.bytes.first = (uint64_t)channel * size;
     snow_status status =
-        reader->binary
-            ? snow_array_read(reader->source, reader->options, &bytes, info,
-                              out)
-            : snow_array_read_text(reader->source, reader->options,
-                                   array->channels, channel, info, out);
+        snow_vtk_read(reader->context, &reader->grid, reader->options,
+                      read_numbers, &n, reader->info, out);
     if (status == SNOW_STATUS_OK && reader->shares)
         make_bytes(reader);
     if (status == SNOW_STATUS_OK && reader->inspect && !reader->done)
@@ -227,11 +248,13 @@ static snow_status take_array(vtk_reader *reader, const char *name,
     if (!wanted)
         return skip_array(reader, type, channels, tuples);
     snow_volume_info *info = reader->info;
-    int64_t voxels, channel;
-    uint64_t bytes;
+    int64_t channel;
     *info = snow_volume_info_default("vtk");
-    SNOW_TRY(snow_vtk_describe(reader->context, &reader->grid, &array, info));
-    snow_volume_count(info->dims, type, &voxels, &bytes);
+    info->time_value = reader->time;
+    SNOW_TRY(snow_vtk_describe(reader->context, &reader->grid, &array,
+                               reader->options, info));
+    const int64_t *dims = reader->grid.uneven.count;
+    const int64_t voxels = dims[0] * dims[1] * dims[2];
     if (tuples != voxels)
         return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
                          "%.100s has %lld values but the grid has %lld %s; "
@@ -240,7 +263,7 @@ static snow_status take_array(vtk_reader *reader, const char *name,
                          array.cells ? "cells" : "points");
     SNOW_TRY(reader->shares
                  ? snow_volume_pick_channel(reader->context, reader->options,
-                                            channels, &channel)
+                                            channels, info, &channel)
                  : snow_volume_pick_component(reader->context, reader->options,
                                               channels, info, &channel));
     SNOW_TRY(snow_volume_pick_time(reader->context, "time step",
@@ -256,6 +279,23 @@ static snow_status skip_metadata(vtk_reader *reader) {
     while (got && *reader->line)
         SNOW_TRY(snow_source_read_line(reader->source, reader->line,
                                        sizeof reader->line, &got));
+    return SNOW_STATUS_OK;
+}
+
+/* Takes the array whose name and type the words are if it is the time, which
+ * VisIt and ParaView write before the arrays of the grid. */
+static snow_status take_time(vtk_reader *reader, int64_t count, bool *known) {
+    const vtk_line line = {"the time", 1, !reader->binary, true,
+                           type_named(reader->words[3])};
+    double *value;
+    *known = !reader->placed && count == 1 &&
+             (is_word(reader->words[0], "TIME") ||
+              is_word(reader->words[0], "TIMEVALUE"));
+    if (!*known)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_vtk_read_line(reader->source, &line, &value));
+    reader->time = *value;
+    snow_release(reader->context, value);
     return SNOW_STATUS_OK;
 }
 
@@ -276,8 +316,12 @@ static snow_status take_field(vtk_reader *reader) {
             !snow_parse_int64(reader->words[1], &channels) ||
             !snow_parse_int64(reader->words[2], &tuples))
             return fail_line(reader);
-        SNOW_TRY(take_array(reader, reader->words[0],
-                            type_named(reader->words[3]), channels, tuples));
+        bool known;
+        SNOW_TRY(take_time(reader, tuples == 1 ? channels : 0, &known));
+        if (!known)
+            SNOW_TRY(take_array(reader, reader->words[0],
+                                type_named(reader->words[3]), channels,
+                                tuples));
     }
     return SNOW_STATUS_OK;
 }
@@ -354,6 +398,28 @@ static bool take_geometry(vtk_reader *reader) {
     return reader->sized && snow_parse_int64(reader->words[1], &reader->tuples);
 }
 
+/* Reads X_COORDINATES count type, or those of y and z, and the numbers. */
+static snow_status take_coordinates(vtk_reader *reader, bool *known) {
+    static const char *const keywords[] = {"X_COORDINATES", "Y_COORDINATES",
+                                           "Z_COORDINATES"};
+    vtk_line line = {"the coordinates", 0, !reader->binary, true,
+                     SNOW_TYPE_NONE};
+    *known = false;
+    for (int i = 0; i < 3; i++) {
+        if (!starts(reader, keywords[i], 3))
+            continue;
+        *known = true;
+        if (!reader->sized || reader->grid.coordinates[i] ||
+            !snow_parse_int64(reader->words[1], &line.count) ||
+            line.count != reader->grid.points[i])
+            return fail_line(reader);
+        line.type = type_named(reader->words[2]);
+        return snow_vtk_read_line(reader->source, &line,
+                                  &reader->grid.coordinates[i]);
+    }
+    return SNOW_STATUS_OK;
+}
+
 static snow_status fail_unfound(const vtk_reader *reader) {
     if (!*reader->seen)
         return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
@@ -373,6 +439,9 @@ static snow_status walk(vtk_reader *reader) {
         if (!reader->count)
             return reader->found ? SNOW_STATUS_OK : fail_unfound(reader);
         if (take_geometry(reader))
+            continue;
+        SNOW_TRY(take_coordinates(reader, &known));
+        if (known)
             continue;
         if (starts(reader, "METADATA", 1)) {
             SNOW_TRY(skip_metadata(reader));
@@ -399,11 +468,14 @@ static snow_status take_head(vtk_reader *reader) {
     SNOW_TRY(next_line(reader));
     if (!starts(reader, "DATASET", 2))
         return fail_line(reader);
-    if (is_word(reader->words[1], "STRUCTURED_POINTS"))
+    reader->grid.rectilinear = is_word(reader->words[1], "RECTILINEAR_GRID");
+    if (reader->grid.rectilinear ||
+        is_word(reader->words[1], "STRUCTURED_POINTS"))
         return SNOW_STATUS_OK;
     return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
-                     "is a VTK file of \"%.60s\"; only structured points are "
-                     "supported, so resample it to image data first",
+                     "is a VTK file of \"%.60s\"; only structured points and "
+                     "rectilinear grids are supported, so resample it to image "
+                     "data first",
                      reader->words[1]);
 }
 
@@ -415,9 +487,12 @@ static snow_status read_vtk(snow_source *source,
                          .options = options,
                          .grid = snow_vtk_grid_default(),
                          .info = info,
+                         .time = NAN,
                          .inspect = !out};
-    SNOW_TRY(take_head(&reader));
-    snow_status status = walk(&reader);
+    snow_status status = take_head(&reader);
+    if (status == SNOW_STATUS_OK)
+        status = walk(&reader);
+    snow_vtk_release(reader.context, &reader.grid);
     if (status == SNOW_STATUS_OK && out)
         status = snow_source_verify(source);
     if (status != SNOW_STATUS_OK) {
@@ -437,7 +512,7 @@ static bool probe_vtk(const unsigned char *bytes, size_t size) {
 
 const snow_format snow_format_vtk = {
     .name = "vtk",
-    .text = "VTK structured points, older files (.vtk)",
+    .text = "VTK structured points and rectilinear grids, older files (.vtk)",
     .suffixes = {".vtk", ".vtk.gz"},
     .probe = probe_vtk,
     .crops = true,

@@ -4,10 +4,12 @@
  * Axes of an image have names (OME-NGFF 0.3 and later) or are t, c, z, y, x.
  * Those of other arrays have the names from xarray or version 3, or are, from
  * the last one on, x, y, z, time, or x, y, z, channel, time. */
+#include "formats/array.h"
 #include "formats/zarr/zarr.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* --- roles ---------------------------------------------------------------- */
@@ -139,6 +141,48 @@ snow_status snow_zarr_assign(const zarr_store *store, zarr_found *found,
             snprintf(array->names[out->axis[role]], ZARR_NAME_BYTES, "%c",
                      "xyzct"[role]);
     return SNOW_STATUS_OK;
+}
+
+/* --- channels ------------------------------------------------------------- */
+
+/* Six hexadecimal digits; a window that is shown; active ones are shown. */
+static void take_channel(const json_t *from, snow_channel *out) {
+    const char *name = json_string_value(json_object_get(from, "label"));
+    const char *color = json_string_value(json_object_get(from, "color"));
+    const json_t *window = json_object_get(from, "window");
+    const json_t *start = json_object_get(window, "start");
+    const json_t *end = json_object_get(window, "end");
+    char *rest;
+    if (name)
+        snow_copy_name(name, out->name, sizeof out->name);
+    out->shown = !json_is_false(json_object_get(from, "active"));
+    if (json_is_number(start) && json_is_number(end) &&
+        json_number_value(start) < json_number_value(end)) {
+        out->window[0] = json_number_value(start);
+        out->window[1] = json_number_value(end);
+    }
+    color += color && *color == '#';
+    if (!color || strlen(color) != 6)
+        return;
+    const unsigned long rgb = strtoul(color, &rest, 16);
+    for (int c = 0; c < 3 && !*rest; c++)
+        out->color[c] = (double)(rgb >> (16 - 8 * c) & 255) / 255;
+}
+
+/* From version 0.5 on all is within "ome". */
+void snow_zarr_tell_channels(const zarr_found *found, int64_t count,
+                             snow_volume_info *info) {
+    const json_t *own = json_object_get(found->node.attributes, "ome");
+    const json_t *omero =
+        json_object_get(own ? own : found->node.attributes, "omero");
+    const json_t *list = json_object_get(omero, "channels");
+    bool any = false;
+    snow_channels_begin(info, count, found->image != NULL);
+    for (size_t n = 0; n < SNOW_CHANNELS_MAX && n < json_array_size(list); n++)
+        take_channel(json_array_get(list, n), &info->channel[n]);
+    for (int n = 0; n < SNOW_CHANNELS_MAX && n < count; n++)
+        any |= info->channel[n].shown;
+    info->channel[0].shown |= !any;
 }
 
 /* --- transformations ------------------------------------------------------ */

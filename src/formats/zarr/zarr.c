@@ -121,7 +121,7 @@ static snow_status pick(snow_context *context,
     info->times = axis[ZARR_TIME] < 0 ? 1 : array->sizes[axis[ZARR_TIME]];
     SNOW_TRY(snow_volume_pick_channel(
         context, options,
-        axis[ZARR_CHANNEL] < 0 ? 1 : array->sizes[axis[ZARR_CHANNEL]],
+        axis[ZARR_CHANNEL] < 0 ? 1 : array->sizes[axis[ZARR_CHANNEL]], info,
         &channel));
     SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
     for (int i = 0; i < array->axes; i++) {
@@ -196,6 +196,9 @@ static snow_status read_found(const zarr_store *store, zarr_found *found,
     uint64_t bytes;
     *info = snow_volume_info_default("zarr");
     SNOW_TRY(snow_zarr_assign(store, found, &box.roles));
+    const int axis = box.roles.axis[ZARR_CHANNEL];
+    snow_zarr_tell_channels(found, axis < 0 ? 1 : found->array.sizes[axis],
+                            info);
     SNOW_TRY(pick(store->context, options, &box, info));
     SNOW_TRY(snow_zarr_place(store, found, &box.roles, info));
     SNOW_TRY(snow_region_lay_out(store->context, options, info, &region));

@@ -193,6 +193,10 @@ typedef struct zarr_roles {
 snow_status snow_zarr_assign(const zarr_store *store, zarr_found *found,
                              zarr_roles *out);
 
+/* What "omero" says of the channels of an image, of which there are so many. */
+void snow_zarr_tell_channels(const zarr_found *found, int64_t count,
+                             snow_volume_info *info);
+
 /* Sets matrix and unit of the info. */
 snow_status snow_zarr_place(const zarr_store *store, const zarr_found *found,
                             const zarr_roles *roles, snow_volume_info *info);

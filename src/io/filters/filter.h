@@ -10,6 +10,7 @@
 #define SNOW_IO_FILTER_H
 
 #include "base/base.h"
+#include "io/source.h"
 
 #define SNOW_FILTER_BYTES 65536
 
@@ -47,6 +48,10 @@ snow_status snow_filter_stage_open_file(snow_context *context, const char *name,
 snow_status snow_filter_stage_open_memory(snow_context *context,
                                           const char *name, const void *bytes,
                                           size_t size, snow_filter_stage **out);
+
+snow_status snow_filter_stage_open_with(snow_context *context, const char *name,
+                                        const snow_bytes_behind *bytes,
+                                        snow_filter_stage **out);
 
 /* Adds a stage on top that unpacks gzip or zlib; owns `below` on success. */
 snow_status snow_filter_stage_open_inflate(snow_filter_stage *below,

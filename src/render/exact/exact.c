@@ -13,14 +13,10 @@
  * and composite: each walks all slices front to back for its band, so that no
  * two write one pixel.  Every pixel is made by the same operations in the same
  * order however bands are cut: the number of threads cannot change a bit. */
-#include "render/exact/exact.h"
-#include "base/base.h"
-#include "base/thread_pool.h"
-#include "composite/over.h"
 #include "render/modes/depth.h"
+#include "render/picture.h"
 #include "splat/gather.h"
 #include "splat/perspective.h"
-#include "splat/splat.h"
 
 #include <string.h>
 
@@ -686,7 +682,6 @@ static void count_item(void *data, int64_t item, int number) {
  * outside of seconds_frame. */
 static snow_status count_classified(snow_exact *exact, const snow_job *job,
                                     int64_t *count) {
-    int64_t kept = 0;
     bool known =
         job->settings.method == SNOW_METHOD_TESTED && exact->bands == 1;
     if (!known) {
@@ -702,8 +697,7 @@ static snow_status count_classified(snow_exact *exact, const snow_job *job,
                                job->stored_slab.count, count_item, &work));
     }
     for (int n = 0; n < exact->threads; n++)
-        kept += exact->workers[n].kept;
-    *count = kept;
+        *count += exact->workers[n].kept;
     return SNOW_STATUS_OK;
 }
 
@@ -723,9 +717,7 @@ snow_status snow_exact_count(snow_exact *exact, const snow_job *job) {
         count_encoded(exact, stats);
     else
         SNOW_TRY(count_classified(exact, job, &stats->interesting));
-    double voxels = (double)stats->voxels;
-    stats->sparse_ratio =
-        voxels > 0 ? 1 - (double)stats->interesting / voxels : 1;
+    stats->sparse_ratio = 1; /* of no voxels; snow_job_finish has others' */
     return SNOW_STATUS_OK;
 }
 

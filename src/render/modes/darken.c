@@ -3,8 +3,6 @@
  * radii. */
 #include "render/modes/depth.h"
 
-#include "image/image.h"
-
 #include <math.h>
 
 /* Of the picture's short side: deviations of the two blurs, and the distance

@@ -2,7 +2,6 @@
  * back, with an eye on opacity alone. */
 #include "render/modes/depth.h"
 #include "base/vec3.h"
-#include "volume/volume.h"
 
 #include <string.h>
 

@@ -1,13 +1,7 @@
 /* render/modes/modes.c - from a job to a picture in a mode other than over: the
  * ramp, a local image of pairs by the picture's method, and what they mean. */
 #include "render/modes/modes.h"
-#include "base/thread_pool.h"
-#include "composite/over.h"
-#include "image/image.h"
 #include "render/job.h"
-#include "transfer/transfer.h"
-#include "transform/perspective.h"
-#include "volume/stream.h"
 
 #include <float.h>
 #include <math.h>
@@ -310,7 +304,6 @@ snow_status snow_modes_value_weight(snow_frame *frame, snow_job *job,
     pairs->channels = 2;
     pairs->settings.shade = SNOW_SHADE_NONE;
     pairs->settings.threshold = 0;
-    pairs->settings.deterministic = 0; /* of one part, by the scalar loops */
     if (job->settings.method != SNOW_METHOD_SHEAR_WARP &&
         pairs->settings.quality == SNOW_QUALITY_HIGH)
         pairs->settings.quality = SNOW_QUALITY_NORMAL;

@@ -5,13 +5,10 @@
  *            that slabs of a file and ranks change no bit
  *   fields   the means of cells, blurred at two radii
  *   pixels   the fields in front of where each one's depth lies */
-#include "base/thread_pool.h"
 #include "base/vec3.h"
 #include "classify/count_interesting.h"
-#include "image/image.h"
 #include "render/modes/depth.h"
 #include "render/picture.h"
-#include "volume/stream.h"
 
 #include <math.h>
 #include <string.h>

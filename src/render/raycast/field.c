@@ -2,6 +2,7 @@
 #include "render/raycast/field.h"
 
 #include "base/exp_log.h"
+#include "transfer/scale.h"
 #include "volume/clip_planes.h"
 
 #include <math.h>
@@ -22,6 +23,7 @@ snow_status snow_field_make(const snow_volume *volume,
         .steps = {1, dims[0], dims[0] * dims[1]},
         .taps = settings->kernel == SNOW_KERNEL_BSPLINE ? 4 : 2,
         .log = transfer->log && !modes,
+        .linear = modes ? 0 : transfer->linear,
         .infinite_is_hole = modes,
     };
     snow_volume_whole(volume, &whole);
@@ -52,6 +54,8 @@ static double field_value_of(const snow_field *field, double native) {
             return NAN;
         value = value > 0 ? field->most : field->least;
     }
+    if (field->linear > 0)
+        return snow_scale_place((snow_scale){false, field->linear}, value);
     if (!field->log)
         return value;
     return value > 0 ? snow_log2_rising(value) : NAN;
@@ -206,13 +210,26 @@ static double difference(double before, double here, double after) {
     return 0;
 }
 
-/* What differences are taken of. */
-typedef double side_fn(const snow_field_window *window, double label);
-
-static double side_value(const snow_field_window *w, double label) {
-    (void)label;
-    return snow_field_value(w);
+void snow_field_gradient(const snow_field *field, const double at[3],
+                         double here, snow_field_window sides[6],
+                         double gradient[3]) {
+    for (int axis = 0; axis < 3; axis++) {
+        double ends[2];
+        gradient[axis] = 0;
+        if (field->volume->info.dims[axis] == 1)
+            continue;
+        for (int n = 0; n < 2; n++) {
+            double there[3] = {at[0], at[1], at[2]};
+            there[axis] += n ? 1 : -1;
+            snow_field_window *side = &sides[2 * axis + n];
+            snow_field_place(field, there, side);
+            ends[n] = snow_field_value(side);
+        }
+        gradient[axis] = difference(ends[0], here, ends[1]);
+    }
 }
+
+/* --- labels --------------------------------------------------------------- */
 
 static double membership(const snow_field_window *w, double label) {
     const double *value = w->values;
@@ -225,32 +242,6 @@ static double membership(const snow_field_window *w, double label) {
                         w->weights[2][z] * w->weights[1][y] * w->weights[0][x];
     return sum;
 }
-
-static void gradient_of(const snow_field *field, const double at[3],
-                        double here, double label, side_fn *side,
-                        snow_field_window sides[6], double gradient[3]) {
-    for (int axis = 0; axis < 3; axis++) {
-        double ends[2];
-        gradient[axis] = 0;
-        if (field->volume->info.dims[axis] == 1)
-            continue;
-        for (int n = 0; n < 2; n++) {
-            double there[3] = {at[0], at[1], at[2]};
-            there[axis] += n ? 1 : -1;
-            snow_field_place(field, there, &sides[2 * axis + n]);
-            ends[n] = side(&sides[2 * axis + n], label);
-        }
-        gradient[axis] = difference(ends[0], here, ends[1]);
-    }
-}
-
-void snow_field_gradient(const snow_field *field, const double at[3],
-                         double here, snow_field_window sides[6],
-                         double gradient[3]) {
-    gradient_of(field, at, here, 0, side_value, sides, gradient);
-}
-
-/* --- labels --------------------------------------------------------------- */
 
 double snow_field_label(const snow_field *field, const double at[3],
                         const snow_field_window *w, bool nearest) {
@@ -281,8 +272,57 @@ double snow_field_label(const snow_field *field, const double at[3],
     return found;
 }
 
+/* Weights of the voxels around a place along an axis, and their slopes; zeros
+ * where there are none. */
+typedef struct label_taps {
+    int64_t at[SNOW_LABEL_TAPS];
+    double weight[SNOW_LABEL_TAPS], slope[SNOW_LABEL_TAPS];
+} label_taps;
+
+static void find_taps(const snow_field *field, int axis, double place,
+                      label_taps *taps) {
+    const int reach = SNOW_LABEL_TAPS / 2;
+    const double end = (double)field->volume->info.dims[axis] - 1;
+    place = end > 0 ? place : (double)field->stored[axis]; /* of one voxel */
+    double first = floor(place) - reach + 1;
+    for (int n = 0; n < SNOW_LABEL_TAPS; n++) {
+        double way = place - (first + n), x = fabs(way) / reach;
+        double at = first + n - (double)field->stored[axis];
+        const double there = at >= 0 && at <= end;
+        taps->at[n] = (int64_t)fmin(fmax(at, 0), end) * field->steps[axis];
+        taps->weight[n] = there * (1 - x * x * (3 - 2 * x)) / reach;
+        taps->slope[n] =
+            there * (way < 0 ? 6 : -6) * x * (1 - x) / (reach * reach);
+    }
+}
+
+static double voxel_of(const snow_field *field, int64_t at) {
+    double native;
+    snow_volume_stored(field->volume, at, 1, &native);
+    if (field->volume->clip && isnan(native))
+        native = snow_clip_planes_value(field->volume->clip, at);
+    return field_value_of(field, native);
+}
+
 void snow_field_label_gradient(const snow_field *field, const double at[3],
-                               double label, snow_field_window sides[6],
-                               double gradient[3]) {
-    gradient_of(field, at, 0, label, membership, sides, gradient);
+                               double label, double gradient[3]) {
+    label_taps taps[3];
+    for (int axis = 0; axis < 3; axis++) {
+        find_taps(field, axis, at[axis], &taps[axis]);
+        gradient[axis] = 0;
+    }
+    const label_taps *u = &taps[0], *v = &taps[1], *w = &taps[2];
+    for (int z = 0; z < SNOW_LABEL_TAPS; z++)
+        for (int y = 0; y < SNOW_LABEL_TAPS; y++)
+            for (int x = 0; x < SNOW_LABEL_TAPS; x++) {
+                if (voxel_of(field, u->at[x] + v->at[y] + w->at[z]) != label)
+                    continue;
+                gradient[0] += u->slope[x] * v->weight[y] * w->weight[z];
+                gradient[1] += u->weight[x] * v->slope[y] * w->weight[z];
+                gradient[2] += u->weight[x] * v->weight[y] * w->slope[z];
+            }
+    /* What cancels out but for rounding has no direction. */
+    for (int axis = 0; axis < 3; axis++)
+        if (fabs(gradient[axis]) < 1e-9)
+            gradient[axis] = 0;
 }

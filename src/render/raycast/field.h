@@ -31,6 +31,7 @@ typedef struct snow_field {
     int64_t steps[3];       /* from voxel to voxel */
     int taps;               /* 2: the tent, 4: the cubic B-spline */
     bool log;               /* values are binary logarithms */
+    double linear;          /* above 0: they are places on such a scale */
     bool infinite_is_hole;  /* else infinities are the finite ends: */
     double least, most;     /* data values */
     double low[3], high[3]; /* where it is defined */
@@ -80,9 +81,9 @@ void snow_field_gradient(const snow_field *field, const double at[3],
 double snow_field_label(const snow_field *field, const double at[3],
                         const snow_field_window *window, bool nearest);
 
-/* As snow_field_gradient, of how far positions belong to a label. */
+/* The gradient of a smooth membership, of voxels this many along each axis. */
+#define SNOW_LABEL_TAPS 6
 void snow_field_label_gradient(const snow_field *field, const double at[3],
-                               double label, snow_field_window sides[6],
-                               double gradient[3]);
+                               double label, double gradient[3]);
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "base/exp_log.h"
 #include "base/vec3.h"
+#include "transfer/scale.h"
 
 #include <math.h>
 
@@ -16,14 +17,19 @@
 typedef struct over_batch {
     float samples[4 * BATCH]; /* straight colours, and opacities of steps */
     double t[BATCH];
+    bool own[BATCH];  /* of the picture's volume, not of a layer */
+    int group[BATCH]; /* samples of one number are mixed */
     int count;
 } over_batch;
 
 /* The pixel so far; the last channel is its opacity. */
 typedef struct over_state {
     double pixel[4];
+    double opaque; /* of its volume alone, whose depth it has */
     float *depth;
     over_batch batch;
+    double mixed[4];   /* of the group that is gathered */
+    int group, mixing; /* of the next sample; of that */
 } over_state;
 
 void snow_raycast_see_look(snow_raycast_pass *pass) {
@@ -42,9 +48,10 @@ void snow_raycast_see_look(snow_raycast_pass *pass) {
         pass->visible[0] = points[first - 1].value;
     if (last < transfer->opacity_count)
         pass->visible[1] = points[last].value;
-    for (int n = 0; n < 2 && pass->field.log; n++)
+    const snow_scale scale = {pass->field.log, pass->field.linear};
+    for (int n = 0; n < 2 && (scale.log || scale.linear > 0); n++)
         if (isfinite(pass->visible[n]))
-            pass->visible[n] = snow_log2_rising(pass->visible[n]);
+            pass->visible[n] = snow_scale_place(scale, pass->visible[n]);
 }
 
 /* --- compositing ---------------------------------------------------------- */
@@ -58,16 +65,32 @@ static void note_depth(const snow_raycast_pass *pass, const snow_ray *ray,
     *depth = snow_raycast_depth(pass, ray, t + (share - 0.5) * ray->step);
 }
 
-static void composite(const snow_raycast_pass *pass, const snow_ray *ray,
-                      over_state *state, const float *sample, double t) {
-    int last = pass->job->channels - 1;
-    double before = state->pixel[last], alpha = (double)sample[last];
-    double through = 1 - before;
+/* The group that is gathered. */
+static void composite(int last, over_state *state) {
+    const double through = 1 - state->pixel[last];
+    for (int c = 0; c <= last; c++) {
+        state->pixel[c] += through * state->mixed[c];
+        state->mixed[c] = 0;
+    }
+}
+
+/* Colours of samples in one place add up, of opacities the largest counts. */
+static void gather(const snow_raycast_pass *pass, const snow_ray *ray,
+                   over_state *state, int n) {
+    const int last = pass->job->channels - 1;
+    const float *sample = state->batch.samples + n * (last + 1);
+    const double before = state->opaque, alpha = (double)sample[last];
+    if (state->batch.group[n] != state->mixing)
+        composite(last, state);
+    state->mixing = state->batch.group[n];
     for (int c = 0; c < last; c++)
-        state->pixel[c] += through * (double)sample[c];
-    state->pixel[last] += through * alpha;
-    if (state->depth && before < 0.5 && state->pixel[last] >= 0.5)
-        note_depth(pass, ray, before, alpha, t, state->depth);
+        state->mixed[c] += (double)sample[c];
+    state->mixed[last] = fmax(state->mixed[last], alpha);
+    if (!state->batch.own[n])
+        return;
+    state->opaque += (1 - before) * alpha;
+    if (state->depth && before < 0.5 && state->opaque >= 0.5)
+        note_depth(pass, ray, before, alpha, state->batch.t[n], state->depth);
 }
 
 static void multiply_colors(int channels, over_batch *batch) {
@@ -89,7 +112,7 @@ static void flush(const snow_raycast_pass *pass, const snow_ray *ray,
     else
         multiply_colors(channels, batch);
     for (int n = 0; n < batch->count; n++)
-        composite(pass, ray, state, batch->samples + n * channels, batch->t[n]);
+        gather(pass, ray, state, n);
     batch->count = 0;
 }
 
@@ -105,17 +128,9 @@ static double gradient_factor(const snow_raycast_pass *pass, double data,
     double magnitude = sqrt(fmax(square, 0));
     if (pass->field.log)
         magnitude *= 0.69314718055994530942 * data;
+    if (pass->field.linear > 0)
+        magnitude *= fmax(fabs(data), pass->field.linear);
     return snow_transfer_evaluate_gradient(pass->transfer, magnitude);
-}
-
-static void find_gradient(const snow_raycast_pass *pass, const double at[3],
-                          double value, snow_raycast_eye *eye,
-                          double gradient[3]) {
-    if (pass->labels)
-        snow_field_label_gradient(&pass->field, at, value, eye->sides,
-                                  gradient);
-    else
-        snow_field_gradient(&pass->field, at, value, eye->sides, gradient);
 }
 
 /* The opacity of a reference length at a position, 0 where it is not
@@ -127,8 +142,10 @@ static double find_opacity(const snow_raycast_pass *pass, const double at[3],
     double opacity = snow_transfer_opacity(pass->transfer, data);
     if (!snow_is_interesting(opacity, threshold))
         return 0;
-    if (pass->shaded || pass->gradient_factors)
-        find_gradient(pass, at, value, eye, gradient);
+    if (pass->labels && (pass->shaded || pass->gradient_factors))
+        snow_field_label_gradient(&pass->field, at, value, gradient);
+    else if (pass->shaded || pass->gradient_factors)
+        snow_field_gradient(&pass->field, at, value, eye->sides, gradient);
     if (pass->gradient_factors)
         opacity *= gradient_factor(pass, data, gradient);
     return snow_is_interesting(opacity, threshold) ? opacity : 0;
@@ -137,12 +154,15 @@ static double find_opacity(const snow_raycast_pass *pass, const double at[3],
 /* Adds a sample to the batch. */
 static void add_sample(const snow_raycast_pass *pass, const snow_ray *ray,
                        double t, const double at[3], double value,
-                       snow_raycast_eye *eye, over_state *state) {
+                       snow_raycast_eye *own, snow_raycast_eye *eye,
+                       over_state *state) {
     over_batch *batch = &state->batch;
     int n = batch->count, channels = pass->job->channels;
-    double data = pass->field.log ? snow_exp2(value) : value;
+    const snow_scale scale = {pass->field.log, pass->field.linear};
+    double data =
+        scale.log || scale.linear > 0 ? snow_scale_value(scale, value) : value;
     double gradient[3] = {0, 0, 0}, rgb[3];
-    double opacity = find_opacity(pass, at, value, data, eye, gradient);
+    double opacity = find_opacity(pass, at, value, data, own, gradient);
     if (opacity == 0)
         return;
     snow_transfer_color(pass->transfer, data, rgb);
@@ -154,6 +174,8 @@ static void add_sample(const snow_raycast_pass *pass, const snow_ray *ray,
     for (int axis = 0; axis < 3; axis++)
         eye->gradients[axis][n] = gradient[axis];
     batch->t[n] = t;
+    batch->own[n] = own == eye;
+    batch->group[n] = state->group;
     batch->count++;
 }
 
@@ -163,6 +185,24 @@ static bool is_visible(const snow_raycast_pass *pass,
            window->most >= pass->visible[0];
 }
 
+/* A step of a ray in a layer; false: nothing is seen between these voxels. */
+static bool step(const snow_raycast_pass *pass, const snow_raycast_pass *base,
+                 const snow_ray *ray, double t, const double at[3],
+                 snow_raycast_eye *own, snow_raycast_eye *eye,
+                 over_state *state) {
+    snow_field_place(&pass->field, at, &own->near);
+    if (!is_visible(pass, &own->near))
+        return false;
+    double value = pass->labels ? snow_field_label(&pass->field, at, &own->near,
+                                                   pass->nearest)
+                                : snow_field_value(&own->near);
+    if (!isnan(value))
+        add_sample(pass, ray, t, at, value, own, eye, state);
+    if (state->batch.count == BATCH)
+        flush(base, ray, eye, state);
+    return true;
+}
+
 void snow_raycast_over(const snow_raycast_pass *pass, const snow_ray *ray,
                        snow_raycast_eye *eye, float *pixel, float *depth) {
     over_state state = {.depth = depth};
@@ -170,26 +210,24 @@ void snow_raycast_over(const snow_raycast_pass *pass, const snow_ray *ray,
     int64_t skip = 1;
     for (int64_t i = 0; i < ray->steps; i += skip) {
         double t = ray->enter + ((double)i + 0.5) * ray->step, at[3];
+        bool seen = false;
         snow_ray_at(ray, t, at);
-        snow_field_place(&pass->field, at, &eye->near);
-        skip = 1;
-        if (!is_visible(pass, &eye->near)) {
-            skip = snow_ray_skip(ray, at);
-            continue;
+        for (int n = pass->layer_count - 1; n >= 0; n--) {
+            seen |= step(&pass->layers[n], pass, ray, t, at, &eye->layers[n],
+                         eye, &state);
+            state.group += !pass->layers[n].mixes;
         }
-        double value =
-            pass->labels
-                ? snow_field_label(&pass->field, at, &eye->near, pass->nearest)
-                : snow_field_value(&eye->near);
-        if (!isnan(value))
-            add_sample(pass, ray, t, at, value, eye, &state);
-        if (state.batch.count < BATCH)
-            continue;
-        flush(pass, ray, eye, &state);
-        if (state.pixel[channels - 1] > 1 - CLOSED)
+        seen |= step(pass, pass, ray, t, at, eye, eye, &state);
+        state.group++;
+        skip = seen ? 1 : snow_ray_skip(ray, at);
+        if (state.pixel[channels - 1] > 1 - CLOSED &&
+            (!depth || state.opaque >= 0.5))
             break;
     }
     flush(pass, ray, eye, &state);
+    composite(channels - 1, &state);
+    const double most =
+        pass->layer_count ? state.pixel[channels - 1] : INFINITY;
     for (int c = 0; c < channels; c++)
-        pixel[c] = (float)state.pixel[c];
+        pixel[c] = (float)fmin(state.pixel[c], most);
 }

@@ -2,7 +2,6 @@
  * method as figure 8 knows it. */
 #include "render/raycast/raycast.h"
 
-#include "base/thread_pool.h"
 #include "base/vec3.h"
 #include "classify/count_interesting.h"
 #include "render/modes/depth.h"
@@ -153,9 +152,12 @@ static void cast_line(void *of, int64_t y, int worker) {
     const snow_job *job = pass->job;
     size_t width = (size_t)job->view->width, line = (size_t)y * width;
     size_t channels = (size_t)job->channels;
-    snow_raycast_eye eye;
+    snow_raycast_eye eye, layers[SNOW_INLAYS_MOST];
     memset(&eye, 0, sizeof eye);
+    for (int n = 0; n < pass->layer_count; n++)
+        memset(&layers[n], 0, sizeof *layers);
     eye.shader = pass->shader;
+    eye.layers = layers;
     for (size_t x = 0; x < width; x++) {
         float *pixel = job->pixels + (line + x) * channels;
         float *depth = job->depths ? job->depths + line + x : NULL;
@@ -230,36 +232,50 @@ static void set_depth(snow_raycast_pass *pass) {
     pass->depth[3] = of[3];
 }
 
-static snow_status prepare(const snow_picture *p, const snow_job *job,
-                           snow_raycast_pass *pass) {
+/* What is a volume's own. */
+static snow_status prepare_field(const snow_picture *p, const snow_job *job,
+                                 const snow_volume *volume,
+                                 const snow_transfer *transfer,
+                                 snow_raycast_pass *pass) {
     const snow_settings *s = &p->job.settings;
     bool over = s->mode == SNOW_MODE_OVER;
     *pass = (snow_raycast_pass){
         .job = job,
-        .transfer = p->job.transfer,
+        .transfer = transfer,
         .shaded = s->shade == SNOW_SHADE_PHONG,
         .gradient_factors =
-            over && snow_transfer_has_gradient_opacity(p->job.transfer),
-        .labels = over && snow_transfer_has_labels(p->job.transfer,
-                                                   job->volume->info.type),
+            over && snow_transfer_has_gradient_opacity(transfer),
+        .labels = over && snow_transfer_has_labels(transfer, &volume->info),
         .nearest = s->quality == SNOW_QUALITY_DRAFT,
-        .step = longest_step(&job->volume->info, s->quality),
+        .step = longest_step(&volume->info, s->quality),
     };
-    SNOW_TRY(
-        snow_field_make(job->volume, p->job.transfer, s, !over, &pass->field));
-    SNOW_TRY(snow_shader_init(job->context, job->volume, &job->placement, s,
+    SNOW_TRY(snow_field_make(volume, transfer, s, !over, &pass->field));
+    SNOW_TRY(snow_shader_init(job->context, volume, &job->placement, s,
                               &pass->shader));
     set_colors(pass);
-    set_part(pass);
-    set_depth(pass);
     choose_cast(p, pass);
     return SNOW_STATUS_OK;
 }
 
+static snow_status prepare(const snow_picture *p, const snow_job *job,
+                           snow_raycast_pass *pass, snow_raycast_pass *layers) {
+    SNOW_TRY(prepare_field(p, job, job->volume, p->job.transfer, pass));
+    for (int n = 0; n < job->layer_count; n++) {
+        SNOW_TRY(prepare_field(p, job, job->layers[n].volume,
+                               job->layers[n].transfer, &layers[n]));
+        layers[n].mixes = job->layers[n].mixes;
+    }
+    pass->layers = layers;
+    pass->layer_count = job->layer_count;
+    set_part(pass);
+    set_depth(pass);
+    return SNOW_STATUS_OK;
+}
+
 static snow_status cast_rays(snow_picture *p, snow_job *job) {
-    snow_raycast_pass pass;
+    snow_raycast_pass pass, layers[SNOW_INLAYS_MOST];
     double mark = snow_seconds();
-    SNOW_TRY(prepare(p, job, &pass));
+    SNOW_TRY(prepare(p, job, &pass, layers));
     snow_monitor_next(job->context->monitor, SNOW_STAGE_RENDER, 0, 1);
     SNOW_TRY(snow_parallel(job->context, job->settings.threads,
                            job->view->height, cast_line, &pass));

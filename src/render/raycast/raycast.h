@@ -40,6 +40,7 @@ typedef struct snow_raycast_eye {
     snow_field_window near, sides[6];
     snow_shader shader; /* of the present ray */
     double gradients[3][SNOW_SHADE_BLOCK];
+    struct snow_raycast_eye *layers; /* windows of these */
 } snow_raycast_eye;
 
 /* A ray becomes a pixel of the local image, which holds zeros; *depth, NULL
@@ -64,6 +65,10 @@ struct snow_raycast_pass {
     /* Of iso. */
     double level;
     float rgb[3];
+    /* Layers drawn with it, of mode over. */
+    struct snow_raycast_pass *layers;
+    int layer_count;
+    bool mixes; /* as a layer: with the one before it */
     /* Of the other modes: a value's number is (value - from) / range. */
     double from, range;
 };

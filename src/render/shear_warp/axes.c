@@ -55,8 +55,8 @@ uint64_t snow_value_axes_most(const snow_volume *volume) {
 static bool has_room(const snow_value_path *path, const snow_volume *volume,
                      uint64_t bytes) {
     const snow_context *context = path->context;
-    return snow_value_axes_bytes(path) + snow_value_store_bytes(&path->store) +
-                   bytes <=
+    return snow_value_axes_bytes(path) +
+                   snow_value_store_bytes(&path->made.store) + bytes <=
                snow_value_axes_most(volume) &&
            (!context->limit ||
             context->bytes + bytes + size_of(volume) <= context->limit);
@@ -66,12 +66,13 @@ void snow_value_change_axis(snow_value_path *path,
                             const snow_value_params *params) {
     snow_value_encoding *kept = path->axes.kept;
     const uint64_t generation = params->volume->generation;
-    const int axis = params->placement->slice_axis, here = path->key.slice_axis;
+    const int axis = params->placement->slice_axis,
+              here = path->made.key.slice_axis;
     snow_value_order order;
     for (int n = 0; n < 3; n++)
         if (kept[n].key.generation != generation)
             forget(&kept[n]);
-    if (path->key.generation != generation || here == axis ||
+    if (path->made.key.generation != generation || here == axis ||
         params->volume->is_part)
         return;
     bool known = kept[axis].key.generation != 0;
@@ -84,9 +85,9 @@ void snow_value_change_axis(snow_value_path *path,
             forget(&kept[n]);
     if (!known && !has_room(path, params->volume, bytes))
         return; /* it is encoded in the place of the other */
-    snow_value_put_away(path, &kept[here]);
+    snow_value_move(&kept[here], &path->made);
     if (known)
-        snow_value_take_out(path, &kept[axis]);
+        snow_value_move(&path->made, &kept[axis]);
 }
 
 /* --- ahead ---------------------------------------------------------------- */
@@ -169,7 +170,7 @@ void snow_value_prepare_axis(snow_value_path *path,
     memcpy(axes->camera[2], p->back, sizeof p->back);
     axes->camera_of = generation;
     if (!turns || params->shared || params->volume->is_part ||
-        path->lattice.perspective || path->key.generation != generation)
+        path->lattice.perspective || path->made.key.generation != generation)
         return;
     snow_placement next;
     snow_value_order order;
@@ -182,8 +183,7 @@ void snow_value_prepare_axis(snow_value_path *path,
         return;
     snow_value_encoding *kept = &axes->kept[next.slice_axis];
     /* The first time it asks for memory, which takes long enough. */
-    const bool first = !snow_value_fits_key(path, &kept->key, &kept->store,
-                                            &ahead, generation);
+    const bool first = !snow_value_fits_key(path, kept, &ahead, generation);
     if ((first && !begin(path, &ahead, &order, kept)) ||
         ((!first || pictures == 1) && !go_on(&order, pictures, kept)))
         forget(kept);

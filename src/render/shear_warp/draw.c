@@ -1,10 +1,7 @@
 /* render/shear_warp/draw.c - lines 07 to 13: the tiles of the image on the
  * lattice.
  */
-#include "base/thread_pool.h"
-#include "classify/classify.h"
-#include "classify/gradient_opacity.h"
-#include "render/shear_warp/internal.h"
+#include "render/shear_warp/layers.h"
 #include "volume/clip_planes.h"
 
 #include <math.h>
@@ -80,6 +77,8 @@ static snow_status place_fade(const snow_value_params *params,
                               snow_value_path *path) {
     const snow_value_scale14 *scale = &path->table.made.scale;
     const size_t count = params->transfer->gradient_count;
+    /* A label's gradient is that of its membership, 0 to 1. */
+    const double range = path->has_labels ? 1 : scale->high - scale->low;
     double inverse[3][3];
     if (!count)
         return SNOW_STATUS_OK;
@@ -89,14 +88,13 @@ static snow_status place_fade(const snow_value_params *params,
     path->curve = (snow_transfer){.gradients = path->curve_points,
                                   .gradient_count = count};
     snow_matrix_invert3(params->volume->info.matrix, inverse);
-    path->fade =
-        (snow_value_fade){.transfer = &path->curve,
-                          .scale = scale,
-                          .log = scale->log && !path->has_labels,
-                          .share = (float)(path->lattice.path /
-                                           params->settings->opacity_length)};
-    measure(inverse, params->placement,
-            (scale->high - scale->low) / SNOW_VALUE_MOST / 2,
+    path->fade = (snow_value_fade){
+        .transfer = &path->curve,
+        .scale = scale,
+        .log = (scale->log || scale->linear > 0) && !path->has_labels,
+        .share =
+            (float)(path->lattice.path / params->settings->opacity_length)};
+    measure(inverse, params->placement, range / SNOW_VALUE_MOST / 2,
             path->fade.metric);
     return SNOW_STATUS_OK;
 }
@@ -152,7 +150,7 @@ static void describe(snow_value_drawing *job) {
     bool fades =
         !surface && snow_transfer_has_gradient_opacity(params->transfer);
     job->splat =
-        (snow_value_splat){.store = &path->store,
+        (snow_value_splat){.store = &path->made.store,
                            .table = &path->table,
                            .light = shaded ? &path->light : NULL,
                            .fade = fades ? &path->fade : NULL,
@@ -185,7 +183,10 @@ static void describe(snow_value_drawing *job) {
                                  shaded || fades, l->perspective)
             : snow_value_projection_of(params->settings->isa,
                                        job->splat.reduction, l->perspective);
-    job->scratch_bytes = snow_value_splat_bytes(&job->splat);
+    job->splat.floats = path->table.faint || path->layer_count ||
+                        job->splat.reduction == SNOW_VALUE_SUM;
+    job->scratch_bytes = snow_value_splat_bytes(&job->splat) +
+                         snow_value_stack_bytes(path, &job->splat);
     if (params->settings->deterministic)
         job->scratch_bytes += snow_value_node_floats(job) * sizeof(float);
     job->scratch_bytes = snow_align(job->scratch_bytes);
@@ -256,7 +257,7 @@ static void load_phase(const snow_value_drawing *job, void *planes, int phase,
         for (int n = 1; n <= SNOW_VALUE_COLUMNS; n++, from += step)
             for (int c = 0; c < channels; c++) {
                 int to = c == channels - 1 ? 3 : c;
-                if (job->splat.table->faint)
+                if (job->splat.floats)
                     (*floats)[to][r][n] = from[c];
                 else
                     (*plane)[to][r][n] = (int16_t)(from[c] * 32767 + 0.5F);
@@ -282,7 +283,11 @@ static void draw_tile(void *of, int64_t item, int worker) {
         memset(room, 0, snow_value_planes_bytes(&splat));
     for (int phase = 0; splat.resumes && phase < l->phases; phase++)
         load_phase(job, room, phase, column, row);
-    bool drawn = within && job->tile(&splat, x, y, room);
+    bool drawn =
+        within &&
+        (job->path->layer_count
+             ? snow_value_draw_stack(job, NULL, splat.resumes, x, y, room)
+             : job->tile(&splat, x, y, room));
     if (!drawn && (!image->drawn[item] || behind))
         return;
     image->drawn[item] = drawn;
@@ -326,16 +331,17 @@ static void draw_layers(void *of, int64_t item, int worker) {
     const snow_value_drawing *job = of;
     char *room = job->path->scratch + (size_t)worker * job->scratch_bytes;
     float *pixels =
-        (float *)(void *)(room + snow_value_splat_bytes(&job->splat));
+        (float *)(void *)(room + snow_value_splat_bytes(&job->splat) +
+                          snow_value_stack_bytes(job->path, &job->splat));
     for (int n = 0; n < job->path->image->grid.layers; n++)
         draw_layer(job, n, item, room, pixels);
 }
 
 /* --- a picture ------------------------------------------------------------ */
 
-/* Sheets, light and memory of the tiles. */
-static snow_status place_drawing(snow_value_path *path,
-                                 const snow_value_params *params) {
+/* Sheets and light. */
+snow_status snow_value_place_drawing(snow_value_path *path,
+                                     const snow_value_params *params) {
     const snow_settings *settings = params->settings;
     snow_value_drawing *job = &path->drawing;
     *job = (snow_value_drawing){.path = path, .params = *params};
@@ -347,34 +353,27 @@ static snow_status place_drawing(snow_value_path *path,
     describe(job);
     if (!settings->deterministic)
         job->splat = snow_value_splat_of(job, params->slab);
-    return SNOW_RESERVE(path->context, path->scratch, 0,
-                        job->scratch_bytes * (size_t)settings->threads);
+    return SNOW_STATUS_OK;
 }
 
 static snow_work_fn *work_of(const snow_value_params *params) {
     return params->settings->deterministic ? draw_layers : draw_tile;
 }
 
-snow_status snow_value_draw(snow_value_path *path,
-                            const snow_value_params *params, snow_stats *stats,
-                            snow_shear_warp_image *out) {
+/* All of it. */
+static snow_status draw_whole(snow_value_path *path,
+                              const snow_value_params *params,
+                              snow_stats *stats) {
     double mark = snow_seconds();
-    *out = (snow_shear_warp_image){.channels = params->channels, .layers = 1};
-    if (!snow_value_shows(path))
-        return SNOW_STATUS_OK;
-    SNOW_TRY(place_drawing(path, params));
-    SNOW_TRY(snow_value_describe_image(path, params, out));
-    snow_monitor_next(path->context->monitor, SNOW_STAGE_RENDER, 0, 0.9);
     SNOW_TRY(snow_parallel(path->context, params->settings->threads,
                            (int64_t)snow_value_tiles(path->image),
                            work_of(params), &path->drawing));
     snow_value_end_image(path->image);
-    stats->seconds_splat += snow_seconds() - mark;
-    mark = snow_seconds();
+    snow_lap(&mark, &stats->seconds_splat);
     snow_value_prepare_axis(path, params);
     stats->kept_bytes = snow_value_axes_bytes(path);
     stats->kept_most = snow_value_axes_most(params->volume);
-    stats->seconds_encode += snow_seconds() - mark;
+    snow_lap(&mark, &stats->seconds_encode);
     return SNOW_STATUS_OK;
 }
 
@@ -383,17 +382,9 @@ static void end_drawing(void *of) {
     snow_value_end_image(job->path->image);
 }
 
-snow_status snow_value_draw_ahead(snow_value_path *path,
-                                  const snow_value_params *params,
-                                  snow_stats *stats, snow_shear_warp_image *out,
-                                  snow_line_batch **batch) {
-    double mark = snow_seconds();
-    *out = (snow_shear_warp_image){.channels = params->channels, .layers = 1};
-    *batch = NULL;
-    if (!snow_value_shows(path))
-        return SNOW_STATUS_OK;
-    SNOW_TRY(place_drawing(path, params));
-    SNOW_TRY(snow_value_describe_image(path, params, out));
+/* Left to be drawn. */
+static snow_status begin_batch(snow_value_path *path,
+                               const snow_value_params *params) {
     const snow_value_grid *grid = &path->image->grid;
     const snow_line_batch_params order = {.lines = grid->tiles[1],
                                           .width = grid->tiles[0],
@@ -403,11 +394,29 @@ snow_status snow_value_draw_ahead(snow_value_path *path,
                                           .draw = work_of(params),
                                           .made = end_drawing,
                                           .job = &path->drawing};
+    return snow_line_batch_begin(path->context, &path->batch, &order);
+}
+
+snow_status snow_value_draw(snow_value_path *path,
+                            const snow_value_params *params, snow_stats *stats,
+                            snow_shear_warp_image *out,
+                            snow_line_batch **batch) {
+    double mark = snow_seconds();
+    *out = (snow_shear_warp_image){.channels = params->channels, .layers = 1};
+    if (!snow_value_shows(path))
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_value_place_drawing(path, params));
+    SNOW_TRY(SNOW_RESERVE(path->context, path->scratch, 0,
+                          path->drawing.scratch_bytes *
+                              (size_t)params->settings->threads));
+    SNOW_TRY(snow_value_describe_image(path, params, out));
     snow_monitor_next(path->context->monitor, SNOW_STAGE_RENDER, 0, 0.9);
-    SNOW_TRY(snow_line_batch_begin(path->context, &path->batch, &order));
-    *batch = &path->batch;
-    stats->seconds_splat += snow_seconds() - mark;
-    return SNOW_STATUS_OK;
+    if (batch) {
+        SNOW_TRY(begin_batch(path, params));
+        *batch = &path->batch;
+    }
+    snow_lap(&mark, &stats->seconds_splat);
+    return batch ? SNOW_STATUS_OK : draw_whole(path, params, stats);
 }
 
 snow_status snow_value_display(snow_value_path *path,

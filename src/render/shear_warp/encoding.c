@@ -1,6 +1,6 @@
 /* render/shear_warp/encoding.c - line 06 of shear-warp: what the encoding is
  * of, and when it serves another picture. */
-#include "render/shear_warp/internal.h"
+#include "render/shear_warp/layers.h"
 
 #include "classify/count_interesting.h"
 #include "classify/gradient_opacity.h"
@@ -82,6 +82,12 @@ static bool same_key(const snow_value_key *a, const snow_value_key *b) {
            a->encoding == b->encoding;
 }
 
+/* Whether its voxels may go before the picture is drawn: the caller's, which no
+ * picture of many ranks can hold. */
+static bool is_left(const snow_value_params *params) {
+    return params->shared && !params->volume->owned;
+}
+
 snow_value_key snow_value_key_of(const snow_value_path *path,
                                  const snow_value_params *params,
                                  uint64_t generation) {
@@ -93,20 +99,21 @@ snow_value_key snow_value_key_of(const snow_value_path *path,
                             .encoding = params->settings->encoding};
 }
 
-bool snow_value_fits_key(const snow_value_path *path, const snow_value_key *has,
-                         const snow_value_store *store,
+bool snow_value_fits_key(const snow_value_path *path,
+                         const snow_value_encoding *has,
                          const snow_value_params *params, uint64_t generation) {
     const snow_value_key key = snow_value_key_of(path, params, generation);
-    return same_key(has, &key) && !(params->shared && store->in_place) &&
-           store->reach >= find_reach(path, params) &&
-           shows_no_more(&path->table, store);
+    return same_key(&has->key, &key) &&
+           !(is_left(params) && has->store.in_place) &&
+           has->store.reach >= find_reach(path, params) &&
+           shows_no_more(&path->table, &has->store);
 }
 
-bool snow_value_serves(const snow_value_path *path, const snow_value_key *has,
-                       const snow_value_store *store,
+bool snow_value_serves(const snow_value_path *path,
+                       const snow_value_encoding *has,
                        const snow_value_params *params, uint64_t generation) {
-    return snow_value_fits_key(path, has, store, params, generation) &&
-           !snow_value_store_left(store);
+    return snow_value_fits_key(path, has, params, generation) &&
+           !snow_value_store_left(&has->store);
 }
 
 /* The ranges of interesting stored values; 0: none can be counted. */
@@ -149,7 +156,7 @@ snow_status snow_value_order_make(snow_value_path *path,
         .encoding = s->encoding,
         .isa = s->isa,
         .threads = s->threads,
-        .copied = params->shared,
+        .copied = is_left(params),
         .seen = out->seen};
     if (snow_value_store_by_stored(&out->params))
         out->params.seen_count = find_seen(path, params, out->seen);
@@ -160,14 +167,14 @@ snow_status snow_value_order_make(snow_value_path *path,
 static snow_status count_interesting(snow_value_path *path,
                                      const snow_value_params *params) {
     const snow_settings *s = params->settings;
-    const snow_value_store *store = &path->store;
-    path->interesting = 0;
+    const snow_value_store *store = &path->made.store;
+    path->made.interesting = 0;
     for (int64_t n = 0; store->counted_ranges && n < store->band_count; n++)
-        path->interesting += store->seen[n];
+        path->made.interesting += store->seen[n];
     if (store->counted_ranges)
         return SNOW_STATUS_OK;
     return snow_count_interesting(params->volume, params->counted, s->threshold,
-                                  s->isa, &path->interesting);
+                                  s->isa, &path->made.interesting);
 }
 
 /* What is left of an encoding that serves; else all of it. */
@@ -175,15 +182,16 @@ static snow_status encode_anew(snow_value_path *path,
                                const snow_value_params *params,
                                const snow_value_key *key) {
     snow_value_order order;
+    snow_value_store *store = &path->made.store;
     SNOW_TRY(snow_value_order_make(path, params, path->wavers, &order));
-    bool begun = snow_value_fits_key(path, &path->key, &path->store, params,
-                                     key->generation);
-    path->key.generation = 0;
-    SNOW_TRY(begun ? snow_value_store_go_on(&path->store, &order.params,
-                                            snow_value_store_left(&path->store))
-                   : snow_value_store_encode(&path->store, &order.params));
+    bool begun =
+        snow_value_fits_key(path, &path->made, params, key->generation);
+    path->made.key.generation = 0;
+    SNOW_TRY(begun ? snow_value_store_go_on(store, &order.params,
+                                            snow_value_store_left(store))
+                   : snow_value_store_encode(store, &order.params));
     SNOW_TRY(count_interesting(path, params));
-    path->key = *key;
+    path->made.key = *key;
     return SNOW_STATUS_OK;
 }
 
@@ -191,27 +199,27 @@ static snow_status encode_anew(snow_value_path *path,
 static snow_status encode_part(snow_value_path *path,
                                const snow_value_params *params,
                                const snow_value_key *key) {
-    path->wavers =
-        same_key(&path->key, key) ||
-        (path->wavers && snow_value_same_scale(&path->key.scale, &key->scale));
+    path->wavers = same_key(&path->made.key, key) ||
+                   (path->wavers &&
+                    snow_value_same_scale(&path->made.key.scale, &key->scale));
     snow_status status = encode_anew(path, params, key);
     return snow_value_lacks_room(path, status) ? encode_anew(path, params, key)
                                                : status;
 }
 
 void snow_value_forget(snow_value_path *path) {
-    path->key.generation = 0;
-    snow_value_store_fini(&path->store);
+    path->made.key.generation = 0;
+    snow_value_store_fini(&path->made.store);
     snow_value_forget_axes(path);
 }
 
 /* Among ranks, of a part's own slices: neighbours count theirs. */
 static void count_bytes(const snow_value_path *path,
                         const snow_value_params *params, snow_stats *stats) {
-    uint64_t ea = path->store.ea_bytes, ia = path->store.ia_bytes;
-    uint64_t pa = path->store.pa_bytes;
+    const snow_value_store *store = &path->made.store;
+    uint64_t ea = store->ea_bytes, ia = store->ia_bytes, pa = store->pa_bytes;
     if (params->shared && params->slab.count)
-        snow_value_store_count(&path->store,
+        snow_value_store_count(store,
                                params->slab.first - params->clip->stored[2],
                                params->slab.count, &ea, &ia, &pa);
     stats->ea_bytes += ea;
@@ -224,22 +232,21 @@ snow_status snow_value_encode(snow_value_path *path,
                               snow_stats *stats) {
     const uint64_t generation = params->volume->generation;
     double mark = snow_seconds();
-    if (path->range.low > path->range.high)
+    if (!snow_value_has_values(path))
         return SNOW_STATUS_OK;
     snow_value_take_kept(path, params->volume);
-    if (!snow_value_serves(path, &path->key, &path->store, params, generation))
+    if (!snow_value_serves(path, &path->made, params, generation))
         snow_value_change_axis(path, params);
-    if (!snow_value_serves(path, &path->key, &path->store, params,
-                           generation)) {
+    if (!snow_value_serves(path, &path->made, params, generation)) {
         const snow_value_key key = snow_value_key_of(path, params, generation);
         SNOW_TRY(encode_part(path, params, &key));
         stats->encoded = 1;
     }
-    if (path->interesting < 0)
+    if (path->made.interesting < 0)
         SNOW_TRY(count_interesting(path, params));
     stats->seconds_encode += snow_seconds() - mark;
-    stats->encoding = path->store.encoding;
-    stats->interesting = path->interesting;
+    stats->encoding = path->made.store.encoding;
+    stats->interesting = path->made.interesting;
     count_bytes(path, params, stats);
     return SNOW_STATUS_OK;
 }

@@ -1,9 +1,6 @@
 /* render/shear_warp/eye_rays.c - the rays of the lattice's samples in
  * perspective.
  */
-#include "base/thread_pool.h"
-#include "base/vec3.h"
-#include "classify/classify.h"
 #include "render/shear_warp/internal.h"
 
 #include <math.h>
@@ -23,7 +20,7 @@ static void place_lanes(void *of, int64_t item, int worker) {
     path->spreads[item] = snow_value_eye_spread(&path->lattice, sheet);
     for (int axis = 0; axis < 2; axis++)
         snow_value_eye_lanes(&path->lattice, sheet, axis, rays->tiles[axis],
-                             rays->stored[axis], path->store.margin,
+                             rays->stored[axis], path->made.store.margin,
                              path->lanes[axis] +
                                  (size_t)item * job->lanes[axis]);
 }

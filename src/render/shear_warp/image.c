@@ -1,6 +1,6 @@
 /* render/shear_warp/image.c - the image on the lattice: its memory, which is
  * kept from picture to picture, and what others see of it. */
-#include "render/shear_warp/internal.h"
+#include "render/shear_warp/layers.h"
 
 #include <string.h>
 
@@ -8,7 +8,10 @@
 #define BLOCK 16
 
 bool snow_value_shows(const snow_value_path *path) {
-    return !path->lattice.empty && path->range.low <= path->range.high;
+    bool values = snow_value_has_values(path);
+    for (int n = 0; n < path->layer_count; n++)
+        values |= snow_value_has_values(path->layers[n]);
+    return !path->lattice.empty && values;
 }
 
 /* Blocks along a side of a quincunx. */
@@ -100,10 +103,12 @@ snow_status snow_value_reserve_image(snow_value_path *path,
     size_t tiles = (size_t)grid.tiles[0] * (size_t)grid.tiles[1] * planes;
     SNOW_TRY(
         SNOW_RESERVE(path->context, image->drawn, keep ? tiles : 0, tiles));
-    if (!keep) {
+    /* What is shared is cleared where it is asked for, but for tiles that
+     * blocks of a quincunx have parts of. */
+    if (!keep && (!grid.shared || grid.quincunx))
         memset(image->plane, 0, planes * bytes);
+    if (!keep)
         memset(image->drawn, 0, tiles);
-    }
     image->grid = grid;
     return SNOW_STATUS_OK;
 }

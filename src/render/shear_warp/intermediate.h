@@ -26,10 +26,8 @@ typedef struct snow_shear_warp_image {
 void snow_shear_warp_clear(const snow_shear_warp_image *image, int layer,
                            int x0, int y0, int x1, int y1);
 
-/* Makes all of an image's first layer empty, for lines that others made: */
-void snow_shear_warp_empty(const snow_shear_warp_image *image);
-
-/* puts `count` packed lines from `first` on in their places. */
+/* Puts `count` packed lines from `first` on, which others made, in their places
+ * in an image's first layer. */
 void snow_shear_warp_put_lines(const snow_shear_warp_image *image, int first,
                                int count, const float *pixels);
 

@@ -111,10 +111,8 @@ struct snow_value_path {
     snow_value_labels labels; /* of the volume of this generation */
     uint64_t labels_of;
     bool has_labels; /* the picture is of them */
-    snow_value_store store;
-    snow_value_key key; /* of the store */
-    bool wavers; /* pictures of that key have shown more than the store had */
-    int64_t interesting;
+    snow_value_encoding made;
+    bool wavers; /* pictures of its key have shown more than the store had */
     snow_value_axes axes;
     snow_value_kept_slabs kept;
     snow_value_light light;
@@ -134,6 +132,11 @@ struct snow_value_path {
     snow_line_batch batch;      /* of its tiles */
     float *lines;               /* of the warp */
     char *scratch;
+    snow_value_path *layers[SNOW_INLAYS_MOST]; /* of other volumes */
+    int layer_count;                           /* of the picture */
+    int group;      /* as a layer: those of one are mixed; the picture's is 0 */
+    snow_clip clip; /* and what it has */
+    snow_placement stored;
 };
 
 /* --- operators.c --- */
@@ -164,14 +167,14 @@ snow_status snow_value_order_make(snow_value_path *path,
                                   const snow_value_params *params, bool spare,
                                   snow_value_order *out);
 
-/* Whether an encoding under a key serves a part of a whole volume. */
-bool snow_value_fits_key(const snow_value_path *path, const snow_value_key *has,
-                         const snow_value_store *store,
+/* Whether an encoding, once it is whole, serves a part of a volume. */
+bool snow_value_fits_key(const snow_value_path *path,
+                         const snow_value_encoding *has,
                          const snow_value_params *params, uint64_t generation);
 
-/* Whether the encoding under a key serves a part of a volume. */
-bool snow_value_serves(const snow_value_path *path, const snow_value_key *has,
-                       const snow_value_store *store,
+/* Whether it serves now. */
+bool snow_value_serves(const snow_value_path *path,
+                       const snow_value_encoding *has,
                        const snow_value_params *params, uint64_t generation);
 
 /* --- axes.c --- */
@@ -194,15 +197,11 @@ uint64_t snow_value_axes_most(const snow_volume *volume);
 
 /* --- kept.c --- */
 
-/* Moves an encoding out of the path, which has none then, and back. */
-void snow_value_put_away(snow_value_path *path, snow_value_encoding *to);
-void snow_value_take_out(snow_value_path *path, snow_value_encoding *from);
+/* Moves an encoding; what was at the other place is gone. */
+void snow_value_move(snow_value_encoding *to, snow_value_encoding *from);
 
 /* The encoding of a slab of a file to its place in the path, if it was kept. */
 void snow_value_take_kept(snow_value_path *path, const snow_volume *slab);
-
-/* Whether memory was too small, and there is more: what was kept is gone. */
-bool snow_value_lacks_room(snow_value_path *path, snow_status status);
 
 /* Tiles of the grid. */
 static inline size_t snow_value_tiles(const snow_value_image *image) {

@@ -27,13 +27,33 @@ bool snow_value_lacks_room(snow_value_path *path, snow_status status) {
     return snow_value_forget_axes(path) || kept;
 }
 
+/* What the exchange of a picture takes at most, of the bytes of its image. */
+#define EXCHANGE_IMAGES 4
+
+static uint64_t exchange_bytes(const snow_value_path *path) {
+    return EXCHANGE_IMAGES * snow_block_bytes(path->image->plane);
+}
+
+static uint64_t room_left(const snow_context *context) {
+    return context->bytes < context->limit ? context->limit - context->bytes
+                                           : 0;
+}
+
+void snow_value_leave_room(snow_value_path *path) {
+    if (!path->context->limit ||
+        room_left(path->context) >= exchange_bytes(path))
+        return;
+    snow_value_forget(path);
+    snow_value_forget_slabs(path);
+}
+
 /* Bytes that another slab needs: its encoding may take all that slabs were cut
  * for. */
-static bool has_room(const snow_volume *volume, const snow_slab_cut *cut) {
-    const snow_context *context = volume->context;
-    uint64_t bytes = snow_slab_bytes(volume, cut) * (uint64_t)(1 + cut->made);
-    return !context->limit || (context->bytes <= context->limit &&
-                               context->limit - context->bytes >= bytes);
+static bool has_room(const snow_value_path *path, const snow_volume *volume,
+                     const snow_slab_cut *cut) {
+    uint64_t bytes = snow_slab_bytes(volume, cut) * (uint64_t)(1 + cut->made) +
+                     (volume->is_part ? exchange_bytes(path) : 0);
+    return !path->context->limit || room_left(path->context) >= bytes;
 }
 
 void snow_value_cut_slabs(snow_value_path *path,
@@ -46,7 +66,7 @@ void snow_value_cut_slabs(snow_value_path *path,
         return;
     cut->slices = kept->slices;
     cut->ghosts = kept->ghosts > cut->ghosts ? kept->ghosts : cut->ghosts;
-    while (kept->count && !has_room(params->volume, cut))
+    while (kept->count && !has_room(path, params->volume, cut))
         drop(path, &kept->slabs[kept->count - 1]);
 }
 
@@ -68,7 +88,7 @@ const snow_volume *snow_value_kept(snow_value_path *path,
         if (kept->slab->part.count[2] == part->count[2] &&
             kept->slab->part.stored[2] == part->stored[2] &&
             kept->slab->info.dims[2] == slices &&
-            snow_value_serves(path, &kept->kept.key, &kept->kept.store, params,
+            snow_value_serves(path, &kept->kept, params,
                               kept->slab->generation))
             return kept->slab;
         drop(path, kept);
@@ -77,42 +97,27 @@ const snow_volume *snow_value_kept(snow_value_path *path,
     return NULL;
 }
 
-/* Moves an encoding; what was at the other place is gone. */
-static void move(snow_value_store *to, snow_value_store *from) {
-    snow_context *context = from->context;
-    snow_value_store_fini(to);
+void snow_value_move(snow_value_encoding *to, snow_value_encoding *from) {
+    snow_value_store_fini(&to->store);
     *to = *from;
-    *from = (snow_value_store){.context = context};
-}
-
-void snow_value_put_away(snow_value_path *path, snow_value_encoding *to) {
-    move(&to->store, &path->store);
-    to->key = path->key;
-    to->interesting = path->interesting;
-    path->key.generation = 0;
-}
-
-void snow_value_take_out(snow_value_path *path, snow_value_encoding *from) {
-    move(&path->store, &from->store);
-    path->key = from->key;
-    path->interesting = from->interesting;
+    from->store = (snow_value_store){.context = to->store.context};
     from->key.generation = 0;
 }
 
 void snow_value_take_kept(snow_value_path *path, const snow_volume *slab) {
     snow_value_kept_slab *kept = find(path, slab);
     if (kept)
-        snow_value_take_out(path, &kept->kept);
+        snow_value_move(&path->made, &kept->kept);
 }
 
 static snow_value_kept_slab *add(snow_value_path *path, snow_slabs *slabs) {
     snow_value_kept_slabs *kept = &path->kept;
-    if (!has_room(slabs->volume, &slabs->cut) ||
+    if (!has_room(path, slabs->volume, &slabs->cut) ||
         SNOW_RESERVE(path->context, kept->slabs, kept->count,
                      kept->count + 1) != SNOW_STATUS_OK)
         return NULL;
     kept->of = slabs->volume->generation;
-    kept->slice_axis = path->key.slice_axis;
+    kept->slice_axis = path->made.key.slice_axis;
     kept->slices = slabs->count;
     kept->ghosts = slabs->cut.ghosts;
     kept->slabs[kept->count] =
@@ -124,11 +129,10 @@ static snow_value_kept_slab *add(snow_value_path *path, snow_slabs *slabs) {
 void snow_value_keep(snow_value_path *path, const snow_value_params *params,
                      snow_slabs *slabs) {
     snow_value_kept_slab *kept = find(path, params->volume);
-    if (!path->key.generation)
+    if (!path->made.key.generation)
         return;
     if (!kept)
         kept = add(path, slabs);
-    if (!kept) /* the next one is encoded in its place */
-        return;
-    snow_value_put_away(path, &kept->kept);
+    if (kept) /* else the next one is encoded in its place */
+        snow_value_move(&kept->kept, &path->made);
 }

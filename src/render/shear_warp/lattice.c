@@ -15,11 +15,6 @@
 /* Sheets a slice at most: powers of 2 have exact weights. */
 #define PER_SLICE_MOST 16
 
-/* World length of a step along an axis. */
-static double length_of(const snow_volume_info *info, int axis) {
-    return info->spacing[axis];
-}
-
 /* --- cells ---------------------------------------------------------------- */
 
 /* Pixels of the picture a voxel, along the finer in-plane axis. */
@@ -31,8 +26,8 @@ static snow_status measure_density(snow_context *context,
     SNOW_TRY(snow_camera_make(context, info, view, &camera));
     if (p->perspective) /* at the volume's middle */
         camera.pitch *= 1 - camera.middle[2] / camera.distance;
-    *pixels = fmin(length_of(info, p->u_axis), length_of(info, p->v_axis)) /
-              camera.pitch;
+    *pixels =
+        fmin(info->spacing[p->u_axis], info->spacing[p->v_axis]) / camera.pitch;
     return SNOW_STATUS_OK;
 }
 
@@ -46,7 +41,7 @@ static void choose_cells(const snow_volume_info *info, const snow_placement *p,
         l->quincunx = pixels >= 1 - 1e-6 && pixels <= sqrt(2) + 1e-6;
         each = pixels > sqrt(2) + 1e-6 ? 2 : 1;
     }
-    double u = length_of(info, p->u_axis), v = length_of(info, p->v_axis);
+    double u = info->spacing[p->u_axis], v = info->spacing[p->v_axis];
     int fine = u <= v ? 0 : 1;
     double ratio = fine ? u / v : v / u;
     int doublings = (int)rint(log2(ratio));
@@ -66,8 +61,8 @@ static int sheets_per_slice(const snow_volume_info *info,
                             const snow_placement *p, snow_quality quality,
                             double pixels) {
     const bool draft = quality == SNOW_QUALITY_DRAFT;
-    double fine = fmin(length_of(info, p->u_axis), length_of(info, p->v_axis));
-    double ratio = length_of(info, p->slice_axis) / fine / (1 + 1e-9);
+    double fine = fmin(info->spacing[p->u_axis], info->spacing[p->v_axis]);
+    double ratio = info->spacing[p->slice_axis] / fine / (1 + 1e-9);
     bool wide = quality == SNOW_QUALITY_HIGH ||
                 (quality == SNOW_QUALITY_NORMAL && pixels >= WIDE - 1e-6);
     int count = wide && p->slices > 1 ? 2 : 1;
@@ -94,8 +89,7 @@ double snow_value_lattice_reach(const snow_volume_info *info,
     for (int n = 0; n < 2; n++) {
         const double *row = p->inverse[n];
         double slope = row[0] * p->step_slice[0] + row[1] * p->step_slice[1];
-        double ratio =
-            length_of(info, p->slice_axis) / length_of(info, axes[n]);
+        double ratio = info->spacing[p->slice_axis] / info->spacing[axes[n]];
         most = fmax(most, fmax(fabs(slope), ratio * (1 + 1e-6)));
     }
     return most / sheets_per_slice(info, p, quality, 0);
@@ -229,10 +223,9 @@ static void choose_warp(const snow_placement *p, snow_quality quality,
 
 static snow_status place_image(snow_context *context,
                                const snow_volume_info *info,
-                               const snow_placement *p, snow_value_lattice *l) {
-    int dense = l->quincunx ? 2 : 1;
+                               const snow_placement *p, const int phases[2],
+                               snow_value_lattice *l) {
     double aside = 1 + snow_value_lattice_reach(info, p, 1);
-    const int phases[2] = {dense * l->cells[0], dense * l->cells[1]};
     SNOW_TRY(snow_shear_make(context, p, phases, aside, &l->shear));
     const snow_lattice *axes[2] = {&l->shear.u, &l->shear.v};
     l->empty = axes[0]->count == 0 || axes[1]->count == 0;
@@ -244,14 +237,6 @@ static snow_status place_image(snow_context *context,
         anchor(l, axis, cells);
     }
     return SNOW_STATUS_OK;
-}
-
-static snow_status place_eye_image(snow_context *context,
-                                   const snow_placement *p,
-                                   snow_value_lattice *l) {
-    int dense = l->quincunx ? 2 : 1;
-    const int phases[2] = {dense * l->cells[0], dense * l->cells[1]};
-    return snow_value_eye_image(context, p, phases, l);
 }
 
 snow_status
@@ -269,8 +254,10 @@ snow_value_lattice_make(snow_context *context, const snow_volume_info *info,
     choose_cells(info, p, quality, pixels, &l);
     choose_sheets(info, p, quality, pixels, &l);
     place_front(p, &l);
-    SNOW_TRY(p->perspective ? place_eye_image(context, p, &l)
-                            : place_image(context, info, p, &l));
+    const int dense = l.quincunx ? 2 : 1;
+    const int phases[2] = {dense * l.cells[0], dense * l.cells[1]};
+    SNOW_TRY(p->perspective ? snow_value_eye_image(context, p, phases, &l)
+                            : place_image(context, info, p, phases, &l));
     l.width = (int)l.voxels[0] * l.cells[0];
     l.height = (int)l.voxels[1] * l.cells[1];
     if (l.quincunx)

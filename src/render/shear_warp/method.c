@@ -2,7 +2,6 @@
  * picture's parts, of which those of a file come one after another, share a
  * lattice, a table and an image. */
 #include "render/picture.h"
-#include "render/shear_warp/shear_warp.h"
 
 static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
     bool surface = job->settings.mode == SNOW_MODE_ISO;
@@ -17,6 +16,8 @@ static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
                                .clip = &job->clip,
                                .slab = job->slab,
                                .channels = job->channels,
+                               .layers = job->layers,
+                               .layer_count = job->layer_count,
                                .shared = p->combiner != &snow_combine_alone,
                                .aside = p->aside,
                                .resumes = p->local.image.layers > 0,
@@ -24,9 +25,11 @@ static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
                                .bytes = p->local.pixels ? NULL : p->bytes};
 }
 
-/* The image comes first, for the slabs of a file are cut to the memory that it
- * leaves. */
+/* Once.  The image comes first, for the slabs of a file are cut to the memory
+ * that it leaves. */
 static snow_status begin(snow_picture *p, snow_job *job) {
+    if (p->local.begun)
+        return SNOW_STATUS_OK;
     if (job->volume->stream && job->settings.encoding == SNOW_ENCODING_AUTO)
         job->settings.encoding = SNOW_ENCODING_BITMAP; /* one for all slabs */
     const snow_value_params params = params_of(p, job);
@@ -40,22 +43,17 @@ static snow_status begin(snow_picture *p, snow_job *job) {
     return snow_value_begin(p->frame->value_path, &params, job->stats);
 }
 
-static snow_status classify(snow_picture *p, snow_job *job) {
-    return p->local.begun ? SNOW_STATUS_OK : begin(p, job);
-}
-
 static snow_status encode(snow_picture *p, snow_job *job) {
     const snow_value_params params = params_of(p, job);
+    SNOW_TRY(snow_value_encode_layers(p->frame->value_path, &params));
     return snow_value_encode(p->frame->value_path, &params, job->stats);
 }
 
 static snow_status draw(snow_picture *p, snow_job *job) {
     const snow_value_params params = params_of(p, job);
-    if (p->ahead)
-        return snow_value_draw_ahead(p->frame->value_path, &params, job->stats,
-                                     &p->local.image, &p->drawing);
+    SNOW_TRY(snow_value_place_layers(p->frame->value_path, &params));
     return snow_value_draw(p->frame->value_path, &params, job->stats,
-                           &p->local.image);
+                           &p->local.image, p->ahead ? &p->drawing : NULL);
 }
 
 static snow_status show(snow_picture *p, snow_job *job) {
@@ -94,7 +92,7 @@ static void keep(snow_picture *p, snow_job *job, snow_slabs *slabs) {
 
 const snow_render_method snow_method_shear_warp = {
     .begin = begin,
-    .classify_and_shade = classify,
+    .classify_and_shade = begin,
     .encode = encode,
     .splat_and_composite = draw,
     .show = show,

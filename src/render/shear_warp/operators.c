@@ -1,7 +1,6 @@
 /* render/shear_warp/operators.c - the modes: a record for each.  Over makes
  * colours; projections make numbers, which are coloured after the warp
  * (render/modes/modes.c). */
-#include "composite/over.h"
 #include "render/shear_warp/internal.h"
 
 #include <math.h>
@@ -24,36 +23,25 @@ static void read_over(const snow_value_splat *splat, const void *planes,
     const snow_value_plane *words = (const snow_value_plane *)planes + phase;
     const snow_value_faint_plane *floats =
         (const snow_value_faint_plane *)planes + phase;
-    if (!splat->table->faint && channels == 4)
+    if (!splat->floats && channels == 4)
         read_words(words, row, 4, out);
-    else if (!splat->table->faint)
+    else if (!splat->floats)
         read_words(words, row, 2, out);
-    for (int c = 0; splat->table->faint && c < 4; c += step, out++)
+    for (int c = 0; splat->floats && c < 4; c += step, out++)
         for (int n = 0; n < SNOW_VALUE_COLUMNS; n++)
             out[n * channels] = (*floats)[c][row][n + 1];
 }
 
 /* --- extremes ------------------------------------------------------------- */
 
-/* A number that adds nothing to an image that begins with it.  Beside holes no
- * number says that a ray is there. */
-static void hide(snow_value_path *path, const snow_value_look *look,
-                 int16_t number) {
+/* The number that adds nothing to an image, which begins with it.  Beside holes
+ * no number says that a ray is there. */
+static void hide_idle(snow_value_path *path, const snow_value_look *look,
+                      const snow_settings *settings) {
+    int16_t idle = settings->mode == SNOW_MODE_MINIP ? SNOW_VALUE_MOST : 0;
     snow_value_table_begin(look, &path->table);
     if (!path->range.holes)
-        snow_value_table_hide(&path->table, (snow_value_run){number, number});
-}
-
-static void hide_least(snow_value_path *path, const snow_value_look *look,
-                       const snow_settings *settings) {
-    (void)settings;
-    hide(path, look, 0);
-}
-
-static void hide_most(snow_value_path *path, const snow_value_look *look,
-                      const snow_settings *settings) {
-    (void)settings;
-    hide(path, look, SNOW_VALUE_MOST);
+        snow_value_table_hide(&path->table, (snow_value_run){idle, idle});
 }
 
 static void read_best(const snow_value_splat *splat, const void *planes,
@@ -143,13 +131,13 @@ const snow_value_operator *snow_value_operator_of(snow_mode mode) {
         .read = read_over,
     };
     static const snow_value_operator others[] = {
-        {SNOW_MODE_MIP, SNOW_VALUE_LARGEST, hide_least, read_best,
+        {SNOW_MODE_MIP, SNOW_VALUE_LARGEST, hide_idle, read_best,
          snow_keep_largest, NULL},
-        {SNOW_MODE_MINIP, SNOW_VALUE_SMALLEST, hide_most, read_best,
+        {SNOW_MODE_MINIP, SNOW_VALUE_SMALLEST, hide_idle, read_best,
          snow_keep_largest, NULL},
-        {SNOW_MODE_MEAN, SNOW_VALUE_SUM, hide_least, read_sums, snow_add_up,
+        {SNOW_MODE_MEAN, SNOW_VALUE_SUM, hide_idle, read_sums, snow_add_up,
          finish_means},
-        {SNOW_MODE_SUM, SNOW_VALUE_SUM, hide_least, read_sums, snow_add_up,
+        {SNOW_MODE_SUM, SNOW_VALUE_SUM, hide_idle, read_sums, snow_add_up,
          finish_sums},
         {SNOW_MODE_ISO, SNOW_VALUE_OVER, hide_below, read_over, NULL, NULL},
     };

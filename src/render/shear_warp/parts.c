@@ -10,8 +10,7 @@
  * the slice in front, and in its plane where the front sheet has the sample.
  * So no sample is cut, and those along a ray are as those of the whole; the
  * other sheet, and gradients, may need ghosts. */
-#include "composite/over.h"
-#include "render/shear_warp/internal.h"
+#include "render/shear_warp/layers.h"
 
 #include "render/picture.h"
 
@@ -79,10 +78,13 @@ static void weave(const snow_value_drawing *d, const void *planes, float *out) {
 
 static bool draw_group(const snow_value_drawing *d, int group, int x, int y,
                        void *room, float *out) {
-    const int64_t slices = d->params.placement->slices;
-    const snow_value_splat splat =
-        snow_value_splat_of(d, snow_group_slab(slices, group));
-    if (splat.slabs[0] >= splat.slabs[1] || !d->tile(&splat, x, y, room))
+    const snow_slab slices =
+        snow_group_slab(d->params.placement->slices, group);
+    const snow_value_splat splat = snow_value_splat_of(d, slices);
+    if (splat.slabs[0] >= splat.slabs[1] ||
+        !(d->path->layer_count
+              ? snow_value_draw_stack(d, &slices, false, x, y, room)
+              : d->tile(&splat, x, y, room)))
         return false;
     weave(d, room, out);
     return true;
@@ -98,7 +100,10 @@ bool snow_value_node_tile(const snow_value_drawing *d, snow_group_node node,
     if (!snow_value_node_tile(d, near, x, y, room, out))
         return snow_value_node_tile(d, far, x, y, room, out);
     float *back = out + tile_pixels(d) * (size_t)d->splat.channels;
+    snow_composite_fn *composite = d->path->op->combine;
+    if (!composite)
+        composite = snow_over_of(d->splat.channels);
     if (snow_value_node_tile(d, far, x, y, room, back))
-        snow_over_row(out, back, tile_pixels(d), d->splat.channels);
+        composite(out, back, tile_pixels(d));
     return true;
 }

@@ -2,9 +2,7 @@
  * the values and the table of colours. */
 #include "render/shear_warp/shear_warp.h"
 
-#include "classify/gradient_opacity.h"
-#include "render/shear_warp/internal.h"
-#include "volume/stream.h"
+#include "render/shear_warp/layers.h"
 
 #include <math.h>
 
@@ -14,7 +12,7 @@ snow_status snow_value_path_new(snow_context *context, snow_value_path **out) {
     snow_value_path *path = snow_allocate_clear(context, sizeof *path);
     if (!path)
         return SNOW_STATUS_NO_MEMORY;
-    path->context = path->store.context = context;
+    path->context = path->made.store.context = context;
     path->image = path->images;
     *out = path;
     return SNOW_STATUS_OK;
@@ -27,7 +25,7 @@ void snow_value_path_free(snow_value_path *path) {
     snow_value_coder_fini(context, &path->coder);
     snow_value_table_fini(context, &path->table);
     snow_value_labels_fini(context, &path->labels);
-    snow_value_store_fini(&path->store);
+    snow_value_store_fini(&path->made.store);
     snow_value_forget_axes(path);
     snow_value_forget_slabs(path);
     void *const blocks[] = {path->kept.slabs,   path->sheets,   path->places,
@@ -43,6 +41,8 @@ void snow_value_path_free(snow_value_path *path) {
         snow_release(context, path->images[n].halved);
     }
     snow_line_batch_fini(&path->batch);
+    for (int n = 0; n < SNOW_INLAYS_MOST; n++)
+        snow_value_path_free(path->layers[n]);
     snow_release(context, path);
 }
 
@@ -59,7 +59,8 @@ typedef struct measuring {
 static snow_status measure_slab(const snow_volume *slab, void *user) {
     measuring *m = user;
     snow_data_range here;
-    SNOW_TRY(snow_data_range_measure(slab, m->all->log, m->threads, &here));
+    SNOW_TRY(snow_data_range_measure(
+        slab, (snow_scale){m->all->log, m->all->linear}, m->threads, &here));
     m->all->low = fmin(m->all->low, here.low);
     m->all->high = fmax(m->all->high, here.high);
     m->all->holes |= here.holes;
@@ -73,8 +74,8 @@ static snow_status measure_range(const snow_volume *volume, int threads,
     if (volume->stream && !out->log) {
         snow_volume_statistics known;
         SNOW_TRY(snow_volume_range(volume, &known));
-        out->low = known.min;
-        out->high = known.max;
+        out->low = snow_place_of(out->linear, known.min);
+        out->high = snow_place_of(out->linear, known.max);
         if (known.finite == known.voxels)
             return SNOW_STATUS_OK;
     }
@@ -101,16 +102,17 @@ static snow_status find_labels(snow_value_path *path,
 snow_status snow_value_measure(snow_value_path *path, const snow_volume *volume,
                                const snow_transfer *transfer, int threads,
                                snow_data_range *out) {
-    const bool log = transfer && transfer->log;
     if (!path->measured_of || path->measured_of != volume->generation ||
-        path->measured.log != log) {
+        !snow_data_range_is_of(&path->measured, transfer)) {
         path->measured_of = 0;
-        path->measured = (snow_data_range){.log = log};
+        path->measured =
+            (snow_data_range){.log = transfer && transfer->log,
+                              .linear = transfer ? transfer->linear : 0};
         SNOW_TRY(measure_range(volume, threads, &path->measured));
         path->measured_of = volume->generation;
     }
     *out = path->measured;
-    return transfer && snow_transfer_has_labels(transfer, volume->info.type)
+    return transfer && snow_transfer_has_labels(transfer, &volume->info)
                ? find_labels(path, volume)
                : SNOW_STATUS_OK;
 }
@@ -119,16 +121,10 @@ void snow_value_set_range(snow_value_path *path, const snow_data_range *range) {
     path->range = *range;
 }
 
-static bool has_labels(const snow_value_params *params) {
-    return snow_transfer_has_labels(params->transfer,
-                                    params->volume->info.type);
-}
-
 static snow_status make_table(snow_value_path *path,
                               const snow_value_params *params) {
     const snow_settings *s = params->settings;
     bool high = s->quality == SNOW_QUALITY_HIGH;
-    path->op = snow_value_operator_of(s->mode);
     const snow_value_look look = {
         .transfer = params->transfer,
         .scale = snow_value_scale_of(&path->range,
@@ -142,7 +138,9 @@ static snow_status make_table(snow_value_path *path,
                   snow_transfer_has_gradient_opacity(params->transfer),
         .threads = s->threads,
         .isa = s->isa};
-    path->has_labels = s->mode == SNOW_MODE_OVER && has_labels(params);
+    path->has_labels =
+        s->mode == SNOW_MODE_OVER &&
+        snow_transfer_has_labels(params->transfer, &params->volume->info);
     if (path->op->hides) {
         path->op->hides(path, &look, s);
         return SNOW_STATUS_OK;
@@ -153,11 +151,10 @@ static snow_status make_table(snow_value_path *path,
                                   &path->table);
 }
 
-snow_status snow_value_begin(snow_value_path *path,
-                             const snow_value_params *params,
-                             snow_stats *stats) {
-    double mark = snow_seconds();
+snow_status snow_value_begin_values(snow_value_path *path,
+                                    const snow_value_params *params) {
     snow_volume_info whole;
+    path->op = snow_value_operator_of(params->settings->mode);
     snow_volume_whole(params->volume, &whole);
     SNOW_TRY(snow_value_lattice_make(
         path->context, &whole, params->view, params->placement,
@@ -166,8 +163,15 @@ snow_status snow_value_begin(snow_value_path *path,
     path->longest = 0;
     for (int n = 0; n < 3; n++)
         path->longest += (double)whole.dims[n] * whole.spacing[n];
-    if (path->range.low <= path->range.high)
-        SNOW_TRY(make_table(path, params));
+    return snow_value_has_values(path) ? make_table(path, params)
+                                       : SNOW_STATUS_OK;
+}
+
+snow_status snow_value_begin(snow_value_path *path,
+                             const snow_value_params *params,
+                             snow_stats *stats) {
+    double mark = snow_seconds();
+    SNOW_TRY(snow_value_begin_values(path, params));
     snow_status status = snow_value_shows(path)
                              ? snow_value_reserve_image(path, params)
                              : SNOW_STATUS_OK;

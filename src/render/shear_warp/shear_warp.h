@@ -34,10 +34,12 @@ typedef struct snow_value_params {
     const snow_clip *clip; /* what of the whole it has and answers for */
     snow_slab slab; /* slices of the whole that are drawn, within these */
     int channels;   /* 2 or 4 */
-    bool shared;    /* with other ranks: the image's size depends on the picture
-                       alone, and a deterministic one has a layer for each node */
-    bool aside;     /* the image of the picture before is still needed */
-    bool resumes;   /* draws behind the parts that were drawn before */
+    const snow_inlay *layers; /* other volumes, of the same grid, or files */
+    int layer_count;
+    bool shared;  /* with other ranks: the image's size depends on the picture
+                     alone, and a deterministic one has a layer for each node */
+    bool aside;   /* the image of the picture before is still needed */
+    bool resumes; /* draws behind the parts that were drawn before */
     double begin_at; /* 0 to below 1: the share of the image's lines before the
                         one that is drawn first */
     const snow_bytes *bytes; /* what is shown goes there; NULL: to floats */
@@ -56,12 +58,26 @@ snow_status snow_value_measure(snow_value_path *path, const snow_volume *volume,
  * Labels are a part's own, in the same order as the whole's. */
 void snow_value_set_range(snow_value_path *path, const snow_data_range *range);
 
+/* The same of a layer; makes those of all layers known, none perhaps. */
+snow_status snow_value_measure_layer(snow_value_path *path, int n,
+                                     const snow_inlay *inlay, int threads,
+                                     snow_data_range *out);
+snow_status snow_value_set_layers(snow_value_path *path,
+                                  const snow_data_range *ranges, int count);
+
 /* Begins a picture, whose parts follow: its lattice, the table of colours, and
  * room for its image.  Errors: SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY,
  * SNOW_STATUS_STOPPED. */
 snow_status snow_value_begin(snow_value_path *path,
                              const snow_value_params *params,
                              snow_stats *stats);
+
+/* Tables and encodings of a part's layers, and what is to be drawn of them,
+ * before it is drawn.  Errors: as above. */
+snow_status snow_value_encode_layers(snow_value_path *path,
+                                     const snow_value_params *params);
+snow_status snow_value_place_layers(snow_value_path *path,
+                                    const snow_value_params *params);
 
 /* Gives up the encoding, so that a part's has its memory. */
 void snow_value_forget(snow_value_path *path);
@@ -79,6 +95,13 @@ void snow_value_cut_slabs(snow_value_path *path,
                           const snow_value_params *params, snow_slab_cut *cut);
 void snow_value_forget_slabs(snow_value_path *path);
 
+/* Whether memory was too small, and there is more: what was kept is gone. */
+bool snow_value_lacks_room(snow_value_path *path, snow_status status);
+
+/* Drops encodings of a file where a limit leaves ranks no room for the exchange
+ * of the image. */
+void snow_value_leave_room(snow_value_path *path);
+
 /* What was kept of a part that stores so many slices, of the whole's params, if
  * that serves; else NULL. */
 const snow_volume *snow_value_kept(snow_value_path *path,
@@ -90,22 +113,19 @@ void snow_value_keep(snow_value_path *path, const snow_value_params *params,
                      snow_slabs *slabs);
 
 /* Then the part's image on the lattice of the whole.  A deterministic one has a
- * layer for each of some nodes of the tree of groups.  Errors: as above. */
+ * layer for each of some nodes of the tree of groups.  With `batch`, which is
+ * NULL as yet, it is left to be drawn, unless nothing is in view; what params
+ * point to stays until its end then, but for volume and transfer function.
+ * Errors: as above. */
 snow_status snow_value_draw(snow_value_path *path,
                             const snow_value_params *params, snow_stats *stats,
-                            snow_shear_warp_image *out);
+                            snow_shear_warp_image *out,
+                            snow_line_batch **batch);
 
 /* What the numbers 0 to 1 of a projection's pixels stand for, when it is
  * begun. */
 snow_value_scale snow_value_projected(const snow_value_path *path,
                                       snow_mode mode);
-
-/* The same, left to be drawn: *batch is NULL where nothing is in view.  What
- * params point to stays until its end, but for volume and transfer function. */
-snow_status snow_value_draw_ahead(snow_value_path *path,
-                                  const snow_value_params *params,
-                                  snow_stats *stats, snow_shear_warp_image *out,
-                                  snow_line_batch **batch);
 
 /* The image of one layer to all of the picture: width * height * channels
  * floats; of projections (number, 1) or (0, 0), or less where a pixel is not

@@ -1,6 +1,5 @@
 /* render/shear_warp/show.c - the image on the lattice to the picture.  Where
  * pixels are wider than the lattice's, they are means of several places. */
-#include "base/thread_pool.h"
 #include "render/shear_warp/internal.h"
 
 #include <math.h>

@@ -44,10 +44,6 @@ void snow_shear_warp_clear(const snow_shear_warp_image *image, int layer,
     }
 }
 
-void snow_shear_warp_empty(const snow_shear_warp_image *image) {
-    memset(image->drawn, 0, image->layer_tiles);
-}
-
 /* Whether `count` floats are all 0. */
 static bool all_zero(const float *values, size_t count) {
     for (size_t n = 0; n < count; n++)

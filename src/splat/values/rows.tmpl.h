@@ -181,7 +181,7 @@ TARGET VALUE_INLINE void NAME(pair)(const NAME(source) * s, int end, int on,
 TARGET static const int16_t *NAME(line)(const NAME(source) * s, int end, int on,
                                         int64_t row, int64_t column, int count,
                                         int16_t *room) {
-    const int kind = s->store->kind;
+    const snow_value_kind kind = s->store->kind;
     if (kind == SNOW_VALUE_NUMBERS)
         return s->values + (end ? s->after : s->slice)[row + on * s->next] +
                column;

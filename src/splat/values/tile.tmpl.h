@@ -304,7 +304,7 @@ TARGET VALUE_INLINE bool NAME(slab)(const snow_value_splat *p, int n, int first,
     NAME(color)(p, room->slope, q, count, channels, sloped, cuts, eye);
     count = 0;
     for (int phase = first; phase < end; phase++)
-        if (p->table->faint)
+        if (p->floats)
             count = NAME(blend_faint)(
                 p, (snow_value_faint_plane *)(void *)planes + phase,
                 &room->phase[phase], &slabs[phase - first], q, count, channels);
@@ -363,7 +363,7 @@ TARGET static inline V(row)
     const snow_value_faint_plane *floats =
         (const snow_value_faint_plane *)planes + phase;
     int16_t alphas[32];
-    if (!p->table->faint)
+    if (!p->floats)
         return V(row_load)((*words)[3][row]);
     for (int n = 0; n < 32; n += LANES)
         V(row_round)

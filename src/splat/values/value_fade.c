@@ -10,13 +10,16 @@ static double magnitude_of(const float m[6], float u, float v, float p) {
     return sqrt(fmax(square, 0));
 }
 
-/* Of a logarithmic scale: the data's for one of the logarithm. */
+/* Of a logarithmic scale: the data's for one of the logarithm, or of the
+ * place. */
 static double steepness(const snow_value_fade *fade, int front, int back,
                         int place) {
     if (!fade->log)
         return 1;
     double v = front + (back - front) * (place / 32768.0);
-    return log(10) * snow_value_of(fade->scale, v);
+    const double value = snow_value_of(fade->scale, v);
+    return fade->scale->linear > 0 ? fmax(fabs(value), fade->scale->linear)
+                                   : log(10) * value;
 }
 
 static float faded(const snow_value_fade *fade, const snow_value_table *table,

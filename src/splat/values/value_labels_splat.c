@@ -35,30 +35,25 @@ typedef struct label_slab {
 
 /* --- places --------------------------------------------------------------- */
 
-/* A sample on an end of its slab, or one some samples away along an axis. */
-static spot spot_of(const label_sample *at, int end, int axis, int by) {
+/* A sample on an end of its slab. */
+static spot spot_of(const label_sample *at, int end) {
     const snow_value_splat *p = at->splat;
-    const int n = at->slab + end;
-    int cells[2] = {0, 0}, phase = at->phase;
+    const int n = at->slab + end, phase = at->phase;
     if (!p->rays) {
         const snow_value_place *place = p->places + n * p->phases + phase;
-        cells[axis] = by;
-        return (spot){p->sheets + n,
-                      value_tile_column(p, at->tile[0]) + at->lane + cells[0] +
-                          place->whole[0],
-                      value_tile_row(p, at->tile[1]) + at->row + cells[1] +
-                          place->whole[1],
-                      place->weight[0], place->weight[1]};
+        return (spot){
+            p->sheets + n,
+            value_tile_column(p, at->tile[0]) + at->lane + place->whole[0],
+            value_tile_row(p, at->tile[1]) + at->row + place->whole[1],
+            place->weight[0], place->weight[1]};
     }
-    by *= p->rays->sheets[n].apart[axis];
-    phase = value_phase_beside(p->rays, phase, axis, by, &cells[axis]);
     const snow_value_lanes *u =
         value_lanes_of(p->rays, n, phase, 0, at->tile[0]);
     const snow_value_lanes *v =
         value_lanes_of(p->rays, n, phase, 1, at->tile[1]);
-    int lane = at->lane + cells[0], row = at->row + 1 + cells[1];
-    return (spot){p->sheets + n, u->first + u->at[lane], v->first + v->at[row],
-                  u->weight[lane], v->weight[row]};
+    return (spot){p->sheets + n, u->first + u->at[at->lane],
+                  v->first + v->at[at->row + 1], u->weight[at->lane],
+                  v->weight[at->row + 1]};
 }
 
 /* --- membership ----------------------------------------------------------- */
@@ -113,51 +108,82 @@ static int member_at(const snow_value_store *s, int label, const spot *at) {
 
 /* --- gradients ------------------------------------------------------------ */
 
-/* Along P, of voxels. */
-static int across(const snow_value_store *s, int label, const spot *at) {
-    const snow_value_sheet *sheet = at->sheet;
-    int row[2];
-    for (int y = 0; y < 2; y++) {
-        int ends[2];
-        for (int x = 0; x < 2; x++) {
-            int64_t i = at->i + x, j = at->j + y;
-            int way = value_saturate(
-                voxel_member(s, label, i, j, sheet->after,
-                             sheet->between_across, sheet->toward) -
-                voxel_member(s, label, i, j, sheet->before,
-                             sheet->between_across, sheet->toward));
-            ends[x] = sheet->one_sided ? value_saturate(2 * way) : way;
-        }
-        row[y] = value_between(ends[0], ends[1], at->wu);
+/* Voxels along an axis that a gradient is made of: those around a place within
+ * REACH of it. */
+#define REACH 3
+#define TAPS (2 * REACH)
+
+/* A voxel beyond the grid, of which no label is. */
+#define NOWHERE (-1)
+
+/* Weights of the voxels around a place along an axis, and their slopes. */
+typedef struct label_taps {
+    int64_t at[TAPS];
+    double weight[TAPS], slope[TAPS];
+} label_taps;
+
+static void find_taps(double place, int64_t count, label_taps *taps) {
+    place = count == 1 ? 0 : place; /* along which nothing changes */
+    double first = floor(place) - REACH + 1;
+    for (int n = 0; n < TAPS; n++) {
+        double way = place - (first + n), x = fabs(way) / REACH;
+        const int64_t at = (int64_t)first + n;
+        taps->at[n] = at >= 0 && at < count ? at : NOWHERE;
+        taps->weight[n] = (1 - x * x * (3 - 2 * x)) / REACH;
+        taps->slope[n] = (way < 0 ? 6 : -6) * x * (1 - x) / (REACH * REACH);
     }
-    return value_between(row[0], row[1], at->wv);
 }
 
-/* Along an axis of a sheet. */
-static int aside(const label_slab *slab, int label, int end, int axis) {
-    const snow_value_store *s = slab->splat->store;
-    const snow_value_rays *rays = slab->splat->rays;
-    const spot before = spot_of(&slab->at, end, axis, -1);
-    const spot after = spot_of(&slab->at, end, axis, 1);
-    int way = value_saturate(member_at(s, label, &after) -
-                             member_at(s, label, &before));
-    int lack = rays ? rays->sheets[slab->at.slab + end].stretch[axis] : 0;
-    return value_saturate(way + ((way * lack + 0x4000) >> 15));
+/* What voxels of a row that have a label weigh, and how that grows.  A voxel
+ * that is not stored has none that is seen. */
+static void add_row(const snow_value_store *s, int label, const label_taps *u,
+                    int64_t row, int64_t slice, double out[2]) {
+    out[0] = out[1] = 0;
+    if (row == NOWHERE || slice == NOWHERE)
+        return;
+    const int64_t *at = snow_value_at(s, slice) + row;
+    const int32_t *ends =
+        s->ends[slice * (s->rows + 2 * s->margin) + s->margin + row];
+    for (int n = 0; n < TAPS; n++)
+        if (u->at[n] >= ends[0] && u->at[n] < ends[1] &&
+            s->values[*at + u->at[n]] == label) {
+            out[0] += u->weight[n];
+            out[1] += u->slope[n];
+        }
 }
 
+static double slice_of(const spot *at) {
+    const snow_value_sheet *sheet = at->sheet;
+    return (double)sheet->slice + sheet->at - floor(sheet->at);
+}
+
+/* Of a smooth membership, at a place of a slab. */
 static void find_slopes(const label_slab *slab, int label, int place,
                         value_queue *q, int count) {
     const snow_value_store *s = slab->splat->store;
-    int slopes[3][2];
-    for (int end = 0; end < 2; end++) {
-        const spot *at = &slab->ends[end];
-        for (int axis = 0; axis < 2; axis++)
-            slopes[axis][end] = aside(slab, label, end, axis);
-        slopes[2][end] = across(s, label, at);
+    const spot *front = &slab->ends[0], *back = &slab->ends[1];
+    const double t = place / 32768.0;
+    const double u[2] = {(double)front->i + front->wu / 32768.0,
+                         (double)back->i + back->wu / 32768.0};
+    const double v[2] = {(double)front->j + front->wv / 32768.0,
+                         (double)back->j + back->wv / 32768.0};
+    label_taps taps[3];
+    double sums[3] = {0, 0, 0};
+    find_taps(u[0] + t * (u[1] - u[0]), s->columns, &taps[0]);
+    find_taps(v[0] + t * (v[1] - v[0]), s->rows, &taps[1]);
+    find_taps(slice_of(front) + t * (slice_of(back) - slice_of(front)),
+              s->slices, &taps[2]);
+    for (int n = 0; n < TAPS * TAPS; n++) {
+        const int y = n % TAPS, z = n / TAPS;
+        double row[2];
+        add_row(s, label, &taps[0], taps[1].at[y], taps[2].at[z], row);
+        sums[0] += taps[2].weight[z] * taps[1].weight[y] * row[1];
+        sums[1] += taps[2].weight[z] * taps[1].slope[y] * row[0];
+        sums[2] += taps[2].slope[z] * taps[1].weight[y] * row[0];
     }
     for (int axis = 0; axis < 3; axis++)
         q->slopes[axis][count] =
-            (int16_t)value_between(slopes[axis][0], slopes[axis][1], place);
+            (int16_t)floor(2 * SNOW_VALUE_MOST * sums[axis] + 0.5);
 }
 
 /* --- labels of a slab ----------------------------------------------------- */
@@ -191,22 +217,26 @@ static void find_labels(label_slab *slab) {
     for (int n = 0; n < slab->count; n++)
         for (int end = 0; end < 2; end++)
             slab->member[n][end] =
-                draft ? nearest(s, &slab->ends[end]) == slab->labels[n]
+                draft ? (nearest(s, &slab->ends[end]) == slab->labels[n]) *
+                            SNOW_VALUE_MOST
                 : slab->count == 1
-                    ? 1
+                    ? SNOW_VALUE_MOST
                     : member_at(s, slab->labels[n], &slab->ends[end]);
 }
 
 /* The label whose membership is the largest at t, of equals the larger one; -1:
- * none. */
+ * none, where holes have more than half. */
 static int winner(const label_slab *slab, double t) {
     int best = -1;
     double most = 0;
     for (int n = 0; n < slab->count; n++) {
         const int *ends = slab->member[n];
         double here = ends[0] + t * (ends[1] - ends[0]);
-        if (here > most ||
-            (here == most && here > 0 && best >= 0 && slab->labels[n] > best)) {
+        if (slab->labels[n] == SNOW_VALUE_HOLE) {
+            if (2 * here > SNOW_VALUE_MOST)
+                return -1;
+        } else if (here > most || (here == most && here > 0 && best >= 0 &&
+                                   slab->labels[n] > best)) {
             best = slab->labels[n];
             most = here;
         }
@@ -235,8 +265,9 @@ static void collect(const label_slab *slab, label_part part, double rgba[4],
         const snow_label_look *look = &labels->looks[label];
         double share = part.share * slab->longer;
         double alpha =
-            share == 1 ? look->step
-                       : 1 - pow(1 - look->opacity, share * labels->exponent);
+            share == 1
+                ? look->step
+                : -expm1(share * labels->exponent * log1p(-look->opacity));
         alpha *= 1 - rgba[3];
         for (int c = 0; c < 3; c++)
             rgba[c] += alpha * look->rgb[c];
@@ -255,23 +286,17 @@ static bool is_seen(const label_slab *slab) {
     return false;
 }
 
-static bool has_hole(const label_slab *slab) {
-    for (int n = 0; n < slab->count; n++)
-        if (slab->labels[n] == SNOW_VALUE_HOLE)
-            return true;
-    return false;
-}
-
 /* Packs a sample as number `count`, if it is seen. */
 static bool pack(label_slab *slab, label_part part, value_queue *q, int count,
                  bool sloped) {
     double rgba[4], t;
     find_labels(slab);
-    if (has_hole(slab) || !is_seen(slab))
+    if (!is_seen(slab))
         return false;
     collect(slab, part, rgba, &t);
     for (int c = 0; c < 4; c++)
-        q->color[c][count] = (int16_t)(rgba[c] * 32767 + 0.5);
+        q->color[c][count] =
+            (int16_t)(rgba[c] * slab->splat->table->full + 0.5);
     if (!q->color[3][count])
         return false;
     if (sloped)
@@ -335,7 +360,7 @@ int snow_value_collect_labels(const snow_value_splat *p, int n, int phase,
             sample.at.row = row;
             sample.at.lane = lane;
             for (int end = 0; end < 2; end++)
-                sample.ends[end] = spot_of(&sample.at, end, 0, 0);
+                sample.ends[end] = spot_of(&sample.at, end);
             if (p->rays) {
                 int16_t ray[2];
                 ray_of(&sample.at, ray);

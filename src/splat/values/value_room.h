@@ -10,9 +10,10 @@
 #include <string.h>
 
 /* Constants that are handed on make each kind of tile's loops short.  That is a
- * lot of code: with sanitizers it would take minutes to compile. */
+ * lot of code: with sanitizers it would take minutes to compile, and a page
+ * seconds to load. */
 #ifdef VALUE_INLINE /* by the file */
-#elif defined(SNOW_SANITIZED)
+#elif defined(SNOW_SANITIZED) || defined(__wasm__)
 #define VALUE_INLINE static __attribute__((unused))
 #else
 #define VALUE_INLINE static inline __attribute__((always_inline))

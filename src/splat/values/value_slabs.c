@@ -118,3 +118,8 @@ int value_list_slabs(const snow_value_splat *p, int first, int end,
     }
     return count;
 }
+
+int snow_value_list(const snow_value_splat *p, const int tile[2],
+                    int32_t *out) {
+    return value_list_slabs(p, 0, p->phases, tile, out);
+}

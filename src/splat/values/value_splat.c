@@ -5,7 +5,9 @@
 
 #include "splat/values/value_room.h"
 
-#if SNOW_HAS_V128
+#if defined(SNOW_ONE_ISA) /* wasm/ */
+#define OF_ISA(isa, name) ((void)(isa), name##_v128)
+#elif SNOW_HAS_V128
 #define OF_ISA(isa, name) \
     ((isa) == SNOW_ISA_SCALAR ? name##_scalar : name##_v128)
 #else

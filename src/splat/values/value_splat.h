@@ -146,10 +146,12 @@ typedef struct snow_value_splat {
     double own[2][2];
     bool resumes; /* the planes hold what is in front; of over only */
     snow_value_reduction reduction;
+    bool floats; /* planes are of floats: the table is faint, or of sums, or
+                    there are several layers */
 } snow_value_splat;
 
 /* Pixels of a tile: planes of 15 bits, of which channels are used; of floats
- * where the table is faint, and of sums.  Extremes have their numbers in the
+ * where `floats` says so.  Extremes have their numbers in the
  * first plane, below 0 where there is none; sums 2 V in the first one, and the
  * lengths, in those that the table is for, in the last. */
 typedef int16_t snow_value_plane[4][SNOW_VALUE_ROWS][32];
@@ -157,13 +159,18 @@ typedef float snow_value_faint_plane[4][SNOW_VALUE_ROWS][32];
 
 /* Bytes of the planes of all phases. */
 static inline size_t snow_value_planes_bytes(const snow_value_splat *splat) {
-    bool floats = splat->table->faint || splat->reduction == SNOW_VALUE_SUM;
-    return (size_t)splat->phases *
-           (floats ? sizeof(snow_value_faint_plane) : sizeof(snow_value_plane));
+    return (size_t)splat->phases * (splat->floats
+                                        ? sizeof(snow_value_faint_plane)
+                                        : sizeof(snow_value_plane));
 }
 
 /* Bytes of a worker's memory. */
 size_t snow_value_splat_bytes(const snow_value_splat *splat);
+
+/* The slabs of a tile that have cells that no run hides, in perspective all:
+ * the numbers of their front sheets, front to back; returns how many. */
+int snow_value_list(const snow_value_splat *splat, const int tile[2],
+                    int32_t *out);
 
 /* Draws tile (x, y); false: nothing is there.  `sloped`: with gradients, for
  * light or gradient opacity.  `room` is aligned to 64; the

@@ -1,5 +1,4 @@
 /* splat/values/value_splat_avx2.c - tiles in AVX2; see value_splat.c. */
-#include "classify/gradient_opacity.h"
 #include "simd/rows.h"
 #include "splat/values/value_room.h"
 

@@ -1,5 +1,4 @@
 /* splat/values/value_splat_avx512.c - tiles in AVX-512; see value_splat.c. */
-#include "classify/gradient_opacity.h"
 #include "simd/rows.h"
 #include "splat/values/value_room.h"
 

@@ -2,7 +2,6 @@
 /* Where there are no vectors little is won by it. */
 #define VALUE_INLINE static inline __attribute__((unused))
 
-#include "classify/gradient_opacity.h"
 #include "simd/rows.h"
 #include "splat/values/value_room.h"
 

@@ -1,6 +1,5 @@
 /* splat/values/value_splat_v128.c - tiles in NEON or in WebAssembly's vectors;
  * see value_splat.c. */
-#include "classify/gradient_opacity.h"
 #include "simd/rows.h"
 #include "splat/values/value_room.h"
 

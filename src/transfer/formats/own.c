@@ -5,10 +5,10 @@
  *    "colors": [[150, 0.6, 0.38, 0.28], ...], "opacities": [[150, 0], ...],
  *    "gradient-opacities": [[0, 0.2], [60, 1]]}
  *
- * "values" are data values, or shares of the "range" or of the "object"; the
- * interpolation may be "log", the colour space "hsv", "lab", "diverging" or
- * "step", the opacity unit "mm".  Only "snowglass-tf" and one kind of points
- * are required. */
+ * "values" are data values, or shares of the "range", of the "object", or of
+ * one that is "symmetric" around 0; the interpolation may be "log", the colour
+ * space "hsv", "lab", "diverging" or "step", the opacity unit "mm".  Only
+ * "snowglass-tf" and one kind of points are required. */
 #include "transfer/formats/json.h"
 
 #include <string.h>
@@ -67,12 +67,13 @@ static snow_status take_pairs(const tf_input *in, snow_look_file *tf,
 
 static snow_status take_words(const tf_input *in, snow_look_file *tf,
                               const json_t *map, tf_space *space) {
-    static const char *const values[] = {"data", "range", "object"};
+    static const char *const values[] = {"data", "range", "object",
+                                         "symmetric"};
     static const char *const scales[] = {"linear", "log"};
     static const char *const units[] = {"voxel", "mm"};
     static const char *const spaces[TF_SPACES] = {
         "rgb", "hsv", "hsv-wrap", "lab", "diverging", "step"};
-    int value = word_of(map, "values", values, 3);
+    int value = word_of(map, "values", values, 4);
     int scale = word_of(map, "interpolation", scales, 2);
     int unit = word_of(map, "opacity-unit", units, 2);
     int found = word_of(map, "color-space", spaces, TF_SPACES);

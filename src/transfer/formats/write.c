@@ -36,7 +36,8 @@ static json_t *pair_list(const snow_opacity_point *points, size_t count) {
 }
 
 static json_t *tree_of(const snow_look *points) {
-    static const char *const values[] = {"data", "range", "object"};
+    static const char *const values[] = {"data", "range", "object",
+                                         "symmetric"};
     json_t *tree = json_object();
     json_object_set_new(tree, "snowglass-tf", json_integer(1));
     json_object_set_new(tree, "name",

@@ -63,6 +63,29 @@ check "is in the values" test "$(sums ct.nrrd | cut -d' ' -f1-6)" = \
 run 0 "an intercept to MetaImage" "$TOOL" convert -q ct.nii -o ct.mha
 check "stays one" grep -aq "ElementToIntensityFunctionOffset = -1024" ct.mha
 
+# Names, colours and units stay, in a volume and in the volume of a page.
+{
+    printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n'
+    printf 'sample units: mSv\nSegment0_LabelValue:=7\nSegment0_Name:=liver\n'
+    printf 'Segment0_Color:=1 0.5 0\n\n0 7 0 7 0 7 0 7\n'
+} >seg.nrrd
+run 0 "a segmentation" "$TOOL" convert -q seg.nrrd -o seg2.nrrd --as uint16
+run 0 "as it is" "$TOOL" info seg2.nrrd
+prints '7 .*liver'
+check "the unit stays" grep -aq '^sample units: mSv$' seg2.nrrd
+printf '7 10 20 30 0.5 1 1 "spleen"\n' >labels.txt
+mkdir -p page/bin page/share/snowglass/web
+cp "$TOOL" page/bin
+echo '<html>' >page/share/snowglass/web/viewer.html
+run 0 "a page" page/bin/snowglass export page.html seg.nrrd --legend \
+    --label-table labels.txt
+check "opens no other file" test "$(grep -c labels.txt page.html)" = 0
+sed -n 's/.*data-recipe="[^>]*>\(.*\)<.script>/\1/p' page.html | base64 -d |
+    gunzip >paged.nrrd
+run 0 "its volume" "$TOOL" info paged.nrrd
+prints '7 .*spleen'
+check "has opacities" grep -aq '^Segment0_Opacity:=0.5$' paged.nrrd
+
 refused 2 "no output" "no output file given" "$TOOL" convert a.nrrd
 refused 2 "an unknown ending" "volumes are written as" \
     "$TOOL" convert a.nrrd -o a.xyz

@@ -17,6 +17,8 @@ prints '"presets": \["linear", .*"colormaps": \["grey"'
 run 0 "tf show of a preset" "$TOOL" tf show CT_Cardiac
 prints '^kind +preset'
 prints '^gradient +60 +1\.0000'
+run 0 "tf show of both signs" "$TOOL" tf show signed
+prints '^values +shares of a range that is symmetric around 0$'
 run 0 "tf show of a colour map" "$TOOL" tf show magma
 prints '^kind +colour map'
 run 0 "tf show of a file" "$TOOL" tf show "$SEEDS/presets.xml#ct-bone"

@@ -79,4 +79,45 @@ check "in the same picture" cmp -s v.png w.png
 run 0 "to standard output" bash -c \
     "'$TOOL' render -q phantom:head --dims 40x40x40 -s 150x140 -o - >y.png"
 check "with letters" cmp -s a.png y.png
+
+# --- titles, times, boxes -----------------------------------------------------
+for step in 0 1; do
+    "$TOOL" phantom shells --dims 12x12x12 --seed $step -q -o s_$step.nrrd
+    "$TOOL" convert s_$step.nrrd -q -o s_$step.raw
+    cat >s_$step.vti <<END
+<VTKFile type="ImageData"><ImageData WholeExtent="0 11 0 11 0 11">
+<FieldData><DataArray type="Float64" Name="TimeValue" NumberOfTuples="1"
+format="ascii">$step.25</DataArray></FieldData>
+<Piece Extent="0 11 0 11 0 11"><PointData Scalars="rho"><DataArray
+type="UInt8" Name="rho" format="ascii">$(od -An -v -tu1 s_$step.raw)</DataArray>
+</PointData></Piece></ImageData></VTKFile>
+END
+done
+of_time() { "$TOOL" render s_1.vti -q -s 160x150 -y "$@"; }
+run 0 "a picture" of_time -o w0.png
+for said in "--title Run" "--annotate time" "--outline" "--axes" \
+    "--annotate time --time-format %.3f"; do
+    run 0 "$said" of_time -o w1.png $said
+    run 6 "$said is drawn" "$TOOL" compare w0.png w1.png
+    run 0 "$said by a recipe" of_time -o w2.png --save-config w.json $said
+    run 0 "$said: the recipe" "$TOOL" render --config w.json -q -y -o w2.png
+    check "$said: the same picture" cmp -s w1.png w2.png
+done
+run 0 "the file's quantity" of_time -o w1.png --legend
+run 0 "said as it is" of_time -o w2.png --legend --legend-title rho
+check "is the same" cmp -s w1.png w2.png
+run 0 "with a unit" of_time -o w2.png --legend --unit kg
+run 6 "it is another" "$TOOL" compare w1.png w2.png
+run 0 "a movie with times" "$TOOL" movie s_0.vti s_1.vti -q -s 160x150 \
+    -o 'x_%d.png' --annotate time --range 0,255 --preset linear
+run 0 "its second frame as a picture" of_time -o x.png --annotate time \
+    --range 0,255 --preset linear --fit volume
+run 0 "a frame of the other time" "$TOOL" render s_1.vti -q -s 160x150 -y \
+    -o y.png --range 0,255 --preset linear --fit volume
+run 6 "shows it" "$TOOL" compare x.png y.png
+run 2 "formats are checked" of_time -o w1.png --annotate time --time-format %s
+says "neither one number"
+run 2 "floats have no title" of_time -o w.npy --title Run
+says "cannot be drawn"
+
 finish

@@ -143,4 +143,29 @@ for name in block slice; do
     run 0 "is the same" "$TOOL" compare ${name}_0.png $name.png
 done
 
+# Labels are those of all steps: each is drawn as alone.
+label_step() { # label_step FILE LABEL: a block of 1 and one of the label
+    {
+        # shellcheck disable=SC2059
+        printf "$header" | sed "/^encoding/i Segment0_LabelValue:=$2"
+        awk -v n="$2" 'BEGIN {
+            for (i = 0; i < 512; i++) {
+                x = i % 8; inside = int(i / 8) % 8 % 6 && i / 64 > 1
+                print inside && x % 4 ? (x > 4 ? n : 1) : 0 } }' |
+            while read -r value; do printf "\\x$value"; done
+    } >"$1"
+}
+label_step l_0.nrrd 3
+label_step l_1.nrrd 9
+for look in "" "--preset labels"; do
+    # shellcheck disable=SC2086
+    run 0 "a movie of labels" "$TOOL" movie l_%d.nrrd -s 40x30 -o 'l%d.png' \
+        --fit volume -y $look
+    says 'labels 0\.\.9'
+    for i in 0 1; do
+        run 0 "step $i alone" render l_$i.nrrd -s 40x30 --fit volume -o one.png -y
+        check "is frame $i" cmp one.png l$i.png
+    done
+done
+
 finish

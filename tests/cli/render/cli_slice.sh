@@ -108,4 +108,24 @@ for axis in z y; do
 done
 refused 5 "what does not fit is refused" 'memory' "$TOOL" slice large.raw $raw \
     -o large.png --memory 1M
+# A slice of labels is drawn as such, without being asked.
+{
+    printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 2\nencoding: ascii\n'
+    printf 'Segment0_LabelValue:=7\nSegment0_Name:=liver\nSegment0_Color:=1 0 0\n\n'
+    printf '0 0 7 7 0 0 7 7 0 3 3 7 0 3 3 7 %.0s' 1 2
+} >seg.nrrd
+run 0 "a slice of labels" "$TOOL" slice seg.nrrd -o seg.png -s 160x160 --legend \
+    --save-config seg.json
+says 'labels 0\.\.7'
+run 0 "as asked" "$TOOL" slice seg.nrrd -q -o seg2.png -s 160x160 --legend \
+    --preset labels
+check "is the same" cmp -s seg.png seg2.png
+run 0 "by its recipe" "$TOOL" slice -q --config seg.json -o seg2.png -y
+check "is the same" cmp -s seg.png seg2.png
+run 0 "its background" "$TOOL" slice seg.nrrd -q -o seg3.png -s 160x160 \
+    --legend --background white
+run 6 "is clear" "$TOOL" compare seg.png seg3.png
+run 0 "in grey" "$TOOL" slice seg.nrrd -o seg4.png --preset linear --unit K
+says '\-\-unit changes nothing without \-\-legend'
+
 finish

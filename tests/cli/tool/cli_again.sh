@@ -110,7 +110,7 @@ again "a movie" movie 'f_%d.png' step_1.nhdr step_2.nhdr -s 40x40
 
 # --- the line of what was chosen ----------------------------------------------
 # "light-grey 38.9..204; opacity 0 at 38.9, 0.25 at 64.4 (from the histogram)"
-for name in phantom:head phantom:cube phantom:turbulence float.nhdr noise.nhdr; do
+for name in phantom:head phantom:shells phantom:turbulence float.nhdr noise.nhdr; do
     run 0 "$name by itself" "$TOOL" render $name -o a.png -s 60x60 -y
     look=$(sed -n 's/.*; \([a-z-]* [^;]*; opacity [^(]*\) (.*/\1/p' "$ERR")
     opacity=$(sed 's/.*; opacity //;s/ *\([^ ,]*\) at \([^ ,]*\)/\2:\1/g' <<<"$look")

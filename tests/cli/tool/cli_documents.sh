@@ -10,8 +10,8 @@ trap 'rm -rf "$place"' EXIT
 mkdir "$place/files"
 cd "$place/files" || exit 1
 
-for name in head.nii.gz ct.nii.gz mra.nii.gz brain.nii.gz organs.nii.gz ct.nrrd \
-    sim.nrrd volume.mha scan.mha; do
+for name in head.nii.gz ct.nii.gz mra.nii.gz brain.nii.gz organs.nii.gz \
+    seg.nii.gz pet.nii.gz ct.nrrd sim.nrrd seg.nrrd volume.mha scan.mha; do
     "$tool" phantom head --dims 32x32x32 -q -o "$name" || exit 1
 done
 # With values of Hounsfield units, and more.
@@ -48,6 +48,98 @@ for i in 0001 0002 0003; do
 done
 
 cp -r slices dicom_folder
+"$tool" convert slices -q -o mask.nrrd && mv mask.nrrd seg.dcm || exit 1
+
+# What simulations write (docs/simulations.md): a series of three steps in each
+# format.  HDF5 and NetCDF need Python's writers.
+printf 'TIME: 0.5\nDATA_FILE: rho.raw\nDATA_SIZE: 32 24 16\nDATA_FORMAT: DOUBLE
+VARIABLE: rho\nDATA_ENDIAN: LITTLE\nBRICK_SIZE: 32 24 32\n' >rho.bov
+"$tool" phantom shells --dims 32x24x16 -q -o s.nrrd || exit 1
+"$tool" convert s.nrrd -q --as float64 -o rho.raw || exit 1
+for step in 0 1 2; do
+    {
+        printf '<VTKFile type="ImageData"><ImageData WholeExtent="0 3 0 3 0 3">
+            <Piece Extent="0 3 0 3 0 3"><PointData Scalars="rho">
+            <DataArray type="Float32" Name="rho" format="ascii">'
+        seq $step $((step + 63))
+        printf '</DataArray></PointData></Piece></ImageData></VTKFile>'
+    } >run_000$step.vti
+    echo run_000$step.vti >>run.visit
+    echo "<DataSet timestep=\"0.$step\" file=\"run_000$step.vti\"/>" >>run.list
+done
+{
+    echo '<VTKFile type="Collection"><Collection>'
+    cat run.list
+    echo '</Collection></VTKFile>'
+} >run.pvd
+{
+    printf '<VTKFile type="RectilinearGrid"><RectilinearGrid WholeExtent="0 3 0 3
+        0 3"><Piece Extent="0 3 0 3 0 3"><PointData Scalars="u"><DataArray
+        type="Float32" Name="u" format="ascii">'
+    seq 64
+    printf '</DataArray></PointData><Coordinates>'
+    for axis in 1 2 3; do
+        echo '<DataArray type="Float32" format="ascii">0 1 3 7</DataArray>'
+    done
+    printf '</Coordinates></Piece></RectilinearGrid></VTKFile>'
+} >channel.vtr
+for step in 0 1; do
+    plt=plt0000$step
+    mkdir $plt $plt/Level_0 $plt/Level_1
+    printf '%s\n' HyperCLaw-V1.1 2 density temperature 3 0.$step 1 '0 0 0' '2 1.5 1' 2 \
+        '((0,0,0) (31,23,15) (0,0,0)) ((0,0,0) (63,47,31) (0,0,0))' '0 0' \
+        '0.0625 0.0625 0.0625' '0.03125 0.03125 0.03125' 0 0 \
+        '0 1 0' 0 '0 2' '0 1.5' '0 1' Level_0/Cell \
+        '1 1 0' 0 '0.5 1' '0.5 1' '0.25 0.75' Level_1/Cell >$plt/Header
+    for level in 0 1; do
+        box='((0,0,0) (31,23,15) (0,0,0))'
+        [ $level = 0 ] || box='((16,16,8) (31,31,23) (0,0,0))'
+        printf '%s\n' 1 1 2 0 '(1 0' "$box" ')' 1 'FabOnDisk: Cell_D_00000 0' \
+            >$plt/Level_$level/Cell_H
+        {
+            echo "FAB ((8, (64 11 52 0 1 12 0 1023)),(8, (8 7 6 5 4 3 2 1)))$box 2"
+            cat rho.raw rho.raw
+        } >$plt/Level_$level/Cell_D_00000
+    done
+done
+printf '<VTKFile type="vtkOverlappingAMR"><vtkOverlappingAMR><Block level="0">
+    <DataSet file="cells.vti"/></Block></vtkOverlappingAMR></VTKFile>' >run.vth
+sed 's/PointData/CellData/g; s/"0 3 0 3 0 3"/"0 4 0 4 0 4"/g' run_0000.vti >cells.vti
+lacks='^$'
+"${PYTHON:-/usr/bin/python3}" - <<'END' 2>/dev/null || lacks='[.](h5|nc|xmf)( |:|$)'
+import h5py
+import netCDF4
+import numpy as np
+
+a = np.add.outer(np.add.outer(np.arange(8.), np.arange(9.)), np.arange(10.))
+item = '<DataItem Format="%s">%s</DataItem>'
+with h5py.File("run.h5", "w") as run, open("run.xmf", "w") as text:
+    text.write('<Xdmf><Domain><Grid GridType="Collection" '
+               'CollectionType="Temporal">')
+    for step in range(3):
+        name = f"step_{step:04d}/rho"
+        run[name] = a + step
+        run[name].attrs["units"] = "kg/m3"
+        run[f"step_{step:04d}"].attrs["time"] = step / 4
+        text.write('<Grid><Time Value="%g"/><Topology TopologyType='
+                   '"3DCoRectMesh" Dimensions="8 9 10"/><Geometry '
+                   'GeometryType="ORIGIN_DXDYDZ">%s%s</Geometry><Attribute '
+                   'Name="rho">%s</Attribute></Grid>' %
+                   (step / 4, item % ("XML", "0 0 0"), item % ("XML", "1 1 1"),
+                    item % ("HDF", "run.h5:/" + name)))
+        with h5py.File(f"data_{step * 100}.h5", "w") as one:
+            one[f"data/{step * 100}/fields/rho"] = a + step
+    text.write("</Grid></Domain></Xdmf>")
+with netCDF4.Dataset("ocean.nc", "w") as ocean:
+    for name, at, unit in (("time", [0, 1, 2], "days since 2000-01-01"),
+                           ("z", [0, 1, 3, 7, 15, 31, 63, 127], "m"),
+                           ("y", range(9), "m"), ("x", range(10), "m")):
+        ocean.createDimension(name, len(at))
+        v = ocean.createVariable(name, "f8", (name,))
+        v[:], v.units = at, unit
+    v = ocean.createVariable("temp", "f4", ("time", "z", "y", "x"))
+    v[:], v.units = np.stack([a, a + 1, a + 2]), "K"
+END
 
 # Five times of two channels, at three levels.
 for level in 0 1 2; do
@@ -59,8 +151,12 @@ for level in 0 1 2; do
         >cells.ome.zarr/$level/0.0.0.0.0
 done
 printf '{"multiscales": [{"datasets": [{"path": "0"}, {"path": "1"},
-    {"path": "2"}]}]}' >cells.ome.zarr/.zattrs
+    {"path": "2"}]}], "omero": {"channels": [{"label": "DAPI"},
+    {"label": "GFP"}]}}' >cells.ome.zarr/.zattrs
 cp "$root"/fuzz/corpus/tf/$(cd "$root/fuzz/corpus/tf" && ls | grep -m1 '\.vp$') slicer.vp
+
+# The files alone, for other lines than those of the tool (tests/package/snippets).
+[ -z "${STAND_INS-}" ] || { cp -r . "$STAND_INS" && exit; }
 
 # Movies need a program of its own.
 without='^$'
@@ -71,7 +167,8 @@ commands() {
     sed -e ':a' -e '/\\$/N; s/\\\n *//; ta' "$root/README.md" \
         "$root"/docs/*.md "$root"/docs/measurements/*.md |
         sed -n 's/^    \(snowglass .*\)/\1/p' |
-        grep -Ev 'snowglass (bench|serve)|--show' | grep -Ev -e "$without" | sort -u
+        grep -Ev 'snowglass (bench|serve|export)|--show' | grep -Ev -e "$without" |
+        grep -Ev -e "$lacks" | sort -u
 }
 
 # The short tier takes one in six.

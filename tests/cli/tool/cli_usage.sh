@@ -46,9 +46,9 @@ info --perspective x|is not an option of info
 --memory lots x -o y.png|--memory: 'lots' is not an amount of memory
 --memory 0 x -o y.png|--memory: '0' is not an amount
 --memory 1.5Q x -o y.png|is not an amount of memory
---labels 1 x -o y.png|--labels: these are of a mask; give --mask FILE beside it
-convert x -o y.nrrd --labels 1|--labels: these are of a mask
-info x --labels 1|--labels: these are of a mask
+--labels 1 phantom:marschner-lobb -o y.png|--labels: picks whole numbers, and these values are fractions
+convert phantom:marschner-lobb -o y.nrrd --labels 1|--labels: picks whole numbers
+info phantom:marschner-lobb --labels 1|--labels: picks whole numbers
 --labels 1,b x -o y.png|--labels: '1,b' is not a list of labels
 --labels 7-4 x -o y.png|--labels: '7-4' is not a list of labels
 --labels= x -o y.png|--labels
@@ -164,7 +164,8 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
 --endian middle x|choose from: little, big
 --offset -1 x|whole number of 0 or more
 --offset 99999999999999999999 x|whole number of 0 or more
---time -1 x|whole number
+--time soon x|'soon' is not a time step; give its number, last
+--time 2:8 x|render shows one step, and a range of them is for movie
 --preset toast x|--preset: 'toast' is unknown; choose from: linear, ct-aaa
 --colormap beige x|--colormap: 'beige' is unknown; choose from: grey, viridis
 --view upside x|--view: 'upside' is unknown; choose from: anterior, .*-z, .*axial

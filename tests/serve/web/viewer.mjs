@@ -46,7 +46,7 @@ async function rest(page) {
 const keys = page => page.evaluate(() => window.snowglass.recipe.keys);
 const shot = (page, name) => page.screenshot({path: `${folder}/${name}.png`});
 const middle = async page => {
-    const box = await page.locator('.picture canvas').boundingBox();
+    const box = await page.locator('.picture canvas').first().boundingBox();
     return [box.x + box.width / 2, box.y + box.height / 2];
 };
 
@@ -152,7 +152,7 @@ async function names(page) {
         each.open = true;
     }));
     const nameless = await page.evaluate(() => [...document.querySelectorAll(
-        'button, input, select, textarea, canvas, summary')].filter(element => !(
+        'button, input, select, textarea, canvas:not([aria-hidden]), summary')].filter(element => !(
         element.getAttribute('aria-label') || element.textContent.trim() ||
         [...(element.labels ?? [])].some(label => label.textContent.trim())))
         .map(element => element.outerHTML.slice(0, 90)));
@@ -232,13 +232,13 @@ async function controls(page) {
     await page.getByLabel('Mode', {exact: true}).selectOption('over');
     await page.getByRole('button', {name: /^Opacity of the preset/}).click();
     await page.locator('summary', {hasText: 'Clip'}).click();
-    await page.getByLabel(/clip .*highest/).first().fill('0');
+    await page.getByLabel(/clip .*highest/).and(page.locator('input')).first().fill('0');
     await rest(page);
     check('a clip plane is set', (await keys(page)).clip?.length === 1,
         JSON.stringify((await keys(page)).clip));
     await shot(page, 'clip');
     await page.evaluate(() => window.snowglass.recipe.set({clip: [[1, 1, 0, 20]]}));
-    await page.getByLabel(/clip .*highest/).nth(1).fill('0');
+    await page.getByLabel(/clip .*highest/).and(page.locator('input')).nth(1).fill('0');
     await rest(page);
     const clip = (await keys(page)).clip;
     check('an oblique plane stays', clip?.length === 2 && clip[0][0] === 1 && clip[0][1] === 1,
@@ -261,6 +261,35 @@ async function controls(page) {
 }
 
 /** A pan follows the pointer also where the picture has another page's shape. */
+/** Title, box and axes are in the picture, which is framed for them. */
+async function marks(page) {
+    await page.evaluate(() => document.querySelectorAll('details').forEach(each => {
+        each.open = each.textContent.startsWith('Letters');
+    }));
+    const moved = await keys(page);
+    await page.keyboard.press('r'); // the answer of which comes later
+    await page.waitForFunction(zoom => window.snowglass.recipe.keys.zoom !== zoom, moved.zoom);
+    await rest(page);
+    const before = await keys(page);
+    await page.getByLabel('title of the picture').fill('Head, \u00b0C');
+    await page.getByLabel('title of the picture').press('Enter');
+    await page.getByLabel('its axes, with numbers').check();
+    await page.waitForFunction(zoom => window.snowglass.recipe.keys.zoom < zoom, before.zoom);
+    await rest(page);
+    const now = await keys(page);
+    check('a title is in the recipe', now.title === 'Head, \u00b0C' && now.axes === true,
+        JSON.stringify(now));
+    check('the box is framed', now.zoom < 0.9 * before.zoom, now.zoom);
+    await shot(page, 'marks');
+    await page.getByLabel('its axes, with numbers').uncheck();
+    await page.getByLabel('title of the picture').fill('');
+    await page.getByLabel('title of the picture').press('Enter');
+    await page.waitForFunction(zoom => window.snowglass.recipe.keys.zoom === zoom, before.zoom);
+    check('all is as before', !('title' in await keys(page)), '');
+    await page.locator('.picture canvas').first().focus(); // where keys are commands
+    await rest(page);
+}
+
 async function letterboxed(page) {
     await page.evaluate(() => window.snowglass.recipe.apply({size: [300, 600]}));
     await rest(page);
@@ -302,6 +331,188 @@ async function reconnected(page) {
     await rest(page);
     check('a page that comes back has the size of its window',
         (await keys(page)).size[0] > 500);
+}
+
+/** Until all slices are those of their commands. */
+const slicesRest = page => page.waitForFunction(() => window.snowglass.slices.panes.every(
+    pane => pane.exact && !pane.busy && pane.file), null, {timeout: 30000});
+
+const crossing = page => page.evaluate(() => window.snowglass.slices.index);
+const paneBox = (page, i) => page.locator('.pane canvas').nth(i).boundingBox();
+
+/** Bytes of a picture of the page. */
+const bytesOf = (page, find) => page.evaluate(async text => {
+    const blob = Function('page', `return ${text}`)(window.snowglass);
+    return [...new Uint8Array(await blob.arrayBuffer())];
+}, find);
+
+/** Three slices, whose crosshairs move one another. */
+async function slices(page, name = 'slices') {
+    await page.keyboard.press('x');
+    await slicesRest(page);
+    await rest(page);
+    const begin = await crossing(page), box = await paneBox(page, 0);
+    await page.mouse.click(box.x + 0.3 * box.width, box.y + 0.4 * box.height);
+    await slicesRest(page);
+    const there = await crossing(page);
+    check('a click in one slice moves the other two', there.filter((x, i) => x !== begin[i]).length === 2 &&
+        there[2] === begin[2], `${begin} ${there}`);
+    await page.mouse.move(box.x + 0.4 * box.width, box.y + 0.4 * box.height);
+    await page.mouse.wheel(0, 120);
+    await slicesRest(page);
+    const turned = await crossing(page);
+    check('the wheel goes to another slice', Math.abs(turned[2] - begin[2]) === 2 &&
+        turned[0] === there[0] && turned[1] === there[1], `${turned}`);
+    const range = () => page.evaluate(() => window.snowglass.slices.keys.range);
+    const before = await range();
+    await page.mouse.down({button: 'right'});
+    await page.mouse.move(box.x + 0.4 * box.width + 60, box.y + 0.4 * box.height, {steps: 5});
+    await page.mouse.up({button: 'right'});
+    await slicesRest(page);
+    const now = await range();
+    check('a right drag makes the window wider', now[1] - now[0] > 1.15 * (before[1] - before[0]) &&
+        Math.abs(now[0] + now[1] - before[0] - before[1]) < 0.01 * (now[1] - now[0]), `${before} ${now}`);
+    check('and leaves the look of the volume', !(await keys(page)).range);
+    await page.keyboard.press('z');
+    await slicesRest(page);
+    check('which is undone', String(await range()) === String(before), `${await range()}`);
+    await page.locator('.pane canvas').nth(1).focus();
+    await page.keyboard.press('ArrowRight');
+    await page.keyboard.press('PageUp');
+    await slicesRest(page);
+    const keyed = await crossing(page);
+    check('keys move the crosshair', keyed.filter((x, i) => Math.abs(x - turned[i]) === 1).length === 2,
+        `${turned} ${keyed}`);
+    await shot(page, name);
+    await page.keyboard.press('c');
+    await page.waitForSelector('dialog[open] textarea');
+    writeFileSync(`${folder}/slice.txt`, await page.locator('dialog textarea').inputValue());
+    writeFileSync(`${folder}/slice.png`, Buffer.from(await bytesOf(page, 'page.slices.panes[1].file')));
+    await page.keyboard.press('Escape');
+    await page.locator('.pane canvas').nth(1).focus();
+    await page.keyboard.press('Enter');
+    await page.waitForFunction(() => !document.querySelector('.picture').clientWidth);
+    const alone = await paneBox(page, 1);
+    check('a slice stands alone', alone.width > 1.5 * box.width, alone.width);
+    await page.mouse.move(alone.x + alone.width / 2, alone.y + alone.height / 2);
+    await page.keyboard.down('Control');
+    await page.mouse.wheel(0, -300);
+    await page.keyboard.up('Control');
+    await shot(page, `${name}_alone`);
+    await page.keyboard.press('Enter');
+    await page.waitForFunction(() => document.querySelector('.picture').clientWidth > 0);
+    await rest(page);
+    await awayAndBack(page);
+    await page.getByRole('button', {name: 'Three slices beside the picture (x)'}).click();
+    check('and all are put away', await page.locator('.pane').count() === 0);
+}
+
+/** Slices that are put away while exact ones are awaited; keys of the browser;
+ * many places at once; a narrow window at a large offset. */
+async function awayAndBack(page) {
+    await page.evaluate(async () => {
+        const {slices} = window.snowglass, wait = ms => new Promise(done => setTimeout(done, ms));
+        slices.goTo(slices.index.map(i => i + 1));
+        while (slices.panes.some(pane => pane.busy))
+            await wait(5);
+        slices.toggle();
+        await wait(400);
+        slices.toggle();
+    });
+    check('slices that were put away come back', await slicesRest(page).then(() => true, () => false));
+    await page.locator('.pane canvas').nth(1).focus();
+    await page.keyboard.press('Control+c');
+    check('Ctrl+C is the browser\'s', await page.locator('dialog[open]').count() === 0);
+    const asked = await page.evaluate(() => {
+        const {slices, engine} = window.snowglass, begin = slices.index;
+        let count = 0;
+        engine.say = message => {
+            count += message.what === 'value';
+            Object.getPrototypeOf(engine).say.call(engine, message);
+        };
+        for (let i = 1; i < 20; i++)
+            slices.goTo([begin[0] - i, begin[1], begin[2]]);
+        delete engine.say;
+        return count;
+    });
+    check('one value is asked for at a time', asked === 1, asked);
+    await slicesRest(page);
+    const wide = await page.evaluate(() => {
+        const {slices} = window.snowglass;
+        slices.setWindow(2.7, 101326.5);
+        const [low, high] = slices.keys.range;
+        window.snowglass.recipe.undo();
+        return high - low;
+    });
+    check('a narrow window keeps its width', Math.abs(wide - 2.7) < 1e-4, wide);
+    await slicesRest(page);
+}
+
+/** Handles on the picture, a point to turn around, the light. */
+async function handles(page) {
+    await page.getByRole('button', {name: /^All as it was/}).click();
+    await page.locator('details', {has: page.locator('summary', {hasText: 'Clip'})})
+        .evaluate(group => { group.open = false; });
+    await page.keyboard.press('k');
+    await rest(page);
+    const grips = page.locator('.handle:visible');
+    check('six handles are on the picture', await grips.count() === 6, await grips.count());
+    const grip = page.getByRole('slider', {name: /^clip .*highest/}).and(page.locator('.handle')).first();
+    const box = await grip.boundingBox(), [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    const [mx] = await middle(page), by = x > mx ? -80 : 80;
+    await page.mouse.move(x + by, y, {steps: 8});
+    await page.mouse.up();
+    await rest(page);
+    const after = await grip.boundingBox(), clip = (await keys(page)).clip;
+    check('a handle cuts', clip?.length === 1, JSON.stringify(clip));
+    check('and stays under the pointer', Math.abs(after.x - box.x - by) < 3, after.x - box.x);
+    await page.mouse.move(after.x + after.width / 2, after.y + after.height / 2);
+    await page.mouse.down({button: 'right'});
+    await page.mouse.move(x, y, {steps: 4});
+    await page.mouse.up({button: 'right'});
+    check('but not by the right button', String((await keys(page)).clip) === String(clip));
+    await page.getByRole('button', {name: /^A plane that faces the viewer/}).click();
+    await rest(page);
+    check('a plane faces the viewer', await grips.count() === 7 && (await keys(page)).clip.length === 2);
+    await drag(page, 90, 40);
+    await shot(page, 'handles');
+    const slider = page.getByRole('slider', {name: 'tilted clip plane 1'}).and(page.locator('input'));
+    await slider.fill('0.5');
+    await rest(page);
+    const moved = (await keys(page)).clip[1];
+    await page.getByRole('button', {name: 'Remove tilted plane 1'}).click();
+    await page.keyboard.press('z');
+    await rest(page);
+    check('a tilted plane is moved, removed and back', String((await keys(page)).clip[1]) === String(moved) &&
+        moved[3] !== clip[3], String(moved));
+    await page.getByRole('button', {name: 'Remove all clip planes'}).click();
+    await page.keyboard.press('k');
+    await page.keyboard.press('r');
+    await rest(page);
+    for (const perspective of [0, 30]) {
+        await page.evaluate(fov => window.snowglass.recipe.set({perspective: fov}), perspective);
+        await rest(page);
+        const before = (await keys(page)).target, [cx, cy] = await middle(page);
+        await page.mouse.dblclick(cx - 60, cy + 30);
+        await page.waitForFunction(was => String(window.snowglass.recipe.keys.target) !== was,
+            String(before));
+        await rest(page);
+        const depth = await page.evaluate(() => new Promise(done => {
+            const {engine} = window.snowglass, tell = engine.tell.bind(engine);
+            engine.tell = (name, value) => name === 'depth' ? done(value.depth) : tell(name, value);
+            engine.ask('depth', {x: 0.5, y: 0.5});
+        }));
+        const radius = await page.evaluate(() => window.snowglass.page.info.radius);
+        check(`a double click turns around its point, at ${perspective} degrees`,
+            Math.abs(depth) < 0.03 * radius, depth);
+        await page.evaluate(() => delete window.snowglass.engine.tell);
+    }
+    await drag(page, 60, -30, 'left', 'Control');
+    const {light} = await keys(page);
+    check('a drag with Ctrl moves the light', light?.[0] > -25 && light?.[1] > 35, light);
+    await shot(page, 'light');
 }
 
 /** A link restores the state, and two pages see each other's changes. */
@@ -400,40 +611,88 @@ async function prefixed() {
     proxy.close();
 }
 
-/** A radiologist's way: bone, window and level, a joint, the command. */
+/** A radiologist's way: bone, window and level, a joint, slices, the command. */
 async function film(name, options) {
-    const page = await open(options);
-    await shot(page, `film_${name}_1`);
-    await page.locator('summary', {hasText: 'Presets'}).click();
-    await page.locator('.presets button', {hasText: 'ct-bone'}).first().click();
-    await rest(page);
+    const page = await open(options), press = async button => {
+        await (options.hasTouch ? button.tap() : button.click());
+        await rest(page);
+    };
+    const canvas = page.locator('.picture canvas').first();
+    const seen = async step => {
+        await rest(page);
+        await canvas.scrollIntoViewIfNeeded();
+        await shot(page, `film_${name}_${step}`);
+    };
+    await seen('1_opened');
+    const presets = page.locator('summary', {hasText: 'Presets'});
+    await press(presets);
+    await page.waitForFunction(() => [...document.querySelectorAll('.presets img')]
+        .every(image => !image.hidden), null, {timeout: 60000});
+    await shot(page, `film_${name}_2_presets`);
+    await press(page.locator('.presets button', {hasText: 'ct-bone'}).first());
     check('bone is seen', (await keys(page)).preset === 'ct-bone');
-    await shot(page, `film_${name}_2`);
-    await drag(page, 40, -20, 'right');
-    await shot(page, `film_${name}_3`);
-    await page.locator('summary', {hasText: 'Clip'}).click();
-    const slider = page.getByLabel(/clip .*highest/).first();
-    const [low, high] = [await slider.getAttribute('min'), await slider.getAttribute('max')];
-    await slider.fill(String((+low + +high) / 2));
+    await press(presets);
+    const enter = async (label, value) => {
+        await page.getByLabel(label).fill(value);
+        await page.keyboard.press('Enter');
+        await rest(page);
+    };
+    await enter('shift of the look', '1024'); // as the note says
+    await press(page.getByRole('button', {name: 'View from +x', exact: true}));
+    await enter('roll in degrees', '180');
+    await seen('3_bone');
+    await page.getByLabel('Drag').selectOption('window');
+    await drag(page, 40, -20);
+    const {low, high} = await page.evaluate(() => window.snowglass.page.look);
+    check('a drag sets window and level', (await keys(page)).range?.length === 2 &&
+        high - low > 1400 && high - low < 1800 && Math.abs((low + high) / 2 - 1849) < 150, `${low} ${high}`);
+    await seen('4_window');
+    await page.getByLabel('Drag').selectOption('turn');
+    await drag(page, 90, 20);
+    const clips = page.locator('summary', {hasText: 'Clip'});
+    await press(clips);
+    const grip = page.locator('.handle:visible').nth(1), box = await grip.boundingBox();
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.down();
+    const [x, y] = await middle(page);
+    await page.mouse.move((2 * box.x + 3 * x) / 5, (2 * box.y + 3 * y) / 5, {steps: 8});
+    await page.mouse.up();
     await rest(page);
     check('it is cut', (await keys(page)).clip?.length === 1);
-    await drag(page, -120, 30);
-    await shot(page, `film_${name}_4`);
-    await page.getByRole('button', {name: /^Copy the command/}).click();
+    await seen('5_clipped');
+    await press(clips);
+    const whole = await canvas.boundingBox(), side = Math.min(whole.width, whole.height);
+    await canvas.dblclick({position: {x: whole.width / 2 + 0.13 * side, y: whole.height / 2 + 0.06 * side}});
+    await page.waitForTimeout(500);
+    await rest(page);
+    await press(page.getByRole('button', {name: 'Three slices beside the picture (x)'}));
+    await slicesRest(page);
+    await seen('6_slices');
+    await press(page.getByRole('button', {name: 'This slice alone, or all (Enter)'}).first());
+    await slicesRest(page);
+    await shot(page, `film_${name}_7_alone`);
+    await press(page.getByRole('button', {name: 'This slice alone, or all (Enter)'}).first());
+    await rest(page);
+    await press(page.getByRole('button', {name: /^Copy the command that makes this/}));
     await page.waitForSelector('dialog[open] textarea');
     writeFileSync(`${folder}/command.txt`, await page.locator('dialog textarea').inputValue());
-    await shot(page, `film_${name}_5`);
+    await shot(page, `film_${name}_8_command`);
     await page.keyboard.press('Escape');
     const coming = page.waitForEvent('download');
-    await page.getByRole('button', {name: /^Save the picture/}).click();
+    await press(page.getByRole('button', {name: /^Save the picture/}));
     await (await coming).saveAs(`${folder}/rest.png`);
-    await page.getByRole('button', {name: /^All as it was/}).click();
+    writeFileSync(`${folder}/slice.png`, Buffer.from(await bytesOf(page, 'page.slices.panes[2].file')));
+    await page.evaluate(() => window.snowglass.slices.command(window.snowglass.slices.panes[2]));
+    await page.waitForSelector('dialog[open] textarea');
+    writeFileSync(`${folder}/slice.txt`, await page.locator('dialog textarea').inputValue());
+    await page.keyboard.press('Escape');
+    await press(page.getByRole('button', {name: /^All as it was/}));
     await page.context().close();
 }
 
 if (tier === 'film') {
-    await film('wide', {viewport: {width: 1600, height: 1000}});
-    await film('narrow', {viewport: {width: 400, height: 700}, hasTouch: true});
+    await film('narrow', {viewport: {width: 400, height: 700}, hasTouch: true, colorScheme: 'light'});
+    await film('wide', {viewport: {width: 1600, height: 1000}, colorScheme: 'dark'});
     check('nothing is on the console', said.length === 0, said.join(' | '));
     await browser.close();
     process.exit(wrong ? 1 : 0);
@@ -477,8 +736,28 @@ async function manyPoints() {
     await page.context().close();
 }
 
-if (tier === 'points') {
-    await manyPoints();
+/** Labels of the command line come back with the mask, in a page too that was
+ * loaded without it. */
+async function masked() {
+    const page = await open();
+    const flip = async () => {
+        await page.getByLabel('only what the mask keeps').evaluate(box => box.click());
+        await rest(page);
+    };
+    const {labels} = await keys(page);
+    await flip();
+    let now = await keys(page);
+    check('a mask is switched off with its labels', labels && !now.mask && !now.labels, now.labels);
+    await page.reload();
+    await rest(page);
+    await flip();
+    now = await keys(page);
+    check('and on with them', now.mask && now.labels === labels, now.labels);
+    await page.context().close();
+}
+
+if (tier === 'points' || tier === 'mask') {
+    await (tier === 'mask' ? masked() : manyPoints());
     await browser.close();
     process.exit(wrong ? 1 : 0);
 }
@@ -495,6 +774,9 @@ if (long) {
     await damaged(page);
     await editor(page);
     await controls(page);
+    await marks(page);
+    await slices(page);
+    await handles(page);
     await together(page);
     await touch();
     await schemes(page);

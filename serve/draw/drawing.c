@@ -1,8 +1,8 @@
 /* drawing.c - implements drawing.h over the tool's render_state. */
-#include "drawing.h"
+#include "draw/drawing.h"
 #include "commands/commands.h"
+#include "draw/ranks.h"
 #include "options/config.h"
-#include "options/config_paths.h"
 #include "picture/annotations.h"
 #include "picture/paint.h"
 #include "run/log.h"
@@ -16,16 +16,18 @@
 
 /* What a volume is opened by, and what a look is made of besides. */
 static const char *const data_keys[] = {
-    "crop", "channel", "component", "labels", "clip", "time", NULL};
-static const char *const base_keys[] = {"crop",   "channel", "component",
-                                        "labels", "time",    NULL};
+    "crop", "channel", "component", "labels", "clip", "time", "mask", NULL};
+static const char *const base_keys[] = {
+    "crop", "channel", "component", "labels", "time", "mask", NULL};
 static const char *const look_keys[] = {
-    "preset", "colormap", "log",   "opacity", "gradient-opacity",
-    "range",  "window",   "level", "shift",   "mode",
-    NULL};
+    "preset", "colormap", "log",   "symlog", "opacity", "gradient-opacity",
+    "range",  "window",   "level", "shift",  "mode",    NULL};
 
 /* The smallest side of a draft that is drawn in a hurry. */
 #define SIDE_LEAST 64
+
+/* So many are expected: moving voxels between ranks may pay. */
+#define PICTURES_LEFT 100
 
 /* A turn is framed from these angles on. */
 #define TURN_SIDES 4
@@ -83,31 +85,58 @@ static int reopen(drawing *d) {
     return done;
 }
 
+static size_t count_clips(const snow_volume_options *data) {
+    size_t count = 0;
+    while (count < SNOW_CLIPS_MAX &&
+           (data->clip[count][0] != 0 || data->clip[count][1] != 0 ||
+            data->clip[count][2] != 0))
+        count++;
+    return count;
+}
+
+/* The volume without clip planes: the one that was shown before there were any,
+ * or opened once; NULL where it stays in its file, or does not fit. */
+static snow_volume *base_of(drawing *d) {
+    snow_volume_options data = data_options(&d->opts);
+    memset(data.clip, 0, sizeof data.clip);
+    if (d->base || d->state.plan.streams)
+        return d->base;
+    if (d->plain_key && d->base_key && !strcmp(d->plain_key, d->base_key)) {
+        d->base = d->state.volume;
+        d->state.volume = NULL;
+        take_key(&d->plain_key, NULL);
+    }
+    if (d->base)
+        return d->base;
+    if (snow_volume_open(d->state.context, d->opts.operands[0], &data,
+                         &d->base) != SNOW_STATUS_OK)
+        d->base = NULL;
+    return d->base;
+}
+
 /* Where clip planes move, the volume without them is kept, and read only once.
- * What needs more memory than there is, or stays in its file, is opened as
- * ever. */
+ * What needs more memory than there is, stays in its file or is that of many
+ * ranks is opened as ever. */
 static bool reclip(drawing *d) {
     render_state *s = &d->state;
     snow_volume_options data = data_options(&d->opts);
-    size_t count = 0;
-    snow_volume *made = NULL;
-    while (count < SNOW_CLIPS_MAX &&
-           (data.clip[count][0] != 0 || data.clip[count][1] != 0 ||
-            data.clip[count][2] != 0))
-        count++;
-    if (s->plan.streams || !s->volume || !count || data.mask)
+    size_t count = count_clips(&data);
+    snow_volume *made = NULL, *base;
+    if (process_ranks() > 1 || !s->volume || !count || data.mask ||
+        !(base = base_of(d)))
         return false;
-    memset(data.clip, 0, sizeof data.clip);
-    if (!d->base && snow_volume_open(s->context, d->opts.operands[0], &data,
-                                     &d->base) != SNOW_STATUS_OK)
-        return false;
-    if (snow_volume_clip(d->base, d->opts.clip[0], count, &made) !=
-        SNOW_STATUS_OK)
+    if (snow_volume_clip(base, d->opts.clip[0], count, &made) != SNOW_STATUS_OK)
         return false;
     snow_volume_close(s->volume);
     s->volume = made;
     s->whole = *snow_volume_get_info(made);
     return true;
+}
+
+const snow_volume *drawing_unclipped(drawing *d) {
+    snow_volume_options data = data_options(&d->opts);
+    const snow_volume *base = count_clips(&data) ? base_of(d) : NULL;
+    return base ? base : d->state.volume;
 }
 
 /* Forgets the volume without clip planes where another is meant, or none. */
@@ -118,11 +147,23 @@ static void drop_base(drawing *d, char *key) {
     }
 }
 
+snow_status drawing_new_transfer(drawing *d, const snow_look *look,
+                                 snow_transfer **out) {
+    return process_ranks() > 1
+               ? snow_ranks_new_transfer(process_comm(), d->state.volume, look,
+                                         out)
+               : snow_transfer_new_for_volume(d->state.volume, look, out);
+}
+
+/* The ranks of the drawing; NULL: one. */
+static snow_comm *comm_of_all(void) {
+    return process_ranks() > 1 ? process_comm() : NULL;
+}
+
 static int restyle(drawing *d) {
     snow_transfer *made = NULL;
     snow_look look = look_options(&d->opts);
-    snow_status status =
-        snow_transfer_new_for_volume(d->state.volume, &look, &made);
+    snow_status status = drawing_new_transfer(d, &look, &made);
     if (status != SNOW_STATUS_OK)
         return fail_status(d->state.context, status);
     snow_transfer_free(d->state.transfer);
@@ -141,11 +182,11 @@ static int place(drawing *d) {
         return done;
     annotations_find_unit(&d->opts, s->volume, false, &s->whole);
     if (snow_transfer_is_unshaded(s->transfer) &&
-        !options_given(&d->opts, "shade"))
+        s->settings.mode != SNOW_MODE_ISO && !options_given(&d->opts, "shade"))
         s->settings.shade = SNOW_SHADE_NONE;
     if (strcmp(d->opts.fit, "visible") != 0)
         return CONTINUE;
-    snow_status status = snow_view_fit(NULL, s->volume, s->transfer,
+    snow_status status = snow_view_fit(comm_of_all(), s->volume, s->transfer,
                                        &s->settings, NULL, 0, &s->view);
     return status == SNOW_STATUS_OK ? CONTINUE
                                     : fail_status(s->context, status);
@@ -155,10 +196,11 @@ static int place(drawing *d) {
 static void forget(drawing *d) {
     free(d->data_key);
     free(d->look_key);
-    d->data_key = d->look_key = NULL;
+    free(d->plain_key);
+    d->data_key = d->look_key = d->plain_key = NULL;
 }
 
-int drawing_apply(drawing *d, const json_t *recipe) {
+static int apply(drawing *d, const json_t *recipe) {
     int done = make_options(d, recipe, &d->opts);
     if (done != CONTINUE)
         return done;
@@ -169,15 +211,22 @@ int drawing_apply(drawing *d, const json_t *recipe) {
     bool clips = json_object_get(recipe, "clip") != NULL;
     drop_base(d, clips ? key_of(recipe, base_keys) : NULL);
     bool clipped = other_data && reclip(d);
-    if ((other_data && !clipped) || !d->state.volume)
+    if ((other_data && !clipped) || !d->state.volume) {
         done = reopen(d);
-    else if (clipped || other_look || !d->state.transfer)
+        take_key(&d->plain_key, clips ? NULL : key_of(recipe, base_keys));
+    } else if (clipped || other_look || !d->state.transfer)
         done = restyle(d);
     if (done == CONTINUE)
         done = place(d);
+    done = process_agree(done);
     if (done != CONTINUE)
         forget(d);
     return done;
+}
+
+int drawing_apply(drawing *d, const json_t *recipe) {
+    ranks_tell(d, RANKS_APPLY, json_copy((json_t *)recipe));
+    return apply(d, recipe);
 }
 
 int drawing_open(const options *first, json_t *recipe, drawing *out) {
@@ -185,13 +234,17 @@ int drawing_open(const options *first, json_t *recipe, drawing *out) {
     int done = make_options(out, recipe, &out->opts);
     if (done == CONTINUE)
         done = render_state_new(&out->opts, &out->state);
-    return done == CONTINUE ? drawing_apply(out, recipe) : done;
+    out->state.turns = process_ranks() > 1; /* neighbours' voxels for all
+                                               directions */
+    return done == CONTINUE ? apply(out, recipe) : done;
 }
 
 void drawing_close(drawing *d) {
     snow_volume_close(d->base);
+    snow_transfer_free(d->slice_look);
     render_state_free(&d->state);
     json_decref(d->tree);
+    free(d->slice_key);
     forget(d);
     free(d->base_key);
 }
@@ -206,7 +259,10 @@ static double rounded(double value) {
 json_t *drawing_fit(drawing *d) {
     render_state *s = &d->state;
     snow_view view = s->view;
+    const double margin = render_state_margin(&d->opts);
+    const snow_transfer *seen = margin < 1 ? NULL : s->transfer;
     double azimuths[TURN_SIDES], radius;
+    ranks_tell(d, RANKS_FIT, NULL);
     if (view.has_position)
         return json_object();
     make_view(s->context, &d->opts, &s->whole, &view);
@@ -214,15 +270,15 @@ json_t *drawing_fit(drawing *d) {
         azimuths[i] = view.azimuth + 180.0 * i / TURN_SIDES;
     view.zoom = 1;
     view.has_target = false;
-    if (snow_view_fit(NULL, s->volume, s->transfer, &s->settings, azimuths,
+    if (snow_view_fit(comm_of_all(), s->volume, seen, &s->settings, azimuths,
                       TURN_SIDES, &view) != SNOW_STATUS_OK)
         return json_object();
     if (!view.has_target)
         drawing_middle(d, view.target, &radius);
     for (int i = 0; i < 3; i++)
         view.target[i] = rounded(view.target[i]);
-    return json_pack("{s:f, s:o, s:s}", "zoom", rounded(view.zoom), "target",
-                     json_vector(view.target, 3), "fit", "volume");
+    return json_pack("{s:f, s:o, s:s}", "zoom", rounded(view.zoom * margin),
+                     "target", json_vector(view.target, 3), "fit", "volume");
 }
 
 void drawing_middle(const drawing *d, double middle[3], double *radius) {
@@ -263,7 +319,8 @@ static int annotate(drawing *d, const paint_given *painted,
         s->whole,
         s->view,
         s->transfer,
-        {painted->range[0], painted->range[1]}};
+        {painted->range[0], painted->range[1]},
+        &s->channels};
     snow_status status = annotations_make(&annotations, s->view.azimuth, -1,
                                           image, s->context, out);
     return status == SNOW_STATUS_OK ? CONTINUE
@@ -273,6 +330,7 @@ static int annotate(drawing *d, const paint_given *painted,
 static int draw(drawing *d, snow_image **image, paint_given *painted) {
     render_state *s = &d->state;
     s->fault = 0;
+    s->left = PICTURES_LEFT;
     int done = render_state_draw(s, s->view.azimuth, image);
     if (done != CONTINUE)
         return done;
@@ -293,13 +351,14 @@ int drawing_render(drawing *d, snow_quality quality, int shrink,
     paint_given painted;
     *image = NULL;
     *overlay = NULL;
+    ranks_tell(d, RANKS_RENDER, json_pack("[i,i]", (int)quality, shrink));
     s->settings.quality = quality;
     s->settings.stop = stop;
     s->settings.stop_user = user;
     s->view.width = shrunk(view.width, shrink);
     s->view.height = shrunk(view.height, shrink);
     int done = draw(d, image, &painted);
-    if (done == CONTINUE)
+    if (done == CONTINUE && *image)
         done = annotate(d, &painted, *image, overlay);
     s->view = view;
     if (done == CONTINUE)
@@ -309,73 +368,33 @@ int drawing_render(drawing *d, snow_quality quality, int shrink,
     return done;
 }
 
-/* Its own frame: the one of the volume keeps its encoding. */
-int drawing_thumbnail(drawing *d, const char *preset, int side,
-                      snow_stop_fn *stop, void *user, snow_image **image) {
-    render_state *s = &d->state;
-    snow_transfer *transfer = NULL;
-    snow_frame *frame = NULL;
-    snow_look look = {.size = sizeof look, .preset = *preset ? preset : NULL};
-    if (!*preset && d->first.loaded) /* what no preset means then */
-        look.base = snow_look_file_look(d->first.loaded);
-    snow_view view = s->view;
-    snow_settings settings = s->settings;
-    settings.quality = SNOW_QUALITY_DRAFT;
-    settings.mode = SNOW_MODE_OVER; /* what a preset is for */
-    settings.stop = stop;
-    settings.stop_user = user;
-    view.width = view.height = side;
-    snow_status status =
-        snow_transfer_new_for_volume(s->volume, &look, &transfer);
-    if (status == SNOW_STATUS_OK)
-        status = snow_frame_new(s->context, &frame);
-    if (status == SNOW_STATUS_OK && !options_given(&d->opts, "shade"))
-        settings.shade = snow_transfer_is_unshaded(transfer) ? SNOW_SHADE_NONE
-                                                             : SNOW_SHADE_PHONG;
-    if (status == SNOW_STATUS_OK)
-        status = snow_frame_render(frame, s->volume, transfer, &view, &settings,
-                                   image);
-    snow_frame_free(frame);
-    snow_transfer_free(transfer);
-    return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_status(s->context, status);
-}
-
 /* --- the command
  * ----------------------------------------------------------------- */
 
-/* "head.png" for /data/head.nii.gz and phantom:head. */
-static void name_output(const char *input, char out[80]) {
+void drawing_name_output(const char *input, const char *slice, char out[100]) {
     const char *slash = strrchr(input, '/'), *colon = strchr(input, ':');
     const char *base = slash ? slash + 1 : colon ? colon + 1 : input;
     size_t length = strcspn(base, ".");
     if (length == 0 || length > 64)
-        snprintf(out, 80, "picture.png");
+        snprintf(out, 100, "picture.png");
     else
-        snprintf(out, 80, "%.*s.png", (int)length, base);
+        snprintf(out, 100, "%.*s%s%.16s.png", (int)length, base,
+                 *slice ? "-" : "", slice);
 }
 
-json_t *drawing_recipe(const drawing *d) {
+char *drawing_command(const drawing *d, unsigned verb) {
     static options opts; /* large; one thread draws */
+    char output[100];
     opts = d->opts;
-    opts.output = NULL;
-    opts.quality = "high";
-    json_t *tree = config_tree(&opts, verb_of(VERB_RENDER));
-    config_paths_write(tree, "/"); /* whole: the file may be put anywhere */
-    return tree;
-}
-
-char *drawing_command(const drawing *d) {
-    static options opts; /* large; one thread draws */
-    char output[80];
-    opts = d->opts;
-    name_output(opts.operands[0], output);
+    drawing_name_output(opts.operands[0], "", output);
+    if (verb == VERB_TURNTABLE)
+        memcpy(strrchr(output, '.'), ".mp4", 4);
     opts.output = output;
     opts.quality = "high";
-    json_t *tree = config_tree(&opts, verb_of(VERB_RENDER));
+    json_t *tree = config_tree(&opts, verb_of(verb));
     if (!tree)
         return NULL;
-    char *text = config_command(&opts, verb_of(VERB_RENDER), tree);
+    char *text = config_command(&opts, verb_of(verb), tree);
     json_decref(tree);
     return text;
 }

@@ -1,0 +1,191 @@
+/* movie_files.c - the files of time steps: named one by one, or by a pattern
+ * with a number. */
+#define _XOPEN_SOURCE 700
+#include "movie/movie_files.h"
+#include "movie/movie_names.h"
+#include "run/log.h"
+#include "run/paths.h"
+#include "run/start.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static int fail_list(void) {
+    return fail_memory("out of memory for the list of time steps; make a movie "
+                       "of fewer");
+}
+
+/* Adds a copy of the path. */
+static int add_path(step_files *files, const char *path) {
+    if (files->count == files->room) {
+        int64_t room = files->room ? 2 * files->room : 64;
+        char **paths =
+            realloc(files->paths, (size_t)room * sizeof *files->paths);
+        if (!paths)
+            return fail_list();
+        files->paths = paths;
+        files->room = room;
+    }
+    char *copy = strdup(path);
+    if (!copy)
+        return fail_list();
+    files->paths[files->count++] = copy;
+    return CONTINUE;
+}
+
+void steps_free(step_files *files) {
+    for (int64_t i = 0; i < files->count; i++)
+        free(files->paths[i]);
+    free(files->paths);
+}
+
+/* The numbers of a pattern's files, in a growing list. */
+typedef struct numbers {
+    int64_t *items;
+    size_t count, room;
+} numbers;
+
+static bool add_number(numbers *list, int64_t number) {
+    if (list->count == list->room) {
+        size_t room = list->room ? 2 * list->room : 256;
+        int64_t *items = realloc(list->items, room * sizeof *items);
+        if (!items)
+            return false;
+        list->items = items;
+        list->room = room;
+    }
+    list->items[list->count++] = number;
+    return true;
+}
+
+static int by_number(const void *a, const void *b) {
+    int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* Finds the numbers of all existing files, in rising order. */
+static int find_numbers(const char *pattern, const frame_names *names,
+                        numbers *out) {
+    const struct dirent *entry;
+    DIR *folder = opendir(names_folder(names));
+    if (!folder) {
+        say("%s: %s; correct the folder's name", pattern, strerror(errno));
+        return SNOW_STATUS_BAD_INPUT;
+    }
+    bool good = true;
+    while (good && (entry = readdir(folder))) {
+        int64_t number = names_index(names, entry->d_name);
+        if (number >= 0)
+            good = add_number(out, number);
+    }
+    closedir(folder);
+    if (!good)
+        return fail_list();
+    if (!out->count) {
+        say("%s: no file matches this pattern; correct it", pattern);
+        return SNOW_STATUS_BAD_INPUT;
+    }
+    qsort(out->items, out->count, sizeof *out->items, by_number);
+    return CONTINUE;
+}
+
+/* Simulations may write every tenth step only, so the smallest distance between
+ * two files is taken as the distance between all. */
+static int64_t step_of(const numbers *list) {
+    int64_t step = INT64_MAX;
+    for (size_t i = 1; i < list->count; i++)
+        if (list->items[i] - list->items[i - 1] < step)
+            step = list->items[i] - list->items[i - 1];
+    return step;
+}
+
+static int add_numbers(const char *pattern, const frame_names *names,
+                       const char *set, const numbers *list, step_files *out) {
+    char path[2 * PATH_MAX];
+    int64_t step = step_of(list);
+    int done = CONTINUE;
+    for (size_t i = 0; i < list->count && done == CONTINUE; i++) {
+        if (i && !out->gaps && list->items[i] - list->items[i - 1] != step) {
+            names_path(names, list->items[i - 1] + step, path, PATH_MAX);
+            say("%s: this step of %s is missing; create it, or name the files "
+                "one by one",
+                path, pattern);
+            return SNOW_STATUS_BAD_INPUT;
+        }
+        if (!names_path(names, list->items[i], path, PATH_MAX))
+            continue;
+        if (set && !names_in_set(set, list->items[i], path + strlen(path),
+                                 sizeof path - strlen(path)))
+            return fail_usage("%s: has a %% that is no number; write %%d, "
+                              "%%04d or %%T",
+                              pattern);
+        done = add_path(out, path);
+    }
+    return done;
+}
+
+/* What follows the file of "run_%04d.h5:/rho"; NULL: nothing. */
+static const char *set_in(const char *pattern) {
+    const char *found = NULL;
+    for (const char *at = pattern; (at = strstr(at, ":/")); at++)
+        found = at;
+    return found;
+}
+
+static int add_pattern(const char *pattern, step_files *out) {
+    frame_names names;
+    numbers list = {NULL, 0, 0};
+    char file[PATH_MAX];
+    const char *set = set_in(pattern);
+    size_t length = set ? (size_t)(set - pattern) : strlen(pattern);
+    if (length >= sizeof file)
+        return fail_usage("%s: is too long a name; use a shorter one", pattern);
+    memcpy(file, pattern, length);
+    file[length] = '\0';
+    const char *fault = names_read(file, &names);
+    if (fault)
+        return fail_usage("%s: %s", pattern, fault);
+    int done = find_numbers(file, &names, &list);
+    if (done == CONTINUE)
+        done = add_numbers(pattern, &names, set, &list, out);
+    free(list.items);
+    return done;
+}
+
+bool files_are_meant(const char *path) {
+    char file[PATH_MAX];
+    file_of_input(path, file, sizeof file);
+    const char *set = set_in(path), *sign = strchr(file, '%');
+    /* of a file that is there, the data set may have a pattern */
+    return sign && !is_there(file) && !(set && sign > file + (set - path));
+}
+
+/* A missing file must be found now, not in the ninetieth minute of the
+ * movie. */
+static int add_file(const char *path, step_files *out) {
+    struct stat what;
+    char file[PATH_MAX];
+    file_of_input(path, file, sizeof file);
+    if (strcmp(path, "-") == 0)
+        return fail_usage("movie: cannot read standard input, since each file "
+                          "is read twice; name files");
+    if (strncmp(path, "phantom:", 8) != 0 && stat(file, &what) != 0) {
+        say("%s: %s; a movie needs all of its steps", path, strerror(errno));
+        return SNOW_STATUS_BAD_INPUT;
+    }
+    return add_path(out, path);
+}
+
+int steps_find(const options *opts, step_files *out) {
+    int done = CONTINUE;
+    for (int i = 0; i < opts->operand_count && done == CONTINUE; i++) {
+        const char *path = opts->operands[i];
+        done = files_are_meant(path) ? add_pattern(path, out)
+                                     : add_file(path, out);
+    }
+    return done;
+}

@@ -1,0 +1,27 @@
+/* movie_files.h - the files of time steps. */
+#ifndef MOVIE_FILES_H
+#define MOVIE_FILES_H
+
+#include "options/options.h"
+
+/* The files, in order: each operand is a file, or a pattern of numbered ones
+ * (run_%04d.nrrd), both with a data set in them where they have several
+ * (run_%04d.h5:/rho).  A number in the name of the data set is the file's
+ * (data_%T.h5:/data/%T/rho). */
+typedef struct step_files {
+    char **paths;
+    int64_t count, room;
+    bool gaps; /* numbers may be missing between others */
+} step_files;
+
+/* Whether a path is a pattern of files: it has a number, and no file has that
+ * name. */
+bool files_are_meant(const char *path);
+
+/* Finds the files.  A pattern stands for all existing files.  A missing number
+ * between them is an error, as is a missing file.  Returns CONTINUE or an exit
+ * code. */
+int steps_find(const options *opts, step_files *out);
+void steps_free(step_files *files);
+
+#endif

@@ -1,0 +1,218 @@
+/* layers.c - the volume of --overlay: a segmentation, or a second one of
+ * values, on the grid of the first. */
+#include "picture/layers.h"
+#include "commands/commands.h"
+#include "run/log.h"
+#include "run/start.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+int layers_check(const options *opts) {
+    const bool alone = !opts->overlay_preset && !opts->overlay_colormap &&
+                       opts->overlay_range.kind == SNOW_RANGE_AUTO &&
+                       !opts->overlay_opacity.count;
+    if (!opts->overlay && !alone)
+        return fail_usage("--overlay-preset, -range, -opacity and -colormap: "
+                          "are of an overlay; give --overlay FILE too");
+    if (opts->overlay && strcmp(opts->mode, "over") != 0)
+        return fail_usage("--overlay: needs mode over; remove --mode");
+    if (opts->overlay && (strcmp(opts->method, "original") == 0 ||
+                          strcmp(opts->method, "footprint") == 0))
+        return fail_usage("--overlay: needs method shear-warp or raycast; "
+                          "remove --method %s",
+                          opts->method);
+    if (opts->overlay && (strcmp(opts->kernel, "gauss") == 0 ||
+                          strcmp(opts->kernel, "box") == 0))
+        return fail_usage("--overlay: needs kernel tent or bspline; remove "
+                          "--kernel %s",
+                          opts->kernel);
+    return CONTINUE;
+}
+
+/* Labels where it has some; else, where nothing is asked, hot colours. */
+static snow_status make_look(const options *opts, layers *l) {
+    const range_value range = opts->overlay_range;
+    snow_look look = {.size = sizeof look,
+                      .preset = opts->overlay_preset,
+                      .colormap = opts->overlay_colormap,
+                      .range = range.kind,
+                      .low = range.low,
+                      .high = range.high};
+    if (opts->overlay_opacity.count) {
+        look.opacities = opts->overlay_opacity.points;
+        look.opacity_count = opts->overlay_opacity.count;
+    }
+    snow_status status =
+        snow_transfer_new_for_volume(l->volume, &look, &l->transfer);
+    if (status != SNOW_STATUS_OK || look.preset || look.colormap ||
+        snow_transfer_label(l->transfer, 0))
+        return status;
+    snow_transfer_free(l->transfer);
+    l->transfer = NULL;
+    look.colormap = "hot";
+    return snow_transfer_new_for_volume(l->volume, &look, &l->transfer);
+}
+
+/* Values of all steps have the look of the first; labels may be others. */
+static snow_status look_at(const options *opts, layers *l) {
+    if (l->transfer && !snow_transfer_label(l->transfer, 0))
+        return SNOW_STATUS_OK;
+    snow_transfer_free(l->transfer);
+    l->transfer = NULL;
+    return make_look(opts, l);
+}
+
+/* The planes of the volume cut its overlay too. */
+static snow_status clip(const options *opts, layers *l) {
+    static const double none[SNOW_CLIPS_MAX][4];
+    snow_volume *made;
+    if (memcmp(opts->clip, none, sizeof none) == 0)
+        return SNOW_STATUS_OK;
+    snow_status status =
+        snow_volume_clip(l->volume, opts->clip[0], SNOW_CLIPS_MAX, &made);
+    if (status == SNOW_STATUS_OK) {
+        snow_volume_close(l->volume);
+        l->volume = made;
+    }
+    return status;
+}
+
+/* Labels that there are where none of those of --labels is; 0 is nothing. */
+static void note_labels(const options *opts, snow_context *context) {
+    const snow_look look = {.size = sizeof look, .preset = "labels"};
+    const snow_label *label = NULL;
+    char text[200] = "";
+    size_t used = 0, n = 0;
+    layers all = {.volume = NULL};
+    if (snow_volume_open(context, opts->overlay, NULL, &all.volume) ==
+            SNOW_STATUS_OK &&
+        snow_transfer_new_for_volume(all.volume, &look, &all.transfer) ==
+            SNOW_STATUS_OK)
+        while ((label = snow_transfer_label(all.transfer, n++)) &&
+               used < sizeof text - 32)
+            if (label->value < 0 || label->value > 0)
+                used +=
+                    (size_t)snprintf(text + used, sizeof text - used,
+                                     used ? ", %.0f" : "%.0f", label->value);
+    say("note: %s: no voxel has a label of --labels %s; there are %s%s",
+        opts->overlay, opts->labels, used ? text : "none",
+        label ? ", ..." : "");
+    layers_close(&all);
+}
+
+static bool in_file(const snow_volume *volume) {
+    return !snow_volume_voxels(volume);
+}
+
+static void note_empty(const options *opts, snow_context *context,
+                       const layers *l) {
+    snow_volume_statistics s = {.size = sizeof s};
+    if (opts->verbosity < 0 || in_file(l->volume) ||
+        snow_volume_get_statistics(l->volume, &s) != SNOW_STATUS_OK)
+        return;
+    if (isnan(s.min))
+        say("note: %s: has no value in the volume", opts->overlay);
+    else if (opts->overlay_picks && s.min >= 0 && s.max <= 0)
+        note_labels(opts, context);
+}
+
+static int fail_overlay(const options *opts, const snow_context *context,
+                        const layers *l, snow_status status) {
+    if (l->quiet && status == SNOW_STATUS_NO_MEMORY)
+        return status;
+    if (status != SNOW_STATUS_BAD_USAGE)
+        return fail_volume(context, status, opts->overlay);
+    return fail_usage("%s: %s", opts->overlay, snow_context_message(context));
+}
+
+/* One that has steps has as many as the volume.  Where that has parts, pictures
+ * take what they need of the file, cut as the volume is. */
+static int open_step(const options *opts, snow_context *context,
+                     const snow_volume_info *base, bool parts, layers *l) {
+    snow_volume_options data = {.size = sizeof data,
+                                .labels =
+                                    opts->overlay_picks ? opts->labels : NULL,
+                                .label_table = opts->label_table,
+                                .each_time = true};
+    snow_volume_info info;
+    snow_volume_info_init(&info);
+    snow_status status =
+        snow_volume_inspect(context, opts->overlay, &data, &info);
+    if (status == SNOW_STATUS_OK && info.times > 1 &&
+        info.times != base->times) {
+        say("%s: holds %lld time steps, and the volume %lld; give an overlay "
+            "of as many, or of one: snowglass convert --time N",
+            opts->overlay, (long long)info.times, (long long)base->times);
+        return SNOW_STATUS_BAD_INPUT;
+    }
+    if (info.times > 1)
+        data.time = opts->time;
+    if (parts)
+        memcpy(data.clip, opts->clip, sizeof data.clip);
+    if (status == SNOW_STATUS_OK)
+        status =
+            parts ? snow_volume_open_streamed(context, opts->overlay, &data,
+                                              l->slab_bytes, &l->volume)
+                  : snow_volume_open(context, opts->overlay, &data, &l->volume);
+    return status == SNOW_STATUS_OK ? CONTINUE
+                                    : fail_overlay(opts, context, l, status);
+}
+
+/* Whether what is open serves a volume too. */
+static bool serves(const layers *l, const snow_volume_info *base, bool parts) {
+    if (!l->volume || in_file(l->volume) != parts)
+        return false;
+    const snow_volume_info *own = snow_volume_get_info(l->volume);
+    if (parts)
+        return own->times <= 1;
+    return own->times <= 1 &&
+           memcmp(own->dims, base->dims, sizeof own->dims) == 0 &&
+           memcmp(own->matrix, base->matrix, sizeof own->matrix) == 0;
+}
+
+int layers_open(const options *opts, snow_context *context,
+                const snow_volume *base, layers *l) {
+    const snow_volume_info *grid = snow_volume_get_info(base);
+    const bool first = !l->transfer;
+    const bool parts = process_ranks() > 1 || in_file(base);
+    if (!opts->overlay || serves(l, grid, parts))
+        return CONTINUE;
+    snow_volume_close(l->volume);
+    l->volume = NULL;
+    int done = open_step(opts, context, grid, parts, l);
+    if (done != CONTINUE)
+        return done;
+    snow_status status = look_at(opts, l);
+    if (status == SNOW_STATUS_OK && !parts)
+        status = snow_volume_regrid(&l->volume, base,
+                                    snow_transfer_label(l->transfer, 0));
+    if (status == SNOW_STATUS_OK && first)
+        note_empty(opts, context, l);
+    if (status == SNOW_STATUS_OK && !parts)
+        status = clip(opts, l);
+    if (status != SNOW_STATUS_OK)
+        return fail_overlay(opts, context, l, status);
+    if (opts->verbosity >= 0 && first)
+        say("overlay %s: %s", opts->overlay,
+            snow_transfer_description(l->transfer));
+    return CONTINUE;
+}
+
+snow_status layers_set(const layers *l, const channel_set *c,
+                       snow_frame *frame) {
+    snow_inlay all[SNOW_INLAYS_MOST + 1];
+    int count = 0;
+    for (int n = 1; n < c->list.count; n++)
+        all[count++] = (snow_inlay){c->volumes[n], c->looks[n], true};
+    if (l->volume)
+        all[count++] = (snow_inlay){l->volume, l->transfer, false};
+    return snow_frame_set_inlays(frame, all, count);
+}
+
+void layers_close(layers *l) {
+    snow_transfer_free(l->transfer);
+    snow_volume_close(l->volume);
+    *l = (layers){.volume = NULL};
+}

@@ -1,0 +1,29 @@
+/* layers.h - the volume of --overlay and its look. */
+#ifndef PICTURE_LAYERS_H
+#define PICTURE_LAYERS_H
+
+#include "picture/channels.h"
+
+#include <snowglass/snowglass.h>
+
+typedef struct layers {
+    snow_volume *volume; /* or NULL */
+    snow_transfer *transfer;
+    uint64_t slab_bytes; /* of a file; 0: as usual */
+    bool quiet;          /* says nothing of a memory that is too small */
+} layers;
+
+/* Refuses what cannot be drawn together; opens the overlay of the options on
+ * the grid of a volume, in place of an earlier one: in memory, or in its file
+ * where ranks or slabs share the volume.  Both return CONTINUE or an exit code.
+ */
+int layers_check(const options *opts);
+int layers_open(const options *opts, snow_context *context,
+                const snow_volume *base, layers *l);
+
+/* Pictures of a frame have it, in front of the channels, which are mixed. */
+snow_status layers_set(const layers *l, const channel_set *c,
+                       snow_frame *frame);
+void layers_close(layers *l);
+
+#endif

@@ -1,0 +1,368 @@
+/* picture.c - pictures and slices of volumes. */
+#include "core.h"
+
+#include <snowglass/ranks.h>
+
+#include <math.h>
+#include <string.h>
+
+static bool make_view(volume_object *o, const char *name, PyObject *given,
+                      snow_view *view) {
+    context_object *c = o->context;
+    snow_status status = SNOW_STATUS_OK;
+    snow_view_init(view);
+    name = snow_view_name_for(snow_volume_get_info(o->volume), name);
+    status = snow_view_from_name(c->context, name, view);
+    if (status != SNOW_STATUS_OK) {
+        context_set_error(status, snow_context_message(c->context));
+        return false;
+    }
+    return record_fill_view(given, view);
+}
+
+/* {"left": ((x, y, z), (x, y, z)), ...}: the camera's back and up of each view,
+ * and of the default one, which has no name. */
+PyObject *volume_views(PyObject *self, PyObject *nothing) {
+    volume_object *o = (volume_object *)self;
+    (void)nothing;
+    if (!volume_use(o, Py_None))
+        return NULL;
+    PyObject *all = PyDict_New();
+    for (size_t n = 0; all && (n == 0 || snow_view_name(n - 1)); n++) {
+        const char *name = n ? snow_view_name(n - 1) : NULL;
+        snow_view v;
+        PyObject *one = NULL;
+        if (make_view(o, name, Py_None, &v))
+            one = Py_BuildValue("((ddd)(ddd))", v.back[0], v.back[1], v.back[2],
+                                v.up[0], v.up[1], v.up[2]);
+        if (!one || PyDict_SetItemString(all, name ? name : "", one))
+            Py_CLEAR(all);
+        Py_XDECREF(one);
+    }
+    context_leave(o->context, SNOW_STATUS_OK);
+    return all;
+}
+
+/* A copy of the frame's depths, which last until its next picture. */
+static snow_status copy_depth(const volume_object *o, snow_image **out) {
+    const snow_image *depth = snow_frame_depth(o->frame);
+    if (!depth)
+        return SNOW_STATUS_OK;
+    int width = snow_image_width(depth), height = snow_image_height(depth);
+    snow_status status =
+        snow_image_new(o->context->context, width, height, 1, out);
+    if (status == SNOW_STATUS_OK)
+        memcpy(snow_image_pixels(*out), snow_image_pixels((snow_image *)depth),
+               (size_t)width * (size_t)height * sizeof(float));
+    return status;
+}
+
+typedef struct request {
+    volume_object *volume;
+    transfer_object *transfer;
+    snow_inlay layers[SNOW_INLAYS_MOST + 1]; /* channels, then an overlay */
+    int count, mixing;                       /* of them, of which channels */
+    bool mixed; /* the volume is one of channels, too */
+    double
+        shares[SNOW_INLAYS_MOST + 2]; /* of light: the volume's, the layers' */
+    snow_view view;
+    snow_settings settings;
+    const double *azimuths; /* all that are to fit */
+    size_t azimuth_count;
+    bool fit;
+    snow_image *image, *depth;
+} request;
+
+/* Adds the light of a picture to that of another, which is made if it is not
+ * there, as the command line does (programs/picture/channels.c). */
+static snow_status add_light(snow_context *context, snow_image *one,
+                             double share, snow_image **sum) {
+    const int width = snow_image_width(one), height = snow_image_height(one);
+    const int channels = snow_image_channels(one);
+    snow_status status =
+        *sum ? SNOW_STATUS_OK : snow_image_new(context, width, height, 4, sum);
+    if (status != SNOW_STATUS_OK)
+        return status;
+    const float *from = snow_image_pixels(one);
+    float *to = snow_image_pixels(*sum);
+    for (size_t n = 0; n < (size_t)width * (size_t)height;
+         n++, from += channels, to += 4) {
+        to[3] = fmaxf(to[3], from[channels - 1]);
+        for (int c = 0; c < 3; c++)
+            to[c] += (float)share * from[channels == 4 ? c : 0];
+    }
+    return SNOW_STATUS_OK;
+}
+
+static void limit_light(snow_image *sum) {
+    float *at = snow_image_pixels(sum);
+    const size_t count =
+        (size_t)snow_image_width(sum) * (size_t)snow_image_height(sum);
+    for (size_t n = 0; n < count; n++, at += 4)
+        for (int c = 0; c < 3; c++)
+            at[c] = fminf(at[c], at[3]);
+}
+
+static snow_status draw_one(const request *r, const snow_volume *volume,
+                            const snow_transfer *transfer, int64_t index,
+                            snow_image **out) {
+    return index < 0 ? snow_frame_render(r->volume->frame, volume, transfer,
+                                         &r->view, &r->settings, out)
+                     : snow_slice_render(volume, index, transfer, &r->view,
+                                         &r->settings, out);
+}
+
+/* A slice, or from -1 a picture: of the volume, or of all channels, whose light
+ * adds up. */
+static snow_status draw_apart(request *r, bool added, int64_t index) {
+    snow_context *context = r->volume->context->context;
+    snow_image *one = NULL, *sum = NULL;
+    snow_status status =
+        draw_one(r, r->volume->volume,
+                 r->transfer ? r->transfer->transfer : NULL, index, &one);
+    if (!status && !added) {
+        r->image = one;
+        return status;
+    }
+    if (!status)
+        status = add_light(context, one, r->shares[0], &sum);
+    for (int n = 0; n < r->mixing && !status; n++) {
+        const snow_inlay *layer = &r->layers[n];
+        snow_image_free(one);
+        one = NULL;
+        status = draw_one(r, layer->volume, layer->transfer, index, &one);
+        if (!status)
+            status = add_light(context, one, r->shares[n + 1], &sum);
+    }
+    snow_image_free(one);
+    if (status) {
+        snow_image_free(sum);
+        return status;
+    }
+    limit_light(sum);
+    r->image = sum;
+    return status;
+}
+
+static snow_status draw(request *r) {
+    volume_object *o = r->volume;
+    const bool added = r->mixed && r->settings.mode != SNOW_MODE_OVER;
+    const int apart = added ? r->mixing : 0;
+    snow_status status = SNOW_STATUS_OK;
+    if (!o->frame)
+        status = snow_frame_new(o->context->context, &o->frame);
+    if (!status)
+        status = snow_frame_set_inlays(o->frame, r->layers + apart,
+                                       r->count - apart);
+    if (!status && r->fit)
+        status = snow_view_fit(
+            NULL, o->volume, r->mixing ? NULL : r->transfer->transfer,
+            &r->settings, r->azimuths, r->azimuth_count, &r->view);
+    if (!status)
+        status = draw_apart(r, added, -1);
+    if (!status && r->settings.depth)
+        status = copy_depth(o, &r->depth);
+    return status;
+}
+
+/* What the last picture took. */
+static PyObject *stats_of(const volume_object *o) {
+    const snow_stats *s = snow_frame_stats(o->frame);
+    return Py_BuildValue(
+        "{sssssssssisLsLsdsd}", "method", snow_method_name(s->method),
+        "encoding", snow_encoding_name(s->encoding), "kernel",
+        snow_kernel_name(s->kernel), "isa", snow_isa_name(s->isa), "threads",
+        s->threads, "voxels", (long long)s->voxels, "interesting",
+        (long long)s->interesting, "sparse_ratio", s->sparse_ratio, "seconds",
+        s->seconds_frame);
+}
+
+/* Directions of the camera that are all to fit, or NULL with none of them;
+ * false with an exception. */
+static bool read_azimuths(PyObject *given, double **azimuths, size_t *count) {
+    *azimuths = NULL;
+    *count = 0;
+    if (given == Py_None)
+        return true;
+    Py_ssize_t size = PySequence_Size(given);
+    if (size < 0)
+        return false;
+    double *all = PyMem_Malloc((size_t)(size + 1) * sizeof *all);
+    if (!all)
+        PyErr_NoMemory();
+    if (!all || !record_numbers("azimuths", given, size, false, all)) {
+        PyMem_Free(all);
+        return false;
+    }
+    *azimuths = all;
+    *count = (size_t)size;
+    return true;
+}
+
+/* An image of Python, with what annotations will need; NULL: none was made, or
+ * an exception. */
+static PyObject *finish_image(PyObject *type, const request *r,
+                              const snow_volume_info *info) {
+    if (!r->image)
+        return NULL;
+    PyObject *image =
+        image_make((PyTypeObject *)type, r->volume->context, r->image);
+    image_object *made = (image_object *)image;
+    if (!made)
+        return NULL;
+    made->transfer = Py_XNewRef((PyObject *)r->transfer);
+    made->info = *info;
+    made->view = r->view;
+    return image;
+}
+
+static PyObject *answer(PyObject *type, const request *r, PyObject *image,
+                        PyObject *stats) {
+    const double *at = r->view.target;
+    PyObject *depth = NULL, *target = NULL, *out = NULL;
+    if (r->depth)
+        depth = image_make((PyTypeObject *)type, r->volume->context, r->depth);
+    if (r->view.has_target && !PyErr_Occurred())
+        target = Py_BuildValue("(ddd)", at[0], at[1], at[2]);
+    if (image && stats && !PyErr_Occurred())
+        out = Py_BuildValue("(OOOdO)", image, depth ? depth : Py_None,
+                            target ? target : Py_None, r->view.zoom, stats);
+    Py_XDECREF(target);
+    Py_XDECREF(depth);
+    return out;
+}
+
+/* (volume, transfer, whether it is a channel), ... of the picture's context,
+ * whose lock is held, channels first; false with an exception. */
+static bool read_layers(PyObject *given, request *r) {
+    const Py_ssize_t count = PyTuple_Size(given);
+    if (count > SNOW_INLAYS_MOST + 1)
+        PyErr_SetString(PyExc_ValueError, "too many channels");
+    for (Py_ssize_t n = 0; n < count && !PyErr_Occurred(); n++) {
+        PyObject *volume, *transfer;
+        int mixes;
+        if (!PyArg_ParseTuple(PyTuple_GetItem(given, n), "O!O!pd", volume_type,
+                              &volume, transfer_type, &transfer, &mixes,
+                              &r->shares[n + 1]))
+            return false;
+        if (!volume_is_open((volume_object *)volume))
+            return false;
+        r->layers[n] =
+            (snow_inlay){((volume_object *)volume)->volume,
+                         ((transfer_object *)transfer)->transfer, mixes};
+        r->mixing += mixes;
+    }
+    r->count = (int)count;
+    return !PyErr_Occurred();
+}
+
+/* render(Image, transfer, view, view's fields, settings, fit, azimuths or None,
+ * progress, layers, whether they are mixed) -> (image, depth or None, the
+ * view's target or None, zoom, stats) */
+PyObject *volume_render(PyObject *self, PyObject *args) {
+    volume_object *o = (volume_object *)self;
+    PyObject *type, *transfer, *view, *settings, *azimuths, *progress, *layers;
+    PyObject *stats = NULL;
+    const char *name;
+    double *turns;
+    request r = {.volume = o};
+    snow_volume_info info;
+    snow_status status = SNOW_STATUS_OK;
+    int fit, mixed;
+    snow_settings_init(&r.settings);
+    if (!PyArg_ParseTuple(args, "OO!zOOpOOO!pd", &type, transfer_type,
+                          &transfer, &name, &view, &settings, &fit, &azimuths,
+                          &progress, &PyTuple_Type, &layers, &mixed,
+                          &r.shares[0]) ||
+        !record_fill_settings(settings, &r.settings) ||
+        !read_azimuths(azimuths, &turns, &r.azimuth_count))
+        return NULL;
+    r.transfer = (transfer_object *)transfer;
+    r.fit = fit;
+    r.mixed = mixed;
+    r.azimuths = turns;
+    if (!volume_use(o, progress)) {
+        PyMem_Free(turns);
+        return NULL;
+    }
+    info = *snow_volume_get_info(o->volume);
+    const bool viewed =
+        read_layers(layers, &r) && make_view(o, name, view, &r.view);
+    if (viewed)
+        CALL(o->context, status, draw(&r));
+    PyMem_Free(turns);
+    if (viewed && status == SNOW_STATUS_OK)
+        stats = stats_of(o);
+    context_leave(o->context, status);
+    PyObject *image = finish_image(type, &r, &info);
+    PyObject *out = answer(type, &r, image, stats);
+    Py_XDECREF(image);
+    Py_XDECREF(stats);
+    return out;
+}
+
+/* --- slices --------------------------------------------------------------- */
+
+/* slice_axis(name) -> the grid's axis, and the nearest of the world */
+PyObject *volume_slice_axis(PyObject *self, PyObject *name) {
+    volume_object *o = (volume_object *)self;
+    const char *text = PyUnicode_AsUTF8AndSize(name, NULL);
+    int axis = 0, world = 0;
+    snow_view view;
+    snow_view_init(&view);
+    if (!text || !volume_use(o, Py_None))
+        return NULL;
+    if (!context_leave(o->context,
+                       snow_slice_view(o->context->context,
+                                       snow_volume_get_info(o->volume), text,
+                                       &view, &axis)))
+        return NULL;
+    for (int n = 1; n < 3; n++)
+        if (fabs(view.back[n]) > fabs(view.back[world]) + 1e-6)
+            world = n;
+    return Py_BuildValue("(ii)", axis, world);
+}
+
+static snow_status draw_slice(request *r, const char *axis, int64_t index) {
+    int found;
+    snow_status status = snow_slice_view(
+        r->volume->context->context, snow_volume_get_info(r->volume->volume),
+        axis, &r->view, &found);
+    return status == SNOW_STATUS_OK ? draw_apart(r, r->mixed, index) : status;
+}
+
+/* slice(Image, axis, index, transfer or None for values, width, height,
+ * settings, layers, whether they are mixed) */
+PyObject *volume_slice(PyObject *self, PyObject *args) {
+    volume_object *o = (volume_object *)self;
+    PyObject *type, *transfer, *settings, *layers;
+    const char *axis;
+    long long index;
+    int width, height, mixed;
+    request r = {.volume = o};
+    snow_status status = SNOW_STATUS_OK;
+    snow_settings_init(&r.settings);
+    snow_view_init(&r.view);
+    if (!PyArg_ParseTuple(args, "OsLOiiOO!pd", &type, &axis, &index, &transfer,
+                          &width, &height, &settings, &PyTuple_Type, &layers,
+                          &mixed, &r.shares[0]) ||
+        !record_fill_settings(settings, &r.settings))
+        return NULL;
+    if (PyObject_TypeCheck(transfer, transfer_type))
+        r.transfer = (transfer_object *)transfer;
+    r.mixed = mixed;
+    r.view.width = width;
+    r.view.height = height;
+    if (!volume_use(o, Py_None))
+        return NULL;
+    snow_volume_info info = *snow_volume_get_info(o->volume);
+    if (read_layers(layers, &r))
+        CALL(o->context, status, draw_slice(&r, axis, index));
+    const bool fine = context_leave(o->context, status);
+    PyObject *image = finish_image(type, &r, &info);
+    if (image)
+        ((image_object *)image)->opaque = true;
+    if (!fine)
+        Py_CLEAR(image);
+    return image;
+}

@@ -1,0 +1,72 @@
+"""A second volume in the picture of a first."""
+from __future__ import annotations
+
+import dataclasses
+import os
+from typing import Any, Mapping, Optional, Union
+
+from . import _arrays, _snowglass
+from ._looks import Look, look_of
+
+
+@dataclasses.dataclass
+class Overlay:
+    """On the grid of the first, with a look; `path` and `given` are for
+    recipes."""
+    volume: _snowglass.Volume
+    transfer: _snowglass.Transfer
+    path: Optional[str]
+    given: Look
+
+
+def _columns(info: Mapping[str, Any]) -> list[float]:
+    return [part for row in info["matrix"] for part in row]
+
+
+def _opened(base: Any, overlay: Any) -> _snowglass.Volume:
+    """In the context of the first; an array lies on the grid of that."""
+    kind = _snowglass.Volume
+    if isinstance(overlay, (str, os.PathLike)):
+        return _snowglass.open(kind, os.fsencode(overlay), {"each_time": True},
+                               None, 0, None, base)
+    info = base._info
+    if isinstance(overlay, _snowglass.Volume):
+        import numpy
+        own = overlay._info
+        order = getattr(overlay, "_order", (0, 1, 2))
+        own_voxels: Any = numpy.asarray(memoryview(overlay))  # type: ignore[arg-type]
+        voxels: Any = own_voxels.transpose([order.index(n) for n in range(3)])
+        return _snowglass.wrap(kind, voxels, (0, 1, 2), _columns(own),
+                               own["slope"], own["intercept"], own["medical"],
+                               own["unit"], base, False)
+    voxels = _arrays.like(overlay, base.shape, base._order)
+    return _snowglass.wrap(kind, voxels, (0, 1, 2), _columns(info), 1.0, 0.0,
+                           info["medical"], info["unit"], base, False)
+
+
+def _look(volume: _snowglass.Volume, look: Look) -> _snowglass.Transfer:
+    """Labels where there are some; else, where nothing is asked, hot colours."""
+    made = volume._look(*look._arguments())
+    if made.labelled or look.preset or look.colormap or look.colors:
+        return made
+    hot = dataclasses.replace(look, colormap="hot", cmap=None, clim=None)
+    return volume._look(*hot._arguments())
+
+
+def overlaid(base: Any, overlay: Any, look: Union[Look, str, None]
+             ) -> Optional[Overlay]:
+    if overlay is None:
+        if look is not None:
+            raise TypeError("overlay_look is the look of an overlay: give one")
+        return None
+    if isinstance(overlay, Overlay):  # of the frames of a movie
+        return overlay
+    given = look_of(look)
+    volume = _opened(base, overlay)
+    transfer = _look(volume, given)
+    volume._regrid(base, transfer.labelled)
+    if base._planes:
+        volume = _snowglass.clipped(_snowglass.Volume, volume, base._planes)
+    volume._freeze()
+    path = os.fspath(overlay) if isinstance(overlay, (str, os.PathLike)) else None
+    return Overlay(volume, transfer, path, given)

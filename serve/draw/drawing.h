@@ -1,0 +1,72 @@
+/* drawing.h - makes pictures of a recipe by the very functions of
+ * `snowglass render`, so that the command of a recipe makes the same bytes.
+ *
+ * Of the volume, the look and the view only that is made anew which a recipe
+ * changes.  All ranks call what is marked so, the others because the first does
+ * (ranks.h). */
+#ifndef DRAWING_H
+#define DRAWING_H
+
+#include "picture/render_state.h"
+
+#include <jansson.h>
+
+typedef struct drawing {
+    options first; /* as of the command line */
+    options opts;  /* of the present recipe */
+    json_t *tree;
+    render_state state;
+    char *data_key, *look_key; /* what volume and look were made of */
+    snow_volume *base; /* the volume without clip planes, while these move; or
+                          NULL */
+    char *base_key;    /* what it was made of */
+    char *plain_key;   /* the same of the volume that is shown, where it has no
+                          clip planes */
+    bool volume_is_new, look_is_new; /* since the caller last looked */
+    bool live; /* a simulation draws it: nothing but grid and look is known */
+    snow_transfer *slice_look; /* of the last slice (slices.h) */
+    char *slice_key;           /* what it was made of */
+    uint32_t followed;         /* the state that the last answer was made for */
+    int followed_done;         /* and what came of it */
+} drawing;
+
+/* By all ranks.  Opens the volume of the command line.  Returns CONTINUE or an
+ * exit code, as all functions here do. */
+int drawing_open(const options *first, json_t *recipe, drawing *out);
+void drawing_close(drawing *d);
+
+/* By all ranks.  Makes what a recipe needs, whose tree stays the caller's. */
+int drawing_apply(drawing *d, const json_t *recipe);
+
+/* The volume as it is without clip planes; as it is with them, where that
+ * cannot be had.  Not for many ranks, which have parts. */
+const snow_volume *drawing_unclipped(drawing *d);
+
+/* The middle of the volume, and from there to its farthest corner: what zoom 1
+ * shows (snowglass/view.h). */
+void drawing_middle(const drawing *d, double middle[3], double *radius);
+
+/* By all ranks.  Frames what the look shows, from the sides of a turn: keys
+ * that set the camera's target and zoom, a new reference. */
+json_t *drawing_fit(drawing *d);
+
+/* By all ranks.  Renders with a quality at a size of 1 / 2^shrink of the
+ * recipe's, unless `stop` says so: SNOW_STATUS_STOPPED.  With values painted.
+ * The picture is NULL on all ranks but the first. */
+int drawing_render(drawing *d, snow_quality quality, int shrink,
+                   snow_stop_fn *stop, void *user, snow_image **image,
+                   snow_overlay **overlay);
+
+/* The transfer function of a look for the volume, or its parts. */
+snow_status drawing_new_transfer(drawing *d, const snow_look *look,
+                                 snow_transfer **out);
+
+/* "head.png" for /data/head.nii.gz and phantom:head; of a slice
+ * "head-axial.png". */
+void drawing_name_output(const char *input, const char *slice, char out[100]);
+
+/* The command that makes the picture at rest (VERB_RENDER), or the movie of a
+ * turn that begins with it (VERB_TURNTABLE), to be freed. */
+char *drawing_command(const drawing *d, unsigned verb);
+
+#endif

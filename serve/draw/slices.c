@@ -1,0 +1,283 @@
+/* slices.c - implements slices.h by the functions of the verb slice. */
+#include "draw/slices.h"
+#include "commands/commands.h"
+#include "options/config.h"
+#include "run/log.h"
+#include "run/start.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PANES 3
+
+static const char *const of_patient[PANES] = {"axial", "coronal", "sagittal"};
+static const char *const of_grid[PANES] = {"z", "y", "x"};
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* --- where slices lie --------------------------------------------------- */
+
+/* The view of a slice in a picture of its own size. */
+static snow_status see(drawing *d, const snow_volume_info *info,
+                       const char *axis, snow_view *view, int *along) {
+    snow_view_init(view);
+    view->width = view->height = 0;
+    return snow_slice_view(d->state.context, info, axis, view, along);
+}
+
+/* The other axis of the grid that goes most along a direction: [0, -1]. */
+static json_t *grid_axis(const snow_volume_info *info, int along,
+                         const double way[3]) {
+    int best = 0;
+    double most = 0;
+    for (int k = 0; k < 3; k++) {
+        const double step[3] = {info->matrix[0][k], info->matrix[1][k],
+                                info->matrix[2][k]};
+        double part = dot(step, way) / sqrt(dot(step, step));
+        if (k == along || fabs(part) <= fabs(most))
+            continue;
+        most = part;
+        best = k;
+    }
+    return json_pack("[i,i]", best, most < 0 ? -1 : 1);
+}
+
+static json_t *pane_info(drawing *d, const char *axis, int *along) {
+    const snow_volume_info *info = &d->state.whole;
+    snow_view view;
+    if (see(d, info, axis, &view, along) != SNOW_STATUS_OK)
+        return NULL;
+    const double *up = view.up, *back = view.back;
+    const double down[3] = {-up[0], -up[1], -up[2]};
+    const double right[3] = {up[1] * back[2] - up[2] * back[1],
+                             up[2] * back[0] - up[0] * back[2],
+                             up[0] * back[1] - up[1] * back[0]};
+    return json_pack("{s:s, s:i, s:o, s:o, s:i, s:i}", "axis", axis, "along",
+                     *along, "right", grid_axis(info, *along, right), "down",
+                     grid_axis(info, *along, down), "width", view.width,
+                     "height", view.height);
+}
+
+/* NULL where two of them would show slices across the same axis. */
+static json_t *panes_info(drawing *d, const char *const names[PANES]) {
+    json_t *list = json_array();
+    int along = 0, seen = 0;
+    for (int i = 0; i < PANES; i++) {
+        json_t *pane = pane_info(d, names[i], &along);
+        if (pane)
+            json_array_append_new(list, pane);
+        seen |= 1 << along;
+    }
+    if (json_array_size(list) == PANES && seen == 7)
+        return list;
+    json_decref(list);
+    return NULL;
+}
+
+json_t *slices_info(drawing *d) {
+    json_t *list = d->state.whole.medical ? panes_info(d, of_patient) : NULL;
+    return list ? list : panes_info(d, of_grid);
+}
+
+/* --- what is asked, as options of the verb slice ------------------------- */
+
+/* The recipe of a slice: of the data what the volume has, but no clip planes;
+ * of the look its colours alone. */
+static json_t *slice_tree(const drawing *d, const slice_asked *asked) {
+    static const char *const unwanted[] = {"clip",   "size",  "background",
+                                           "window", "level", "opacity"};
+    static const char *const colors[] = {"preset", "tf",     "colormap",
+                                         "log",    "symlog", "shift"};
+    json_t *tree = json_copy(d->tree);
+    const char *kernel = json_string_value(json_object_get(tree, "kernel"));
+    for (size_t i = 0; i < sizeof unwanted / sizeof *unwanted; i++)
+        json_object_del(tree, unwanted[i]);
+    if (kernel && strcmp(kernel, "box") != 0) /* slices have none but tent */
+        json_object_del(tree, "kernel");
+    for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
+        if (!asked->colored || (i == 1 && json_object_get(tree, "preset")))
+            json_object_del(tree, colors[i]);
+    json_object_set_new(tree, "range",
+                        json_pack("[f,f]", asked->low, asked->high));
+    json_object_set_new(tree, "no-labels", json_true());
+    return tree;
+}
+
+static int slice_options(const drawing *d, json_t *tree, options *out) {
+    options_init(out);
+    out->operands = d->first.operands;
+    out->operand_count = 1;
+    out->memory = d->first.memory;
+    out->output = "-";
+    int done = config_take_tree(out, verb_of(VERB_SLICE), tree);
+    out->mode = "slice";
+    if (out->tf)
+        out->loaded = d->first.loaded;
+    return done == CONTINUE ? check_look(out) : done;
+}
+
+/* Makes the look of slices anew where another is meant. */
+static int restyle(drawing *d, const options *opts, const json_t *tree,
+                   const snow_volume *volume) {
+    char *key = json_dumps(tree, JSON_COMPACT | JSON_SORT_KEYS);
+    if (key && d->slice_key && strcmp(key, d->slice_key) == 0) {
+        free(key);
+        return CONTINUE;
+    }
+    snow_transfer_free(d->slice_look);
+    free(d->slice_key);
+    d->slice_look = NULL;
+    d->slice_key = key;
+    return open_look(d->state.context, opts, volume, &d->slice_look);
+}
+
+/* --- the picture ---------------------------------------------------------- */
+
+/* Whether this process has all voxels of the volume in memory. */
+static bool has_all(const drawing *d) {
+    return process_ranks() == 1 && snow_volume_voxels(d->state.volume);
+}
+
+/* A volume that stays in its file, or of which ranks have parts, is opened
+ * again, cropped to the slice, which is then its first. */
+static int open_slice(drawing *d, options *opts, int along, int64_t *index,
+                      snow_volume **out) {
+    if (has_all(d))
+        return CONTINUE;
+    int64_t *crop = opts->crop[along];
+    crop[0] += *index;
+    crop[1] = crop[0] + 1;
+    *index = 0;
+    return open_input(d->state.context, opts, opts->operands[0], out);
+}
+
+/* The view is that of the voxels that are there, since its zoom counts in their
+ * size. */
+static int draw(drawing *d, const snow_volume *volume, const char *axis,
+                int64_t index, const options *opts, snow_image **image) {
+    snow_settings settings;
+    snow_view view;
+    int along;
+    fill_settings(opts, &settings);
+    settings.threads = d->state.settings.threads;
+    settings.mode = SNOW_MODE_OVER; /* a slice has none */
+    snow_status status =
+        see(d, snow_volume_get_info(volume), axis, &view, &along);
+    if (status == SNOW_STATUS_OK)
+        status = snow_slice_render(volume, index, d->slice_look, &view,
+                                   &settings, image);
+    return status == SNOW_STATUS_OK ? CONTINUE
+                                    : fail_status(d->state.context, status);
+}
+
+static int check_slice(drawing *d, const slice_asked *asked, int *along) {
+    const snow_volume_info *info = &d->state.whole;
+    snow_view view;
+    snow_status status = see(d, info, asked->axis, &view, along);
+    if (status != SNOW_STATUS_OK)
+        return fail_status(d->state.context, status);
+    if (asked->index >= 0 && asked->index < info->dims[*along])
+        return CONTINUE;
+    return fail_usage("slice: %lld is no slice across %s: must be 0 to %lld",
+                      (long long)asked->index, asked->axis,
+                      (long long)info->dims[*along] - 1);
+}
+
+int slices_draw(drawing *d, const slice_asked *asked, snow_image **image,
+                snow_image_options *form) {
+    static options opts; /* large; one thread draws */
+    snow_volume *opened = NULL;
+    int64_t index = asked->index;
+    int along;
+    *image = NULL;
+    int done = check_slice(d, asked, &along);
+    if (done != CONTINUE)
+        return done;
+    json_t *tree = slice_tree(d, asked);
+    done = slice_options(d, tree, &opts);
+    if (done == CONTINUE)
+        done = open_slice(d, &opts, along, &index, &opened);
+    const snow_volume *volume = opened ? opened : drawing_unclipped(d);
+    if (done == CONTINUE)
+        done = restyle(d, &opts, tree, volume);
+    if (done == CONTINUE)
+        done = draw(d, volume, asked->axis, index, &opts, image);
+    *form = picture_form(&opts);
+    snow_volume_close(opened);
+    json_decref(tree);
+    return done;
+}
+
+char *slices_command(drawing *d, const slice_asked *asked) {
+    static options opts; /* large; one thread draws */
+    char *text = NULL, output[100];
+    const verb_row *verb = verb_of(VERB_SLICE);
+    json_t *tree = slice_tree(d, asked);
+    int done = slice_options(d, tree, &opts);
+    json_decref(tree);
+    if (done != CONTINUE)
+        return NULL;
+    drawing_name_output(opts.operands[0], asked->axis, output);
+    opts.output = output;
+    opts.mode = "over"; /* recipes have no mode of slices */
+    config_note_slice(&opts, NULL, asked->axis, asked->index);
+    tree = config_tree(&opts, verb);
+    if (tree)
+        text = config_command(&opts, verb, tree);
+    json_decref(tree);
+    return text;
+}
+
+/* --- a voxel ---------------------------------------------------------------
+ */
+
+static double value_at(const snow_volume *volume, const int64_t at[3]) {
+    const snow_volume_info *info = snow_volume_get_info(volume);
+    const void *voxels = snow_volume_voxels(volume);
+    for (int i = 0; i < 3; i++)
+        if (!voxels || at[i] < 0 || at[i] >= info->dims[i])
+            return NAN;
+    int64_t i = at[0] + info->dims[0] * (at[1] + info->dims[1] * at[2]);
+    switch (info->type) {
+#define VALUE(name, type, text)                                  \
+    case SNOW_TYPE_##name:                                       \
+        return info->slope * (double)((const type *)voxels)[i] + \
+               info->intercept;
+        SNOW_TYPE_MAP(VALUE)
+#undef VALUE
+    case SNOW_TYPE_NONE:
+        break;
+    }
+    return NAN;
+}
+
+/* Of a volume that is not here: the voxel alone, which is then the first. */
+static double value_in_file(drawing *d, const int64_t at[3]) {
+    static options opts; /* large; one thread draws */
+    const slice_asked any = {.low = 0, .high = 1};
+    snow_volume *opened = NULL;
+    double value = NAN;
+    json_t *tree = slice_tree(d, &any);
+    int done = slice_options(d, tree, &opts);
+    json_decref(tree);
+    for (int i = 0; i < 3; i++) {
+        if (at[i] < 0 || at[i] >= d->state.whole.dims[i])
+            return NAN;
+        opts.crop[i][0] += at[i];
+        opts.crop[i][1] = opts.crop[i][0] + 1;
+    }
+    if (done == CONTINUE)
+        done = open_input(d->state.context, &opts, opts.operands[0], &opened);
+    if (done == CONTINUE)
+        value = value_at(opened, (const int64_t[3]){0, 0, 0});
+    snow_volume_close(opened);
+    return value;
+}
+
+double slices_value(drawing *d, const int64_t at[3]) {
+    return has_all(d) ? value_at(drawing_unclipped(d), at)
+                      : value_in_file(d, at);
+}

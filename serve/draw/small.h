@@ -1,0 +1,20 @@
+/* small.h - small pictures beside the large one, each with a frame of its own:
+ * that of the large one keeps its encoding. */
+#ifndef SMALL_H
+#define SMALL_H
+
+#include "draw/drawing.h"
+
+/* Renders, by all ranks where there are many, which then have neighbours'
+ * voxels enough.  The frame, which has the depths, and the picture are the
+ * caller's; the picture is NULL on all ranks but the first. */
+snow_status small_render(drawing *d, const snow_transfer *transfer,
+                         const snow_view *view, const snow_settings *settings,
+                         snow_frame **frame, snow_image **image);
+
+/* A picture with a preset in place of the look, or with none, unless `stop`
+ * says so: EXIT_INTERRUPTED. */
+int small_thumbnail(drawing *d, const char *preset, int side,
+                    snow_stop_fn *stop, void *user, snow_image **image);
+
+#endif

@@ -1,0 +1,139 @@
+/* values.c - implements values.h. */
+#include "draw/values.h"
+#include "draw/ranks.h"
+#include "run/log.h"
+
+#include <snowglass/extend.h>
+
+#include <math.h>
+#include <string.h>
+
+/* Hands over a rank's own voxels, without those of its neighbours. */
+typedef snow_status visit_fn(const snow_volume *voxels, void *user);
+
+/* Slice by slice, as a copy of them all may have no room. */
+static snow_status visit_part(drawing *d, const snow_extent *part,
+                              visit_fn *visit, void *user) {
+    snow_context *context = d->state.context;
+    snow_volume_info info = *snow_volume_get_info(d->state.volume);
+    snow_brick stored = {
+        .voxels = snow_volume_voxels(d->state.volume),
+        .stride = {1, info.dims[0], info.dims[0] * info.dims[1]}};
+    snow_box slice = {.count = {part->count[0], part->count[1], 1}};
+    snow_volume *wrapped = NULL;
+    memcpy(stored.box.first, part->stored, sizeof part->stored);
+    memcpy(stored.box.count, info.dims, sizeof info.dims);
+    memcpy(slice.first, part->first, sizeof slice.first);
+    memcpy(info.dims, slice.count, sizeof info.dims);
+    size_t value = snow_type_size(info.type);
+    void *copy =
+        snow_context_allocate(context, (size_t)snow_box_voxels(&slice) * value);
+    snow_status status = copy ? snow_volume_wrap(context, &info, copy, &wrapped)
+                              : SNOW_STATUS_NO_MEMORY;
+    for (int64_t z = 0; status == SNOW_STATUS_OK && z < part->count[2]; z++) {
+        snow_brick_copy(&stored, value, &slice, &slice, copy);
+        status = visit(wrapped, user);
+        slice.first[2]++;
+    }
+    snow_volume_close(wrapped);
+    snow_context_release(context, copy);
+    return status;
+}
+
+/* *in_file: they are not here, and none is handed over. */
+static snow_status visit_own(drawing *d, visit_fn *visit, void *user,
+                             bool *in_file) {
+    snow_extent part;
+    snow_extent_init(&part);
+    snow_status status = snow_volume_get_extent(d->state.volume, &part);
+    bool any = status == SNOW_STATUS_OK && part.count[0] > 0;
+    *in_file = any && !snow_volume_voxels(d->state.volume);
+    if (!any || *in_file)
+        return status;
+    return process_ranks() == 1 ? visit(d->state.volume, user)
+                                : visit_part(d, &part, visit, user);
+}
+
+static int agree(const drawing *d, snow_status status) {
+    return process_agree(status == SNOW_STATUS_OK
+                             ? CONTINUE
+                             : fail_status(d->state.context, status));
+}
+
+static snow_status measure(const snow_volume *voxels, void *user) {
+    double *ends = user;
+    snow_volume_statistics of = {.size = sizeof of};
+    snow_status status = snow_volume_get_statistics(voxels, &of);
+    if (status != SNOW_STATUS_OK)
+        return status;
+    ends[0] = fmin(ends[0], of.min); /* which passes over NaN */
+    ends[1] = fmax(ends[1], of.max);
+    return SNOW_STATUS_OK;
+}
+
+/* What is not known of one part is not known of all. */
+void values_ends(drawing *d, double ends[2]) {
+    double here[2] = {INFINITY, -INFINITY};
+    bool in_file;
+    ranks_tell(d, RANKS_ENDS, NULL);
+    int done = agree(d, visit_own(d, measure, here, &in_file));
+    if (in_file) {
+        here[0] = -INFINITY;
+        here[1] = INFINITY;
+    }
+    if (done == CONTINUE && process_ranks() > 1) {
+        snow_comm *comm = process_comm();
+        snow_comm_reduce_doubles(comm, &here[0], 1, SNOW_REDUCE_MIN);
+        snow_comm_reduce_doubles(comm, &here[1], 1, SNOW_REDUCE_MAX);
+    }
+    bool known = done == CONTINUE && isfinite(here[0]) && isfinite(here[1]);
+    ends[0] = known ? here[0] : NAN;
+    ends[1] = known ? here[1] : NAN;
+}
+
+void values_window(drawing *d, double window[2]) {
+    const snow_look look = {
+        .size = sizeof look, .preset = "linear", .range = SNOW_RANGE_ROBUST};
+    snow_transfer *transfer = NULL;
+    ranks_tell(d, RANKS_WINDOW, NULL);
+    window[0] = 0;
+    window[1] = 1;
+    if (drawing_new_transfer(d, &look, &transfer) == SNOW_STATUS_OK)
+        snow_transfer_domain(transfer, &window[0], &window[1]);
+    snow_transfer_free(transfer);
+}
+
+typedef struct bins {
+    double low, high;
+    int64_t counts[VALUES_BINS + 1]; /* and parts that are not here */
+} bins;
+
+static snow_status count(const snow_volume *voxels, void *user) {
+    bins *b = user;
+    uint64_t here[VALUES_BINS];
+    snow_status status =
+        snow_volume_histogram(voxels, b->low, b->high, VALUES_BINS, here);
+    for (size_t i = 0; status == SNOW_STATUS_OK && i < VALUES_BINS; i++)
+        b->counts[i] += (int64_t)here[i];
+    return status;
+}
+
+int values_count(drawing *d, double low, double high,
+                 uint64_t counts[VALUES_BINS]) {
+    bins all = {.low = low, .high = high};
+    bool in_file;
+    ranks_tell(d, RANKS_HISTOGRAM, json_pack("[f,f]", low, high));
+    int done = agree(d, visit_own(d, count, &all, &in_file));
+    if (done != CONTINUE)
+        return done;
+    all.counts[VALUES_BINS] = in_file;
+    snow_status status = SNOW_STATUS_OK;
+    if (process_ranks() > 1)
+        status = snow_comm_reduce_ints(process_comm(), all.counts,
+                                       VALUES_BINS + 1, SNOW_REDUCE_SUM);
+    if (status != SNOW_STATUS_OK)
+        return fail_status(d->state.context, status);
+    for (size_t i = 0; i < VALUES_BINS; i++)
+        counts[i] = (uint64_t)all.counts[i];
+    return all.counts[VALUES_BINS] ? SNOW_STATUS_BAD_USAGE : CONTINUE;
+}

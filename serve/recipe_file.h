@@ -1,0 +1,12 @@
+/* recipe_file.h - the recipe of the picture at rest, as a file for --config. */
+#ifndef RECIPE_FILE_H
+#define RECIPE_FILE_H
+
+#include "draw/drawing.h"
+
+/* With what only the command line can set.  Its paths are relative to the
+ * volume's folder, as the file is meant to lie beside the volume; a path that
+ * begins with / and leads elsewhere stays.  NULL: no memory. */
+json_t *recipe_file_tree(const drawing *d);
+
+#endif

@@ -1,0 +1,334 @@
+/* annotate/color_bar.c - explains the colours of a picture: a bar with ticks
+ * and the curve of opacity. */
+#include "annotate/strokes.h"
+#include "transfer/scale.h"
+#include "transfer/transfer.h"
+
+#include <snowglass/extend.h>
+#include <snowglass/overlay.h>
+
+#include <stdio.h>
+
+/* The most ticks: of a short scale by decades. */
+#define TICKS 64
+
+/* The position of the bar, in whole pixels, and what it shows. */
+typedef struct color_bar {
+    int x0, y0, x1, y1;
+    double low, high; /* data values of the lower and the upper end */
+    double from, to;  /* the data values that have these colours */
+    snow_scale scale; /* of the values between the ends */
+    double opaque;    /* largest opacity in the bar */
+    double height;    /* height of the letters */
+} color_bar;
+
+/* From the first to the last control point; a single value gets a small
+ * range. */
+static void span_values(const snow_transfer *t, color_bar *bar) {
+    bar->low = fmin(t->colors[0].value, t->opacities[0].value);
+    bar->high = fmax(t->colors[t->color_count - 1].value,
+                     t->opacities[t->opacity_count - 1].value);
+    if (bar->low < bar->high)
+        return;
+    double half = t->log ? bar->low / 2 : fmax(0.5, fabs(bar->low) / 10);
+    bar->low -= half;
+    bar->high += half;
+}
+
+static bool is_linear(const color_bar *bar) {
+    return !bar->scale.log && !(bar->scale.linear > 0);
+}
+
+static double value_at(const color_bar *bar, double y) {
+    double share = (y - bar->y0) / (bar->y1 - bar->y0);
+    if (is_linear(bar))
+        return bar->to - share * (bar->to - bar->from);
+    return snow_between_on(bar->scale, bar->from, bar->to, 1 - share);
+}
+
+static double place_of(const color_bar *bar, double value) {
+    double share = (bar->high - value) / (bar->high - bar->low);
+    if (!is_linear(bar))
+        share = 1 - snow_share_on(bar->scale, bar->low, bar->high, value);
+    return bar->y0 + share * (bar->y1 - bar->y0);
+}
+
+/* Draws a border, and for each row the colour of its middle. */
+static snow_status draw_colors(snow_overlay *overlay, const snow_transfer *t,
+                               color_bar *bar) {
+    const double left = bar->x0, right = bar->x1, top = bar->y0;
+    const double bottom = bar->y1;
+    int rows = bar->y1 - bar->y0;
+    float *colors = NULL;
+    SNOW_TRY(SNOW_RESERVE(overlay->context, colors, 0, 3 * rows));
+    for (int n = 0; n < rows; n++) {
+        double rgba[4];
+        snow_transfer_evaluate(t, value_at(bar, bar->y0 + n + 0.5), rgba);
+        for (int c = 0; c < 3; c++)
+            colors[3 * n + c] = (float)fmin(fmax(rgba[c], 0), 1);
+        bar->opaque = fmax(bar->opaque, rgba[3]);
+    }
+    snow_status status = snow_begin_strokes(overlay, bar->height);
+    const double ends[5][2] = {{left, top},
+                               {right, top},
+                               {right, bottom},
+                               {left, bottom},
+                               {left, top}};
+    for (int n = 0; n < 4 && status == SNOW_STATUS_OK; n++)
+        status = snow_overlay_stroke(overlay, ends[n][0], ends[n][1],
+                                     ends[n + 1][0], ends[n + 1][1]);
+    if (status == SNOW_STATUS_OK)
+        status = snow_overlay_rows(overlay, bar->x0, bar->y0, bar->x1, bar->y1,
+                                   colors);
+    snow_release(overlay->context, colors);
+    return status;
+}
+
+/* Draws opacity as a line, relative to the largest: even a dense look seldom
+ * has more than a tenth in one voxel. */
+static snow_status draw_opacity(snow_overlay *overlay, const snow_transfer *t,
+                                const color_bar *bar) {
+    double radius = fmax(0.5, SNOW_STROKE / 1.5 * bar->height), before = 0;
+    if (!(bar->opaque > 0))
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_overlay_begin(overlay, radius, radius + fmax(0.7, radius)));
+    double inner = bar->x1 - bar->x0 - 2 * radius;
+    for (int y = bar->y0; y <= bar->y1; y++) {
+        double rgba[4], at = fmin(fmax(y, bar->y0 + 0.5), bar->y1 - 0.5);
+        snow_transfer_evaluate(t, value_at(bar, at), rgba);
+        double x = bar->x0 + radius + inner * fmin(rgba[3] / bar->opaque, 1);
+        if (y > bar->y0)
+            SNOW_TRY(snow_overlay_stroke(overlay, before, y - 1, x, y));
+        before = x;
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* --- ticks ---------------------------------------------------------------- */
+
+/* The smallest number of the form 1, 2 or 5 times a power of ten that is not
+ * below a length. */
+static double round_above(double length) {
+    double below = snow_round_below(length);
+    if (below >= length * (1 - 1e-9))
+        return below;
+    return snow_round_below(2.5 * below) > below ? snow_round_below(2.5 * below)
+                                                 : snow_round_below(2 * below);
+}
+
+/* "-1000", "0.25", "1e+07", with as many digits as the step needs; rounding
+ * leaves no -0. */
+static void write_tick(double value, double step, char *out, size_t size) {
+    if (fabs(value) < step / 1000)
+        value = 0;
+    double digits = value != 0 ? ceil(log10(fabs(value) / step) + 1.5) : 6;
+    snprintf(out, size, "%.*g", (int)fmin(fmax(digits, 6), 15), value);
+}
+
+/* The multiples of a step within the bar. */
+static double count_ticks(const color_bar *bar, double step, double *first) {
+    *first = ceil(bar->low / step - 1e-6);
+    return floor(bar->high / step + 1e-6) - *first + 1;
+}
+
+/* Ticks are two and a half letters apart, or less if there would be fewer than
+ * two. */
+static double choose_step(const color_bar *bar) {
+    double pixel = (bar->high - bar->low) / (bar->y1 - bar->y0), first;
+    double step = round_above(2.5 * bar->height * pixel);
+    while (count_ticks(bar, step, &first) < 2 &&
+           snow_round_below(0.9 * step) > 1.4 * bar->height * pixel)
+        step = snow_round_below(0.9 * step);
+    while (count_ticks(bar, step, &first) < 1)
+        step = snow_round_below(0.9 * step);
+    return step;
+}
+
+/* Values with a number, and strokes without one between them. */
+typedef struct bar_ticks {
+    double numbers[TICKS], strokes[TICKS];
+    int number_count, stroke_count;
+    double step; /* between numbers; 0: each is one digit */
+} bar_ticks;
+
+static bool is_within(const color_bar *bar, double value) {
+    return value >= bar->low * (1 - 1e-9 * copysign(1, bar->low)) &&
+           value <= bar->high * (1 + 1e-9 * copysign(1, bar->high));
+}
+
+/* A number without room beside those before it is a stroke. */
+static void add_tick(const color_bar *bar, double value, bool number,
+                     bar_ticks *ticks) {
+    for (int n = 0; n < ticks->number_count && number; n++)
+        number = fabs(place_of(bar, value) - place_of(bar, ticks->numbers[n])) >
+                 1.2 * bar->height;
+    int *count = number ? &ticks->number_count : &ticks->stroke_count;
+    if (is_within(bar, value) && *count < TICKS)
+        (number ? ticks->numbers : ticks->strokes)[(*count)++] = value;
+}
+
+static void find_even_ticks(const color_bar *bar, bar_ticks *ticks) {
+    double first;
+    ticks->step = choose_step(bar);
+    double count = count_ticks(bar, ticks->step, &first);
+    for (double n = 0; n < count; n++)
+        add_tick(bar, (first + n) * ticks->step, true, ticks);
+}
+
+/* Pixels of the decade that ends at the greatest magnitude. */
+static double pixels_of_decade(const color_bar *bar) {
+    double top = fmax(fabs(bar->low), fabs(bar->high));
+    double side = fabs(bar->high) >= top ? 1 : -1;
+    return fabs(place_of(bar, side * top) - place_of(bar, side * top / 10));
+}
+
+/* Of decade `power` on one side of 0: its number, or a stroke where there is no
+ * room for all; and what room allows between it and the next. */
+static void add_decade(const color_bar *bar, int power, int each, double side,
+                       bar_ticks *ticks) {
+    double room = pixels_of_decade(bar) / bar->height, ten = pow(10, power);
+    bool number = power % each == 0;
+    add_tick(bar, side * ten, number, ticks);
+    for (int n = 2; n < 10 && room > 2.5; n++)
+        add_tick(bar, side * n * ten,
+                 room > 8 && (n == 5 || (n == 2 && room > 10)), ticks);
+}
+
+/* Decades above the least magnitude of the scale, on both sides of 0. */
+static void find_decades(const color_bar *bar, bar_ticks *ticks) {
+    double least = bar->scale.log ? bar->low : bar->scale.linear;
+    double most = fmax(fabs(bar->low), fabs(bar->high));
+    int first = (int)floor(log10(least) + (bar->scale.log ? 0 : 1 - 1e-9));
+    int last = (int)floor(log10(most) + 1e-9);
+    int each = (int)fmax(1, ceil(1.8 * bar->height / pixels_of_decade(bar)));
+    if (!bar->scale.log)
+        add_tick(bar, 0, true, ticks);
+    for (int power = first; power <= last; power++)
+        for (double side = -1; side <= 1; side += 2)
+            add_decade(bar, power, each, side, ticks);
+}
+
+/* A scale with fewer than two numbers by decades gets even ones. */
+static void find_ticks(const color_bar *bar, bar_ticks *ticks) {
+    *ticks = (bar_ticks){.step = 0};
+    if (!is_linear(bar))
+        find_decades(bar, ticks);
+    if (ticks->number_count >= 2)
+        return;
+    *ticks = (bar_ticks){.step = 0};
+    find_even_ticks(bar, ticks);
+}
+
+static snow_status draw_stroke(snow_overlay *overlay, const color_bar *bar,
+                               double value, double length) {
+    double y = floor(place_of(bar, value)) + 0.5;
+    return snow_overlay_stroke(overlay, bar->x0 - length * bar->height, y,
+                               bar->x0, y);
+}
+
+static snow_status draw_ticks(snow_overlay *overlay, const color_bar *bar) {
+    bar_ticks ticks;
+    find_ticks(bar, &ticks);
+    SNOW_TRY(snow_begin_strokes(overlay, bar->height));
+    for (int n = 0; n < ticks.number_count; n++)
+        SNOW_TRY(draw_stroke(overlay, bar, ticks.numbers[n], 0.5));
+    for (int n = 0; n < ticks.stroke_count; n++)
+        SNOW_TRY(draw_stroke(overlay, bar, ticks.strokes[n], 0.25));
+    for (int n = 0; n < ticks.number_count; n++) {
+        char text[40];
+        double value = ticks.numbers[n];
+        write_tick(value, ticks.step > 0 ? ticks.step : fabs(value), text,
+                   sizeof text);
+        SNOW_TRY(snow_overlay_text(overlay, bar->x0 - 0.9 * bar->height,
+                                   place_of(bar, value), 1, 0.5, bar->height,
+                                   text));
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* --- labels --------------------------------------------------------------- */
+
+/* A square of a colour, and the name left of it. */
+static snow_status draw_label(snow_overlay *overlay, const snow_label *label,
+                              double height, double y) {
+    const int right = overlay->width - (int)height;
+    const int left = right - (int)(1.2 * height), top = (int)y;
+    const int rows = (int)(1.2 * height);
+    float colors[3 * 4096];
+    char text[64];
+    snprintf(text, sizeof text, "%s", label->name);
+    if (!*text)
+        snprintf(text, sizeof text, "%.9g", label->value);
+    snow_font_shorten((left - 1.4 * height) / height, text);
+    for (int n = 0; n < 3 * rows; n++)
+        colors[n] = (float)label->color[n % 3];
+    SNOW_TRY(snow_overlay_rows(overlay, left, top, right, top + rows, colors));
+    return snow_overlay_text(overlay, left - 0.6 * height, y + rows / 2.0, 1,
+                             0.5, height, text);
+}
+
+/* Those that are seen, of which the lower half has room for some. */
+static snow_status draw_labels(snow_overlay *overlay, const snow_transfer *t) {
+    const double height = snow_number_height(overlay), step = 1.7 * height;
+    size_t seen = 0, room = (size_t)(overlay->height / 2.0 / step), drawn = 0;
+    size_t first = overlay->shape_count;
+    for (size_t n = 0; n < t->label_count; n++)
+        seen += t->labels[n].color[3] > 0;
+    size_t rows = seen < room ? seen : room;
+    double y = overlay->height - 1.2 * height - step * (double)rows;
+    for (size_t n = 0; n < t->label_count && drawn < rows; n++) {
+        if (!(t->labels[n].color[3] > 0))
+            continue;
+        if (++drawn == rows && rows < seen) {
+            SNOW_TRY(snow_overlay_text(overlay, overlay->width - height, y, 1,
+                                       0, height, "..."));
+            break;
+        }
+        SNOW_TRY(draw_label(overlay, &t->labels[n], height, y));
+        y += step;
+    }
+    snow_overlay_settle_mirrored(overlay, first, false);
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_overlay_color_bar(snow_overlay *overlay,
+                                   const snow_transfer *transfer,
+                                   const char *unit, const double range[2]) {
+    double height = snow_number_height(overlay);
+    if (snow_shorter_side(overlay) < SNOW_BAR_SIDE_LEAST)
+        return SNOW_STATUS_OK;
+    if (transfer->labels && !range)
+        return draw_labels(overlay, transfer);
+    color_bar bar = {.height = height};
+    bar.x1 = overlay->width - (int)height;
+    bar.x0 = bar.x1 - (int)(1.4 * height);
+    bar.y1 = overlay->height - (int)(1.2 * height);
+    bar.y0 = overlay->height / 2 + (int)(2.8 * height);
+    span_values(transfer, &bar);
+    bar.from = bar.low;
+    bar.to = bar.high;
+    if (range && range[0] < range[1]) {
+        snow_transfer_domain(transfer, &bar.from, &bar.to);
+        bar.low = range[0];
+        bar.high = range[1];
+    }
+    /* Means and sums are spread evenly over all colours. */
+    if (bar.low == bar.from && bar.high == bar.to)
+        bar.scale = (snow_scale){transfer->log, transfer->linear};
+    size_t first = overlay->shape_count;
+    SNOW_TRY(draw_colors(overlay, transfer, &bar));
+    if (!range)
+        SNOW_TRY(draw_opacity(overlay, transfer, &bar));
+    SNOW_TRY(draw_ticks(overlay, &bar));
+    char caption[256];
+    snprintf(caption, sizeof caption, "%s", unit ? unit : "");
+    snow_font_shorten(bar.x1 / height - 1, caption);
+    SNOW_TRY(snow_overlay_text(overlay, bar.x1, bar.y0 - 0.8 * height, 1, 1,
+                               height, caption));
+    snow_overlay_settle_mirrored(overlay, first, false);
+    if (overlay->shape_count == first)
+        snow_notify(overlay->context,
+                    "the picture has no room for the colour bar%s%s",
+                    *caption ? " of " : "", caption);
+    return SNOW_STATUS_OK;
+}

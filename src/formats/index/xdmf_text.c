@@ -1,0 +1,256 @@
+/* formats/index/xdmf_text.c - the elements of an XDMF file. */
+#include "formats/index/xdmf.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+bool snow_xdmf_is(const char *text, const char *word) {
+    for (; text && *text && *word; text++, word++)
+        if (tolower((unsigned char)*text) != *word)
+            return false;
+    return text && !*text && !*word;
+}
+
+static void copy_text(const char *from, char *to, size_t room) {
+    snprintf(to, room, "%s", from ? from : "");
+}
+
+/* Reads up to three sizes, the slowest first, into x, y, z. */
+static bool take_sizes(const char *text, int64_t out[3]) {
+    int64_t sizes[3];
+    int count = 0;
+    while (text && *(text += strspn(text, " \t\r\n"))) {
+        char word[32];
+        size_t length = strcspn(text, " \t\r\n");
+        if (count == 3 || length >= sizeof word)
+            return false;
+        memcpy(word, text, length);
+        word[length] = 0;
+        if (!snow_parse_int64(word, &sizes[count++]) || sizes[count - 1] < 1)
+            return false;
+        text += length;
+    }
+    for (int i = 0; i < 3; i++)
+        out[i] = i < count ? sizes[count - 1 - i] : 1;
+    return count > 0;
+}
+
+/* A reference keeps the topology that stands before. */
+static void begin_topology(xdmf_file *f, const char **attributes) {
+    const char *kind = snow_index_attribute(attributes, "TopologyType");
+    const char *sizes = snow_index_attribute(attributes, "Dimensions");
+    xdmf_grid *grid = &f->now.grid;
+    if (!kind)
+        kind = snow_index_attribute(attributes, "Type");
+    if (!sizes)
+        sizes = snow_index_attribute(attributes, "NumberOfElements");
+    if (!kind)
+        return;
+    copy_text(kind, grid->kind, sizeof grid->kind);
+    grid->rectilinear =
+        snow_xdmf_is(kind, "3drectmesh") || snow_xdmf_is(kind, "2drectmesh");
+    grid->known = (grid->rectilinear || snow_xdmf_is(kind, "3dcorectmesh") ||
+                   snow_xdmf_is(kind, "2dcorectmesh")) &&
+                  take_sizes(sizes, grid->points);
+}
+
+static void begin_geometry(xdmf_file *f, const char **attributes) {
+    const char *kind = snow_index_attribute(attributes, "GeometryType");
+    if (!kind)
+        kind = snow_index_attribute(attributes, "Type");
+    if (!kind || snow_index_attribute(attributes, "Reference"))
+        return;
+    f->in_geometry = true;
+    f->now.grid.item_count = 0;
+    copy_text(kind, f->now.grid.geometry, sizeof f->now.grid.geometry);
+}
+
+static void remember(xdmf_file *f, const char *name) {
+    size_t used = strlen(f->seen);
+    if (f->steps == 0 && used + strlen(name) + 3 < sizeof f->seen)
+        snprintf(f->seen + used, sizeof f->seen - used, "%s%s",
+                 used ? ", " : "", name);
+}
+
+/* The requested attribute, by default the first one of scalars or vectors. */
+static void begin_attribute(xdmf_file *f, const char **attributes) {
+    const char *kind = snow_index_attribute(attributes, "AttributeType");
+    const char *centre = snow_index_attribute(attributes, "Center");
+    copy_text(snow_index_attribute(attributes, "Name"), f->attribute,
+              sizeof f->attribute);
+    f->cells = snow_xdmf_is(centre, "cell");
+    f->vector = snow_xdmf_is(kind, "vector");
+    f->in_attribute =
+        !f->now.found &&
+        (!f->options->dataset || !strcmp(f->options->dataset, f->attribute));
+    remember(f, f->attribute);
+}
+
+static snow_type type_of(const char *kind, int64_t bytes) {
+    static const snow_type whole[2][4] = {
+        {SNOW_TYPE_INT8, SNOW_TYPE_INT16, SNOW_TYPE_INT32, SNOW_TYPE_INT64},
+        {SNOW_TYPE_UINT8, SNOW_TYPE_UINT16, SNOW_TYPE_UINT32,
+         SNOW_TYPE_UINT64}};
+    if (!kind || snow_xdmf_is(kind, "float") || snow_xdmf_is(kind, "double"))
+        return bytes == 8 || snow_xdmf_is(kind, "double") ? SNOW_TYPE_FLOAT64
+                                                          : SNOW_TYPE_FLOAT32;
+    if (snow_xdmf_is(kind, "char") || snow_xdmf_is(kind, "uchar"))
+        bytes = 1;
+    for (int i = 0; i < 4; i++)
+        if (bytes == 1 << i)
+            return whole[tolower((unsigned char)*kind) == 'u'][i];
+    return SNOW_TYPE_NONE;
+}
+
+static snow_status begin_item(xdmf_file *f, const char **attributes) {
+    const char *form = snow_index_attribute(attributes, "Format");
+    const char *kind = snow_index_attribute(attributes, "ItemType");
+    const char *order = snow_index_attribute(attributes, "Endian");
+    const char *bytes = snow_index_attribute(attributes, "Precision");
+    const char *seek = snow_index_attribute(attributes, "Seek");
+    const char *number = snow_index_attribute(attributes, "NumberType");
+    int64_t size = 4;
+    if (f->skips || !(f->in_geometry || f->in_attribute))
+        return SNOW_STATUS_OK;
+    if (kind && !snow_xdmf_is(kind, "uniform"))
+        return snow_fail(f->context, SNOW_STATUS_BAD_INPUT,
+                         "has a DataItem of ItemType \"%.40s\", which is not "
+                         "supported; name a whole data set, or open the HDF5 "
+                         "file itself with --dataset",
+                         kind);
+    f->item = (xdmf_item){.hdf = snow_xdmf_is(form, "hdf"),
+                          .binary = snow_xdmf_is(form, "binary")};
+    f->item.xml = !f->item.hdf && !f->item.binary;
+    f->item.big_endian = order && !snow_xdmf_is(order, "native")
+                             ? snow_xdmf_is(order, "big")
+                             : snow_machine_big_endian();
+    if (bytes)
+        (void)snow_parse_int64(bytes, &size);
+    if (seek && (!snow_parse_int64(seek, &f->item.seek) || f->item.seek < 0))
+        return snow_fail(f->context, SNOW_STATUS_BAD_INPUT,
+                         "its Seek \"%.40s\" is not a number of bytes; correct "
+                         "it",
+                         seek);
+    f->item.type = type_of(
+        number ? number : snow_index_attribute(attributes, "DataType"), size);
+    f->item.numbers = f->used;
+    f->in_item = true;
+    return SNOW_STATUS_OK;
+}
+
+static void begin_grid(xdmf_file *f, const char **attributes) {
+    const char *kind = snow_index_attribute(attributes, "GridType");
+    const char *how = snow_index_attribute(attributes, "CollectionType");
+    const bool collects =
+        snow_xdmf_is(kind, "collection") || snow_xdmf_is(kind, "tree");
+    f->skips |= collects && how && !snow_xdmf_is(how, "temporal");
+    f->collections = f->collections << 1 | collects;
+    if (!collects) {
+        f->now.found = false;
+        f->now.time = NAN;
+    }
+}
+
+static snow_status begin_element(void *user, const char *name,
+                                 const char **attributes) {
+    xdmf_file *f = user;
+    if (!strcmp(name, "Grid")) {
+        begin_grid(f, attributes);
+    } else if (!strcmp(name, "Topology")) {
+        begin_topology(f, attributes);
+    } else if (!strcmp(name, "Geometry")) {
+        begin_geometry(f, attributes);
+    } else if (!strcmp(name, "Attribute")) {
+        begin_attribute(f, attributes);
+    } else if (!strcmp(name, "DataItem")) {
+        return begin_item(f, attributes);
+    } else if (!strcmp(name, "Time")) {
+        const char *value = snow_index_attribute(attributes, "Value");
+        if (value && !(f->collections & 1))
+            (void)snow_parse_double(value, &f->now.time);
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Keeps a text without blanks at its ends. */
+static void trim(xdmf_item *item) {
+    char *text = item->text;
+    size_t begin = strspn(text, " \t\r\n"), end = strlen(text);
+    while (end > begin && strchr(" \t\r\n", text[end - 1]))
+        end--;
+    memmove(text, text + begin, end - begin);
+    text[end - begin] = 0;
+}
+
+static void end_item(xdmf_file *f) {
+    xdmf_grid *grid = &f->now.grid;
+    f->in_item = false;
+    f->item.length = f->used - f->item.numbers;
+    trim(&f->item);
+    if (f->in_geometry && grid->item_count < XDMF_MOST_ITEMS) {
+        grid->items[grid->item_count++] = f->item;
+    } else if (f->in_attribute) {
+        f->now.item = f->item;
+        f->now.cells = f->cells;
+        f->now.vector = f->vector;
+        f->now.found = true;
+        copy_text(f->attribute, f->now.name, sizeof f->now.name);
+    }
+}
+
+/* Every uniform grid is a step.  The one that is wanted is kept; of the last
+ * ones, all that come. */
+static void end_grid(xdmf_file *f) {
+    const bool collects = f->collections & 1;
+    f->collections >>= 1;
+    if (collects)
+        return;
+    if (f->steps == f->options->time || f->options->time < 0)
+        f->kept = f->now;
+    f->steps++;
+}
+
+static snow_status end_element(void *user, const char *name) {
+    xdmf_file *f = user;
+    if (!strcmp(name, "Grid"))
+        end_grid(f);
+    else if (!strcmp(name, "Geometry"))
+        f->in_geometry = false;
+    else if (!strcmp(name, "Attribute"))
+        f->in_attribute = false;
+    else if (!strcmp(name, "DataItem") && f->in_item)
+        end_item(f);
+    return SNOW_STATUS_OK;
+}
+
+/* Names are short; numbers in XML may be many. */
+static snow_status take_text(void *user, const char *text, size_t length) {
+    xdmf_file *f = user;
+    if (!f->in_item)
+        return SNOW_STATUS_OK;
+    if (f->item.xml && f->in_geometry) {
+        SNOW_TRY(
+            SNOW_RESERVE(f->context, f->numbers, f->used, f->used + length));
+        memcpy(f->numbers + f->used, text, length);
+        f->used += length;
+        return SNOW_STATUS_OK;
+    }
+    size_t used = strlen(f->item.text);
+    if (used + length >= sizeof f->item.text) {
+        if (f->item.xml)
+            return SNOW_STATUS_OK; /* values in XML, which are refused */
+        return snow_fail(f->context, SNOW_STATUS_BAD_INPUT,
+                         "names a file by more than %d letters; shorten it",
+                         XDMF_TEXT_BYTES - 1);
+    }
+    memcpy(f->item.text + used, text, length);
+    f->item.text[used + length] = 0;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_xdmf_parse(xdmf_file *f) {
+    const index_xml handlers = {begin_element, end_element, take_text};
+    return snow_index_parse(f->source, &handlers, f);
+}

@@ -1,0 +1,52 @@
+/* formats/uneven/uneven.h - grids whose coordinates along some axes are not
+ * evenly spaced: they are resampled to even ones.
+ *
+ *     file   |-|-|--|---|-----|----------|      coordinates, rising or falling
+ *     even   |-|-|-|-|-|-|-|-|-|-|-|-|-|-|      as fine as their smallest step
+ *
+ * Values are linear between neighbours of the file.  Every box of the even grid
+ * is read of the file's voxels around it, so that slabs and crops serve a large
+ * file. */
+#ifndef SNOW_FORMATS_UNEVEN_H
+#define SNOW_FORMATS_UNEVEN_H
+
+#include "formats/format.h"
+
+typedef struct snow_uneven {
+    int64_t count[3];    /* voxels of the file */
+    const double *at[3]; /* coordinates of all of them; NULL: an even axis */
+    int64_t even[3];     /* voxels of the even grid */
+    double step[3];      /* of the even grid, along uneven axes; may be below 0;
+                            its first voxel is at[i][0] */
+} snow_uneven;
+
+/* Whether coordinates are finite, and rise or fall throughout. */
+bool snow_uneven_fits(const double *coordinates, int64_t count);
+
+/* Whether any axis is uneven. */
+bool snow_uneven_any(const snow_uneven *grid);
+
+/* Chooses `even` and `step`, and notes what is resampled, also in
+ * info->storage. */
+void snow_uneven_plan(snow_context *context, snow_uneven *grid,
+                      snow_volume_info *info);
+
+/* The type of resampled values: integers of 64 bits become float64. */
+snow_type snow_uneven_type(snow_type type);
+
+/* Reads a box of the file's own voxels, as the crop of the options says; where
+ * `out` is NULL only the sizes are checked. */
+typedef snow_status snow_uneven_fn(void *user,
+                                   const snow_volume_options *options,
+                                   snow_volume_info *info, snow_volume **out);
+
+/* Reads the box of the options of the even grid.  info->dims are those of the
+ * even grid, and become those of the box; info->type is that of the file's
+ * voxels; type, slope and intercept become those of what `read` makes.  Errors:
+ * SNOW_STATUS_BAD_USAGE (the box), SNOW_STATUS_NO_MEMORY, those of `read`. */
+snow_status snow_uneven_read(snow_context *context, const snow_uneven *grid,
+                             const snow_volume_options *options,
+                             snow_uneven_fn *read, void *user,
+                             snow_volume_info *info, snow_volume **out);
+
+#endif

@@ -1,0 +1,75 @@
+/* transfer/describe.c - what a look is, in a line of text. */
+#include "transfer/look.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The source of the look: only what was not requested was chosen. */
+static void set_reason(const snow_transfer_builder *builder,
+                       const snow_look *look, char *text, size_t room) {
+    bool all_asked =
+        look->opacities && look->range != SNOW_RANGE_AUTO && !look->preset;
+    char shift[40] = "";
+    if (look->shift < 0 || look->shift > 0)
+        snprintf(shift, sizeof shift, " shifted by %.9g", look->shift);
+    snprintf(text, room, " (%s%s%s%s)",
+             all_asked ? "as requested" : builder->reason, shift,
+             builder->range_note,
+             look->opacities && !all_asked ? "; opacities as requested" : "");
+}
+
+/* Writes a value so that reading it gives the same, if twelve digits do; then
+ * it was chosen or given.  Others are rounded. */
+static const char *spell(double value, char text[40]) {
+    for (int digits = 5; digits <= 12; digits++) {
+        snprintf(text, 40, "%.*g", digits, value);
+        double again = strtod(text, NULL);
+        if (again <= value && again >= value)
+            return text;
+    }
+    snprintf(text, 40, "%.5g", value);
+    return text;
+}
+
+/* " logarithmic beyond -0.1..0.1" */
+static void describe_scale(snow_scale scale, char text[128]) {
+    char linear[40];
+    *text = 0;
+    if (scale.linear > 0)
+        snprintf(text, 128, " logarithmic beyond -%.39s..%.39s",
+                 spell(scale.linear, linear), linear);
+    else if (scale.log)
+        strcpy(text, " logarithmic");
+}
+
+void snow_transfer_builder_describe(const snow_transfer_builder *builder,
+                                    const snow_look *look,
+                                    snow_transfer *transfer) {
+    char text[SNOW_TRANSFER_TEXT_BYTES / 2]; /* the rest is for the gradients */
+    size_t room = sizeof text, used;
+    char low[40], value[40], opacity[40], scale[128];
+    const snow_opacity_point *points =
+        look->opacities ? look->opacities : builder->opacities;
+    size_t count =
+        look->opacities ? look->opacity_count : builder->opacity_count;
+    describe_scale(builder->scale, scale);
+    snprintf(text, room, "%.64s %s..%s%s", builder->name,
+             spell(builder->low, low), spell(builder->high, value), scale);
+    if (!builder->labels)
+        strcat(text, "; opacity");
+    for (size_t i = 0; i < count && !builder->labels; i++) {
+        used = strlen(text);
+        /* The end is reserved for the reason. */
+        if (used + 120 > room) {
+            snprintf(text + used, room - used, ", ...");
+            break;
+        }
+        snprintf(text + used, room - used, "%s %s at %s", i ? "," : "",
+                 spell(points[i].opacity, opacity),
+                 spell(points[i].value, value));
+    }
+    used = strlen(text);
+    set_reason(builder, look, text + used, room - used);
+    snow_transfer_describe(transfer, text);
+}

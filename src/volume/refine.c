@@ -1,0 +1,232 @@
+/* volume/refine.c - cells that are several voxels wide, as the voxels
+ * (refine.h). */
+#include "volume/refine.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The centres around a cell's own, which is in the middle; those that voxels
+ * are blended from lie within. */
+#define STENCIL (2 * SNOW_REFINE_REACH + 1)
+#define OWN SNOW_REFINE_REACH
+#define INNER (OWN - 2)
+
+/* The weights of a voxel's inner stencil, and on which side of its cell's
+ * centre it lies: the last of the centres is not among its four, or the
+ * first. */
+typedef struct place {
+    double weights[5];
+    bool above, centred;
+} place;
+
+typedef struct refining {
+    const double *cells;
+    const snow_box *box;
+    const int64_t *ratio;
+    place *places[3];    /* of the voxels of a cell */
+    double *none;        /* a slice of no values, ... */
+    double *slice, *row; /* ... of blended ones, a row of them, ... */
+    double *out;         /* ... and a row of voxels */
+} refining;
+
+/* Lagrange's weights of the four centres at `at`, counted from the cell's. */
+static void weigh(double at, place *out) {
+    *out = (place){.above = at > 0, .centred = fabs(at) < 1e-12};
+    if (out->centred)
+        return;
+    const int first = out->above ? 1 : 0;
+    for (int i = first; i < first + 4; i++) {
+        double weight = 1;
+        for (int j = first; j < first + 4; j++)
+            if (j != i)
+                weight *= (at - (j - 2)) / (i - j);
+        out->weights[i] = weight;
+    }
+}
+
+/* Whether values go on smoothly: their second differences are alike, or small
+ * beside the last step. */
+static bool is_smooth(double last, double bend, double before) {
+    const double low = fmin(fabs(bend), fabs(before));
+    const double high = fmax(fabs(bend), fabs(before));
+    return high <= 0.5 * fabs(last) ||
+           (high <= 2 * low && (bend > 0) == (before > 0));
+}
+
+/* What follows on d, c, b, a: by the parabola through the last three where
+ * values go on smoothly, but not past 0; else the last one again. */
+static double go_on(double a, double b, double c, double d) {
+    if (!isfinite(b) || !isfinite(c))
+        return a;
+    const double last = a - b, bend = last - (b - c);
+    const double before = isfinite(d) ? (b - c) - (c - d) : bend;
+    const double next = a + last + bend;
+    if (!is_smooth(last, bend, before) || !isfinite(next))
+        return a;
+    return (next > 0 && a < 0) || (next < 0 && a > 0) ? 0 : next;
+}
+
+/* Replaces missing values of the inner stencil, whose own is there. */
+static void complete(double p[STENCIL]) {
+    const bool below = isfinite(p[OWN - 1]), above = isfinite(p[OWN + 1]);
+    if (!above)
+        p[OWN + 1] = go_on(p[OWN], p[OWN - 1], p[OWN - 2], p[OWN - 3]);
+    if (!below)
+        p[OWN - 1] =
+            above ? go_on(p[OWN], p[OWN + 1], p[OWN + 2], p[OWN + 3]) : p[OWN];
+    if (!above || !isfinite(p[OWN + 2]))
+        p[OWN + 2] = go_on(p[OWN + 1], p[OWN], p[OWN - 1], p[OWN - 2]);
+    if (!below || !isfinite(p[OWN - 2]))
+        p[OWN - 2] = go_on(p[OWN - 1], p[OWN], p[OWN + 1], p[OWN + 2]);
+}
+
+static double clamped(double value, double low, double high) {
+    return value < low ? low : value > high ? high : value;
+}
+
+static double least_of(const double p[4]) {
+    double a = p[0] < p[1] ? p[0] : p[1], b = p[2] < p[3] ? p[2] : p[3];
+    return a < b ? a : b;
+}
+
+static double most_of(const double p[4]) {
+    double a = p[0] > p[1] ? p[0] : p[1], b = p[2] > p[3] ? p[2] : p[3];
+    return a > b ? a : b;
+}
+
+static double at_place(const double p[STENCIL], const place *at) {
+    const double *inner = p + INNER, *four = inner + at->above;
+    double sum = 0;
+    for (int i = 0; i < 5; i++)
+        sum += at->weights[i] * inner[i];
+    return clamped(sum, least_of(four), most_of(four));
+}
+
+/* Whether its own value can be blended with others; completes these. */
+static bool prepare(double p[STENCIL]) {
+    if (!isfinite(p[OWN]))
+        return false;
+    if (!isfinite(p[OWN - 2] + p[OWN - 1] + p[OWN] + p[OWN + 1] + p[OWN + 2]))
+        complete(p);
+    return true;
+}
+
+/* Blends rows or slices, value by value. */
+static void blend(const double *const from[STENCIL], const place *at,
+                  int64_t count, double *out) {
+    if (at->centred) {
+        memcpy(out, from[OWN], (size_t)count * sizeof *out);
+        return;
+    }
+    for (int64_t i = 0; i < count; i++) {
+        double p[STENCIL];
+        for (int k = 0; k < STENCIL; k++)
+            p[k] = from[k][i];
+        out[i] = prepare(p) ? at_place(p, at) : p[OWN];
+    }
+}
+
+/* The rows or slices around number `own` of `count`, `step` values apart. */
+static void choose(const refining *r, const double *first, int64_t step,
+                   int64_t own, int64_t count, const double *out[STENCIL]) {
+    for (int i = 0; i < STENCIL; i++) {
+        int64_t at = own + i - OWN;
+        out[i] = at >= 0 && at < count ? first + at * step : r->none;
+    }
+}
+
+static double cell_at(const double *row, int64_t x, int64_t count) {
+    return x >= 0 && x < count ? row[x] : NAN;
+}
+
+/* A row of cells as voxels `first` .. `first + count - 1` of the grid. */
+static void spread_row(const refining *r, int64_t first, int64_t count) {
+    const int64_t ratio = r->ratio[0], cells = r->box->count[0];
+    const int64_t end = first + count;
+    for (int64_t cell = first / ratio; cell * ratio < end; cell++) {
+        const int64_t x = cell - r->box->first[0];
+        double p[STENCIL];
+        for (int i = 0; i < STENCIL; i++)
+            p[i] = cell_at(r->row, x + i - OWN, cells);
+        const double own = p[OWN];
+        const bool blends = prepare(p);
+        for (int64_t k = 0; k < ratio; k++) {
+            const int64_t voxel = cell * ratio + k;
+            const place *at = &r->places[0][k];
+            if (voxel >= first && voxel < end)
+                r->out[voxel - first] =
+                    blends && !at->centred ? at_place(p, at) : own;
+        }
+    }
+}
+
+/* Blends slices only where a row of them is wanted. */
+static void refine_slice(const refining *r, const snow_box *voxels, int64_t z,
+                         snow_refined_fn *take, void *user) {
+    const snow_box *box = r->box;
+    const int64_t width = box->count[0], slice = width * box->count[1];
+    const double *from[STENCIL];
+    bool blended = false;
+    for (int64_t y = voxels->first[1]; y < voxels->first[1] + voxels->count[1];
+         y++) {
+        if (!take(user, y, z, NULL))
+            continue;
+        if (!blended) {
+            choose(r, r->cells, slice, z / r->ratio[2] - box->first[2],
+                   box->count[2], from);
+            blend(from, &r->places[2][z % r->ratio[2]], slice, r->slice);
+            blended = true;
+        }
+        choose(r, r->slice, width, y / r->ratio[1] - box->first[1],
+               box->count[1], from);
+        blend(from, &r->places[1][y % r->ratio[1]], width, r->row);
+        spread_row(r, voxels->first[0], voxels->count[0]);
+        take(user, y, z, r->out);
+    }
+}
+
+/* All scratch memory, in one block of values and one of places. */
+static snow_status begin(snow_context *context, refining *r,
+                         const snow_box *voxels, place **places,
+                         double **values) {
+    const int64_t *count = r->box->count;
+    const uint64_t slice = (uint64_t)(count[0] * count[1]);
+    *values = snow_allocate_array(
+        context, 2 * slice + (uint64_t)(count[0] + voxels->count[0]),
+        sizeof **values);
+    *places = snow_allocate_array(
+        context, (uint64_t)(r->ratio[0] + r->ratio[1] + r->ratio[2]),
+        sizeof **places);
+    if (!*values || !*places)
+        return SNOW_STATUS_NO_MEMORY;
+    r->none = *values;
+    r->slice = r->none + slice;
+    r->row = r->slice + slice;
+    r->out = r->row + count[0];
+    for (uint64_t i = 0; i < slice; i++)
+        r->none[i] = NAN;
+    place *at = *places;
+    for (int axis = 0; axis < 3; axis++) {
+        r->places[axis] = at;
+        for (int64_t k = 0; k < r->ratio[axis]; k++)
+            weigh(((double)k + 0.5) / (double)r->ratio[axis] - 0.5, at++);
+    }
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_cells_refine(snow_context *context, const double *cells,
+                              const snow_box *box, const int64_t ratio[3],
+                              const snow_box *voxels, snow_refined_fn *take,
+                              void *user) {
+    refining r = {.cells = cells, .box = box, .ratio = ratio};
+    place *places = NULL;
+    double *values = NULL;
+    snow_status status = begin(context, &r, voxels, &places, &values);
+    if (status == SNOW_STATUS_OK)
+        for (int64_t z = voxels->first[2];
+             z < voxels->first[2] + voxels->count[2]; z++)
+            refine_slice(&r, voxels, z, take, user);
+    snow_release(context, places);
+    snow_release(context, values);
+    return status;
+}

@@ -1,0 +1,164 @@
+#!/bin/bash
+# --overlay: a segmentation, or a second volume of values, in the first.
+. "$(dirname "$0")/../../support/shell.sh"
+command -v python3 >/dev/null || {
+    skipped all "there is no python3"
+    exit 77
+}
+
+render() { "$TOOL" render -q -s 60x50 "$@"; }
+
+# A grey volume; labels on its grid, the same with x the other way; on a coarser
+# grid; values.
+"$TOOL" phantom head --dims 32x28x30 -o v.nrrd -q
+python3 - <<'END'
+nx, ny, nz = 32, 28, 30
+
+def write(name, dims, steps, origin, voxels):
+    text = ("NRRD0004\ntype: uint8\ndimension: 3\nsizes: %d %d %d\n" % dims +
+            "space: RAS\nspace directions: (%g,0,0) (0,%g,0) (0,0,%g)\n" % steps +
+            "space origin: (%g,%g,%g)\nencoding: raw\n" % origin)
+    if name not in ("w.nrrd", "pet.nrrd"):  # labels, says the file
+        text += "Segment0_LabelValue:=1\nSegment1_LabelValue:=3\n"
+    text += "\n"
+    open(name, "wb").write(text.encode() + bytes(voxels))
+
+def label(x, y, z):
+    return (3 <= x < 12 and 4 <= y < 14) + 3 * (18 <= x < 30 and 10 <= z < 20)
+
+header, voxels = open("v.nrrd", "rb").read().split(b"\n\n", 1)
+write("w.nrrd", (nx, ny, nz), (1, 1, 1), (5, 6, 7), voxels[:nx * ny * nz])
+grid = [(x, y, z) for z in range(nz) for y in range(ny) for x in range(nx)]
+write("seg.nrrd", (nx, ny, nz), (1, 1, 1), (5, 6, 7), [label(*p) for p in grid])
+write("flip.nrrd", (nx, ny, nz), (-1, 1, 1), (5 + nx - 1, 6, 7),
+      [label(nx - 1 - x, y, z) for x, y, z in grid])
+write("one.nrrd", (nx, ny, nz), (1, 1, 1), (5, 6, 7),
+      [3 * (label(*p) == 3) for p in grid])
+write("coarse.nrrd", (16, 14, 15), (2, 2, 2), (5.5, 6.5, 7.5),
+      [label(2 * x, 2 * y, 2 * z) for z in range(15) for y in range(14)
+       for x in range(16)])
+write("pet.nrrd", (16, 14, 15), (2, 2, 2), (5.5, 6.5, 7.5),
+      [min(255, x * y + z * x) for z in range(15) for y in range(14)
+       for x in range(16)])
+END
+"$TOOL" convert w.nrrd -o w.npy -q && rm v.nrrd
+
+# Three time steps of values, and their inverse.
+python3 - <<'END'
+import struct
+
+def write(name, value):
+    head = bytearray(352)
+    struct.pack_into("<i", head, 0, 348)
+    struct.pack_into("<8h", head, 40, 4, 12, 12, 12, 3, 1, 1, 1)
+    struct.pack_into("<2h", head, 70, 2, 8)
+    struct.pack_into("<8f", head, 76, 1, 1, 1, 1, 1, 1, 1, 1)
+    struct.pack_into("<f", head, 108, 352)
+    struct.pack_into("<h", head, 254, 1)  # an sform
+    struct.pack_into("<12f", head, 280, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0)
+    head[344:348] = b"n+1\0"
+    open(name, "wb").write(bytes(head) + bytes(
+        value(x, y, z, t) for t in range(3) for z in range(12)
+        for y in range(12) for x in range(12)))
+
+write("base.nii", lambda x, y, z, t: 40 + 9 * x + 3 * y + z + 20 * t)
+write("over.nii", lambda x, y, z, t: 200 * (4 * t <= x < 4 * t + 4))
+END
+steps="--colormap grey --range 40,250 --opacity 40:0.1,250:0.4 --overlay-range 20,200 --overlay-opacity 20:0,200:0.5"
+
+run 0 "without" render w.nrrd -o none.npy
+run 0 "labels" render w.nrrd --overlay seg.nrrd -o a.npy
+check "are seen" [ -n "$(cmp none.npy a.npy)" ]
+run 0 "labels that are flipped" render w.nrrd --overlay flip.nrrd -o b.npy
+check "are the same" cmp -s a.npy b.npy
+run 0 "with other threads" render w.nrrd --overlay seg.nrrd -o b.npy -y -j 5
+check "too" cmp -s a.npy b.npy
+run 0 "in plain C" render w.nrrd --overlay seg.nrrd -o b.npy -y --isa scalar
+run 0 "the same for ever" render w.nrrd --overlay seg.nrrd -o c.npy --deterministic
+run 0 "has both" "$TOOL" compare b.npy c.npy --tolerance 1/255
+run 0 "one label" render w.nrrd --overlay seg.nrrd --labels 3 -o c.npy -y
+run 0 "by itself" render w.nrrd --overlay one.nrrd -o d.npy
+check "is picked" cmp -s c.npy d.npy
+check "of two" [ -n "$(cmp a.npy c.npy)" ]
+run 0 "a coarse one" "$TOOL" render w.nrrd --overlay coarse.nrrd -o e.npy -s 60x50
+check "is resampled" grep -q "another grid .*nearest" "$ERR"
+run 0 "depth" render w.nrrd --method raycast -o x.npy --depth x_depth.npy
+run 0 "with an overlay" render w.nrrd --overlay seg.nrrd --method raycast \
+    -o y.npy --depth y_depth.npy
+check "is the volume's" cmp -s x_depth.npy y_depth.npy
+run 0 "values" "$TOOL" render w.nrrd --overlay pet.nrrd -o f.png -s 60x50 \
+    --overlay-colormap viridis --overlay-range 50,200 \
+    --overlay-opacity 50:0,200:0.3 --save-config c.json
+check "are resampled" grep -q "another grid .*linear" "$ERR"
+check "have their look" grep -q "overlay pet.nrrd: viridis 50..200; opacity 0 at 50" "$ERR"
+run 0 "from a file" "$TOOL" render --config c.json -o g.png -q
+check "the same" cmp -s f.png g.png
+run 0 "a turntable" "$TOOL" turntable w.nrrd --overlay seg.nrrd -o t_%d.png -q \
+    --frames 2 -s 60x50
+check "turns both" [ -n "$(cmp t_0.png t_1.png)" ]
+
+run 0 "a movie" "$TOOL" movie base.nii --overlay over.nii $steps -o m_%d.png -q -s 60x50
+for t in 0 2; do
+    run 0 "step $t" render base.nii --overlay over.nii $steps --time $t -o s_$t.png
+    check "is of both" cmp -s m_$t.png s_$t.png
+done
+check "moves" [ -n "$(cmp s_0.png s_2.png)" ]
+"$TOOL" convert over.nii -o still.nrrd -q
+run 0 "one step" "$TOOL" movie base.nii --overlay still.nrrd $steps -o n_%d.png -s 60x50
+check "is told once" [ "$(grep -c "overlay still" "$ERR")" = 1 ]
+run 0 "by itself" render base.nii --overlay still.nrrd $steps --time 2 -o p.png
+check "is in all steps" cmp -s n_2.png p.png
+refused 3 "other steps" 'over.nii: holds 3 time steps, and the volume 1' \
+    "$TOOL" render w.nrrd -o z.png --overlay over.nii
+
+# Both are larger than the memory: slabs of both files.
+python3 - <<'END'
+n = 160
+head = ("NRRD0004\ntype: uint8\ndimension: 3\nsizes: %d %d %d\nspace: RAS\n"
+        "space directions: (1,0,0) (0,1,0) (0,0,1)\nencoding: raw\n" % (n, n, n))
+
+def row(y, z):
+    low, high = 1 if y > 50 else 0, 3 if 40 <= z < 110 else 0
+    return bytes([low]) * 60 + bytes(30) + bytes([high]) * 70
+
+open("parts.nrrd", "wb").write(
+    (head + "Segment0_LabelValue:=1\nSegment1_LabelValue:=3\n\n").encode() +
+    b"".join(row(y, z) for z in range(n) for y in range(n)))
+ramp = [bytes(min(255, abs(x - 80) + d) for x in range(n)) for d in range(256)]
+open("large.nrrd", "wb").write(head.encode() + b"\n" + b"".join(
+    ramp[(abs(y - 80) + abs(z - 80))] for z in range(n) for y in range(n)))
+END
+fog="large.nrrd --overlay parts.nrrd --range 20,250 --opacity 20:0,250:0.05"
+# shellcheck disable=SC2086
+run 0 "both in memory" render $fog -o in.npy -y
+# shellcheck disable=SC2086
+run 0 "both in their files" "$TOOL" render $fog -o out.npy -y -s 60x50 \
+    --memory 7000K -v --stats out.json
+check "in slabs" grep -q "large.nrrd: stays in its file" "$ERR"
+check "are the same" cmp -s in.npy out.npy
+check "take no more" [ "$(grep -o '"peak": [0-9]*' out.json |
+    grep -o '[0-9]*')" -le 7168000 ]
+check "of two of 8000K" [ "$(cat large.nrrd parts.nrrd | wc -c)" -gt 8190000 ]
+
+run 0 "labels of values" render w.nrrd --mask seg.nrrd --labels 3 --overlay pet.nrrd -o q.npy
+run 0 "picked before" render w.nrrd --mask one.nrrd --overlay pet.nrrd -o r.npy
+check "are the mask's" cmp -s q.npy r.npy
+run 0 "a label that is not there" "$TOOL" render w.nrrd --overlay seg.nrrd --labels 7 -o u.npy
+check "is told" grep -q "seg.nrrd: no voxel has a label of --labels 7; there are 1, 3" "$ERR"
+echo '{"overlay": "seg.nrrd", "labels": "3"}' >o.json
+run 0 "a slice by its recipe" "$TOOL" slice w.nrrd --config o.json -o slice.png
+check "has no overlay" grep -q "note: the overlay .*seg.nrrd is not shown" "$ERR"
+run 0 "without" "$TOOL" slice w.nrrd -o plain.png -q
+check "and no label of it" cmp -s slice.png plain.png
+
+refused 2 "a look of none" 'are of an overlay; give --overlay FILE too' \
+    "$TOOL" render w.nrrd -o z.png --overlay-range 1,2
+refused 2 "another mode" 'overlay: needs mode over' \
+    "$TOOL" render w.nrrd -o z.png --overlay seg.nrrd -m mip
+refused 2 "another method" 'needs method shear-warp or raycast; remove --method footprint' \
+    "$TOOL" render w.nrrd -o z.png --overlay seg.nrrd --method footprint
+refused 2 "another kernel" 'overlay: needs kernel tent or bspline; remove --kernel box' \
+    "$TOOL" render w.nrrd -o z.png --overlay seg.nrrd --kernel box
+refused 3 "another size without a place" 'the overlay has .* resample' \
+    "$TOOL" render seg.nrrd -o z.png --overlay phantom:marschner-lobb
+finish

@@ -1,0 +1,96 @@
+#!/bin/bash
+# Series of files and steps of a file, by one naming scheme for all verbs; steps by
+# number, from the end, in ranges and by time; a series that grows while a movie
+# of it is made.
+. "$(dirname "$0")/../../support/shell.sh"
+
+for step in 0 10 30; do
+    "$TOOL" phantom shells --dims 16x16x16 --seed $step -q \
+        -o "$(printf run_%04d.nrrd $step)" || exit 1
+    printf 'run_%04d.nrrd\n!TIME 0.%d\n' $step $step >>list
+done
+grep '!' list >steps.visit
+grep -v '!' list >>steps.visit
+look=(--preset linear --range 0,255 -s 48x48)
+render() { "$TOOL" render -q "${look[@]}" "$@"; }
+
+# A picture of one step; numbers may be missing between others.
+for pair in "0 0000" "1 0010" "2 0030" "last 0030" "-1 0030" "-3 0000"; do
+    read -r time name <<<"$pair"
+    run 0 "the file itself" render run_"$name".nrrd -o one.png -y
+    run 0 "the pattern at $time" render run_%04d.nrrd --time "$time" -o two.png -y
+    check "which is step $time" cmp -s one.png two.png
+    run 0 "the list at $time" render steps.visit --time "$time" -o two.png -y
+    check "which is step $time too" cmp -s one.png two.png
+done
+run 0 "without --time" "$TOOL" render "${look[@]}" run_%04d.nrrd -o first.png
+says 'run_0000.nrrd: step 0 of 3 .counted from 0. is taken'
+run 0 "named after the file" render run_%04d.nrrd --time 1
+check "which it is" [ -s run_0010.png ]
+for verb in info "convert -o a.nrrd" "turntable --frames 1 -s 32x32 -o t_%d.png" \
+    "slice -o s.png"; do
+    read -ra words <<<"$verb"
+    run 0 "${words[0]}" "$TOOL" "${words[0]}" run_%04d.nrrd "${words[@]:1}" --time last
+    says 'run_0030.nrrd: step 2 of 3'
+done
+refused 2 "a step that is not there" 'no step 3; run_%04d.nrrd stands for 3' \
+    "$TOOL" info run_%04d.nrrd --time 3
+refused 2 "nor that far from the end" 'no step -4' "$TOOL" info run_%04d.nrrd --time -4
+refused 3 "a pattern without files" 'no file matches' "$TOOL" info no_%d.nrrd
+
+# Physical time: the nearest step.
+run 0 "by time" "$TOOL" info steps.visit --time 0.12
+prints '^times +3 .these values: step 1'
+prints '^time +0.1$'
+says 'step 1 of 3 is the nearest, at 0.1'
+run 0 "with a unit, which the list lacks" "$TOOL" info steps.visit --time 9.9s
+prints 'step 2'
+refused 2 "without times" 'has no physical times' "$TOOL" info run_0000.nrrd --time 0.5
+for time in x 1: 0.5q1 1:2:3 -; do
+    [ $time = 1: ] || refused 2 "no time: $time" 'is not a time step' \
+        "$TOOL" info steps.visit --time $time
+done
+refused 2 "a range" 'a range of them is for movie' "$TOOL" info steps.visit --time 0:2
+
+# Movies of some steps; gaps in a pattern are errors.
+movie() { "$TOOL" movie -q "${look[@]}" "$@"; }
+run 0 "a range" movie steps.visit --time 1:3 -o m_%d.png
+check "two frames" [ "$(echo m_*.png)" = "m_0.png m_1.png" ]
+run 0 "the files" movie run_0010.nrrd run_0030.nrrd -o q_%d.png
+check "from step 1 on" cmp -s m_0.png q_0.png
+run 0 "the last two" movie steps.visit --time -2: -o n_%d.png
+check "are the same" cmp -s m_1.png n_1.png
+run 0 "the first" movie steps.visit --time :1 -o o_%d.png
+check "one frame" [ "$(echo o_*.png)" = o_0.png ]
+refused 2 "beyond the end" 'there are 3 steps' movie steps.visit --time 1:4 -o p_%d.png
+refused 2 "nothing" 'there are 3 steps' movie steps.visit --time 2:2 -o p_%d.png
+refused 3 "a gap" 'run_0020.nrrd: this step of' movie run_%04d.nrrd -o p_%d.png
+
+# A list that grows: frames that are there stay.
+run 0 "three steps" movie steps.visit -o g_%d.png
+stat -c '%i %Y' g_0.png g_1.png g_2.png >before
+sleep 1
+echo run_0000.nrrd >>steps.visit
+run 0 "a fourth" movie steps.visit -o g_%d.png --resume
+check "is made" [ -s g_3.png ]
+check "and no other anew" cmp -s before <(stat -c '%i %Y' g_0.png g_1.png g_2.png)
+sed -i 's/run_0010/run_0000/' steps.visit
+refused 4 "changed without growing" 'other settings' movie steps.visit -o g_%d.png --resume
+
+# Short movies take four seconds.
+if command -v ffprobe >/dev/null; then
+    run 0 "three frames" movie run_0000.nrrd run_0010.nrrd run_0030.nrrd -o a.mp4
+    run 0 "their rate" ffprobe -v error -select_streams v -show_entries \
+        stream=r_frame_rate -of csv=p=0 a.mp4
+    prints '^2/1'
+    run 0 "--fps" movie run_0000.nrrd run_0010.nrrd -o b.mp4 --fps 10
+    run 0 "is kept" ffprobe -v error -select_streams v -show_entries \
+        stream=r_frame_rate -of csv=p=0 b.mp4
+    prints '^10/1'
+fi
+
+# A folder with such a Header is a plotfile (tests/oracles/oracle_amr.py).
+mkdir plt00000
+echo HyperCLaw-V1.1 >plt00000/Header
+refused 3 "a plotfile that is cut off" 'ends before a number of components' "$TOOL" info plt00000
+finish

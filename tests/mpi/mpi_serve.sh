@@ -1,0 +1,15 @@
+#!/bin/bash
+# mpi_serve.sh - the viewer over several processes: see tests/serve/many_ranks.py;
+# and a simulation in it: tests/serve/live.py.
+. "$(dirname "$0")/../support/mpi.sh"
+
+need_proc
+[ -x "$MPI_TOOL" ] && [ -x "$(dirname "$MPI_TOOL")/snowglass-serve-mpi" ] ||
+    skip "the viewer of many ranks is not built"
+is_open_mpi || skip "only the jobs of Open MPI are looked into"
+LIVE=$TESTS/live_simulation
+[ ! -x "$LIVE" ] || timeout -k 5 200 python3 -B "$HERE/serve/live.py" "$TOOL" \
+    "$MPIEXEC" "$LIVE" || FAILED=1
+timeout -k 5 380 python3 -B "$HERE/serve/many_ranks.py" "$TOOL" "$MPIEXEC" \
+    "$MPI_TOOL" || FAILED=1
+finish

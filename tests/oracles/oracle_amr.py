@@ -1,0 +1,410 @@
+"""Levels of refinement, each with an analytic field at the centres of its cells:
+plotfiles of AMReX, written here by the published format and read by VTK too, and
+.vth as VTK writes them.  Cells below finer ones hold 1e30, which must not be
+seen."""
+import os
+import re
+import subprocess
+import sys
+
+try:
+    import numpy as np
+    import vtk
+    from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+except ImportError as missing:
+    print("skip  ", missing)
+    sys.exit(77)
+
+import json
+import shutil
+
+import oracle
+
+place = oracle.folder()
+COVERED = 1e30
+BITS = {4: "(8, (32 8 23 0 1 9 0 127)),(4, ", 8: "(8, (64 11 52 0 1 12 0 1023)),(8, "}
+
+
+def hill(x, y, z):
+    """A hill on waves, in a world of 0 to 1."""
+    return (np.exp(-((x - .55)**2 + (y - .45)**2 + (z - .6)**2) / .02) +
+            0.2 * np.sin(5 * x + 3 * y - 4 * z))
+
+
+def plane(x, y, z):
+    return 9 + 2 * x - y + 0.5 * z
+
+
+class Grid:
+    """Boxes of cells, (first, last), on levels; `ratios` from each to the
+    next."""
+
+    def __init__(self, cells, ratios, boxes, low=(0, 0, 0), high=(1, 1, 1)):
+        self.cells, self.boxes = np.array(cells), boxes
+        self.low, self.high = np.array(low, float), np.array(high, float)
+        self.ratios = [np.array(r) * np.ones(len(cells), int) for r in ratios]
+        self.all = [self.cells]
+        for ratio in self.ratios:
+            self.all.append(self.all[-1] * ratio)
+        self.steps = [(self.high - self.low) / cells for cells in self.all]
+
+    def centres(self, level, first, last):
+        axes = [self.low[i] + (np.arange(first[i], last[i] + 1) + 0.5) *
+                self.steps[level][i] for i in range(len(first))]
+        return np.meshgrid(*axes[::-1], indexing="ij")[::-1]
+
+    def values(self, field, level, first, last, covered=COVERED):
+        v = np.array(field(*self.centres(level, first, last)), float)
+        if level + 1 < len(self.boxes):
+            ratio = self.ratios[level]
+            for low, high in self.boxes[level + 1]:
+                low = -(-np.array(low) // ratio) - np.array(first)
+                high = (np.array(high) + 1) // ratio - np.array(first)
+                v[tuple(slice(max(a, 0), max(b, 0))
+                        for a, b in zip(low[::-1], high[::-1]))] = covered
+        return v
+
+    def finest(self, field):
+        return field(*self.centres(len(self.boxes) - 1, 0 * self.cells,
+                                   self.all[-1] - 1))
+
+
+def box_text(first, last):
+    return "(({}) ({}) ({}))".format(*(",".join(map(str, v)) for v in
+                                       (first, last, [0] * len(first))))
+
+
+def plotfile(path, grid, fields, kind="<f8", time=0.25, ghosts=0, shift=0):
+    """Writes a plotfile, whose domain begins at cell `shift` of level 0."""
+    dim, levels = len(grid.cells), len(grid.boxes)
+    bytes_each = np.dtype(kind).itemsize
+    order = range(1, bytes_each + 1)
+    order = order if kind[0] == ">" else reversed(order)
+    bits = f"({BITS[bytes_each]}({' '.join(map(str, order))})))"
+    move = [shift * (cells // grid.cells) for cells in grid.all]
+    shutil.rmtree(path, ignore_errors=True)
+    head = ["HyperCLaw-V1.1", len(fields), *fields, dim, time, levels - 1,
+            " ".join(map(repr, map(float, grid.low))),
+            " ".join(map(repr, map(float, grid.high))),
+            " ".join(str(r.max()) for r in grid.ratios),
+            " ".join(box_text(m, m + n - 1)
+                     for m, n in zip(move, grid.all)),
+            "0 " * levels,
+            *(" ".join(map(repr, map(float, h))) for h in grid.steps), 0, 0]
+    for level, boxes in enumerate(grid.boxes):
+        os.makedirs(f"{path}/Level_{level}")
+        head += [f"{level} {len(boxes)} {time}", 0]
+        cell = [1, 1, len(fields), ghosts, f"({len(boxes)} 0"]
+        places = []
+        for number, (first, last) in enumerate(boxes):
+            name = f"Cell_D_{number % 2:05d}"
+            first, last = np.array(first), np.array(last)
+            head += [f"{grid.low[i] + first[i] * grid.steps[level][i]} "
+                     f"{grid.low[i] + (last[i] + 1) * grid.steps[level][i]}"
+                     for i in range(dim)]
+            cell.append(box_text(first + move[level], last + move[level]))
+            with open(f"{path}/Level_{level}/{name}", "ab") as file:
+                places.append(f"FabOnDisk: {name} {file.tell()}")
+                around = box_text(first + move[level] - ghosts,
+                                  last + move[level] + ghosts)
+                file.write(f"FAB {bits}{around} {len(fields)}\n".encode())
+                for field in fields.values():
+                    v = grid.values(field, level, first, last)
+                    v = np.pad(v, ghosts, constant_values=COVERED)
+                    file.write(v.astype(kind).tobytes())
+        cell += [")", len(boxes), *places, "", f"{len(boxes)},{len(fields)}"]
+        cell += ["0," * len(fields)] * len(boxes)
+        with open(f"{path}/Level_{level}/Cell_H", "w") as file:
+            file.write("\n".join(map(str, cell)) + "\n")
+        head.append(f"Level_{level}/Cell")
+    with open(f"{path}/Header", "w") as file:
+        file.write("\n".join(map(str, head)) + "\n")
+
+
+def vth(path, grid, field, kind="f4", old=False):
+    """Writes a .vth by VTK, with cells blanked as it does."""
+    amr = vtk.vtkOverlappingAMR()
+    amr.Initialize(len(grid.boxes), [len(boxes) for boxes in grid.boxes])
+    amr.SetOrigin(grid.low)
+    amr.SetGridDescription(8) # XYZ
+    for level, boxes in enumerate(grid.boxes):
+        amr.SetSpacing(level, grid.steps[level])
+        for number, (first, last) in enumerate(boxes):
+            block = vtk.vtkUniformGrid()
+            block.SetOrigin(grid.low + np.array(first) * grid.steps[level])
+            block.SetSpacing(grid.steps[level])
+            block.SetDimensions(*(b - a + 2 for a, b in zip(first, last)))
+            v = grid.values(field, level, first, last)
+            array = numpy_to_vtk(v.astype(kind).ravel(), deep=1)
+            array.SetName("rho")
+            block.GetCellData().AddArray(array)
+            amr.SetAMRBox(level, number, vtk.vtkAMRBox(first, last))
+            amr.SetDataSet(level, number, block)
+        if level < len(grid.ratios):
+            amr.SetRefinementRatio(level, int(grid.ratios[level][0]))
+    vtk.vtkAMRUtilities.BlankCells(amr)
+    writer = vtk.vtkXMLUniformGridAMRWriter()
+    writer.SetFileName(path)
+    writer.SetInputData(amr)
+    assert writer.Write()
+    if old:
+        with open(path) as file:
+            text = file.read()
+        with open(path, "w") as file:
+            file.write(text.replace("vtkOverlappingAMR",
+                                    "vtkHierarchicalBoxDataSet"))
+
+
+def told(path, *options):
+    oracle.checked += 1
+    done = oracle.run(path, *options)
+    if done.returncode:
+        oracle.fail(path, done.stderr.strip())
+        return {}
+    return json.loads(done.stdout)
+
+
+def check(path, grid, field, most, mean, options=(), name=None):
+    """Voxels differ from the field by no more; a box is the same as in the
+    whole, to the bit, and so is its place."""
+    name = name or path
+    voxels, matrix = oracle.voxels_of(path, options)
+    if voxels is None:
+        return None
+    shape = tuple(grid.all[-1][::-1])
+    if voxels.shape != shape:
+        oracle.fail(name, f"shape {voxels.shape}, not {shape}")
+        return None
+    if not np.allclose(matrix[:, 3], grid.low + grid.steps[-1] / 2) or \
+            not np.allclose(matrix[:, :3], np.diag(grid.steps[-1])):
+        oracle.fail(name, f"matrix {matrix}")
+    wrong = np.abs(voxels - grid.finest(field))
+    if not (wrong.max() <= most and wrong.mean() <= mean):
+        oracle.fail(name, f"differs by {wrong.max()}, {wrong.mean()} on "
+                    "average")
+    first = [n // 3 for n in grid.all[-1]]
+    last = [min(n // 3 + 7, n) for n in grid.all[-1]]
+    box = ",".join(f"{a}:{b}" for a, b in zip(first, last))
+    part, _ = oracle.voxels_of(path, [*options, "--crop", box])
+    if not np.array_equal(part, voxels[tuple(slice(a, b) for a, b in zip(
+            first[::-1], last[::-1]))], equal_nan=True):
+        oracle.fail(name, "a box has other values than the whole")
+    return voxels
+
+
+def picture(name, *options):
+    done = subprocess.run([oracle.TOOL, name, "-q", "-y", "-o", "p.npy",
+                           "--size", "300x300", "--fit", "volume", *options],
+                          capture_output=True, text=True)
+    if done.returncode:
+        oracle.fail(name, done.stderr.strip())
+        return np.zeros((1, 1, 4))
+    return np.load("p.npy")
+
+
+def compare(path, grid, field, *options):
+    """At most one pixel in a hundred differs by more than 2 of 255 from the
+    field on the finest even grid."""
+    oracle.checked += 1
+    matrix = np.diag([*grid.steps[-1], 1])
+    header = vtk.vtkImageData()
+    header.SetDimensions(*map(int, grid.all[-1]))
+    header.SetSpacing(grid.steps[-1])
+    header.SetOrigin(grid.low + grid.steps[-1] / 2)
+    array = numpy_to_vtk(grid.finest(field).astype("f4").ravel(), deep=1)
+    array.SetName("rho")
+    header.GetPointData().SetScalars(array)
+    writer = vtk.vtkXMLImageDataWriter()
+    writer.SetFileName("even.vti")
+    writer.SetInputData(header)
+    assert writer.Write()
+    for view in (("--azimuth", "30", "--elevation", "20"), ()):
+        a = picture(path, *options, *view)
+        b = picture("even.vti", *options, *view)
+        share = (np.abs(a - b).max(axis=-1) > 2 / 255).mean()
+        seen = (b[..., 3] > 0.1).mean()
+        if not share <= 0.01 or not seen > 0.05:
+            oracle.fail(path, f"{share:.2%} of pixels differ, {seen:.0%} are "
+                        f"seen, {options} {view}")
+
+
+def split(first, last, cut, axis=0):
+    middle, after = list(last), list(first)
+    middle[axis], after[axis] = cut - 1, cut
+    return [(tuple(first), tuple(middle)), (tuple(after), tuple(last))]
+
+
+LOOK = ("--colormap", "inferno", "--range", "0.2,1.2")
+# Three levels, 2 and 2; boxes split oddly; fine ones at the side of the grid.
+TWO = Grid((32, 32, 32), (2, 2),
+           [split((0, 0, 0), (31, 31, 31), 13),
+            split((18, 14, 20), (51, 43, 55), 31, 2) + [((0, 0, 0), (11, 9, 7))],
+            split((48, 38, 56), (91, 75, 99), 57, 1)])
+# 4 to 1, on cells that are not cubes, in another place of the world.
+FOUR = Grid((24, 20, 28), (4,),
+            [[((0, 0, 0), (23, 19, 27))], split((36, 20, 44), (75, 51, 91), 50)],
+            (0, 0, 0), (1, 1, 1))
+FLAT = Grid((24, 20, 28), ((2, 1, 4),),
+            [[((0, 0, 0), (23, 19, 27))], [((8, 5, 20), (29, 14, 79))]],
+            (-1, 2, 5), (2, 4, 6))
+
+for kind in ("<f4", ">f4", "<f8", ">f8"):
+    plotfile("plt", TWO, {"plane": plane, "rho": hill}, kind)
+    check("plt", TWO, hill, 0.03, 2e-4, ["--component", "rho"], kind)
+check("plt", TWO, hill, 0.03, 2e-4, ["--component", "1"])
+check("plt/Header", TWO, hill, 0.03, 2e-4, ["--dataset", "rho"])
+check("plt", TWO, plane, 1e-12, 1e-12)
+found = told("plt", "--channel", 1)
+for key, value in (("format", "amrex"), ("time_value", 0.25),
+                   ("quantity", "rho"),
+                   ("storage", "3 levels, ratios 2, 2, boxes 2, 3, 2")):
+    if found.get(key) != value:
+        oracle.fail("plt", f"{key} {found.get(key)!r}, not {value!r}")
+oracle.refuse("plt", "the plotfile has plane, rho", ["--component", "p"], 2)
+oracle.refuse("plt", "component 2 does not exist", ["--channel", 2], 2)
+oracle.refuse("plt", "component -1 does not exist", ["--component", -1], 2)
+oracle.refuse("plt", "name the same", ["--component", "rho", "--channel", 1], 2)
+if found.get("components") != 2 or found.get("component_names") != [
+        "plane", "rho"] or "channels" in found:
+    oracle.fail("plt", f"lists {found.get('component_names')}")
+done = subprocess.run([oracle.TOOL, "info", "plt", "--component", "rho"],
+                      capture_output=True, text=True)
+if not re.search(r"components +2 \(these values: component rho\)\n +0  plane\n"
+                 r" +1  rho\n", done.stdout):
+    oracle.fail("plt", f"info prints {done.stdout}")
+done = subprocess.run([oracle.TOOL, "plt", "-y", "-o", "p.png", "-s", "9x9"],
+                      capture_output=True, text=True)
+if "is taken, the first of plane, rho" not in done.stderr or \
+        "channel" in done.stderr:
+    oracle.fail("plt", f"render says {done.stderr}")
+plotfile("plt", TWO, {"rho": hill}, ghosts=2, shift=-5)
+check("plt", TWO, hill, 0.03, 2e-4, name="ghosts")
+check("plt", TWO, hill, 0.03, 2e-4, ["--component", "RHO"], "letters")
+oracle.refuse("plt", "there is no component RHO", ["--dataset", "RHO"], 2)
+compare("plt", TWO, hill, *LOOK)
+compare("plt", TWO, hill, "--mode", "mip", *LOOK)
+vth("a.vth", TWO, hill)
+check("a.vth", TWO, hill, 0.03, 2e-4)
+compare("a.vth", TWO, hill, *LOOK)
+vth("b.vth", TWO, plane, "f8", True)
+check("b.vth", TWO, plane, 1e-12, 1e-12)
+
+plotfile("plt", FOUR, {"rho": hill}, "<f4")
+check("plt", FOUR, hill, 0.05, 5e-4, name="4:1")
+compare("plt", FOUR, hill, *LOOK)
+vth("a.vth", FOUR, hill, "f8")
+check("a.vth", FOUR, hill, 0.05, 5e-4, name="4:1 vth")
+plotfile("plt", FLAT, {"rho": plane})
+check("plt", FLAT, plane, 1e-12, 1e-12, name="flat")
+compare("plt", FLAT, plane, "--range", "4,14")
+
+# VTK reads what is written here as it was meant.
+plotfile("plt", TWO, {"plane": plane, "rho": hill})
+reader = vtk.vtkAMReXGridReader()
+reader.SetFileName("plt")
+reader.UpdateInformation()
+reader.SetMaxLevel(2)
+reader.SetCellArrayStatus("rho", 1)
+reader.Update()
+amr = reader.GetOutput()
+for level, boxes in enumerate(TWO.boxes):
+    for number, (first, last) in enumerate(boxes):
+        oracle.checked += 1
+        block = amr.GetDataSet(level, number)
+        v = vtk_to_numpy(block.GetCellData().GetArray("rho"))
+        if not np.array_equal(v, TWO.values(hill, level, first, last).ravel()):
+            oracle.fail("plt", f"VTK reads box {number} of level {level} "
+                        "differently")
+
+# Places without cells, missing values, and axes that are not there.
+GAP = Grid((16, 16, 16), (2,), [[((0, 0, 0), (15, 15, 7))],
+                                [((8, 8, 4), (15, 15, 11))]])
+plotfile("plt", GAP, {"rho": plane})
+voxels, _ = oracle.voxels_of("plt")
+if not (np.isnan(voxels[16:]).all() and np.isfinite(voxels[:16]).all()):
+    oracle.fail("gap", "is not missing, or more than it is")
+HOLES = lambda x, y, z: np.where(np.hypot(x - .5, y - .5) < .2, np.nan,
+                                 plane(x, y, z))
+plotfile("plt", TWO, {"rho": HOLES})
+voxels, _ = oracle.voxels_of("plt")
+wanted = TWO.finest(plane)
+if not np.abs(voxels - wanted)[np.isfinite(voxels)].max() < 0.05 or not \
+        0.1 < np.isnan(voxels).mean() < 0.14:
+    oracle.fail("holes", f"are {np.isnan(voxels).mean():.0%} of the voxels")
+STEP = lambda x, y, z: np.where(x + 0.3 * y + 0.2 * z < .7, 1e-6, 1.)
+plotfile("plt", TWO, {"rho": STEP})
+voxels, _ = oracle.voxels_of("plt")
+if not (voxels.min() >= 1e-6 and voxels.max() <= 1):
+    oracle.fail("step", f"reaches from {voxels.min()} to {voxels.max()}")
+SHEET = Grid((32, 24), (2,), [[((0, 0), (31, 23))], [((16, 8), (39, 31))]],
+             (0, 0), (4, 3))
+plotfile("plt", SHEET, {"rho": lambda x, y: 2 * x - y + 5})
+voxels, _ = oracle.voxels_of("plt")
+if voxels.shape != (1, 48, 64) or not np.allclose(
+        voxels[0], SHEET.finest(lambda x, y: 2 * x - y + 5)):
+    oracle.fail("sheet", "is not the field")
+
+# Steps in folders.
+for step in range(3):
+    plotfile(f"plt{step:05d}", GAP,
+             {"rho": lambda x, y, z: plane(x, y, z) + step}, time=step / 4)
+if told("plt%05d", "--time", "0.5").get("time_value") != 0.5:
+    oracle.fail("plt%05d", "has another time")
+done = subprocess.run([oracle.TOOL, "movie", "-q", "-y", "plt%05d", "-o",
+                       "f_%d.png", "--size", "64x64"], capture_output=True,
+                      text=True)
+if done.returncode or not os.path.exists("f_2.png"):
+    oracle.fail("movie", done.stderr.strip())
+
+# What is damaged is refused.
+plotfile("good", TWO, {"rho": hill})
+
+
+def spoil(name, part, old, new):
+    """Refuses the plotfile with a text replaced."""
+    with open(f"good/{name}", "rb") as file:
+        was = file.read()
+    assert old in was, (name, old)
+    with open(f"good/{name}", "wb") as file:
+        file.write(was.replace(old, new, 1))
+    oracle.refuse("good", part)
+    with open(f"good/{name}", "wb") as file:
+        file.write(was)
+
+
+HEAD, CELL, DATA = "Header", "Level_1/Cell_H", "Level_1/Cell_D_00000"
+spoil(HEAD, "the number of its finest level", b"\n2\n0.0 0.0", b"\n99\n0.0 0.0")
+spoil(HEAD, "domains of its levels", b"(31,31,31)", b"(31,31)")
+spoil(HEAD, "no multiple", b"(63,63,63)", b"(62,63,63)")
+spoil(HEAD, "domain reaches from 0 to -1", b"1.0 1.0 1.0", b"-1 1 1")
+spoil(HEAD, "cannot be opened", b"Level_1/Cell", b"Level_7/Cell")
+spoil(HEAD, "more than any file", b"(127,127,127)", b"(4294967295,127,127)")
+spoil(CELL, "box 2 has cells", b"(51,43,30)", b"(51,143,30)")
+spoil(CELL, "should be a box", b"(51,43,30)", b"(51,43)")
+spoil(CELL, "headerversion", b"1\n1\n1\n", b"2\n1\n1\n")
+spoil(CELL, "should be the number of boxes", b"(3 0", b"(4000001 0")
+spoil(CELL, "not the header of values", b"Cell_D_00000 0", b"Cell_D_00000 8")
+spoil(CELL, "values of a box", b"Cell_D_00000 0", b"Cell_D_00000 99999999")
+spoil(DATA, "not the header of values", b"(8, (64 11", b"(8, (64 12")
+spoil(DATA, "not the header of values", b"(51,43,30)", b"(51,43,31)")
+os.truncate(f"good/{DATA}", 90000)
+oracle.refuse("good", "values of a box")
+os.truncate(f"good/{CELL}", 100)
+oracle.refuse("good", "it is damaged")
+text = '<VTKFile type="vtkOverlappingAMR"><vtkOverlappingAMR>{}</V>'
+with open("c.vth", "w") as file:
+    file.write(text)
+oracle.refuse("c.vth", "XML is damaged")
+with open("a.vth") as file:
+    text = file.read()
+for old, new, part in (('level="1"', 'level="2"', "no files of level 1"),
+                       ('level="1"', 'level="x"', "must be 0 to"),
+                       ("a/a_1.vti", "a/a_0.vti", "another size"),
+                       ("a/a_2.vti", "a/a_9.vti", "cannot be opened")):
+    with open("c.vth", "w") as file:
+        file.write(text.replace(old, new))
+    if old in text:
+        oracle.refuse("c.vth", part)
+    else:
+        oracle.fail("c.vth", f"lacks {old}")
+oracle.finish()

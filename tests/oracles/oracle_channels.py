@@ -1,0 +1,164 @@
+"""Channels of OME-TIFF, ImageJ, OME-Zarr and NIfTI: what info says of them, and
+slices and projections beside NumPy's own sums of light."""
+import sys
+
+try:
+    import numpy as np
+    import tifffile
+    import zarr
+    from PIL import Image
+except ImportError as missing:
+    print("skip  ", missing)
+    sys.exit(77)
+import json
+import struct
+import subprocess
+
+import oracle
+
+oracle.need_modules()
+
+place = oracle.folder()
+random = np.random.default_rng(7)
+SHAPE = (3, 9, 14, 11)  # c, z, y, x
+CZYX = random.integers(0, 4000, SHAPE).astype(np.uint16)
+CZYX[0, :, :4, :5] = 4095  # so that a flipped picture is another
+LEVEL = 0.51 / 255
+COLORS = [(0, 0, 1), (0, 1, 0), (1, 128 / 255, 0)]
+WINDOWS = [(100, 3000), (0, 2000), (500, 4095)]
+
+
+def light(values, windows, colors):
+    """Values [c, ...] to the sum of their light, cut to white."""
+    total = np.zeros(values.shape[1:] + (3,))
+    for value, (low, high), color in zip(values, windows, colors):
+        share = np.clip((value.astype(float) - low) / (high - low), 0, 1)
+        total += share[..., None] * np.array(color)
+    return np.minimum(total, 1)
+
+
+def tool(verb, path, *options):
+    oracle.checked += 1
+    return subprocess.run([oracle.TOOL, verb, path, *options],
+                          capture_output=True, text=True)
+
+
+def draw(verb, path, *options):
+    """A picture in colours, on black."""
+    done = tool(verb, path, "-o", "out.png", "-y", "-q",
+                       "--no-labels", "--background", "#000", *options)
+    if done.returncode:
+        oracle.fail(f"{verb} {path} {options}", done.stderr.strip())
+        return np.zeros((1, 1, 3))
+    return np.asarray(Image.open("out.png")) / 255
+
+
+def expect_info(path, names, colors, windows, shown):
+    done = tool("info", "--json", path)
+    if done.returncode:
+        return oracle.fail(path, done.stderr.strip())
+    says = json.loads(done.stdout).get("channels", [])
+    same = [c["name"] for c in says] == names
+    same &= [c["shown"] for c in says] == shown
+    for own, color, window in zip(says, colors, windows):
+        same &= (own["color"] is None) == (color is None)
+        same &= (own["window"] is None) == (window is None)
+        if color is not None and own["color"] is not None:
+            same &= np.allclose(own["color"], color, atol=1e-9)
+        if window is not None and own["window"] is not None:
+            same &= np.allclose(own["window"], window)
+    if not same:
+        oracle.fail(path, f"says {says}")
+
+
+def expect_light(got, should, name, bound):
+    if got.shape != should.shape or np.abs(got - should).max() > bound:
+        oracle.fail(name, "differs by %g" % (
+            np.abs(got - should).max() if got.shape == should.shape else -1))
+
+
+def expect_pictures(path, windows, colors, name, listed):
+    """A slice as Fiji's composite; a projection as that of its stacks."""
+    spec = ",".join(f"{c}:#%02x%02x%02x:{w[0]}..{w[1]}" %
+                    tuple(round(255 * v) for v in rgb)
+                    for c, (w, rgb) in enumerate(zip(windows, colors)))
+    for options in ((), ("--channel", spec)) if listed else ((),):
+        got = draw("slice", path, "--axis", "z", "--at", "4", *options)
+        expect_light(got, light(CZYX[:, 4], windows, colors), f"{name} slice",
+                     LEVEL)
+        got = draw("render", path, "-m", "mip", "--size", "44x36", *options)
+        parts = [draw("render", path, "-m", "mip", "--size", "44x36",
+                      "--channel", one) for one in spec.split(",")]
+        expect_light(got, np.minimum(sum(parts), 1), f"{name} projection",
+                     3 * LEVEL)
+        if not (got.max((0, 1)) > 0.3).all():
+            oracle.fail(f"{name} projection", "shows next to nothing")
+
+
+rgba = [int(255 * r) << 24 | round(255 * g) << 16 | round(255 * b) << 8 | 255
+        for r, g, b in COLORS]
+signed = [v - (1 << 32) if v >= 1 << 31 else v for v in rgba]
+for order in "<>":
+    tifffile.imwrite("o.ome.tif", CZYX, byteorder=order, metadata={
+        "axes": "CZYX", "Channel": {"Name": ["DAPI", "GFP", "far red"],
+                                    "Color": signed}})
+    expect_info("o.ome.tif", ["DAPI", "GFP", "far red"], COLORS, [None] * 3,
+                [True] * 3)
+    tables = [(np.arange(256)[None] * np.array(c)[:, None]).round()
+              .astype(np.uint8) for c in COLORS]
+    tifffile.imwrite("ij.tif", CZYX.transpose(1, 0, 2, 3), imagej=True,
+                     byteorder=">", metadata={
+                         "axes": "ZCYX", "mode": "composite", "LUTs": tables,
+                         "Ranges": tuple(float(v) for w in WINDOWS for v in w)})
+    expect_info("ij.tif", [""] * 3, COLORS, WINDOWS, [True] * 3)
+    expect_pictures("ij.tif", WINDOWS, COLORS, "ImageJ", True)
+tifffile.imwrite("plain.tif", CZYX.transpose(1, 0, 2, 3), imagej=True)
+expect_info("plain.tif", [""] * 3, [None] * 3, [None] * 3, [True] * 3)
+
+group = zarr.open_group("o.ome.zarr", "w")
+group.create_dataset("0", data=CZYX, chunks=(1, 4, 7, 11))
+group.attrs["multiscales"] = [{
+    "version": "0.4", "axes": [{"name": "c", "type": "channel"}] +
+    [{"name": n, "type": "space"} for n in "zyx"],
+    "datasets": [{"path": "0", "coordinateTransformations":
+                  [{"type": "scale", "scale": [1, 1, 1, 1]}]}]}]
+
+
+def omero(active=(True, True, True)):
+    group.attrs["omero"] = {"channels": [
+        {"label": n, "active": a,
+         "color": "%02X%02X%02X" % tuple(round(255 * v) for v in c),
+         "window": {"start": w[0], "end": w[1], "min": 0, "max": 65535}}
+        for n, a, c, w in zip("abc", active, COLORS, WINDOWS)]}
+
+
+omero()
+expect_info("o.ome.zarr", ["a", "b", "c"], COLORS, WINDOWS, [True] * 3)
+expect_pictures("o.ome.zarr", WINDOWS, COLORS, "omero", True)
+omero((False, True, False))
+expect_info("o.ome.zarr", ["a", "b", "c"], COLORS, WINDOWS,
+            [False, True, False])
+got = draw("slice", "o.ome.zarr", "--axis", "z", "--at", "4")
+expect_light(got, light(CZYX[1:2, 4], WINDOWS[1:2], COLORS[1:2]),
+             "one active", LEVEL)
+
+# Colours of voxels stay what they are.
+RGB = random.integers(0, 256, SHAPE[1:] + (3,)).astype(np.uint8)
+tifffile.imwrite("rgb.tif", RGB, photometric="rgb")
+PURE = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
+expect_info("rgb.tif", ["red", "green", "blue"], PURE, [(0, 255)] * 3,
+            [True] * 3)
+expect_light(draw("slice", "rgb.tif", "--axis", "z", "--at", "4"),
+             RGB[4] / 255, "TIFF in colour", LEVEL)
+head = bytearray(352)
+struct.pack_into("<i", head, 0, 348)
+struct.pack_into("<8h", head, 40, 3, *RGB.shape[2::-1], 1, 1, 1, 1)
+struct.pack_into("<hh", head, 70, 128, 24)
+struct.pack_into("<8f", head, 76, 1, 1, 1, 1, 1, 1, 1, 1)
+struct.pack_into("<fff", head, 108, 352, 1, 0)
+head[344:348] = b"n+1\0"
+open("rgb.nii", "wb").write(bytes(head) + RGB.tobytes())
+got = draw("slice", "rgb.nii", "--axis", "z", "--at", "4")
+expect_light(got[::-1], RGB[4] / 255, "NIfTI in colour", LEVEL)
+
+oracle.finish()

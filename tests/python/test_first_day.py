@@ -1,0 +1,253 @@
+"""What a new user types: the fifteen lines that the package was designed by, as
+they stand, and the first picture of five kinds of data in three lines."""
+import importlib.util
+import os
+import shutil
+import tempfile
+import unittest
+import warnings
+
+import numpy
+
+import snowglass as sg
+
+#: As they were written before the package was.
+LINES = '''
+import snowglass as sg, numpy as np, nibabel as nib
+img = sg.render("head.nii.gz")                          # an Image; shows itself in Jupyter (_repr_png_)
+img.save("head.png"); a = np.asarray(img)               # float32 (h, w, 4), premultiplied, no copy
+vol = sg.Volume(ct, spacing=(0.7, 0.7, 1.25))           # NumPy, zero copy; or sg.Volume(nib.load(p)), xarray
+print(vol)                                              # 512x512x300 int16, 0.7x0.7x1.25 mm, -1024..3071
+look = sg.Look(preset="ct-bone", range=(150, 1200))     # or sg.Look(colormap="viridis", opacity=[(0, 0), (1, .8)])
+fig = vol.render(look, view="anterior", azimuth=30, size=(800, 600), quality="high", legend=True)
+mip = vol.project("mip", view="left")                   # ndarray in data units: DRR, MIP, mean, sum
+rgba, depth = vol.render(look, depth=True)
+vol.turntable("turn.mp4", look, frames=120, progress=True)
+for step in sg.series("run_%04d.h5", dataset="rho"):    # never more than one step in memory
+    step.render(look).save(f"rho_{step.index:04d}.png")
+vol.view(look)                                          # the viewer, in the notebook or the browser
+recipe = fig.recipe; sg.render(**recipe)                # the same JSON as the command line and in situ
+fig.command                                             # 'snowglass render ... --preset ct-bone ...'
+sg.compare(fig, "baseline.png").psnr                    # image tests: pytest plug-in `snowglass_compare`
+'''
+
+
+def has(*names):
+    return all(importlib.util.find_spec(name) for name in names)
+
+
+def ball(shape=(30, 40, 50)):
+    """A CT by its values."""
+    z, y, x = numpy.indices(shape)
+    far = sum(((place - side / 2) / side) ** 2 for place, side in
+              zip((z, y, x), shape))
+    return numpy.where(far < 0.06, 900, -1000).astype(numpy.int16)
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder.name)
+
+
+@unittest.skipUnless(has("nibabel", "h5py") and shutil.which("ffmpeg"),
+                     "nibabel, h5py or ffmpeg is missing")
+class Lines(InFolder):
+    def test_they_run(self):
+        import h5py
+        import nibabel
+        ct = ball()
+        affine = numpy.diag([0.7, 0.7, 1.25, 1])
+        nibabel.save(nibabel.Nifti1Image(ct.T, affine), "head.nii.gz")
+        for step in range(3):
+            with h5py.File(f"run_{step:04d}.h5", "w") as file:
+                file["rho"] = ct.astype(numpy.float32) + step
+        lines = LINES.replace("frames=120", "frames=4")
+        known = {"ct": ct}
+        for number, line in enumerate(self.statements(lines)):
+            if "recipe = fig.recipe" in line:
+                # Of an array a recipe has no input; that of a file has.
+                known["fig"] = sg.Volume("head.nii.gz").render(known["look"])
+            if "baseline.png" in line:
+                known["fig"].save("baseline.png")
+            with self.subTest(line), warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                exec(compile(line, f"line {number}", "exec"), known)
+        self.assertEqual(known["a"].dtype, numpy.float32)
+        self.assertEqual(numpy.nanmax(known["mip"]), 900)
+        self.assertEqual(known["depth"].shape, known["rgba"].shape[:2])
+        self.assertTrue(numpy.isfinite(numpy.asarray(known["depth"])).any())
+        self.assertTrue(os.path.exists("rho_0002.png"))
+        self.assertGreater(os.path.getsize("turn.mp4"), 500)
+        self.assertIn("--preset ct-bone", known["fig"].command)
+        self.assertGreater(sg.compare(known["fig"], "baseline.png").psnr, 45)
+
+    def statements(self, text):
+        import ast
+        lines = text.split("\n")
+        for each in ast.parse(text).body:
+            yield "\n".join(lines[each.lineno - 1:each.end_lineno])
+
+
+class FirstPictures(InFolder):
+    """Each in three lines: the object, the volume, the picture."""
+
+    def shows_a_ball(self, image):
+        image.save("first.png")
+        alpha = numpy.asarray(image)[..., -1]
+        self.assertGreater((alpha > 0.3).mean(), 0.1)
+        self.assertEqual(alpha[0, 0], 0)
+        self.assertTrue(image._repr_png_().startswith(b"\x89PNG"))
+
+    def test_numpy_in_fortran_order(self):
+        array = numpy.asfortranarray(ball())
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            volume = sg.Volume(array, spacing=(0.7, 0.7, 1.25))
+            self.shows_a_ball(volume.render())
+        self.assertTrue(numpy.shares_memory(array, numpy.asarray(volume)))
+        same = sg.Volume(ball(), spacing=(0.7, 0.7, 1.25)).render()
+        self.assertLess(sg.compare(volume.render(), same).mean, 1e-3)
+
+    @unittest.skipUnless(has("nibabel"), "nibabel is missing")
+    def test_an_oblique_image_of_nibabel(self):
+        import nibabel
+        turn = numpy.deg2rad(25)
+        affine = numpy.diag([0.8, 0.9, 1.6, 1.0])
+        affine[:2, :2] = [[-0.8 * numpy.cos(turn), 0.9 * numpy.sin(turn)],
+                          [0.8 * numpy.sin(turn), 0.9 * numpy.cos(turn)]]
+        nibabel.save(nibabel.Nifti1Image(ball().T, affine), "a.nii.gz")
+        image = nibabel.load("a.nii.gz")
+        volume = sg.Volume(image)
+        self.shows_a_ball(volume.render())
+        numpy.testing.assert_allclose(volume.affine, affine, atol=1e-6)
+        self.assertEqual(sg.compare(volume.render(),
+                                    sg.render("a.nii.gz")).largest, 0)
+
+    @unittest.skipUnless(has("xarray"), "xarray is missing")
+    def test_xarray_with_units(self):
+        import xarray
+        array = xarray.DataArray(
+            ball().astype(numpy.float32), dims=("z", "y", "x"), attrs={
+                "units": "K"}, coords={
+                    "z": ("z", numpy.arange(30) * 2.5, {"units": "um"}),
+                    "y": numpy.arange(40) * 1.5, "x": numpy.arange(50) * 1.5})
+        volume = sg.Volume(array)
+        self.shows_a_ball(volume.render(legend=True))
+        self.assertEqual(volume.spacing, (1.5, 1.5, 2.5))
+        self.assertEqual(volume.info["unit"], "um")
+
+    @unittest.skipUnless(has("tifffile"), "tifffile is missing")
+    def test_a_stack_of_tiffs(self):
+        import tifffile
+        os.mkdir("stack")
+        for n, part in enumerate((ball() + 1000).astype(numpy.uint16)):
+            tifffile.imwrite(f"stack/slice_{n:03d}.tif", part)
+        volume = sg.Volume("stack", spacing=(0.5, 0.5, 1))
+        self.shows_a_ball(volume.render())
+        self.assertEqual(volume.dims, (50, 40, 30))
+        tifffile.imwrite("all.tif", (ball() + 1000).astype(numpy.uint16))
+        numpy.testing.assert_array_equal(numpy.asarray(sg.Volume("all.tif")),
+                                         numpy.asarray(volume))
+        with self.assertRaisesRegex(TypeError, "name their folder"):
+            sg.Volume(["stack/slice_000.tif", "stack/slice_001.tif"])
+
+    @unittest.skipUnless(has("h5py"), "h5py is missing")
+    def test_a_group_of_hdf5(self):
+        import h5py
+        with h5py.File("a.h5", "w") as file:
+            file["run/density"] = ball()
+            file["run/other"] = numpy.zeros(3)
+            with self.assertRaisesRegex(TypeError, r"group\['density'\]"):
+                sg.Volume(file["run"])
+            self.shows_a_ball(sg.Volume(file["run"]["density"]).render())
+        volume = sg.Volume("a.h5", dataset="run/density")
+        self.shows_a_ball(volume.render())
+        self.shows_a_ball(sg.render("a.h5", open={"dataset": "run/density"}))
+
+
+class Stumbles(InFolder):
+    """What new users tried, and what they are told."""
+
+    def test_a_look_is_given_to_render_as_elsewhere(self):
+        volume = sg.Volume(ball())
+        wanted = volume.render(sg.Look(colormap="viridis", range=(0, 900)))
+        for made in (volume.render(cmap="viridis", clim=(0, 900)),
+                     sg.render(ball(), cmap="viridis", clim=(0, 900)),
+                     volume.render(colormap="viridis", range=(0, 900))):
+            self.assertEqual(sg.compare(made, wanted).largest, 0)
+            self.assertEqual(made.recipe, wanted.recipe)
+        with self.assertRaisesRegex(TypeError, "not both"):
+            volume.render("viridis", clim=(0, 900))
+        self.assertEqual(sg.compare(volume.render(cmap=None, preset=None),
+                                    volume.render()).largest, 0)
+        frames = [f"{name}_%d.png" for name in "ab"]
+        volume.turntable(frames[0], cmap="viridis", frames=2, size=40)
+        volume.turntable(frames[1], sg.Look(colormap="viridis"), frames=2,
+                         size=40)
+        for n in range(2):
+            first, second = (sg.Image.load(name % n) for name in frames)
+            self.assertEqual(sg.compare(first, second).largest, 0)
+
+    def test_a_wrong_name_is_answered_by_the_right_ones(self):
+        volume = sg.Volume(ball())
+        for call, answer in (
+                (lambda: sg.Volume(ball(), voxel_size=1), "take one of spacing"),
+                (lambda: sg.Volume(ball(), dims=(1, 2, 3)), "for files only"),
+                (lambda: volume.render(color="red"), "take one of threshold"),
+                (lambda: volume.render(background="white"), "option of save")):
+            with self.assertRaisesRegex(TypeError, answer):
+                call()
+
+    def test_dimensions_of_one_are_left_out(self):
+        for array in (ball()[None], ball()[None, None], ball()[..., None]):
+            self.assertEqual(sg.Volume(array).shape, ball().shape)
+        slice_ = ball()[None, :1, :, :, None]  # (t, z, y, x, channel)
+        self.assertEqual(sg.Volume(slice_).shape, (1, *ball().shape[1:]))
+        for array, way in ((ball()[0], r"array\[None\]"),
+                           (numpy.stack([ball()] * 2), r"array\[0\]"),
+                           (numpy.stack([ball()] * 3, -1), r"\.\.\., 0")):
+            with self.assertRaisesRegex(TypeError, way):
+                sg.Volume(array)
+
+    def test_an_affine_is_that_of_nibabel_in_fortran_order(self):
+        affine = numpy.diag([1, 2, 3, 1])
+        array = ball()[:, :30, :20]
+        with self.assertWarnsRegex(sg.SnowglassWarning, "taken for .x, y, z."):
+            volume = sg.Volume(numpy.asfortranarray(array), affine=affine)
+        self.assertEqual(volume.dims, array.shape)
+        self.assertEqual(sg.Volume(array, affine=affine).dims, array.shape[::-1])
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertEqual(sg.Volume(numpy.asfortranarray(array), affine=affine,
+                                       axes="zyx").dims, array.shape[::-1])
+
+    @unittest.skipUnless(has("xarray"), "xarray is missing")
+    def test_xarray_with_time_and_units_of_all_kinds(self):
+        import xarray
+        array = xarray.DataArray(ball(), dims=("z", "y", "x"), coords={
+            "z": ("z", numpy.arange(30) * 10.0, {"units": "hPa"}),
+            "y": ("y", numpy.arange(40.0), {"units": "degrees"})})
+        with self.assertWarnsRegex(sg.SnowglassWarning, "'hPa', 'degrees'"):
+            volume = sg.Volume(array.expand_dims(time=[0]))
+        self.assertEqual(volume.dims, (50, 40, 30))
+        self.assertEqual(volume.spacing, (1, 1, 10))
+        data = array.to_dataset(name="t")
+        data["mean"] = array.mean()
+        with self.assertRaisesRegex(TypeError, r"choose .* dataset\['t'\]"):
+            sg.Volume(data)
+
+    @unittest.skipUnless(has("h5py"), "h5py is missing")
+    def test_the_unit_of_a_data_set_stands_over_the_legend(self):
+        import h5py
+        with h5py.File("a.h5", "w") as file:
+            for unit in ("K", numpy.bytes_("K")):
+                data = file.create_dataset(repr(unit), data=ball())
+                data.attrs["units"] = unit
+                self.assertEqual(sg.Volume(data)._caption(), "K")
+
+
+if __name__ == "__main__":
+    unittest.main()

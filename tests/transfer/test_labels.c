@@ -1,0 +1,365 @@
+/* tests/transfer/test_labels.c - which volumes are drawn as labels, and how. */
+#include "support/files.h"
+#include "support/looks.h"
+
+#include "transfer/transfer.h"
+#include "volume/volume.h"
+
+#include <math.h>
+
+#define SIDE 48
+#define ALL (SIDE * SIDE * SIDE)
+
+static const int32_t three[3] = {7, 1000, 4000000};
+
+/* Three boxes in a background of 0; every `noise`-th voxel (0: none) has
+ * another label, and so have `more` of them, one each. */
+static void fill(int32_t *voxels, int noise, int more) {
+    for (int at = 0; at < ALL; at++) {
+        int i = at % SIDE, j = at / SIDE % SIDE, k = at / SIDE / SIDE;
+        bool inside = i % 16 < 10 && j < 10 && k >= 20 && k < 30;
+        voxels[at] = inside ? three[i / 16] : 0;
+        if (noise && at % noise == 0)
+            voxels[at] = three[at % 3];
+        if (at < more * 9 && at % 9 == 0)
+            voxels[at] = 11 + at;
+    }
+}
+
+static snow_volume *wrapped(snow_context *context, snow_type type,
+                            const void *voxels) {
+    snow_volume_info info = {
+        .size = sizeof info, .dims = {SIDE, SIDE, SIDE}, .type = type};
+    snow_volume *volume = NULL;
+    assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
+                     SNOW_STATUS_OK);
+    return volume;
+}
+
+static const snow_look nothing = {.size = sizeof nothing};
+
+static bool are_labels(snow_volume *volume) {
+    snow_transfer *transfer = support_look(volume, nothing);
+    bool are = snow_transfer_label(transfer, 0) != NULL;
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    return are;
+}
+
+static void regions_of_few_whole_numbers_are(void **state) {
+    (void)state;
+    static int32_t voxels[ALL];
+    static int16_t words[ALL];
+    static float floats[ALL];
+    snow_context *context = support_context();
+    fill(voxels, 0, 0);
+    for (int n = 0; n < ALL; n++) {
+        words[n] = (int16_t)(voxels[n] % 100);
+        floats[n] = (float)voxels[n];
+    }
+    assert_true(are_labels(wrapped(context, SNOW_TYPE_INT32, voxels)));
+    assert_true(are_labels(wrapped(context, SNOW_TYPE_INT16, words)));
+    assert_false(are_labels(wrapped(context, SNOW_TYPE_FLOAT32, floats)));
+    fill(voxels, 50, 0);
+    assert_false(are_labels(wrapped(context, SNOW_TYPE_INT32, voxels)));
+    fill(voxels, 0, 60);
+    assert_true(are_labels(wrapped(context, SNOW_TYPE_INT32, voxels)));
+    fill(voxels, 0, 61);
+    assert_false(are_labels(wrapped(context, SNOW_TYPE_INT32, voxels)));
+    snow_context_free(context);
+}
+
+static void each_has_a_colour_of_its_own(void **state) {
+    (void)state;
+    static int32_t voxels[ALL];
+    snow_context *context = support_context();
+    fill(voxels, 0, 0);
+    snow_volume *volume = wrapped(context, SNOW_TYPE_INT32, voxels);
+    snow_transfer *transfer = support_look(volume, nothing);
+    double rgba[4], others[3][4];
+    snow_transfer_evaluate(transfer, 0, rgba);
+    assert_true(rgba[3] == 0);
+    for (int n = 0; n < 3; n++) {
+        const snow_label *label = snow_transfer_label(transfer, (size_t)n + 1);
+        snow_transfer_evaluate(transfer, three[n], others[n]);
+        assert_true(label->value == three[n] && others[n][3] == 1);
+        for (int c = 0; c < 3; c++)
+            assert_true(others[n][c] == label->color[c]);
+        double apart = 0;
+        for (int c = 0; n && c < 3; c++)
+            apart += fabs(others[n][c] - others[n - 1][c]);
+        assert_true(n == 0 || apart > 0.3);
+    }
+    assert_null(snow_transfer_label(transfer, 4));
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+/* What a file says goes before what is chosen, and what is asked before both.
+ */
+static void names_colours_and_opacities_are_taken(void **state) {
+    (void)state;
+    static int32_t voxels[ALL];
+    static const snow_label known[] = {{1000, {0.1, 0.2, 0.3, 0.5}, "liver"},
+                                       {7, {-1, 0, 0, -1}, "spleen"}};
+    static const snow_opacity_point asked[] = {{7, 0.25}, {1007, 1}};
+    snow_context *context = support_context();
+    fill(voxels, 50, 0); /* only declared */
+    snow_volume *volume = wrapped(context, SNOW_TYPE_INT32, voxels);
+    assert_int_equal(snow_volume_set_labels(volume, known, 2), SNOW_STATUS_OK);
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.size = sizeof(snow_look),
+                                         .opacities = asked,
+                                         .opacity_count = 2});
+    double rgba[4];
+    snow_transfer_evaluate(transfer, 1000, rgba);
+    assert_true(rgba[0] == 0.1 && rgba[2] == 0.3 &&
+                fabs(rgba[3] - 0.99475) < 1e-12);
+    snow_transfer_evaluate(transfer, 0, rgba);
+    assert_true(rgba[3] == 0);
+    snow_transfer_evaluate(transfer, 7, rgba);
+    assert_true(rgba[3] == 0.25);
+    snow_transfer_evaluate(transfer, 4000000, rgba);
+    assert_true(rgba[3] == 1);
+    assert_string_equal(snow_transfer_label(transfer, 1)->name, "spleen");
+    assert_string_equal(snow_transfer_label(transfer, 2)->name, "liver");
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+static void the_preset_is_for_any_whole_numbers(void **state) {
+    (void)state;
+    static int32_t voxels[ALL];
+    static float floats[ALL];
+    const snow_look look = {.size = sizeof look, .preset = "labels"};
+    const snow_look ranged = {
+        .size = sizeof look, .preset = "labels", .range = SNOW_RANGE_FULL};
+    snow_context *context = support_context();
+    fill(voxels, 0, 500);
+    snow_volume *volume = wrapped(context, SNOW_TYPE_INT32, voxels);
+    snow_transfer *transfer = support_look(volume, look), *none = NULL;
+    assert_non_null(snow_transfer_label(transfer, 503));
+    assert_null(snow_transfer_label(transfer, 504));
+    assert_int_equal(snow_transfer_new_for_volume(volume, &ranged, &none),
+                     SNOW_STATUS_BAD_USAGE);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    volume = wrapped(context, SNOW_TYPE_FLOAT32, floats);
+    assert_int_equal(snow_transfer_new_for_volume(volume, &look, &none),
+                     SNOW_STATUS_BAD_USAGE);
+    floats[5] = 0.5F;
+    assert_int_equal(snow_transfer_new_for_volume(volume, &look, &none),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_non_null(strstr(snow_context_message(context), "has fractions"));
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+/* Programs keep labels as floats; they are some where the file says so, or
+ * whoever draws them. */
+static void labels_may_be_floats(void **state) {
+    (void)state;
+    static int32_t voxels[ALL];
+    static double doubles[ALL];
+    const snow_look look = {.size = sizeof look, .preset = "labels"};
+    snow_context *context = support_context();
+    fill(voxels, 0, 0);
+    for (int n = 0; n < ALL; n++)
+        doubles[n] = voxels[n];
+    snow_volume *volume = wrapped(context, SNOW_TYPE_FLOAT64, doubles);
+    snow_transfer *transfer = support_look(volume, look);
+    assert_true(snow_transfer_label(transfer, 3)->value == three[2]);
+    assert_true(snow_transfer_has_labels(transfer, &volume->info));
+    snow_transfer_free(transfer);
+    snow_volume_set_labels(volume, NULL, 0);
+    assert_true(are_labels(volume));
+    doubles[7] = 0.5;
+    volume = wrapped(context, SNOW_TYPE_FLOAT64, doubles);
+    snow_volume_set_labels(volume, NULL, 0);
+    assert_false(are_labels(volume));
+    snow_context_free(context);
+}
+
+/* In a volume without 0 the smallest value is the background. */
+static void what_is_not_labelled_is_hidden(void **state) {
+    (void)state;
+    static int32_t voxels[ALL];
+    snow_context *context = support_context();
+    fill(voxels, 0, 0);
+    for (int n = 0; n < ALL; n++)
+        voxels[n] = voxels[n] ? voxels[n] : -1;
+    snow_volume *volume = wrapped(context, SNOW_TYPE_INT32, voxels);
+    snow_transfer *transfer = support_look(volume, nothing);
+    double rgba[4];
+    snow_transfer_evaluate(transfer, -1, rgba);
+    assert_true(rgba[3] == 0);
+    snow_transfer_evaluate(transfer, 7, rgba);
+    assert_true(rgba[3] == 1);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+/* Single voxels in a background, and a coarse heap, are no regions; balls of
+ * few voxels are. */
+static void few_values_alone_are_not(void **state) {
+    (void)state;
+    static int32_t single[ALL], heap[ALL], balls[ALL];
+    snow_context *context = support_context();
+    for (int at = 0; at < ALL; at++) {
+        int i = at % SIDE, j = at / SIDE % SIDE, k = at / SIDE / SIDE;
+        double x = (i - 24) / 24.0, y = (j - 24) / 24.0, z = (k - 24) / 24.0;
+        single[at] = at % 233 ? 0 : at / 233 % 39 + 1;
+        heap[at] = (int32_t)rint(10 * exp(-3 * (x * x + y * y + z * z)));
+        i = i % 12 - 6, j = j % 12 - 6, k = k % 12 - 6;
+        bool inside = i * i + j * j + k * k < 17;
+        balls[at] = inside ? 1 + at % SIDE / 12 + at / SIDE % SIDE / 12 * 4 : 0;
+    }
+    assert_false(are_labels(wrapped(context, SNOW_TYPE_INT32, single)));
+    assert_false(are_labels(wrapped(context, SNOW_TYPE_INT32, heap)));
+    assert_true(are_labels(wrapped(context, SNOW_TYPE_INT32, balls)));
+    /* Hounsfield units are measured, whatever their regions. */
+    for (int medical = 0; medical < 2; medical++) {
+        for (int at = 0; at < ALL && !medical; at++)
+            balls[at] = balls[at] ? 40 : -1000;
+        const snow_volume_info info = {.size = sizeof info,
+                                       .dims = {SIDE, SIDE, SIDE},
+                                       .type = SNOW_TYPE_INT32,
+                                       .medical = medical};
+        snow_volume *volume = NULL;
+        assert_int_equal(snow_volume_wrap(context, &info, balls, &volume),
+                         SNOW_STATUS_OK);
+        assert_int_equal(are_labels(volume), !medical);
+    }
+    snow_context_free(context);
+}
+
+/* --- files ---------------------------------------------------------------- */
+
+#define NRRD                                                        \
+    "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 2 1\nencoding: " \
+    "ascii\nSegment0_LabelValue:=4\nSegment0_Name:=Left kidney\n"   \
+    "Segment0_Color:=0.5 0.25 1\nSegment1_LabelValue:=2\n"          \
+    "Segment1_Name:=Liver\nSegment1_Extent:=0 1 0 1 0 1\n\n0 2 4 4 4 9\n"
+
+static void segments_of_slicer_are_read(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    snow_volume *volume = support_opened(
+        &files, support_write_text(&files, "a.nrrd", NRRD), NULL);
+    assert_true(volume->labelled);
+    assert_int_equal(volume->label_count, 2);
+    assert_true(volume->labels[0].value == 2 && volume->labels[1].value == 4);
+    assert_true(volume->labels[0].color[0] < 0);
+    assert_true(volume->labels[1].color[1] == 0.25);
+    assert_string_equal(volume->labels[1].name, "Left kidney");
+    snow_volume_close(volume);
+    support_files_end(&files);
+}
+
+/* A number of a segment has digits alone, and a colour three shares. */
+static void wrong_segments_are_not_read(void **state) {
+    (void)state;
+    static const char *const keys[] = {
+        "Segment-1_Name:=x", "Segment+4294967295_Name:=x",
+        "Segment0_Color:=5 -3 nan", "Segment0_LabelValue:=x"};
+    support_files files;
+    support_files_begin(&files);
+    for (int n = 0; n < 4; n++) {
+        char text[512];
+        snow_volume *volume = NULL;
+        snprintf(text, sizeof text, "%.62s\n%s%s", NRRD, keys[n],
+                 strstr(NRRD, "\n\n"));
+        snow_status status = snow_volume_open(
+            files.context, support_write_text(&files, "a.nrrd", text), NULL,
+            &volume);
+        assert_int_equal(status,
+                         n < 2 ? SNOW_STATUS_OK : SNOW_STATUS_BAD_INPUT);
+        if (volume)
+            assert_false(volume->labelled);
+        else
+            assert_non_null(strstr(snow_context_message(files.context),
+                                   "a.nrrd: the header's line"));
+        snow_volume_close(volume);
+    }
+    support_files_end(&files);
+}
+
+static void tables_are_read(void **state) {
+    (void)state;
+    static const char *const tables[] = {
+        "# ITK-SNAP\n 0 0 0 0 0 0 0 \"Clear\"\n\n"
+        "4   51 102 255   0.5 1 1   \"Left kidney\"\n"
+        "9 0 0 0 1 0 1 \"hidden\"\n",
+        "#No. Label Name: R G B A\n4 Left kidney 51 102 255 0\n",
+        "4 Left-kidney 51 102 300 0\n", "4\n"};
+    support_files files;
+    support_files_begin(&files);
+    char path[512], table[512];
+    snprintf(path, sizeof path, "%s",
+             support_write_text(&files, "a.nrrd", NRRD));
+    for (int n = 0; n < 4; n++) {
+        snprintf(table, sizeof table, "%s",
+                 support_write_text(&files, "t.txt", tables[n]));
+        const snow_volume_options options = {.size = sizeof options,
+                                             .label_table = table};
+        snow_volume *volume = NULL;
+        if (n) { /* blanks in a name, a colour above 255, nothing */
+            assert_int_equal(
+                snow_volume_open(files.context, path, &options, &volume),
+                SNOW_STATUS_BAD_INPUT);
+            assert_non_null(strstr(snow_context_message(files.context),
+                                   n == 1 ? "t.txt: line 2" : "t.txt: line 1"));
+            continue;
+        }
+        volume = support_opened(&files, path, &options);
+        assert_int_equal(volume->label_count, 3);
+        assert_true(volume->labels[1].color[0] == 0.2);
+        assert_true(volume->labels[1].color[3] == 0.5);
+        assert_true(volume->labels[2].color[3] == 0);
+        assert_string_equal(volume->labels[1].name, "Left kidney");
+        snow_volume_close(volume);
+    }
+    support_files_end(&files);
+}
+
+static void labels_are_picked(void **state) {
+    (void)state;
+    static const uint8_t picked[] = {0, 2, 0, 0, 0, 9};
+    support_files files;
+    support_files_begin(&files);
+    const char *path = support_write_text(&files, "a.nrrd", NRRD);
+    snow_volume_options options = {.size = sizeof options, .labels = "2,5:9"};
+    snow_volume *volume = support_opened(&files, path, &options);
+    assert_memory_equal(snow_volume_voxels(volume), picked, sizeof picked);
+    snow_volume_close(volume);
+    options.clip[0][0] = 1; /* x > 1.5 is left out: still labels */
+    options.clip[0][3] = 1.5;
+    volume = support_opened(&files, path, &options);
+    assert_true(volume->labelled && volume->info.whole);
+    assert_int_equal(snow_volume_get_info(volume)->type, SNOW_TYPE_FLOAT32);
+    const float *voxels = snow_volume_voxels(volume);
+    assert_true(voxels[1] == 2 && isnan(voxels[2]));
+    snow_volume_close(volume);
+    support_files_end(&files);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(regions_of_few_whole_numbers_are),
+        cmocka_unit_test(each_has_a_colour_of_its_own),
+        cmocka_unit_test(names_colours_and_opacities_are_taken),
+        cmocka_unit_test(the_preset_is_for_any_whole_numbers),
+        cmocka_unit_test(labels_may_be_floats),
+        cmocka_unit_test(what_is_not_labelled_is_hidden),
+        cmocka_unit_test(few_values_alone_are_not),
+        cmocka_unit_test(segments_of_slicer_are_read),
+        cmocka_unit_test(wrong_segments_are_not_read),
+        cmocka_unit_test(tables_are_read),
+        cmocka_unit_test(labels_are_picked),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

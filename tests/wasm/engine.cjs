@@ -1,0 +1,49 @@
+// engine.cjs - runs the engine of the page without a server in Node.
+//
+//   node engine.cjs WORKER ENGINE FOLDER JOBS
+//
+// JOBS is a JSON list of {name, path, files, recipe}, whose files are in FOLDER.  Of each there are then in
+// FOLDER too the pictures NAME-0.bin (draft), NAME-1.bin, NAME-2.bin, as they go to the
+// page, and NAME.json: what was said, and the command.
+const fs = require('fs');
+const [worker, engine, folder, jobs] = process.argv.slice(2);
+const {begin} = require(worker);
+
+async function run({name, path, files, recipe}) {
+    const made = await begin(fs.readFileSync(engine), files.map(name => ({
+        name, bytes: new Uint8Array(fs.readFileSync(`${folder}/${name}`)).buffer})));
+    const out = {said: [], opened: made.open(path, recipe)};
+    const take = () => {
+        for (let each; (each = made.take()) !== null;) {
+            if (typeof each !== 'string') {
+                const level = new DataView(each).getUint8(8);
+                fs.writeFileSync(`${folder}/${name}-${level}.bin`, new Uint8Array(each));
+                continue;
+            }
+            const message = JSON.parse(each);
+            if (message.t === 'said' || message.t === 'command')
+                out[message.t === 'said' ? 'said' : 'command'] =
+                    message.t === 'said' ? [...out.said, message.text] : message.text;
+        }
+    };
+    const rest = async () => {
+        for (let wait; (wait = made.step()) >= 0;) {
+            take();
+            if (wait)
+                await new Promise(done => setTimeout(done, wait));
+        }
+    };
+    take();
+    if (out.opened) {
+        await rest();
+        made.hear(JSON.stringify({t: 'ask', what: 'command'}));
+        await rest();
+        take();
+    }
+    fs.writeFileSync(`${folder}/${name}.json`, JSON.stringify(out));
+}
+
+(async () => {
+    for (const job of JSON.parse(jobs))
+        await run(job);
+})();

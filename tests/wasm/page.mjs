@@ -1,0 +1,87 @@
+// page.mjs - the page without a server in Chromium, without a GPU.
+//
+//   node page.mjs PLAYWRIGHT CHROMIUM URL FOLDER NAME [FILE...]
+//
+// Drops the files on the page, if there are any, turns the volume, and leaves in
+// FOLDER a screenshot, the picture at rest and the command: NAME.png, NAME-rest.png,
+// NAME.txt.
+import {readFileSync, writeFileSync} from 'node:fs';
+
+const [playwright, chromium, url, folder, name, ...files] = process.argv.slice(2);
+const {chromium: browsers} = await import(playwright);
+let wrong = 0;
+
+function check(what, good, why = '') {
+    console.log(good ? `ok     ${name}: ${what}` : `FAILED ${name}: ${what}: ${why}`);
+    wrong += good ? 0 : 1;
+}
+
+const browser = await browsers.launch({executablePath: chromium,
+    args: ['--no-sandbox', '--disable-gpu', '--disable-software-rasterizer']});
+const page = await browser.newPage({viewport: {width: 1000, height: 700}});
+const said = [], asked = [];
+page.on('console', message => said.push(message.text()));
+page.on('pageerror', error => said.push(String(error)));
+page.on('request', request => asked.push(request.url()));
+await page.addInitScript(() => document.addEventListener('securitypolicyviolation',
+    event => console.log(`policy: ${event.violatedDirective}`)));
+await page.goto(url);
+
+const rest = () => page.waitForFunction(() => {
+    const {engine, page: of} = window.snowglass ?? {};
+    return of?.rest && !engine.waiting && !engine.sentAt.size;
+}, null, {timeout: 60000});
+const title = () => page.locator('.top .grow').textContent();
+
+await rest();
+if (files.length) {
+    const before = await title();
+    const data = files.map(file => [file.split('/').at(-1), readFileSync(file).toString('base64')]);
+    const dropped = await page.evaluateHandle(list => {
+        const transfer = new DataTransfer();
+        for (const [name, text] of list)
+            transfer.items.add(new File([Uint8Array.from(atob(text), c => c.charCodeAt(0))], name));
+        return transfer;
+    }, data);
+    await page.dispatchEvent('body', 'drop', {dataTransfer: dropped});
+    if (name === 'raw') { // what the file does not say
+        await page.locator('dialog[open]').waitFor();
+        await page.screenshot({path: `${folder}/${name}-form.png`});
+        check('what fits is filled in', await page.getByLabel('voxels along x').inputValue() !== '');
+        for (const [along, count] of [['x', 64], ['y', 64], ['z', 48]])
+            await page.getByLabel(`voxels along ${along}`).fill(String(count));
+        await page.getByLabel('spacing along z').fill('4.7');
+        await page.locator('dialog[open] button', {hasText: 'Open'}).click();
+    }
+    await page.waitForFunction(before => !document.querySelector('.top .grow')?.textContent.startsWith(before),
+        before);
+    await rest();
+}
+const box = await page.locator('.picture canvas').first().boundingBox();
+const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+await page.mouse.move(x, y);
+await page.mouse.down();
+for (let i = 1; i <= 8; i++)
+    await page.mouse.move(x + 10 * i, y + 5 * i);
+await page.mouse.up();
+await rest();
+const {azimuth} = await page.evaluate(() => window.snowglass.recipe.keys);
+check('a drag turns', azimuth !== undefined && azimuth !== 0, azimuth);
+await page.keyboard.press('x');
+await page.waitForFunction(() => document.querySelectorAll('.pane canvas').length === 3);
+await rest();
+await page.waitForTimeout(700);
+await page.screenshot({path: `${folder}/${name}.png`});
+await page.keyboard.press('x');
+await page.waitForTimeout(300);
+await rest();
+const picture = await page.evaluate(async () =>
+    [...new Uint8Array(await window.snowglass.page.rest.arrayBuffer())]);
+writeFileSync(`${folder}/${name}-rest.png`, Buffer.from(picture));
+await page.locator('button', {hasText: 'Command'}).first().click();
+writeFileSync(`${folder}/${name}.txt`, await page.locator('dialog textarea').inputValue());
+check('nothing is said on the console', !said.length, said.join('; '));
+const far = asked.filter(each => each !== url && !/^(blob|data):/.test(each));
+check('nothing else is asked for', !far.length, far.join());
+await browser.close();
+process.exit(wrong ? 1 : 0);

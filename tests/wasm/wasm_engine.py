@@ -1,0 +1,174 @@
+"""The engine of the page without a server makes the pictures of the tool, bit for
+bit, and refuses by name what it has not."""
+import json
+import os
+import shlex
+import shutil
+import struct
+import subprocess
+import sys
+import zlib
+
+TOOL, OUT, TOP = map(os.path.abspath, sys.argv[1:4])
+HERE = os.path.dirname(os.path.abspath(__file__))
+ENGINE = os.path.join(TOP, "build-web", "engine.wasm")
+QUALITIES = "draft", "normal", "high"
+RAW, PNG = 4, 2
+wrong = 0
+
+
+def check(name, good, why=""):
+    global wrong
+    print(f"ok     {name}" if good else f"FAILED {name}: {why}")
+    wrong += not good
+
+
+def skip(why):
+    print("skip  ", why)
+    sys.exit(77)
+
+
+def paeth(a, b, c):
+    p = a + b - c
+    pa, pb, pc = abs(p - a), abs(p - b), abs(p - c)
+    return a if pa <= pb and pa <= pc else b if pb <= pc else c
+
+
+def levels(data):
+    """Width, height and red, green and blue of a PNG of 8 bits, grey or not."""
+    at, packed = 8, b""
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IHDR":
+            width, height, bits, form = struct.unpack(
+                ">IIBB", data[at + 8:at + 18])
+        if kind == b"IDAT":
+            packed += data[at + 8:at + 8 + length]
+        at += length + 12
+    assert bits == 8 and form in (0, 2), (bits, form)
+    step = 3 if form else 1
+    bytes_, row, lines = zlib.decompress(packed), step * width, []
+    before = bytes(row)
+    for y in range(height):
+        how, *line = bytes_[y * (row + 1):(y + 1) * (row + 1)]
+        for x in range(row if how else 0):
+            left = line[x - step] if x >= step else 0
+            corner = before[x - step] if x >= step else 0
+            add = (0, left, before[x], (left + before[x]) // 2,
+                   paeth(left, before[x], corner))[how]
+            line[x] = line[x] + add & 255
+        before = bytes(line)
+        lines.append(before)
+    all_ = b"".join(lines)
+    return width, height, [all_[i % step::step] for i in range(3)]
+
+
+def of_tool(command, quality):
+    words = shlex.split(command)
+    words[0] = TOOL
+    out = words[words.index("--output") + 1] = os.path.join(OUT, "tool.png")
+    words[words.index("--quality") + 1] = quality
+    subprocess.run([*words, "-y", "-q", "--isa", "scalar", "--threads", "1"],
+                   check=True, cwd=OUT)
+    with open(out, "rb") as file:
+        return file.read()
+
+
+def compare(name):
+    with open(os.path.join(OUT, f"{name}.json")) as file:
+        said = json.load(file)
+    if not said.get("command"):
+        check(name, False, said)
+        return
+    for level, quality in enumerate(QUALITIES):
+        with open(os.path.join(OUT, f"{name}-{level}.bin"), "rb") as file:
+            frame = file.read()
+        png = of_tool(said["command"], quality)
+        kind, pixels = frame[9], frame[32:]
+        if kind == PNG:
+            check(f"{name}, {quality}: the same file", pixels == png)
+            continue
+        width, height, rgb = levels(png)
+        same = kind == RAW and len(pixels) == 4 * width * height and all(
+            pixels[i::4] == rgb[i] for i in range(3))
+        check(f"{name}, {quality}: the same levels "
+              f"(crc32 {zlib.crc32(pixels):08x})", same and len(set(rgb[0])) > 9)
+
+
+def refused(name, *words):
+    with open(os.path.join(OUT, f"{name}.json")) as file:
+        said = json.load(file)
+    line = " ".join(said["said"])
+    check(f"{name} is refused by name", not said["opened"] and
+          all(word in line for word in words), said)
+
+
+node = shutil.which("node") or shutil.which("nodejs")
+if not node:
+    skip("there is no node")
+if not os.path.exists(ENGINE):
+    skip("there is no engine: ./dev web builds it")
+shutil.rmtree(OUT, ignore_errors=True)
+os.makedirs(OUT)
+
+
+def make(name, *words):
+    subprocess.run([TOOL, *words, "-o", os.path.join(OUT, name), "-q"],
+                   check=True)
+    return name
+
+
+def write(name, data):
+    with open(os.path.join(OUT, name), "wb") as file:
+        file.write(data)
+    return name
+
+
+make("head.nrrd", "phantom", "head", "--dims", "64x64x48")
+os.makedirs(os.path.join(OUT, "slices"))
+stack = ["points.json", *(make(
+    f"slices/{z}.png", "slice", os.path.join(OUT, "head.nrrd"), "--axis", "z",
+    "--at", str(20 + z), "--no-labels") for z in range(6))]
+write("points.json", json.dumps({
+    "snowglass-tf": 1, "values": "data",
+    "opacities": [[20, 0], [90, 0.2], [200, 0.9]]}).encode())
+volumes = [
+    ("engine", "phantom:engine", None, {"size": [240, 200], "azimuth": 30,
+                                        "elevation": 25}),
+    ("head", "head.nii.gz", make(
+        "head.nii.gz", "convert", os.path.join(OUT, "head.nrrd"), "--as",
+        "int16"), {"size": [160, 180], "preset": "ct-bone", "perspective": 30,
+                   "range": [30, 200], "azimuth": -40, "legend": True}),
+    ("smoke", "smoke.nrrd", make(
+        "smoke.nrrd", "convert", "phantom:turbulence", "--as", "float32",
+        "--crop", "0:64,0:64,0:64"), {"size": [200, 160], "mode": "mip",
+                                      "colormap": "viridis", "azimuth": 20,
+                                      "elevation": 10}),
+    ("surface", "head.nrrd", "head.nrrd", {
+        "size": [160, 160], "mode": "iso", "iso": 60}),
+    ("stack", "slices", stack, {"size": [100, 100], "tf": "points.json"}),
+]
+strangers = [
+    ("damaged", write("damaged.nrrd", b"NRRD0004\ntype: uint8\ndimension: 3\n"
+                      b"sizes: 9 9 9\nencoding: raw\n\nabc"),
+     ("damaged.nrrd", "3 bytes left", "729")),
+    ("hdf5", write("a.h5", b"\x89HDF\r\n\x1a\n" + bytes(2000)),
+     ("a.h5", "lacks HDF5")),
+    ("tiff", write("a.tif", b"II*\0\x08\0\0\0" + bytes(300)),
+     ("a.tif", "lacks TIFF")),
+    ("unknown", write("a.dat", bytes(5000)), ("a.dat",)),
+]
+jobs = [{"name": name, "path": path, "recipe": recipe, "files":
+         file if isinstance(file, list) else [file] if file else []}
+        for name, path, file, recipe in volumes]
+jobs += [{"name": name, "path": path, "files": [path], "recipe": {}}
+         for name, path, _ in strangers]
+subprocess.run([node, os.path.join(HERE, "engine.cjs"),
+                os.path.join(TOP, "wasm", "page", "worker.js"), ENGINE, OUT,
+                json.dumps(jobs)], check=True, timeout=500)
+for volume in volumes:
+    compare(volume[0])
+for name, _, words in strangers:
+    refused(name, *words)
+if wrong:
+    sys.exit(f"{wrong} checks failed")

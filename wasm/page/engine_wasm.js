@@ -1,0 +1,59 @@
+// engine_wasm.js - the renderer in a worker of this page: the messages of
+// engine_server.js without a server.  `host` is what shell.js gives.
+
+import {ServerEngine as SocketEngine} from './engine_server.js';
+
+const LEVELS = 4; // serve/message.h
+const PATIENCE = 400; // ms
+
+export class ServerEngine extends SocketEngine {
+    constructor() {
+        super('');
+        this.on('said', ({text}) => {
+            this.last = text;
+        });
+    }
+
+    open() {
+        this.worker = host.work();
+        this.worker.onmessage = ({data}) => this.receive(data);
+        this.worker.onerror = event => this.tell('closed', event.message);
+        this.worker.postMessage({t: 'open', ...host.volume},
+            host.volume.files.flatMap(({bytes}) => bytes ?? []));
+        this.tell('open');
+        this.reading = setTimeout(() => this.tell('closed', `Reading ${host.volume.path}`), PATIENCE);
+    }
+
+    close() {
+        clearTimeout(this.reading);
+        this.worker.terminate();
+    }
+
+    say(message) {
+        this.worker.postMessage(message.t === 'ack' ? {t: 'painted'}
+            : {t: 'hear', text: JSON.stringify(message)});
+    }
+
+    receive(data) {
+        if (this.reading) {
+            clearTimeout(this.reading);
+            this.reading = null;
+            this.tell('open');
+        }
+        if (data.t !== 'refused') {
+            this.hear(data);
+            return;
+        }
+        const text = data.text || this.last || 'The file cannot be opened.';
+        if (text.includes('--dims')) // raw data
+            host.ask?.(text);
+        this.tell('closed', text.replace(/; install .*build again$/,
+            '; snowglass serve shows it, and snowglass export makes a page of it'));
+    }
+
+    decode(frame) {
+        return frame.kind === LEVELS
+            ? createImageBitmap(new ImageData(new Uint8ClampedArray(frame.data, 32), frame.width, frame.height))
+            : super.decode(frame);
+    }
+}

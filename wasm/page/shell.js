@@ -1,0 +1,162 @@
+// shell.js - opens volumes on the page without a server: the one that came with
+// it, a phantom, or files that are dropped or chosen.  page.cmake puts this behind
+// `begin`, which has the modules of the viewer.
+
+const body = document.body;
+const from = id => document.getElementById(id);
+const WORKER = URL.createObjectURL(new Blob([from('worker').textContent], {type: 'text/javascript'}));
+const PIECE = 1 << 20; // letters of base64 at once
+
+/** The bytes of a script in base64. */
+function bytesOf(script) {
+    const text = script.textContent.trim();
+    const pad = text.endsWith('==') ? 2 : text.endsWith('=') ? 1 : 0;
+    const bytes = new Uint8Array(text.length / 4 * 3 - pad);
+    for (let at = 0, to = 0; at < text.length; at += PIECE) {
+        const piece = atob(text.slice(at, at + PIECE));
+        for (let i = 0; i < piece.length; i++)
+            bytes[to++] = piece.charCodeAt(i);
+    }
+    return bytes;
+}
+
+const engine = new Response(new Blob([bytesOf(from('engine'))]).stream()
+    .pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
+
+let page, stop;
+
+/** Shows a volume in the place of the one before. */
+async function show(volume) {
+    const wasm = await engine;
+    stop?.abort();
+    page?.engine.close();
+    stop = new AbortController();
+    const main = document.createElement('main'), {signal} = stop;
+    main.id = 'viewer';
+    from('viewer').replaceWith(main);
+    const mine = new Proxy(document, {
+        get(real, name) {
+            if (name === 'addEventListener')
+                return (kind, hear, how) => real.addEventListener(kind, hear, {...how, signal});
+            const value = real[name];
+            return typeof value === 'function' ? value.bind(real) : value;
+        },
+        set: (real, name, value) => Reflect.set(real, name, value)});
+    page = begin({volume: {wasm, recipe: {}, ...volume}, work: () => new Worker(WORKER),
+        ask: volume.files[0]?.file && (text => askRaw(volume, text)), document: mine, window: {}, location});
+    window.snowglass = page; // for the console, and for tests
+    main.querySelector('.top').append(opener());
+}
+
+// --- raw data ------------------------------------------------------------------
+
+const TYPES = ['uint8', 'int8', 'uint16', 'int16', 'uint32', 'int32', 'uint64', 'int64',
+    'float32', 'float64'];
+
+/** Asks what a file without a header does not say, and opens it by that. */
+function askRaw(volume, text) {
+    const make = (tag, properties, ...children) => {
+        const element = Object.assign(document.createElement(tag), properties);
+        element.append(...children);
+        return element;
+    };
+    const [, ...fits] = /fits: (\d+)x(\d+)x(\d+) (\w+)/.exec(text) ?? [];
+    const old = volume.recipe ?? {};
+    const numbers = (name, values, least) => values.map((value, i) => {
+        const field = make('input', {type: 'number', min: least, step: 'any', value, required: true});
+        field.setAttribute('aria-label', values.length > 1 ? `${name} along ${'xyz'[i]}` : name);
+        return field;
+    });
+    const dims = numbers('voxels', old.dims ?? [fits[0] ?? '', fits[1] ?? '', fits[2] ?? ''], 1);
+    const spacing = numbers('spacing', old.spacing ?? [1, 1, 1], 0);
+    const [offset] = numbers('bytes before the voxels', [old.offset ?? 0], 0);
+    const choice = (name, list) => {
+        const made = make('select', {}, ...list.map(value => make('option', {value, textContent: value})));
+        made.setAttribute('aria-label', name);
+        return made;
+    };
+    const type = choice('type', TYPES), endian = choice('order of bytes', ['little', 'big']);
+    type.value = old.type ?? fits[3] ?? 'uint8';
+    endian.value = old.endian ?? 'little';
+    const dialog = make('dialog', {});
+    const open = () => {
+        if (![...dims, ...spacing, offset].every(field => field.reportValidity()))
+            return;
+        dialog.close();
+        const all = fields => fields.map(field => field.valueAsNumber);
+        show({...volume, recipe: {dims: all(dims), type: type.value, endian: endian.value,
+            offset: offset.valueAsNumber, spacing: all(spacing)}});
+    };
+    const row = (name, ...fields) => make('div', {className: 'row'},
+        make('span', {className: 'name', textContent: name}), ...fields);
+    dialog.append(make('h2', {textContent: `${volume.path}: how is it stored?`}),
+        make('p', {className: 'faint', textContent: text}),
+        row('Voxels', ...dims), row('Type', type), row('Bytes', endian), row('Header', offset),
+        row('Distances', ...spacing), make('p', {}, make('button', {type: 'button', textContent: 'Open',
+            onclick: open}), ' ', make('button', {type: 'button', textContent: 'Cancel',
+            onclick: () => dialog.close()})));
+    dialog.onclose = () => dialog.remove();
+    body.append(dialog);
+    dialog.showModal();
+}
+
+// --- files of this machine -----------------------------------------------------
+
+const HEADER = /\.(nhdr|mhd|hdr|bov|xdmf|xmf|pvti|pvd|vtm|vth|visit)$/i;
+
+/** Several files are a header with its data, or a folder of slices. */
+function showFiles(files) {
+    const [first] = files, header = files.find(({name}) => HEADER.test(name));
+    if (!first)
+        return;
+    if (first.name.includes('/') || header || files.length === 1)
+        show({files, path: header?.name ?? first.name.split('/')[0]});
+    else
+        show({files: files.map(({name, file}) => ({name: `files/${name}`, file})), path: 'files'});
+}
+
+function opener() {
+    const input = document.createElement('input'), button = document.createElement('button');
+    Object.assign(input, {type: 'file', multiple: true, hidden: true});
+    Object.assign(button, {type: 'button', textContent: 'Open', title:
+        'Open a volume of this machine; or drop it, a folder of DICOM too, on the page'});
+    input.onchange = () => showFiles([...input.files].map(file => ({name: file.name, file})));
+    button.onclick = () => input.click();
+    button.append(input);
+    return button;
+}
+
+/** All files of a dropped file or folder. */
+async function filesOf(entry) {
+    if (entry.isFile) {
+        const file = await new Promise((good, bad) => entry.file(good, bad));
+        return [{name: entry.fullPath.slice(1), file}];
+    }
+    const reader = entry.createReader(), found = [];
+    for (;;) { // some at a time
+        const some = await new Promise((good, bad) => reader.readEntries(good, bad));
+        if (!some.length)
+            return (await Promise.all(found.map(filesOf))).flat();
+        found.push(...some);
+    }
+}
+
+body.addEventListener('dragover', event => event.preventDefault());
+body.addEventListener('drop', async event => {
+    event.preventDefault();
+    const {items} = event.dataTransfer;
+    const dropped = [...items].map(item => [item.webkitGetAsEntry(), item.getAsFile()]);
+    showFiles((await Promise.all(dropped.map(([entry, file]) =>
+        entry ? filesOf(entry) : file ? [{name: file.name, file}] : []))).flat());
+});
+
+// --- at the beginning ----------------------------------------------------------
+
+const given = [...document.querySelectorAll('script[data-name]')];
+if (given.length) { // a volume, and what its recipe names
+    const [{dataset}] = given;
+    show({path: dataset.name, recipe: JSON.parse(dataset.recipe),
+        files: given.map(each => ({name: each.dataset.name, bytes: bytesOf(each).buffer}))});
+} else {
+    show({files: [], path: 'phantom:engine'});
+}

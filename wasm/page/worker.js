@@ -1,0 +1,228 @@
+// worker.js - the engine in a worker: its few functions of a system (host.h), the
+// files that it may read, and the loop that draws while nothing else comes.
+//
+// From the page: {t: 'open', wasm, files: [{name, bytes or file}], path, recipe},
+// then {t: 'hear', text} and {t: 'painted'}.  To the page: texts, pictures as
+// ArrayBuffers (serve/message.h), and {t: 'refused', text}.
+'use strict';
+
+const UNDER_WAY = 2; // pictures that the page has not painted yet
+
+/** The files by their paths, and what the engine asks of them. */
+class Files {
+    constructor(list) {
+        this.list = list;
+        this.numbers = new Map(list.map(({name}, i) => [name, i]));
+        this.reader = typeof FileReaderSync === 'undefined' ? null : new FileReaderSync();
+    }
+
+    static plain(path) {
+        return path.split('/').filter(part => part && part !== '.').join('/');
+    }
+
+    find(path) {
+        const name = Files.plain(path);
+        const within = `${name}/`;
+        return this.numbers.get(name) ?? (!name || this.list.some(each => each.name.startsWith(within)) ? -2 : -1);
+    }
+
+    /** Names in a folder, each once. */
+    entries(path) {
+        const name = Files.plain(path), begin = name ? `${name}/` : '';
+        return [...new Set(this.list.filter(each => each.name.startsWith(begin))
+            .map(each => each.name.slice(begin.length).split('/')[0]))];
+    }
+
+    size(i) {
+        return this.list[i].bytes?.byteLength ?? this.list[i].file.size;
+    }
+
+    read(i, at, size) {
+        const {bytes, file} = this.list[i];
+        return bytes ? new Uint8Array(bytes, at, size)
+            : new Uint8Array(this.reader.readAsArrayBuffer(file.slice(at, at + size)));
+    }
+}
+
+/** What the engine imports.  `of` gets its exports once they are there. */
+function host(of, files) {
+    const bytes = () => new Uint8Array(of.exports.memory.buffer);
+    const text = at => {
+        const all = bytes();
+        return new TextDecoder().decode(all.slice(at, all.indexOf(0, at)));
+    };
+    const env = {
+        host_find: path => files.find(text(path)),
+        host_size: file => files.size(file),
+        host_read(file, at, to, size) {
+            try {
+                bytes().set(files.read(file, at, size), to);
+                return 1;
+            } catch { // it was changed or removed since it was chosen
+                return 0;
+            }
+        },
+        host_name(folder, index, to, size) {
+            const name = files.entries(text(folder))[index];
+            if (name === undefined)
+                return 0;
+            const encoded = new TextEncoder().encode(name).slice(0, size - 1);
+            bytes().set(encoded, to);
+            bytes()[to + encoded.length] = 0;
+            return 1;
+        },
+        emscripten_notify_memory_growth() {},
+        getTempRet0: () => of.high ?? 0,
+        setTempRet0(value) {
+            of.high = value;
+        },
+        _emscripten_throw_longjmp() {
+            throw Infinity;
+        }};
+    const wasi = {
+        clock_time_get(clock, precision, to) {
+            const now = clock ? performance.now() : Date.now();
+            new DataView(of.exports.memory.buffer).setBigUint64(to, BigInt(Math.round(1e6 * now)), true);
+            return 0;
+        },
+        proc_exit(code) {
+            throw new Error(`the engine ended with ${code}`);
+        }};
+    /** A call that longjmp may leave. */
+    const invoke = (index, ...words) => {
+        const stack = of.exports.stackSave();
+        try {
+            return of.table.get(index)(...words);
+        } catch (error) {
+            of.exports.stackRestore(stack);
+            if (error !== Infinity)
+                throw error;
+            of.exports.setThrew(1, 0);
+            return 0;
+        }
+    };
+    // What else the library could call: the system's, of other processes.
+    const others = {get(known, name) {
+        if (name in known)
+            return known[name];
+        if (name.startsWith('invoke_'))
+            return invoke;
+        if (/^(__syscall_|fd_|environ_)/.test(name))
+            return () => -52; // ENOSYS
+        return () => {
+            throw new Error(`${name} is not in the engine`);
+        };
+    }};
+    return {env: new Proxy(env, others), wasi_snapshot_preview1: new Proxy(wasi, others)};
+}
+
+/** The engine with its files open, as functions of texts and bytes. */
+async function begin(wasm, list) {
+    const of = {}, module = await WebAssembly.compile(wasm);
+    const {env, wasi_snapshot_preview1: wasi} = host(of, new Files(list));
+    const imports = {env: {}, wasi_snapshot_preview1: {}};
+    for (const {module: from, name} of WebAssembly.Module.imports(module))
+        imports[from][name] = (from === 'env' ? env : wasi)[name];
+    of.exports = (await WebAssembly.instantiate(module, imports)).exports;
+    of.table = of.exports.__indirect_function_table;
+    of.exports._initialize?.();
+    const put = text => {
+        const encoded = new TextEncoder().encode(text);
+        const at = of.exports.engine_room(encoded.length + 1);
+        const all = new Uint8Array(of.exports.memory.buffer);
+        all.set(encoded, at);
+        all[at + encoded.length] = 0;
+        return [at, encoded.length];
+    };
+    return {
+        open(path, recipe) {
+            const [a] = put(path), [b] = put(JSON.stringify(recipe));
+            const good = of.exports.engine_open(a, b);
+            of.exports.engine_leave(a);
+            of.exports.engine_leave(b);
+            return good;
+        },
+        hear(text) {
+            const [at, length] = put(text);
+            of.exports.engine_hear(at, length);
+            of.exports.engine_leave(at);
+        },
+        step: () => of.exports.engine_step(),
+        /** The next text or picture for the page; null: none. */
+        take() {
+            const at = of.exports.engine_take();
+            if (!at)
+                return null;
+            const copy = of.exports.memory.buffer.slice(at, at + of.exports.engine_length());
+            return of.exports.engine_is_text() ? new TextDecoder().decode(copy) : copy;
+        }};
+}
+
+/** Serves one page. */
+function serve(scope) {
+    let engine, timer, underWay = 0, dead = false;
+    const channel = new MessageChannel();
+    const deliver = () => {
+        for (let each; (each = engine.take()) !== null;) {
+            const picture = typeof each !== 'string' && !new Uint8Array(each)[10];
+            underWay += picture ? 1 : 0;
+            scope.postMessage(each, typeof each === 'string' ? [] : [each]);
+        }
+    };
+    const fail = error => {
+        dead = true;
+        scope.postMessage({t: 'refused', text: `The engine has stopped (${error.message}): ` +
+            'open the file again; a part of it (Crop) or a smaller window needs less memory.'});
+    };
+    // What the page said meanwhile comes before the next picture.
+    const soon = () => channel.port2.postMessage(0);
+    const work = () => {
+        clearTimeout(timer);
+        if (dead || underWay >= UNDER_WAY)
+            return;
+        try {
+            const wait = engine.step();
+            deliver();
+            if (wait === 0)
+                soon();
+            else if (wait > 0)
+                timer = setTimeout(work, wait);
+        } catch (error) {
+            fail(error);
+        }
+    };
+    channel.port1.onmessage = work;
+    const open = async ({wasm, files, path, recipe}) => {
+        try {
+            const made = await begin(wasm, files);
+            const good = made.open(path, recipe);
+            engine = made;
+            deliver();
+            if (!good)
+                scope.postMessage({t: 'refused', text: ''});
+            dead = !good;
+            work();
+        } catch (error) {
+            fail(error);
+        }
+    };
+    scope.onmessage = ({data}) => {
+        if (data.t === 'open') {
+            open(data);
+            return;
+        }
+        if (!engine || dead)
+            return;
+        if (data.t === 'hear')
+            engine.hear(data.text);
+        else
+            underWay = Math.max(0, underWay - 1);
+        deliver();
+        work();
+    };
+}
+
+if (typeof module !== 'undefined')
+    module.exports = {begin};
+else
+    serve(self);
