@@ -5,11 +5,11 @@
 
 #include "base/base.h"
 
-/* Of a folder: of its files' names and sizes. */
+/* Of a folder: of its files' names and sizes, and of blocks of a few. */
 typedef struct snow_fingerprint {
     int64_t bytes;   /* of the file, or of all files */
     int64_t changed; /* seconds since 1970; 0 for a folder */
-    int64_t hash;    /* of blocks from its beginning to its end, below 2^62 */
+    int64_t hash; /* of blocks from a file's beginning to its end, below 2^62 */
 } snow_fingerprint;
 
 /* Zeros where there is neither a regular file nor a folder, or it cannot be

@@ -514,6 +514,49 @@ static void a_file_that_differs_on_one_rank_is_refused(void **state) {
     snow_volume_close(whole);
 }
 
+/* A Zarr array of three slices, a file each, of one value. */
+static void put_slices(support_place *place, const char *name, int value) {
+    static const char about[] =
+        "{\"zarr_format\":2,\"shape\":[3,64,64],\"chunks\":[1,64,64],"
+        "\"dtype\":\"|u1\",\"compressor\":null,\"fill_value\":0,"
+        "\"order\":\"C\",\"filters\":null}";
+    char path[64];
+    unsigned char slice[64 * 64];
+    mkdir(support_place_path(place, name), 0700);
+    snprintf(path, sizeof path, "%s/.zarray", name);
+    support_place_put(place, path, about, sizeof about - 1);
+    for (int z = 0; z < 3; z++) {
+        memset(slice, z == 2 ? value : 1, sizeof slice);
+        snprintf(path, sizeof path, "%s/%d.0.0", name, z);
+        support_place_put(place, path, slice, sizeof slice);
+    }
+}
+
+/* Its files have the same names and sizes: a copy is taken, others are not. */
+static void a_folder_that_differs_on_one_rank_is_refused(void **state) {
+    support_place *place = *state;
+    for (int value = 1; value <= 2; value++) {
+        char path[256], other[256];
+        put_slices(place, "a.zarr", 1);
+        put_slices(place, "b.zarr", value);
+        snprintf(path, sizeof path, "%s", support_place_path(place, "a.zarr"));
+        snprintf(other, sizeof other, "%s",
+                 support_place_path(place, "b.zarr"));
+        snow_volume *whole = support_place_open(place, path);
+        order o;
+        begin_order(&o, whole);
+        o.path = path;
+        o.wrong = other;
+        o.odd = 1;
+        assert_int_equal(
+            snow_comm_run_threads(place->context, 3, open_part, &o),
+            value == 1 ? SNOW_STATUS_OK : SNOW_STATUS_BAD_INPUT);
+        assert_true(value == 1 || strstr(snow_context_message(place->context),
+                                         "is not the same file"));
+        snow_volume_close(whole);
+    }
+}
+
 /* Writes a ramp of square slices, of floats or bytes, with the header in a file
  * of its own. */
 static const char *put_ramp(support_place *place, int side, int slices,
@@ -861,6 +904,7 @@ int main(void) {
         TEST(every_method_is_cut_into_bricks_but_deterministic_pictures),
         TEST(a_file_that_one_rank_lacks_fails_all),
         TEST(a_file_that_differs_on_one_rank_is_refused),
+        TEST(a_folder_that_differs_on_one_rank_is_refused),
         TEST(ranks_with_unequal_room_for_samples_agree),
         TEST(packed_data_beside_a_header_are_not_read_in_slabs),
         TEST(a_pipe_is_read_by_one_rank_and_sent_to_all),

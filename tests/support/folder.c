@@ -13,9 +13,14 @@ void support_folder_make(char folder[SUPPORT_FOLDER_BYTES]) {
 void support_folder_remove(const char *folder) {
     DIR *listing = opendir(folder);
     assert_non_null(listing);
-    for (struct dirent *entry; (entry = readdir(listing));)
-        if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
-            unlink(support_folder_path(folder, entry->d_name));
+    for (struct dirent *entry; (entry = readdir(listing));) {
+        char path[512];
+        if (!strcmp(entry->d_name, ".") || !strcmp(entry->d_name, ".."))
+            continue;
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        if (unlink(path) != 0)
+            support_folder_remove(path);
+    }
     closedir(listing);
     assert_int_equal(rmdir(folder), 0);
 }
