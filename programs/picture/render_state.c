@@ -166,8 +166,8 @@ static int open_as_planned(render_state *s, const options *step) {
             "it is larger than the memory limit",
             s->path, (double)s->plan.slab_bytes / 0x1p20);
     if (step->verbosity >= 0 && s->plan.packed)
-        say("note: %s is compressed and is decompressed again for each slab; "
-            "decompress the file to be faster",
+        say("note: %s is smaller than its voxels and is unpacked again for "
+            "each slab; convert it to a file of plain voxels to be faster",
             s->path);
     return CONTINUE;
 }

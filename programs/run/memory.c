@@ -73,8 +73,8 @@ typedef struct sizes {
     snow_volume_info info;
     uint64_t voxels, picture; /* bytes */
     uint64_t masking; /* bytes needed beside the voxels while they are read */
-    bool packed;      /* the file is shorter than the voxels, so it is probably
-                         compressed */
+    bool packed;      /* the file is shorter than the voxels: it is compressed,
+                         or has fewer bits for each, or not all of them */
     memory_need need;
 } sizes;
 
@@ -207,8 +207,8 @@ static uint64_t slab_bytes(const sizes *s, int64_t slices) {
 
 /* Chooses the bytes of a slab's voxels.  Slabs are small, since most of the
  * memory is for interesting voxels.  But there is a band for each thread if it
- * fits into an eighth of the limit.  A compressed file is decompressed again
- * for each slab, and a mask applied, so these may take a third. */
+ * fits into an eighth of the limit.  A packed file is unpacked again for each
+ * slab, and a mask applied, so these may take a third. */
 static uint64_t choose_slab(const sizes *s, uint64_t limit, int threads) {
     uint64_t room = limit > s->picture ? limit - s->picture : 0;
     uint64_t eighth = room / 8;

@@ -24,8 +24,8 @@ typedef struct memory_plan {
     bool streams; /* the voxels stay in the file (snow_volume_open_streamed) */
     bool may_stream; /* the requested kind of picture can be made that way */
     uint64_t slab_bytes; /* if it streams */
-    bool packed;    /* the file is compressed and read again for each slab */
-    uint64_t limit; /* memory limit of the context; 0: none */
+    bool packed;         /* the file is unpacked again for each slab */
+    uint64_t limit;      /* memory limit of the context; 0: none */
 } memory_plan;
 
 /* Plans how to open a volume; reports the need if `report` is set.  A volume

@@ -110,7 +110,7 @@ if long_tier; then # test_stream has a small one
         -o whole.png -y
     run 0 "a packed file in slabs" "$TOOL" render a.nii.gz "${look[@]}" \
         -o slabs.png -y --memory 11M
-    says 'note: a.nii.gz is compressed and is decompressed again for each slab'
+    says 'note: a.nii.gz is smaller than its voxels and is unpacked again for each'
     same "a packed file" whole.png slabs.png
 fi
 
