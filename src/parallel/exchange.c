@@ -132,7 +132,7 @@ static snow_status prepare(snow_in_flight *p, const snow_job *job) {
 snow_status snow_in_flight_prepare(snow_in_flight *p, const snow_job *job) {
     snow_value_path *path = p->picture.frame->value_path;
     if (path && job->volume && job->volume->stream)
-        snow_value_leave_room(path);
+        snow_value_leave_room(path, snow_value_exchange_bytes(path));
     return prepare(p, job);
 }
 

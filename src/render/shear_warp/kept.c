@@ -30,7 +30,7 @@ bool snow_value_lacks_room(snow_value_path *path, snow_status status) {
 /* What the exchange of a picture takes at most, of the bytes of its image. */
 #define EXCHANGE_IMAGES 4
 
-static uint64_t exchange_bytes(const snow_value_path *path) {
+uint64_t snow_value_exchange_bytes(const snow_value_path *path) {
     return EXCHANGE_IMAGES * snow_block_bytes(path->image->plane);
 }
 
@@ -39,12 +39,13 @@ static uint64_t room_left(const snow_context *context) {
                                            : 0;
 }
 
-void snow_value_leave_room(snow_value_path *path) {
-    if (!path->context->limit ||
-        room_left(path->context) >= exchange_bytes(path))
+void snow_value_leave_room(snow_value_path *path, uint64_t bytes) {
+    snow_value_kept_slabs *kept = &path->kept;
+    if (!path->context->limit || room_left(path->context) >= bytes)
         return;
     snow_value_forget(path);
-    snow_value_forget_slabs(path);
+    while (kept->count && room_left(path->context) < bytes)
+        drop(path, &kept->slabs[kept->count - 1]);
 }
 
 /* Bytes that another slab needs: its encoding may take all that slabs were cut
@@ -52,7 +53,7 @@ void snow_value_leave_room(snow_value_path *path) {
 static bool has_room(const snow_value_path *path, const snow_volume *volume,
                      const snow_slab_cut *cut) {
     uint64_t bytes = snow_slab_bytes(volume, cut) * (uint64_t)(1 + cut->made) +
-                     (volume->is_part ? exchange_bytes(path) : 0);
+                     (volume->is_part ? snow_value_exchange_bytes(path) : 0);
     return !path->context->limit || room_left(path->context) >= bytes;
 }
 

@@ -15,6 +15,12 @@ assert json.load(open("a30M.json"))["bytes"]["peak"] <= 30 << 20'
 run 0 "a picture without limit" "$TOOL" render a.nrrd "${small[@]}" -v -o b.png
 says 'memory: at least 4.0 MiB, about [0-9.]+ MiB if all voxels are interest'
 check "is the same" cmp a30M.png b.png
+# Where voxels, encoding and picture just fit, the file is still to be packed.
+for ((kib = 5100; kib <= 8400; kib += 300)); do
+    run 0 "a picture within $kib KiB" "$TOOL" render a.nrrd "${small[@]}" -q \
+        -y -o e.png --memory ${kib}K
+    check "is the same" cmp e.png b.png
+done
 
 # What can be read in slabs is cli_stream.sh's.
 refused 5 "voxels over the limit" \
