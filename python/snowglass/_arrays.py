@@ -200,6 +200,22 @@ def _of_xarray(source: Any, spacing: Any, axes: Optional[str],
     return source.values, spacing, axes, unit, affine
 
 
+def _volumes_first(group: Any) -> list[str]:
+    names = [str(name) for name in group.keys()]
+    if hasattr(group, "attrs"):  # an .npz would read them
+        names.sort(key=lambda name: getattr(group[name], "ndim", 0) != 3)
+    return names
+
+
+def _first_path(group: Any, deep: int = 4) -> str:
+    """The path of the first array, through groups in the group."""
+    first = (_volumes_first(group) or ["name"])[0]
+    inner = group[first] if hasattr(group, "attrs") and first in group else None
+    if deep and hasattr(inner, "keys"):
+        return f"{first}/{_first_path(inner, deep - 1)}"
+    return first
+
+
 def _to_array(source: Any) -> Any:
     import numpy
     given: Any = source
@@ -211,11 +227,9 @@ def _to_array(source: Any) -> Any:
         return source
     kind = type(source).__name__
     if hasattr(source, "keys"):  # a group of HDF5 or Zarr, a Dataset, an .npz
-        names = [str(name) for name in source.keys()]
-        if hasattr(source, "attrs"):  # volumes first; an .npz would read them
-            names.sort(key=lambda name: getattr(source[name], "ndim", 0) != 3)
+        names = _volumes_first(source)
         raise TypeError(f"a {kind} holds several arrays: choose one of them, "
-                        f"such as {kind.lower()}[{(names or ['name'])[0]!r}] "
+                        f"such as {kind.lower()}[{_first_path(source)!r}] "
                         f"(there are {', '.join(names[:9]) or 'none'})")
     if hasattr(source, "__dlpack__") and not hasattr(source, "__array__"):
         return numpy.from_dlpack(source)

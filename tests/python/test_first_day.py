@@ -162,6 +162,8 @@ class FirstPictures(InFolder):
             file["run/other"] = numpy.zeros(3)
             with self.assertRaisesRegex(TypeError, r"group\['density'\]"):
                 sg.Volume(file["run"])
+            with self.assertRaisesRegex(TypeError, r"file\['run/density'\]"):
+                sg.Volume(file)
             self.shows_a_ball(sg.Volume(file["run"]["density"]).render())
         volume = sg.Volume("a.h5", dataset="run/density")
         self.shows_a_ball(volume.render())
