@@ -150,11 +150,12 @@ static void serve_state(renderer *r, int level, json_t *recipe,
     json_decref(recipe);
     if (done == CONTINUE && keep_scale(r))
         return;
-    if (r->drawing->look_is_new && done == CONTINUE)
+    bool applied = done == CONTINUE;
+    if (applied)
+        done = draw(r, level);
+    if (r->drawing->look_is_new && applied)
         answer_look(r->drawing, r->box);
     r->drawing->look_is_new = false;
-    if (done == CONTINUE)
-        done = draw(r, level);
     bool stopped = done == EXIT_INTERRUPTED;
     r->drawn = revision;
     r->level = done == CONTINUE ? level : stopped ? r->level : 2;

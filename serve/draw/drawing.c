@@ -64,6 +64,16 @@ static char *key_of(const json_t *recipe, const char *const *names) {
     return text;
 }
 
+/* What stays the same while points of opacity are dragged; NULL: there are
+ * none. */
+static char *color_key_of(const json_t *recipe) {
+    json_t *without = json_copy((json_t *)recipe);
+    bool dragged = json_object_del(without, "opacity") == 0;
+    char *text = dragged ? key_of(without, look_keys) : NULL;
+    json_decref(without);
+    return text;
+}
+
 /* Replaces a key; whether it is another. */
 static bool take_key(char **key, char *now) {
     bool other = !*key || !now || strcmp(*key, now) != 0;
@@ -82,6 +92,7 @@ static int reopen(drawing *d) {
     s->framed = false;
     int done = render_state_open(s, d->opts.operands[0], d->opts.time);
     d->look_is_new = d->volume_is_new = true;
+    d->look_is_quick = false;
     return done;
 }
 
@@ -169,7 +180,30 @@ static int restyle(drawing *d) {
     snow_transfer_free(d->state.transfer);
     d->state.transfer = made;
     d->look_is_new = true;
+    d->look_is_quick = false;
     return CONTINUE;
+}
+
+/* The colours of the look before with other opacities, for which no voxel is
+ * counted; of the pictures at rest the look is made anew, whose text is
+ * another. Whether it can be had. */
+static bool restyle_quickly(drawing *d) {
+    snow_transfer *made = NULL, *before = d->state.transfer;
+    snow_look base = {.size = sizeof base}, look = look_options(&d->opts);
+    if (!before || snow_transfer_label(before, 0) ||
+        snow_transfer_get_look(before, &base) != SNOW_STATUS_OK ||
+        base.symlog > 0)
+        return false;
+    const snow_look quick = {.size = sizeof quick,
+                             .base = &base,
+                             .opacities = look.opacities,
+                             .opacity_count = look.opacity_count};
+    if (drawing_new_transfer(d, &quick, &made) != SNOW_STATUS_OK)
+        return false;
+    snow_transfer_free(before);
+    d->state.transfer = made;
+    d->look_is_quick = true;
+    return true;
 }
 
 /* As render_state_open does. */
@@ -196,8 +230,9 @@ static int place(drawing *d) {
 static void forget(drawing *d) {
     free(d->data_key);
     free(d->look_key);
+    free(d->color_key);
     free(d->plain_key);
-    d->data_key = d->look_key = d->plain_key = NULL;
+    d->data_key = d->look_key = d->color_key = d->plain_key = NULL;
 }
 
 static int apply(drawing *d, const json_t *recipe) {
@@ -208,13 +243,15 @@ static int apply(drawing *d, const json_t *recipe) {
     d->tree = json_deep_copy(recipe);
     bool other_data = take_key(&d->data_key, key_of(recipe, data_keys));
     bool other_look = take_key(&d->look_key, key_of(recipe, look_keys));
+    bool other_colors = take_key(&d->color_key, color_key_of(recipe));
     bool clips = json_object_get(recipe, "clip") != NULL;
     drop_base(d, clips ? key_of(recipe, base_keys) : NULL);
     bool clipped = other_data && reclip(d);
     if ((other_data && !clipped) || !d->state.volume) {
         done = reopen(d);
         take_key(&d->plain_key, clips ? NULL : key_of(recipe, base_keys));
-    } else if (clipped || other_look || !d->state.transfer)
+    } else if (clipped || !d->state.transfer ||
+               (other_look && (other_colors || !restyle_quickly(d))))
         done = restyle(d);
     if (done == CONTINUE)
         done = place(d);
@@ -357,7 +394,10 @@ int drawing_render(drawing *d, snow_quality quality, int shrink,
     s->settings.stop_user = user;
     s->view.width = shrunk(view.width, shrink);
     s->view.height = shrunk(view.height, shrink);
-    int done = draw(d, image, &painted);
+    int done = quality != SNOW_QUALITY_DRAFT && d->look_is_quick ? restyle(d)
+                                                                 : CONTINUE;
+    if (done == CONTINUE)
+        done = draw(d, image, &painted);
     if (done == CONTINUE && *image)
         done = annotate(d, &painted, *image, overlay);
     s->view = view;

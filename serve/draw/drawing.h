@@ -17,6 +17,8 @@ typedef struct drawing {
     json_t *tree;
     render_state state;
     char *data_key, *look_key; /* what volume and look were made of */
+    char *color_key;           /* and the look's colours, while points move */
+    bool look_is_quick;        /* its colours are those of the look before */
     snow_volume *base; /* the volume without clip planes, while these move; or
                           NULL */
     char *base_key;    /* what it was made of */

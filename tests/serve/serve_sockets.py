@@ -445,6 +445,58 @@ def fit_at_position():
     server.stop()
 
 
+def looks_until(page, kind, n=0):
+    """The looks that come before a text of a kind, or before picture n; and that."""
+    looks = []
+    while True:
+        what, message = page.hear()
+        if what == "closed":
+            sys.exit(f"FAILED to hear {kind}: the page was closed")
+        if what == "picture" and not message[10]:
+            page.say({"t": "ack", "n": n})
+            if message[4:8] == struct.pack("<I", n):
+                return looks, message[32:]
+        elif what == "text" and message["t"] == kind:
+            return looks, message
+        elif what == "text" and message["t"] == "look":
+            looks.append(message)
+
+
+def dragged_points(more):
+    """A point that is dragged takes the colours of the look before, as the look
+    that is made anew has them; that is made when the picture rests.  A side of 64
+    is that of the smallest draft: none is smaller."""
+    server = Server(SMALL, *more)
+    page, n = Page(server), 1
+    points = page.hear_text("look")["opacity"]
+    moved = [[value, min(1, 2 * opacity)] for value, opacity in points]
+    page.say({"t": "moving", "on": True})
+
+    def draft(**recipe):
+        nonlocal n
+        n += 1
+        page.say({"t": "set", "n": n, "recipe": recipe})
+        looks, picture = looks_until(page, "", n)
+        page.say({"t": "ask", "what": "command"})
+        return picture, looks + looks_until(page, "command")[0]
+
+    draft(size=[64, 64], opacity=points)
+    quick, looks = draft(opacity=moved)
+    check("a dragged point makes no new look", not looks, looks)
+    draft(colormap="hot")
+    anew, looks = draft(colormap=None)
+    check("its picture is that of a look made anew", looks and anew == quick)
+    check("which has changed", draft(opacity=points)[0] != quick)
+    draft(opacity=moved)
+    page.say({"t": "moving", "on": False})
+    look = page.hear_text("look")
+    check("the picture at rest has a new look", look and
+          "opacities as requested" in look["text"] and
+          look["opacity"] == moved, look)
+    page.close()
+    server.stop()
+
+
 def recipe_file():
     """A recipe has what only the command line sets, so it makes the picture."""
     points = os.path.join(FOLDER.name, "points.json")
@@ -940,7 +992,9 @@ first_state()
 fit_at_position()
 slices()
 mask_switch()
+dragged_points([])
 if not SHORT:
+    dragged_points(["--preset", "ct-bone"])
     recipe_file()
     movie_command()
     answers_first()
