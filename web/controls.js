@@ -78,9 +78,9 @@ export function section(name, open, ...children) {
         make('div', {}, ...children));
 }
 
-/** Sets a value unless the user is typing there. */
+/** Sets a value unless it is there, or the user is typing there. */
 export function show(field, value) {
-    if (document.activeElement !== field || field.type === 'range')
+    if (field.value !== `${value}` && (document.activeElement !== field || field.type === 'range'))
         field.value = value;
 }
 

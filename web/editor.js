@@ -237,6 +237,16 @@ export class Editor {
         this.draw();
     }
 
+    /** After a change of the page: most change nothing here. */
+    follow() {
+        const now = [this.recipe.keys[this.kind.key], this.page.look, this.page.histogram,
+            matchMedia('(prefers-color-scheme: light)').matches];
+        if (now.every((each, i) => each === this.drawn?.[i]))
+            return;
+        this.drawn = now;
+        this.draw();
+    }
+
     draw() {
         const canvas = this.canvas, scale = devicePixelRatio || 1;
         const width = canvas.clientWidth, height = canvas.clientHeight;
@@ -261,23 +271,24 @@ export class Editor {
             return;
         const scaled = count => this.log ? Math.log1p(count) : count;
         const top = Math.max(1, ...histogram.counts.map(scaled));
-        const step = (histogram.hi - histogram.lo) / histogram.counts.length;
+        const {bottom} = this, left = this.x(histogram.lo);
+        const wide = (this.x(histogram.hi) - left) / histogram.counts.length;
         g.fillStyle = color;
         histogram.counts.forEach((count, i) => {
-            const x = this.x(histogram.lo + i * step), wide = this.x(histogram.lo + (i + 1) * step) - x;
-            const tall = scaled(count) / top * (this.bottom - EDGE);
-            g.fillRect(x, this.bottom - tall, wide + 0.5, tall);
+            const tall = scaled(count) / top * (bottom - EDGE);
+            g.fillRect(left + i * wide, bottom - tall, wide + 0.5, tall);
         });
     }
 
     drawStrip(g) {
         const look = this.page.look;
-        if (this.kind !== BY_VALUE)
+        if (this.kind !== BY_VALUE || !look)
             return;
-        look?.strip.forEach((color, i) => {
-            const at = k => this.x(look.low + (look.high - look.low) * k / look.strip.length);
+        const {bottom} = this, left = this.x(look.low);
+        const wide = (this.x(look.high) - left) / look.strip.length;
+        look.strip.forEach((color, i) => {
             g.fillStyle = color;
-            g.fillRect(at(i), this.bottom + 3, at(i + 1) - at(i) + 0.5, 11);
+            g.fillRect(left + i * wide, bottom + 3, wide + 0.5, 11);
         });
     }
 

@@ -37,19 +37,20 @@ export class Overlay {
     }
 
     draw() {
-        const {width: across, height: down} = this.pointer.canvas;
+        const {width: across, height: down, clientWidth: width, clientHeight: height} = this.pointer.canvas;
         this.size = `${across} ${down}`;
         const {canvas, page} = this, dense = devicePixelRatio || 1;
-        const width = canvas.clientWidth, height = canvas.clientHeight;
         if (!page.info || !width)
             return;
-        canvas.width = Math.round(width * dense);
-        canvas.height = Math.round(height * dense);
-        const g = canvas.getContext('2d');
-        g.setTransform(dense, 0, 0, dense, canvas.width / 2, canvas.height / 2);
-        if (this.slices.keys && page.info.slices)
+        canvas.hidden = !(this.slices.keys && page.info.slices); // empty, it costs as much
+        if (!canvas.hidden) {
+            canvas.width = Math.round(width * dense);
+            canvas.height = Math.round(height * dense);
+            const g = canvas.getContext('2d');
+            g.setTransform(dense, 0, 0, dense, canvas.width / 2, canvas.height / 2);
             [0, 1, 2].forEach(k => this.outline(g, k));
-        this.place();
+        }
+        this.place(width, height);
     }
 
     /** The edge of a slice across axis k of the grid. */
@@ -91,17 +92,17 @@ export class Overlay {
         return button;
     }
 
-    place() {
-        const {info, clipping} = this.page, {clientWidth, clientHeight} = this.canvas;
+    place(width, height) {
+        const {info, clipping} = this.page;
         this.grips = clipping ? grips(this.recipe.keys, info, axisNames(info)) : [];
         this.handles.forEach((button, i) => {
             const grip = this.grips[i], seen = grip && this.see(grip.place);
             button.hidden = !seen;
             if (!seen)
                 return;
-            const [x, y] = [seen[0] + clientWidth / 2, seen[1] + clientHeight / 2];
-            button.style.left = `${Math.max(12, Math.min(clientWidth - 12, x))}px`;
-            button.style.top = `${Math.max(12, Math.min(clientHeight - 12, y))}px`;
+            const [x, y] = [seen[0] + width / 2, seen[1] + height / 2];
+            button.style.left = `${Math.max(12, Math.min(width - 12, x))}px`;
+            button.style.top = `${Math.max(12, Math.min(height - 12, y))}px`;
             button.style.background = COLORS[grip.axis];
             button.title = grip.name;
             button.setAttribute('aria-label', grip.name);

@@ -38,8 +38,8 @@ export class Panel {
         if (this.page.info)
             for (const each of this.updates)
                 each(this.recipe.keys);
-        this.editor.draw();
-        this.gradient.draw();
+        this.editor.follow();
+        this.gradient.follow();
     }
 
     /** Keeps a control as the recipe is. */

@@ -12,6 +12,7 @@ import {Recipe} from './recipe.js';
 import {Slices} from './slices.js';
 
 const SIDE_MOST = 4096;
+const FEW = 8; // drafts whose figures nobody could read
 const LEVELS = ['draft', 'normal', 'high: final'];
 
 const given = new URLSearchParams(location.hash.slice(1));
@@ -161,19 +162,20 @@ engine.on('picture', frame => {
         : recipe.keys.size ?? [frame.width, frame.height];
     if (canvas.width !== width || canvas.height !== height)
         [canvas.width, canvas.height] = [width, height];
-    paint.imageSmoothingQuality = 'high';
     if (frame.level === 2) { // it may have alpha: over black, as those before it
         paint.fillStyle = '#000';
         paint.fillRect(0, 0, width, height);
     }
     paint.drawImage(frame.bitmap, 0, 0, width, height);
     page.rest = frame.level === 2 ? frame.blob : null;
-    level.textContent = page.info?.live ? `step ${page.step}` : LEVELS[frame.level];
-    canvas.dataset.level = frame.level;
-    figures.textContent = `${frame.width} x ${frame.height}, drawn in ${frame.render.toFixed(1)} ms, ` +
-        `packed in ${frame.pack.toFixed(1)} ms, ${(frame.bytes / 1024).toFixed(0)} kB, ` +
-        `round trip ${round.toFixed(0)} ms`;
     page.frames = (page.frames ?? 0) + 1;
+    if (canvas.dataset.level !== '0' || frame.level || page.frames % FEW === 0) {
+        canvas.dataset.level = frame.level;
+        level.textContent = page.info?.live ? `step ${page.step}` : LEVELS[frame.level];
+        figures.textContent = `${frame.width} x ${frame.height}, drawn in ${frame.render.toFixed(1)} ms, ` +
+            `packed in ${frame.pack.toFixed(1)} ms, ${(frame.bytes / 1024).toFixed(0)} kB, ` +
+            `round trip ${round.toFixed(0)} ms`;
+    }
     overlay.follow();
 });
 

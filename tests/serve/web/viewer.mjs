@@ -170,6 +170,31 @@ async function names(page) {
     check('every control has a name', nameless.length === 0, nameless.join(' '));
 }
 
+/** How many bars and colours of the editor a change draws; it is undone. */
+const drawn = (page, change) => page.evaluate(changes => {
+    const {recipe} = window.snowglass, {prototype} = CanvasRenderingContext2D, {fillRect} = prototype;
+    let count = 0;
+    prototype.fillRect = function fill(...box) {
+        count += this.canvas.className === 'editor' ? 1 : 0;
+        return fillRect.apply(this, box);
+    };
+    recipe.set(changes);
+    prototype.fillRect = fillRect;
+    recipe.undo();
+    return count;
+}, change);
+
+async function costs(page) {
+    const {azimuth = 0} = await keys(page);
+    const points = await page.evaluate(() => window.snowglass.page.look.opacity);
+    const turned = await drawn(page, {azimuth: azimuth + 1.5});
+    check('a turn draws no histogram', turned === 0, turned);
+    const moved = await drawn(page, {opacity: points.map(([value, opacity]) => [value, 0.9 * opacity])});
+    check('a point that moves does', moved > 100, moved);
+    check('nothing lies over the picture without slices', await page.locator('.over').isHidden());
+    await rest(page);
+}
+
 async function editor(page) {
     const canvas = page.locator('.editor').first();
     const box = await canvas.boundingBox();
@@ -774,6 +799,7 @@ await unready();
 const page = await open();
 await smoke(page);
 await names(page);
+await costs(page);
 if (long) {
     await page.reload();
     await rest(page);
