@@ -1,5 +1,4 @@
-/* pack.h - packs pictures for the pages, one picture behind the renderer, in a
- * thread of its own.
+/* pack.h - packs pictures for the pages, in a thread of its own.
  *
  * Drafts and normal pictures become JPEG, on thin links WebP.  The picture at
  * rest becomes the PNG that `snowglass render` writes, byte for byte, since the
@@ -35,6 +34,10 @@ void packer_free(packer *p);
 /* Takes over a picture, in place of one that still waits.  Returns those that
  * are done, linked by `next`, for the renderer to free. */
 picture *packer_put(packer *p, picture *made);
+
+/* Until no draft is being packed: the next one, which is drawn by all
+ * processors, would delay it. */
+void packer_wait_for_draft(packer *p);
 
 /* Packs a small picture at once, in the calling thread, which owns its context,
  * as JPEG or, if it is to be `exact`, as the PNG that the tool writes: a parcel

@@ -176,6 +176,7 @@ viewer_work renderer_step(renderer *r, double *due) {
     viewer_question question;
     json_t *recipe = NULL;
     uint32_t revision = 0;
+    packer_wait_for_draft(r->pack);
     viewer_work work = state_next(r->state, r->drawn, r->level, due, &question,
                                   &recipe, &revision);
     if (work == WORK_ANSWER)

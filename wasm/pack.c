@@ -21,6 +21,10 @@ packer *packer_new(outbox *box) {
     return p;
 }
 
+void packer_wait_for_draft(packer *p) {
+    (void)p;
+}
+
 picture *packer_end(packer *p) {
     (void)p;
     return NULL;

@@ -92,6 +92,12 @@ void snow_levels_end(snow_levels *levels);
  * first. */
 const unsigned char *snow_levels_row(snow_levels *levels, int y);
 
+/* Pixels from (x, y) on in 2 or 4 channels, with the shapes over them; 2 of a
+ * grey picture without coloured shapes. */
+void snow_image_draw_some(const snow_image *image, const snow_overlay *overlay,
+                          const double *background, int y, int x, int count,
+                          int channels, float *out);
+
 /* Refuses, for a reader, sides outside 1 to SNOW_IMAGE_SIDE. */
 snow_status snow_image_check_sides(const snow_source *source, int64_t width,
                                    int64_t height);

@@ -7,9 +7,6 @@
 
 #include <string.h>
 
-/* Pixels per step: their samples stay in the first-level cache. */
-#define SOME 256
-
 /* A grey picture is written in colour if its background or its overlay has
  * colour, or if the file format has no grey. */
 static void plan(const snow_image *image, const snow_image_options *options,
@@ -46,16 +43,14 @@ void snow_levels_end(snow_levels *levels) {
     snow_release(context, levels->row);
 }
 
-/* Whether dark letters are read better than white ones: by the luma of BT.709.
- */
+/* Dark letters are read better on these: by the luma of BT.709. */
 static bool is_light(const double *b) {
     return b && 0.2126 * b[0] + 0.7152 * b[1] + 0.0722 * b[2] > 0.5;
 }
 
-/* Converts some pixels from (x, y) on, with the shapes over them. */
-static void draw_some(const snow_image *image, const snow_overlay *overlay,
-                      bool light, int y, int x, int count, int channels,
-                      float *out) {
+void snow_image_draw_some(const snow_image *image, const snow_overlay *overlay,
+                          const double *background, int y, int x, int count,
+                          int channels, float *out) {
     size_t first = (size_t)y * (size_t)image->width + (size_t)x;
     if (channels == image->channels)
         memcpy(out, image->pixels + first * (size_t)channels,
@@ -64,14 +59,15 @@ static void draw_some(const snow_image *image, const snow_overlay *overlay,
         for (int i = 0; i < count; i++)
             snow_image_rgba(image, first + (size_t)i, out + 4 * i);
     if (overlay)
-        snow_overlay_draw(overlay, light, y, x, count, channels, out);
+        snow_overlay_draw(overlay, is_light(background), y, x, count, channels,
+                          out);
 }
 
 const unsigned char *snow_levels_row(snow_levels *l, int y) {
     int width = l->image->width;
     size_t count = (size_t)width * (size_t)l->samples;
-    draw_some(l->image, l->overlay, is_light(l->background), y, 0, width,
-              l->channels, l->drawn);
+    snow_image_draw_some(l->image, l->overlay, l->background, y, 0, width,
+                         l->channels, l->drawn);
     if (l->background)
         snow_flatten_row(l->drawn, width, l->channels, l->background,
                          l->samples, l->row);
@@ -82,34 +78,4 @@ const unsigned char *snow_levels_row(snow_levels *l, int y) {
     else
         snow_quantise_16(l->row, count, l->bytes);
     return l->bytes;
-}
-
-/* Allocates no memory: frames of a movie are made while others are rendered. */
-snow_status snow_image_to_rgb8_with(const snow_image *image,
-                                    const snow_image_options *given,
-                                    unsigned char *rgb) {
-    static const double black[3] = {0, 0, 0};
-    snow_image_options options;
-    SNOW_TRY(
-        SNOW_RECORD_READ(image->context, snow_image_options, given, &options));
-    const double *background = options.flatten ? options.background : black;
-    float drawn[4 * SOME];
-    double samples[3 * SOME];
-    for (int y = 0; y < image->height; y++)
-        for (int x = 0; x < image->width; x += SOME) {
-            int some = image->width - x < SOME ? image->width - x : SOME;
-            draw_some(image, options.overlay, is_light(background), y, x, some,
-                      4, drawn);
-            snow_flatten_row(drawn, some, 4, background, 3, samples);
-            snow_quantise_8(samples, 3 * (size_t)some, rgb);
-            rgb += 3 * some;
-        }
-    return SNOW_STATUS_OK;
-}
-
-void snow_image_to_rgb8(const snow_image *image, const double background[3],
-                        unsigned char *rgb) {
-    snow_image_options options = {.size = sizeof options, .flatten = true};
-    memcpy(options.background, background, sizeof options.background);
-    snow_image_to_rgb8_with(image, &options, rgb);
 }
