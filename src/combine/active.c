@@ -161,6 +161,16 @@ static unsigned bytes_of(uint64_t word) {
     return (unsigned)((high >> 7) * 0x0102040810204080 >> 56);
 }
 
+/* The bytes of a word that are not 0, without a branch for each; one more may
+ * be written behind. */
+static unsigned char *pack_word(unsigned char *out, uint64_t word) {
+    for (; word; word >>= 8) {
+        *out = (unsigned char)(word & 255);
+        out += (word & 255) != 0;
+    }
+    return out;
+}
+
 size_t snow_active_close(unsigned char *message, const uint64_t *words,
                          int64_t first, int64_t last, int64_t count,
                          size_t pixel_bytes) {
@@ -173,9 +183,7 @@ size_t snow_active_close(unsigned char *message, const uint64_t *words,
         end--;
     unsigned char *out = message + (size_t)count * pixel_bytes;
     for (int64_t i = begin; i < end; i++)
-        for (uint64_t word = words[i]; word; word >>= 8)
-            if (word & 255)
-                *out++ = (unsigned char)(word & 255);
+        out = pack_word(out, words[i]);
     for (int64_t i = begin; i < end; i++)
         *out++ = (unsigned char)bytes_of(words[i]);
     tail last_bytes = {(uint32_t)(first / 64 + begin), (uint32_t)(end - begin)};
@@ -198,8 +206,14 @@ static int64_t unpack_words(const unsigned char *which, int64_t count,
     int64_t active = 0;
     for (int64_t i = 0; i < count; i++) {
         uint64_t word = 0;
-        for (unsigned bits = which[i]; bits; bits &= bits - 1)
-            word |= (uint64_t)*from++ << (8 * lowest(bits));
+        if (which[i] == 255) {
+            for (int k = 0; k < 8; k++)
+                word |= (uint64_t)from[k] << (8 * k);
+            from += 8;
+        } else {
+            for (unsigned bits = which[i]; bits; bits &= bits - 1)
+                word |= (uint64_t)*from++ << (8 * lowest(bits));
+        }
         words[i] = word;
         active += population(word);
     }
@@ -212,7 +226,8 @@ bool snow_active_open(const unsigned char *message, size_t bytes, int64_t first,
     const int64_t count = snow_active_words(first, last);
     tail end = {(uint32_t)(first / 64), 0};
     memset(words, 0, (size_t)count * sizeof *words);
-    *out = (snow_active){.first = first, .last = last, .words = words};
+    *out = (snow_active){
+        .first = first, .last = last, .words = words, .at = first};
     if (!bytes)
         return true;
     if (bytes < sizeof end)
@@ -251,6 +266,20 @@ static void merge_masks(const snow_active *layers, int count, int64_t first,
     }
 }
 
+/* Passes over the pixels of a layer before `first` that another thread has
+ * merged. */
+static void pass_over(snow_active *layer, int channels, int64_t first) {
+    const int64_t to = first < layer->last ? first : layer->last;
+    if (to <= layer->at)
+        return;
+    int64_t active =
+        layer->words
+            ? snow_active_count(layer->words, layer->first, layer->at, to)
+            : to - layer->at;
+    if (active)
+        layer->next += active * channels;
+}
+
 int64_t snow_active_merge(const snow_pixel_loops *loops, snow_active *layers,
                           int count, int channels, int64_t first, int64_t last,
                           uint64_t *words, float *out, bool packed,
@@ -259,7 +288,11 @@ int64_t snow_active_merge(const snow_pixel_loops *loops, snow_active *layers,
         merge_masks(layers, count, first, last, words, laid);
         return population_of(words, snow_active_words(first, last));
     }
+    for (int i = 0; i < count; i++)
+        pass_over(&layers[i], channels, first);
     float *end =
         loops->merge(layers, count, first, last, words, out, packed, laid);
+    for (int i = 0; i < count; i++)
+        layers[i].at = last > layers[i].at ? last : layers[i].at;
     return (end - out) / channels;
 }

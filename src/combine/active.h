@@ -24,8 +24,9 @@ typedef struct snow_active {
     int64_t first, last;
     const uint64_t *words; /* from that of `first` on; NULL: all are active */
     const float *pixels;   /* packed; NULL: none (a rehearsal) */
-    const float *next;     /* first of the pixels not yet merged */
+    const float *next;     /* first of the packed pixels from `at` on */
     bool own;              /* this rank's: not counted in *laid */
+    int64_t at;            /* where merging goes on; at first `first` */
 } snow_active;
 
 /* Words of the mask of first .. last - 1. */
@@ -92,11 +93,11 @@ bool snow_active_open(const unsigned char *message, size_t bytes, int64_t first,
 
 /* Composites layers, ordered from front to back, in pixels first .. last - 1.
  * Call it for parts of the picture in rising order: layers keep their position.
- * Each layer lies inside the union of all calls. The result's mask goes to
- * `words`. With `packed`, its active pixels go to `out`; otherwise all pixels
- * do, number n to out[(n - first) * channels], 0 where no layer is. In a
- * rehearsal `out` is NULL. Returns the number of pixels in `out`, or that would
- * be there; adds the number of pixels of received layers to *laid. */
+ * Threads that merge different parts have copies of the layers. The result's
+ * mask goes to `words`. With `packed`, its active pixels go to `out`; otherwise
+ * all pixels do, number n to out[(n - first) * channels], 0 where no layer is.
+ * In a rehearsal `out` is NULL. Returns the number of pixels in `out`, or that
+ * would be there; adds the number of pixels of received layers to *laid. */
 int64_t snow_active_merge(const snow_pixel_loops *loops, snow_active *layers,
                           int count, int channels, int64_t first, int64_t last,
                           uint64_t *words, float *out, bool packed,

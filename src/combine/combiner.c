@@ -131,13 +131,15 @@ static snow_status allocate_lists(snow_combiner *combiner) {
                           snow_rounds_room(&combiner->rounds)));
     SNOW_TRY(SNOW_RESERVE(context, combiner->ranks, 0, rank_order));
     SNOW_TRY(SNOW_RESERVE(context, combiner->table, 0, rank_order));
-    SNOW_TRY(SNOW_RESERVE(context, combiner->layers, 0, peers));
+    SNOW_TRY(SNOW_RESERVE(context, combiner->layers, 0,
+                          SNOW_COMBINE_THREADS * peers));
+    combiner->layer_room = (int)peers;
     SNOW_TRY(SNOW_RESERVE(context, combiner->parts, 0, peers));
     if (combiner->shape.regions == SNOW_IMAGE_PARTITION_INTERLACED)
         SNOW_TRY(
             SNOW_RESERVE(context, combiner->lines, 0, combiner->shape.height));
     return SNOW_RESERVE(context, combiner->part, 0,
-                        most_held(combiner, 0) / 64 + 2);
+                        (size_t)most_held(combiner, 0) / 64 + 2 + peers);
 }
 
 /* Replaces a block by one of another size; its contents are lost. */

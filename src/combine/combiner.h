@@ -20,13 +20,19 @@ typedef struct snow_stretch {
     int64_t first, last;
 } snow_stretch;
 
-/* A part of this rank's image that a round has not sent yet, and the share of
- * the rounds that it goes to. */
+/* A part of this rank's image that a round has not sent yet, the share of the
+ * rounds that it goes to, and, when it is written, its message and counts. */
 #define SNOW_SHARE_NONE (-1)
 typedef struct snow_part_to_send {
     snow_stretch part;
     int share;
+    unsigned char *message;
+    size_t bytes;
+    int64_t active, scanned, laid;
 } snow_part_to_send;
+
+/* The most threads of a rank that composite; more would wait for memory. */
+#define SNOW_COMBINE_THREADS 16
 
 /* The exchange that is under way. */
 typedef struct snow_exchange_state {
@@ -84,9 +90,10 @@ struct snow_combiner {
     int *ranks;               /* by position, as in the last params */
     int *table;               /* of snow_rounds_fill */
     snow_part_to_send *parts; /* of one round, not yet sent */
-    snow_active *layers;      /* of one round */
+    snow_active *layers;      /* of one round, for each thread */
+    int layer_room;           /* of one thread */
     uint64_t *words;          /* their masks */
-    uint64_t *part;           /* mask of the part to send next */
+    uint64_t *part;           /* masks of parts to send, or of the region */
     snow_traffic in[2], out[2];
     float *region;
     snow_exchange_state exchange; /* and the last one's params */
@@ -113,9 +120,10 @@ bool snow_counts_given(const snow_combiner *combiner);
 /* Collective. Divides the picture by counts. */
 snow_status snow_counts_divide(snow_combiner *combiner);
 
-/* Adds a part of the local image, whose mask is complete, to the counts for the
- * next picture. */
-void snow_counts_add(snow_combiner *combiner, snow_stretch part);
+/* Adds a part of the local image, and its mask, to the counts for the next
+ * picture. */
+void snow_counts_add(snow_combiner *combiner, snow_stretch part,
+                     const uint64_t *words);
 
 /* --- gather.c --- */
 

@@ -49,7 +49,8 @@ snow_status snow_counts_divide(snow_combiner *combiner) {
     return SNOW_STATUS_OK;
 }
 
-void snow_counts_add(snow_combiner *combiner, snow_stretch part) {
+void snow_counts_add(snow_combiner *combiner, snow_stretch part,
+                     const uint64_t *words) {
     const snow_region_bounds *bounds = &combiner->bounds;
     int64_t end;
     int bin = 0;
@@ -58,8 +59,7 @@ void snow_counts_add(snow_combiner *combiner, snow_stretch part) {
         end = next < part.last ? next : part.last;
         while (line >= snow_region_bounds_line(bounds, bin + 1))
             bin++;
-        combiner->counts[bin] +=
-            snow_active_count(combiner->part, part.first, at, end);
+        combiner->counts[bin] += snow_active_count(words, part.first, at, end);
     }
 }
 

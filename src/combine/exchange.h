@@ -66,7 +66,9 @@ typedef struct snow_exchange_params {
     snow_image_partition
         regions; /* for all methods except the tree, which has one */
     snow_composite_op composite_op; /* for 2 channels if it is not over */
-    bool whole; /* all pixels are sent, without masks, as in the paper */
+    bool whole;  /* all pixels are sent, without masks, as in the paper */
+    int threads; /* of the communicator's context, that look at pixels and
+                    composite them; 0: 1. Ranks may have different numbers */
     /* snow_exchange_counts, summed over all ranks: the borders of counted
      * regions; NULL: from the local images. */
     const int64_t *counts;

@@ -145,11 +145,16 @@ TARGET static inline float *PIXELS_NAME(copy)(float *out, const float *tile,
     return out + floats;
 }
 
+TARGET static inline void PIXELS_NAME(clear)(float *tile) {
+    for (int i = 0; i < 64 * PIXELS_CHANNELS; i += LANES)
+        V(store)(tile + i, V(set1)(0));
+}
+
 TARGET static float *PIXELS_NAME(merge)(snow_active *layers, int count,
                                         int64_t first, int64_t last,
                                         uint64_t *words, float *out,
                                         bool packed, int64_t *laid) {
-    float tile[65 * PIXELS_CHANNELS];
+    float tile[65 * PIXELS_CHANNELS] = {0};
     int64_t came = 0;
     for (int64_t n = first / 64; n * 64 < last; n++) {
         const uint64_t range = snow_active_range(n, first, last);
@@ -159,14 +164,14 @@ TARGET static float *PIXELS_NAME(merge)(snow_active *layers, int count,
             if (!bits)
                 continue;
             if (!seen)
-                memset(tile, 0, sizeof tile);
+                PIXELS_NAME(clear)(tile);
             layers[i].next = PIXELS_NAME(composite)(tile, layers[i].next, bits);
             seen |= bits;
             came += layers[i].own ? 0 : V(popcount)(bits);
         }
         words[n - first / 64] = seen;
         if (!seen && !packed)
-            memset(tile, 0, sizeof tile);
+            PIXELS_NAME(clear)(tile);
         out = packed ? PIXELS_NAME(pack)(out, tile, seen)
                      : PIXELS_NAME(copy)(out, tile, n * 64, first, last);
     }

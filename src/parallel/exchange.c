@@ -187,6 +187,7 @@ static snow_status exchange(snow_in_flight *p, const snow_job *job) {
         .radix = p->how.radix,
         .composite_op = p->local.composite_op,
         .grain = warps ? local->width : 1, /* pieces of whole lines */
+        .threads = job->settings.threads,
         .counts = p->picture.ahead ? r->group_counts : NULL,
         .count_groups = r->groups};
     SNOW_TRY(snow_exchange_begin(r->combiner, &order));

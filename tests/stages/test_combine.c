@@ -310,6 +310,81 @@ every_method_gives_the_picture_of_a_chain_for_1_to_33_ranks(void **state) {
     snow_context_free(context);
 }
 
+static void run_body(int ranks, snow_comm_body_fn *body, void *user) {
+    snow_context *context = support_context();
+    snow_status status = snow_comm_run_threads(context, ranks, body, user);
+    if (status != SNOW_STATUS_OK)
+        print_message("%d ranks: %s\n", ranks, snow_context_message(context));
+    assert_int_equal(status, SNOW_STATUS_OK);
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+}
+
+/* --- threads -------------------------------------------------------------- */
+
+/* The piece by several threads, copied. */
+static snow_status exchange_by(snow_combiner *combiner,
+                               snow_exchange_params *order, int threads,
+                               snow_image_region *region, float **kept) {
+    order->threads = threads;
+    SNOW_TRY(snow_exchange(combiner, order, region));
+    const size_t bytes =
+        (size_t)region->count * (size_t)order->channels * sizeof **kept;
+    *kept = malloc(bytes + 1);
+    memcpy(*kept, region->pixels, bytes);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status combine_by_threads(snow_comm *comm, const way *w) {
+    job j = {.width = 301, .height = 240, .channels = 4, .count = comm->ranks};
+    shuffle(&j);
+    snow_combiner *combiner;
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    float *pixels = malloc(301 * 240 * 4 * sizeof *pixels);
+    float *alone = NULL, *shared = NULL;
+    fill_local(&j, comm->rank, pixels, 301 * 4);
+    snow_exchange_params order = order_of(&j, comm->rank, pixels, 301 * 4);
+    order.method = w->method;
+    order.radix = w->radix;
+    order.whole = w->whole;
+    snow_image_region region;
+    snow_status status = exchange_by(combiner, &order, 1, &region, &alone);
+    const snow_exchange_figures by_one = *snow_exchange_get_figures(combiner);
+    if (status == SNOW_STATUS_OK)
+        /* ranks may have different numbers */
+        status =
+            exchange_by(combiner, &order, 4 + comm->rank, &region, &shared);
+    if (status == SNOW_STATUS_OK)
+        status = check_piece(comm, combiner, &j, &region);
+    const snow_exchange_figures *figures = snow_exchange_get_figures(combiner);
+    bool same = status == SNOW_STATUS_OK &&
+                memcmp(alone, shared, (size_t)region.count * 16) == 0 &&
+                figures->laid == by_one.laid &&
+                figures->scanned == by_one.scanned &&
+                figures->active == by_one.active;
+    free(pixels);
+    free(alone);
+    free(shared);
+    snow_combiner_free(combiner);
+    SNOW_TRY(status);
+    CHECK(same);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status combine_all_ways_by_threads(snow_comm *comm, void *user) {
+    (void)user;
+    for (size_t i = 0; i < COUNT_OF(ways); i++)
+        SNOW_TRY(combine_by_threads(comm, &ways[i]));
+    return SNOW_STATUS_OK;
+}
+
+static void threads_of_ranks_change_no_bit(void **state) {
+    (void)state;
+    static const int counts[] = {1, 2, 5, 8};
+    for (size_t i = 0; i < COUNT_OF(counts); i++)
+        run_body(counts[i], combine_all_ways_by_threads, NULL);
+}
+
 /* --- what it costs -------------------------------------------------------- */
 
 /* An allocator that fails from some point on. */
@@ -398,16 +473,6 @@ static snow_status combine_twice_with_memory_once(snow_comm *comm, void *user) {
     stop s = {0};
     (void)user;
     return with_memory(comm, &s, combine_twice);
-}
-
-static void run_body(int ranks, snow_comm_body_fn *body, void *user) {
-    snow_context *context = support_context();
-    snow_status status = snow_comm_run_threads(context, ranks, body, user);
-    if (status != SNOW_STATUS_OK)
-        print_message("%d ranks: %s\n", ranks, snow_context_message(context));
-    assert_int_equal(status, SNOW_STATUS_OK);
-    assert_int_equal(snow_context_bytes(context), 0);
-    snow_context_free(context);
 }
 
 static void
@@ -775,6 +840,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(
             every_method_gives_the_picture_of_a_chain_for_1_to_33_ranks),
+        cmocka_unit_test(threads_of_ranks_change_no_bit),
         cmocka_unit_test(pictures_that_need_no_more_than_others_take_no_memory),
         cmocka_unit_test(whole_pictures_cost_the_least_that_whole_pictures_can),
         cmocka_unit_test(a_rehearsal_sends_messages_of_the_same_length),

@@ -344,7 +344,8 @@ static void time_level(const snow_pixel_loops *loops, const float *pixels,
         double seen = cpu_nanoseconds();
         snow_active layers[4];
         for (int n = 0; n < 4; n++)
-            layers[n] = (snow_active){0, TIMED, words, packed, packed, false};
+            layers[n] =
+                (snow_active){0, TIMED, words, packed, packed, false, 0};
         loops->merge(layers, 4, 0, TIMED, merged, out, true, &laid);
         double done = (cpu_nanoseconds() - seen) / (double)laid;
         seen = (seen - start) / TIMED;
