@@ -22,6 +22,7 @@ static const char help[] =
     "one process.\n"
     "\n"
     "  --ranks N        where they are threads (8)\n"
+    "  --threads N      of each rank (1)\n"
     "  --size N         side of the square picture in pixels (512)\n"
     "  --pattern NAME   box: slabs of a cube; or pictures that are the local\n"
     "                   images, from front to back, such as slab_%02d.png for\n"
@@ -39,7 +40,9 @@ static const char help[] =
     "  --check          compare with the picture of a chain; fail when they "
     "differ\n"
     "  --sizes-only     no pixels, but messages of the right length\n"
-    "  --rates          only what one processor takes for a pixel\n"
+    "  --rates          only what the threads of one of --ranks (32) take for "
+    "a\n"
+    "                   pixel, and for copies of the same bytes\n"
     "  --runs N         of which the fastest counts (5)\n"
     "  --json           print a JSON object\n"
     "\n"
@@ -53,7 +56,9 @@ static const char help[] =
     "  --beta SECONDS   for a byte (1 / 12.125e9)\n"
     "  --scan SECONDS   what a simulated processor takes to look at a pixel\n"
     "                   (0.1e-9)\n"
-    "  --blend SECONDS  to lay one over another (0.25e-9)\n";
+    "  --blend SECONDS  to lay one over another (0.25e-9)\n"
+    "  --round SECONDS  to round one to 8 bits (0.25e-9)\n"
+    "  --move SECONDS   to move 16 bytes of the picture (0.1e-9)\n";
 
 /* --- options -------------------------------------------------------------- */
 
@@ -101,6 +106,7 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
     bool grey = false, floats = false, helps = false;
     int size = 512;
     *out = (combine_options){.pattern = "box",
+                             .threads = 1,
                              .runs = 5,
                              .azimuth = 30,
                              .elevation = 20,
@@ -110,9 +116,12 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
                              .alpha = BENCH_ALPHA,
                              .beta = BENCH_BETA,
                              .scan = 0.1e-9,
-                             .blend = 0.25e-9};
+                             .blend = 0.25e-9,
+                             .round = 0.25e-9,
+                             .move = 0.1e-9};
     const bench_option entries[] = {
         {"--ranks", BENCH_WHOLE, &out->ranks, 1, 4096, NULL},
+        {"--threads", BENCH_WHOLE, &out->threads, 1, 64, NULL},
         {"--size", BENCH_WHOLE, &size, 1, 32768, NULL},
         {"--pattern", BENCH_TEXT, &out->pattern, 0, 0, NULL},
         {"--method", BENCH_CHOICE, &method, 0, 0, methods},
@@ -136,6 +145,8 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
         {"--beta", BENCH_NUMBER, &out->beta, 0, 1, NULL},
         {"--scan", BENCH_NUMBER, &out->scan, 0, 1, NULL},
         {"--blend", BENCH_NUMBER, &out->blend, 0, 1, NULL},
+        {"--round", BENCH_NUMBER, &out->round, 0, 1, NULL},
+        {"--move", BENCH_NUMBER, &out->move, 0, 1, NULL},
         {"--help", BENCH_FLAG, &helps, 0, 0, NULL},
     };
     const bench_option_table table = {"combine", entries,

@@ -24,6 +24,7 @@
 
 typedef struct combine_options {
     int ranks;         /* of the plain tool */
+    int threads;       /* of a rank */
     int width, height; /* of the picture, in pixels; of --pattern FILE, told by
                           the files */
     const char *pattern; /* NULL: a cube's slabs; else the files' name */
@@ -35,13 +36,15 @@ typedef struct combine_options {
     bool whole;
     bool sizes_only; /* no pixels: messages of the right length */
     bool check;
-    bool rates; /* only measure one processor */
+    bool rates; /* only measure one rank's processors */
     bool json;
     int runs; /* of which the fastest counts */
     double azimuth, elevation, fill, cube;
     int grain;          /* of the pattern: pixels that are active together */
     double alpha, beta; /* seconds a message, seconds a byte: of the bound */
-    double scan, blend; /* seconds a pixel, of a simulated processor */
+    /* Seconds a pixel, of a simulated processor: to look at one, to lay one
+     * over another, to round one, and to move 16 bytes. */
+    double scan, blend, round, move;
     bool simulated;
 } combine_options;
 
@@ -125,7 +128,7 @@ snow_status combine_body(snow_comm *comm, void *user);
  * the exit code. */
 int combine_run(snow_comm *comm, combine_session *session);
 
-/* Measures what one processor takes for a pixel; the exit code. */
+/* Measures what the threads of a rank take for a pixel; the exit code. */
 int combine_rates(const combine_options *options);
 
 /* Prints the line; the exit code. */
@@ -145,7 +148,9 @@ typedef struct combine_gather {
 snow_status combine_gather_region(snow_combiner *combiner,
                                   combine_gather *state,
                                   const snow_image_region *region, int bits,
-                                  void *picture);
+                                  double round_seconds, void *picture);
+void combine_round_pixels(const float *pixels, int64_t floats,
+                          unsigned char *out);
 void combine_gather_free(snow_context *context, combine_gather *state);
 
 #endif

@@ -41,8 +41,8 @@ static snow_status allocate_packed(const snow_combiner *combiner,
     return status;
 }
 
-static void round_pixels(const float *pixels, int64_t floats,
-                         unsigned char *out) {
+void combine_round_pixels(const float *pixels, int64_t floats,
+                          unsigned char *out) {
     for (int64_t i = 0; i < floats; i++) {
         float value = pixels[i] * 255 + 0.5f;
         value = value > 0 ? value : 0;
@@ -64,7 +64,7 @@ static void pack_run(const snow_combiner *combiner, combine_gather *state,
     if (region->pixels) {
         const float *from = region->pixels + (first - region->first) * channels;
         if (state->packed_bytes == (size_t)channels)
-            round_pixels(from, count * channels, out);
+            combine_round_pixels(from, count * channels, out);
         else
             memcpy(out, from, (size_t)count * state->packed_bytes);
     }
@@ -116,15 +116,14 @@ static size_t pack_region(const snow_combiner *combiner, combine_gather *state,
 snow_status combine_gather_region(snow_combiner *combiner,
                                   combine_gather *state,
                                   const snow_image_region *region, int bits,
-                                  void *picture) {
+                                  double round_seconds, void *picture) {
     const snow_exchange_params *shape = &combiner->shape;
     const size_t pixel_bytes =
         (size_t)shape->channels * (bits == 8 ? 1 : sizeof(float));
     int64_t packed = 0;
     SNOW_TRY(allocate_packed(combiner, state, pixel_bytes));
     size_t runs = pack_region(combiner, state, region, &packed);
-    snow_comm_work(combiner->comm,
-                   (double)packed * combiner->exchange.order.blend_seconds);
+    snow_comm_work(combiner->comm, (double)packed * round_seconds);
     return snow_gather(combiner, shape->width, shape->height, state->runs, runs,
                        region->pixels ? state->packed : NULL, pixel_bytes,
                        picture);

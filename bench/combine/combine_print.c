@@ -26,7 +26,7 @@ static void put_setting(bench_line *out, const combine_options *options,
     bench_line_int(out, "ranks", result->ranks);
     bench_line_int(out, "nodes", result->hosts.nodes);
     bench_line_int(out, "rank_per_node", result->hosts.node_ranks);
-    bench_line_int(out, "threads", 1);
+    bench_line_int(out, "threads", options->threads);
     bench_line_int(out, "sim", options->simulated);
     bench_line_text(out, "method", method_name(result->given.method));
     bench_line_int(out, "rounds", result->given.rounds);

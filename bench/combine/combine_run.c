@@ -164,9 +164,11 @@ static snow_status run_once(rank_state *state, bool drawn,
         .grain = 1,
         .regions = options->regions,
         .whole = options->whole,
+        .threads = options->threads,
         .rehearsal = options->sizes_only ? &rehearsal : NULL,
         .scan_seconds = options->scan,
-        .blend_seconds = options->blend};
+        .blend_seconds = options->blend,
+        .move_seconds = options->move};
     if (drawn)
         SNOW_TRY(line_up(comm));
     const uint64_t bytes = comm->bytes_sent, messages = comm->messages_sent;
@@ -177,7 +179,7 @@ static snow_status run_once(rank_state *state, bool drawn,
     out->exchange_messages = (int64_t)(comm->messages_sent - messages);
     SNOW_TRY(combine_gather_region(state->combiner, &state->gather,
                                    &state->region, options->bits,
-                                   state->picture));
+                                   options->round, state->picture));
     const double end = snow_comm_seconds(comm);
     const snow_exchange_figures *given =
         snow_exchange_get_figures(state->combiner);

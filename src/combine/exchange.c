@@ -359,8 +359,8 @@ static double where_to_begin(const snow_combiner *combiner) {
 
 /* All of the local image, for one rank or to be counted. */
 static void await_all(snow_combiner *combiner) {
-    combiner->parts[0] =
-        (snow_part_to_send){whole_picture(combiner), SNOW_SHARE_NONE};
+    combiner->parts[0] = (snow_part_to_send){.part = whole_picture(combiner),
+                                             .share = SNOW_SHARE_NONE};
     combiner->exchange.awaited = 1;
 }
 

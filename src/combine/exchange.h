@@ -75,9 +75,9 @@ typedef struct snow_exchange_params {
     int count_groups;
     const snow_rehearsal *rehearsal; /* NULL: a real exchange */
     /* Seconds that a simulated processor takes (snow_comm_work) to examine a
-     * pixel of its local image, or to move 16 bytes of a gathered picture; and
-     * to composite a pixel, or to round it to 8 bits. */
-    double scan_seconds, blend_seconds;
+     * pixel of its local image, to composite one, and to move 16 bytes of a
+     * gathered picture. */
+    double scan_seconds, blend_seconds, move_seconds;
 } snow_exchange_params;
 
 /* This rank's region of the picture: pixels first .. first + count - 1; count

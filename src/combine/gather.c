@@ -363,9 +363,8 @@ static bool copy_child(snow_combiner *combiner, int child,
     const size_t length = (size_t)message_length(state, child);
     if (state->parent >= 0)
         return true;
-    /* Costs per byte as examining a pixel of four floats. */
     snow_comm_work(combiner->comm,
-                   (double)length / 16 * combiner->exchange.order.scan_seconds);
+                   (double)length / 16 * combiner->exchange.order.move_seconds);
     return !picture || copy_blocks(state, state->bytes + state->places[child],
                                    length, picture);
 }

@@ -26,6 +26,7 @@
 #define PIXELS_EACH (LANES / PIXELS_CHANNELS) /* pixels of a vector */
 #define PIXELS_FEW(bits) ((unsigned)(bits) & ((1u << PIXELS_EACH) - 1))
 #define PIXELS_AHEAD 256 /* floats */
+#define PIXELS_SPARSE 4  /* so few of 64 pixels take less time one by one */
 
 TARGET static uint64_t PIXELS_NAME(look)(const float *pixels, int count) {
     uint64_t bits = 0;
@@ -114,6 +115,17 @@ PIXELS_NAME(composite)(float *tile, const float *packed, uint64_t bits) {
     }
 #if PIXELS_LISTED
     uint32_t places[64 + 16];
+    if (V(popcount)(bits) <= PIXELS_SPARSE) {
+        for (int i = 1; i < PIXELS_EACH; i++)
+            places[i] = 64;
+        for (; bits; bits &= bits - 1, packed += PIXELS_CHANNELS) {
+            places[0] = (uint32_t)__builtin_ctzll(bits);
+            V(vec) front = VC(gather, PIXELS_CHANNELS)(tile, places);
+            front = PIXELS_COMPOSITE_OP(front, V(load)(packed));
+            VC(scatter, PIXELS_CHANNELS)(tile, places, front);
+        }
+        return packed;
+    }
     int count = PIXELS_NAME(list)(bits, 64, places);
     for (int i = 0; i < count; i += PIXELS_EACH) {
         const float *from = packed + i * PIXELS_CHANNELS;
@@ -186,6 +198,7 @@ static const snow_pixel_loops PIXELS_NAME(loops) = {
 #undef PIXELS_EACH
 #undef PIXELS_FEW
 #undef PIXELS_AHEAD
+#undef PIXELS_SPARSE
 #undef PIXELS_CHANNELS
 #undef PIXELS_SOME
 #undef PIXELS_COMPOSITE_OP

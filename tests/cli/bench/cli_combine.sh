@@ -18,6 +18,13 @@ prints 'exchange_bytes_max=49152 exchange_msgs_max=2 '
 run 0 "sizes only" "$TOOL" bench combine --ranks 4 --size 64 --runs 1 \
     --whole --method swap --sizes-only --json
 prints '"check": "none", .*"exchange_bytes_max": 49152, "exchange_msgs_max": 2,'
+# What a processor takes, on the region of one of so many ranks.
+run 0 "rates" "$TOOL" bench combine --rates --ranks 3 --size 64 --runs 1 \
+    --threads 2
+prints '^ranks=3 image=64 .*threads=2 scan_ns=[0-9.]+ .*move_ns=[0-9.]+ .*over_copy='
+run 0 "threads of ranks" "$TOOL" bench combine --ranks 3 --size 192 --runs 1 \
+    --threads 3 --check
+prints '^ranks=3 .*threads=3 .* check=ok'
 run 2 "no such method" "$TOOL" bench combine --method shell
 says "this value is not possible: 'shell'"
 run 2 "no such option" "$TOOL" bench combine --rank 3
