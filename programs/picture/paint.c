@@ -3,10 +3,15 @@
 #include "movie/movie_encoder.h"
 #include "run/log.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #define DARK (20 / 255.0)
+
+/* Parts of a colour have at least so much room above and below, so that no
+ * rounding makes a clear pixel opaque. */
+#define ROOM (1 / 16.0F)
 
 /* Whether a file of this name holds values, not colours. */
 static bool keeps_values(const char *path) {
@@ -59,14 +64,50 @@ int paint_copy(const options *opts, snow_context *context,
     return CONTINUE;
 }
 
-int paint_values(const options *opts, snow_context *context,
+static bool is_clear(const options *opts) {
+    const color_value *color = &opts->background;
+    return mode_is_projection(opts->mode) && !color->given &&
+           !color->automatic && !keeps_values(opts->output);
+}
+
+/* The least opacity with which a colour can be laid over the lowest one. */
+static float opacity_of(float color, float low) {
+    float room = color > low ? 1 - low : low;
+    return fminf(fabsf(color - low) / fmaxf(room, ROOM), 1);
+}
+
+/* Takes the lowest colour out of a premultiplied pixel: over that colour it is
+ * what it was. */
+static void clear_pixel(float *pixel, int parts, const double low[3]) {
+    const float cover = pixel[parts];
+    float opacity = 0;
+    for (int c = 0; c < parts && cover > 0; c++)
+        opacity = fmaxf(opacity, opacity_of(pixel[c] / cover, (float)low[c]));
+    pixel[parts] = opacity * cover;
+    for (int c = 0; c < parts; c++) {
+        float left = pixel[c] - (cover - pixel[parts]) * (float)low[c];
+        pixel[c] = fminf(fmaxf(left, 0), pixel[parts]);
+    }
+}
+
+/* A projection hits something everywhere in the volume's box: without a
+ * background its lowest value is clear, and the box is not seen. */
+static void clear_lowest(const snow_transfer *transfer, snow_image *image) {
+    const int channels = snow_image_channels(image);
+    const size_t count =
+        (size_t)snow_image_width(image) * (size_t)snow_image_height(image);
+    float *at = snow_image_pixels(image);
+    double ends[2], low[4];
+    snow_transfer_domain(transfer, &ends[0], &ends[1]);
+    snow_transfer_evaluate(transfer, ends[0], low);
+    for (size_t n = 0; n < count; n++, at += channels)
+        clear_pixel(at, channels - 1, low);
+}
+
+static int paint(const options *opts, snow_context *context,
                  const snow_transfer *transfer, bool movie, snow_image **image,
                  paint_given *given) {
     snow_image *painted = NULL;
-    *given = (paint_given){.words = ""};
-    if (!*image || snow_image_channels(*image) != 1 ||
-        keeps_values(opts->output))
-        return CONTINUE;
     int done =
         paint_copy(opts, context, transfer, movie, *image, &painted, given);
     if (done != CONTINUE)
@@ -74,4 +115,18 @@ int paint_values(const options *opts, snow_context *context,
     snow_image_free(*image);
     *image = painted;
     return CONTINUE;
+}
+
+int paint_values(const options *opts, snow_context *context,
+                 const snow_transfer *transfer, bool movie, snow_image **image,
+                 paint_given *given) {
+    int done = CONTINUE;
+    *given = (paint_given){.words = ""};
+    if (!*image || keeps_values(opts->output))
+        return CONTINUE;
+    if (snow_image_channels(*image) == 1)
+        done = paint(opts, context, transfer, movie, image, given);
+    if (done == CONTINUE && is_clear(opts))
+        clear_lowest(transfer, *image);
+    return done;
 }

@@ -70,6 +70,9 @@ static void warn_empty(const render_state *s, snow_image *image) {
         say("note: the picture is empty: no voxel has an opacity above the "
             "threshold; snowglass info prints the range of values, --opacity "
             "sets which are visible");
+    else if (mode != SNOW_MODE_OVER && !s->opts->background.automatic)
+        say("note: the picture is empty: nothing but the lowest value is in "
+            "view, which --background none leaves out; give --range LO,HI");
     else
         say("note: the picture is empty: no visible voxel is in view; check "
             "--target, --position, --zoom and --clip");

@@ -8,6 +8,7 @@ try:
 except ImportError as missing:
     print("skip  ", missing)
     sys.exit(77)
+import itertools
 import json
 import shutil
 import struct
@@ -143,4 +144,28 @@ if ".webp" in outputs and features.check("webp_anim"):
             same(f"frame {n} {back}", a, b)
         if whole != 292:  # 7 / 24 s
             oracle.fail("animation", f"{whole} ms")
+# A projection without a background: over its lowest colour it is the picture,
+# and the lowest value is clear.
+ball = np.indices((20, 22, 24)) - np.array([9.5, 10.5, 11.5])[:, None, None, None]
+ball = np.maximum(0, 200 - 25 * np.sqrt((ball ** 2).sum(0))).astype("u1")
+for mode, (colors, low) in itertools.product(
+        ("mip", "minip", "mean", "sum"),
+        (("grey", (0, 0, 0)), ("grey_r", (255, 255, 255)), ("viridis", (68, 1, 84)))):
+    look = ("-m", mode, "-c", colors, "--azimuth", "30", "--elevation", "20",
+            "--no-labels", "-s", "90x80", "-y")
+    np.save("ball.npy", 255 - ball if mode == "minip" else ball)
+    for name, back in (("clear.png", "none"), ("solid.png", "#%02x%02x%02x" % low)):
+        subprocess.run([oracle.TOOL, "render", "-q", "ball.npy", "-o", name,
+                        "--background", back, *look], check=True)
+    clear = Image.open("clear.png").convert("RGBA")
+    laid = Image.new("RGBA", clear.size, low)
+    laid.alpha_composite(clear)
+    solid = np.asarray(Image.open("solid.png").convert("RGB")).astype(int)
+    apart = np.abs(np.asarray(laid.convert("RGB")) - solid).max()
+    alpha = np.asarray(clear)[..., 3]
+    oracle.checked += 1
+    if apart > 1 or (alpha[np.abs(solid - low).max(-1) == 0] > 8).any():
+        oracle.fail(f"a clear {mode} in {colors}", f"is off by {apart}, or opaque")
+    if mode in ("mip", "mean") and not 0.05 < (alpha > 100).mean() < 0.9:
+        oracle.fail(f"a clear {mode} in {colors}", "shows no ball, or a box")
 oracle.finish()
