@@ -6,6 +6,7 @@
 #include "options/config.h"
 #include "picture/annotations.h"
 #include "picture/channels.h"
+#include "picture/layers.h"
 #include "picture/outputs.h"
 #include "picture/render_stats.h"
 #include "picture/show.h"
@@ -36,6 +37,7 @@ typedef struct slice_work {
     char *cut;            /* its voxels, if all came through a pipe */
     channel_set channels; /* of colours, the first of which it is */
     snow_transfer *transfer;
+    layers layers; /* that lie over it */
     snow_image *image;
     snow_settings settings;
     render_times times;
@@ -257,6 +259,9 @@ static snow_status draw(slice_work *w) {
                                    &w->settings, &w->image);
     if (status == SNOW_STATUS_OK && w->transfer && w->channels.list.count)
         status = add_channels(w);
+    if (status == SNOW_STATUS_OK)
+        status = layers_lay_slice(&w->opts, &w->layers, 0, &w->view,
+                                  &w->settings, w->context, &w->image);
     w->frame = seconds_now() - begin;
     return status;
 }
@@ -327,6 +332,8 @@ static int make_picture(slice_work *w) {
     w->times.read = seconds_now() - begin;
     if (done == CONTINUE && has_colors(w))
         done = open_colors(w);
+    if (done == CONTINUE)
+        done = layers_open(opts, w->context, w->volume, &w->layers);
     w->times.look = seconds_now() - begin - w->times.read;
     if (done != CONTINUE)
         return done;
@@ -378,9 +385,14 @@ static void report(const slice_work *w) {
 
 /* Letters stay at the edges: a slice fills its picture. */
 static snow_status make_overlay(slice_work *w, snow_overlay **out) {
+    const snow_transfer *labels = w->layers.transfer;
     picture_annotations annotations = {
-        &w->opts, *snow_volume_get_info(w->volume), w->view, w->transfer,
-        {0, 0},   w->transfer ? &w->channels : NULL};
+        &w->opts,
+        *snow_volume_get_info(w->volume),
+        w->view,
+        labels && snow_transfer_label(labels, 0) ? labels : w->transfer,
+        {0, 0},
+        w->transfer ? &w->channels : NULL};
     annotations_find_unit(&w->opts, w->volume, false, &annotations.info);
     return annotations_make(&annotations, 0, -1, NULL, w->context, out);
 }
@@ -493,6 +505,12 @@ static int check_request(slice_work *w) {
                           "for the nearest voxel",
                           opts->kernel);
     if (done == CONTINUE)
+        done = layers_check(opts);
+    if (done == CONTINUE && opts->overlay && !has_colors(w))
+        done = fail_usage("%s: a file of numbers holds one volume's values, "
+                          "without --overlay; name a .png",
+                          opts->output);
+    if (done == CONTINUE)
         done = open_context(opts, &w->context);
     if (done != CONTINUE)
         return done;
@@ -530,6 +548,7 @@ int cmd_slice(const options *opts) {
         w.opts.size[0] = w.opts.size[1] = 0;
     int done = run_stages(&w);
     snow_image_free(w.image);
+    layers_close(&w.layers);
     snow_transfer_free(w.transfer);
     snow_volume_close(w.volume);
     channels_close(&w.channels);

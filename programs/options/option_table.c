@@ -32,6 +32,7 @@ enum {
     TF = VERB_TF,
     SLICE = VERB_SLICE,
     FILED = WRITTEN | SLICE,      /* all verbs whose pictures are files */
+    OVERLAID = FILED | SERVE,     /* all verbs that draw overlays */
     PICTURE = RENDER | SLICE,     /* all verbs that make pictures */
     LOOKED = PICTURE | VERB_INFO, /* all verbs that use a look */
     INPUT = LOOKED | CONVERT,     /* all verbs that read a volume */
@@ -308,19 +309,19 @@ const option_row option_table[] = {
      0, 0, "",
      "names and colours of labels: a table of ITK-SNAP, FreeSurfer or 3D Slicer "
      "(default: the file's own, or chosen by number)"},
-    {"overlay", 0, "FILE", TOPIC_DATA, WRITTEN, read_text, FIELD(overlay), 0, 0,
+    {"overlay", 0, "FILE", TOPIC_DATA, OVERLAID, read_text, FIELD(overlay), 0, 0,
      "",
      "draw a second volume in the first, at its place in the world: a "
      "segmentation, in colours by label, or values, as of a PET over a CT; in "
      "mode over (default: none)"},
-    {"overlay-preset", 0, "NAME", TOPIC_DATA, WRITTEN, read_preset,
+    {"overlay-preset", 0, "NAME", TOPIC_DATA, OVERLAID, read_preset,
      FIELD(overlay_preset), 0, 0, "",
      "as --preset, of the overlay (default: from its histogram, or labels)"},
-    {"overlay-colormap", 0, "NAME", TOPIC_DATA, WRITTEN, read_colormap,
+    {"overlay-colormap", 0, "NAME", TOPIC_DATA, OVERLAID, read_colormap,
      FIELD(overlay_colormap), 0, 0, "", "as --colormap (default hot)"},
-    {"overlay-range", 0, "LO,HI|pLO,pHI|full", TOPIC_DATA, WRITTEN, read_range,
+    {"overlay-range", 0, "LO,HI|pLO,pHI|full", TOPIC_DATA, OVERLAID, read_range,
      FIELD(overlay_range), 0, 0, "", "as --range (default: from its histogram)"},
-    {"overlay-opacity", 0, "V:O,V:O", TOPIC_DATA, WRITTEN, read_points,
+    {"overlay-opacity", 0, "V:O,V:O", TOPIC_DATA, OVERLAID, read_points,
      FIELD(overlay_opacity), 0, 0, "",
      "as --opacity (default: from its histogram; 1 for labels)"},
     {"clip", 0, "A,B,C,D", TOPIC_DATA, INPUT, read_clip, FIELD(clip), 0, 0, "",

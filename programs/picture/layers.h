@@ -26,4 +26,12 @@ snow_status layers_set(const layers *l, const channel_set *c,
                        snow_frame *frame);
 void layers_close(layers *l);
 
+/* Lays its slice over the picture of a slice of the volume, which is replaced:
+ * with the opacities of --overlay-opacity, else with those of its look, of
+ * which the largest becomes 1/2. */
+snow_status layers_lay_slice(const options *opts, const layers *l,
+                             int64_t index, const snow_view *view,
+                             const snow_settings *settings,
+                             snow_context *context, snow_image **image);
+
 #endif

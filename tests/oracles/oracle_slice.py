@@ -259,6 +259,7 @@ check("a coronal one is as high as its slanted columns",
 path = nifti("b.nii", (VOXELS.astype(np.int32) - 1500).astype(np.int16),
              MATRIX, 4)
 flat = plane(VOXELS, 2, 5).astype(float) - 1500
+native = flat
 
 
 def same_colors(name, options, grey, alpha=None):
@@ -301,12 +302,78 @@ big = np.kron(steps, np.ones((4, 4)))
 same_colors("labels, enlarged, have no values in between",
             ("--tf", "labels.csv", "-s", "48x56"), big)
 
+# An overlay: labels half, or as asked, over the grey slice, by their nearest
+# voxels; values in their colours, with opacities linear between the points.
+grey = ramp(-1500, 2500)
+cells = np.zeros(VOXELS.shape, np.uint8)
+cells[2:7, 3:9, 4:8] = 1
+cells[7:10, 5:12, 2:7] = 2
+INKS = np.array([[0, 0, 0], [1, 0, 0], [0, 0.2, 1]])
+
+
+def nrrd(name, voxels, more=""):
+    """On the grid of b.nii, with x the other way."""
+    kind = {"u1": "uint8", "f4": "float"}[voxels.dtype.str[1:]]
+    head = (f"NRRD0004\ntype: {kind}\ndimension: 3\nsizes: 12 14 10\n"
+            "space: RAS\nspace directions: (-1.5,0,0) (0,1.5,0) (0,0,1.5)\n"
+            f"space origin: ({-20 + 11 * 1.5},31,7)\nendian: little\n"
+            f"{more}encoding: raw\n\n")
+    with open(name, "wb") as out:
+        out.write(head.encode() + voxels[::-1].tobytes(order="F"))
+
+
+def overlaid(name, options, inks, share):
+    done = run(path, "--bits", "16", "--no-labels", "--range", "-1500,2500",
+               "--overlay", *options, out="out.png")
+    made = share * inks + (1 - share) * grey[..., None]
+    opaque = np.ones(grey.shape + (1,))
+    np.save("wanted.npy", np.concatenate([made, opaque], -1).astype(np.float32))
+    other = subprocess.run([oracle.TOOL, "compare", "out.png", "wanted.npy",
+                            "--tolerance", "0.00005"], capture_output=True,
+                           text=True)
+    oracle.checked += 1
+    if done.returncode or other.returncode:
+        oracle.fail(name, done.stderr + other.stdout + other.stderr)
+
+
+nrrd("cells.nrrd", cells, "".join(
+    f"Segment{n}_LabelValue:={n + 1}\nSegment{n}_Color:={r} {g} {b}\n"
+    for n, (r, g, b) in enumerate(INKS[1:])))
+flat = plane(cells, 2, 5)
+seen = (flat > 0)[..., None]
+overlaid("labels over a slice", ("cells.nrrd",), INKS[flat], 0.5 * seen)
+overlaid("one of them", ("cells.nrrd", "--labels", "2"), INKS[flat],
+         0.5 * (flat == 2)[..., None])
+overlaid("as opaque as is asked",
+         ("cells.nrrd", "--overlay-opacity", "1:0.25,2:1"), INKS[flat],
+         np.array([0, 0.25, 1])[flat][..., None])
+both, once = 1 + cells % 2, grey
+nrrd("both.nrrd", both, "Segment0_LabelValue:=1\nSegment0_Color:=1 0 0\n"
+     "Segment1_LabelValue:=2\nSegment1_Color:=0 0.2 1\n")
+grey = np.kron(grey, np.ones((4, 4)))
+overlaid("enlarged, labels do not mix",
+         ("both.nrrd", "--overlay-opacity", "1:1,2:1", "-s", "48x56"),
+         INKS[np.kron(plane(both, 2, 5), np.ones((4, 4), int))], 1.0)
+grey = once
+dose = (random.random(VOXELS.shape) * 40).astype(np.float32)
+nrrd("dose.nrrd", dose)
+flat = plane(dose, 2, 5).astype(float)[..., None]
+overlaid("values over a slice",
+         ("dose.nrrd", "--overlay-colormap", "red", "--overlay-range", "10,30",
+          "--overlay-opacity", "10:0,30:0.8"),
+         np.clip((flat - 10) / 20, 0, 1) * [1, 0, 0],
+         np.clip((flat - 10) / 20, 0, 1) * 0.8)
+done = run(path, "--overlay", "cells.nrrd")
+oracle.checked += 1
+if done.returncode != 2 or "without --overlay" not in done.stderr:
+    oracle.fail("numbers with an overlay", "are not refused")
+
 # Values are those after slope and intercept.
 with open("b.nii", "r+b") as file:
     file.seek(112)
     file.write(struct.pack("<ff", 2.5, -1000))
 check("a slope", np.array_equal(values("b.nii", "--at", "5"),
-                                (2.5 * flat - 1000).astype(np.float32)))
+                                (2.5 * native - 1000).astype(np.float32)))
 
 # A crop counts from its own first voxel.
 check("a crop", np.array_equal(

@@ -147,9 +147,24 @@ run 0 "a label that is not there" "$TOOL" render w.nrrd --overlay seg.nrrd --lab
 check "is told" grep -q "seg.nrrd: no voxel has a label of --labels 7; there are 1, 3" "$ERR"
 echo '{"overlay": "seg.nrrd", "labels": "3"}' >o.json
 run 0 "a slice by its recipe" "$TOOL" slice w.nrrd --config o.json -o slice.png
-check "has no overlay" grep -q "note: the overlay .*seg.nrrd is not shown" "$ERR"
-run 0 "without" "$TOOL" slice w.nrrd -o plain.png -q
-check "and no label of it" cmp -s slice.png plain.png
+run 0 "by its options" "$TOOL" slice w.nrrd -o plain.png -q --overlay one.nrrd
+check "shows the label" cmp -s slice.png plain.png
+run 0 "figures by its recipe" "$TOOL" info w.nrrd --config o.json
+check "have no overlay" grep -q "note: the overlay .*seg.nrrd is not shown" "$ERR"
+for axis in axial x; do
+    run 0 "a slice across $axis" "$TOOL" slice w.nrrd -o by.png -y --axis $axis \
+        --overlay pet.nrrd --save-config by.json -v
+    command=$(sed -n 's/^snowglass: again: //p' "$ERR")
+    cp by.png first.png
+    rm by.png
+    eval "\"\$TOOL\" ${command#snowglass } -q"
+    check "its command gives it again" cmp -s first.png by.png
+    run 0 "by its configuration" "$TOOL" --config by.json -q -y
+    check "the same" cmp -s first.png by.png
+    "$TOOL" slice - --axis $axis --overlay pet.nrrd -o by.png -y -q <w.nrrd
+    check "through a pipe" cmp -s first.png by.png
+    rm first.png by.png by.json
+done
 
 refused 2 "a look of none" 'are of an overlay; give --overlay FILE too' \
     "$TOOL" render w.nrrd -o z.png --overlay-range 1,2
