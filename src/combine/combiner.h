@@ -111,6 +111,20 @@ snow_status snow_combiner_plan(snow_combiner *combiner,
 /* Collective. Allocates buffers for the borders of regions as they are now. */
 snow_status snow_combiner_fit(snow_combiner *combiner);
 
+/* --- parts.c ---
+
+ * How many threads share the work on so many pixels. */
+int snow_parts_workers(const snow_combiner *combiner, int64_t pixels);
+
+/* Writes the messages of the first `count` awaited parts, and counts them. */
+void snow_parts_write(snow_combiner *combiner, int count, int workers);
+
+/* After combiner->layers are made: gives every thread its places in them. */
+void snow_parts_copy_layers(snow_combiner *combiner);
+
+/* Composites and unpacks the layers of the last round, and counts it. */
+void snow_parts_composite(snow_combiner *combiner, snow_stretch region);
+
 /* --- counts.c ---
 
  * Whether counts came with the params; otherwise the local image is counted,

@@ -7,7 +7,6 @@
  * computing and sending overlap. The parts of the first round are sent as soon
  * as the caller has drawn them; the order of sending changes no bit. Pixels are
  * read and written once a round, packed; only the last round unpacks them. */
-#include "base/thread_pool.h"
 #include "combine/combiner.h"
 
 #include <string.h>
@@ -45,104 +44,11 @@ static snow_stretch whole_picture(const snow_combiner *combiner) {
     return (snow_stretch){0, (int64_t)order->width * order->height};
 }
 
-/* --- threads -------------------------------------------------------------- */
-
-/* Pixels that are worth waking a thread. */
-#define PIXELS_OF_THREAD 16384
-
-/* How many threads share the work on so many pixels. */
-static int workers_for(const snow_combiner *combiner, int64_t pixels) {
-    int64_t most = combiner->exchange.order.threads;
-    if (most > SNOW_COMBINE_THREADS)
-        most = SNOW_COMBINE_THREADS;
-    if (most > pixels / PIXELS_OF_THREAD)
-        most = pixels / PIXELS_OF_THREAD;
-    return most > 1 ? (int)most : 1;
-}
-
-/* Does items of work; none is skipped, since other ranks wait for all. */
-static void share_work(snow_combiner *combiner, int workers, int64_t items,
-                       snow_work_fn *work, void *job) {
-    snow_batch batch = {0};
-    snow_parallel_begin(combiner->comm->context, workers, items, work, job,
-                        &batch);
-    snow_parallel_end(combiner->comm->context, &batch);
-}
-
-/* Gives every thread its own places in the layers. */
-static void copy_layers(snow_combiner *combiner) {
-    const int workers = workers_for(combiner, INT64_MAX);
-    for (int i = 1; i < workers; i++)
-        memcpy(combiner->layers + i * combiner->layer_room, combiner->layers,
-               (size_t)combiner->exchange.layer_count *
-                   sizeof *combiner->layers);
-}
-
-/* Composites the layers of the last round (snow_active_merge). */
-static int64_t merge(const snow_combiner *combiner, int worker,
-                     snow_stretch part, uint64_t *words, float *out,
-                     bool packed, int64_t *laid) {
-    const snow_exchange_state *run = &combiner->exchange;
-    return snow_active_merge(combiner->loops,
-                             combiner->layers + worker * combiner->layer_room,
-                             run->layer_count, run->order.channels, part.first,
-                             part.last, words, out, packed, laid);
-}
-
-/* --- messages ------------------------------------------------------------- */
+/* --- rounds --------------------------------------------------------------- */
 
 static const snow_share *share_at(const snow_combiner *combiner, int index) {
     return &combiner->rounds.shares[index];
 }
-
-/* The mask of a part: parts that share a word of the picture have words of
- * their own. */
-static uint64_t *mask_of(const snow_combiner *combiner,
-                         const snow_part_to_send *what) {
-    const snow_exchange_state *run = &combiner->exchange;
-    const int index =
-        what->share == SNOW_SHARE_NONE
-            ? 0
-            : what->share - combiner->rounds.rounds[run->level].first_send;
-    return combiner->part + what->part.first / 64 + index;
-}
-
-/* Writes the message of an awaited part of this rank's combined image. */
-static void write_part(void *of, int64_t item, int worker) {
-    const snow_combiner *combiner = of;
-    const snow_exchange_state *run = &combiner->exchange;
-    const snow_exchange_params *order = &run->order;
-    snow_part_to_send *what = &combiner->parts[item];
-    const snow_stretch part = what->part;
-    uint64_t *words = mask_of(combiner, what);
-    float *pixels = order->rehearsal ? NULL : (float *)(void *)what->message;
-    if (run->level == 0)
-        what->active = snow_active_scan(combiner->loops, order, combiner->lines,
-                                        part.first, part.last, words, pixels,
-                                        &what->scanned);
-    else
-        what->active =
-            merge(combiner, worker, part, words, pixels, true, &what->laid);
-    what->bytes =
-        order->whole
-            ? (size_t)what->active * run->pixel_bytes
-            : snow_active_close(what->message, words, part.first, part.last,
-                                what->active, run->pixel_bytes);
-}
-
-/* Writes the messages of the first `count` awaited parts. */
-static void write_parts(snow_combiner *combiner, int count, int workers) {
-    snow_exchange_state *run = &combiner->exchange;
-    for (int i = 0; i < count; i++) {
-        snow_part_to_send *what = &combiner->parts[i];
-        what->message = combiner->out[run->level & 1].bytes + run->used;
-        run->used += snow_align(snow_active_room(
-            what->part.last - what->part.first, run->pixel_bytes));
-    }
-    share_work(combiner, workers, count, write_part, combiner);
-}
-
-/* --- rounds --------------------------------------------------------------- */
 
 /* The pixels that this rank holds before a round. */
 static snow_stretch held_before(const snow_combiner *combiner, int level) {
@@ -201,22 +107,6 @@ static void list_parts(snow_combiner *combiner) {
     }
 }
 
-/* What a part that is written took. */
-static void count_part(snow_combiner *combiner, const snow_part_to_send *what) {
-    const snow_exchange_params *order = &combiner->exchange.order;
-    snow_exchange_figures *figures = &combiner->figures;
-    if (combiner->exchange.level == 0) {
-        figures->active += what->active;
-        if (combiner->counted_bins)
-            snow_counts_add(combiner, what->part, mask_of(combiner, what));
-    }
-    figures->scanned += what->scanned;
-    figures->laid += what->laid;
-    snow_comm_work(combiner->comm,
-                   (double)what->scanned * order->scan_seconds +
-                       (double)what->laid * order->blend_seconds);
-}
-
 /* Sends a written part of what this rank holds to the owner of the new region,
  * or keeps it. */
 static snow_status send_part(snow_combiner *combiner,
@@ -226,7 +116,6 @@ static snow_status send_part(snow_combiner *combiner,
     const int position = what->share == SNOW_SHARE_NONE
                              ? combiner->rounds.rank_position
                              : share_at(combiner, what->share)->rank_position;
-    count_part(combiner, what);
     if (position == combiner->rounds.rank_position) {
         run->own = what->message;
         run->own_bytes = what->bytes;
@@ -308,43 +197,8 @@ static snow_status end_receives(snow_combiner *combiner) {
                 combiner->exchange.order.ranks[share->rank_position]);
         words += snow_active_words(part.first, part.last);
     }
-    copy_layers(combiner);
+    snow_parts_copy_layers(combiner);
     return SNOW_STATUS_OK;
-}
-
-/* A region that threads composite: so many words of its mask each time. */
-#define CHUNK_WORDS 128
-typedef struct region_job {
-    const snow_combiner *combiner;
-    snow_stretch region;
-    int64_t laid[SNOW_COMBINE_THREADS];
-} region_job;
-
-static void composite_chunk(void *of, int64_t item, int worker) {
-    region_job *job = of;
-    const snow_combiner *combiner = job->combiner;
-    const snow_exchange_params *order = &combiner->exchange.order;
-    const int64_t first = job->region.first / 64 * 64 + item * CHUNK_WORDS * 64;
-    const snow_stretch chunk =
-        overlap(job->region, (snow_stretch){first, first + CHUNK_WORDS * 64});
-    float *out =
-        combiner->region + (chunk.first - job->region.first) * order->channels;
-    merge(combiner, worker, chunk, combiner->part + item * CHUNK_WORDS, out,
-          false, &job->laid[worker]);
-}
-
-/* Composites and unpacks the layers of the last round. */
-static void composite_region(snow_combiner *combiner, snow_stretch region) {
-    region_job job = {combiner, region, {0}};
-    const int64_t words = snow_active_words(region.first, region.last);
-    share_work(combiner, workers_for(combiner, region.last - region.first),
-               (words + CHUNK_WORDS - 1) / CHUNK_WORDS, composite_chunk, &job);
-    int64_t laid = 0;
-    for (int i = 0; i < SNOW_COMBINE_THREADS; i++)
-        laid += job.laid[i];
-    combiner->figures.laid += laid;
-    snow_comm_work(combiner->comm,
-                   (double)laid * combiner->exchange.order.blend_seconds);
 }
 
 /* --- the exchange --------------------------------------------------------- */
@@ -412,7 +266,7 @@ static snow_status send_parts(snow_combiner *combiner, int count, int workers,
     clip_drawn(&run->order);
     if (!run->divided)
         return begin_rounds(combiner);
-    write_parts(combiner, count, workers);
+    snow_parts_write(combiner, count, workers);
     for (int i = 0; i < count; i++)
         SNOW_TRY(send_part(combiner, &combiner->parts[i]));
     run->awaited -= count;
@@ -441,7 +295,7 @@ static snow_status send_rest(snow_combiner *combiner, snow_rectangle drawn) {
     int64_t pixels = 0;
     for (int i = 0; i < run->awaited; i++)
         pixels += combiner->parts[i].part.last - combiner->parts[i].part.first;
-    const int workers = workers_for(combiner, pixels);
+    const int workers = snow_parts_workers(combiner, pixels);
     int step = workers > 1 ? run->awaited / 4 : 1;
     step = step > workers ? step : workers;
     while (run->awaited)
@@ -472,9 +326,9 @@ snow_status snow_exchange_end(snow_combiner *combiner, snow_rectangle drawn,
         run->layer_count = 1;
         open_layer(combiner, run->own, run->own_bytes, mine, combiner->words,
                    combiner->layers);
-        copy_layers(combiner);
+        snow_parts_copy_layers(combiner);
     }
-    composite_region(combiner, mine);
+    snow_parts_composite(combiner, mine);
     for (int i = 0; i < 2; i++) {
         snow_traffic *sent = &combiner->out[i];
         SNOW_TRY(

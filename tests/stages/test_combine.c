@@ -8,7 +8,7 @@
  * of n layers is thus off by less than 6 n 2^-25, in any order of laying. */
 #include "support/comm.h"
 
-#include "combine/exchange.h"
+#include "combine/combiner.h"
 #include "combine/rounds.h"
 
 #include <math.h>
@@ -564,11 +564,19 @@ static snow_status rehearse(snow_comm *comm, void *user) {
     snow_status status = SNOW_STATUS_OK;
     uint64_t sent[2] = {0};
     int64_t laid[2] = {0};
+    bool untouched = true;
     snow_image_region region;
     status = snow_exchange(combiner, &order, &region); /* agrees on memory */
     for (int turn = 0; turn < 2 && status == SNOW_STATUS_OK; turn++) {
         sent[turn] = comm->bytes_sent;
+        /* What no exchange may write in a rehearsal. */
+        const size_t bytes = turn ? (size_t)region.count * 16 : 0;
+        if (bytes)
+            memset(combiner->region, 0xAB, bytes);
         status = snow_exchange(combiner, &order, &region);
+        for (size_t n = 0; n < bytes; n++)
+            untouched =
+                untouched && ((unsigned char *)combiner->region)[n] == 0xAB;
         laid[turn] = snow_exchange_get_figures(combiner)->laid;
         order.rehearsal = &rehearsal;
         order.pixels = NULL;
@@ -579,6 +587,7 @@ static snow_status rehearse(snow_comm *comm, void *user) {
     SNOW_TRY(status);
     CHECK(sent[0] == sent[1]);
     CHECK(laid[0] == laid[1]);
+    CHECK(untouched);
     return SNOW_STATUS_OK;
 }
 
