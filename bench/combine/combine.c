@@ -52,6 +52,11 @@ static const char help[] =
     "  --fill X         part of a 32nd's footprint that is active (0.3)\n"
     "  --grain N        pixels that are active together (1)\n"
     "\n"
+    "  --profile FILE   of bench frame --profile, with a line for each rank: "
+    "what\n"
+    "                   simulated ranks work besides, so that total is of a "
+    "whole\n"
+    "                   picture\n"
     "  --alpha SECONDS  of the bound: a message's latency (1.5e-6)\n"
     "  --beta SECONDS   for a byte (1 / 12.125e9)\n"
     "  --scan SECONDS   what a simulated processor takes to look at a pixel\n"
@@ -147,6 +152,7 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
         {"--blend", BENCH_NUMBER, &out->blend, 0, 1, NULL},
         {"--round", BENCH_NUMBER, &out->round, 0, 1, NULL},
         {"--move", BENCH_NUMBER, &out->move, 0, 1, NULL},
+        {"--profile", BENCH_TEXT, &out->profile, 0, 0, NULL},
         {"--help", BENCH_FLAG, &helps, 0, 0, NULL},
     };
     const bench_option_table table = {"combine", entries,

@@ -45,6 +45,7 @@ typedef struct combine_options {
     /* Seconds a pixel, of a simulated processor: to look at one, to lay one
      * over another, to round one, and to move 16 bytes. */
     double scan, blend, round, move;
+    const char *profile; /* of bench frame, or NULL */
     bool simulated;
 } combine_options;
 

@@ -24,6 +24,8 @@ typedef struct rank_state {
     void *picture; /* rank 0's */
     snow_image_region region;
     combine_gather gather;
+    double work[3]; /* of the profile: before the exchange, between it and the
+                       gather, and in that */
 } rank_state;
 
 static double cpu_seconds(void) {
@@ -79,6 +81,27 @@ static snow_status agree_size(rank_state *state) {
     return SNOW_STATUS_OK;
 }
 
+/* Local work: this rank's line of the profile, if there is one. */
+static snow_status read_profile(rank_state *state) {
+    const char *path = state->options.profile;
+    double *w = state->work;
+    int lines = 0;
+    char line[256];
+    FILE *in = path ? fopen(path, "r") : NULL;
+    while (in && fgets(line, sizeof line, in) &&
+           sscanf(line, "%lf %lf %lf", &w[0], &w[1], &w[2]) == 3 &&
+           ++lines <= state->comm->rank)
+        continue;
+    if (in)
+        fclose(in);
+    if (!path || lines == state->comm->rank + 1)
+        return SNOW_STATUS_OK;
+    return snow_fail(state->comm->context, SNOW_STATUS_BAD_INPUT,
+                     "%s: has no line of three numbers for rank %d; write it "
+                     "with bench frame --profile",
+                     path, state->comm->rank);
+}
+
 /* Local work: lists, and the local image's pattern. */
 static snow_status begin_pattern(rank_state *state) {
     snow_context *context = state->comm->context;
@@ -90,6 +113,7 @@ static snow_status begin_pattern(rank_state *state) {
         return SNOW_STATUS_NO_MEMORY;
     for (int i = 0; i < state->comm->ranks; i++)
         state->order[i] = i;
+    SNOW_TRY(read_profile(state));
     return open_pattern(state, state->comm->rank, state->spans,
                         &state->pattern);
 }
@@ -173,13 +197,16 @@ static snow_status run_once(rank_state *state, bool drawn,
         SNOW_TRY(line_up(comm));
     const uint64_t bytes = comm->bytes_sent, messages = comm->messages_sent;
     const double start = snow_comm_seconds(comm), cpu = cpu_seconds();
+    snow_comm_work(comm, state->work[0]);
     SNOW_TRY(snow_exchange(state->combiner, &order, &state->region));
+    snow_comm_work(comm, state->work[1]);
     const double between = snow_comm_seconds(comm), cpu_between = cpu_seconds();
     out->exchange_bytes = (int64_t)(comm->bytes_sent - bytes);
     out->exchange_messages = (int64_t)(comm->messages_sent - messages);
     SNOW_TRY(combine_gather_region(state->combiner, &state->gather,
                                    &state->region, options->bits,
                                    options->round, state->picture));
+    snow_comm_work(comm, state->work[2]);
     const double end = snow_comm_seconds(comm);
     const snow_exchange_figures *given =
         snow_exchange_get_figures(state->combiner);

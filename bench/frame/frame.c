@@ -49,6 +49,7 @@ static const char help[] =
     "of\n"
     "                   --network)\n"
     "  --beta SECONDS   for a byte (1 / 12.125e9, or that of --network)\n"
+    "  --profile FILE   write what each rank works, for bench combine\n"
     "  --json           print a JSON object\n"
     "\n"
     "voxels are the interesting ones of a rank's own part; their sum is "
@@ -79,7 +80,11 @@ static const char help[] =
     "turn_overlap_ms are of one picture of a turning volume, without and with\n"
     "overlap; hidden_ms of the latter was splatted where a rank else had "
     "waited.\n"
-    "splat_least are of each rank the fastest of --runs, and splat_uneven the\n"
+    "work_cpu is all processor time of a picture but the transport's, which "
+    "asks\n"
+    "while it waits.\n"
+    "splat_least and work_least are of each rank the fastest of --runs, and "
+    "splat_uneven the\n"
     "slowest rank's over the mean; with --cut measured after the last of the\n"
     "cuts_by_time, which are made in the first two thirds of --runs.\n"
     "Where these pictures differ in a bit, the exit code is 1.\n";
@@ -206,6 +211,7 @@ static int parse(int argc, char **argv, const snow_comm *comm, FILE *said,
         {"--beta", BENCH_NUMBER, &out->beta, 0, 1, NULL},
         {"--turn", BENCH_WHOLE, &out->turn, 2, 10000, NULL},
         {"--json", BENCH_FLAG, &out->json, 0, 0, NULL},
+        {"--profile", BENCH_TEXT, &out->profile, 0, 0, NULL},
         {"--help", BENCH_FLAG, &helps, 0, 0, NULL},
     };
     const bench_option_table table = {

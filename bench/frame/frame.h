@@ -10,6 +10,7 @@
 #ifndef SNOW_BENCH_FRAME_H
 #define SNOW_BENCH_FRAME_H
 
+#include "metered_comm.h"
 #include "simulated_network.h"
 
 #include <snowglass/snowglass.h>
@@ -39,6 +40,7 @@ typedef struct frame_options {
     int runs;  /* further pictures, of which the fastest counts */
     int turn;  /* pictures of a turning volume; 0: none */
     bool check, no_check, json;
+    const char *profile;  /* a file for what each rank works, or NULL */
     double alpha, beta;   /* seconds a message, a byte, of the bound; below 0:
                              those of the network */
     bool simulated;       /* whether `network` is, and time with it */
@@ -65,6 +67,7 @@ typedef enum frame_stage {
     FRAME_GATHER_CPU,
     FRAME_TOTAL_CPU,
     FRAME_FIRST_CPU,
+    FRAME_WORK_CPU, /* of a later picture, beside the transport's */
     FRAME_STAGES
 } frame_stage;
 
@@ -94,6 +97,7 @@ typedef struct frame_result {
     /* Processor time of local images after the last cut by time, if there is
      * one: medians of the pictures, of the slowest rank and in the mean. */
     double splat_most, splat_mean;
+    double work_most, work_mean; /* the same of all work on a picture */
     int cuts;
     int64_t shown; /* pixels of the picture that are not transparent */
     bool checked;
@@ -129,8 +133,10 @@ typedef struct frame_rank {
     snow_frame *frame;
     snow_image *image; /* rank 0's */
     frame_figures mine, *all;
-    double *splats; /* processor time of local images, runs of each rank */
-    int cuts;       /* by time */
+    /* Processor time of runs of each rank: of local images, of all work. */
+    double *splats, *works;
+    bench_meter meter; /* of `comm`, unless that is simulated */
+    int cuts;          /* by time */
     int cut_before; /* the number of the run before which the last was made */
 } frame_rank;
 
@@ -139,6 +145,10 @@ snow_status frame_turn(frame_rank *rank, frame_result *out);
 
 /* A body for snow_comm_run_threads and the like; `user` is a frame_session. */
 snow_status frame_body(snow_comm *comm, void *user);
+
+/* A line for each rank: seconds of work before the exchange, between it and the
+ * gather, and in the gather.  False: it cannot be written. */
+bool frame_write_profile(const char *path, const frame_figures *all, int ranks);
 
 /* Prints the line; the exit code, SNOW_STATUS_FAILED for a wrong picture. */
 int frame_print(const frame_options *options, const frame_result *result);

@@ -51,6 +51,8 @@ static void put_counters(bench_line *out, const frame_result *result) {
         result->splat_mean > 0 ? result->splat_most / result->splat_mean : 1);
     bench_line_ms(out, "splat_least_ms", result->splat_most);
     bench_line_ms(out, "splat_least_mean_ms", result->splat_mean);
+    bench_line_ms(out, "work_least_ms", result->work_most);
+    bench_line_ms(out, "work_least_mean_ms", result->work_mean);
 }
 
 static void put_times(bench_line *out, const frame_result *result) {
@@ -63,6 +65,7 @@ static void put_times(bench_line *out, const frame_result *result) {
         [FRAME_SPLAT_CPU] = "splat_cpu", [FRAME_EXCHANGE_CPU] = "exchange_cpu",
         [FRAME_WARP_CPU] = "warp_cpu",   [FRAME_GATHER_CPU] = "gather_cpu",
         [FRAME_TOTAL_CPU] = "total_cpu", [FRAME_FIRST_CPU] = "first_cpu",
+        [FRAME_WORK_CPU] = "work_cpu",
     };
     for (int i = 0; i < FRAME_STAGES; i++) {
         char key[32];
@@ -106,6 +109,22 @@ static void put_projection(bench_line *out, const frame_options *options,
     if (options->simulated && result->checked && projected > 0)
         bench_line_number(out, "efficiency",
                           result->alone / (result->ranks * projected));
+}
+
+bool frame_write_profile(const char *path, const frame_figures *all,
+                         int ranks) {
+    FILE *out = fopen(path, "w");
+    if (!out)
+        return false;
+    for (int i = 0; i < ranks; i++) {
+        const double *s = all[i].seconds;
+        const double early = s[FRAME_TOTAL_CPU] - s[FRAME_EXCHANGE_CPU] -
+                             s[FRAME_WARP_CPU] - s[FRAME_GATHER_CPU];
+        fprintf(out, "%.9f %.9f %.9f\n", early, s[FRAME_WARP_CPU],
+                s[FRAME_GATHER_CPU]);
+    }
+    bool good = !ferror(out);
+    return fclose(out) == 0 && good;
 }
 
 static void put_turn(bench_line *out, const frame_result *result) {

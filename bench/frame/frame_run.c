@@ -18,6 +18,12 @@ static double cpu_seconds(const frame_rank *s) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+/* The same without what the transport took. */
+static double work_seconds(const frame_rank *s) {
+    return s->options->simulated ? snow_simulated_work(s->comm)
+                                 : cpu_seconds(s) - s->meter.inside;
+}
+
 /* --- before --------------------------------------------------------------- */
 
 static snow_status fill_view(frame_rank *s) {
@@ -48,9 +54,11 @@ static snow_status prepare(frame_rank *s) {
                                   .pixel_bits = 8,
                                   .turns = options->turn > 0};
     s->all = calloc((size_t)snow_comm_size(s->comm), sizeof *s->all);
-    s->splats = calloc((size_t)snow_comm_size(s->comm) * (size_t)options->runs,
-                       sizeof *s->splats);
-    if (!s->all || !s->splats)
+    const size_t figures =
+        (size_t)snow_comm_size(s->comm) * (size_t)options->runs;
+    s->splats = calloc(figures, sizeof *s->splats);
+    s->works = calloc(figures, sizeof *s->works);
+    if (!s->all || !s->splats || !s->works)
         return snow_context_fail(s->context, SNOW_STATUS_NO_MEMORY,
                                  "no memory for figures; close other programs");
     snow_status status = fill_view(s);
@@ -76,6 +84,7 @@ static void finish(frame_rank *s) {
     snow_volume_close(s->volume);
     free(s->all);
     free(s->splats);
+    free(s->works);
 }
 
 /* --- a picture ------------------------------------------------------------ */
@@ -127,11 +136,13 @@ static snow_status draw(frame_rank *s, bool first) {
         return status;
     snow_comm_sent(s->comm, &messages, &bytes);
     const double start = snow_comm_seconds(s->comm), cpu = cpu_seconds(s);
+    const double work = work_seconds(s);
     status = snow_ranks_render(s->frame, s->comm, s->volume, s->transfer,
                                &s->view, &s->settings, &s->how, &s->image);
     seconds[first ? FRAME_FIRST : FRAME_TOTAL] =
         snow_comm_seconds(s->comm) - start;
     seconds[first ? FRAME_FIRST_CPU : FRAME_TOTAL_CPU] = cpu_seconds(s) - cpu;
+    seconds[FRAME_WORK_CPU] = work_seconds(s) - work;
     snow_comm_sent(s->comm, &s->mine.messages, &s->mine.bytes);
     s->mine.messages -= messages;
     s->mine.bytes -= bytes;
@@ -203,28 +214,30 @@ static snow_status sum_up(frame_rank *s, frame_result *out) {
 /* What local images took, of all ranks. */
 static void note_splats(frame_rank *s, int number) {
     const int ranks = snow_comm_size(s->comm);
-    for (int i = 0; i < ranks; i++)
-        s->splats[i * s->options->runs + number] =
-            s->all[i].seconds[FRAME_SPLAT_CPU];
+    for (int i = 0; i < ranks; i++) {
+        const int place = i * s->options->runs + number;
+        s->splats[place] = s->all[i].seconds[FRAME_SPLAT_CPU];
+        s->works[place] = s->all[i].seconds[FRAME_WORK_CPU];
+    }
 }
 
 /* Ranks' least over the pictures since the last cut, but the first of them,
  * which encodes: noise would make some rank slow at every picture. */
-static void report_uneven(frame_rank *s, frame_result *out) {
+static void find_least(const frame_rank *s, const double *times,
+                       double *slowest, double *mean) {
     const int ranks = snow_comm_size(s->comm), runs = s->options->runs;
     const int first = s->cuts ? s->cut_before + 1 : 0;
     double most = 0, sum = 0;
     for (int i = 0; i < ranks && first < runs; i++) {
-        const double *row = s->splats + i * runs;
+        const double *row = times + i * runs;
         double least = row[first];
         for (int n = first + 1; n < runs; n++)
             least = row[n] < least ? row[n] : least;
         most = least > most ? least : most;
         sum += least;
     }
-    out->cuts = s->cuts;
-    out->splat_most = most;
-    out->splat_mean = sum / ranks;
+    *slowest = most;
+    *mean = sum / ranks;
 }
 
 /* Collective.  Parts may be cut anew by the time that pictures took; but the
@@ -242,6 +255,18 @@ static snow_status balance(frame_rank *s, int number) {
     return status;
 }
 
+/* What the ranks worked on the fastest picture so far. */
+static snow_status write_profile(frame_rank *s) {
+    const char *path = s->options->profile;
+    if (!path || snow_comm_rank(s->comm) ||
+        frame_write_profile(path, s->all, snow_comm_size(s->comm)))
+        return SNOW_STATUS_OK;
+    return snow_context_fail(s->context, SNOW_STATUS_FAILED,
+                             "%s: cannot be written; name a file in a folder "
+                             "that is yours",
+                             path);
+}
+
 /* Collective.  Of the later pictures the fastest counts. */
 static snow_status measure(frame_rank *s, frame_result *out) {
     snow_status status = draw(s, true);
@@ -256,11 +281,16 @@ static snow_status measure(frame_rank *s, frame_result *out) {
             note_splats(s, i);
         if (status == SNOW_STATUS_OK &&
             (i == 0 || i == s->cut_before + 1 ||
-             this.most[FRAME_TOTAL] < out->most[FRAME_TOTAL]))
+             this.most[FRAME_TOTAL] < out->most[FRAME_TOTAL])) {
             *out = this;
+            status = snow_comm_agree_status(s->comm, write_profile(s));
+        }
     }
-    if (status == SNOW_STATUS_OK)
-        report_uneven(s, out);
+    out->cuts = s->cuts;
+    if (status == SNOW_STATUS_OK) {
+        find_least(s, s->splats, &out->splat_most, &out->splat_mean);
+        find_least(s, s->works, &out->work_most, &out->work_mean);
+    }
     return status;
 }
 
@@ -339,28 +369,43 @@ static bool is_checked(const frame_rank *s) {
             snow_comm_size(s->comm) <= FRAME_CHECKED_RANKS);
 }
 
+/* All that is measured of a communicator's ranks. */
+static snow_status run_frame(frame_rank *s, frame_session *session) {
+    snow_comm *comm = s->comm;
+    frame_result result = {0};
+    snow_status status = snow_comm_agree_status(comm, prepare(s));
+    if (status == SNOW_STATUS_OK)
+        status = open_part(s);
+    if (status == SNOW_STATUS_OK)
+        status = measure(s, &result);
+    if (status == SNOW_STATUS_OK && s->options->turn)
+        status = frame_turn(s, &result);
+    if (status == SNOW_STATUS_OK) {
+        if (is_checked(s) && snow_comm_rank(comm) == 0)
+            status = compare(s, &result);
+        status = snow_comm_agree_status(comm, status);
+    }
+    if (status == SNOW_STATUS_OK && snow_comm_rank(comm) == 0)
+        session->result = result;
+    finish(s);
+    return status;
+}
+
 snow_status frame_body(snow_comm *comm, void *user) {
     frame_session *session = user;
-    frame_result result = {0};
     frame_rank s = {.options = session->options,
                     .comm = comm,
                     .context = snow_comm_context(comm),
                     .cpu_clock = session->threads ? CLOCK_THREAD_CPUTIME_ID
                                                   : CLOCK_PROCESS_CPUTIME_ID};
-    snow_status status = snow_comm_agree_status(comm, prepare(&s));
+    if (session->options->simulated)
+        return run_frame(&s, session);
+    s.meter = (bench_meter){.inner = comm, .clock = s.cpu_clock};
+    snow_status status =
+        snow_comm_agree_status(comm, bench_meter_new(&s.meter, &s.comm));
     if (status == SNOW_STATUS_OK)
-        status = open_part(&s);
-    if (status == SNOW_STATUS_OK)
-        status = measure(&s, &result);
-    if (status == SNOW_STATUS_OK && s.options->turn)
-        status = frame_turn(&s, &result);
-    if (status == SNOW_STATUS_OK) {
-        if (is_checked(&s) && snow_comm_rank(comm) == 0)
-            status = compare(&s, &result);
-        status = snow_comm_agree_status(comm, status);
-    }
-    if (status == SNOW_STATUS_OK && snow_comm_rank(comm) == 0)
-        session->result = result;
-    finish(&s);
+        status = run_frame(&s, session);
+    if (s.comm != comm)
+        snow_comm_free(s.comm);
     return status;
 }

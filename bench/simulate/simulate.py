@@ -1,19 +1,27 @@
 #!/usr/bin/env python3
-"""Combining on simulated clusters, beside what it is meant to reach.
+"""Combining on simulated clusters, and whole pictures, beside what they are meant
+to reach.
 
 usage: simulate.py [--quick | --long] [--build FOLDER] [--only WORD]
+                   [--tools FOLDER] [--write]
 
-Builds bench/combine/mpi_combine.c with SimGrid's smpicc out of the very sources of
-the library, writes the platforms, runs every case, and prints one line for
-each.  --quick leaves out what takes minutes, --long adds 4,096 nodes and large
-pictures; --only runs the cases whose name contains a word.  Exit status 1 when
-a target is missed, 77 when there is no smpicc.
+Builds bench/combine/mpi_combine.c with SimGrid's smpicc out of the very sources
+of the library, writes the platforms, runs every case, and prints one line for
+each.  --quick leaves out what takes minutes and what this machine's speed has a
+part in, --long adds 4,096 nodes and large pictures; --only runs the cases whose
+name contains a word.  Exit status 1 when a target is missed at assumed rates,
+77 when there is no smpicc.
 
-Simulated times are exactly repeatable: they do not depend on the machine that
-simulates, nor on its load.
+At assumed rates simulated times are exactly repeatable: they do not depend on
+the machine that simulates, nor on its load.  At measured rates computing takes
+what `snowglass bench combine --rates` of this run found on this machine, for all
+its processors; and whole pictures take what the ranks of `snowglass bench frame`
+worked.  Both need the tools of --tools (build/).  --write puts these tables into
+docs/measurements/combining.md.
 """
 import argparse
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -43,11 +51,16 @@ class Network:
         self.overhead, self.topology = overhead, topology
 
     def platform(self, nodes):
-        # A route is one link up and one down; in the fat tree two of each.
+        # A route is one link up and one down; in the fat tree two of each; in
+        # the dragonfly five within a group, and two more between groups.
         links, extra = 2, 'sharing_policy="SPLITDUPLEX"'
-        if self.topology:
+        if self.topology == "fat":
             links = 4
             extra += f' topology="FAT_TREE" topo_parameters="{fat(nodes)}"'
+        if self.topology == "dragonfly":
+            links = 5
+            extra += (f' topology="DRAGONFLY" '
+                      f'topo_parameters="{DRAGONFLIES[nodes]}"')
         return f"""<?xml version='1.0'?>
 <!DOCTYPE platform SYSTEM "https://simgrid.org/simgrid.dtd">
 <platform version="4.1">
@@ -64,9 +77,14 @@ def fat(nodes):
     return f"2;{below},{nodes // below};1,{below};1,1"
 
 
+# Groups, chassis, routers and nodes, with the links between them.
+DRAGONFLIES = {32: "2,4;2,2;4,1;2", 128: "4,4;2,4;8,1;2",
+               1024: "8,8;4,4;16,1;2"}
+
 NETWORKS = {
     "flat": Network(12.5e9, 1e-6, 3e-7),          # 100 Gb/s crossbar
     "fat tree": Network(12.5e9, 1e-6, 3e-7, "fat"),
+    "dragonfly": Network(12.5e9, 1e-6, 3e-7, "dragonfly"),
     "10 Gb/s": Network(1.25e9, 20e-6, 5e-6),      # Ethernet, TCP
     "SP2": Network(35e6, 40e-6, 10e-6),           # the paper's machine
 }
@@ -140,17 +158,21 @@ def cases():
                                 (1024, 6.6, "long")):
         yield Case(f"large-{ranks}", "flat", ranks, 4096, OURS, target=target,
                    tier=tier)
-    # What one processor of the machine where docs/combining.md was written takes:
-    # `snowglass bench combine --rates --size 1024`.
-    rates = ["--scan", "0.93e-9", "--blend", "2.1e-9"]
-    for ranks in (32, 128):
-        yield Case(f"own-rates-{ranks}", "flat", ranks, 1024, OURS + rates,
-                   tier="usual")
     yield Case("paper-4096", "flat", 4096, 1024, PAPER, "exchange_ms",
                tier="long")
     yield Case("ours-4096", "flat", 4096, 1024, OURS, target=0.42, ratio=1.7,
                factor=(40, "paper-4096"), tier="long")
 
+
+# What a picture of 1024x1024 is to take at measured rates.
+AIMS = {32: 0.60, 128: 0.48, 1024: 0.41, 4096: 0.42}
+
+# Whole pictures: a built-in volume, and the ranks that predictions are made for
+# and that real ones are compared with.
+PHANTOM = ["phantom", "head", "--dims", "256x256x256"]
+PICTURE = ["--size", "1024", "--azimuth", "20", "--elevation", "20",
+           "--no-check", "--json"]
+PREDICTED, REAL = (1, 2, 4, 8, 32), (1, 2, 4)
 
 TIERS = {"quick": ["quick"], "usual": ["quick", "usual"],
          "long": ["quick", "usual", "long"]}
@@ -202,13 +224,169 @@ def run(program, folder, case):
                "--json", "--size", str(case.size), *bound, *case.options]
     if "--check" not in case.options:
         command.append("--sizes-only")
-    done = subprocess.run(command, capture_output=True, text=True)
-    lines = [line for line in done.stdout.splitlines()
-             if line.startswith("{")]
+    return said(command)
+
+
+# --- this machine -------------------------------------------------------------
+
+
+def said(command, **more):
+    """The JSON object that a command prints."""
+    done = subprocess.run(command, capture_output=True, text=True, **more)
+    lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
     if done.returncode or len(lines) != 1:
-        sys.exit(f"{case.name} failed:\n{done.stdout}{done.stderr}")
+        sys.exit(f"{' '.join(command)} failed:\n{done.stdout}{done.stderr}")
     return json.loads(lines[0])
 
+
+def processors():
+    return len(os.sched_getaffinity(0))
+
+
+def rates(tools, ranks, size):
+    """What the threads of one of so many ranks take on this machine; rounding
+    and moving have one thread."""
+    command = [str(tools / "snowglass-bench"), "combine", "--rates", "--json",
+               "--ranks", str(ranks), "--size", str(size), "--runs", "12"]
+    found = said(command + ["--threads", str(processors())])
+    alone = found if processors() == 1 else said(command)
+    return found | {key: alone[key] for key in ("round_ns", "move_ns")}
+
+
+def as_options(found):
+    return [word for key in ("scan", "blend", "round", "move")
+            for word in (f"--{key}", f"{found[key + '_ns'] * 1e-9:.4g}")]
+
+
+def table(heads, rows):
+    return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in
+                     [heads, ["---:"] * len(heads), *rows])
+
+
+def measured_rates(options, program, tiers):
+    """Table: combining at the rates that are measured now."""
+    rows = []
+    for ranks, aim in AIMS.items():
+        if ranks > 1024 and "long" not in tiers:
+            continue
+        found = rates(options.tools, ranks, 1024)
+        row = [f"{ranks:,}"]
+        row += [f"{found[key]:.2f}" for key in ("scan_ns", "blend_ns",
+                                                "round_ns", "move_ns")]
+        row += [f"{found['over_copy']:.2f}"]
+        for network in ("flat", "fat tree", "dragonfly"):
+            if network != "flat" and (ranks > 128 and "long" not in tiers
+                                      or ranks > 1024):
+                row.append("-")
+                continue
+            result = run(program, options.build, Case(
+                f"measured-{ranks}", network, ranks, 1024,
+                OURS + as_options(found)))
+            if network == "flat":
+                row += [f"{result['exchange_ms']:.3f}",
+                        f"{result['gather_ms']:.3f}"]
+            row.append(f"{result['total_ms']:.3f}")
+        rows.append(row[:6] + row[6:8] + [f"**{row[8]}**", aim] + row[9:])
+    return table(["nodes", "scan", "composite", "round", "move 16 bytes",
+                  "over a copy", "exchange", "gather", "picture", "aim",
+                  "fat tree", "dragonfly"], rows)
+
+
+# --- whole pictures -----------------------------------------------------------
+
+# More ranks than processors, and in containers as root.
+MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+       "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMP_NUM_THREADS": "1",
+       "OMPI_MCA_hwloc_base_binding_policy": "none"}
+
+
+def frame(options, ranks, runs, *more, real=False):
+    """Figures of one whole picture, by simulated ranks or by those of MPI."""
+    tools, volume = options.tools.resolve(), options.build / "head.nrrd"
+    if not volume.exists():
+        subprocess.run([str(tools / "snowglass"), *PHANTOM, "-q", "-o",
+                        str(volume)], check=True)
+    if real:
+        launcher = shutil.which("mpirun.openmpi") or "mpirun"
+        program = [launcher, "-n", str(ranks), str(tools / "snowglass-mpi"),
+                   "bench", "frame"]
+    else:
+        program = [str(tools / "snowglass-bench"), "frame", "--ranks",
+                   str(ranks), "--network", "1e-6,12.5e9,3e-7"]
+    return said([*program, str(volume), *PICTURE, "--runs", str(runs), *more],
+                env={**os.environ, **MPI})
+
+
+def least(results, key):
+    return min(result[key] for result in results)
+
+
+def whole_pictures(options, runs=12, turns=3):
+    """Table: what ranks are predicted to work, and what real ones do, in turn."""
+    rows, alone = [], None
+    for ranks in PREDICTED:
+        simulated, real = [], []
+        for _ in range(turns):
+            simulated.append(frame(options, ranks, runs))
+            if ranks in REAL:
+                real.append(frame(options, ranks, runs, real=True))
+        slowest, mean = (least(simulated, f"work_least{key}_ms")
+                         for key in ("", "_mean"))
+        projected = least(simulated, "projected_ms")
+        alone = alone or projected
+        row = [ranks, f"{least(simulated, 'splat_least_ms'):.2f}",
+               f"{slowest:.2f}", f"{mean:.2f}"]
+        if real:
+            found = least(real, "work_least_mean_ms")
+            row += [f"{least(real, 'work_least_ms'):.2f}", f"{found:.2f}",
+                    f"{100 * (mean / found - 1):+.0f} %"]
+        else:
+            row += ["", "", ""]
+        rows.append(row + [f"{projected:.2f}",
+                           f"{100 * alone / projected / ranks:.0f} %"])
+    return table(["ranks", "slowest splat", "slowest rank, predicted", "mean",
+                  "slowest, MPI", "mean", "prediction", "picture",
+                  "efficiency"], rows)
+
+
+def profiles(options, program):
+    """Table: whole pictures on simulated networks, by a profile of real work."""
+    rows = []
+    for ranks in (32, 128):
+        profile = options.build / f"profile{ranks}"
+        frame(options, ranks, 6, "--profile", str(profile.resolve()))
+        work = [float(line.split()[0])
+                for line in profile.read_text().splitlines()]
+        row = [ranks, f"{1e3 * max(work):.2f}"]
+        found = rates(options.tools, ranks, 1024)
+        for network in ("flat", "fat tree", "dragonfly"):
+            row.append(f"""{run(program, options.build, Case(
+                f"whole-{ranks}", network, ranks, 1024,
+                as_options(found) + ["--profile", str(profile.resolve())]
+                ))['total_ms']:.2f}""")
+        rows.append(row)
+    return table(["ranks", "slowest splat and what precedes it", "crossbar",
+                  "fat tree", "dragonfly"], rows)
+
+
+def of_this_machine(options, program, tiers):
+    """Tables in whose figures this machine has a part."""
+    makers = {"measured": lambda: measured_rates(options, program, tiers),
+              "whole": lambda: whole_pictures(options),
+              "profiles": lambda: profiles(options, program)}
+    for name, make in makers.items():
+        if options.only not in name:
+            continue
+        text = make()
+        print(f"\n{name}\n{text}", flush=True)
+        if options.write:
+            kept = options.build / f"{name}.md"
+            kept.write_text(text + "\n")
+            subprocess.run([str(ROOT / "scripts" / "measurements"), "--from",
+                            f"{name}={kept}", name], check=True)
+
+
+# --- output -------------------------------------------------------------------
 
 HEADINGS = ("case", "network", "nodes", "image", "k", "exchange", "gather",
             "total", "bound", "ratio", "target", "times", "")
@@ -241,14 +419,16 @@ def main():
     tier.add_argument("--long", action="store_true")
     parser.add_argument("--build", type=Path,
                         default=ROOT / "build" / "simulate")
+    parser.add_argument("--tools", type=Path, default=ROOT / "build")
     parser.add_argument("--only", default="")
+    parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
     if not shutil.which("smpicc"):
         print("there is no smpicc: install libsimgrid-dev")
         return 77
     name = "quick" if options.quick else "long" if options.long else "usual"
     program = build(options.build)
-    print("simulated milliseconds; in-order: pieces as they are before a warp")
+    print("simulated milliseconds at assumed rates; in-order: pieces as they are before a warp")
     print(LAYOUT.format(*HEADINGS))
     missed, slow = [], {}
     for case in cases():
@@ -265,6 +445,8 @@ def main():
             f"{result['total_ms']:.4f}", f"{result['bound_ms']:.4f}",
             f"{result['ratio']:.2f}", target, times,
             "" if good else "MISSED"), flush=True)
+    if not options.quick:
+        of_this_machine(options, program, TIERS[name])
     if missed:
         print("missed:", *missed)
     return 1 if missed else 0

@@ -36,7 +36,7 @@ def read(name):
 
 stages = """read encode splat exchange warp gather total first read_cpu
     encode_cpu splat_cpu exchange_cpu warp_cpu gather_cpu total_cpu
-    first_cpu""".split()
+    first_cpu work_cpu""".split()
 counters = """bytes_sent_max bytes_sent_sum msgs_max active_px_max voxels_max voxels_sum
     slices_min""".split()
 told = {name: read(name) for name in ("r1", "r3", "r5", "again", "equal",
@@ -56,6 +56,10 @@ for name, t in told.items():
     assert t["voxels_sum"] == t["voxels_whole"], name
     assert t["t1_ms"] > 0 and t["total_ms"] > 0 and t["first_ms"] > 0, t
     assert t["splat_cpu_ms"] > 0, t
+    # What a rank works is some of its processor time, waits being the rest.
+    assert 0 < t["work_cpu_mean_ms"] <= t["total_cpu_mean_ms"] + 1e-3, t
+    assert 0 < t["work_least_mean_ms"] <= t["work_cpu_mean_ms"] + 1e-3, t
+    assert t["work_least_mean_ms"] <= t["work_least_ms"] + 1e-6, t
     if ranks > 1:
         parts = sum(t[key + "_cpu_mean_ms"] for key in
                     ("splat", "exchange", "warp", "gather"))
@@ -156,4 +160,15 @@ a --beta x|this value is not possible: 'x'
 a --radix 4|only --combine radix has a radix
 a --check --no-check|leave out --check or '--no-check'
 END
+# What ranks work goes into bench combine, a line for each.
+run 0 "a profile" frame --ranks 3 --network 2e-6,1e10,1e-6 --profile work.txt
+check "of three ranks" [ "$(grep -cE '^([0-9.]+ ){2}[0-9.]+$' work.txt)" = 3 ]
+run 0 "with a profile" "$TOOL" bench combine --ranks 3 --size 64 --runs 1 \
+    --profile work.txt --check
+prints ' check=ok '
+run 3 "with too short a profile" "$TOOL" bench combine --ranks 4 --size 64 \
+    --profile work.txt
+says "rank 3: work.txt: has no line of three numbers for rank 3"
+run 1 "a profile in no folder" frame --ranks 2 --profile absent/work.txt
+says "rank 0: absent/work.txt: cannot be written"
 finish
