@@ -11,6 +11,8 @@
 #include "recipe_file.h"
 #include "run/log.h"
 
+#include <snowglass/recipe.h>
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -99,6 +101,10 @@ void answer_info(drawing *d, outbox *box) {
     json_object_set_new(tree, "colormaps", names_of(snow_colormap_name));
     json_object_set_new(tree, "tf", json_boolean(d->first.tf != NULL));
     json_object_set_new(tree, "mask", json_boolean(d->first.mask != NULL));
+    json_object_set_new(tree, "overlay",
+                        d->first.overlay
+                            ? json_string(base_of(d->first.overlay))
+                            : json_null());
     json_object_set_new(tree, "labels",
                         d->first.labels ? json_string(d->first.labels)
                                         : json_null());
@@ -126,6 +132,14 @@ static json_t *points_of(const snow_opacity_point *points, size_t count) {
     return list;
 }
 
+/* Colours as "#rrggbb". */
+static void write_color(const double rgba[4], char text[8]) {
+    snprintf(text, 8, "#%02x%02x%02x",
+             (unsigned)lround(255 * fmin(fmax(rgba[0], 0), 1)),
+             (unsigned)lround(255 * fmin(fmax(rgba[1], 0), 1)),
+             (unsigned)lround(255 * fmin(fmax(rgba[2], 0), 1)));
+}
+
 /* Colours at even steps of the range, "#rrggbb". */
 static json_t *strip_of(const snow_transfer *transfer, double low,
                         double high) {
@@ -134,13 +148,41 @@ static json_t *strip_of(const snow_transfer *transfer, double low,
         double rgba[4], at = low + (high - low) * i / (STRIP_COLORS - 1);
         char text[8];
         snow_transfer_evaluate(transfer, at, rgba);
-        snprintf(text, sizeof text, "#%02x%02x%02x",
-                 (unsigned)lround(255 * fmin(fmax(rgba[0], 0), 1)),
-                 (unsigned)lround(255 * fmin(fmax(rgba[1], 0), 1)),
-                 (unsigned)lround(255 * fmin(fmax(rgba[2], 0), 1)));
+        write_color(rgba, text);
         json_array_append_new(list, json_string(text));
     }
     return list;
+}
+
+/* [[3, "liver", "#b25a00", 1], ...]: those that a recipe has opacities for,
+ * with their opacity, but not the background. */
+static json_t *labels_of(const snow_transfer *transfer) {
+    json_t *list = json_array();
+    const snow_label *label;
+    for (size_t i = 0; i < SNOW_RECIPE_POINTS_MAX &&
+                       (label = snow_transfer_label(transfer, i));
+         i++) {
+        double rgba[4];
+        char color[8];
+        if (!(label->value < 0 || label->value > 0 || *label->name))
+            continue;
+        snow_transfer_evaluate(transfer, label->value, rgba);
+        write_color(rgba, color);
+        json_array_append_new(list, json_pack("[f,s,s,f]", label->value,
+                                              label->name, color, rgba[3]));
+    }
+    return list;
+}
+
+/* Of the overlay that is drawn; else null. */
+static json_t *overlay_look(const drawing *d) {
+    const snow_transfer *transfer = d->state.layers.transfer;
+    double low, high;
+    if (!d->opts.overlay || !transfer)
+        return json_null();
+    snow_transfer_domain(transfer, &low, &high);
+    return json_pack("{s:f, s:f, s:o}", "low", low, "high", high, "labels",
+                     labels_of(transfer));
 }
 
 void answer_look(drawing *d, outbox *box) {
@@ -152,14 +194,15 @@ void answer_look(drawing *d, outbox *box) {
     snow_transfer_domain(transfer, &low, &high);
     put(box, 0, PARCEL_LOOK,
         json_pack(
-            "{s:s, s:f, s:f, s:I, s:o, s:o, s:o, s:s, s:b}", "t", "look", "low",
-            low, "high", high, "count", (json_int_t)look.opacity_count,
-            "opacity", points_of(look.opacities, look.opacity_count),
-            "gradient",
+            "{s:s, s:f, s:f, s:I, s:o, s:o, s:o, s:s, s:b, s:o, s:o}", "t",
+            "look", "low", low, "high", high, "count",
+            (json_int_t)look.opacity_count, "opacity",
+            points_of(look.opacities, look.opacity_count), "gradient",
             points_of(look.gradient_opacities, look.gradient_opacity_count),
             "strip", strip_of(transfer, low, high), "text",
             snow_transfer_description(transfer), "shaded",
-            d->state.settings.shade == SNOW_SHADE_PHONG));
+            d->state.settings.shade == SNOW_SHADE_PHONG, "labels",
+            labels_of(transfer), "overlay", overlay_look(d)));
 }
 
 void answer_figures(drawing *d, outbox *box) {

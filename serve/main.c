@@ -109,7 +109,8 @@ static int read_options(options *opts, int argc, char **argv) {
     if (strcmp(opts->operands[0], "-") == 0)
         return fail_usage("-: standard input can be read only once; give serve "
                           "a file");
-    return check_settings(opts);
+    done = layers_check(opts);
+    return done == CONTINUE ? check_settings(opts) : done;
 }
 
 /* The recipe that the page begins with. */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* What a page may change.  Paths, and how a raw file is read, are those of the
- * command line; the mask is switched. */
+ * command line; mask and overlay are switched. */
 static const char *const keys[] = {
     "size",
     "background",
@@ -58,7 +58,17 @@ static const char *const keys[] = {
     "clip",
     "time",
     "mask",
+    "overlay",
+    "overlay-preset",
+    "overlay-colormap",
+    "overlay-range",
+    "overlay-opacity",
 };
+
+const char *message_switches(size_t index) {
+    static const char *const names[] = {"mask", "overlay", NULL};
+    return names[index];
+}
 
 bool message_may_set(const char *key) {
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
@@ -124,10 +134,12 @@ static const char *read_set(message *m) {
             return "set: has a key that only the command line can set";
         if (strcmp(key, "size") == 0 && !is_small(value))
             return "set: a picture has 1 to 4096 pixels a side";
-        if (strcmp(key, "mask") == 0 && !json_is_null(value) &&
-            !json_is_true(value))
-            return "set: the mask is switched by null and true; only the "
-                   "command line names its file";
+    }
+    for (size_t i = 0; message_switches(i); i++) {
+        value = json_object_get(m->recipe, message_switches(i));
+        if (value && !json_is_null(value) && !json_is_true(value))
+            return "set: mask and overlay are switched by null and true; only "
+                   "the command line names their files";
     }
     return NULL;
 }

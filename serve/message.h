@@ -44,9 +44,12 @@ typedef struct message {
 const char *message_read(const char *text, size_t length, message *out);
 void message_free(message *m);
 
-/* Whether a page may set a key of the recipe: no value names a file, and that
- * of "mask" is null or true, which stands for the file of the command line. */
+/* Whether a page may set a key of the recipe: no value names a file. */
 bool message_may_set(const char *key);
+
+/* The keys that a page sets to null or true alone, which stands for the file of
+ * the command line; NULL: no more. */
+const char *message_switches(size_t index);
 
 #define FRAME_HEAD_BYTES 32
 

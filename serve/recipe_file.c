@@ -31,12 +31,14 @@ static void shorten(json_t *path, const char *folder) {
 }
 
 json_t *recipe_file_tree(const drawing *d) {
-    static const char *const keys[] = {"input", "tf", "mask"};
+    static const char *const keys[] = {"input", "tf", "mask", "overlay"};
     static options opts; /* large; one thread draws */
     char beside[PATH_MAX + 8], folder[PATH_MAX];
     opts = d->opts;
     opts.output = NULL;
     opts.quality = "high";
+    if (strcmp(opts.mode, "over") != 0)
+        layers_leave_out(&opts);
     json_t *tree = config_tree(&opts, verb_of(VERB_RENDER));
     if (!tree || strstr(opts.operands[0], "://"))
         return tree;

@@ -17,7 +17,7 @@ struct viewer_state {
     pthread_mutex_t lock;
     pthread_cond_t changed;
     json_t *recipe;
-    json_t *mask; /* the file that the recipe began with; or NULL */
+    json_t *files; /* mask and overlay that the recipe began with */
     atomic_uint revision;
     atomic_bool ended;
     bool moving;
@@ -50,7 +50,10 @@ viewer_state *state_new(json_t *recipe) {
     pthread_cond_init(&s->changed, &monotonic);
     pthread_condattr_destroy(&monotonic);
     s->recipe = recipe;
-    s->mask = json_incref(json_object_get(recipe, "mask"));
+    s->files = json_object();
+    for (size_t i = 0; message_switches(i); i++)
+        json_object_set(s->files, message_switches(i),
+                        json_object_get(recipe, message_switches(i)));
     atomic_init(&s->revision, 1);
     return s;
 }
@@ -61,16 +64,19 @@ void state_free(viewer_state *s) {
     for (int i = 0; i < s->count; i++)
         json_decref(s->questions[(s->first + i) % QUESTIONS_MOST].tree);
     json_decref(s->recipe);
-    json_decref(s->mask);
+    json_decref(s->files);
     snow_context_free(s->checker);
     pthread_cond_destroy(&s->changed);
     pthread_mutex_destroy(&s->lock);
     free(s);
 }
 
-/* Pages know of the mask only whether it is used. */
-static bool is_mask(const char *key) {
-    return strcmp(key, "mask") == 0;
+/* Pages know of mask and overlay only whether they are used. */
+static bool is_switch(const char *key) {
+    for (size_t i = 0; message_switches(i); i++)
+        if (strcmp(key, message_switches(i)) == 0)
+            return true;
+    return false;
 }
 
 static void merge(const viewer_state *s, json_t *recipe,
@@ -78,10 +84,11 @@ static void merge(const viewer_state *s, json_t *recipe,
     const char *key;
     json_t *value;
     json_object_foreach((json_t *)changes, key, value) {
-        if (json_is_null(value) || (is_mask(key) && !s->mask))
+        json_t *file = json_object_get(s->files, key);
+        if (json_is_null(value) || (is_switch(key) && !file))
             json_object_del(recipe, key);
-        else if (is_mask(key))
-            json_object_set(recipe, key, s->mask);
+        else if (is_switch(key))
+            json_object_set(recipe, key, file);
         else
             json_object_set_new(recipe, key, json_deep_copy(value));
     }
@@ -148,8 +155,8 @@ parcel *state_parcel(viewer_state *s, uint64_t client, uint64_t except) {
     json_t *value, *shown = json_object();
     pthread_mutex_lock(&s->lock);
     json_object_foreach(s->recipe, key, value) if (message_may_set(key))
-        json_object_set_new(shown, key,
-                            is_mask(key) ? json_true() : json_deep_copy(value));
+        json_object_set_new(
+            shown, key, is_switch(key) ? json_true() : json_deep_copy(value));
     uint32_t revision = s->revision;
     pthread_mutex_unlock(&s->lock);
     char *text = json_dumps(shown, JSON_COMPACT | JSON_REAL_PRECISION(17));

@@ -29,7 +29,7 @@ export class Panel {
         this.updates = [];
         this.element.replaceChildren(this.look(),
             section('Opacity by gradient', false, this.gradient.element), this.presets(),
-            this.camera(), live ? '' : this.slices.section(each => this.follow(each)), live ? '' : this.clipping(), this.shading(),
+            this.overlay(), this.named(), this.camera(), live ? '' : this.slices.section(each => this.follow(each)), live ? '' : this.clipping(), this.shading(),
             this.time(), this.labels());
         this.update();
     }
@@ -272,6 +272,97 @@ export class Panel {
             return;
         const whole = crop.every(([a, b], i) => a === 0 && b === full[i]);
         this.recipe.set({crop: whole ? null : crop});
+    }
+
+    /** A second volume of the command line: switched; labels by name, or values in
+     * colours of a range. */
+    overlay() {
+        const {recipe, page} = this;
+        if (!page.info.overlay)
+            return '';
+        const on = check(`${page.info.overlay} in the volume`,
+            value => recipe.set({overlay: value || null}));
+        const note = make('p', {className: 'faint', textContent: 'In the picture it is drawn in mode over.'});
+        const labels = () => this.opacities('overlay-opacity', page.look?.overlay?.labels);
+        // Half, as in slices where nothing is asked.
+        const list = this.switches('overlay-opacity', labels, 0.5);
+        const maps = select(['hot', ...page.info.colormaps.filter(name => name !== 'hot')],
+            name => recipe.set({'overlay-colormap': name}));
+        const ends = ['lowest', 'highest'].map((name, i) => number(`${name} value of the overlay's range`,
+            value => this.setOverlay(i ? page.look.overlay.low : value, i ? value : page.look.overlay.high)));
+        const opacity = slider('opacity of the overlay', 0.02, 1, 0.02, recipe, value => {
+            const {low, high} = page.look.overlay;
+            if (labels().length)
+                recipe.set({'overlay-opacity': labels().map(([label, , , now]) => [label, now ? value : 0])});
+            else
+                this.setOverlay(low, high, value);
+        });
+        const values = make('div', {}, row('Colours', maps), row('Range', ...ends), button('Automatic', "Range and opacity from the overlay's histogram", () => recipe.set(
+                {'overlay-range': null, 'overlay-opacity': null})));
+        this.follow(keys => {
+            const {overlay} = page.look ?? {}, points = keys['overlay-opacity'];
+            on.box.checked = Boolean(keys.overlay);
+            note.hidden = (keys.mode ?? 'over') === 'over';
+            values.hidden = !overlay || labels().length > 0;
+            show(maps, keys['overlay-colormap'] ?? 'hot');
+            ends.forEach((field, i) => show(field, overlay ? short(i ? overlay.high : overlay.low) : ''));
+            opacity.value = points ? Math.max(...points.map(point => point[1])) : 0.5;
+        });
+        return section('Overlay', true, on.label, note, list, row('Opacity', opacity), values);
+    }
+
+    /** From nothing at the low end of a range on. */
+    setOverlay(low, high, opacity = this.recipe.keys['overlay-opacity']?.at(-1)[1]) {
+        if (low < high)
+            this.recipe.set({'overlay-range': [low, high], 'overlay-opacity': opacity === undefined ? null
+                : [[low, 0], [high, opacity]]});
+    }
+
+    /** Labels of the volume itself. */
+    named() {
+        const list = this.switches('opacity', () => this.opacities('opacity', this.page.look?.labels));
+        const made = section('Labels', true, list);
+        this.follow(() => {
+            made.hidden = !list.childElementCount;
+        });
+        return made;
+    }
+
+    /** Labels with the opacities of the recipe, which may be newer than the look. */
+    opacities(key, labels = []) {
+        const points = new Map(this.recipe.keys[key]);
+        return labels.map(([value, name, color, opacity]) =>
+            [value, name, color, points.get(value) ?? opacity]);
+    }
+
+    /** A box for each label, that sets its opacity to 0 and back. */
+    switches(key, labels, usual = 1) {
+        const list = make('div', {className: 'labels'});
+        let names = '';
+        const boxes = [];
+        this.follow(() => {
+            const now = labels(), next = JSON.stringify(now.map(label => label.slice(0, 3)));
+            if (next !== names) {
+                names = next;
+                boxes.splice(0, Infinity, ...now.map(([value, name, color]) => {
+                    const made = check(name || String(value), on => {
+                        const points = this.recipe.keys[key];
+                        const full = points ? Math.max(...points.map(point => point[1])) || usual : usual;
+                        this.recipe.set({[key]: labels().map(([other, , , opacity]) => [other,
+                            (other === value ? on : opacity > 0) ? full : 0])});
+                    });
+                    const ink = make('span', {className: 'ink'});
+                    ink.style.background = color;
+                    made.label.insertBefore(ink, made.label.lastChild);
+                    return made;
+                }));
+                list.replaceChildren(...boxes.map(made => made.label));
+            }
+            now.forEach((label, i) => {
+                boxes[i].box.checked = label[3] > 0;
+            });
+        });
+        return list;
     }
 
     time() {

@@ -347,7 +347,9 @@ export class Slices {
     /** The volume that is shown: another crop, time, channel has other slices. */
     get data() {
         const {crop, time, channel, component, labels, preset, colormap, log, symlog, shift} = this.recipe.keys;
-        return [crop, time, channel, component, labels,
+        const overlay = ['', '-preset', '-colormap', '-range', '-opacity'].map(
+            end => this.recipe.keys[`overlay${end}`]);
+        return [crop, time, channel, component, labels, ...overlay,
             this.keys.colored && [preset, colormap, log, symlog, shift]];
     }
 

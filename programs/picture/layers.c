@@ -33,8 +33,20 @@ int layers_check(const options *opts) {
     return CONTINUE;
 }
 
+void layers_leave_out(options *opts) {
+    if (opts->overlay_picks)
+        opts->labels = NULL;
+    if (opts->overlay)
+        opts->label_table = NULL;
+    opts->overlay = opts->overlay_preset = opts->overlay_colormap = NULL;
+    opts->overlay_range = (range_value){.kind = SNOW_RANGE_AUTO};
+    opts->overlay_opacity.count = 0;
+    opts->overlay_picks = false;
+}
+
 /* Labels where it has some; else, where nothing is asked, hot colours. */
-static snow_status make_look(const options *opts, layers *l) {
+static snow_status make_look(const options *opts, const snow_volume *of,
+                             layers *l) {
     const range_value range = opts->overlay_range;
     snow_look look = {.size = sizeof look,
                       .preset = opts->overlay_preset,
@@ -46,24 +58,30 @@ static snow_status make_look(const options *opts, layers *l) {
         look.opacities = opts->overlay_opacity.points;
         look.opacity_count = opts->overlay_opacity.count;
     }
-    snow_status status =
-        snow_transfer_new_for_volume(l->volume, &look, &l->transfer);
+    snow_status status = snow_transfer_new_for_volume(of, &look, &l->transfer);
     if (status != SNOW_STATUS_OK || look.preset || look.colormap ||
         snow_transfer_label(l->transfer, 0))
         return status;
     snow_transfer_free(l->transfer);
     l->transfer = NULL;
     look.colormap = "hot";
-    return snow_transfer_new_for_volume(l->volume, &look, &l->transfer);
+    return snow_transfer_new_for_volume(of, &look, &l->transfer);
 }
 
 /* Values of all steps have the look of the first; labels may be others. */
 static snow_status look_at(const options *opts, layers *l) {
-    if (l->transfer && !snow_transfer_label(l->transfer, 0))
+    if (l->transfer && (l->own || !snow_transfer_label(l->transfer, 0)))
         return SNOW_STATUS_OK;
     snow_transfer_free(l->transfer);
     l->transfer = NULL;
-    return make_look(opts, l);
+    return make_look(opts, l->own ? l->own : l->volume, l);
+}
+
+/* The voxels of what is kept, which the grid of the volume may replace. */
+static snow_status share_own(snow_context *context, layers *l) {
+    const snow_volume_info *info = snow_volume_get_info(l->own);
+    void *voxels = (void *)(uintptr_t)snow_volume_voxels(l->own);
+    return snow_volume_wrap(context, info, voxels, &l->volume);
 }
 
 /* The planes of the volume cut its overlay too. */
@@ -174,32 +192,81 @@ static bool serves(const layers *l, const snow_volume_info *base, bool parts) {
            memcmp(own->matrix, base->matrix, sizeof own->matrix) == 0;
 }
 
+/* Reads it, unless it is kept. */
+static int read_layer(const options *opts, snow_context *context,
+                      const snow_volume_info *grid, bool parts, layers *l) {
+    snow_status status = SNOW_STATUS_OK;
+    int done = l->own ? CONTINUE : open_step(opts, context, grid, parts, l);
+    if (done != CONTINUE || !l->keeps || parts)
+        return done;
+    if (!l->own) {
+        l->own = l->volume;
+        l->volume = NULL;
+    }
+    status = share_own(context, l);
+    return status == SNOW_STATUS_OK ? CONTINUE
+                                    : fail_overlay(opts, context, l, status);
+}
+
+/* On the grid of a volume in memory, cut as it is.  Labels lie there by their
+ * nearest voxels, so that another look may need it anew. */
+static int place(const options *opts, snow_context *context,
+                 const snow_volume *base, bool first, layers *l) {
+    const bool nearest = snow_transfer_label(l->transfer, 0);
+    int done = CONTINUE;
+    if (l->placed && nearest == l->nearest)
+        return CONTINUE;
+    if (l->placed) {
+        layers_drop_volume(l);
+        done = read_layer(opts, context, NULL, false, l);
+    }
+    if (done != CONTINUE)
+        return done;
+    snow_status status = snow_volume_regrid(&l->volume, base, nearest);
+    if (status == SNOW_STATUS_OK && first && !l->keeps)
+        note_empty(opts, context, l);
+    if (status == SNOW_STATUS_OK)
+        status = clip(opts, l);
+    l->placed = status == SNOW_STATUS_OK;
+    l->nearest = nearest;
+    return l->placed ? CONTINUE : fail_overlay(opts, context, l, status);
+}
+
 int layers_open(const options *opts, snow_context *context,
                 const snow_volume *base, layers *l) {
     const snow_volume_info *grid = snow_volume_get_info(base);
     const bool first = !l->transfer;
-    const bool parts = process_ranks() > 1 || in_file(base);
-    if (!opts->overlay || serves(l, grid, parts))
+    const bool parts = (process_ranks() > 1 && !l->alone) || in_file(base);
+    const bool stays = serves(l, grid, parts);
+    int done = CONTINUE;
+    if (!opts->overlay || (stays && !first))
         return CONTINUE;
-    snow_volume_close(l->volume);
-    l->volume = NULL;
-    int done = open_step(opts, context, grid, parts, l);
+    if (!stays) {
+        layers_drop_volume(l);
+        done = read_layer(opts, context, grid, parts, l);
+    }
     if (done != CONTINUE)
         return done;
     snow_status status = look_at(opts, l);
-    if (status == SNOW_STATUS_OK && !parts)
-        status = snow_volume_regrid(&l->volume, base,
-                                    snow_transfer_label(l->transfer, 0));
-    if (status == SNOW_STATUS_OK && first)
-        note_empty(opts, context, l);
-    if (status == SNOW_STATUS_OK && !parts)
-        status = clip(opts, l);
     if (status != SNOW_STATUS_OK)
         return fail_overlay(opts, context, l, status);
-    if (opts->verbosity >= 0 && first)
+    if (!parts)
+        done = place(opts, context, base, first, l);
+    if (done == CONTINUE && opts->verbosity >= 0 && first && !l->keeps)
         say("overlay %s: %s", opts->overlay,
             snow_transfer_description(l->transfer));
-    return CONTINUE;
+    return done;
+}
+
+void layers_drop_volume(layers *l) {
+    snow_volume_close(l->volume);
+    l->volume = NULL;
+    l->placed = false;
+}
+
+void layers_drop_look(layers *l) {
+    snow_transfer_free(l->transfer);
+    l->transfer = NULL;
 }
 
 snow_status layers_set(const layers *l, const channel_set *c,
@@ -280,7 +347,8 @@ snow_status layers_lay_slice(const options *opts, const layers *l,
 }
 
 void layers_close(layers *l) {
-    snow_transfer_free(l->transfer);
-    snow_volume_close(l->volume);
-    *l = (layers){.volume = NULL};
+    layers_drop_look(l);
+    layers_drop_volume(l);
+    snow_volume_close(l->own);
+    *l = (layers){.keeps = l->keeps, .alone = l->alone};
 }

@@ -9,8 +9,12 @@
 typedef struct layers {
     snow_volume *volume; /* or NULL */
     snow_transfer *transfer;
-    uint64_t slab_bytes; /* of a file; 0: as usual */
-    bool quiet;          /* says nothing of a memory that is too small */
+    uint64_t slab_bytes;  /* of a file; 0: as usual */
+    bool quiet;           /* says nothing of a memory that is too small */
+    bool keeps;           /* for many looks and grids: reads its file once */
+    bool alone;           /* the volume is all here, whatever ranks there are */
+    bool placed, nearest; /* on the volume's grid, and how */
+    snow_volume *own;     /* then: on its own grid; or NULL */
 } layers;
 
 /* Refuses what cannot be drawn together; opens the overlay of the options on
@@ -25,6 +29,14 @@ int layers_open(const options *opts, snow_context *context,
 snow_status layers_set(const layers *l, const channel_set *c,
                        snow_frame *frame);
 void layers_close(layers *l);
+
+/* Takes an overlay out of the options, with its look and its labels. */
+void layers_leave_out(options *opts);
+
+/* Before it is opened again: for another grid or other planes; with another
+ * look. */
+void layers_drop_volume(layers *l);
+void layers_drop_look(layers *l);
 
 /* Lays its slice over the picture of a slice of the volume, which is replaced:
  * with the opacities of --overlay-opacity, else with those of its look, of

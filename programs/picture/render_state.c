@@ -130,9 +130,7 @@ static snow_status frame_view(render_state *s) {
     return SNOW_STATUS_OK;
 }
 
-/* If a look was chosen automatically for a volume without surfaces, it is not
- * shaded, unless shading is requested, or a surface. */
-static void choose_shade(render_state *s) {
+void render_state_choose_shade(render_state *s) {
     if (s->channels.list.count && !options_given(s->opts, "shade"))
         s->settings.shade = SNOW_SHADE_NONE;
     if (s->transfer && snow_transfer_is_unshaded(s->transfer) &&
@@ -323,7 +321,7 @@ static int open_alone(render_state *s, options *step) {
         return fail_volume(s->context, status, name_of_input(s->path));
     if (done == CONTINUE)
         done = place_camera(s);
-    choose_shade(s);
+    render_state_choose_shade(s);
     return done == CONTINUE ? frame_alone(s, step) : done;
 }
 
@@ -379,7 +377,7 @@ static int open_part(render_state *s, options *step) {
     done = process_agree(layers_open(step, s->context, s->volume, &s->layers));
     if (done != CONTINUE)
         return done;
-    choose_shade(s);
+    render_state_choose_shade(s);
     how.transfer = s->transfer;
     status = frame_view(s);
     if (status == SNOW_STATUS_OK && s->framed)
@@ -478,9 +476,16 @@ static int take_figures(render_state *s) {
                                     : fail_status(s->context, status);
 }
 
+/* Other modes than over have none. */
+static snow_status set_layers(render_state *s) {
+    static const layers none;
+    const bool over = s->settings.mode == SNOW_MODE_OVER;
+    return layers_set(over ? &s->layers : &none, &s->channels, s->frame);
+}
+
 static snow_status begin_part(render_state *s) {
     snow_ranks_options how = how_of(s);
-    snow_status status = layers_set(&s->layers, &s->channels, s->frame);
+    snow_status status = set_layers(s);
     if (s->turns && status == SNOW_STATUS_OK)
         status = snow_ranks_rebalance(s->frame, process_comm(), s->transfer,
                                       &s->view, &s->settings, &how, s->left,
@@ -526,7 +531,7 @@ static snow_status draw_alone(render_state *s) {
     double before = snow_volume_read_seconds(s->volume);
     if (mode_is_projection(s->opts->mode) && s->channels.list.count)
         return project_channels(s);
-    snow_status status = layers_set(&s->layers, &s->channels, s->frame);
+    snow_status status = set_layers(s);
     if (status == SNOW_STATUS_OK)
         status = snow_frame_render(s->frame, s->volume, s->transfer, &s->view,
                                    &s->settings, &s->made);

@@ -69,6 +69,10 @@ options render_state_step(const render_state *s, int64_t time);
  * requested look unless the state has a transfer function already. */
 int render_state_open(render_state *s, const char *path, int64_t time);
 
+/* If a look was chosen automatically for a volume without surfaces, it is not
+ * shaded, unless shading is requested, or a surface. */
+void render_state_choose_shade(render_state *s);
+
 /* What the zoom of a framed box is multiplied by, so that its edges and the
  * numbers of its axes are in the picture; 1 where neither is drawn. */
 double render_state_margin(const options *opts);

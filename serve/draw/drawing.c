@@ -19,6 +19,10 @@ static const char *const data_keys[] = {
     "crop", "channel", "component", "labels", "clip", "time", "mask", NULL};
 static const char *const base_keys[] = {
     "crop", "channel", "component", "labels", "time", "mask", NULL};
+static const char *const overlay_keys[] = {"overlay", "labels", "time", NULL};
+static const char *const overlay_look_keys[] = {
+    "overlay-preset", "overlay-colormap", "overlay-range", "overlay-opacity",
+    NULL};
 static const char *const look_keys[] = {
     "preset", "colormap", "log",   "symlog", "opacity", "gradient-opacity",
     "range",  "window",   "level", "shift",  "mode",    NULL};
@@ -35,6 +39,15 @@ static const char *const look_keys[] = {
 /* --- the recipe as options --------------------------------------------------
  */
 
+void drawing_settle_overlay(const drawing *d, options *opts) {
+    const bool on = opts->overlay;
+    opts->overlay_picks = d->first.overlay_picks;
+    if (on)
+        return;
+    opts->overlay = d->first.overlay;
+    layers_leave_out(opts);
+}
+
 /* A preset that a page chose replaces the file of --tf. */
 static int make_options(drawing *d, const json_t *given, options *out) {
     json_t *recipe = json_copy((json_t *)given);
@@ -50,6 +63,7 @@ static int make_options(drawing *d, const json_t *given, options *out) {
     json_decref(recipe);
     if (out->tf)
         out->loaded = d->first.loaded;
+    drawing_settle_overlay(d, out);
     return done == CONTINUE ? check_settings(out) : done;
 }
 
@@ -144,9 +158,13 @@ static bool reclip(drawing *d) {
     return true;
 }
 
-const snow_volume *drawing_unclipped(drawing *d) {
+bool drawing_is_clipped(const drawing *d) {
     snow_volume_options data = data_options(&d->opts);
-    const snow_volume *base = count_clips(&data) ? base_of(d) : NULL;
+    return count_clips(&data) > 0;
+}
+
+const snow_volume *drawing_unclipped(drawing *d) {
+    const snow_volume *base = drawing_is_clipped(d) ? base_of(d) : NULL;
     return base ? base : d->state.volume;
 }
 
@@ -206,6 +224,33 @@ static bool restyle_quickly(drawing *d) {
     return true;
 }
 
+/* Forgets of the overlay what a recipe changes; whether that is its look. */
+static bool drop_overlay(drawing *d, const json_t *recipe, bool other_data) {
+    layers *all[] = {&d->state.layers, &d->slice_layers};
+    const bool file = take_key(&d->overlay_key, key_of(recipe, overlay_keys));
+    const bool look =
+        take_key(&d->overlay_look_key, key_of(recipe, overlay_look_keys));
+    for (int i = 0; i < 2; i++) {
+        if (file)
+            layers_close(all[i]);
+        if (look)
+            layers_drop_look(all[i]);
+    }
+    if (other_data)
+        layers_drop_volume(&d->state.layers);
+    return file || look;
+}
+
+/* Of a volume that was not opened again.  What is said of its grid was. */
+static int open_overlay(drawing *d) {
+    render_state *s = &d->state;
+    s->layers.quiet = false;
+    hear_warnings(&d->opts, s->context, false);
+    int done = layers_open(&d->opts, s->context, s->volume, &s->layers);
+    hear_warnings(&d->opts, s->context, true);
+    return process_agree(done);
+}
+
 /* As render_state_open does. */
 static int place(drawing *d) {
     render_state *s = &d->state;
@@ -215,9 +260,7 @@ static int place(drawing *d) {
     if (done != CONTINUE)
         return done;
     annotations_find_unit(&d->opts, s->volume, false, &s->whole);
-    if (snow_transfer_is_unshaded(s->transfer) &&
-        s->settings.mode != SNOW_MODE_ISO && !options_given(&d->opts, "shade"))
-        s->settings.shade = SNOW_SHADE_NONE;
+    render_state_choose_shade(s);
     if (strcmp(d->opts.fit, "visible") != 0)
         return CONTINUE;
     snow_status status = snow_view_fit(comm_of_all(), s->volume, s->transfer,
@@ -232,7 +275,10 @@ static void forget(drawing *d) {
     free(d->look_key);
     free(d->color_key);
     free(d->plain_key);
+    free(d->overlay_key);
+    free(d->overlay_look_key);
     d->data_key = d->look_key = d->color_key = d->plain_key = NULL;
+    d->overlay_key = d->overlay_look_key = NULL;
 }
 
 static int apply(drawing *d, const json_t *recipe) {
@@ -244,15 +290,21 @@ static int apply(drawing *d, const json_t *recipe) {
     bool other_data = take_key(&d->data_key, key_of(recipe, data_keys));
     bool other_look = take_key(&d->look_key, key_of(recipe, look_keys));
     bool other_colors = take_key(&d->color_key, color_key_of(recipe));
+    bool overlaid = drop_overlay(d, recipe, other_data);
     bool clips = json_object_get(recipe, "clip") != NULL;
     drop_base(d, clips ? key_of(recipe, base_keys) : NULL);
     bool clipped = other_data && reclip(d);
     if ((other_data && !clipped) || !d->state.volume) {
         done = reopen(d);
         take_key(&d->plain_key, clips ? NULL : key_of(recipe, base_keys));
-    } else if (clipped || !d->state.transfer ||
-               (other_look && (other_colors || !restyle_quickly(d))))
-        done = restyle(d);
+    } else {
+        if (clipped || !d->state.transfer ||
+            (other_look && (other_colors || !restyle_quickly(d))))
+            done = restyle(d);
+        if (done == CONTINUE)
+            done = open_overlay(d);
+    }
+    d->look_is_new |= overlaid;
     if (done == CONTINUE)
         done = place(d);
     done = process_agree(done);
@@ -267,10 +319,12 @@ int drawing_apply(drawing *d, const json_t *recipe) {
 }
 
 int drawing_open(const options *first, json_t *recipe, drawing *out) {
-    *out = (drawing){.first = *first};
+    *out = (drawing){.first = *first,
+                     .slice_layers = {.keeps = true, .alone = true}};
     int done = make_options(out, recipe, &out->opts);
     if (done == CONTINUE)
         done = render_state_new(&out->opts, &out->state);
+    out->state.layers.keeps = true;
     out->state.turns = process_ranks() > 1; /* neighbours' voxels for all
                                                directions */
     return done == CONTINUE ? apply(out, recipe) : done;
@@ -279,6 +333,7 @@ int drawing_open(const options *first, json_t *recipe, drawing *out) {
 void drawing_close(drawing *d) {
     snow_volume_close(d->base);
     snow_transfer_free(d->slice_look);
+    layers_close(&d->slice_layers);
     render_state_free(&d->state);
     json_decref(d->tree);
     free(d->slice_key);
@@ -351,11 +406,14 @@ static int shrunk(int side, int shrink) {
 static int annotate(drawing *d, const paint_given *painted,
                     const snow_image *image, snow_overlay **out) {
     render_state *s = &d->state;
+    const snow_transfer *over = s->layers.transfer;
+    const bool labels = s->settings.mode == SNOW_MODE_OVER && over &&
+                        snow_transfer_label(over, 0);
     const picture_annotations annotations = {
         &d->opts,
         s->whole,
         s->view,
-        s->transfer,
+        labels ? over : s->transfer,
         {painted->range[0], painted->range[1]},
         &s->channels};
     snow_status status = annotations_make(&annotations, s->view.azimuth, -1,
@@ -431,6 +489,8 @@ char *drawing_command(const drawing *d, unsigned verb) {
         memcpy(strrchr(output, '.'), ".mp4", 4);
     opts.output = output;
     opts.quality = "high";
+    if (strcmp(opts.mode, "over") != 0)
+        layers_leave_out(&opts);
     json_t *tree = config_tree(&opts, verb_of(verb));
     if (!tree)
         return NULL;

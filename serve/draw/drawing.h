@@ -26,10 +26,12 @@ typedef struct drawing {
                           clip planes */
     bool volume_is_new, look_is_new; /* since the caller last looked */
     bool live; /* a simulation draws it: nothing but grid and look is known */
-    snow_transfer *slice_look; /* of the last slice (slices.h) */
-    char *slice_key;           /* what it was made of */
-    uint32_t followed;         /* the state that the last answer was made for */
-    int followed_done;         /* and what came of it */
+    snow_transfer *slice_look;            /* of the last slice (slices.h) */
+    char *slice_key;                      /* what it was made of */
+    char *overlay_key, *overlay_look_key; /* of the overlay: file; look */
+    layers slice_layers;                  /* the overlay where slices lie */
+    uint32_t followed; /* the state that the last answer was made for */
+    int followed_done; /* and what came of it */
 } drawing;
 
 /* By all ranks.  Opens the volume of the command line.  Returns CONTINUE or an
@@ -39,6 +41,13 @@ void drawing_close(drawing *d);
 
 /* By all ranks.  Makes what a recipe needs, whose tree stays the caller's. */
 int drawing_apply(drawing *d, const json_t *recipe);
+
+/* Gives options of a recipe what the command line's overlay has, or nothing of
+ * it where it is switched off. */
+void drawing_settle_overlay(const drawing *d, options *opts);
+
+/* Whether clip planes cut the volume. */
+bool drawing_is_clipped(const drawing *d);
 
 /* The volume as it is without clip planes; as it is with them, where that
  * cannot be had.  Not for many ranks, which have parts. */

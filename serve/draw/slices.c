@@ -116,6 +116,7 @@ static int slice_options(const drawing *d, json_t *tree, options *out) {
     out->mode = "slice";
     if (out->tf)
         out->loaded = d->first.loaded;
+    drawing_settle_overlay(d, out);
     return done == CONTINUE ? check_look(out) : done;
 }
 
@@ -154,10 +155,24 @@ static int open_slice(drawing *d, options *opts, int along, int64_t *index,
     return open_input(d->state.context, opts, opts->operands[0], out);
 }
 
+/* That of the picture, where it lies on the same grid and nothing cuts it. */
+static int open_overlay(drawing *d, const options *opts,
+                        const snow_volume *volume, const layers **out) {
+    *out = &d->state.layers;
+    if (has_all(d) && !drawing_is_clipped(d))
+        return CONTINUE;
+    *out = &d->slice_layers;
+    hear_warnings(opts, d->state.context, false);
+    int done = layers_open(opts, d->state.context, volume, &d->slice_layers);
+    hear_warnings(opts, d->state.context, true);
+    return done;
+}
+
 /* The view is that of the voxels that are there, since its zoom counts in their
  * size. */
 static int draw(drawing *d, const snow_volume *volume, const char *axis,
                 int64_t index, const options *opts, snow_image **image) {
+    const layers *overlay;
     snow_settings settings;
     snow_view view;
     int along;
@@ -169,6 +184,13 @@ static int draw(drawing *d, const snow_volume *volume, const char *axis,
     if (status == SNOW_STATUS_OK)
         status = snow_slice_render(volume, index, d->slice_look, &view,
                                    &settings, image);
+    if (status == SNOW_STATUS_OK) {
+        int done = open_overlay(d, opts, volume, &overlay);
+        if (done != CONTINUE)
+            return done;
+        status = layers_lay_slice(opts, overlay, index, &view, &settings,
+                                  d->state.context, image);
+    }
     return status == SNOW_STATUS_OK ? CONTINUE
                                     : fail_status(d->state.context, status);
 }
@@ -205,6 +227,10 @@ int slices_draw(drawing *d, const slice_asked *asked, snow_image **image,
         done = restyle(d, &opts, tree, volume);
     if (done == CONTINUE)
         done = draw(d, volume, asked->axis, index, &opts, image);
+    if (done != CONTINUE) {
+        snow_image_free(*image);
+        *image = NULL;
+    }
     *form = picture_form(&opts);
     snow_volume_close(opened);
     json_decref(tree);

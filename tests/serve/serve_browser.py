@@ -74,10 +74,33 @@ def masked():
     server.stop()
 
 
+def overlaid():
+    """A head; its bright voxels as labels, left and right; values on half the grid."""
+    base, seg, dose = (os.path.join(shots, name) for name in
+                       ("base.nrrd", "seg.nrrd", "dose.nrrd"))
+    subprocess.run([TOOL, "convert", "phantom:head", "--dims", "48x40x36", "-o", base,
+                    "-y", "-q"], check=True)
+    head, voxels = open(base, "rb").read().split(b"\n\n", 1)
+    subprocess.run([TOOL, "convert", "phantom:head", "--dims", "24x20x18", "-o", dose,
+                    "-y", "-q"], check=True)
+    with open(seg, "wb") as out:
+        out.write(head + b"\nSegment0_LabelValue:=1\nSegment0_Name:=left"
+                  b"\nSegment1_LabelValue:=2\nSegment1_Name:=right\n\n" +
+                  bytes((1 + (i % 48 >= 24)) * (value > 60)
+                        for i, value in enumerate(voxels)))
+    for overlay, what in ((seg, "overlay"), (dose, "fused")):
+        server = Server(base, "--overlay", overlay)
+        drive(server.url, shots, what)
+        same_bytes()
+        same_bytes("slice.txt", "slice.png")
+        server.stop()
+
+
 watch("short" if SHORT else "long", "phantom:head")
 if not SHORT:
     many_points()
     masked()
+    overlaid()
 scan = os.path.join(DATA, "classic", "CThead_256x256x113_u16be.raw.gz")
 if not SHORT and os.path.exists(scan):
     watch("film", scan, "--dims", "256x256x113", "--type", "uint16", "--endian",

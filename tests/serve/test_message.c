@@ -82,7 +82,7 @@ static void what_is_no_message_is_refused(void **state) {
 static void a_page_names_no_file(void **state) {
     (void)state;
     static const char *const foreign[] = {
-        "input",   "output",    "depth",   "overlay",    "tf",   "dataset",
+        "input",   "output",    "depth",   "raw",    "tf",   "dataset",
         "series",  "overwrite", "threads", "isa",        "dims", "type",
         "offset",  "endian",    "spacing", "allow-gaps", "verb", "version",
         "quality", "method",    "config",  "",           "x"};
@@ -97,9 +97,10 @@ static void a_page_names_no_file(void **state) {
     assert_true(message_may_set("azimuth"));
     static const char *const masks[] = {"\"m.nrrd\"", "\"\"", "[]",
                                         "{}",         "1",    "false"};
-    for (size_t i = 0; i < sizeof masks / sizeof *masks; i++) {
+    for (size_t i = 0; i < 2 * (sizeof masks / sizeof *masks); i++) {
         snprintf(text, sizeof text,
-                 "{\"t\":\"set\",\"n\":1,\"recipe\":{\"mask\":%s}}", masks[i]);
+                 "{\"t\":\"set\",\"n\":1,\"recipe\":{\"%s\":%s}}",
+                 i % 2 ? "mask" : "overlay", masks[i / 2]);
         assert_refused(text, strlen(text));
     }
     message m = read_good("{\"t\":\"set\",\"n\":1,\"recipe\":{\"mask\":true}}");

@@ -789,8 +789,88 @@ async function masked() {
     await page.context().close();
 }
 
-if (tier === 'points' || tier === 'mask') {
-    await (tier === 'mask' ? masked() : manyPoints());
+/** What is at rest, for the copied commands: the picture and a slice. */
+async function keepBoth(page) {
+    await slicesRest(page);
+    await rest(page);
+    writeFileSync(`${folder}/rest.png`, Buffer.from(await bytesOf(page, 'page.page.rest')));
+    writeFileSync(`${folder}/slice.png`, Buffer.from(await bytesOf(page, 'page.slices.panes[0].file')));
+    await page.evaluate(() => window.snowglass.slices.command(window.snowglass.slices.panes[0]));
+    await page.waitForSelector('dialog[open] textarea');
+    writeFileSync(`${folder}/slice.txt`, await page.locator('dialog textarea').inputValue());
+    await page.keyboard.press('Escape');
+    await page.getByRole('button', {name: /^Copy the command that makes this/}).click();
+    await page.waitForSelector('dialog[open] textarea');
+    const command = await page.locator('dialog textarea').inputValue();
+    writeFileSync(`${folder}/command.txt`, command);
+    await page.keyboard.press('Escape');
+    return command;
+}
+
+/** A segmentation in the volume and in its slices: labels by name. */
+async function overlaid() {
+    const page = await open();
+    await page.keyboard.press('x');
+    await slicesRest(page);
+    const sliced = async () => {
+        await slicesRest(page);
+        return String(await bytesOf(page, 'page.slices.panes[0].file'));
+    };
+    const both = await sliced();
+    await page.getByLabel('right', {exact: true}).uncheck();
+    await rest(page);
+    const one = await sliced();
+    let now = await keys(page);
+    check('a label is switched off', now.overlay === true &&
+        String(now['overlay-opacity']) === '1,0.5,2,0', String(now['overlay-opacity']));
+    check('in slices too', one !== both);
+    await shot(page, 'overlay');
+    await page.evaluate(() => window.snowglass.recipe.set({clip: [[1, 0, 0, 0]]}));
+    await rest(page);
+    check('slices show what clip planes cut', await sliced() === one);
+    const command = await keepBoth(page);
+    check('the command has the overlay', command.includes('--overlay-opacity'), command);
+    await page.evaluate(() => window.snowglass.recipe.set({clip: null, mode: 'mip'}));
+    await rest(page);
+    check('a projection has slices with it', await sliced() === one);
+    await page.evaluate(() => window.snowglass.recipe.set({mode: null}));
+    await page.getByLabel('seg.nrrd in the volume').uncheck();
+    await rest(page);
+    const none = await sliced();
+    check('the overlay is switched off', !(await keys(page)).overlay && none !== one && none !== both);
+    await page.getByLabel('seg.nrrd in the volume').check();
+    await rest(page);
+    check('and on again', await sliced() === one);
+    await page.context().close();
+}
+
+/** A volume of values over another: its colours, range and opacity. */
+async function fused() {
+    const page = await open({viewport: {width: 1600, height: 1000}});
+    await page.keyboard.press('x');
+    await slicesRest(page);
+    await page.getByLabel("highest value of the overlay's range").fill('150');
+    await page.keyboard.press('Enter');
+    await page.getByRole('slider', {name: 'opacity of the overlay'}).fill('0.8');
+    await rest(page);
+    await page.locator('details', {has: page.locator('summary', {hasText: 'Overlay'})})
+        .getByLabel('Colours').selectOption('viridis');
+    const command = await keepBoth(page), now = await keys(page);
+    check('an overlay of values has a look', now['overlay-colormap'] === 'viridis' &&
+        now['overlay-range'][1] === 150 && now['overlay-opacity'][1][1] === 0.8,
+    JSON.stringify([now['overlay-range'], now['overlay-opacity']]));
+    check('which the command has', /--overlay-colormap viridis/.test(command), command);
+    await shot(page, 'fused');
+    await page.getByRole('button', {name: "Range and opacity from the overlay's histogram"}).click();
+    await rest(page);
+    check('and loses', !('overlay-range' in await keys(page)));
+    await page.context().close();
+}
+
+const alone = {points: manyPoints, mask: masked, overlay: overlaid, fused};
+if (alone[tier]) {
+    await alone[tier]();
+    check('nothing is on the console', said.length === 0, said.join(' | '));
     await browser.close();
     process.exit(wrong ? 1 : 0);
 }
