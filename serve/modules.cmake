@@ -18,9 +18,9 @@ endmacro()
 macro(wrap_module name)
   string(REGEX MATCHALL "\nexport [a-z ]+ [A-Za-z0-9_]+" exported "${text}")
   list(TRANSFORM exported REPLACE ".* " "")
-  string(REPLACE ";" ", " exported "${exported}")
+  string(REPLACE ";" "," exported "${exported}")
   string(REGEX REPLACE "\nexport " "\n" text "${text}")
-  string(APPEND modules "const ${name}_module = (() => {"
+  string(APPEND modules "const ${name}_ = (() => {"
                         "${text}return {${exported}};\n})();\n")
 endmacro()
 
@@ -46,7 +46,7 @@ function(add_module name path)
   endforeach()
   string(REGEX REPLACE "(\nimport [{][^}]*) as " "\\1: " text "${text}")
   string(REGEX REPLACE "\nimport ([{][^}]*[}])[ \n]*from '[.]/([a-z_]+)[.]js';"
-         "\nconst \\1 = \\2_module;" text "${text}")
+         "\nconst \\1 = \\2_;" text "${text}")
   get_property(modules GLOBAL PROPERTY modules)
   if(path)
     wrap_module(${name})

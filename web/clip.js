@@ -61,7 +61,7 @@ export function tiltedTo(keys, index, d) {
 /** Changes that cut away what is before the target, as it is seen now. */
 export function facing(keys, info) {
     let normal = axes(keys, info).back.map(x => Math.round(1e4 * x) / 1e4);
-    if (!isTilted(normal)) // a hair's breadth, as others have sliders
+    if (!isTilted(normal)) // by a hair, as others have sliders
         normal = normal.map(x => x || 1e-4);
     const d = dot(normal, keys.target ?? info.middle);
     return {clip: [...keys.clip ?? [], [...normal, digits(d)]]};

@@ -78,6 +78,12 @@ export function section(name, open, ...children) {
         make('div', {}, ...children));
 }
 
+/** Gives a list its elements; a focused one stays so where none comes or goes. */
+export function fill(list, elements) {
+    if (list.childElementCount !== elements.length)
+        list.replaceChildren(...elements);
+}
+
 /** Sets a value unless it is there, or the user is typing there. */
 export function show(field, value) {
     if (field.value !== `${value}` && (document.activeElement !== field || field.type === 'range'))

@@ -4,7 +4,7 @@
 
 const MAGIC = 0x31574e53;
 const TYPES = ['', 'image/jpeg', 'image/png', 'image/webp'];
-const FRAME = 12; // ms, less than a screen's
+const FRAME = 12; // ms, less than that of a screen
 const FATAL = [4400, 4401, 4429]; // a message that it does not take, the secret, too many
 
 /**

@@ -1,7 +1,8 @@
 // panel.js - the controls beside the picture.
 
 import {bounds, ends, facing, grips, moved, PLANES_MOST, tilted, tiltedTo} from './clip.js';
-import {button, check, line, make, number, row, section, select, short, show, slider}
+import {Colors, ownColors, ranged} from './colors.js';
+import {button, check, fill, line, make, number, row, section, select, short, show, slider}
     from './controls.js';
 import {BY_GRADIENT, Editor} from './editor.js';
 import {MODES, VIEWS} from './keys.js';
@@ -18,6 +19,7 @@ export class Panel {
         Object.assign(this, {recipe, page, engine, actions, slices});
         this.editor = new Editor(recipe, page);
         this.gradient = new Editor(recipe, page, BY_GRADIENT);
+        this.colors = new Colors(recipe, page);
         this.element = make('aside', {className: 'panel', 'aria-label': 'Controls'});
         this.updates = [];
         engine.on('small', frame => this.showThumbnail(frame));
@@ -28,6 +30,7 @@ export class Panel {
         const {live} = this.page.info; // a simulation knows its own data
         this.updates = [];
         this.element.replaceChildren(this.look(),
+            this.colors.element,
             section('Opacity by gradient', false, this.gradient.element), this.presets(),
             this.overlay(), this.named(), this.camera(), live ? '' : this.slices.section(each => this.follow(each)), live ? '' : this.clipping(), this.shading(),
             this.time(), this.labels());
@@ -40,6 +43,7 @@ export class Panel {
                 each(this.recipe.keys);
         this.editor.follow();
         this.gradient.follow();
+        this.colors.update();
     }
 
     /** Keeps a control as the recipe is. */
@@ -58,8 +62,8 @@ export class Panel {
             : {mode, iso: null}));
         const iso = number('iso value', value => recipe.set({iso: value}));
         const isoRow = row('Iso value', iso);
-        const maps = select([['', 'of the preset'], ...page.info.colormaps],
-            name => recipe.set({colormap: name || null}));
+        const maps = select([['', 'of the preset'], ...page.info.colormaps, [':', 'own']],
+            name => name === ':' ? this.colors.set(this.colors.points) : recipe.set({colormap: name || null}));
         const low = number('lowest value of the range', value => this.setRange(value, null));
         const high = number('highest value of the range', value => this.setRange(null, value));
         const percent = button('1-99 %', 'Range of the 1st to the 99th percentile',
@@ -71,7 +75,7 @@ export class Panel {
             show(modes, keys.mode ?? 'over');
             isoRow.hidden = keys.mode !== 'iso';
             show(iso, keys.iso ?? '');
-            show(maps, keys.colormap ?? '');
+            show(maps, ownColors(keys.colormap) ? ':' : keys.colormap ?? '');
             show(low, page.look ? short(page.look.low) : '');
             show(high, page.look ? short(page.look.high) : '');
             show(shift, short(keys.shift ?? 0));
@@ -86,7 +90,7 @@ export class Panel {
         const {look} = this.page, shift = this.value('shift', 0); // which is added to a range
         const range = [low ?? look.low, high ?? look.high].map(value => value - shift);
         if (range[0] < range[1])
-            this.recipe.set({range});
+            this.recipe.set(ranged(look, this.recipe.keys.colormap, range));
     }
 
     /** Pictures of the volume itself, made when the list is opened. */
@@ -280,16 +284,16 @@ export class Panel {
         const {recipe, page} = this;
         if (!page.info.overlay)
             return '';
-        const on = check(`${page.info.overlay} in the volume`,
-            value => recipe.set({overlay: value || null}));
-        const note = make('p', {className: 'faint', textContent: 'In the picture it is drawn in mode over.'});
+        const on = check(page.info.overlay, value => recipe.set({overlay: value || null}));
         const labels = () => this.opacities('overlay-opacity', page.look?.overlay?.labels);
         // Half, as in slices where nothing is asked.
         const list = this.switches('overlay-opacity', labels, 0.5);
         const maps = select(['hot', ...page.info.colormaps.filter(name => name !== 'hot')],
             name => recipe.set({'overlay-colormap': name}));
-        const ends = ['lowest', 'highest'].map((name, i) => number(`${name} value of the overlay's range`,
-            value => this.setOverlay(i ? page.look.overlay.low : value, i ? value : page.look.overlay.high)));
+        const ends = ['lowest', 'highest'].map((name, i) => number(`${name} value of the range of the overlay`, value => {
+            const {low, high} = page.look.overlay;
+            this.setOverlay(i ? low : value, i ? value : high);
+        }));
         const opacity = slider('opacity of the overlay', 0.02, 1, 0.02, recipe, value => {
             const {low, high} = page.look.overlay;
             if (labels().length)
@@ -297,25 +301,26 @@ export class Panel {
             else
                 this.setOverlay(low, high, value);
         });
-        const values = make('div', {}, row('Colours', maps), row('Range', ...ends), button('Automatic', "Range and opacity from the overlay's histogram", () => recipe.set(
+        const values = make('div', {}, row('Colours', maps), row('Range', ...ends), button('Automatic', 'Opacity of the preset, or made from the histogram', () => recipe.set(
                 {'overlay-range': null, 'overlay-opacity': null})));
         this.follow(keys => {
-            const {overlay} = page.look ?? {}, points = keys['overlay-opacity'];
+            const overlay = page.look?.overlay;
             on.box.checked = Boolean(keys.overlay);
-            note.hidden = (keys.mode ?? 'over') === 'over';
             values.hidden = !overlay || labels().length > 0;
             show(maps, keys['overlay-colormap'] ?? 'hot');
             ends.forEach((field, i) => show(field, overlay ? short(i ? overlay.high : overlay.low) : ''));
-            opacity.value = points ? Math.max(...points.map(point => point[1])) : 0.5;
+            opacity.value = this.most('overlay-opacity') || 0.5;
         });
-        return section('Overlay', true, on.label, note, list, row('Opacity', opacity), values);
+        return section('Overlay', true, on.label, list, row('Opacity', opacity), values);
     }
 
-    /** From nothing at the low end of a range on. */
-    setOverlay(low, high, opacity = this.recipe.keys['overlay-opacity']?.at(-1)[1]) {
+    /** From nothing at the low end of a range on.  The next change may come before the
+     * server's look. */
+    setOverlay(low, high, opacity = this.most('overlay-opacity')) {
         if (low < high)
-            this.recipe.set({'overlay-range': [low, high], 'overlay-opacity': opacity === undefined ? null
-                : [[low, 0], [high, opacity]]});
+            this.recipe.set({'overlay-range': [low, high],
+                'overlay-opacity': opacity ? [[low, 0], [high, opacity]] : null});
+        Object.assign(this.page.look.overlay, {low, high});
     }
 
     /** Labels of the volume itself. */
@@ -328,6 +333,11 @@ export class Panel {
         return made;
     }
 
+    /** The largest opacity of the recipe. */
+    most(key) {
+        return Math.max(0, ...(this.recipe.keys[key] ?? []).map(point => point[1]));
+    }
+
     /** Labels with the opacities of the recipe, which may be newer than the look. */
     opacities(key, labels = []) {
         const points = new Map(this.recipe.keys[key]);
@@ -337,30 +347,25 @@ export class Panel {
 
     /** A box for each label, that sets its opacity to 0 and back. */
     switches(key, labels, usual = 1) {
-        const list = make('div', {className: 'labels'});
-        let names = '';
-        const boxes = [];
+        const list = make('div', {className: 'labels'}), boxes = [];
+        const put = (i, on) => {
+            const full = this.most(key) || usual;
+            this.recipe.set({[key]: labels().map(([value, , , opacity], k) =>
+                [value, (k === i ? on : opacity) ? full : 0])});
+        };
         this.follow(() => {
-            const now = labels(), next = JSON.stringify(now.map(label => label.slice(0, 3)));
-            if (next !== names) {
-                names = next;
-                boxes.splice(0, Infinity, ...now.map(([value, name, color]) => {
-                    const made = check(name || String(value), on => {
-                        const points = this.recipe.keys[key];
-                        const full = points ? Math.max(...points.map(point => point[1])) || usual : usual;
-                        this.recipe.set({[key]: labels().map(([other, , , opacity]) => [other,
-                            (other === value ? on : opacity > 0) ? full : 0])});
-                    });
-                    const ink = make('span', {className: 'ink'});
-                    ink.style.background = color;
-                    made.label.insertBefore(ink, made.label.lastChild);
-                    return made;
-                }));
-                list.replaceChildren(...boxes.map(made => made.label));
+            const now = labels();
+            for (let i = boxes.length; i < now.length; i++) {
+                const ink = make('i', {}), name = make('span', {}), made = check('', on => put(i, on));
+                made.label.append(ink, name);
+                boxes.push({...made, ink, name});
             }
-            now.forEach((label, i) => {
-                boxes[i].box.checked = label[3] > 0;
+            now.forEach(([value, name, color, opacity], i) => {
+                boxes[i].box.checked = opacity;
+                boxes[i].ink.style.background = color;
+                boxes[i].name.textContent = name || value;
             });
+            fill(list, boxes.slice(0, now.length).map(({label}) => label));
         });
         return list;
     }
@@ -401,7 +406,7 @@ export class Panel {
             });
             return make('div', {}, made.label);
         });
-        const drawn = page.info.mask === undefined ? boxes.slice(0, 3) // by a notebook's kernel
+        const drawn = page.info.mask === undefined ? boxes.slice(0, 3) // by the kernel of a notebook
             : [...boxes, row('Title', title), row('Time', time)];
         return section('Letters and bars', false, ...drawn);
     }

@@ -1,6 +1,7 @@
 // pointer.js - mouse, wheel and fingers on the picture.
 
 import {panned, round, turned, zoomed} from './camera.js';
+import {ranged} from './colors.js';
 
 /** What a drag does, by button and key; otherwise what was chosen, as a finger has
  * neither. */
@@ -73,6 +74,7 @@ export class Pointer {
         this.canvas.setPointerCapture(event.pointerId);
         this.fingers.set(event.pointerId, this.at(event));
         this.start = this.page.look;
+        this.map = this.recipe.keys.colormap;
         this.total = [0, 0];
         this.recipe.begin();
     }
@@ -108,7 +110,7 @@ export class Pointer {
         const width = (high - low) * Math.exp(x / 250);
         const level = (low + high) / 2 - (high - low) * y / this.canvas.clientHeight;
         const digits = value => +(value - (this.recipe.keys.shift ?? 0)).toPrecision(5);
-        return {range: [digits(level - width / 2), digits(level + width / 2)]};
+        return ranged(this.start, this.map, [digits(level - width / 2), digits(level + width / 2)]);
     }
 
     /** Up: more opaque; not of a look whose points the page has not all. */

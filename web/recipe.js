@@ -17,7 +17,7 @@ export class Recipe {
         this.before = [];
         this.after = [];
         this.hearers = [];
-        this.gesture = null; // 'begun', then 'changed'
+        this.gesture = null; // begun, then changed
         this.last = {names: '', at: 0};
         engine.on('state', message => this.take(message.recipe));
     }

@@ -115,8 +115,10 @@ const option_row option_table[] = {
     {"preset", 0, "NAME", TOPIC_LOOK, LOOKED, read_preset, FIELD(preset), 0, 0,
      "",
      "a built-in transfer function (default: made from the histogram)"},
-    {"colormap", 'c', "NAME", TOPIC_LOOK, LOOKED, read_colormap,
-     FIELD(colormap), 0, 0, "", "colours along the range (default grey, or the preset's)"},
+    {"colormap", 'c', "NAME|LIST", TOPIC_LOOK, LOOKED, read_colormap,
+     FIELD(colormap), 0, 0, "",
+     "colours along the range, or at data values, such as 60:#000000,255:#ff8800 "
+     "(default grey, or the preset's)"},
     {"opacity", 0, "V:O,V:O", TOPIC_LOOK, LOOKED & ~SLICE, read_points,
      FIELD(opacities), 0, 0, "", "opacity from 0 to 1 at data values, linear in between"},
     {"gradient-opacity", 0, "G:O,G:O", TOPIC_LOOK, LOOKED & ~SLICE, read_gradient_points,

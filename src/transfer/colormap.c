@@ -17,8 +17,13 @@
  *   light-grey, dim-grey  parts of grey, of looks made from the histogram
  *   tab10      ten colours for categories, Tableau's of 2016 (matplotlib)
  * A new map needs a table here and a line in `maps`.  With an index that is
- * larger by their number it is reversed, and its name ends in _r. */
+ * larger by their number it is reversed, and its name ends in _r.  A list of
+ * colours at data values is a name too. */
 #include "transfer/look.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* A colour at `at` / 510 of the map (entry n of 256 is at 2 n). */
 typedef struct map_point {
@@ -135,7 +140,37 @@ const char *snow_colormap_name(size_t index) {
     return index < map_count ? maps[index].names[0] : NULL;
 }
 
+/* "60:#000000,255:#ff8800": colours at data values that rise, as many as a map
+ * may have.  Their number; 0: it is something else. */
+static size_t read_points(const char *text, snow_color_point *points) {
+    for (size_t count = 0; count < SNOW_COLORMAP_POINTS_MAX;) {
+        const size_t length = strcspn(text, ":");
+        char number[32], *end;
+        double value;
+        if (length >= sizeof number || strncmp(text + length, ":#", 2) != 0 ||
+            strspn(text + length + 2, "0123456789abcdefABCDEF") != 6)
+            return 0;
+        memcpy(number, text, length);
+        number[length] = 0;
+        if (!snow_parse_double(number, &value) || !isfinite(value) ||
+            (count && value < points[count - 1].value))
+            return 0;
+        const long rgb = strtol(text + length + 2, &end, 16);
+        points[count++] = (snow_color_point){value, (double)(rgb >> 16) / 255,
+                                             (double)(rgb >> 8 & 255) / 255,
+                                             (double)(rgb & 255) / 255};
+        if (!*end)
+            return count;
+        if (*end != ',')
+            return 0;
+        text = end + 1;
+    }
+    return 0;
+}
+
 int snow_colormap_from_name(const char *name) {
+    snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
+
     static const char *const others[][2] = {
         {"gray", "grey"}, {"gray_r", "grey_r"}, {"light-gray", "light-grey"}};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
@@ -144,7 +179,7 @@ int snow_colormap_from_name(const char *name) {
     for (size_t i = 0; i < 2 * map_count; i++)
         if (snow_same_name(name, maps[i % map_count].names[i / map_count]))
             return (int)i;
-    return -1;
+    return read_points(name, points) ? (int)(2 * map_count) : -1;
 }
 
 size_t snow_colormap_points(size_t index, snow_color_point *points,
@@ -165,11 +200,18 @@ size_t snow_colormap_points(size_t index, snow_color_point *points,
 }
 
 void snow_transfer_builder_colormap(snow_transfer_builder *builder,
-                                    int colormap, double low, double high) {
-    const size_t map = (size_t)colormap % map_count;
-    builder->name = maps[map].names[(size_t)colormap / map_count];
-    builder->color_count = snow_colormap_points(
-        (size_t)colormap, builder->colors, SNOW_TRANSFER_BUILDER_POINTS);
+                                    const char *name, double low, double high) {
+    const size_t found = (size_t)snow_colormap_from_name(name);
+    if (found >= 2 * map_count) { /* where they are */
+        builder->name = "own colours";
+        builder->color_count = read_points(name, builder->colors);
+        builder->low = builder->colors[0].value;
+        builder->high = builder->colors[builder->color_count - 1].value;
+        return;
+    }
+    builder->name = maps[found % map_count].names[found / map_count];
+    builder->color_count = snow_colormap_points(found, builder->colors,
+                                                SNOW_TRANSFER_BUILDER_POINTS);
     for (size_t i = 0; i < builder->color_count; i++)
         builder->colors[i].value = snow_transfer_builder_place(
             builder, low, high, builder->colors[i].value);

@@ -194,6 +194,6 @@ void snow_transfer_builder_symlog(snow_histogram *histogram,
 
 /* Replaces the colours by a map over low..high. */
 void snow_transfer_builder_colormap(snow_transfer_builder *builder,
-                                    int colormap, double low, double high);
+                                    const char *name, double low, double high);
 
 #endif

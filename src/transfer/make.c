@@ -285,8 +285,8 @@ static snow_status build_look(const snow_histogram *histogram,
     snow_transfer_builder_shift(builder, look->shift);
     const char *map = look->colormap ? look->colormap : builder->colormap;
     if (map)
-        snow_transfer_builder_colormap(builder, snow_colormap_from_name(map),
-                                       builder->low, builder->high);
+        snow_transfer_builder_colormap(builder, map, builder->low,
+                                       builder->high);
     keep_rising(builder);
     return SNOW_STATUS_OK;
 }

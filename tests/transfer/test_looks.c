@@ -815,6 +815,60 @@ static void a_projection_survives_a_hot_voxel(void **state) {
     snow_context_free(context);
 }
 
+/* Colours of one's own lie where they are, whatever the range and the scale. */
+static void a_list_of_colours_is_a_map(void **state) {
+    (void)state;
+    static const float values[] = {1, 10, 100, 1000};
+    snow_context *context = support_context();
+    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, 4);
+    for (int kind = 0; kind < 4; kind++) {
+        snow_look look = {.size = sizeof look,
+                          .preset = kind == 1 ? "ct-bone" : NULL,
+                          .range =
+                              kind > 1 ? SNOW_RANGE_VALUES : SNOW_RANGE_AUTO,
+                          .low = 5,
+                          .high = 700,
+                          .log = kind == 3,
+                          .colormap = "10:#000000,100:#ff3300,1e3:#ff33FF"};
+        snow_transfer *transfer = support_look(volume, look);
+        double rgba[4], ends[2];
+        const double middle = kind == 3 ? sqrt(1e3) : 55;
+        snow_transfer_evaluate(transfer, middle, rgba);
+        assert_true(near(rgba[0], 0.5) && near(rgba[1], 0.1) && rgba[2] == 0);
+        snow_transfer_evaluate(transfer, 5, rgba);
+        assert_true(rgba[0] == 0);
+        snow_transfer_evaluate(transfer, 1000, rgba);
+        assert_true(near(rgba[0], 1) && near(rgba[1], 0.2) && near(rgba[2], 1));
+        snow_transfer_domain(transfer, &ends[0], &ends[1]);
+        assert_true(near(ends[0], 10) && near(ends[1], 1000));
+        assert_non_null(strstr(snow_transfer_description(transfer),
+                               "own colours 10..1000"));
+        snow_transfer_free(transfer);
+    }
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+static void what_is_no_list_of_colours_is_refused(void **state) {
+    (void)state;
+    static const char *const wrong[] = {
+        "",          ":",           "1:",          "1:#",
+        "1:#12345",  "1:#1234567",  "1:#12345g",   "1:123456",
+        ":#123456",  "a:#123456",   "nan:#123456", "1:#123456,",
+        ",1:#12345", "2:#0,1:#0",   "1:# 12345",   "2:#123456,1:#123456",
+        "1:#0x1234", "1:#123456 ,", "inf:#123456", "1:#123456;2:#123456"};
+    char many[1000] = "", *at = many;
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        assert_int_equal(snow_colormap_from_name(wrong[i]), -1);
+    for (int i = 0; i < 33; i++) {
+        if (i == SNOW_COLORMAP_POINTS_MAX)
+            assert_true(snow_colormap_from_name(many) >= 0);
+        at += sprintf(at, "%s%d:#123456", i ? "," : "", i);
+    }
+    assert_int_equal(snow_colormap_from_name(many), -1);
+    assert_true(snow_colormap_from_name("-5:#123456") >= 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(linear_over_decades_is_linear_in_decades),
@@ -839,6 +893,8 @@ int main(void) {
         cmocka_unit_test(what_is_known_of_an_automatic_look_makes_it_again),
         cmocka_unit_test(a_projection_survives_a_hot_voxel),
         cmocka_unit_test(one_heap_of_values_is_a_solid_block),
+        cmocka_unit_test(a_list_of_colours_is_a_map),
+        cmocka_unit_test(what_is_no_list_of_colours_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,6 +10,7 @@ import {writeFileSync} from 'node:fs';
 const [playwright, chromium, url, folder, tier] = process.argv.slice(2);
 const {chromium: browsers} = await import(playwright);
 const long = tier !== 'short';
+const PATIENCE = 600000; // ms: other programs may have the machine
 let wrong = 0;
 
 function check(name, good, why = '') {
@@ -24,6 +25,7 @@ const said = []; // on the console, and against the policy
 async function open(options = {}, address = url) {
     const context = await browser.newContext({viewport: {width: 1000, height: 700},
         acceptDownloads: true, ...options});
+    context.setDefaultTimeout(PATIENCE);
     const page = await context.newPage();
     page.on('console', message => said.push(message.text()));
     page.on('pageerror', error => said.push(String(error)));
@@ -39,22 +41,44 @@ async function rest(page) {
     await page.waitForFunction(() => {
         const {engine, page: of} = window.snowglass ?? {};
         return of?.rest && !engine.waiting && !engine.sentAt.size;
-    }, null, {timeout: 60000});
+    });
     await page.waitForTimeout(50);
+}
+
+/** After events of the page that an action causes, and what they cause: Chromium may
+ * have them still to come when the action is done. */
+async function after(page, name, count, act) {
+    await page.evaluate(([event, left]) => {
+        window.happened = new Promise(done => {
+            const hear = () => {
+                if (--left)
+                    return;
+                removeEventListener(event, hear, true);
+                setTimeout(done);
+            };
+            addEventListener(event, hear, true);
+        });
+    }, [name, count]);
+    await act();
+    await page.evaluate(() => window.happened);
+}
+
+const wheel = (page, by) => after(page, 'wheel', 1, () => page.mouse.wheel(0, by));
+
+/** After an answer of the server, which may come after the picture at rest, and may
+ * change nothing. */
+async function answered(page, name, act) {
+    await page.evaluate(kind => {
+        window.answered = new Promise(done => window.snowglass.engine.on(kind, done));
+    }, name);
+    await act();
+    await page.evaluate(() => window.answered);
+    await rest(page);
 }
 
 const keys = page => page.evaluate(() => window.snowglass.recipe.keys);
 
-/** Frames all.  The answer may come after the picture at rest, and may change
- * nothing. */
-async function frameAll(page) {
-    await page.evaluate(() => {
-        window.framed = new Promise(done => window.snowglass.engine.on('state', done));
-    });
-    await page.keyboard.press('r');
-    await page.evaluate(() => window.framed);
-    await rest(page);
-}
+const frameAll = page => answered(page, 'state', () => page.keyboard.press('r'));
 
 const shot = (page, name) => page.screenshot({path: `${folder}/${name}.png`});
 const middle = async page => {
@@ -91,7 +115,7 @@ async function smoke(page) {
     check('a drag down moves it up', now.elevation > before.elevation, now.elevation);
     const [x, y] = await middle(page);
     await page.mouse.move(x + 100, y);
-    await page.mouse.wheel(0, -300);
+    await wheel(page, -300);
     await rest(page);
     const zoomed = await keys(page);
     check('the wheel zooms', zoomed.zoom > 1.3 * now.zoom, zoomed.zoom);
@@ -282,7 +306,7 @@ async function controls(page) {
     await page.getByRole('button', {name: 'Remove all clip planes'}).click();
     await page.locator('summary', {hasText: 'Presets'}).click();
     await page.waitForFunction(() => [...document.querySelectorAll('.presets img')]
-        .every(image => !image.hidden), null, {timeout: 60000});
+        .every(image => !image.hidden));
     await page.locator('.presets button', {hasText: 'ct-bone'}).first().click();
     await rest(page);
     check('a preset is chosen', (await keys(page)).preset === 'ct-bone');
@@ -344,14 +368,15 @@ async function letterboxed(page) {
 async function damaged(page) {
     await page.evaluate(() => {
         const {createImageBitmap: good} = window;
-        let left = 3;
-        window.createImageBitmap = (...given) => left-- > 0
+        window.damaged = 3;
+        window.createImageBitmap = (...given) => window.damaged-- > 0
             ? Promise.reject(new Error('damaged')) : good(...given);
     });
-    for (let i = 0; i < 5; i++) {
+    while (await page.evaluate(() => window.damaged) > 0) {
         await page.keyboard.press('ArrowLeft');
         await page.waitForTimeout(200);
     }
+    await page.keyboard.press('ArrowLeft');
     await rest(page);
     check('after damaged pictures others are shown',
         await page.evaluate(() => document.querySelector('.picture canvas').dataset.level === '2'));
@@ -360,8 +385,7 @@ async function damaged(page) {
 /** After a connection is lost the page has its window's size again. */
 async function reconnected(page) {
     await page.evaluate(() => window.snowglass.engine.socket.close());
-    await page.waitForFunction(() => window.snowglass.recipe.keys.size[0] > 300, null,
-        {timeout: 20000});
+    await page.waitForFunction(() => window.snowglass.recipe.keys.size[0] > 300);
     await rest(page);
     check('a page that comes back has the size of its window',
         (await keys(page)).size[0] > 500);
@@ -369,7 +393,7 @@ async function reconnected(page) {
 
 /** Until all slices are those of their commands. */
 const slicesRest = page => page.waitForFunction(() => window.snowglass.slices.panes.every(
-    pane => pane.exact && !pane.busy && pane.file), null, {timeout: 30000});
+    pane => pane.exact && !pane.busy && pane.file));
 
 const crossing = page => page.evaluate(() => window.snowglass.slices.index);
 const paneBox = (page, i) => page.locator('.pane canvas').nth(i).boundingBox();
@@ -392,7 +416,7 @@ async function slices(page, name = 'slices') {
     check('a click in one slice moves the other two', there.filter((x, i) => x !== begin[i]).length === 2 &&
         there[2] === begin[2], `${begin} ${there}`);
     await page.mouse.move(box.x + 0.4 * box.width, box.y + 0.4 * box.height);
-    await page.mouse.wheel(0, 120);
+    await wheel(page, 120);
     await slicesRest(page);
     const turned = await crossing(page);
     check('the wheel goes to another slice', Math.abs(turned[2] - begin[2]) === 2 &&
@@ -430,7 +454,7 @@ async function slices(page, name = 'slices') {
     check('a slice stands alone', alone.width > 1.5 * box.width, alone.width);
     await page.mouse.move(alone.x + alone.width / 2, alone.y + alone.height / 2);
     await page.keyboard.down('Control');
-    await page.mouse.wheel(0, -300);
+    await wheel(page, -300);
     await page.keyboard.up('Control');
     await shot(page, `${name}_alone`);
     await page.keyboard.press('Enter');
@@ -490,6 +514,7 @@ async function handles(page) {
     await page.keyboard.press('k');
     await rest(page);
     const grips = page.locator('.handle:visible');
+    await grips.nth(5).waitFor(); // the section says later that it is open
     check('six handles are on the picture', await grips.count() === 6, await grips.count());
     const grip = page.getByRole('slider', {name: /^clip .*highest/}).and(page.locator('.handle')).first();
     const box = await grip.boundingBox(), [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
@@ -573,17 +598,21 @@ async function touch() {
     const session = await page.context().newCDPSession(page);
     const send = (type, points) => session.send('Input.dispatchTouchEvent', {type,
         touchPoints: points.map(([px, py], id) => ({x: px, y: py, id}))});
-    await send('touchStart', [[x, y]]);
-    for (let i = 1; i < 6; i++)
-        await send('touchMove', [[x + 10 * i, y]]);
-    await send('touchEnd', []);
+    await after(page, 'pointerup', 1, async () => {
+        await send('touchStart', [[x, y]]);
+        for (let i = 1; i < 6; i++)
+            await send('touchMove', [[x + 10 * i, y]]);
+        await send('touchEnd', []);
+    });
     await rest(page);
     let now = await keys(page);
     check('one finger turns', now.azimuth < before.azimuth, now.azimuth);
-    await send('touchStart', [[x - 30, y], [x + 30, y]]);
-    for (let i = 1; i < 6; i++)
-        await send('touchMove', [[x - 30 - 8 * i, y], [x + 30 + 8 * i, y]]);
-    await send('touchEnd', []);
+    await after(page, 'pointerup', 2, async () => {
+        await send('touchStart', [[x - 30, y], [x + 30, y]]);
+        for (let i = 1; i < 6; i++)
+            await send('touchMove', [[x - 30 - 8 * i, y], [x + 30 + 8 * i, y]]);
+        await send('touchEnd', []);
+    });
     await rest(page);
     now = await keys(page);
     check('two fingers zoom', now.zoom > 1.5 * before.zoom, now.zoom);
@@ -595,7 +624,7 @@ async function touch() {
 
 async function schemes(page0) {
     await page0.getByRole('button', {name: /^All as it was/}).click();
-    await page0.waitForTimeout(300);
+    await rest(page0);
     const spoiled = await open();
     await spoiled.evaluate(() => window.snowglass.engine.set({mask: '/etc/passwd'}));
     await spoiled.waitForFunction(() => /command line.*Load the page/.test(
@@ -660,7 +689,7 @@ async function film(name, options) {
     const presets = page.locator('summary', {hasText: 'Presets'});
     await press(presets);
     await page.waitForFunction(() => [...document.querySelectorAll('.presets img')]
-        .every(image => !image.hidden), null, {timeout: 60000});
+        .every(image => !image.hidden));
     await shot(page, `film_${name}_2_presets`);
     await press(page.locator('.presets button', {hasText: 'ct-bone'}).first());
     check('bone is seen', (await keys(page)).preset === 'ct-bone');
@@ -695,9 +724,8 @@ async function film(name, options) {
     await seen('5_clipped');
     await press(clips);
     const whole = await canvas.boundingBox(), side = Math.min(whole.width, whole.height);
-    await canvas.dblclick({position: {x: whole.width / 2 + 0.13 * side, y: whole.height / 2 + 0.06 * side}});
-    await page.waitForTimeout(500);
-    await rest(page);
+    await answered(page, 'depth', () => canvas.dblclick(
+        {position: {x: whole.width / 2 + 0.13 * side, y: whole.height / 2 + 0.06 * side}}));
     await press(page.getByRole('button', {name: 'Three slices beside the picture (x)'}));
     await slicesRest(page);
     await seen('6_slices');
@@ -834,11 +862,11 @@ async function overlaid() {
     await rest(page);
     check('a projection has slices with it', await sliced() === one);
     await page.evaluate(() => window.snowglass.recipe.set({mode: null}));
-    await page.getByLabel('seg.nrrd in the volume').uncheck();
+    await page.getByLabel('seg.nrrd').uncheck();
     await rest(page);
     const none = await sliced();
     check('the overlay is switched off', !(await keys(page)).overlay && none !== one && none !== both);
-    await page.getByLabel('seg.nrrd in the volume').check();
+    await page.getByLabel('seg.nrrd').check();
     await rest(page);
     check('and on again', await sliced() === one);
     await page.context().close();
@@ -849,19 +877,35 @@ async function fused() {
     const page = await open({viewport: {width: 1600, height: 1000}});
     await page.keyboard.press('x');
     await slicesRest(page);
-    await page.getByLabel("highest value of the overlay's range").fill('150');
+    await page.getByLabel('highest value of the range of the overlay').fill('150');
     await page.keyboard.press('Enter');
     await page.getByRole('slider', {name: 'opacity of the overlay'}).fill('0.8');
     await rest(page);
     await page.locator('details', {has: page.locator('summary', {hasText: 'Overlay'})})
         .getByLabel('Colours').selectOption('viridis');
+    await page.locator('summary', {hasText: 'Colours'}).click();
+    await page.getByLabel('colour 2', {exact: true}).fill('#ff2040');
+    await page.getByLabel('value of colour 2').fill('77');
+    await page.keyboard.press('Enter');
+    await page.getByRole('button', {name: 'Remove colour 1', exact: true}).click();
+    await page.getByRole('button', {name: 'Add a colour'}).click();
+    await page.getByLabel('in the colours of the look').evaluate(box => box.click());
+    await rest(page);
+    const map = (await keys(page)).colormap;
+    check('colours are chosen', /^77:#ff2040(,[\d.]+:#[\da-f]{6}){4}$/.test(map), map);
+    await page.getByLabel('highest value of the range', {exact: true}).fill('200');
+    await page.keyboard.press('Enter');
+    await rest(page);
+    check('and go with the range', /^77:#ff2040.*,200:#[\da-f]{6}$/.test((await keys(page)).colormap),
+        (await keys(page)).colormap);
     const command = await keepBoth(page), now = await keys(page);
     check('an overlay of values has a look', now['overlay-colormap'] === 'viridis' &&
         now['overlay-range'][1] === 150 && now['overlay-opacity'][1][1] === 0.8,
     JSON.stringify([now['overlay-range'], now['overlay-opacity']]));
     check('which the command has', /--overlay-colormap viridis/.test(command), command);
     await shot(page, 'fused');
-    await page.getByRole('button', {name: "Range and opacity from the overlay's histogram"}).click();
+    await page.locator('details', {has: page.locator('summary', {hasText: 'Overlay'})})
+        .getByRole('button', {name: /^Opacity of the preset/}).click();
     await rest(page);
     check('and loses', !('overlay-range' in await keys(page)));
     await page.context().close();

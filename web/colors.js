@@ -1,0 +1,79 @@
+// colors.js - colours at data values, in the place of a map with a name: the
+// recipe's colormap is then "60:#000000,255:#ff8800".
+
+import {button, fill, make, number, row, section, short, show} from './controls.js';
+
+const FIRST = 5; // points that are taken of a map
+
+const text = points => points.map(point => point.join(':')).join();
+
+/** [[60, '#000000'], ...]; null of a name. */
+export const ownColors = map => map?.includes(':')
+    ? map.split(',').map(part => part.split(':')).map(([value, color]) => [+value, color]) : null;
+
+/** Another range, with which one's own colours go, as those of a map do. */
+export function ranged({low, high}, map, range) {
+    const [a, b] = range, own = ownColors(map);
+    return !own ? {range} : {range, colormap: text(own.map(([value, color]) =>
+        [+(a + (value - low) / (high - low || 1) * (b - a)).toPrecision(6), color]))};
+}
+
+export class Colors {
+    constructor(recipe, page) {
+        Object.assign(this, {recipe, page});
+        this.list = make('div', {});
+        this.rows = [];
+        this.element = section('Colours', false, this.list, make('div', {className: 'row'},
+            button('Add', 'Add a colour', () => this.add())));
+    }
+
+    /** [60, '#000000']: what the look has there. */
+    at(value) {
+        const {low, high, strip} = this.page.look;
+        return [+value.toPrecision(5),
+            strip[Math.round((value - low) / (high - low) * (strip.length - 1))] ?? strip[0]];
+    }
+
+    get points() {
+        const {low, high} = this.page.look;
+        return ownColors(this.recipe.keys.colormap) ?? Array.from({length: FIRST}, (_, i) =>
+            this.at(low + (high - low) * i / (FIRST - 1)));
+    }
+
+    set(points) {
+        this.recipe.set({colormap: text(points.sort(([a], [b]) => a - b))});
+    }
+
+    put(i, value, color) {
+        this.set(this.points.map((point, k) => k === i ? [value ?? point[0], color ?? point[1]] : point));
+    }
+
+    add() {
+        const {points} = this, [a, b = a] = points.slice(-2);
+        this.set([...points, this.at((a[0] + b[0]) / 2)]);
+    }
+
+    row(i) {
+        const ink = make('input', {type: 'color', 'aria-label': `colour ${i + 1}`,
+            oninput: () => this.put(i, null, ink.value)});
+        const value = number(`value of colour ${i + 1}`, to => this.put(i, to, null));
+        return {ink, value, element: row(`Colour ${i + 1}`, ink, value, button('Remove',
+            `Remove colour ${i + 1}`, () => this.points.length > 1 &&
+                this.set(this.points.filter((_, k) => k !== i))))};
+    }
+
+    update() {
+        const {look} = this.page;
+        this.element.hidden = !look || look.labels?.length > 0;
+        if (this.element.hidden)
+            return;
+        const {points} = this;
+        while (this.rows.length < points.length)
+            this.rows.push(this.row(this.rows.length));
+        points.forEach(([at, color], i) => {
+            this.rows[i].ink.value = color;
+            show(this.rows[i].value, short(at));
+        });
+        fill(this.list, this.rows.slice(0, points.length).map(({element}) => element));
+    }
+}
