@@ -34,7 +34,7 @@ os.makedirs(shots, exist_ok=True)
 def drive(*words):
     """Runs the page; its lines are this test's."""
     done = subprocess.run([node, os.path.join(HERE, "web", "viewer.mjs"),
-                           PLAYWRIGHT, chromium, *words], timeout=500)
+                           PLAYWRIGHT, chromium, *words], timeout=3600)
     check("the page", done.returncode == 0, done.returncode)
 
 
