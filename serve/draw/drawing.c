@@ -2,6 +2,7 @@
 #include "draw/drawing.h"
 #include "commands/commands.h"
 #include "draw/ranks.h"
+#include "draw/slices.h"
 #include "options/config.h"
 #include "picture/annotations.h"
 #include "picture/paint.h"
@@ -292,6 +293,8 @@ static int apply(drawing *d, const json_t *recipe) {
     bool other_colors = take_key(&d->color_key, color_key_of(recipe));
     bool overlaid = drop_overlay(d, recipe, other_data);
     bool clips = json_object_get(recipe, "clip") != NULL;
+    if (other_data)
+        slices_forget(d);
     drop_base(d, clips ? key_of(recipe, base_keys) : NULL);
     bool clipped = other_data && reclip(d);
     if ((other_data && !clipped) || !d->state.volume) {
@@ -334,6 +337,7 @@ void drawing_close(drawing *d) {
     snow_volume_close(d->base);
     snow_transfer_free(d->slice_look);
     layers_close(&d->slice_layers);
+    slices_forget(d);
     render_state_free(&d->state);
     json_decref(d->tree);
     free(d->slice_key);

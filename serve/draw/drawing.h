@@ -11,6 +11,11 @@
 
 #include <jansson.h>
 
+typedef struct kept_slice {
+    snow_volume *volume; /* or NULL */
+    int64_t index;
+} kept_slice;
+
 typedef struct drawing {
     options first; /* as of the command line */
     options opts;  /* of the present recipe */
@@ -30,8 +35,10 @@ typedef struct drawing {
     char *slice_key;                      /* what it was made of */
     char *overlay_key, *overlay_look_key; /* of the overlay: file; look */
     layers slice_layers;                  /* the overlay where slices lie */
-    uint32_t followed; /* the state that the last answer was made for */
-    int followed_done; /* and what came of it */
+    kept_slice kept[3]; /* the last slice across each axis of the grid, of a
+                           volume that is not here */
+    uint32_t followed;  /* the state that the last answer was made for */
+    int followed_done;  /* and what came of it */
 } drawing;
 
 /* By all ranks.  Opens the volume of the command line.  Returns CONTINUE or an

@@ -142,17 +142,35 @@ static bool has_all(const drawing *d) {
     return process_ranks() == 1 && snow_volume_voxels(d->state.volume);
 }
 
+void slices_forget(drawing *d) {
+    for (int i = 0; i < 3; i++) {
+        snow_volume_close(d->kept[i].volume);
+        d->kept[i].volume = NULL;
+    }
+}
+
 /* A volume that stays in its file, or of which ranks have parts, is opened
- * again, cropped to the slice, which is then its first. */
+ * again, cropped to the slice, which is then its first.  It is kept: the
+ * picture at rest and the value where slices cross need it too. */
 static int open_slice(drawing *d, options *opts, int along, int64_t *index,
-                      snow_volume **out) {
+                      const snow_volume **out) {
+    kept_slice *kept = &d->kept[along];
+    const int64_t wanted = *index;
+    *out = has_all(d) ? drawing_unclipped(d) : kept->volume;
     if (has_all(d))
         return CONTINUE;
-    int64_t *crop = opts->crop[along];
-    crop[0] += *index;
-    crop[1] = crop[0] + 1;
     *index = 0;
-    return open_input(d->state.context, opts, opts->operands[0], out);
+    if (kept->volume && kept->index == wanted)
+        return CONTINUE;
+    int64_t *crop = opts->crop[along];
+    crop[0] += wanted;
+    crop[1] = crop[0] + 1;
+    snow_volume_close(kept->volume);
+    *kept = (kept_slice){.index = wanted};
+    int done =
+        open_input(d->state.context, opts, opts->operands[0], &kept->volume);
+    *out = kept->volume;
+    return done;
 }
 
 /* That of the picture, where it lies on the same grid and nothing cuts it. */
@@ -211,7 +229,7 @@ static int check_slice(drawing *d, const slice_asked *asked, int *along) {
 int slices_draw(drawing *d, const slice_asked *asked, snow_image **image,
                 snow_image_options *form) {
     static options opts; /* large; one thread draws */
-    snow_volume *opened = NULL;
+    const snow_volume *volume = NULL;
     int64_t index = asked->index;
     int along;
     *image = NULL;
@@ -221,8 +239,7 @@ int slices_draw(drawing *d, const slice_asked *asked, snow_image **image,
     json_t *tree = slice_tree(d, asked);
     done = slice_options(d, tree, &opts);
     if (done == CONTINUE)
-        done = open_slice(d, &opts, along, &index, &opened);
-    const snow_volume *volume = opened ? opened : drawing_unclipped(d);
+        done = open_slice(d, &opts, along, &index, &volume);
     if (done == CONTINUE)
         done = restyle(d, &opts, tree, volume);
     if (done == CONTINUE)
@@ -232,7 +249,6 @@ int slices_draw(drawing *d, const slice_asked *asked, snow_image **image,
         *image = NULL;
     }
     *form = picture_form(&opts);
-    snow_volume_close(opened);
     json_decref(tree);
     return done;
 }
@@ -280,27 +296,26 @@ static double value_at(const snow_volume *volume, const int64_t at[3]) {
     return NAN;
 }
 
-/* Of a volume that is not here: the voxel alone, which is then the first. */
+/* Of a volume that is not here: of a slice that is, else of one across z, which
+ * lies together in most files. */
 static double value_in_file(drawing *d, const int64_t at[3]) {
     static options opts; /* large; one thread draws */
     const slice_asked any = {.low = 0, .high = 1};
-    snow_volume *opened = NULL;
-    double value = NAN;
-    json_t *tree = slice_tree(d, &any);
-    int done = slice_options(d, tree, &opts);
-    json_decref(tree);
+    const snow_volume *volume = NULL;
+    int64_t within[3] = {at[0], at[1], at[2]};
+    int along = 2, done = CONTINUE;
     for (int i = 0; i < 3; i++) {
         if (at[i] < 0 || at[i] >= d->state.whole.dims[i])
             return NAN;
-        opts.crop[i][0] += at[i];
-        opts.crop[i][1] = opts.crop[i][0] + 1;
+        if (d->kept[i].volume && d->kept[i].index == at[i])
+            along = i;
     }
+    json_t *tree = slice_tree(d, &any);
+    done = slice_options(d, tree, &opts);
+    json_decref(tree);
     if (done == CONTINUE)
-        done = open_input(d->state.context, &opts, opts.operands[0], &opened);
-    if (done == CONTINUE)
-        value = value_at(opened, (const int64_t[3]){0, 0, 0});
-    snow_volume_close(opened);
-    return value;
+        done = open_slice(d, &opts, along, &within[along], &volume);
+    return done == CONTINUE ? value_at(volume, within) : NAN;
 }
 
 double slices_value(drawing *d, const int64_t at[3]) {

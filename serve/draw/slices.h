@@ -24,6 +24,9 @@ json_t *slices_info(drawing *d);
 int slices_draw(drawing *d, const slice_asked *asked, snow_image **image,
                 snow_image_options *form);
 
+/* Of another volume. */
+void slices_forget(drawing *d);
+
 /* The command that makes the same picture, to be freed; NULL: none. */
 char *slices_command(drawing *d, const slice_asked *asked);
 

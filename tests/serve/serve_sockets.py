@@ -800,6 +800,20 @@ def streamed_slices():
         page.say({"t": "ask", "what": "value", "at": at})
         told = page.hear_text("value")
         check(f"the value at {at} in the file", told["value"] == value, told)
+    for at in ([1, 2, 3], [1, 100, 7], [200, 9, 3], [200, 100, 3]):
+        ask_slice(page, axis="z", index=at[2], range=[0, 255])
+        ask_slice(page, axis="y", index=at[1], range=[0, 255])
+    os.rename(big, big + "x")
+    for at in ([1, 2, 3], [9, 7, 3], [4, 100, 200]):
+        page.say({"t": "ask", "what": "value", "at": at})
+        told = page.hear_text("value")
+        check(f"the value at {at} is of a slice that is there",
+              told["value"] == at[0] + at[2], told)
+    again = ask_slice(page, axis="y", index=100, range=[0, 255], exact=True)
+    check("which is not read again", again is not None)
+    page.say({"t": "ask", "what": "value", "at": [1, 3, 4]})
+    check("another one is", page.hear_text("value")["value"] is None)
+    os.rename(big + "x", big)
     check("its voxels are not in memory", server.kilobytes("VmRSS") < 60000,
           server.kilobytes("VmRSS"))
     heard = []
