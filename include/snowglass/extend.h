@@ -127,6 +127,8 @@ SNOW_API snow_status snow_voxels_plan(snow_voxels *voxels, const snow_box *held,
 SNOW_API snow_status snow_voxels_move(
     snow_voxels *voxels, const snow_brick *bricks, size_t value, void *dense);
 
+/* Lets rows and slices of wrapped voxels of at least 4 bytes lie apart. */
+SNOW_API void snow_volume_set_pitch(snow_volume *, const int64_t pitch[2]);
 /* Gives a part the matrix of its whole, exactly. */
 SNOW_API snow_status snow_volume_set_whole(
     snow_volume *volume, const snow_volume_info *whole);
@@ -140,15 +142,14 @@ typedef struct snow_ranks_needs {
 } snow_ranks_needs;
 SNOW_RECORD(snow_ranks_needs);
 /* Errors: as snow_frame_render. */
-SNOW_API snow_status snow_ranks_find_needs(snow_context *context,
-    const snow_volume_info *whole, const snow_view *view,
-    const snow_settings *settings, const snow_look *look,
-    snow_ranks_needs *out);
+SNOW_API snow_status snow_ranks_find_needs(snow_context *,
+    const snow_volume_info *whole, const snow_view *, const snow_settings *,
+    const snow_look *, snow_ranks_needs *out);
 
 /* Whether disjoint boxes have an order from front to back. Errors: as above. */
-SNOW_API snow_status snow_ranks_have_order(snow_context *context,
-    const snow_volume_info *whole, const snow_view *view, const snow_box *boxes,
-    int count, bool *out);
+SNOW_API snow_status snow_ranks_have_order(snow_context *,
+    const snow_volume_info *, const snow_view *, const snow_box *, int count,
+    bool *out);
 /* A rank's slab of deterministic pictures; both 0 where it gets none. */
 SNOW_API void snow_ranks_slab(
     int64_t slices, int ranks, int rank, int64_t *first, int64_t *count);

@@ -94,8 +94,8 @@ void snow_classifier_fini(snow_context *context, snow_classifier *c) {
 const void *snow_row_voxels(const snow_volume *volume,
                             const snow_placement *placement, int64_t slice,
                             int64_t row, int64_t *stride) {
-    const int64_t *dims = volume->info.dims;
-    const int64_t strides[3] = {1, dims[0], dims[0] * dims[1]};
+    int64_t strides[3];
+    snow_volume_steps(volume, strides);
     *stride = strides[placement->u_axis];
     int64_t first = slice * strides[placement->slice_axis] +
                     row * strides[placement->v_axis];

@@ -21,14 +21,13 @@
 
 static void measure_steps(snow_fetch *f, const snow_fetch_params *params) {
     const snow_placement *p = params->placement;
-    const int64_t *dims = params->volume->info.dims;
     size_t size = snow_type_size(params->volume->info.type);
-    const size_t steps[3] = {size, size * (size_t)dims[0],
-                             size * (size_t)dims[0] * (size_t)dims[1]};
+    int64_t steps[3];
+    snow_volume_steps(params->volume, steps);
     *f = (snow_fetch){
-        .column_step = steps[p->u_axis],
-        .row_step = steps[p->v_axis],
-        .slice_step = steps[p->slice_axis],
+        .column_step = size * (size_t)steps[p->u_axis],
+        .row_step = size * (size_t)steps[p->v_axis],
+        .slice_step = size * (size_t)steps[p->slice_axis],
         .type = params->volume->info.type,
         .size = size,
         .columns = (size_t)p->columns,

@@ -40,10 +40,19 @@ bool snow_insitu_box_holds(const snow_box *outer, const snow_box *inner) {
 
 /* --- taking --------------------------------------------------------------- */
 
-/* The only brick's voxels where they lie, where that is how a volume wants
- * them: dense, halo included, all of it within the grid but slices before the
- * first one and behind the last, which are left out. */
-static const void *in_place(const snow_insitu *insitu, snow_box *memory) {
+/* Whether a volume can have rows and slices that lie so. */
+static bool can_wrap(const snow_insitu_brick *brick, const snow_box *memory) {
+    const int64_t *stride = brick->stride, row = memory->count[0];
+    if (stride[0] == 1 && snow_type_size(brick->type) >= 4)
+        return stride[1] > 0 && stride[2] > 0;
+    return stride[0] == 1 && stride[1] == row &&
+           stride[2] == row * memory->count[1];
+}
+
+/* The only brick's voxels where they lie, with the part of its halo that is
+ * within the grid. */
+static const void *in_place(const snow_insitu *insitu, snow_box *memory,
+                            int64_t pitch[2]) {
     const snow_insitu_brick *brick = NULL;
     for (int id = 0; id < insitu->brick_count; id++)
         if (snow_box_voxels(&insitu->bricks[id].box))
@@ -51,19 +60,15 @@ static const void *in_place(const snow_insitu *insitu, snow_box *memory) {
     if (insitu->layout.exchanged || insitu->held_count != 1 ||
         insitu->ghosts == SNOW_GHOSTS_NONE)
         return NULL;
-    int64_t step = 1, back = 0;
+    int64_t back = 0;
     *memory = snow_insitu_grow_box(&brick->box, brick->halo.low,
                                    brick->halo.high, insitu->whole.dims);
-    for (int i = 0; i < 3; i++) {
-        int64_t all =
-            brick->halo.low[i] + brick->box.count[i] + brick->halo.high[i];
-        if (brick->stride[i] != step || (i < 2 && memory->count[i] != all))
-            return NULL;
-        back += (brick->box.first[i] - memory->first[i]) * step;
-        step *= all;
-    }
-    if (!snow_insitu_box_holds(memory, &insitu->layout.stored))
+    if (!can_wrap(brick, memory) ||
+        !snow_insitu_box_holds(memory, &insitu->layout.stored))
         return NULL;
+    for (int i = 0; i < 3; i++)
+        back += (brick->box.first[i] - memory->first[i]) * brick->stride[i];
+    memcpy(pitch, brick->stride + 1, 2 * sizeof *pitch);
     return (const char *)brick->voxels -
            (size_t)back * snow_type_size(insitu->type);
 }
@@ -133,7 +138,7 @@ static snow_status reserve_dense(snow_insitu *insitu, size_t value) {
 
 /* A volume over voxels that lie in `memory`: the rank's part of the whole. */
 static snow_status wrap_voxels(snow_insitu *insitu, const void *voxels,
-                               const snow_box *memory) {
+                               const snow_box *memory, const int64_t pitch[2]) {
     snow_volume_info info = insitu->whole;
     snow_extent part = {.size = sizeof part};
     info.type = insitu->type;
@@ -149,6 +154,7 @@ static snow_status wrap_voxels(snow_insitu *insitu, const void *voxels,
     insitu->volume = NULL;
     INSITU_TRY(
         snow_volume_wrap(insitu->context, &info, voxels, &insitu->volume));
+    snow_volume_set_pitch(insitu->volume, pitch);
     INSITU_TRY(snow_volume_set_extent(insitu->volume, &part));
     INSITU_TRY(snow_volume_set_whole(insitu->volume, &insitu->whole));
     snow_volume_freeze(insitu->volume); /* until the next update */
@@ -159,7 +165,8 @@ static snow_status wrap_voxels(snow_insitu *insitu, const void *voxels,
 static snow_status gather_voxels(snow_insitu *insitu) {
     snow_box memory;
     size_t value = snow_type_size(insitu->type);
-    const void *shared = in_place(insitu, &memory);
+    int64_t pitch[2] = {0, 0};
+    const void *shared = in_place(insitu, &memory, pitch);
     snow_status status = SNOW_STATUS_OK;
     insitu->copied = !shared;
     if (!shared) {
@@ -172,7 +179,8 @@ static snow_status gather_voxels(snow_insitu *insitu) {
                                     insitu->dense));
     else if (!shared)
         copy_bricks(insitu, value);
-    status = wrap_voxels(insitu, shared ? shared : insitu->dense, &memory);
+    status =
+        wrap_voxels(insitu, shared ? shared : insitu->dense, &memory, pitch);
     return snow_comm_agree_status(insitu->comm, status);
 }
 

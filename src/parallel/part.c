@@ -63,10 +63,10 @@ snow_status snow_part_new(snow_context *context, const snow_volume_info *whole,
 /* What a volume answers for, as it lies in memory. */
 static snow_brick brick_of(const snow_volume *volume) {
     snow_extent part;
-    const int64_t *dims = volume->info.dims;
     size_t size = snow_type_size(volume->info.type);
     snow_volume_find_extent(volume, &part);
-    snow_brick brick = {.stride = {1, dims[0], dims[0] * dims[1]}};
+    snow_brick brick;
+    snow_volume_steps(volume, brick.stride);
     int64_t at = 0;
     for (int i = 0; i < 3; i++) {
         brick.box.first[i] = part.first[i];

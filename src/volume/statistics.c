@@ -16,8 +16,8 @@
  * row length hides a swap of axes. */
 #define WEIGHT_PERIOD 1009
 
-void snow_volume_stored(const snow_volume *volume, int64_t first, size_t count,
-                        double *out) {
+static void widen(const snow_volume *volume, int64_t first, size_t count,
+                  double *out) {
     switch (volume->info.type) {
 #define WIDEN(name, c_type, text)                                    \
     case SNOW_TYPE_##name: {                                         \
@@ -30,6 +30,27 @@ void snow_volume_stored(const snow_volume *volume, int64_t first, size_t count,
 #undef WIDEN
     case SNOW_TYPE_NONE:
         break;
+    }
+}
+
+void snow_volume_stored(const snow_volume *volume, int64_t first, size_t count,
+                        double *out) {
+    const int64_t *dims = volume->info.dims;
+    if (!volume->pitch[0]) {
+        widen(volume, first, count, out);
+        return;
+    }
+    while (count) {
+        const int64_t x = first % dims[0], row = first / dims[0];
+        const size_t left = (size_t)(dims[0] - x);
+        const size_t here = count < left ? count : left;
+        widen(volume,
+              row / dims[1] * volume->pitch[1] +
+                  row % dims[1] * volume->pitch[0] + x,
+              here, out);
+        first += (int64_t)here;
+        count -= here;
+        out += here;
     }
 }
 

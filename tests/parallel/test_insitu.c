@@ -492,10 +492,45 @@ static void wide_halos_are_used_in_place_of_messages(void **state) {
     s.halo = 8;
     expect_serial(&s, "halos");
     assert_false(s.figures.exchanged);
-    assert_int_equal(s.figures.ranks_copied, 4); /* they reach past the grid */
+    assert_int_equal(s.figures.ranks_copied, 0); /* past the grid, too */
     s.halo = 1;
     expect_serial(&s, "narrow halos");
     assert_true(s.figures.exchanged);
+}
+
+/* Halos on all sides of a grid that is not periodic, where nonsense lies beyond
+ * it: rows and slices lie apart. */
+static void halos_beyond_the_grid_do_not_make_copies(void **state) {
+    (void)state;
+    static const int cuts[][4] = {{1, 1, 1, 1}, {2, 1, 2, 1}, {4, 2, 2, 1}};
+    static const double turns[][2] = {{10, 0}, {95, 10}, {30, 80}};
+    static const snow_method methods[] = {SNOW_METHOD_AUTO, SNOW_METHOD_TESTED,
+                                          SNOW_METHOD_FOOTPRINT};
+    for (int n = 0; n < 54; n += (int)support_stride(5)) {
+        const int *cut = cuts[n % 3];
+        scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
+        s.halo = 8;
+        s.settings.method = methods[n / 3 % 3];
+        if (s.ranks == 1 && n / 3 % 3 == 2)
+            s.settings.method = SNOW_METHOD_RAYCAST;
+        s.view.azimuth = turns[n / 9 % 3][0];
+        s.view.elevation = turns[n / 9 % 3][1];
+        s.type = n / 27 ? SNOW_TYPE_FLOAT64 : SNOW_TYPE_FLOAT32;
+        s.fades = n % 2;
+        s.first_deterministic = n % 4 == 3;
+        expect_serial(&s, "halos");
+        assert_int_equal(s.figures.ranks_copied, 0);
+    }
+}
+
+/* Types of 8 and 16 bits are used in place where they are dense. */
+static void halos_of_short_types_do(void **state) {
+    (void)state;
+    scene s = make_scene(4, 2, 2, 1);
+    s.halo = 8;
+    s.type = SNOW_TYPE_INT16;
+    expect_serial(&s, "halos of words");
+    assert_int_equal(s.figures.ranks_copied, 4);
 }
 
 static void without_ghosts_there_are_seams_and_no_messages(void **state) {
@@ -1395,6 +1430,8 @@ int main(void) {
         cmocka_unit_test(a_gradient_opacity_does),
         cmocka_unit_test(every_type_and_layout_does),
         cmocka_unit_test(wide_halos_are_used_in_place_of_messages),
+        cmocka_unit_test(halos_beyond_the_grid_do_not_make_copies),
+        cmocka_unit_test(halos_of_short_types_do),
         cmocka_unit_test(without_ghosts_there_are_seams_and_no_messages),
         cmocka_unit_test(voxels_that_lie_as_wanted_are_not_copied),
         cmocka_unit_test(several_bricks_of_a_rank_are_one_part),

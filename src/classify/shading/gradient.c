@@ -19,8 +19,8 @@ static double difference(double here, double below, double above) {
 #define TEMPLATE "classify/shading/gradient.tmpl.h"
 #include "volume/each_type.h"
 
-typedef void gradient_fn(const void *voxels, const int64_t dims[3],
-                         const int64_t at[3], double gradient[3]);
+typedef void gradient_fn(const snow_volume *volume, const int64_t at[3],
+                         double gradient[3]);
 typedef void gradient_row_fn(const snow_gradient_row *row,
                              const uint32_t *columns, size_t count,
                              size_t capacity, double *gradients);
@@ -42,7 +42,7 @@ static void one_by_one(const snow_gradient_row *row, const uint32_t *columns,
     for (size_t n = first; n < end; n++) {
         double gradient[3];
         at[row->axis] = columns[n];
-        types[info->type].one(row->volume->voxels, info->dims, at, gradient);
+        types[info->type].one(row->volume, at, gradient);
         for (size_t i = 0; i < 3; i++)
             gradients[i * capacity + n] = gradient[i];
     }

@@ -4,11 +4,13 @@
  * value that is not finite, the difference is one-sided; without any neighbour
  * it is 0. */
 
-static void TYPED(gradient)(const void *voxels, const int64_t dims[3],
-                            const int64_t at[3], double gradient[3]) {
-    const int64_t strides[3] = {1, dims[0], dims[0] * dims[1]};
-    const TYPE *here =
-        (const TYPE *)voxels + at[0] + at[1] * strides[1] + at[2] * strides[2];
+static void TYPED(gradient)(const snow_volume *volume, const int64_t at[3],
+                            double gradient[3]) {
+    const int64_t *dims = volume->info.dims;
+    int64_t strides[3];
+    snow_volume_steps(volume, strides);
+    const TYPE *here = (const TYPE *)volume->voxels + at[0] +
+                       at[1] * strides[1] + at[2] * strides[2];
     for (int axis = 0; axis < 3; axis++) {
         double below = at[axis] > 0 ? (double)here[-strides[axis]] : NAN;
         double above =
@@ -20,8 +22,8 @@ static void TYPED(gradient)(const void *voxels, const int64_t dims[3],
 /* For voxels that have neighbours on all sides. */
 static void TYPED(row)(const snow_gradient_row *row, const uint32_t *columns,
                        size_t count, size_t capacity, double *gradients) {
-    const int64_t *dims = row->volume->info.dims;
-    const int64_t strides[3] = {1, dims[0], dims[0] * dims[1]};
+    int64_t strides[3];
+    snow_volume_steps(row->volume, strides);
     int64_t at[3] = {row->at[0], row->at[1], row->at[2]};
     at[row->axis] = 0;
     const TYPE *first = (const TYPE *)row->volume->voxels + at[0] +
@@ -39,7 +41,7 @@ static void TYPED(row)(const snow_gradient_row *row, const uint32_t *columns,
             continue;
         double careful[3];
         at[row->axis] = columns[n];
-        TYPED(gradient)(row->volume->voxels, dims, at, careful);
+        TYPED(gradient)(row->volume, at, careful);
         for (size_t i = 0; i < 3; i++)
             gradients[i * capacity + n] = careful[i];
     }
