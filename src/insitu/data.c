@@ -174,7 +174,9 @@ static snow_status gather_voxels(snow_insitu *insitu) {
         status = reserve_dense(insitu, value);
     }
     INSITU_TRY(snow_comm_agree_status(insitu->comm, status));
-    if (insitu->layout.exchanged)
+    if (insitu->layout.uneven)
+        INSITU_TRY(snow_insitu_move_cells(insitu, value));
+    else if (insitu->layout.exchanged)
         INSITU_TRY(snow_voxels_move(insitu->voxels, insitu->moved, value,
                                     insitu->dense));
     else if (!shared)

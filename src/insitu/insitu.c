@@ -45,8 +45,9 @@ void snow_insitu_forget(snow_insitu *insitu) {
     snow_frame_free(insitu->frame);
     snow_voxels_clear(insitu->voxels);
     snow_context_release(context, insitu->dense);
-    snow_context_release(context, insitu->refined);
-    insitu->refined = NULL;
+    snow_context_release(context, insitu->levels.sent.values);
+    snow_context_release(context, insitu->levels.received.values);
+    insitu->levels.sent.values = insitu->levels.received.values = NULL;
     insitu->volume = NULL;
     insitu->frame = NULL;
     insitu->dense = NULL;
@@ -81,6 +82,12 @@ void snow_insitu_free(snow_insitu *insitu) {
     snow_context_release(context, insitu->boxes);
     snow_context_release(context, insitu->held);
     snow_context_release(context, insitu->moved);
+    snow_context_release(context, insitu->levels.bricks);
+    snow_context_release(context, insitu->levels.pieces);
+    snow_context_release(context, insitu->levels.sent.blocks);
+    snow_context_release(context, insitu->levels.received.blocks);
+    snow_context_release(context, insitu->levels.places);
+    snow_context_release(context, insitu->levels.moved);
     snow_context_release(context, insitu->bricks);
     snow_insitu_free_look(context, &insitu->look);
     snow_insitu_set_refresh(insitu, NULL, NULL);

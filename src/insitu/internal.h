@@ -5,7 +5,8 @@
  *   look.c    the look                   place.c   bricks by their positions
  *   data.c    takes voxels, by way of    agree.c   what all ranks know
  *                                        layout.c  who draws what
- *                                        levels.c  cells that are wider
+ *                                        levels.c  cells that are wider, and
+ *                                        cells.c   where they go
  *   draw.c    makes pictures of them     limits.c  with less and less work
  *   output.c  and writes them            enlarge.c at the size asked for */
 #ifndef SNOW_INSITU_INTERNAL_H
@@ -32,7 +33,6 @@ typedef struct snow_insitu_brick {
     snow_box box; /* empty: there is none of this number */
     snow_halo halo;
     int64_t cells[3]; /* voxels of one of its cells */
-    int pieces[2];    /* the first in `held`, and behind the last (levels.c) */
     snow_type type;
     const void *voxels;
     int64_t stride[3];
@@ -50,10 +50,43 @@ typedef struct snow_insitu_seconds {
     double update, look, render, encode, draw, write, step;
 } snow_insitu_seconds;
 
+/* What all ranks know of a brick where cells are wider than voxels. */
+typedef struct snow_level_brick {
+    snow_box box; /* of voxels; empty: there is none */
+    int64_t cells[3];
+    snow_halo halo;
+    int64_t pieces[2]; /* that finer ones leave of it: the first, and behind the
+                          last */
+} snow_level_brick;
+
+/* Voxels that a rank needs, and the cells of a brick that they come from. */
+typedef struct snow_level_block {
+    const snow_level_brick *brick;
+    snow_box voxels, cells;
+} snow_level_block;
+
+typedef struct snow_level_blocks {
+    snow_level_block *blocks;
+    int count;
+    int64_t cells; /* of all */
+    char *values;  /* theirs, one block after another */
+} snow_level_blocks;
+
+typedef struct snow_insitu_levels {
+    snow_level_brick *bricks; /* of all ranks, `most` of each */
+    int64_t most, count;
+    snow_box *pieces;
+    int64_t piece_count;
+    snow_level_blocks sent, received;
+    snow_box *places; /* of sent blocks among the cells of all messages */
+    snow_brick *moved;
+} snow_insitu_levels;
+
 /* How the voxels of a picture are held; `planned` and `exchanged` are the same
  * on all ranks. */
 typedef struct snow_insitu_layout {
     bool planned, exchanged, recut;
+    bool uneven;               /* some cells are wider than voxels */
     snow_degradation lowering; /* that pictures of these voxels are made with */
     int64_t layers[3];         /* ghost voxels around the owned box */
     snow_box owned;            /* what this rank draws; may be empty */
@@ -106,7 +139,7 @@ struct snow_insitu {
     snow_box *held;   /* the bricks' boxes, and the bricks, in one order */
     snow_brick *moved;
     int held_count;
-    char *refined; /* voxels of wider cells (levels.c) */
+    snow_insitu_levels levels;
     char *dense;
     bool copied;
     snow_volume *volume; /* NULL: none yet */
@@ -202,10 +235,24 @@ snow_status snow_insitu_share_facts(snow_insitu *insitu, const snow_view *view,
  * does not. */
 snow_status snow_insitu_lay_out(snow_insitu *insitu);
 
-/* Whether all cells of this rank are voxels; collective: the bricks that were
- * listed become those of wider cells refined to voxels (levels.c). */
+/* What a rank draws and, with its ghosts, stores of boxes that are cut anew. */
+snow_box snow_insitu_recut_box(const snow_insitu *insitu,
+                               const snow_insitu_layout *layout, int rank);
+
+/* Whether all cells of this rank are voxels; whether a brick's are finer than
+ * these (levels.c). */
 bool snow_insitu_is_even(const snow_insitu *insitu);
-snow_status snow_insitu_refine(snow_insitu *insitu);
+bool snow_level_is_finer(const snow_level_brick *brick, const int64_t cells[3]);
+
+/* Collective.  Lists the bricks of all ranks, and their pieces; those of this
+ * rank are what it holds. */
+snow_status snow_insitu_cut_levels(snow_insitu *insitu);
+
+/* Collective.  Plans which cells go where; moves them, and refines what arrives
+ * to the dense box (cells.c). */
+snow_status snow_insitu_plan_cells(snow_insitu *insitu,
+                                   const snow_insitu_layout *layout);
+snow_status snow_insitu_move_cells(snow_insitu *insitu, size_t value);
 
 /* A box with so many layers more on all sides, as far as the grid goes. */
 snow_box snow_insitu_grow_box(const snow_box *box, const int64_t low[3],

@@ -101,19 +101,30 @@ static snow_box cut_slab(const int64_t dims[3], int axis, int ranks, int rank) {
     return box;
 }
 
+static snow_box recut_box(const snow_insitu *insitu,
+                          const snow_insitu_layout *l, int rank) {
+    const int64_t *dims = insitu->whole.dims;
+    const int ranks = snow_comm_size(insitu->comm);
+    return l->recut_axis >= 0 ? cut_slab(dims, l->recut_axis, ranks, rank)
+                              : cut_equal(dims, ranks, rank);
+}
+
+snow_box snow_insitu_recut_box(const snow_insitu *insitu,
+                               const snow_insitu_layout *l, int rank) {
+    const snow_box owned = recut_box(insitu, l, rank);
+    return snow_box_voxels(&owned)
+               ? snow_insitu_grow_box(&owned, l->layers, l->layers,
+                                      insitu->whole.dims)
+               : owned;
+}
+
 /* The owned box, and the stored one around it: one voxel where nothing is
  * owned, since a volume has at least one. */
 static void place_boxes(const snow_insitu *insitu, snow_insitu_layout *l,
                         const snow_box *united) {
-    int ranks = snow_comm_size(insitu->comm);
-    int rank = snow_comm_rank(insitu->comm);
     const int64_t *dims = insitu->whole.dims;
-    if (!l->recut)
-        l->owned = *united;
-    else if (l->recut_axis >= 0)
-        l->owned = cut_slab(dims, l->recut_axis, ranks, rank);
-    else
-        l->owned = cut_equal(dims, ranks, rank);
+    l->owned =
+        l->recut ? recut_box(insitu, l, snow_comm_rank(insitu->comm)) : *united;
     if (snow_box_voxels(&l->owned))
         l->stored = snow_insitu_grow_box(&l->owned, l->layers, l->layers, dims);
     else {
@@ -151,11 +162,15 @@ static snow_status plan_layout(snow_insitu *insitu,
     if (insitu->ghosts == SNOW_GHOSTS_NONE)
         l.exchanged = l.recut;
     insitu->layout.planned = false;
-    bool moves = l.exchanged && snow_box_voxels(&l.owned);
+    if (l.uneven)
+        INSITU_TRY(snow_insitu_cut_levels(insitu));
+    bool moves = l.exchanged && !l.uneven && snow_box_voxels(&l.owned);
     INSITU_TRY(snow_voxels_plan(insitu->voxels, insitu->held,
                                 insitu->held_count,
                                 moves ? &l.stored : &nothing));
     INSITU_TRY(check_whole(insitu));
+    if (l.uneven)
+        INSITU_TRY(snow_insitu_plan_cells(insitu, &l));
     l.planned = true;
     insitu->layout = l;
     insitu->changed = false;
@@ -205,6 +220,16 @@ static snow_status decide_recut(snow_insitu *insitu, const snow_view *view,
     return SNOW_STATUS_OK;
 }
 
+/* Of values that are refined, which are alike on all ranks. */
+static snow_status check_type(snow_insitu *insitu) {
+    if (insitu->type == SNOW_TYPE_FLOAT32 || insitu->type == SNOW_TYPE_FLOAT64)
+        return SNOW_STATUS_OK;
+    return snow_context_fail(insitu->context, SNOW_STATUS_BAD_USAGE,
+                             "voxels are %s, and cells of several sizes must "
+                             "be float32 or float64",
+                             snow_type_name(insitu->type));
+}
+
 snow_status snow_insitu_lay_out(snow_insitu *insitu) {
     snow_view view = snow_insitu_view(insitu), lowered;
     snow_settings settings;
@@ -220,8 +245,9 @@ snow_status snow_insitu_lay_out(snow_insitu *insitu) {
     bool is_united = unite_bricks(insitu, &united);
     INSITU_TRY(
         snow_insitu_share_facts(insitu, &view, l.layers, is_united, facts));
-    if (!facts[SNOW_FACT_EVEN])
-        INSITU_TRY(snow_insitu_refine(insitu));
+    l.uneven = !facts[SNOW_FACT_EVEN];
+    if (l.uneven)
+        INSITU_TRY(check_type(insitu));
     INSITU_TRY(decide_recut(insitu, &lowered, needs.slice_axis, &united, facts,
                             &l.recut));
     l.recut_axis = slab_axis(insitu, needs.slice_axis);

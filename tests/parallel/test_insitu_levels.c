@@ -22,6 +22,7 @@ typedef struct scene {
     int64_t halo;
     const char *wrong; /* part of a message; NULL: none */
     snow_box odd;      /* replaces the finest brick, unless it is empty */
+    uint64_t sent[8];  /* by each rank: bytes, of values in place */
     double share;      /* of pixels that differ by more than 2 of 255 */
     double largest;
 } scene;
@@ -189,10 +190,15 @@ static snow_status draw(snow_insitu *insitu, scene *s) {
     SNOW_TRY(snow_insitu_set_view(insitu, &view));
     SNOW_TRY(snow_insitu_set_settings(insitu, &settings));
     SNOW_TRY(snow_insitu_set_look(insitu, &look));
+    uint64_t messages, before = 0,
+                       *sent = &s->sent[snow_comm_rank(insitu->comm)];
     for (int again = 0; again < 2; again++) {
         snow_image_free(image);
         image = NULL;
+        snow_comm_sent(insitu->comm, &messages, &before);
         SNOW_TRY(snow_insitu_update(insitu));
+        snow_comm_sent(insitu->comm, &messages, sent);
+        *sent -= before;
         SNOW_TRY(snow_insitu_render(insitu, &image));
     }
     if (image)
@@ -242,6 +248,22 @@ static void cells_of_all_sizes_are_one_picture(void **state) {
                 fail_msg("%d ranks, halo %d: %g of the pixels differ, by %g",
                          s.ranks, (int)halo, s.share, s.largest);
         }
+}
+
+/* Not voxels: of the finest grid all ranks would send most of 1.97 MB. */
+static void ranks_send_the_cells_that_others_need(void **state) {
+    (void)state;
+    static const uint64_t bounds[] = {0, 0, 120000, 360000, 460000};
+    for (int ranks = 2; ranks <= 4; ranks++) {
+        scene s = {.ranks = ranks, .halo = 3, .type = SNOW_TYPE_FLOAT32};
+        run(&s, SNOW_STATUS_OK);
+        uint64_t all = 0;
+        for (int rank = 0; rank < ranks; rank++)
+            all += s.sent[rank];
+        if (all == 0 || all > bounds[ranks])
+            fail_msg("%d ranks send %llu bytes", ranks,
+                     (unsigned long long)all);
+    }
 }
 
 static void what_cannot_be_refined_is_refused(void **state) {
@@ -295,6 +317,7 @@ static void a_brick_ends_where_its_cells_do(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cells_of_all_sizes_are_one_picture),
+        cmocka_unit_test(ranks_send_the_cells_that_others_need),
         cmocka_unit_test(what_cannot_be_refined_is_refused),
         cmocka_unit_test(a_brick_ends_where_its_cells_do),
     };
