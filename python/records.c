@@ -211,7 +211,7 @@ static const field option_fields[] = {
     OPTION(mask, 's', NULL),         OPTION(labels, 's', NULL),
     OPTION(label_table, 's', NULL),  OPTION(component, 's', NULL),
     OPTION(allow_gaps, 'b', NULL),   OPTION(each_time, 'b', NULL),
-    OPTION(each_channel, 'b', NULL),
+    OPTION(each_channel, 'b', NULL), OPTION(levels, 'l', NULL),
 };
 
 static int domain_of(const char *name) {

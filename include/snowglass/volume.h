@@ -77,7 +77,6 @@ typedef struct snow_label_range {
 } snow_label_range;
 #define SNOW_LABELS_MAX 256
 #define SNOW_CLIPS_MAX 6
-
 /* What a value names: red, green, blue and opacity; below 0: not said. */
 typedef struct snow_label {
     double value, color[4];
@@ -104,6 +103,7 @@ typedef struct snow_volume_options {
     const char *component; /* "x", "magnitude", ... or NULL (docs/formats.md) */
     const char *label_table; /* path: names and colours of labels; or NULL */
     bool each_channel;       /* no warning of other channels */
+    int64_t levels; /* of refinement that are read, the coarsest first; 0: all */
 } snow_volume_options;
 SNOW_RECORD(snow_volume_options);
 /* Opens a file (format by its first bytes, then its name; gzip is undone), "-"

@@ -22,6 +22,7 @@ snow_volume_options data_options(const options *opts) {
         .channel_given = options_given(opts, "channel"),
         .each_channel = opts->mixes,
         .allow_gaps = opts->allow_gaps,
+        .levels = opts->levels,
         .component = opts->component,
         .dataset = opts->dataset,
         .series = opts->series,

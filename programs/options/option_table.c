@@ -300,6 +300,10 @@ const option_row option_table[] = {
      0, "",
      "open a DICOM folder in which slices are missing or cut: a note names each, "
      "and its place stays transparent (default: refuse, except for info)"},
+    {"levels", 0, "N", TOPIC_DATA, INPUT, read_integer, FIELD(levels), 1, 24,
+     "",
+     "levels of refinement to read, the coarsest first, as if the file had no "
+     "finer ones: of AMReX and .vth (default: all)"},
     {"mask", 0, "FILE", TOPIC_DATA, INPUT, read_text, FIELD(mask), 0, 0, "",
      "volume in the same place; where it is 0 or NaN, voxels of the input are "
      "removed: neither shown nor counted (default: none)"},

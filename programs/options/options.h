@@ -115,6 +115,7 @@ typedef struct options {
     const char *dataset;   /* NULL: not given */
     const char *series;    /* NULL: not given */
     bool allow_gaps;
+    int64_t levels; /* 0: all */
     int64_t crop[3][2];                      /* 0: the end */
     double clip[SNOW_CLIPS_MAX][4];          /* zeros: none */
     const char *mask, *labels, *label_table; /* NULL: not given */

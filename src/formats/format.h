@@ -30,6 +30,8 @@ typedef struct snow_format {
     bool channels; /* heeds the option that chooses a channel */
     bool series;   /* heeds the option that chooses a series */
     bool names;    /* its components have names, which the option may give */
+    bool
+        levels; /* of refinement: heeds the option that leaves out the finest */
     snow_status (*read)(snow_source *source, const snow_volume_options *options,
                         snow_volume_info *info, snow_volume **out);
     snow_status (*write)(const snow_volume *volume, const char *path,

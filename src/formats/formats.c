@@ -111,6 +111,11 @@ static snow_status check_choice(snow_context *context,
                          "--series %.64s: files of the format %s have no "
                          "series; remove the option",
                          options->series, format->name);
+    if (options->levels && !format->levels)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--levels %lld: files of the format %s have no levels "
+                         "of refinement; remove the option",
+                         (long long)options->levels, format->name);
     return SNOW_STATUS_OK;
 }
 

@@ -150,6 +150,7 @@ const recipe_key recipe_keys[] = {
     TEXT("dataset", data.dataset),
     TEXT("series", data.series),
     MADE("allow-gaps", flag, data.allow_gaps, 0, 0, 0),
+    MADE("levels", long, data.levels, 1, 24, 0),
     TEXT("mask", data.mask),
     MADE("labels", labels, data.labels, 0, 0, 0),
     TEXT("label-table", data.label_table),

@@ -283,6 +283,16 @@ check("plt", TWO, hill, 0.03, 2e-4, ["--component", "RHO"], "letters")
 oracle.refuse("plt", "there is no component RHO", ["--dataset", "RHO"], 2)
 compare("plt", TWO, hill, *LOOK)
 compare("plt", TWO, hill, "--mode", "mip", *LOOK)
+# In slabs, in less memory than the grid has bytes, the pixels are the same.
+WHOLE = ("--colormap", "inferno")
+for path, options in (("plt", ()), ("a.vth", ("--mode", "mip"))):
+    if path == "a.vth":
+        vth(path, TWO, hill)
+    oracle.checked += 1
+    whole = picture(path, *WHOLE, *options)
+    slabs = picture(path, *WHOLE, *options, "--memory", "15M")
+    if not np.array_equal(whole, slabs) or whole[..., 3].max() < 0.5:
+        oracle.fail(path, "in slabs it is another picture")
 vth("a.vth", TWO, hill)
 check("a.vth", TWO, hill, 0.03, 2e-4)
 compare("a.vth", TWO, hill, *LOOK)
@@ -297,6 +307,32 @@ check("a.vth", FOUR, hill, 0.05, 5e-4, name="4:1 vth")
 plotfile("plt", FLAT, {"rho": plane})
 check("plt", FLAT, plane, 1e-12, 1e-12, name="flat")
 compare("plt", FLAT, plane, "--range", "4,14")
+
+# Without the finest levels: as if the file had none.
+UPPER = Grid((32, 32, 32), (2,), TWO.boxes[:2])
+BASE = Grid((32, 32, 32), (), TWO.boxes[:1])
+for name, write in (("plt", lambda grid: plotfile("plt", grid, {"rho": plane})),
+                    ("l.vth", lambda grid: vth("l.vth", grid, plane, "f8"))):
+    for levels, grid in ((1, BASE), (2, UPPER)):
+        write(grid)
+        wanted, _ = oracle.voxels_of(name)
+        # All cells of what finer ones would cover have values here.
+        whole = Grid(TWO.cells, (2, 2), TWO.boxes)
+        whole.values = lambda field, level, first, last, covered=0: np.array(
+            field(*whole.centres(level, first, last)), float)
+        write(whole)
+        found = check(name, grid, plane, 1e-12, 1e-12, ["--levels", levels])
+        if found is not None and not np.array_equal(found, wanted):
+            oracle.fail(name, f"has other voxels with --levels {levels}")
+    full = told(name, "--levels", 9).get("dims")
+    if full != [128, 128, 128]:
+        oracle.fail(name, f"has dims {full} with all levels")
+with open("l.pvd", "w") as file:
+    file.write('<VTKFile type="Collection"><Collection><DataSet timestep="0" '
+               'file="l.vth"/></Collection></VTKFile>')
+if told("l.pvd", "--levels", 1).get("dims") != [32, 32, 32]:
+    oracle.fail("l.pvd", "does not heed --levels")
+oracle.refuse("even.vti", "have no levels of refinement", ["--levels", 1], 2)
 
 # VTK reads what is written here as it was meant.
 plotfile("plt", TWO, {"plane": plane, "rho": hill})

@@ -84,9 +84,10 @@ static snow_status check_cover(const amr_grid *grid) {
                      covered, voxels_of(grid, 0));
 }
 
-/* The finest level that has few enough cells. */
-static void choose_level(amr_grid *grid) {
-    const int last = grid->levels - 1;
+/* The finest level that is wanted and has few enough cells. */
+static void choose_level(amr_grid *grid, int64_t wanted) {
+    const int last =
+        (int)(wanted && wanted < grid->levels ? wanted : grid->levels) - 1;
     grid->finest = last;
     while (grid->finest > 0 && voxels_of(grid, grid->finest) > MOST_VOXELS)
         grid->finest--;
@@ -128,7 +129,7 @@ snow_status snow_amr_describe(amr_grid *grid,
                               const snow_volume_options *options,
                               snow_volume_info *info) {
     SNOW_TRY(check_cover(grid));
-    choose_level(grid);
+    choose_level(grid, options->levels);
     snow_amr_cells(grid, grid->finest, info->dims);
     info->type = snow_masked_type(grid->type);
     for (int i = 0; i < 3; i++) {

@@ -378,5 +378,6 @@ const snow_format snow_format_amrex = {
     .sets = true,
     .channels = true,
     .names = true,
+    .levels = true,
     .read = read_folder,
 };

@@ -78,6 +78,7 @@ static snow_status look_at_files(vth_file *f) {
     snow_volume_options whole = *f->options;
     snow_status status = SNOW_STATUS_OK;
     memset(whole.crop, 0, sizeof whole.crop);
+    whole.levels = 0;
     for (size_t i = 0; i < f->list.count && status == SNOW_STATUS_OK; i++) {
         snow_volume_info *info = &f->places[i];
         status = snow_volume_open_named(f->source, snow_index_name(&f->list, i),
@@ -189,6 +190,7 @@ static snow_status read_box(void *user, size_t number, const snow_box *part,
     snow_volume_options own = *f->options;
     snow_volume_info info;
     snow_warning_fn *warning = context->warning;
+    own.levels = 0;
     for (int i = 0; i < 3; i++) {
         own.crop[i][0] = part->first[i] - box->first[i];
         own.crop[i][1] = own.crop[i][0] + part->count[i];
@@ -264,5 +266,6 @@ const snow_format snow_format_vth = {
     .crops = true,
     .sets = true,
     .channels = true,
+    .levels = true,
     .read = read_vth,
 };

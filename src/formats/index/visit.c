@@ -89,5 +89,6 @@ const snow_format snow_format_visit = {
     .crops = true,
     .sets = true,
     .channels = true,
+    .levels = true,
     .read = read_visit,
 };

@@ -89,6 +89,7 @@ const snow_format snow_format_pvd = {
     .crops = true,
     .sets = true,
     .channels = true,
+    .levels = true,
     .read = read_pvd,
 };
 
