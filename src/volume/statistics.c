@@ -1,4 +1,5 @@
-/* volume/statistics.c - figures over all voxels: range, sums, histogram.
+/* volume/statistics.c - where voxels lie, and figures over all of them: range,
+ * sums, histogram.
  *
  * Voxels are turned to doubles a block at a time; that loop alone is written
  * per scalar type.  What follows sees data values (after slope and intercept)
@@ -15,6 +16,20 @@
 /* The weights of `wsum` repeat after this many voxels; a prime, so that no
  * row length hides a swap of axes. */
 #define WEIGHT_PERIOD 1009
+
+void snow_volume_set_pitch(snow_volume *volume, const int64_t pitch[2]) {
+    const int64_t *dims = volume->info.dims;
+    const int64_t dense[2] = {dims[0], dims[0] * dims[1]};
+    if (memcmp(pitch, dense, sizeof dense) != 0)
+        memcpy(volume->pitch, pitch, sizeof volume->pitch);
+}
+
+void snow_volume_steps(const snow_volume *volume, int64_t out[3]) {
+    const int64_t *dims = volume->info.dims, *pitch = volume->pitch;
+    out[0] = 1;
+    out[1] = pitch[0] ? pitch[0] : dims[0];
+    out[2] = pitch[0] ? pitch[1] : dims[0] * dims[1];
+}
 
 static void widen(const snow_volume *volume, int64_t first, size_t count,
                   double *out) {

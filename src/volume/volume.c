@@ -215,20 +215,6 @@ void snow_volume_find_extent(const snow_volume *volume, snow_extent *out) {
     memcpy(out->count, volume->info.dims, sizeof out->count);
 }
 
-void snow_volume_set_pitch(snow_volume *volume, const int64_t pitch[2]) {
-    const int64_t *dims = volume->info.dims;
-    const int64_t dense[2] = {dims[0], dims[0] * dims[1]};
-    if (memcmp(pitch, dense, sizeof dense) != 0)
-        memcpy(volume->pitch, pitch, sizeof volume->pitch);
-}
-
-void snow_volume_steps(const snow_volume *volume, int64_t out[3]) {
-    const int64_t *dims = volume->info.dims, *pitch = volume->pitch;
-    out[0] = 1;
-    out[1] = pitch[0] ? pitch[0] : dims[0];
-    out[2] = pitch[0] ? pitch[1] : dims[0] * dims[1];
-}
-
 void snow_volume_whole(const snow_volume *volume, snow_volume_info *out) {
     *out = volume->info;
     if (!volume->is_part)
