@@ -268,11 +268,12 @@ static snow_status draw(slice_work *w) {
 
 static int open_channels(slice_work *w) {
     snow_status status =
-        channels_look(&w->opts, &w->whole, &w->channels.list.picks[0],
+        channels_look(NULL, &w->opts, &w->whole, &w->channels.list.picks[0],
                       w->volume, &w->transfer);
     channels_close_volumes(&w->channels);
     if (status == SNOW_STATUS_OK)
-        status = channels_open(&w->opts, w->context, w->path, &w->channels);
+        status = channels_open(&w->opts, w->context, w->path, false, 0,
+                               &w->channels);
     return status == SNOW_STATUS_OK
                ? CONTINUE
                : fail_volume(w->context, status, name_of_input(w->path));

@@ -241,8 +241,8 @@ static int look_at_pool(render_state *s, const snow_volume_info *step,
     const int n = pool->channel;
     if (s->channels.list.count)
         status =
-            channels_look(s->opts, step, &s->channels.list.picks[n], volume,
-                          n ? &s->channels.looks[n] : &s->transfer);
+            channels_look(NULL, s->opts, step, &s->channels.list.picks[n],
+                          volume, n ? &s->channels.looks[n] : &s->transfer);
     int done =
         s->channels.list.count
             ? (status == SNOW_STATUS_OK ? CONTINUE

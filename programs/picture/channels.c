@@ -16,8 +16,6 @@ const char *channels_hinder(const options *opts) {
         return "only pictures mix them";
     if (is_special(path))
         return "each is read in turn, and this input can be read once";
-    if (process_ranks() > 1)
-        return "several are drawn by one process, with more threads";
     if (strcmp(opts->mode, "slice") == 0)
         return NULL;
     if (strcmp(opts->mode, "over") != 0 && strcmp(opts->mode, "mip") != 0 &&
@@ -156,7 +154,7 @@ static range_value range_of(const options *opts, const snow_channel *of,
 }
 
 /* The same colours with other opacities. */
-static snow_status replace(const options *opts, double factor,
+static snow_status replace(snow_comm *comm, const options *opts, double factor,
                            const snow_volume *volume,
                            snow_transfer **transfer) {
     snow_look look = {.size = sizeof look};
@@ -175,7 +173,7 @@ static snow_status replace(const options *opts, double factor,
             (snow_opacity_point){from[n].value, factor * from[n].opacity};
     look.opacities = points;
     look.opacity_count = count;
-    status = snow_transfer_new_for_volume(volume, &look, &made);
+    status = snow_ranks_new_transfer(comm, volume, &look, &made);
     if (status != SNOW_STATUS_OK)
         return status;
     snow_transfer_free(*transfer);
@@ -183,9 +181,9 @@ static snow_status replace(const options *opts, double factor,
     return SNOW_STATUS_OK;
 }
 
-snow_status channels_look(const options *opts, const snow_volume_info *info,
-                          channel_pick *pick, const snow_volume *volume,
-                          snow_transfer **out) {
+snow_status channels_look(snow_comm *comm, const options *opts,
+                          const snow_volume_info *info, channel_pick *pick,
+                          const snow_volume *volume, snow_transfer **out) {
     static const snow_channel unknown = {.color = {-1, -1, -1}};
     const snow_channel *of = pick->index < SNOW_CHANNELS_MAX
                                  ? &info->channel[pick->index]
@@ -204,7 +202,7 @@ snow_status channels_look(const options *opts, const snow_volume_info *info,
         look.gradient_opacity_count = opts->gradient_opacities.count;
     }
     snow_transfer *made = NULL;
-    snow_status status = snow_transfer_new_for_volume(volume, &look, &made);
+    snow_status status = snow_ranks_new_transfer(comm, volume, &look, &made);
     if (status == SNOW_STATUS_OK &&
         pick->range.kind != SNOW_RANGE_PERCENTILES) {
         pick->range.kind = SNOW_RANGE_VALUES;
@@ -214,7 +212,7 @@ snow_status channels_look(const options *opts, const snow_volume_info *info,
     }
     if (status == SNOW_STATUS_OK &&
         (pick->opacity < 1 || opts->opacities.count))
-        status = replace(opts, pick->opacity, volume, &made);
+        status = replace(comm, opts, pick->opacity, volume, &made);
     if (status != SNOW_STATUS_OK) {
         snow_transfer_free(made);
         return status;
@@ -223,18 +221,31 @@ snow_status channels_look(const options *opts, const snow_volume_info *info,
     return SNOW_STATUS_OK;
 }
 
+snow_volume_options channels_data(const options *opts,
+                                  const channel_pick *pick) {
+    snow_volume_options data = data_options(opts);
+    data.channel = pick->index;
+    data.channel_given = true;
+    return data;
+}
+
 snow_status channels_open(const options *opts, snow_context *context,
-                          const char *path, channel_set *c) {
+                          const char *path, bool in_file, uint64_t slab_bytes,
+                          channel_set *c) {
     snow_status status = SNOW_STATUS_OK;
     for (int n = 1; n < c->list.count && status == SNOW_STATUS_OK; n++) {
         channel_pick *pick = &c->list.picks[n];
-        snow_volume_options data = data_options(opts);
-        data.channel = pick->index;
-        data.channel_given = true;
-        status = snow_volume_open(context, path, &data, &c->volumes[n]);
+        const snow_volume_options data = channels_data(opts, pick);
+        if (c->volumes[n])
+            continue;
+        status = in_file
+                     ? snow_volume_open_streamed(context, path, &data,
+                                                 slab_bytes, &c->volumes[n])
+                     : snow_volume_open(context, path, &data, &c->volumes[n]);
         if (status == SNOW_STATUS_OK && !c->looks[n])
-            status = channels_look(opts, snow_volume_get_info(c->volumes[n]),
-                                   pick, c->volumes[n], &c->looks[n]);
+            status =
+                channels_look(NULL, opts, snow_volume_get_info(c->volumes[n]),
+                              pick, c->volumes[n], &c->looks[n]);
     }
     return status;
 }

@@ -4,6 +4,7 @@
 
 #include "options/options.h"
 
+#include <snowglass/ranks.h>
 #include <snowglass/snowglass.h>
 
 /* Those of a picture; the first one's volume and look may be the caller's. */
@@ -29,15 +30,22 @@ void channels_note(const options *opts, const snow_volume_info *info,
 /* Why the options of a picture of a volume exclude several; or NULL. */
 const char *channels_hinder(const options *opts);
 
-/* The look of one on its volume.  Where the list leaves a range open it becomes
- * that of the look, for what is printed. */
-snow_status channels_look(const options *opts, const snow_volume_info *info,
-                          channel_pick *pick, const snow_volume *volume,
-                          snow_transfer **out);
+/* The look of one on its volume, or on that of which ranks (comm unless NULL)
+ * have parts.  Where the list leaves a range open it becomes that of the look,
+ * for what is printed. */
+snow_status channels_look(snow_comm *comm, const options *opts,
+                          const snow_volume_info *info, channel_pick *pick,
+                          const snow_volume *volume, snow_transfer **out);
 
-/* Opens all but the first, with looks unless they have some. */
+/* The data of one. */
+snow_volume_options channels_data(const options *opts,
+                                  const channel_pick *pick);
+
+/* Opens all but the first that are not open, with looks unless they have some:
+ * in memory or, where slabs or ranks share the first one, in their file. */
 snow_status channels_open(const options *opts, snow_context *context,
-                          const char *path, channel_set *c);
+                          const char *path, bool in_file, uint64_t slab_bytes,
+                          channel_set *c);
 
 /* Adds the light of a picture, of which a share counts, to that of another,
  * which is made if it is not there.  After the last one light is at most what

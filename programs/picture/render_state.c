@@ -55,6 +55,8 @@ int render_state_new(const options *opts, render_state *out) {
 /* In any order, but the context last; all of them accept NULL. */
 void render_state_free(render_state *s) {
     snow_image_free(s->made);
+    for (int n = 0; n < s->in_flight; n++)
+        snow_image_free(s->begun[n].made);
     snow_frame_free(s->frame);
     layers_close(&s->layers);
     channels_close(&s->channels);
@@ -157,23 +159,27 @@ static int open_as_planned(render_state *s, const options *step) {
     snow_volume_options data = data_options(step);
     snow_status status = snow_volume_open_streamed(
         s->context, s->path, &data, s->plan.slab_bytes, &s->volume);
-    if (status != SNOW_STATUS_OK)
-        return fail_status(s->context, status);
-    if (step->verbosity > 0)
+    return status == SNOW_STATUS_OK ? CONTINUE
+                                    : fail_status(s->context, status);
+}
+
+static void report_slabs(const render_state *s) {
+    if (s->opts->verbosity > 0)
         say("%s: stays in its file and is read in slabs of at least %.1f MiB: "
             "it is larger than the memory limit",
             s->path, (double)s->plan.slab_bytes / 0x1p20);
-    if (step->verbosity >= 0 && s->plan.packed)
+    if (s->opts->verbosity >= 0 && s->plan.packed)
         say("note: %s is smaller than its voxels and is unpacked again for "
             "each slab; convert it to a file of plain voxels to be faster",
             s->path);
-    return CONTINUE;
 }
 
+/* For all channels that are drawn, as far as they are known. */
 static int plan_memory(render_state *s, const options *step) {
     snow_volume_options data = data_options(step);
     bool report = step->verbosity > 0 && !s->transfer;
-    int done = memory_plan_for(step, s->path, &data, report, &s->plan);
+    int done = memory_plan_for(step, s->path, &data, s->channels.list.count,
+                               report, &s->plan);
     if (done != CONTINUE)
         return done;
     s->plan.streams = s->plan.streams || (s->in_slabs && s->plan.may_stream);
@@ -188,7 +194,9 @@ static int leave_in_file(render_state *s, const options *step) {
     s->frame = NULL;
     snow_volume_close(s->volume);
     s->volume = NULL;
+    channels_close_volumes(&s->channels);
     s->in_slabs = s->plan.streams = true;
+    report_slabs(s);
     return open_as_planned(s, step);
 }
 
@@ -223,7 +231,7 @@ static snow_status make_look(render_state *s, const options *step) {
     double begin = seconds_now(), before = snow_volume_read_seconds(s->volume);
     snow_status status =
         s->channels.list.count
-            ? channels_look(step, &s->whole, &s->channels.list.picks[0],
+            ? channels_look(NULL, step, &s->whole, &s->channels.list.picks[0],
                             s->volume, &s->transfer)
             : snow_transfer_new_for_volume(s->volume, &look, &s->transfer);
     double reading = snow_volume_read_seconds(s->volume) - before;
@@ -232,20 +240,25 @@ static snow_status make_look(render_state *s, const options *step) {
     return status;
 }
 
-/* The overlay lies where the volume does: in memory, or in its file. */
+/* Channels and the overlay lie where the volume does: in memory, or in its
+ * file. */
 static int open_layers(render_state *s, const options *step) {
     layers *l = &s->layers;
     l->quiet = may_leave(s, SNOW_STATUS_NO_MEMORY) ||
                may_drop(s, SNOW_STATUS_NO_MEMORY);
     l->slab_bytes = s->plan.slab_bytes;
-    int done = layers_open(step, s->context, s->volume, l);
-    if (done != SNOW_STATUS_NO_MEMORY || !l->quiet ||
-        may_drop(s, SNOW_STATUS_NO_MEMORY))
+    snow_status status =
+        channels_open(step, s->context, s->path, s->plan.streams, l->slab_bytes,
+                      &s->channels);
+    int done = status == SNOW_STATUS_OK
+                   ? layers_open(step, s->context, s->volume, l)
+               : l->quiet && status == SNOW_STATUS_NO_MEMORY
+                   ? (int)status
+                   : fail_volume(s->context, status, name_of_input(s->path));
+    if (done != SNOW_STATUS_NO_MEMORY || !may_leave(s, (snow_status)done))
         return done;
-    l->quiet = false;
     done = leave_in_file(s, step);
-    return done == CONTINUE ? layers_open(step, s->context, s->volume, l)
-                            : done;
+    return done == CONTINUE ? open_layers(s, step) : done;
 }
 
 static int frame_alone(render_state *s, const options *step) {
@@ -273,22 +286,22 @@ static int frame_alone(render_state *s, const options *step) {
  * the first of them is another. */
 static int open_first(render_state *s, options *step) {
     const int64_t opened = step->channel;
-    const bool several = s->channels.list.count > 1;
-    s->plan.streams = s->plan.streams && !several;
+    const bool known = s->channels.chosen;
     int done = open_as_planned(s, step);
     if (done != CONTINUE)
         return done;
     s->whole = *snow_volume_get_info(s->volume);
     done =
         channels_choose(step, &s->whole, channels_hinder(step), &s->channels);
-    if (done != CONTINUE || !s->channels.list.count)
+    if (done != CONTINUE || known || !s->channels.list.count)
         return done;
     const bool streamed = s->plan.streams;
-    if (s->channels.list.count > 1)
-        s->plan.streams = s->plan.may_stream = false;
     step->channel = s->channels.list.picks[0].index;
-    if (step->channel == opened && s->plan.streams == streamed)
-        return CONTINUE;
+    if (s->channels.list.count > 1)
+        done = plan_memory(s, step);
+    if (done != CONTINUE ||
+        (step->channel == opened && !streamed && !s->plan.streams))
+        return done;
     snow_volume_close(s->volume);
     s->volume = NULL;
     done = open_as_planned(s, step);
@@ -306,13 +319,13 @@ static int open_alone(render_state *s, options *step) {
     s->times.read += seconds_now() - begin;
     if (done != CONTINUE)
         return done;
+    if (s->plan.streams)
+        report_slabs(s);
     snow_status status = s->transfer ? SNOW_STATUS_OK : make_look(s, step);
     if (may_leave(s, status)) {
         done = leave_in_file(s, step);
         status = done == CONTINUE ? make_look(s, step) : SNOW_STATUS_OK;
     }
-    if (status == SNOW_STATUS_OK && done == CONTINUE)
-        status = channels_open(step, s->context, s->path, &s->channels);
     if (status == SNOW_STATUS_OK && done == CONTINUE)
         done = open_layers(s, step);
     if (may_drop(s, status) || may_drop(s, (snow_status)done))
@@ -323,6 +336,11 @@ static int open_alone(render_state *s, options *step) {
         done = place_camera(s);
     render_state_choose_shade(s);
     return done == CONTINUE ? frame_alone(s, step) : done;
+}
+
+/* Projections of channels are added up. */
+static bool is_sum_of_channels(const render_state *s) {
+    return mode_is_projection(s->opts->mode) && s->channels.list.count;
 }
 
 /* Eight bits per channel suffice between ranks if the picture is placed on a
@@ -338,9 +356,44 @@ static snow_ranks_options how_of(const render_state *s) {
         .cut = (snow_partition)option_choice("cut", opts->cut),
         .combining = (snow_combine)option_choice("combine", opts->combine),
         .radix = (int)opts->radix,
-        .pixel_bits = coarse ? 8 : 0,
+        .pixel_bits = coarse && !is_sum_of_channels(s) ? 8 : 0,
         .turns = s->turns,
         .transfer = s->transfer};
+}
+
+/* The look of each channel by all ranks, which read equal parts of it.  Those
+ * of projections stay: each has its own picture. */
+static int open_channels(render_state *s, const options *step) {
+    const snow_look any = {.size = sizeof any, .preset = "linear"};
+    snow_ranks_options how = how_of(s);
+    snow_status status = SNOW_STATUS_OK;
+    how.cut = SNOW_PARTITION_EQUAL;
+    how.transfer = NULL;
+    for (int n = 0; n < s->channels.list.count && status == SNOW_STATUS_OK;
+         n++) {
+        channel_pick *pick = &s->channels.list.picks[n];
+        const snow_volume_options data = channels_data(step, pick);
+        snow_transfer **look = n ? &s->channels.looks[n] : &s->transfer;
+        snow_transfer *unused = NULL;
+        snow_volume *part = NULL;
+        if (*look && !(n && mode_is_projection(step->mode)))
+            continue;
+        status = snow_ranks_open(process_comm(), s->path, &data, &any, &s->view,
+                                 &s->settings, &how, &part, &unused);
+        snow_transfer_free(unused);
+        if (status == SNOW_STATUS_OK && !*look)
+            status = channels_look(process_comm(), step, &s->whole, pick, part,
+                                   look);
+        if (n && mode_is_projection(step->mode))
+            s->channels.volumes[n] = part;
+        else
+            snow_volume_close(part);
+    }
+    if (status == SNOW_STATUS_OK)
+        status =
+            channels_open(step, s->context, s->path, true, 0, &s->channels);
+    return process_agree(
+        status == SNOW_STATUS_OK ? CONTINUE : fail_status(s->context, status));
 }
 
 /* The camera comes first: the partition of the volume depends on it. */
@@ -362,11 +415,15 @@ static int open_part(render_state *s, options *step) {
     double begin = seconds_now();
     snow_volume_options data = data_options(step);
     snow_look look = look_options(step);
-    snow_ranks_options how = how_of(s);
     snow_transfer *transfer = NULL;
     int done = process_agree(inspect(s, step, &data));
+    if (done == CONTINUE)
+        done = open_channels(s, step);
     if (done != CONTINUE)
         return done;
+    if (s->channels.list.count)
+        data = channels_data(step, &s->channels.list.picks[0]);
+    snow_ranks_options how = how_of(s);
     snow_status status =
         snow_ranks_open(process_comm(), s->path, &data, &look, &s->view,
                         &s->settings, &how, &s->volume, &transfer);
@@ -504,33 +561,44 @@ static int make_frame(render_state *s) {
         status == SNOW_STATUS_OK ? CONTINUE : fail_status(s->context, status));
 }
 
-/* Projections of channels are added up. */
+/* By this process, or by all ranks, whose parts serve each picture in turn. */
+static snow_status project(render_state *s, snow_volume **volume,
+                           const snow_transfer *look) {
+    snow_comm *comm = process_comm();
+    const snow_ranks_options how = how_of(s);
+    if (process_ranks() == 1)
+        return snow_frame_render(s->frame, *volume, look, &s->view,
+                                 &s->settings, &s->made);
+    snow_status status = snow_ranks_repartition(comm, look, &s->view,
+                                                &s->settings, &how, volume);
+    return status == SNOW_STATUS_OK
+               ? snow_ranks_render(s->frame, comm, *volume, look, &s->view,
+                                   &s->settings, &how, &s->made)
+               : status;
+}
+
 static snow_status project_channels(render_state *s) {
     snow_image *sum = NULL;
-    snow_status status = SNOW_STATUS_OK;
+    snow_status status = SNOW_STATUS_OK, added = SNOW_STATUS_OK;
     for (int n = 0; n < s->channels.list.count && status == SNOW_STATUS_OK;
          n++) {
         snow_image_free(s->made);
         s->made = NULL;
-        status =
-            snow_frame_render(s->frame, n ? s->channels.volumes[n] : s->volume,
-                              n ? s->channels.looks[n] : s->transfer, &s->view,
-                              &s->settings, &s->made);
-        if (status == SNOW_STATUS_OK)
-            status = channels_add(s->context, s->made,
-                                  s->channels.list.picks[n].opacity, &sum);
+        status = project(s, n ? &s->channels.volumes[n] : &s->volume,
+                         n ? s->channels.looks[n] : s->transfer);
+        if (status == SNOW_STATUS_OK && s->made && added == SNOW_STATUS_OK)
+            added = channels_add(s->context, s->made,
+                                 s->channels.list.picks[n].opacity, &sum);
     }
     if (sum)
         channels_limit(sum);
     snow_image_free(s->made);
     s->made = sum;
-    return status;
+    return status == SNOW_STATUS_OK ? added : status;
 }
 
 static snow_status draw_alone(render_state *s) {
     double before = snow_volume_read_seconds(s->volume);
-    if (mode_is_projection(s->opts->mode) && s->channels.list.count)
-        return project_channels(s);
     snow_status status = set_layers(s);
     if (status == SNOW_STATUS_OK)
         status = snow_frame_render(s->frame, s->volume, s->transfer, &s->view,
@@ -553,7 +621,9 @@ int render_state_begin(render_state *s, double azimuth) {
     if (done != CONTINUE)
         return done;
     s->view.azimuth = azimuth;
-    status = process_ranks() > 1 ? begin_part(s) : draw_alone(s);
+    status = is_sum_of_channels(s) ? project_channels(s)
+             : process_ranks() > 1 ? begin_part(s)
+                                   : draw_alone(s);
     if (may_leave(s, status)) {
         options step = render_state_step(s, s->whole.time);
         done = leave_in_file(s, &step);
@@ -563,25 +633,29 @@ int render_state_begin(render_state *s, double azimuth) {
             done = make_frame(s);
         if (done != CONTINUE)
             return done;
-        status = draw_alone(s);
+        status = is_sum_of_channels(s) ? project_channels(s) : draw_alone(s);
     }
     if (may_drop(s, status)) {
         options step = render_state_step(s, s->whole.time);
         done = drop_channels(s, &step);
         return done == CONTINUE ? render_state_begin(s, azimuth) : done;
     }
-    if (status != SNOW_STATUS_OK)
-        return fail_picture(s, status, s->path);
-    s->begun[s->in_flight++] = (render_state_shot){s->path, s->whole};
+    done =
+        status == SNOW_STATUS_OK ? CONTINUE : fail_picture(s, status, s->path);
+    if (is_sum_of_channels(s)) /* rank 0 alone adds them */
+        done = process_agree(done);
+    if (done != CONTINUE)
+        return done;
+    s->begun[s->in_flight++] = (render_state_shot){s->path, s->whole, s->made};
+    s->made = NULL;
     return CONTINUE;
 }
 
 int render_state_finish(render_state *s, snow_image **image) {
-    snow_image *made = s->made;
+    snow_image *made = s->begun[0].made;
     snow_status status = SNOW_STATUS_OK;
-    if (process_ranks() > 1)
+    if (process_ranks() > 1 && !is_sum_of_channels(s))
         status = snow_ranks_finish(s->frame, &made);
-    s->made = NULL;
     s->drawn = s->begun[0];
     s->begun[0] = s->begun[1];
     s->in_flight--;

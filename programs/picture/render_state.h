@@ -16,6 +16,7 @@
 typedef struct render_state_shot {
     const char *path;
     snow_volume_info whole; /* the whole volume; ranks have parts */
+    snow_image *made;       /* until it is finished; NULL: by the frame */
 } render_state_shot;
 
 typedef struct render_state {
@@ -44,7 +45,7 @@ typedef struct render_state {
     int in_flight;
     int fault;        /* the reported error, 0: none; errors that follow are not
                          reported */
-    snow_image *made; /* made by this process alone, and not finished */
+    snow_image *made; /* of the picture that is begun */
     /* The last picture; for ranks sums, and seconds of the slowest. */
     render_state_shot drawn;
     snow_stats stats;

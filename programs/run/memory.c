@@ -72,6 +72,7 @@ memory_need memory_needed(const options *opts, const snow_volume_info *info) {
 typedef struct sizes {
     snow_volume_info info;
     uint64_t voxels, picture; /* bytes */
+    uint64_t looks;           /* each with tables of its own */
     uint64_t masking; /* bytes needed beside the voxels while they are read */
     bool packed;      /* the file is shorter than the voxels: it is compressed,
                          or has fewer bits for each, or not all of them */
@@ -129,10 +130,21 @@ static bool is_read_once(const char *path) {
             !S_ISDIR(about.st_mode));
 }
 
+/* Others of the same size, which are read beside the first. */
+static void add_channels(const options *opts, int more, sizes *s) {
+    const memory_need one = memory_needed(opts, &s->info);
+    const uint64_t picture = s->picture,
+                   several = more > 0 ? (uint64_t)more : 0;
+    s->need.least += several * (one.least - picture);
+    s->need.most += several * (one.most - picture);
+    s->masking += several * (one.least - picture);
+    s->looks = 1 + several;
+}
+
 /* Inspects the headers in a context of its own, without warnings: opening the
  * file repeats them and reports its errors.  Returns false on error. */
 static bool measure(const options *opts, const char *path,
-                    const snow_volume_options *data, sizes *out) {
+                    const snow_volume_options *data, int count, sizes *out) {
     sizes s = {.info = {.size = sizeof s.info}, .picture = picture_bytes(opts)};
     snow_context *context;
     if (is_read_once(path) ||
@@ -155,6 +167,7 @@ static bool measure(const options *opts, const char *path,
         if (s.need.least > s.need.most)
             s.need.most = s.need.least;
         s.masking += overlay;
+        add_channels(opts, count - 1, &s);
         s.packed = is_packed(path, stored ? stored : s.voxels);
         *out = s;
     }
@@ -224,6 +237,13 @@ static uint64_t choose_slab(const sizes *s, uint64_t limit, int threads) {
     return (uint64_t)((double)most * share) + 1;
 }
 
+/* Bytes of the smallest slab, the tables of the look and the picture. */
+static uint64_t slabs_least(const sizes *s) {
+    bool small = snow_type_size(s->info.type) == 1;
+    return slab_bytes(s, SLICES_LEAST) + s->picture +
+           s->looks * (small ? TABLES_SMALL : TABLES_LARGE);
+}
+
 /* --- plans ---------------------------------------------------------------- */
 
 /* The limit: what this machine has free, less a reserve for other programs, or
@@ -240,14 +260,19 @@ bool memory_holds(const options *opts, const snow_volume_info *info, int count,
                   char *why, size_t size) {
     char need[32], room[32];
     bool own;
-    const uint64_t limit = limit_of(opts, &own), picture = picture_bytes(opts);
-    const double voxels =
-        (double)(memory_needed(opts, info).least - picture) * count;
-    if (!limit || voxels + (double)picture <= (double)limit)
+    const uint64_t limit = limit_of(opts, &own);
+    sizes s = {.info = *info,
+               .picture = picture_bytes(opts),
+               .need = memory_needed(opts, info)};
+    s.voxels = s.need.least - s.picture;
+    add_channels(opts, count - 1, &s);
+    const uint64_t least =
+        slabs_least(&s) < s.need.least ? slabs_least(&s) : s.need.least;
+    if (!limit || least <= limit)
         return true;
     snprintf(why, size, "several need %s of memory, over the %s of %s",
-             print_bytes((uint64_t)voxels + picture, need),
-             print_bytes(limit, room), own ? "--memory" : "free memory");
+             print_bytes(least, need), print_bytes(limit, room),
+             own ? "--memory" : "free memory");
     return false;
 }
 
@@ -283,13 +308,6 @@ static void report_need(const sizes *s) {
         print_bytes(s->need.least, least), print_bytes(s->need.most, most));
 }
 
-/* Bytes of the smallest slab, the tables of the look and the picture. */
-static uint64_t slabs_least(const sizes *s) {
-    bool small = snow_type_size(s->info.type) == 1;
-    return slab_bytes(s, SLICES_LEAST) + s->picture +
-           (small ? TABLES_SMALL : TABLES_LARGE);
-}
-
 /* Refuses the volume.  `why` says why all voxels must be in memory at once;
  * NULL if slabs would do but do not fit either. */
 static int refuse_volume(const sizes *s, const char *path, uint64_t limit,
@@ -314,16 +332,16 @@ static int refuse_volume(const sizes *s, const char *path, uint64_t limit,
 }
 
 int memory_plan_for(const options *opts, const char *path,
-                    const snow_volume_options *data, bool report,
+                    const snow_volume_options *data, int count, bool report,
                     memory_plan *out) {
     const char *why = why_whole(path);
     bool own = true;
     uint64_t limit = opts->memory;
     sizes s;
     *out = (memory_plan){.may_stream = !why, .limit = opts->memory};
-    if (!opts->memory && !report && is_small_folder(path))
+    if (!opts->memory && !report && count < 2 && is_small_folder(path))
         return CONTINUE;
-    if (!measure(opts, path, data, &s)) {
+    if (!measure(opts, path, data, count, &s)) {
         out->may_stream = false;
         return CONTINUE;
     }
@@ -347,7 +365,7 @@ int memory_plan_for(const options *opts, const char *path,
 int memory_check(const options *opts, const char *path,
                  const snow_volume_options *data) {
     sizes s;
-    if (!opts->memory || !measure(opts, path, data, &s) ||
+    if (!opts->memory || !measure(opts, path, data, 1, &s) ||
         s.need.least <= opts->memory)
         return CONTINUE;
     return refuse_volume(&s, path, opts->memory, true,

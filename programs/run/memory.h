@@ -14,8 +14,8 @@ typedef struct memory_need {
 
 memory_need memory_needed(const options *opts, const snow_volume_info *info);
 
-/* Whether the limit has room for the voxels of `count` volumes of a file at
- * once; else `why` says what they need. */
+/* Whether the limit has room for slabs of `count` volumes of a file at once;
+ * else `why` says what they need. */
 bool memory_holds(const options *opts, const snow_volume_info *info, int count,
                   char *why, size_t size);
 
@@ -28,14 +28,15 @@ typedef struct memory_plan {
     uint64_t limit;      /* memory limit of the context; 0: none */
 } memory_plan;
 
-/* Plans how to open a volume; reports the need if `report` is set.  A volume
- * over the limit stays in its file.  One that does not fit even so is refused,
- * before anything large is allocated.  Without --memory the limit is what the
- * machine has free.  The size of the interesting voxels is known only after
- * encoding; the context keeps it within the limit.  Nothing is known about
- * standard input.  Returns CONTINUE or an exit code. */
+/* Plans how to open `count` volumes of a file (0: one) together; reports the
+ * need if `report` is set.  A volume over the limit stays in its file.  One
+ * that does not fit even so is refused, before anything large is allocated.
+ * Without --memory the limit is what the machine has free.  The size of the
+ * interesting voxels is known only after encoding; the context keeps it within
+ * the limit.  Nothing is known about standard input.  Returns CONTINUE or an
+ * exit code. */
 int memory_plan_for(const options *opts, const char *path,
-                    const snow_volume_options *data, bool report,
+                    const snow_volume_options *data, int count, bool report,
                     memory_plan *out);
 
 /* The same where all voxels are needed at once: refused is what is over

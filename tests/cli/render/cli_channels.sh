@@ -77,6 +77,13 @@ tiff("big.tif", [b"\12" * 2000 + row * 60 + b"\12" * 2000] * 400,
          'SizeZ="6"', 'SizeZ="100"').replace('"20"', '"100"').replace(
          '"16"', '"100"'))
 
+NX = NY = 120
+row = bytes(min(255, 10 + 2 * abs(x - 60)) for x in range(120))
+tiff("large.tif", [b"\12" * 2400 + row * 80 + b"\12" * 2400] * 600,
+     (ome % "").replace('SizeC="3"', 'SizeC="4"').replace(
+         'SizeZ="6"', 'SizeZ="150"').replace('"20"', '"120"').replace(
+         '"16"', '"120"'))
+
 def nifti(name, dim, code, bits, intent, data):
     head = bytearray(352)
     struct.pack_into("<i", head, 0, 348)
@@ -249,7 +256,16 @@ check "is drawn as ever" cmp -s big.png big3.png
 check "beside others, too" cmp -s big2.png big3.png
 refused 5 "a list of more" 'channel: several need 1.9 MiB of memory, over the 1.5 MiB of --memory; give one' \
     "$TOOL" render big.tif -o z.png -s 40x40 --memory 1500K --channel 1,2
-run 0 "a list of one in slabs" "$TOOL" render big.tif -v -o slabs.npy -s 40x40 -j 1 --memory 3M --channel 1:green
+for way in "" "-m mip" "--azimuth 40 --channel 0:red:0.3,2:green:p1..p99"; do
+    # shellcheck disable=SC2086
+    run 0 "several in memory $way" render large.tif -y -o whole.npy -j 2 $way
+    # shellcheck disable=SC2086
+    run 0 "in slabs" "$TOOL" render large.tif -y -o slabs.npy -s 60x50 -v -j 2 --memory 7M $way
+    says 'large.tif: stays in its file'
+    check "all of them" [ "$(grep -c note "$ERR")" = 0 ]
+    check "the same bits" cmp -s whole.npy slabs.npy
+done
+run 0 "a list of one in slabs" "$TOOL" render big.tif -y -v -o slabs.npy -s 40x40 -j 1 --memory 3M --channel 1:green
 says 'stays in its file'
 run 0 "and in memory" render big.tif -o slabs2.npy -s 40x40 --channel 1:green
 check "is the same" cmp -s slabs.npy slabs2.npy
