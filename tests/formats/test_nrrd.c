@@ -484,22 +484,123 @@ static void axes_of_one_sample_are_left_out(void **state) {
     support_files_end(&files);
 }
 
-static void vectors_colours_and_unknown_axes_are_refused(void **state) {
+#define COLORS                                                      \
+    MAGIC "type: uint8\ndimension: 4\nsizes: 3 4 2 2\nspace: RAS\n" \
+          "space directions: none (1,0,0) (0,1,0) (0,0,2)\n"
+
+/* Value `channel` of voxels of `count` counting bytes from x on. */
+static void expect_values(support_files *files, const char *path, int count,
+                          int64_t channel, int x) {
+    snow_volume_options options = {.size = sizeof options};
+    options.channel = channel;
+    options.channel_given = true;
+    options.crop[0][0] = x;
+    snow_volume *volume = support_opened(files, path, &options);
+    const snow_volume_info *info = snow_volume_get_info(volume);
+    const unsigned char *voxels = snow_volume_voxels(volume);
+    assert_int_equal(info->dims[0], 4 - x);
+    for (int n = 0; n < 16 * 3 / count; n++)
+        if (n % 4 >= x)
+            assert_int_equal(*voxels++, count * n + channel);
+    snow_volume_close(volume);
+}
+
+static void colours_are_channels(void **state) {
+    (void)state;
+    static const char *const kinds[] = {"RGB-color", "3-color", "vector"};
+    support_files files;
+    support_files_begin(&files);
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        char header[400];
+        snprintf(header, sizeof header,
+                 COLORS "kinds: %s domain domain domain\nencoding: raw\n\n",
+                 kinds[i]);
+        const char *path = write_nrrd(&files, "c.nrrd", header, counting(), 48);
+        for (int channel = 0; channel < 3; channel++)
+            expect_values(&files, path, 3, channel, channel);
+        snow_volume *volume = support_opened(&files, path, NULL);
+        const snow_volume_info *info = snow_volume_get_info(volume);
+        assert_int_equal(info->channels, 3);
+        assert_string_equal(info->channel[1].name, "green");
+        assert_true(info->channel[2].own && info->channel[2].shown);
+        assert_true(info->spacing[2] > 1.99 && info->spacing[2] < 2.01);
+        snow_volume_close(volume);
+    }
+    write_nrrd(&files, "c.raw", "", counting(), 48);
+    expect_values(&files,
+                  write_nrrd(&files, "c.nhdr",
+                             COLORS "kinds: RGB-color domain domain domain\n"
+                                    "encoding: raw\ndata file: c.raw\n\n",
+                             NULL, 0),
+                  3, 2, 1);
+    expect_values(&files,
+                  write_nrrd(&files, "d.nrrd",
+                             MAGIC "type: uint8\ndimension: 4\n"
+                                   "sizes: 4 4 3 1\nencoding: raw\n"
+                                   "kinds: RGBA-color domain domain domain\n\n",
+                             counting(), 48),
+                  4, 3, 0);
+    support_files_end(&files);
+}
+
+/* (3, 4), a zero, and their lengths. */
+static void vectors_have_components(void **state) {
+    (void)state;
+    const float data[] = {3, 4, 0, 0};
+    static const char *const names[] = {"x", "y", "magnitude"};
+    const float wanted[] = {3, 4, 5};
+    support_files files;
+    support_files_begin(&files);
+    const char *path = write_nrrd(
+        &files, "v.nrrd",
+        MAGIC "type: float\nendian: little\ndimension: 4\nsizes: 2 2 1 1\n"
+              "encoding: raw\nkinds: vector domain domain domain\n\n",
+        data, sizeof data);
+    for (int n = 0; n < 3; n++) {
+        snow_volume_options options = {.size = sizeof options,
+                                       .component = names[n]};
+        snow_volume *volume = support_opened(&files, path, &options);
+        const float *voxels = snow_volume_voxels(volume);
+        assert_true(fabsf(voxels[0] - wanted[n]) < 1e-6F);
+        assert_true(fabsf(voxels[1]) < 1e-6F);
+        assert_int_equal(snow_volume_get_info(volume)->components, 2);
+        snow_volume_close(volume);
+    }
+    support_files_end(&files);
+}
+
+static void other_values_of_voxels_are_refused(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
     refused(&files,
-            MAGIC "type: uint8\nencoding: raw\ndimension: 4\nsizes: 3 4 2 2\n"
+            MAGIC "type: uint8\nencoding: raw\ndimension: 4\nsizes: 6 2 2 2\n"
+                  "kinds: 3D-symmetric-matrix domain domain domain\n\n",
+            "axis 0 has 6 values");
+    refused(&files,
+            MAGIC "type: uint8\nencoding: raw\ndimension: 4\nsizes: 4 2 2 3\n"
+                  "kinds: domain domain domain RGB-color\n\n",
+            "axis 3 has 3 values");
+    refused(&files,
+            MAGIC "type: uint8\nencoding: raw\ndimension: 4\nsizes: 2 4 2 3\n"
                   "kinds: RGB-color domain domain domain\n\n",
-            "axis 0 has 3 values");
+            "axis 0 has 2 values");
+    refused(&files,
+            COLORS "kinds: RGB-color domain domain domain\nencoding: ascii\n\n",
+            "in text or in several files");
+    refused(&files,
+            MAGIC "type: uint8\nencoding: raw\ndimension: 4\nsizes: 3 4 4 2\n"
+                  "kinds: RGB-color domain domain domain\n\n",
+            "");
+    refused(&files,
+            MAGIC "type: double\nendian: little\nencoding: raw\ndimension: 4\n"
+                  "sizes: 3 4000000000 4000000000 4000000000\n"
+                  "kinds: vector domain domain domain\n\n",
+            "");
     refused(&files,
             MAGIC "type: uint8\nencoding: raw\ndimension: 4\nsizes: 3 4 2 2\n"
                   "space: RAS\nspace directions: none (1,0,0) (0,1,0) "
                   "(0,0,1)\n\n",
-            "axis 0 has 3 values");
-    refused(&files,
-            MAGIC "type: uint8\nencoding: raw\ndimension: 3\nsizes: 3 4 4\n"
-                  "kinds: vector domain domain\n\n",
             "axis 0 has 3 values");
     refused(&files, TIMES "\n", "the meaning of the 4th is unknown");
     refused(&files, TIMES "kinds: time domain domain domain\n\n",
@@ -1048,7 +1149,9 @@ int main(void) {
         cmocka_unit_test(fewer_axes_than_three_are_filled_up),
         cmocka_unit_test(a_last_axis_of_time_or_list_has_steps),
         cmocka_unit_test(axes_of_one_sample_are_left_out),
-        cmocka_unit_test(vectors_colours_and_unknown_axes_are_refused),
+        cmocka_unit_test(colours_are_channels),
+        cmocka_unit_test(vectors_have_components),
+        cmocka_unit_test(other_values_of_voxels_are_refused),
         cmocka_unit_test(axes_may_be_told_by_their_ends),
         cmocka_unit_test(long_words_are_not_cut),
         cmocka_unit_test(contradictions_are_refused),

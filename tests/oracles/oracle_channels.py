@@ -10,6 +10,7 @@ try:
 except ImportError as missing:
     print("skip  ", missing)
     sys.exit(77)
+import gzip
 import json
 import struct
 import subprocess
@@ -160,5 +161,16 @@ head[344:348] = b"n+1\0"
 open("rgb.nii", "wb").write(bytes(head) + RGB.tobytes())
 got = draw("slice", "rgb.nii", "--axis", "z", "--at", "4")
 expect_light(got[::-1], RGB[4] / 255, "NIfTI in colour", LEVEL)
+for kind, packed in (("RGB-color", False), ("vector", True)):
+    data = RGB.tobytes()
+    open("rgb.nrrd", "wb").write(
+        b"NRRD0005\ntype: uint8\ndimension: 4\nsizes: 3 11 14 9\n"
+        b"kinds: %s domain domain domain\nencoding: %s\n\n" %
+        (kind.encode(), b"gzip" if packed else b"raw") +
+        (gzip.compress(data) if packed else data))
+    expect_info("rgb.nrrd", ["red", "green", "blue"], PURE, [(0, 255)] * 3,
+                [True] * 3)
+    got = draw("slice", "rgb.nrrd", "--axis", "z", "--at", "4")
+    expect_light(got[::-1], RGB[4] / 255, f"NRRD in colour, {kind}", LEVEL)
 
 oracle.finish()

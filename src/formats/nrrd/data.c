@@ -219,6 +219,39 @@ static snow_status read_sibling(snow_source *source, const nrrd_header *header,
     return status;
 }
 
+snow_status snow_nrrd_read_values(snow_source *source,
+                                  const nrrd_header *header,
+                                  const nrrd_files *files,
+                                  const snow_volume_options *options,
+                                  const snow_array *values,
+                                  snow_volume_info *info, snow_volume **out) {
+    const bool attached = files->place == NRRD_ATTACHED;
+    bool at_end;
+    if (header->encoding == NRRD_ASCII || files->place > NRRD_SINGLE)
+        return snow_fail(
+            snow_source_context(source), SNOW_STATUS_BAD_INPUT,
+            "%s: has several values for each voxel in text or in several "
+            "files, "
+            "which is not supported; put them into one file with encoding raw",
+            snow_source_name(source));
+    if (!attached)
+        SNOW_TRY(snow_source_open_sibling_as_is(source, files->name, &source));
+    snow_status status =
+        go_to_data(source, header, attached, values->all, &at_end);
+    if (status == SNOW_STATUS_OK)
+        status =
+            at_end
+                ? snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
+                            "%s: packed data at the end (byte skip -1) with "
+                            "several values for each voxel are not supported; "
+                            "give a byte skip",
+                            snow_source_name(source))
+                : snow_array_read(source, options, values, info, out);
+    if (!attached)
+        snow_source_close(source);
+    return status;
+}
+
 snow_status snow_nrrd_check_data(snow_source *source, const nrrd_header *header,
                                  const nrrd_files *files,
                                  const snow_region *region) {

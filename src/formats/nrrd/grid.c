@@ -2,8 +2,10 @@
  * the samples.
  *
  * Up to three axes are spatial, and one after them may be time (or a list of
- * volumes), of which one step is read.  Axes with one sample may be ignored
- * anywhere, since the order of the samples does not depend on them:
+ * volumes), of which one step is read.  One before them may have the values of
+ * a voxel: a colour, whose parts are channels, or a vector.  Axes with one
+ * sample may be ignored anywhere, since the order of the samples does not
+ * depend on them:
  *
  *   sizes 1 64 64 20 5, kinds stub domain domain domain time
  *         -  x  y  z t */
@@ -16,7 +18,7 @@
 typedef struct axis_choice {
     int space[NRRD_MOST_AXES];
     int spaces;
-    int time; /* -1: none */
+    int time, values; /* -1: none */
 } axis_choice;
 
 /* A direction in space is more reliable than a kind: some files call spatial
@@ -29,7 +31,7 @@ static nrrd_role role_of(const nrrd_header *header, const nrrd_axis *axis) {
         return only_time ? NRRD_AXIS_TIME : NRRD_AXIS_SPACE;
     }
     /* "none" among the directions, and no kind that says more. */
-    if (header->directions && axis->role != NRRD_AXIS_TIME)
+    if (header->directions && axis->role < NRRD_AXIS_TIME)
         return NRRD_AXIS_VALUES;
     return axis->role == NRRD_AXIS_UNKNOWN ? NRRD_AXIS_SPACE : axis->role;
 }
@@ -46,20 +48,35 @@ static void drop_flat_axes(const nrrd_header *header, axis_choice *choice) {
     }
 }
 
-/* A time step must be contiguous, so time comes last; components between or
- * before the voxels are not supported. */
+/* Whether values of an axis of a role are an image's colours.  Many programs
+ * call those of 8 bits a vector. */
+static bool are_colors(const nrrd_header *header, int axis) {
+    const nrrd_role role = header->axes[axis].role;
+    const int64_t size = header->axes[axis].size;
+    return (role == NRRD_AXIS_COLORS ||
+            (role == NRRD_AXIS_VECTOR && header->type == SNOW_TYPE_UINT8)) &&
+           (size == 3 || size == 4);
+}
+
+/* A time step must be contiguous, so time comes last, and the values of a voxel
+ * first. */
 static snow_status choose_axes(snow_context *context, const nrrd_header *header,
                                axis_choice *out) {
-    *out = (axis_choice){.time = -1};
+    *out = (axis_choice){.time = -1, .values = -1};
     for (int i = 0; i < header->dimension; i++) {
         nrrd_role role = role_of(header, &header->axes[i]);
         if (role != NRRD_AXIS_SPACE && header->axes[i].size == 1)
             continue;
-        if (role == NRRD_AXIS_VALUES)
+        const bool first = out->values < 0 && !out->spaces && out->time < 0;
+        if (first && (are_colors(header, i) || role == NRRD_AXIS_VECTOR)) {
+            out->values = i;
+            continue;
+        }
+        if (role >= NRRD_AXIS_COLORS)
             return snow_fail(
                 context, SNOW_STATUS_BAD_INPUT,
-                "axis %d has %lld values for each voxel (a vector, a colour or "
-                "an unknown kind); extract one as a volume",
+                "axis %d has %lld values for each voxel, and is no first axis "
+                "of 3 or 4 colours or of a vector; extract one as a volume",
                 i, (long long)header->axes[i].size);
         /* Spatial axes after time would be scattered in the file. */
         if (out->time >= 0)
@@ -131,12 +148,43 @@ static void fill_matrix(const nrrd_header *header, const axis_choice *choice,
     }
 }
 
+/* The channel or component of the options. */
+static snow_status lay_values(snow_context *context, const nrrd_header *header,
+                              int axis, const snow_volume_options *options,
+                              snow_volume_info *info, snow_array *out) {
+    const int64_t sizes[5] = {header->axes[axis].size, info->dims[0],
+                              info->dims[1], info->dims[2], info->times};
+    const uint64_t size = snow_type_size(header->type);
+    snow_array array = {.big_endian = header->big_endian};
+    uint64_t steps[5];
+    int64_t value = 0;
+    if (!snow_array_steps(sizes, 5, size, steps, &array.all))
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "its sizes are too large for any file; correct the "
+                         "header");
+    if (are_colors(header, axis)) {
+        snow_channels_begin(info, sizes[0], false);
+        snow_channels_are_colors(info);
+        SNOW_TRY(
+            snow_volume_pick_channel(context, options, sizes[0], info, &value));
+    } else {
+        SNOW_TRY(snow_volume_pick_component(context, options, sizes[0], info,
+                                            &value));
+    }
+    memcpy(array.step, steps + 1, sizeof array.step);
+    array.first = (uint64_t)info->time * steps[4] + (uint64_t)value * steps[0];
+    *out = array;
+    return SNOW_STATUS_OK;
+}
+
 /* The matrix is checked before the time step: an error of the file comes before
  * one of the options. */
 snow_status snow_nrrd_lay_out(snow_context *context, const nrrd_header *header,
                               const snow_volume_options *options,
-                              snow_volume_info *info, snow_region *region) {
+                              snow_volume_info *info, snow_region *region,
+                              snow_array *values) {
     axis_choice choice;
+    *values = (snow_array){.all = 0};
     SNOW_TRY(choose_axes(context, header, &choice));
     info->type = header->type;
     info->medical = header->medical;
@@ -148,7 +196,10 @@ snow_status snow_nrrd_lay_out(snow_context *context, const nrrd_header *header,
     fill_matrix(header, &choice, info->matrix);
     SNOW_TRY(snow_volume_info_check(context, info));
     SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
-    SNOW_TRY(snow_region_lay_out(context, options, info, region));
+    SNOW_TRY(choice.values < 0
+                 ? snow_region_lay_out(context, options, info, region)
+                 : lay_values(context, header, choice.values, options, info,
+                              values));
     if (header->turn[2] < 0)
         snow_notify(context, "the world is left-handed; z is flipped, so that "
                              "nothing is mirrored");

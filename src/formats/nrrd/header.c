@@ -76,10 +76,15 @@ static const name_value encoding_names[] = {
 
 /* Kinds of several values: complex numbers, vectors, colours, tensors. */
 static const name_value role_names[] = {
-    {"domain", NRRD_AXIS_SPACE}, {"space", NRRD_AXIS_SPACE},
-    {"time", NRRD_AXIS_TIME},    {"list", NRRD_AXIS_TIME},
-    {"???", NRRD_AXIS_UNKNOWN},  {"none", NRRD_AXIS_UNKNOWN},
-    {NULL, NRRD_AXIS_VALUES},
+    {"domain", NRRD_AXIS_SPACE},    {"space", NRRD_AXIS_SPACE},
+    {"time", NRRD_AXIS_TIME},       {"list", NRRD_AXIS_TIME},
+    {"???", NRRD_AXIS_UNKNOWN},     {"none", NRRD_AXIS_UNKNOWN},
+    {"rgbcolor", NRRD_AXIS_COLORS}, {"rgbacolor", NRRD_AXIS_COLORS},
+    {"3color", NRRD_AXIS_COLORS},   {"4color", NRRD_AXIS_COLORS},
+    {"vector", NRRD_AXIS_VECTOR},   {"covariantvector", NRRD_AXIS_VECTOR},
+    {"2vector", NRRD_AXIS_VECTOR},  {"3vector", NRRD_AXIS_VECTOR},
+    {"4vector", NRRD_AXIS_VECTOR},  {"3gradient", NRRD_AXIS_VECTOR},
+    {"3normal", NRRD_AXIS_VECTOR},  {NULL, NRRD_AXIS_VALUES},
 };
 
 /* Worlds: the number of coordinates, and the signs that convert them to RAS+

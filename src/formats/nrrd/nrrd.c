@@ -21,13 +21,18 @@ static snow_status read_parsed(snow_source *source, const nrrd_text *text,
     nrrd_header header;
     nrrd_files files;
     snow_region region;
+    snow_array values;
     *info = snow_volume_info_default("nrrd");
     SNOW_TRY(snow_nrrd_parse_header(context, text, &header));
-    SNOW_TRY(snow_nrrd_lay_out(context, &header, options, info, &region));
+    SNOW_TRY(
+        snow_nrrd_lay_out(context, &header, options, info, &region, &values));
     const char *unit = snow_nrrd_value(text, NRRD_SAMPLE_UNITS);
     if (unit && sscanf(unit + (*unit == '"'), "%31[^\"]", info->value_unit) < 1)
         *info->value_unit = 0;
     SNOW_TRY(snow_nrrd_find_files(context, text, &header, &files));
+    if (values.all)
+        return snow_nrrd_read_values(source, &header, &files, options, &values,
+                                     info, out);
     if (!out)
         return snow_nrrd_check_data(source, &header, &files, &region);
     SNOW_TRY(snow_nrrd_read_data(source, &header, &files, info, &region, out));
@@ -55,6 +60,7 @@ const snow_format snow_format_nrrd = {
     .suffixes = {".nrrd", ".nhdr", ".nrrd.gz"},
     .probe = looks_nrrd,
     .crops = true,
+    .channels = true,
     .read = read_nrrd,
     .write = snow_nrrd_write,
 };

@@ -13,7 +13,7 @@
 #ifndef SNOW_FORMATS_NRRD_NRRD_H
 #define SNOW_FORMATS_NRRD_NRRD_H
 
-#include "formats/format.h"
+#include "formats/array.h"
 
 #define NRRD_MOST_AXES 16
 
@@ -79,8 +79,10 @@ typedef enum nrrd_encoding { NRRD_RAW, NRRD_GZIP, NRRD_ASCII } nrrd_encoding;
 typedef enum nrrd_role {
     NRRD_AXIS_UNKNOWN, /* spatial, unless there are too many axes */
     NRRD_AXIS_SPACE,
-    NRRD_AXIS_TIME,  /* or a list of volumes */
-    NRRD_AXIS_VALUES /* components of a colour, a vector, a tensor */
+    NRRD_AXIS_TIME,   /* or a list of volumes */
+    NRRD_AXIS_COLORS, /* red, green, blue and perhaps opacity */
+    NRRD_AXIS_VECTOR,
+    NRRD_AXIS_VALUES /* of a tensor, or of an unknown kind */
 } nrrd_role;
 
 typedef struct nrrd_axis {
@@ -135,10 +137,13 @@ snow_status snow_nrrd_parse_header(snow_context *context, const nrrd_text *text,
                                    nrrd_header *out);
 
 /* Sets dims, matrix, times and all else of the info; applies the time step and
- * the box of the options, and finds their place in the array. */
+ * the box of the options, and finds their place in the array.  Where voxels
+ * have several values, values->all is not 0, and the box is left to
+ * snow_nrrd_read_values. */
 snow_status snow_nrrd_lay_out(snow_context *context, const nrrd_header *header,
                               const snow_volume_options *options,
-                              snow_volume_info *info, snow_region *region);
+                              snow_volume_info *info, snow_region *region,
+                              snow_array *values);
 
 snow_status snow_nrrd_find_files(snow_context *context, const nrrd_text *text,
                                  const nrrd_header *header, nrrd_files *out);
@@ -155,6 +160,15 @@ snow_status snow_nrrd_file_name(snow_context *context, const nrrd_files *files,
 snow_status snow_nrrd_check_data(snow_source *source, const nrrd_header *header,
                                  const nrrd_files *files,
                                  const snow_region *region);
+
+/* Makes the volume of one value of each voxel, or of the header alone its
+ * info. */
+snow_status snow_nrrd_read_values(snow_source *source,
+                                  const nrrd_header *header,
+                                  const nrrd_files *files,
+                                  const snow_volume_options *options,
+                                  const snow_array *values,
+                                  snow_volume_info *info, snow_volume **out);
 
 /* Makes the volume; `source` is positioned after the header. */
 snow_status snow_nrrd_read_data(snow_source *source, const nrrd_header *header,
