@@ -1,5 +1,6 @@
 /* look.c - transfer functions, which looks become for a volume. */
 #include "core.h"
+#include "picture/light.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -165,35 +166,6 @@ PyObject *volume_look(PyObject *self, PyObject *args) {
     return NULL;
 }
 
-/* Of as many points of opacity the command line keeps. */
-#define POINTS_MOST 256
-
-static snow_status fade(const transfer_object *o, const snow_volume *volume,
-                        double factor, const double *given, size_t count,
-                        snow_transfer **out) {
-    snow_look look;
-    snow_opacity_point points[POINTS_MOST];
-    snow_transfer *made = NULL;
-    snow_look_init(&look);
-    snow_status status = snow_transfer_get_look(o->transfer, &look);
-    if (status != SNOW_STATUS_OK)
-        return status;
-    const snow_opacity_point *from =
-        given ? (const snow_opacity_point *)(const void *)given
-              : look.opacities;
-    count = given ? count : look.opacity_count;
-    count = count < POINTS_MOST ? count : POINTS_MOST;
-    for (size_t n = 0; n < count; n++)
-        points[n] =
-            (snow_opacity_point){from[n].value, factor * from[n].opacity};
-    look.opacities = points;
-    look.opacity_count = count;
-    status = snow_transfer_new_for_volume(volume, &look, &made);
-    if (status == SNOW_STATUS_OK)
-        *out = made;
-    return status;
-}
-
 /* faded(volume, factor, opacities or None): the same colours with those
  * opacities, or its own, times a factor */
 static PyObject *transfer_faded(PyObject *self, PyObject *args) {
@@ -214,8 +186,9 @@ static PyObject *transfer_faded(PyObject *self, PyObject *args) {
         Py_INCREF((PyObject *)o->context);
         made->context = o->context;
         CALL(o->context, status,
-             fade(o, ((volume_object *)volume)->volume, factor, given, count,
-                  &made->transfer));
+             light_fade(NULL, o->transfer, ((volume_object *)volume)->volume,
+                        factor, (const snow_opacity_point *)(void *)given,
+                        count, &made->transfer));
         context_leave(o->context, status);
     }
     free(given);
@@ -228,7 +201,7 @@ static PyObject *transfer_faded(PyObject *self, PyObject *args) {
 /* colormap_color(name): red, green and blue where it is a map from black to
  * one colour, else None */
 PyObject *look_colormap_color(PyObject *module, PyObject *name) {
-    snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
+    double rgb[3];
     const char *text = PyUnicode_AsUTF8AndSize(name, NULL);
     (void)module;
     if (!text)
@@ -240,12 +213,9 @@ PyObject *look_colormap_color(PyObject *module, PyObject *name) {
                             "magenta, yellow, grey, #rrggbb or another colour "
                             "map",
                             text);
-    if (snow_colormap_points((size_t)found, points, SNOW_COLORMAP_POINTS_MAX) !=
-            2 ||
-        points[0].red + points[0].green + points[0].blue > 0)
+    if (!light_of_colormap((size_t)found, rgb))
         Py_RETURN_NONE;
-    return Py_BuildValue("(ddd)", points[1].red, points[1].green,
-                         points[1].blue);
+    return Py_BuildValue("(ddd)", rgb[0], rgb[1], rgb[2]);
 }
 
 static PyMethodDef transfer_methods[] = {

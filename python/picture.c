@@ -1,7 +1,7 @@
 /* picture.c - pictures and slices of volumes. */
 #include "core.h"
 
-#include <snowglass/ranks.h>
+#include "picture/light.h"
 
 #include <math.h>
 #include <string.h>
@@ -73,36 +73,6 @@ typedef struct request {
     snow_image *image, *depth;
 } request;
 
-/* Adds the light of a picture to that of another, which is made if it is not
- * there, as the command line does (programs/picture/channels.c). */
-static snow_status add_light(snow_context *context, snow_image *one,
-                             double share, snow_image **sum) {
-    const int width = snow_image_width(one), height = snow_image_height(one);
-    const int channels = snow_image_channels(one);
-    snow_status status =
-        *sum ? SNOW_STATUS_OK : snow_image_new(context, width, height, 4, sum);
-    if (status != SNOW_STATUS_OK)
-        return status;
-    const float *from = snow_image_pixels(one);
-    float *to = snow_image_pixels(*sum);
-    for (size_t n = 0; n < (size_t)width * (size_t)height;
-         n++, from += channels, to += 4) {
-        to[3] = fmaxf(to[3], from[channels - 1]);
-        for (int c = 0; c < 3; c++)
-            to[c] += (float)share * from[channels == 4 ? c : 0];
-    }
-    return SNOW_STATUS_OK;
-}
-
-static void limit_light(snow_image *sum) {
-    float *at = snow_image_pixels(sum);
-    const size_t count =
-        (size_t)snow_image_width(sum) * (size_t)snow_image_height(sum);
-    for (size_t n = 0; n < count; n++, at += 4)
-        for (int c = 0; c < 3; c++)
-            at[c] = fminf(at[c], at[3]);
-}
-
 static snow_status draw_one(const request *r, const snow_volume *volume,
                             const snow_transfer *transfer, int64_t index,
                             snow_image **out) {
@@ -125,21 +95,21 @@ static snow_status draw_apart(request *r, bool added, int64_t index) {
         return status;
     }
     if (!status)
-        status = add_light(context, one, r->shares[0], &sum);
+        status = light_add(context, one, r->shares[0], &sum);
     for (int n = 0; n < r->mixing && !status; n++) {
         const snow_inlay *layer = &r->layers[n];
         snow_image_free(one);
         one = NULL;
         status = draw_one(r, layer->volume, layer->transfer, index, &one);
         if (!status)
-            status = add_light(context, one, r->shares[n + 1], &sum);
+            status = light_add(context, one, r->shares[n + 1], &sum);
     }
     snow_image_free(one);
     if (status) {
         snow_image_free(sum);
         return status;
     }
-    limit_light(sum);
+    light_limit(sum);
     r->image = sum;
     return status;
 }

@@ -7,6 +7,7 @@
 #include "picture/annotations.h"
 #include "picture/channels.h"
 #include "picture/layers.h"
+#include "picture/light.h"
 #include "picture/outputs.h"
 #include "picture/render_stats.h"
 #include "picture/show.h"
@@ -226,18 +227,18 @@ static snow_status add_channels(slice_work *w) {
     const channel_set *c = &w->channels;
     snow_image *sum = NULL;
     snow_status status =
-        channels_add(w->context, w->image, c->list.picks[0].opacity, &sum);
+        light_add(w->context, w->image, c->list.picks[0].opacity, &sum);
     for (int n = 1; n < c->list.count && status == SNOW_STATUS_OK; n++) {
         snow_image_free(w->image);
         w->image = NULL;
         status = snow_slice_render(c->volumes[n], 0, c->looks[n], &w->view,
                                    &w->settings, &w->image);
         if (status == SNOW_STATUS_OK)
-            status = channels_add(w->context, w->image,
-                                  c->list.picks[n].opacity, &sum);
+            status =
+                light_add(w->context, w->image, c->list.picks[n].opacity, &sum);
     }
     if (sum)
-        channels_limit(sum);
+        light_limit(sum);
     snow_image_free(w->image);
     w->image = sum;
     return status;

@@ -1,6 +1,7 @@
 /* channels.c - see channels.h. */
 #include "picture/channels.h"
 #include "commands/commands.h"
+#include "picture/light.h"
 #include "picture/outputs.h"
 #include "run/log.h"
 #include "run/memory.h"
@@ -97,15 +98,8 @@ typedef struct channel_colors {
 
 /* Red, green and blue of a colour, or of a map from black to one. */
 static bool find_rgb(const char *color, double rgb[3]) {
-    snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
-    if (channels_rgb(color, rgb))
-        return true;
-    if (snow_colormap_points((size_t)snow_colormap_from_name(color), points,
-                             SNOW_COLORMAP_POINTS_MAX) != 2 ||
-        points[0].red + points[0].green + points[0].blue > 0)
-        return false;
-    memcpy(rgb, &points[1].red, 3 * sizeof *rgb);
-    return true;
+    return channels_rgb(color, rgb) ||
+           light_of_colormap((size_t)snow_colormap_from_name(color), rgb);
 }
 
 /* Colours and, where no histogram is asked, opacities: those of a projection,
@@ -153,34 +147,6 @@ static range_value range_of(const options *opts, const snow_channel *of,
                          0, 0};
 }
 
-/* The same colours with other opacities. */
-static snow_status replace(snow_comm *comm, const options *opts, double factor,
-                           const snow_volume *volume,
-                           snow_transfer **transfer) {
-    snow_look look = {.size = sizeof look};
-    snow_opacity_point points[POINTS_MAX];
-    snow_transfer *made;
-    snow_status status = snow_transfer_get_look(*transfer, &look);
-    if (status != SNOW_STATUS_OK)
-        return status;
-    const snow_opacity_point *from =
-        opts->opacities.count ? opts->opacities.points : look.opacities;
-    size_t count =
-        opts->opacities.count ? opts->opacities.count : look.opacity_count;
-    count = count < POINTS_MAX ? count : POINTS_MAX;
-    for (size_t n = 0; n < count; n++)
-        points[n] =
-            (snow_opacity_point){from[n].value, factor * from[n].opacity};
-    look.opacities = points;
-    look.opacity_count = count;
-    status = snow_ranks_new_transfer(comm, volume, &look, &made);
-    if (status != SNOW_STATUS_OK)
-        return status;
-    snow_transfer_free(*transfer);
-    *transfer = made;
-    return SNOW_STATUS_OK;
-}
-
 snow_status channels_look(snow_comm *comm, const options *opts,
                           const snow_volume_info *info, channel_pick *pick,
                           const snow_volume *volume, snow_transfer **out) {
@@ -210,13 +176,17 @@ snow_status channels_look(snow_comm *comm, const options *opts,
         if (!(pick->range.low < pick->range.high))
             pick->range.kind = SNOW_RANGE_AUTO;
     }
+    const snow_transfer *whole = made;
     if (status == SNOW_STATUS_OK &&
-        (pick->opacity < 1 || opts->opacities.count))
-        status = replace(comm, opts, pick->opacity, volume, &made);
-    if (status != SNOW_STATUS_OK) {
-        snow_transfer_free(made);
-        return status;
+        (pick->opacity < 1 || opts->opacities.count)) {
+        status =
+            light_fade(comm, whole, volume, pick->opacity,
+                       opts->opacities.count ? opts->opacities.points : NULL,
+                       opts->opacities.count, &made);
+        snow_transfer_free((snow_transfer *)(uintptr_t)whole);
     }
+    if (status != SNOW_STATUS_OK)
+        return status;
     *out = made;
     return SNOW_STATUS_OK;
 }
@@ -248,42 +218,6 @@ snow_status channels_open(const options *opts, snow_context *context,
                               pick, c->volumes[n], &c->looks[n]);
     }
     return status;
-}
-
-/* --- pictures that are added ---------------------------------------------- */
-
-/* A picture of black and clear pixels of four channels. */
-static snow_status begin_sum(snow_context *context, const snow_image *one,
-                             snow_image **sum) {
-    return snow_image_new(context, snow_image_width(one),
-                          snow_image_height(one), 4, sum);
-}
-
-snow_status channels_add(snow_context *context, const snow_image *one,
-                         double share, snow_image **sum) {
-    snow_status status = *sum ? SNOW_STATUS_OK : begin_sum(context, one, sum);
-    if (status != SNOW_STATUS_OK)
-        return status;
-    const int channels = snow_image_channels(one);
-    const size_t count =
-        (size_t)snow_image_width(one) * (size_t)snow_image_height(one);
-    const float *from = snow_image_pixels((snow_image *)(uintptr_t)one);
-    float *to = snow_image_pixels(*sum);
-    for (size_t n = 0; n < count; n++, from += channels, to += 4) {
-        to[3] = fmaxf(to[3], from[channels - 1]);
-        for (int c = 0; c < 3; c++)
-            to[c] += (float)share * from[channels == 4 ? c : 0];
-    }
-    return SNOW_STATUS_OK;
-}
-
-void channels_limit(snow_image *sum) {
-    const size_t count =
-        (size_t)snow_image_width(sum) * (size_t)snow_image_height(sum);
-    float *at = snow_image_pixels(sum);
-    for (size_t n = 0; n < count; n++, at += 4)
-        for (int c = 0; c < 3; c++)
-            at[c] = fminf(at[c], at[3]);
 }
 
 /* --- reports -------------------------------------------------------------- */

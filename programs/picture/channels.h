@@ -47,13 +47,6 @@ snow_status channels_open(const options *opts, snow_context *context,
                           const char *path, bool in_file, uint64_t slab_bytes,
                           channel_set *c);
 
-/* Adds the light of a picture, of which a share counts, to that of another,
- * which is made if it is not there.  After the last one light is at most what
- * is covered.  Errors: no memory. */
-snow_status channels_add(snow_context *context, const snow_image *one,
-                         double share, snow_image **sum);
-void channels_limit(snow_image *sum);
-
 /* "channels 0 DAPI blue 10..200, 1 GFP green 5..90". */
 void channels_describe(const channel_set *c, char *out, size_t size);
 

@@ -4,6 +4,7 @@
 #include "commands/commands.h"
 #include "options/config.h"
 #include "picture/annotations.h"
+#include "picture/light.h"
 #include "picture/warnings.h"
 #include "run/interrupt.h"
 #include "run/log.h"
@@ -587,11 +588,11 @@ static snow_status project_channels(render_state *s) {
         status = project(s, n ? &s->channels.volumes[n] : &s->volume,
                          n ? s->channels.looks[n] : s->transfer);
         if (status == SNOW_STATUS_OK && s->made && added == SNOW_STATUS_OK)
-            added = channels_add(s->context, s->made,
-                                 s->channels.list.picks[n].opacity, &sum);
+            added = light_add(s->context, s->made,
+                              s->channels.list.picks[n].opacity, &sum);
     }
     if (sum)
-        channels_limit(sum);
+        light_limit(sum);
     snow_image_free(s->made);
     s->made = sum;
     return status == SNOW_STATUS_OK ? added : status;

@@ -63,7 +63,9 @@ def overlaid(base: Any, overlay: Any, look: Union[Look, str, None]
         return overlay
     given = look_of(look)
     volume = _opened(base, overlay)
-    transfer = _look(volume, given)
+    # Names and colours of labels stay with the volume that was opened.
+    transfer = _look(overlay if isinstance(overlay, _snowglass.Volume) else volume,
+                     given)
     volume._regrid(base, transfer.labelled)
     if base._planes:
         volume = _snowglass.clipped(_snowglass.Volume, volume, base._planes)

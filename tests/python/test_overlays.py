@@ -68,6 +68,28 @@ class Overlays(unittest.TestCase):
         self.assertEqual(again.checksum, first)
         self.assertNotEqual(base.render(LOOK, size=64).checksum, first)
 
+    def test_a_volume_keeps_the_colours_of_its_labels(self):
+        base = sg.Volume(self.values)
+        plain = base.render(LOOK, size=64, overlay=self.labels).checksum
+        table = os.path.join(self.folder.name, "names.txt")
+        with open(table, "w", encoding="utf-8") as file:
+            file.write('1 255 255 0 1 1 1 "one"\n3 0 255 255 1 1 1 "three"\n')
+        with open(self.labels, "rb") as file:
+            data = file.read()
+        named = os.path.join(self.folder.name, "named.nrrd")
+        with open(named, "wb") as file:
+            file.write(data.replace(
+                b"\n\n", b"\nSegment0_LabelValue:=1\nSegment0_Color:=1 1 0\n"
+                b"Segment1_LabelValue:=3\nSegment1_Color:=0 1 1\n\n", 1))
+        first = base.render(LOOK, size=64, overlay=named)
+        self.assertNotEqual(first.checksum, plain)
+        for each in (sg.Volume(named), sg.Volume(self.labels, label_table=table)):
+            again = base.render(LOOK, size=64, overlay=each)
+            self.assertEqual(again.checksum, first.checksum)
+        spots = numpy.asarray(first)[..., :3] > 0.2
+        self.assertTrue((spots[..., 0] & spots[..., 1] & ~spots[..., 2]).any())
+        self.assertTrue((~spots[..., 0] & spots[..., 1] & spots[..., 2]).any())
+
     def test_values_have_a_look(self):
         base = sg.Volume(self.values)
         look = sg.Look(colormap="viridis", range=(10, 90),

@@ -1,0 +1,27 @@
+/* light.h - what pictures of several channels are made of, here and in the
+ * Python package. */
+#ifndef PICTURE_LIGHT_H
+#define PICTURE_LIGHT_H
+
+#include <snowglass/ranks.h>
+
+/* Adds the light of a picture, of which a share counts, to that of another,
+ * which is made if it is not there.  After the last one light is at most what
+ * is covered.  Errors: no memory. */
+snow_status light_add(snow_context *context, const snow_image *one,
+                      double share, snow_image **sum);
+void light_limit(snow_image *sum);
+
+/* Red, green and blue of a map from black to one colour; false: of another. */
+bool light_of_colormap(size_t index, double rgb[3]);
+
+/* Other opacities than those of a look: `points` unless it is NULL, times a
+ * factor; of the volume, or of what ranks (comm unless NULL) have parts of.
+ * Points beyond LIGHT_POINTS are left out. */
+#define LIGHT_POINTS 256
+snow_status light_fade(snow_comm *comm, const snow_transfer *look,
+                       const snow_volume *volume, double factor,
+                       const snow_opacity_point *points, size_t count,
+                       snow_transfer **out);
+
+#endif
