@@ -80,6 +80,12 @@ int channels_choose(const options *opts, const snow_volume_info *info,
             channels_note(opts, info, list.count ? why : NULL);
         list.count = 0;
     }
+    if (!asked->count && list.count && info->channels > SNOW_CHANNELS_MAX &&
+        opts->verbosity >= 0 && process_talks())
+        say("note: the file has %lld channels, of which the first %d are "
+            "taken; --channel 0,%lld shows others",
+            (long long)info->channels, SNOW_CHANNELS_MAX,
+            (long long)info->channels - 1);
     channels_fill(&list, info, opts->colormap);
     out->list = list;
     out->chosen = true;
@@ -147,6 +153,32 @@ static range_value range_of(const options *opts, const snow_channel *of,
                          0, 0};
 }
 
+/* One value everywhere is nothing to see: it would hide the other channels.
+ * Its range begins there instead of ending there. */
+static snow_status hide_constant(snow_comm *comm, const snow_volume *volume,
+                                 snow_look *look, snow_transfer **made) {
+    const snow_look automatic = {.size = sizeof automatic};
+    snow_transfer *seen = NULL;
+    double low, high;
+    snow_transfer_domain(*made, &low, &high);
+    if (low < 0 || low > 0 ||
+        (look->range != SNOW_RANGE_AUTO && look->range != SNOW_RANGE_ROBUST))
+        return SNOW_STATUS_OK;
+    snow_status status =
+        snow_ranks_new_transfer(comm, volume, &automatic, &seen);
+    if (status == SNOW_STATUS_OK &&
+        strstr(snow_transfer_description(seen), "one value only")) {
+        snow_transfer_free(*made);
+        *made = NULL;
+        look->range = SNOW_RANGE_VALUES;
+        look->low = high;
+        look->high = high + fmax(1, high);
+        status = snow_ranks_new_transfer(comm, volume, look, made);
+    }
+    snow_transfer_free(seen);
+    return status;
+}
+
 snow_status channels_look(snow_comm *comm, const options *opts,
                           const snow_volume_info *info, channel_pick *pick,
                           const snow_volume *volume, snow_transfer **out) {
@@ -169,6 +201,8 @@ snow_status channels_look(snow_comm *comm, const options *opts,
     }
     snow_transfer *made = NULL;
     snow_status status = snow_ranks_new_transfer(comm, volume, &look, &made);
+    if (status == SNOW_STATUS_OK)
+        status = hide_constant(comm, volume, &look, &made);
     if (status == SNOW_STATUS_OK &&
         pick->range.kind != SNOW_RANGE_PERCENTILES) {
         pick->range.kind = SNOW_RANGE_VALUES;
@@ -176,19 +210,21 @@ snow_status channels_look(snow_comm *comm, const options *opts,
         if (!(pick->range.low < pick->range.high))
             pick->range.kind = SNOW_RANGE_AUTO;
     }
+    if (status != SNOW_STATUS_OK) {
+        snow_transfer_free(made);
+        return status;
+    }
     const snow_transfer *whole = made;
-    if (status == SNOW_STATUS_OK &&
-        (pick->opacity < 1 || opts->opacities.count)) {
+    if (pick->opacity < 1 || opts->opacities.count) {
         status =
             light_fade(comm, whole, volume, pick->opacity,
                        opts->opacities.count ? opts->opacities.points : NULL,
                        opts->opacities.count, &made);
         snow_transfer_free((snow_transfer *)(uintptr_t)whole);
     }
-    if (status != SNOW_STATUS_OK)
-        return status;
-    *out = made;
-    return SNOW_STATUS_OK;
+    if (status == SNOW_STATUS_OK)
+        *out = made;
+    return status;
 }
 
 snow_volume_options channels_data(const options *opts,

@@ -341,6 +341,13 @@ class Channels:
                 OWN if said["own"] else None
         made = volume._look(fields, kind, colors, opacities,
                             look.gradient_opacity)
+        if kind in ("auto", "robust") and made.domain[0] == 0 and \
+                "one value only" in volume._look({}, "auto", None, None,
+                                                 None).description:
+            # nothing to see, as in the command line
+            low = made.domain[1]
+            made = volume._look({**fields, "low": low, "high": low + max(1.0, low)},
+                                "values", colors, opacities, look.gradient_opacity)
         return made._faded(volume, pick.opacity, look.opacity) \
             if pick.opacity < 1 or look.opacity is not None else made
 

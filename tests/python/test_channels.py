@@ -355,6 +355,17 @@ class Arrays(unittest.TestCase):
             again = sg.render(volume, **image.recipe)
             self.assertEqual(again.checksum, image.checksum)
 
+    def test_a_channel_of_one_value_is_not_seen(self):
+        flat = numpy.full_like(ARRAYS[0], 77)
+        volume = sg.Volume.channels([ARRAYS[0], flat], colors=["magenta", "green"])
+        for mode in ("over", "mip"):
+            drawn = numpy.asarray(volume.render(size=60, mode=mode))
+            self.assertGreater(drawn[..., 0].max(), 0.3)
+            self.assertLess(drawn[..., 1].max(), 1e-6)
+        listed = sg.Volume.channels([ARRAYS[0], flat], colors=["magenta", "green"],
+                                    windows=[None, (0, 77)])
+        self.assertGreater(numpy.asarray(listed.render(size=60))[..., 1].max(), 0.3)
+
     def test_axes_may_lie_in_any_order(self):
         usual = sg.Volume.channels(ARRAYS, colors=self.COLORS)
         turned = sg.Volume.channels([each.T for each in ARRAYS], axes="xyz",

@@ -65,6 +65,12 @@ open("latin.tif", "wb").write(data)
 tiff("two.tif", [p for n, p in enumerate(pages) if n % 3 < 2],
      (ome % "").replace('SizeC="3"', 'SizeC="2"'))
 
+tiff("flat.tif", [p for z in range(NZ)
+                  for p in (pages[3 * z], b"\x4d" * NX * NY)],
+     (ome % "").replace('SizeC="3"', 'SizeC="2"'))
+tiff("ten.tif", (pages * 4)[:60],
+     (ome % "").replace('SizeC="3"', 'SizeC="10"'))
+
 tiff("steps.tif", [[20 + (60 + 60 * t) * inside(c, x, y, z) + (x + y) % 7
                     for y in range(NY) for x in range(NX)]
                    for t in range(3) for z in range(NZ) for c in range(2)],
@@ -271,6 +277,26 @@ run 0 "and in memory" render big.tif -o slabs2.npy -s 40x40 --channel 1:green
 check "is the same" cmp -s slabs.npy slabs2.npy
 run 0 "a slice of more" "$TOOL" slice big.tif -o big4.png --memory 3M
 says 'channels 0 cyan .*, 3 red '
+
+for way in "" "-m mip" "--memory 200M -j 1"; do
+    # shellcheck disable=SC2086
+    run 0 "a channel of one value $way" "$TOOL" render flat.tif -y -o flat.npy -s 60x50 --fit volume $way
+    says 'channels 0 magenta [0-9.]+, 1 green 77..154; '
+    # shellcheck disable=SC2086
+    run 0 "without it" render flat.tif -y -o rest.npy --fit volume --channel 0:magenta $way
+    run 0 "is the same" "$TOOL" compare flat.npy rest.npy --tolerance 0.001
+done
+run 0 "its slice" "$TOOL" slice flat.tif -q -o flat.png
+run 0 "alone" "$TOOL" slice flat.tif -q -o rest.png --channel 0:magenta
+run 0 "is black" "$TOOL" compare flat.png rest.png --tolerance 0.001
+run 0 "asked for" render flat.tif -y -o flat.npy --fit volume --channel 0:magenta,1:green:0..77
+check "is seen" [ -n "$(cmp flat.npy rest.npy)" ]
+run 0 "more than eight" "$TOOL" render ten.tif -o ten.png -s 60x50
+says 'note: the file has 10 channels, of which the first 8 are taken; --channel 0,9 shows others$'
+says ' 7 hot [0-9.]+; '
+run 0 "the last ones" "$TOOL" render ten.tif -o last.png -s 60x50 --channel 9:red,8:green
+says 'channels 9 red [0-9.]+, 8 green [0-9.]+; '
+check "without a note" [ "$(grep -c note "$ERR")" = 0 ]
 
 run 0 "an overlay" render ome.tif --overlay third.nrrd --overlay-opacity 100:0,200:1 -o over.png
 check "is seen too" [ -n "$(cmp over.png all.png)" ]
