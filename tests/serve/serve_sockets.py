@@ -462,7 +462,12 @@ def looks_until(page, kind, n=0):
             looks.append(message)
 
 
-def dragged_points(more):
+def colors_of(jpeg):
+    """How many: what begins a baseline frame says so."""
+    return jpeg[jpeg.index(b"\xff\xc0") + 9]
+
+
+def dragged_points(more, grey):
     """A point that is dragged takes the colours of the look before, as the look
     that is made anew has them; that is made when the picture rests.  A side of 64
     is that of the smallest draft: none is smaller."""
@@ -483,9 +488,11 @@ def dragged_points(more):
     draft(size=[64, 64], opacity=points)
     quick, looks = draft(opacity=moved)
     check("a dragged point makes no new look", not looks, looks)
-    draft(colormap="hot")
+    hot = draft(colormap="hot")[0]
     anew, looks = draft(colormap=None)
     check("its picture is that of a look made anew", looks and anew == quick)
+    check("only a picture in colours is packed in colours",
+          (colors_of(anew), colors_of(hot)) == (1 if grey else 3, 3))
     check("which has changed", draft(opacity=points)[0] != quick)
     draft(opacity=moved)
     page.say({"t": "moving", "on": False})
@@ -1006,9 +1013,9 @@ first_state()
 fit_at_position()
 slices()
 mask_switch()
-dragged_points([])
+dragged_points([], grey=True)
 if not SHORT:
-    dragged_points(["--preset", "ct-bone"])
+    dragged_points(["--preset", "ct-bone"], grey=False)
     recipe_file()
     movie_command()
     answers_first()
