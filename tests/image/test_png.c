@@ -216,18 +216,24 @@ static void grey_on_grey_stays_grey(void **state) {
 /* As encoders of movies get them; libpng reads the file, not our reader. */
 static void bytes_for_encoders_are_those_of_a_file(void **state) {
     image_fixture *f = *state;
-    const snow_image_options flat = {
-        .size = sizeof flat, .flatten = true, .background = {0.2, 0.4, 1}};
-    for (int channels = 2; channels <= 4; channels += 2) {
+    for (int n = 0; n < 4; n++) { /* grey and not, on a colour and on black */
+        const double blue = n & 2 ? 0 : 1;
+        const int channels = n & 1 ? 4 : 2;
+        const snow_image_options flat = {
+            .size = sizeof flat,
+            .flatten = true,
+            .background = {0.2 * blue, 0.4 * blue, blue}};
         unsigned char rgb[700 * 3];
         snow_image *image = support_picture(f->context, 700, 1, channels, 5);
         if (channels == 4)
             snow_image_pixels(image)[4 * 300] = NAN;
         decoded d =
             store_row(f, snow_image_pixels(image), 700, channels, &flat);
-        assert_int_equal(d.row_bytes, sizeof rgb);
+        size_t step = (size_t)d.row_bytes / 700;
+        assert_int_equal(step, n == 2 ? 1 : 3);
         snow_image_to_rgb8(image, flat.background, rgb);
-        assert_memory_equal(rgb, d.bytes, sizeof rgb);
+        for (size_t i = 0; i < sizeof rgb; i++)
+            assert_int_equal(rgb[i], d.bytes[step == 1 ? i / 3 : i]);
         snow_image_free(image);
     }
 }
