@@ -57,15 +57,10 @@ static inline void capped_end(snow_context *context, const size_t *held) {
         abort();
 }
 
-/* Opens and measures the bytes as a volume.  Stops the program when a failure
- * comes without a message of one line, or memory stays behind. */
-static inline void look_at(const char *name, const uint8_t *bytes, size_t size,
-                           const snow_volume_options *options) {
-    size_t held;
-    snow_context *context = capped_context(&held);
-    snow_volume *volume = NULL;
-    snow_status status =
-        snow_volume_open_memory(context, name, bytes, size, options, &volume);
+/* Measures and closes what was opened.  Stops the program when a failure comes
+ * without a message of one line, or memory stays behind. */
+static inline void capped_finish(snow_context *context, const size_t *held,
+                                 snow_status status, snow_volume *volume) {
     if (status == SNOW_STATUS_OK) {
         snow_volume_statistics measures = {.size = sizeof measures};
         uint64_t counts[16];
@@ -79,7 +74,18 @@ static inline void look_at(const char *name, const uint8_t *bytes, size_t size,
     for (const char *at = snow_context_message(context); *at; at++)
         if (*at == '\n')
             abort();
-    capped_end(context, &held);
+    capped_end(context, held);
+}
+
+/* The bytes as a volume. */
+static inline void look_at(const char *name, const uint8_t *bytes, size_t size,
+                           const snow_volume_options *options) {
+    size_t held;
+    snow_context *context = capped_context(&held);
+    snow_volume *volume = NULL;
+    snow_status status =
+        snow_volume_open_memory(context, name, bytes, size, options, &volume);
+    capped_finish(context, &held, status, volume);
 }
 
 #endif
