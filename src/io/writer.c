@@ -57,10 +57,6 @@ static snow_status append_bytes(snow_writer *writer, const void *bytes,
     return SNOW_STATUS_OK;
 }
 
-snow_context *snow_writer_context(const snow_writer *writer) {
-    return writer->file.context;
-}
-
 snow_status snow_writer_pack(snow_writer *writer) {
     snow_context *context = writer->file.context;
     z_stream *packer = snow_allocate_clear(context, sizeof *packer);

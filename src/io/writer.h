@@ -16,8 +16,6 @@ typedef struct snow_writer snow_writer;
 snow_status snow_writer_open(snow_context *context, const char *path,
                              bool overwrite, snow_writer **out);
 
-snow_context *snow_writer_context(const snow_writer *writer);
-
 /* Appends bytes.  Errors: SNOW_STATUS_BAD_OUTPUT (disk full, say). */
 snow_status snow_writer_write(snow_writer *writer, const void *bytes,
                               size_t size);

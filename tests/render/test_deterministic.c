@@ -534,8 +534,8 @@ static flat splat_parts(const stage *s) {
         flat one = splat(s, s->parts[order[n]]);
         assert_int_equal(one.width, all.width);
         assert_int_equal(one.height, all.height);
-        snow_over_row(all.pixels, one.pixels, (size_t)(all.width * all.height),
-                      all.channels);
+        snow_over_of(all.channels)(all.pixels, one.pixels,
+                                   (size_t)(all.width * all.height));
         free(one.pixels);
     }
     return all;
@@ -694,8 +694,8 @@ static flat shoot_parts(const stage *s) {
     flat all = shoot(s, s->parts[order[0]]);
     for (int n = 1; n < s->count; n++) {
         flat one = shoot(s, s->parts[order[n]]);
-        snow_over_row(all.pixels, one.pixels, (size_t)(all.width * all.height),
-                      all.channels);
+        snow_over_of(all.channels)(all.pixels, one.pixels,
+                                   (size_t)(all.width * all.height));
         free(one.pixels);
     }
     return all;

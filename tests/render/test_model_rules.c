@@ -406,9 +406,9 @@ static void front_to_back_equals_back_to_front(void **state) {
             }
         for (int r = 0; r < ROWS; r++) {
             float copy[COUNT * 4];
-            snow_over_row(front, sheets[r], COUNT, channels);
+            snow_over_of(channels)(front, sheets[r], COUNT);
             memcpy(copy, sheets[ROWS - 1 - r], sizeof copy);
-            snow_over_row(copy, back, COUNT, channels);
+            snow_over_of(channels)(copy, back, COUNT);
             memcpy(back, copy, sizeof back);
         }
         for (int n = 0; n < floats; n++)

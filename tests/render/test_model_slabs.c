@@ -23,8 +23,8 @@ static void combine_tree(float *const *images, int parts, size_t pixels,
     for (int distance = 1; distance < parts; distance *= 2)
         for (int receiver = 0; receiver + distance < parts;
              receiver += 2 * distance)
-            snow_over_row(images[receiver], images[receiver + distance], pixels,
-                          channels);
+            snow_over_of(channels)(images[receiver],
+                                   images[receiver + distance], pixels);
 }
 
 /* Slabs and whole differ by no more than this, for any number of parts. */
