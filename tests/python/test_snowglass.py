@@ -25,6 +25,9 @@ import snowglass as sg
 TOOL = os.environ.get("SNOWGLASS", "snowglass")
 # A sanitizer keeps what is freed, and takes its time.
 plain = unittest.skipIf(os.environ.get("SNOW_SANITIZED"), "of plain builds")
+# Under valgrind a row of a picture takes longer than these wait.
+quick = unittest.skipIf(os.environ.get("SNOW_SANITIZED") == "valgrind",
+                        "of quicker machines")
 PICTURES = {"short": 60, "long": 300, "release": 10000}[
     os.environ.get("SNOW_TIER", "short")]
 
@@ -603,6 +606,7 @@ class Calls(InFolder):
                           progress=lambda *_: volume.render())
         volume.render(size=16)
 
+    @quick
     def test_interrupt(self):
         volume = sg.Volume("phantom:head")
         timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
@@ -614,6 +618,7 @@ class Calls(InFolder):
         self.assertLess(time.perf_counter() - took, 0.5)
         volume.render(size=16)
 
+    @quick
     def test_interrupt_of_a_thread_that_waits(self):
         volume = head()
         busy = threading.Event()
