@@ -10,7 +10,7 @@
 static void print_head(int figure, const bench_options *options) {
     printf("Figure %d: speed-up relative to %s on one node\n"
            "256x256 grey, footprint %s, one thread a node; "
-           "encoding, splatting and combining; medians of %d runs\n"
+           "encoding, splatting and combining; the least of %d runs\n"
            "nodes are timed one after another on this machine, the network "
            "is simulated; the paper shows its figure as a picture without "
            "numbers\n",
