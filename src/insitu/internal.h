@@ -254,13 +254,15 @@ snow_status snow_insitu_plan_cells(snow_insitu *insitu,
                                    const snow_insitu_layout *layout);
 snow_status snow_insitu_move_cells(snow_insitu *insitu, size_t value);
 
-/* A box with so many layers more on all sides, as far as the grid goes. */
+/* --- boxes.c ---
+
+ * A box with so many layers more on all sides, as far as the grid goes. */
 snow_box snow_insitu_grow_box(const snow_box *box, const int64_t low[3],
                               const int64_t high[3], const int64_t dims[3]);
 
 bool snow_insitu_box_holds(const snow_box *outer, const snow_box *inner);
 
-/* The record of a grid without sizes (grid.c). */
+/* --- grid.c: the record of a grid without sizes. */
 snow_volume_info snow_insitu_empty_grid(void);
 
 /* --- limits.c ---

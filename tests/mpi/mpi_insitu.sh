@@ -81,6 +81,7 @@ for mode in mip minip mean sum "iso --iso 60"; do
     cat >mode.json <<END
 {"input": "grid/v", "output": "m_%02d.png", "size": [200, 160],
  "colormap": "viridis", "range": [0, 100], "mode": "$name",
+ "background": "#000000",
  ${value:+\"iso\": $value,} "view": "iso", "overwrite": true}
 END
     run 0 "Catalyst, mode $name, on 3 ranks" launch 3 \
@@ -88,7 +89,7 @@ END
     # shellcheck disable=SC2086
     run 0 "the tool draws its field" "$TOOL" render field.raw \
         --dims 30x26x22 --type float64 --spacing 0.2x0.2x0.25 -o tool.png -y \
-        -q -s 200x160 -c viridis --range 0,100 --mode $mode --view iso --fit volume --background none
+        -q -s 200x160 -c viridis --range 0,100 --mode $mode --view iso --fit volume --background black
     run 0 "mode $name: picture and picture differ by rounding" \
         "$TOOL" compare m_01.png tool.png --tolerance $STEP
 done
