@@ -65,6 +65,8 @@ static int find_transfer(const options *opts, const char *name, named *out) {
         return done;
     int preset = snow_preset_from_name(name),
         map = snow_colormap_from_name(name);
+    if (map >= 0 && !snow_colormap_name((size_t)map))
+        map = -1; /* a list of colours, which has no points of its own */
     bool file = access(name, F_OK) == 0 || (preset < 0 && map < 0);
     if (!file && preset >= 0 && !snow_preset_look((size_t)preset)->color_count)
         return fail_usage("%s: is made of a volume's values and has no points; "

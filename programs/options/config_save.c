@@ -188,7 +188,8 @@ static const char *map_of(const options *opts, const snow_look *look) {
 
 static void note_range(const options *opts, const snow_transfer *transfer) {
     double ends[2];
-    if (options_range(opts).kind != SNOW_RANGE_AUTO)
+    if (options_range(opts).kind != SNOW_RANGE_AUTO ||
+        options_place_colors(opts))
         return;
     snow_transfer_domain(transfer, &ends[0], &ends[1]);
     chosen.range = json_vector(ends, 2);
@@ -203,7 +204,7 @@ static void note_projection(const options *opts, const snow_transfer *transfer,
     if (!of_picture)
         note_range(opts, transfer);
     else if (options_range(opts).kind == SNOW_RANGE_AUTO &&
-             painted[0] < painted[1])
+             !options_place_colors(opts) && painted[0] < painted[1])
         chosen.range = json_vector(painted, 2);
 }
 

@@ -15,6 +15,11 @@ int options_bits(const options *opts) {
     return opts->bits[0] == '8' ? 8 : 16;
 }
 
+bool options_place_colors(const options *opts) {
+    int map = opts->colormap ? snow_colormap_from_name(opts->colormap) : -1;
+    return map >= 0 && !snow_colormap_name((size_t)map);
+}
+
 range_value options_range(const options *opts) {
     if (isnan(opts->window))
         return opts->range;

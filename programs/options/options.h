@@ -115,7 +115,7 @@ typedef struct options {
     const char *dataset;   /* NULL: not given */
     const char *series;    /* NULL: not given */
     bool allow_gaps;
-    int64_t levels; /* 0: all */
+    int64_t levels;                          /* 0: all */
     int64_t crop[3][2];                      /* 0: the end */
     double clip[SNOW_CLIPS_MAX][4];          /* zeros: none */
     const char *mask, *labels, *label_table; /* NULL: not given */
@@ -256,6 +256,9 @@ int options_bits(const options *opts);
 
 /* The range of --range, or of --window and --level. */
 range_value options_range(const options *opts);
+
+/* Whether --colormap is a list of colours, which lie at values of the data. */
+bool options_place_colors(const options *opts);
 
 /* Prints help to standard output: `word` names a verb, a topic, an option with
  * or without dashes, or a preset; NULL means the page of `verb`, or the

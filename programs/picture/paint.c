@@ -18,8 +18,10 @@ static bool keeps_values(const char *path) {
     return !movie_format_of(path) && snow_image_format_bits(path) == 0;
 }
 
+/* A list of colours has values of its own. */
 static bool range_is_given(const options *opts) {
-    return options_range(opts).kind != SNOW_RANGE_AUTO;
+    return options_range(opts).kind != SNOW_RANGE_AUTO ||
+           options_place_colors(opts);
 }
 
 int paint_check(const options *opts, bool movie) {

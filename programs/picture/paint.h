@@ -25,8 +25,9 @@ void paint_background(const options *opts, snow_image_options *form);
 /* Replaces a picture of values by one of colours, unless the output holds
  * values, and makes the lowest value transparent on no background. The look's
  * colours are spread over the requested range; otherwise, in a movie of means,
- * over the look's own, or over the values of the picture. `given` gets the
- * range and the words that report it.  Returns CONTINUE or an exit code. */
+ * over the look's own, or over the values of the picture; a list of colours
+ * stays at its values. `given` gets the range and the words that report it.
+ * Returns CONTINUE or an exit code. */
 int paint_values(const options *opts, snow_context *context,
                  const snow_transfer *transfer, bool movie, snow_image **image,
                  paint_given *given);

@@ -64,6 +64,20 @@ says "sums of 10\.\.500 in the look's colours"
 run 0 "a colour map" render -q -m mean -c viridis -o viridis.png
 run 6 "changes the colours" "$TOOL" compare told.png viridis.png
 
+# Colours at values stay there, also where one is alone, and so do those of the
+# printed command.
+for mode in mean mip; do
+    for colors in 60:#000000,255:#ff8800 1000:#000000,1255:#ff8800 90:#ff0000; do
+        run 0 "colours at values, $mode" render -v -m $mode -c "$colors" -y \
+            -o "$mode.at.png"
+        command=$(sed -n 's/^snowglass: again: //p' "$ERR")
+        mv "$mode.at.png" "$mode.${colors%%:*}.png"
+        eval "\"\$TOOL\" ${command#snowglass } -q"
+        check "the command again" cmp -s "$mode.${colors%%:*}.png" "$mode.at.png"
+    done
+    run 6 "colours at other values" "$TOOL" compare $mode.60.png $mode.1000.png
+done
+
 run 0 "iso and its depth" render -m iso --iso 40 -o iso.npy --depth near.npy
 says "mode iso of all voxels"
 check "a depth is values" [ "$(shape near.npy)" = "'shape': (30, 40)" ]
