@@ -143,7 +143,7 @@ static snow_status wrap_voxels(snow_insitu *insitu, const void *voxels,
 static snow_status gather_voxels(snow_insitu *insitu) {
     snow_box memory;
     size_t value = snow_type_size(insitu->type);
-    int64_t pitch[2] = {0, 0};
+    int64_t *pitch = insitu->pitch;
     const void *shared = in_place(insitu, &memory, pitch);
     snow_status status = SNOW_STATUS_OK;
     insitu->copied = !shared;
@@ -152,6 +152,10 @@ static snow_status gather_voxels(snow_insitu *insitu) {
         status = reserve_dense(insitu, value);
     }
     INSITU_TRY(snow_comm_agree_status(insitu->comm, status));
+    if (!shared) {
+        pitch[0] = memory.count[0];
+        pitch[1] = pitch[0] * memory.count[1];
+    }
     if (insitu->layout.uneven)
         INSITU_TRY(snow_insitu_move_cells(insitu, value));
     else if (insitu->layout.exchanged)

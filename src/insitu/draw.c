@@ -39,19 +39,23 @@ static bool is_spread(const snow_look *look) {
                SNOW_DOMAIN_DATA;
 }
 
-/* The finite extremes of voxels, in a fifth of the time that statistics take.
- */
-#define EXTREMES(type)                                            \
-    static void find_##type(const type *voxels, int64_t count,    \
-                            double least[2]) {                    \
-        type low = (type)INFINITY, high = -(type)INFINITY;        \
-        for (int64_t n = 0; n < count; n++) {                     \
-            bool finite = voxels[n] - voxels[n] == 0;             \
-            low = finite && voxels[n] < low ? voxels[n] : low;    \
-            high = finite && voxels[n] > high ? voxels[n] : high; \
-        }                                                         \
-        least[0] = (double)low;                                   \
-        least[1] = -(double)high;                                 \
+/* The finite extremes of voxels, row by row, in a fifth of the time that
+ * statistics take. */
+#define EXTREMES(type)                                                    \
+    static void find_##type(const type *voxels, const int64_t dims[3],    \
+                            const int64_t pitch[2], double least[2]) {    \
+        type low = (type)INFINITY, high = -(type)INFINITY;                \
+        for (int64_t n = 0; n < dims[1] * dims[2]; n++) {                 \
+            const type *row =                                             \
+                voxels + n / dims[1] * pitch[1] + n % dims[1] * pitch[0]; \
+            for (int64_t x = 0; x < dims[0]; x++) {                       \
+                bool finite = row[x] - row[x] == 0;                       \
+                low = finite && row[x] < low ? row[x] : low;              \
+                high = finite && row[x] > high ? row[x] : high;           \
+            }                                                             \
+        }                                                                 \
+        least[0] = (double)low;                                           \
+        least[1] = -(double)high;                                         \
     }
 EXTREMES(float)
 EXTREMES(double)
@@ -60,15 +64,14 @@ EXTREMES(double)
 static snow_status find_own_values(const snow_insitu *insitu, double least[2]) {
     const void *voxels = snow_volume_voxels(insitu->volume);
     const int64_t *dims = snow_volume_get_info(insitu->volume)->dims;
-    const int64_t count = dims[0] * dims[1] * dims[2];
     snow_volume_statistics here;
     least[0] = least[1] = INFINITY;
     if (snow_box_voxels(&insitu->layout.owned) == 0)
         return SNOW_STATUS_OK;
     if (insitu->type == SNOW_TYPE_FLOAT32)
-        find_float(voxels, count, least);
+        find_float(voxels, dims, insitu->pitch, least);
     else if (insitu->type == SNOW_TYPE_FLOAT64)
-        find_double(voxels, count, least);
+        find_double(voxels, dims, insitu->pitch, least);
     else {
         snow_volume_statistics_init(&here);
         INSITU_TRY(snow_volume_get_statistics(insitu->volume, &here));

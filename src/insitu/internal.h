@@ -143,6 +143,8 @@ struct snow_insitu {
     char *dense;
     bool copied;
     snow_volume *volume; /* NULL: none yet */
+    int64_t pitch[2];    /* values from one of its rows, and slices, to the next
+                          */
     bool taken;          /* an update has succeeded */
 
     /* Pictures of them. */

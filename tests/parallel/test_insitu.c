@@ -38,6 +38,7 @@ typedef struct scene {
     snow_ghosts ghosts;
     bool fades;               /* by gradients */
     bool preset;              /* by those of a preset */
+    bool grows;               /* its last slices do, after step 0 */
     bool first_deterministic; /* the picture before */
     /* What the ranks found. */
     double difference; /* from the serial picture */
@@ -55,6 +56,13 @@ static double field(const int64_t dims[3], double x, double y, double z,
     double b = exp(-60 * ((u - 0.7) * (u - 0.7) + (v - 0.3) * (v - 0.3) +
                           (w - 0.7) * (w - 0.7)));
     return 200 * a + 150 * b + 10 * sin(9 * u + 5 * v) * cos(7 * w);
+}
+
+/* Of a scene; the same where it does not grow. */
+static double value_of(const scene *s, int64_t x, int64_t y, int64_t z,
+                       double t) {
+    const bool grown = s->grows && t > 0 && z >= s->dims[2] - 2;
+    return (grown ? 9 : 1) * field(s->dims, (double)x, (double)y, (double)z, t);
 }
 
 static void put_value(snow_type type, char *at, double value) {
@@ -90,8 +98,7 @@ static void *whole_field(const scene *s, double t) {
     for (int64_t z = 0; z < s->dims[2]; z++)
         for (int64_t y = 0; y < s->dims[1]; y++)
             for (int64_t x = 0; x < s->dims[0]; x++, at += value)
-                put_value(s->type, at,
-                          field(s->dims, (double)x, (double)y, (double)z, t));
+                put_value(s->type, at, value_of(s, x, y, z, t));
     return voxels;
 }
 
@@ -220,9 +227,8 @@ static void fill_brick(const scene *s, const snow_box *box, char *first,
                 bool inside = true;
                 for (int i = 0; i < 3; i++)
                     inside = inside && at[i] >= 0 && at[i] < s->dims[i];
-                double real = inside ? field(s->dims, (double)at[0],
-                                             (double)at[1], (double)at[2], t)
-                                     : 199;
+                double real =
+                    inside ? value_of(s, at[0], at[1], at[2], t) : 199;
                 put_value(s->type,
                           first +
                               (x * stride[0] + y * stride[1] + z * stride[2]) *
@@ -964,6 +970,71 @@ static void colours_keep_their_meaning_through_a_movie(void **state) {
     support_folder_remove(folder);
 }
 
+/* The range that automatic looks of one process have together at both times. */
+static void find_range(snow_context *context, const scene *s, double t,
+                       snow_look *look) {
+    const snow_look automatic = {.size = sizeof automatic};
+    look->range = SNOW_RANGE_VALUES;
+    look->low = INFINITY;
+    look->high = -INFINITY;
+    for (int n = 0; n < 2; n++) {
+        snow_volume_info info = {.size = sizeof info, .type = s->type};
+        memcpy(info.dims, s->dims, sizeof info.dims);
+        void *voxels = whole_field(s, n * t);
+        snow_volume *volume = NULL;
+        snow_transfer *transfer = NULL;
+        double low, high;
+        assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
+                         SNOW_STATUS_OK);
+        assert_int_equal(
+            snow_transfer_new_for_volume(volume, &automatic, &transfer),
+            SNOW_STATUS_OK);
+        snow_transfer_domain(transfer, &low, &high);
+        look->low = fmin(look->low, low);
+        look->high = fmax(look->high, high);
+        snow_transfer_free(transfer);
+        snow_volume_close(volume);
+        free(voxels);
+    }
+}
+
+/* Growth is seen in all slices of bricks that are used in place, with halos
+ * around them; what lies there beyond the grid is no growth. */
+static void colours_are_spread_for_voxels_used_in_place(void **state) {
+    (void)state;
+    static const int cuts[][4] = {{1, 1, 1, 1}, {2, 1, 2, 1}, {4, 2, 2, 1}};
+    for (int n = 0; n < 6; n++) {
+        char folder[SUPPORT_FOLDER_BYTES];
+        support_folder_make(folder);
+        const int *cut = cuts[n % 3];
+        movie m = {.scene = make_scene(cut[0], cut[1], cut[2], cut[3]),
+                   .steps = 2,
+                   .speed = 0.01,
+                   .automatic = true};
+        m.scene.grows = true;
+        m.scene.halo = 8;
+        m.scene.type = n / 3 ? SNOW_TYPE_FLOAT64 : SNOW_TYPE_FLOAT32;
+        run_movie(&m, folder);
+        assert_int_equal(m.status, SNOW_STATUS_OK);
+        assert_int_equal(m.figures[1].ranks_copied, 0);
+        assert_non_null(strstr(m.given, "values go beyond those before"));
+        snow_look look = {.size = sizeof look};
+        snow_context *context = support_context();
+        find_range(context, &m.scene, m.speed, &look);
+        snow_image *frame = load_frame(context, folder, 1);
+        snow_image *wide = serial_picture(context, &m.scene, m.speed, &look);
+        const double difference = largest_difference(frame, wide);
+        if (!(difference < 1.01 / 255))
+            fail_msg("case %d: it differs by %g from a picture of %g to %g; %s",
+                     n, difference, look.low, look.high, m.given);
+        snow_image_free(wide);
+        snow_image_free(frame);
+        snow_context_free(context);
+        assert_int_equal(count_frames(folder, 2), 2);
+        support_folder_remove(folder);
+    }
+}
+
 /* Means are painted as the tool paints those of a movie; sums are, where the
  * look has a range. */
 static void values_become_colours_in_files_of_colours(void **state) {
@@ -1447,6 +1518,7 @@ int main(void) {
         cmocka_unit_test(bricks_that_fit_no_grid_are_refused),
         cmocka_unit_test(no_step_takes_more_memory_than_the_one_before),
         cmocka_unit_test(colours_keep_their_meaning_through_a_movie),
+        cmocka_unit_test(colours_are_spread_for_voxels_used_in_place),
         cmocka_unit_test(values_become_colours_in_files_of_colours),
         cmocka_unit_test(sums_without_a_range_are_for_files_of_numbers),
         cmocka_unit_test(values_that_are_made_larger_keep_their_outline),
