@@ -41,8 +41,7 @@ typedef struct snow_insitu_brick {
 /* A look with its texts and points, which live as long as it. */
 typedef struct snow_own_look {
     snow_look look, base;
-    void *blocks[2]; /* points of both */
-    char preset[64], colormap[64], names[2][64];
+    void *blocks[2]; /* points and texts of both */
 } snow_own_look;
 
 /* Of the last picture. */

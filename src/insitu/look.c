@@ -2,7 +2,6 @@
  * points to. */
 #include "insitu/internal.h"
 
-#include <stdio.h>
 #include <string.h>
 
 void snow_insitu_free_look(snow_context *context, snow_own_look *look) {
@@ -10,15 +9,11 @@ void snow_insitu_free_look(snow_context *context, snow_own_look *look) {
     snow_context_release(context, look->blocks[1]);
 }
 
-/* A name and where it is kept; NULL stays NULL. */
-static const char *keep_name(const char *name, char out[64]) {
-    if (!name)
-        return NULL;
-    snprintf(out, 64, "%s", name);
-    return out;
+static size_t text_bytes(const char *text) {
+    return text ? strlen(text) + 1 : 0;
 }
 
-/* Copies one list of points; NULL and empty lists are NULL. */
+/* Copies a list of points or a text; NULL and empty lists are NULL. */
 static void *keep_list(const void *points, size_t bytes, char **at) {
     void *own = *at;
     if (!points || !bytes)
@@ -28,15 +23,18 @@ static void *keep_list(const void *points, size_t bytes, char **at) {
     return own;
 }
 
-/* All points of a look, in one block. */
-static snow_status keep_points(snow_insitu *insitu, snow_look *look,
-                               void **block) {
+/* All points and texts of a look, in one block. */
+static snow_status keep_block(snow_insitu *insitu, snow_look *look,
+                              void **block) {
     size_t colors = look->color_count * sizeof *look->colors;
     size_t opacities = look->opacity_count * sizeof *look->opacities;
     size_t gradients =
         look->gradient_opacity_count * sizeof *look->gradient_opacities;
+    size_t name = text_bytes(look->name), preset = text_bytes(look->preset);
+    size_t colormap = text_bytes(look->colormap);
     char *at = snow_context_allocate(insitu->context,
-                                     colors + opacities + gradients + 1);
+                                     colors + opacities + gradients + name +
+                                         preset + colormap + 1);
     if (!at)
         return snow_insitu_set_error(insitu, SNOW_STATUS_NO_MEMORY);
     *block = at;
@@ -44,16 +42,19 @@ static snow_status keep_points(snow_insitu *insitu, snow_look *look,
     look->opacities = keep_list(look->opacities, opacities, &at);
     look->gradient_opacities =
         keep_list(look->gradient_opacities, gradients, &at);
+    look->name = keep_list(look->name, name, &at);
+    look->preset = keep_list(look->preset, preset, &at);
+    look->colormap = keep_list(look->colormap, colormap, &at);
     return SNOW_STATUS_OK;
 }
 
-/* The look and its base, with points of their own. */
+/* The look and its base, with points and texts of their own. */
 static snow_status keep_look(snow_insitu *insitu, const snow_look *given,
                              snow_own_look *own) {
     INSITU_TRY(INSITU_READ(insitu, snow_look, given, &own->look));
     INSITU_TRY(INSITU_READ(insitu, snow_look, own->look.base, &own->base));
-    INSITU_TRY(keep_points(insitu, &own->look, &own->blocks[0]));
-    return own->look.base ? keep_points(insitu, &own->base, &own->blocks[1])
+    INSITU_TRY(keep_block(insitu, &own->look, &own->blocks[0]));
+    return own->look.base ? keep_block(insitu, &own->base, &own->blocks[1])
                           : SNOW_STATUS_OK;
 }
 
@@ -81,10 +82,6 @@ snow_status snow_insitu_set_look(snow_insitu *insitu, const snow_look *given) {
     snow_insitu_free_look(insitu->context, own);
     *own = next;
     own->look.base = next.look.base ? &own->base : NULL;
-    own->look.name = keep_name(next.look.name, own->names[0]);
-    own->base.name = keep_name(next.base.name, own->names[1]);
-    own->look.preset = keep_name(next.look.preset, own->preset);
-    own->look.colormap = keep_name(next.look.colormap, own->colormap);
     snow_transfer_free(insitu->transfer);
     insitu->transfer = NULL;
     return SNOW_STATUS_OK;

@@ -39,6 +39,7 @@ typedef struct scene {
     bool fades;               /* by gradients */
     bool preset;              /* by those of a preset */
     bool grows;               /* its last slices do, after step 0 */
+    const char *colormap;     /* NULL: viridis */
     bool first_deterministic; /* the picture before */
     /* What the ranks found. */
     double difference; /* from the serial picture */
@@ -124,7 +125,7 @@ static snow_look look_of(const scene *s, snow_opacity_point scaled[5]) {
                            .high = 200 * scale_of(type)};
     return (snow_look){.size = sizeof(snow_look),
                        .preset = "linear",
-                       .colormap = "viridis",
+                       .colormap = s->colormap ? s->colormap : "viridis",
                        .range = SNOW_RANGE_VALUES,
                        .low = 0,
                        .high = 200 * scale_of(type),
@@ -475,6 +476,22 @@ static void a_gradient_opacity_does(void **state) {
         s.preset = true;
         expect_serial(&s, "a preset's gradient opacity");
     }
+}
+
+/* As many colours as a list has at most: the text is longer than any name, and
+ * the caller's is gone when pictures are made. */
+static void a_list_of_colours_does(void **state) {
+    (void)state;
+    char list[32 * 16];
+    size_t used = 0;
+    for (unsigned n = 0; n < 32; n++)
+        used += (size_t)snprintf(list + used, sizeof list - used,
+                                 "%s%.3f:#%02x%02x%02x", n ? "," : "",
+                                 200 / 31.0 * n, n * 37 % 256, n * 101 % 256,
+                                 n * 67 % 256);
+    scene s = make_scene(3, 1, 1, 3);
+    s.colormap = list;
+    expect_serial(&s, "a list of 32 colours");
 }
 
 static void every_type_and_layout_does(void **state) {
@@ -1499,6 +1516,7 @@ int main(void) {
         cmocka_unit_test(drafts_of_few_pixels_do),
         cmocka_unit_test(every_mode_does),
         cmocka_unit_test(a_gradient_opacity_does),
+        cmocka_unit_test(a_list_of_colours_does),
         cmocka_unit_test(every_type_and_layout_does),
         cmocka_unit_test(wide_halos_are_used_in_place_of_messages),
         cmocka_unit_test(halos_beyond_the_grid_do_not_make_copies),
