@@ -22,7 +22,7 @@
 #define LAYERS_MOST 32
 #define THREADS_MOST 64
 #define RANKS_USUAL 32
-#define PIXELS_OF_THREAD 16384 /* as in src/combine/exchange.c */
+#define PIXELS_OF_THREAD 16384 /* as in src/combine/parts.c */
 #define PIXELS_OF_RUN 262144   /* at least so many are timed together */
 
 typedef enum rates_step {
