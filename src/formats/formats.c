@@ -53,6 +53,11 @@ static snow_status check_options(snow_context *context,
                              "three sizes of at least 1",
                              (long long)options->dims[i]);
     }
+    if (options->levels < 0)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--levels: %lld is not a number of levels; give at "
+                         "least 1, or 0 for all",
+                         (long long)options->levels);
     return SNOW_STATUS_OK;
 }
 

@@ -330,6 +330,27 @@ static void records_of_an_older_header_are_read_and_filled(void **state) {
     snow_context_free(context);
 }
 
+/* Whatever the file is: readers take the number for an index. */
+static void less_than_0_levels_are_refused(void **state) {
+    static const int64_t wrong[] = {-1, -40, INT64_MIN};
+    snow_context *context = NULL;
+    snow_volume *volume = NULL;
+    (void)state;
+    assert_int_equal(snow_context_new(NULL, &context), SNOW_STATUS_OK);
+    for (int n = 0; n < 3; n++) {
+        snow_volume_options options;
+        snow_volume_options_init(&options);
+        options.levels = wrong[n];
+        assert_int_equal(
+            snow_volume_open(context, "phantom:cube", &options, &volume),
+            SNOW_STATUS_BAD_USAGE);
+        assert_null(volume);
+        assert_non_null(strstr(snow_context_message(context),
+                               "is not a number of levels; give at least 1"));
+    }
+    snow_context_free(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_name_leads_back_to_its_value),
@@ -342,6 +363,7 @@ int main(void) {
         cmocka_unit_test(a_size_of_0_on_one_rank_is_refused_by_all),
         cmocka_unit_test(fields_that_are_unknown_are_refused_unless_0),
         cmocka_unit_test(records_of_an_older_header_are_read_and_filled),
+        cmocka_unit_test(less_than_0_levels_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

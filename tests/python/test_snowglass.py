@@ -70,6 +70,29 @@ def resident():
         return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
+def save_plotfile(path):
+    """A plotfile of AMReX: level 0 has 4 x 4 x 4 cells of value 1, level 1 has
+    4 x 4 x 4 of value 2 in the middle."""
+    boxes = ["((0,0,0) (3,3,3) (0,0,0))", "((2,2,2) (5,5,5) (0,0,0))"]
+    sides = [["0 1"] * 3, ["0.25 0.75"] * 3]
+    head = ["HyperCLaw-V1.1", 1, "rho", 3, 0.0, 1, "0 0 0", "1 1 1", 2,
+            boxes[0] + " ((0,0,0) (7,7,7) (0,0,0))", "0 0", "0.25 " * 3,
+            "0.125 " * 3, 0, 0]
+    for level, box in enumerate(boxes):
+        os.makedirs(f"{path}/Level_{level}")
+        with open(f"{path}/Level_{level}/Cell_D_00000", "wb") as file:
+            file.write(b"FAB ((8, (64 11 52 0 1 12 0 1023)),(8, (8 7 6 5 4 3 2"
+                       b" 1)))" + box.encode() + b" 1\n" +
+                       numpy.full(64, 1.0 + level, "<f8").tobytes())
+        cell = [1, 1, 1, 0, "(1 0", box, ")", 1, "FabOnDisk: Cell_D_00000 0",
+                "", "1,1", "1,", "", "1,1", "2,"]
+        with open(f"{path}/Level_{level}/Cell_H", "w", encoding="ascii") as file:
+            file.write("\n".join(map(str, cell)) + "\n")
+        head += [f"{level} 1 0.0", 0, *sides[level], f"Level_{level}/Cell"]
+    with open(f"{path}/Header", "w", encoding="ascii") as file:
+        file.write("\n".join(map(str, head)) + "\n")
+
+
 class InFolder(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
@@ -562,6 +585,18 @@ class Arrays(InFolder):
 
 
 class Calls(InFolder):
+    def test_levels(self):
+        path = self.path("plt")
+        save_plotfile(path)
+        warnings.simplefilter("ignore")  # several levels on one grid
+        for levels, side, highest in ((0, 8, 2), (1, 4, 1), (2, 8, 2)):
+            volume = sg.Volume(path, levels=levels)
+            self.assertEqual(volume.shape, (side,) * 3)
+            self.assertEqual(numpy.asarray(volume).max(), highest)
+        for levels in (-1, -40, -2 ** 63):
+            with self.assertRaisesRegex(ValueError, "number of levels; give"):
+                sg.Volume(path, levels=levels)
+
     def test_threads_take_turns(self):
         volume = head()
         expected = {n: numpy.asarray(volume.render(size=64, azimuth=n)).copy()
