@@ -141,8 +141,8 @@ static snow_status draw(frame_rank *s, bool first) {
                                &s->view, &s->settings, &s->how, &s->image);
     seconds[first ? FRAME_FIRST : FRAME_TOTAL] =
         snow_comm_seconds(s->comm) - start;
+    seconds[FRAME_WORK_CPU] = work_seconds(s) - work; /* within all of it: */
     seconds[first ? FRAME_FIRST_CPU : FRAME_TOTAL_CPU] = cpu_seconds(s) - cpu;
-    seconds[FRAME_WORK_CPU] = work_seconds(s) - work;
     snow_comm_sent(s->comm, &s->mine.messages, &s->mine.bytes);
     s->mine.messages -= messages;
     s->mine.bytes -= bytes;
