@@ -192,10 +192,15 @@ static bool serves(const layers *l, const snow_volume_info *base, bool parts) {
            memcmp(own->matrix, base->matrix, sizeof own->matrix) == 0;
 }
 
-/* Reads it, unless it is kept. */
+/* Reads it, unless it is kept: not where a volume that stays in its file lacks
+ * that memory. */
 static int read_layer(const options *opts, snow_context *context,
                       const snow_volume_info *grid, bool parts, layers *l) {
     snow_status status = SNOW_STATUS_OK;
+    if (parts) {
+        snow_volume_close(l->own);
+        l->own = NULL;
+    }
     int done = l->own ? CONTINUE : open_step(opts, context, grid, parts, l);
     if (done != CONTINUE || !l->keeps || parts)
         return done;

@@ -1,0 +1,97 @@
+"""Overlays in the viewer: pictures and slices are those of their commands."""
+import os
+import shlex
+import struct
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from viewer_client import TOOL, Page, Server, check, finish
+
+FOLDER = tempfile.TemporaryDirectory()
+os.chdir(FOLDER.name)
+DIMS = 48, 40, 44
+PLACE = ("space: right-anterior-superior\nspace directions: %s\n"
+         "space origin: %s\n")
+
+
+def ball(at, middle, radius):
+    return sum((a - m) ** 2 for a, m in zip(at, middle)) < radius ** 2
+
+
+def write_nrrd(name, dims, place, value):
+    with open(name, "wb") as out:
+        out.write(("NRRD0004\ntype: uint8\ndimension: 3\nsizes: %d %d %d\n"
+                   "encoding: raw\n%s\n" % (*dims, place)).encode("latin-1"))
+        out.write(bytes(value(x, y, z) for z in range(dims[2])
+                        for y in range(dims[1]) for x in range(dims[0])))
+
+
+def write_npy(name, dims, value):
+    text = "{'descr': '|u1', 'fortran_order': False, 'shape': (%d, %d, %d)}" % (
+        dims[2], dims[1], dims[0])
+    text = text.ljust(117) + "\n"
+    with open(name, "wb") as out:
+        out.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(text)) +
+                  text.encode())
+        out.write(bytes(value(x, y, z) for z in range(dims[2])
+                        for y in range(dims[1]) for x in range(dims[0])))
+
+
+def density(x, y, z):
+    return min(255, max(0, 260 - ((x - 24) ** 2 + (y - 20) ** 2 +
+                                  (z - 22) ** 2) // 2))
+
+
+def label(x, y, z):
+    return ball((x, y, z), (18, 20, 22), 7) + 2 * ball((x, y, z), (32, 20, 22), 6)
+
+
+HERE = PLACE % ("(1,0,0) (0,1,0) (0,0,1)", "(0,0,0)")
+write_nrrd("ct.nrrd", DIMS, HERE, density)
+write_nrrd("turned.nrrd", (22, 22, 22),
+           PLACE % ("(2,0.2,0) (0,2,0.1) (0,0,2)", "(1,-2,0.5)") +
+           "Segment0_LabelValue:=1\nSegment1_LabelValue:=2\n",
+           lambda x, y, z: label(2 * x, 2 * y - 2, 2 * z))
+write_npy("v.npy", DIMS, density)
+write_npy("l.npy", DIMS, label)
+
+
+def run(text):
+    words = shlex.split(text)
+    words[0] = TOOL
+    words[words.index("--output") + 1] = "again.png"
+    done = subprocess.run([*words, "-y", "-q"], capture_output=True, text=True)
+    return open("again.png", "rb").read() if done.returncode == 0 else \
+        done.stderr.encode()
+
+
+def command_of(page, what, **asked):
+    page.say({"t": "ask", "what": what, **asked})
+    return page.hear_text("command")["text"]
+
+
+def is_of_command(page, name, n, **recipe):
+    page.say({"t": "set", "n": n, "recipe": recipe})
+    shown, command = page.hear_picture(2, n), command_of(page, "command")
+    made = run(command)
+    check(name, shown == made, f"{command} {made[:200]}")
+    return shown
+
+
+def small_memory():
+    """The volume is in memory, then leaves it for its file."""
+    server = Server("ct.nrrd", "--overlay", "turned.nrrd", "-q", "--memory", "8M")
+    page = Page(server)
+    first = is_of_command(page, "a picture in 8M", 1, size=[120, 100])
+    none = is_of_command(page, "without its overlay", 2, overlay=None)
+    check("is another", none != first)
+    again = is_of_command(page, "with it again", 3, overlay=True)
+    check("is the first", again == first)
+    page.close()
+    server.stop()
+
+
+small_memory()
+finish()
