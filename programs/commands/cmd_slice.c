@@ -179,6 +179,9 @@ static int cut_slice(slice_work *w) {
         return fail_status(w->context, status);
     snow_volume_close(w->volume);
     w->volume = slice;
+    if (!options_given(&w->opts, "crop"))
+        w->layers.whole = &w->whole;
+    crop_to_slice(w);
     return CONTINUE;
 }
 
@@ -543,8 +546,10 @@ static int run_stages(slice_work *w) {
 /* The look, background and marks of a slice are those of projections: the
  * options get a mode that is neither over nor iso. */
 int cmd_slice(const options *opts) {
-    slice_work w = {
-        .opts = *opts, .path = opts->operands[0], .begin = seconds_now()};
+    slice_work w = {.opts = *opts,
+                    .path = opts->operands[0],
+                    .begin = seconds_now(),
+                    .layers = {.alone = true}}; /* of many ranks, one draws */
     w.opts.mode = "slice";
     if (!options_given(opts, "size"))
         w.opts.size[0] = w.opts.size[1] = 0;

@@ -147,10 +147,45 @@ static int fail_overlay(const options *opts, const snow_context *context,
     return fail_usage("%s: %s", opts->overlay, snow_context_message(context));
 }
 
+/* Whether a file gives neither a position nor directions (as src/volume/mask.c
+ * says it): its rows may go down as an image's. */
+static bool is_unplaced(const snow_volume_info *info) {
+    const double(*m)[4] = info->matrix;
+    bool given = info->medical || m[0][0] < 0 || (m[1][1] < 0) != (m[2][2] < 0);
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 4; column++)
+            given |= row != column && m[row][column] != 0;
+    return !given;
+}
+
+/* Whether the crop of the volume is one of the overlay too: they have the same
+ * voxels, but not both a place, by which a part would be found. */
+static bool shares_crop(const options *opts, const snow_volume_info *info,
+                        const layers *l) {
+    static const int64_t all[3][2];
+    snow_volume_options data = data_options(opts);
+    snow_context *context = NULL; /* whose warnings came before */
+    snow_volume_info file;
+    snow_volume_info_init(&file);
+    if (memcmp(data.crop, all, sizeof all) == 0)
+        return false;
+    memset(data.crop, 0, sizeof data.crop);
+    bool known =
+        l->whole || (snow_context_new(NULL, &context) == SNOW_STATUS_OK &&
+                     snow_volume_inspect(context, opts->operands[0], &data,
+                                         &file) == SNOW_STATUS_OK);
+    snow_context_free(context);
+    const snow_volume_info *whole = l->whole ? l->whole : &file;
+    return known && memcmp(whole->dims, info->dims, sizeof info->dims) == 0 &&
+           (is_unplaced(whole) || is_unplaced(info) ||
+            whole->medical != info->medical);
+}
+
 /* One that has steps has as many as the volume.  Where that has parts, pictures
  * take what they need of the file, cut as the volume is. */
 static int open_step(const options *opts, snow_context *context,
-                     const snow_volume_info *base, bool parts, layers *l) {
+                     const snow_volume_info *base, bool parts, bool cropped,
+                     layers *l) {
     snow_volume_options data = {.size = sizeof data,
                                 .labels =
                                     opts->overlay_picks ? opts->labels : NULL,
@@ -171,6 +206,8 @@ static int open_step(const options *opts, snow_context *context,
         data.time = opts->time;
     if (parts)
         memcpy(data.clip, opts->clip, sizeof data.clip);
+    if (cropped)
+        memcpy(data.crop, opts->crop, sizeof data.crop);
     if (status == SNOW_STATUS_OK)
         status =
             parts ? snow_volume_open_streamed(context, opts->overlay, &data,
@@ -201,7 +238,8 @@ static int read_layer(const options *opts, snow_context *context,
         snow_volume_close(l->own);
         l->own = NULL;
     }
-    int done = l->own ? CONTINUE : open_step(opts, context, grid, parts, l);
+    int done =
+        l->own ? CONTINUE : open_step(opts, context, grid, parts, false, l);
     if (done != CONTINUE || !l->keeps || parts)
         return done;
     if (!l->own) {
@@ -213,17 +251,29 @@ static int read_layer(const options *opts, snow_context *context,
                                     : fail_overlay(opts, context, l, status);
 }
 
+/* Its look is of the whole, so that only then it is cropped. */
+static int crop_layer(const options *opts, snow_context *context,
+                      const snow_volume_info *grid, bool parts, layers *l) {
+    if (!shares_crop(opts, snow_volume_get_info(l->volume), l))
+        return CONTINUE;
+    layers_drop_volume(l);
+    return open_step(opts, context, grid, parts, true, l);
+}
+
 /* On the grid of a volume in memory, cut as it is.  Labels lie there by their
  * nearest voxels, so that another look may need it anew. */
 static int place(const options *opts, snow_context *context,
                  const snow_volume *base, bool first, layers *l) {
+    const snow_volume_info *grid = snow_volume_get_info(base);
     const bool nearest = snow_transfer_label(l->transfer, 0);
     int done = CONTINUE;
     if (l->placed && nearest == l->nearest)
         return CONTINUE;
     if (l->placed) {
         layers_drop_volume(l);
-        done = read_layer(opts, context, NULL, false, l);
+        done = read_layer(opts, context, grid, false, l);
+        if (done == CONTINUE)
+            done = crop_layer(opts, context, grid, false, l);
     }
     if (done != CONTINUE)
         return done;
@@ -242,7 +292,7 @@ int layers_open(const options *opts, snow_context *context,
     const snow_volume_info *grid = snow_volume_get_info(base);
     const bool first = !l->transfer;
     const bool parts = (process_ranks() > 1 && !l->alone) || in_file(base);
-    const bool stays = serves(l, grid, parts);
+    const bool stays = serves(l, grid, parts) && !(parts && first);
     int done = CONTINUE;
     if (!opts->overlay || (stays && !first))
         return CONTINUE;
@@ -255,7 +305,9 @@ int layers_open(const options *opts, snow_context *context,
     snow_status status = look_at(opts, l);
     if (status != SNOW_STATUS_OK)
         return fail_overlay(opts, context, l, status);
-    if (!parts)
+    if (!stays)
+        done = crop_layer(opts, context, grid, parts, l);
+    if (done == CONTINUE && !parts)
         done = place(opts, context, base, first, l);
     if (done == CONTINUE && opts->verbosity >= 0 && first && !l->keeps)
         say("overlay %s: %s", opts->overlay,
@@ -355,5 +407,5 @@ void layers_close(layers *l) {
     layers_drop_look(l);
     layers_drop_volume(l);
     snow_volume_close(l->own);
-    *l = (layers){.keeps = l->keeps, .alone = l->alone};
+    *l = (layers){.keeps = l->keeps, .alone = l->alone, .whole = l->whole};
 }

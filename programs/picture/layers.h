@@ -14,7 +14,8 @@ typedef struct layers {
     bool keeps;           /* for many looks and grids: reads its file once */
     bool alone;           /* the volume is all here, whatever ranks there are */
     bool placed, nearest; /* on the volume's grid, and how */
-    snow_volume *own;     /* then: on its own grid; or NULL */
+    const snow_volume_info *whole; /* before a crop; NULL: the file says it */
+    snow_volume *own;              /* then: on its own grid; or NULL */
 } layers;
 
 /* Refuses what cannot be drawn together; opens the overlay of the options on

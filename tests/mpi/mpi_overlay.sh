@@ -77,6 +77,20 @@ for frame in 0 1 2 3; do
         --tolerance 1.001/255
 done
 
+"$TOOL" convert seg.nrrd -o bare.npy -q
+way="render v.nrrd --overlay bare.npy $look --crop 3:36,0:30,4:40"
+# shellcheck disable=SC2086
+run 0 "a crop of one without a place, alone" "$TOOL" $way -y -o one.npy
+# shellcheck disable=SC2086
+run 0 "by $MOST" launch "$MOST" "$MPI_TOOL" $way -y -o many.npy
+run 0 "is of both" "$TOOL" compare one.npy many.npy --tolerance 1/255
+
+for overlay in seg.nrrd bare.npy; do
+    run 0 "a slice with $overlay, alone" "$TOOL" slice v.nrrd --overlay $overlay -q -y -o one.png
+    run 0 "by 2" launch 2 "$MPI_TOOL" slice v.nrrd --overlay $overlay -q -y -o many.png
+    check "is the same" cmp -s one.png many.png
+done
+
 run 3 "an overlay that is not there" launch 3 "$MPI_TOOL" render v.nrrd \
     --overlay absent.nrrd -y -o x.png
 check "is told once" [ "$(grep -c absent "$ERR")" -eq 1 ]

@@ -80,6 +80,24 @@ def is_of_command(page, name, n, **recipe):
     return shown
 
 
+def slice_is_of_command(page, name, **asked):
+    page.say({"t": "ask", "what": "slice", "pane": 2, "n": 7, "exact": True,
+              "range": [0, 255], **asked})
+    shown = None
+    while shown is None:
+        what, message = page.hear()
+        if what == "closed" or (what == "text" and message["t"] == "slice"):
+            shown = b""
+        if what == "picture" and message[10] == 2:
+            shown = message[32:]
+        elif what == "picture":
+            page.say({"t": "ack", "n": 0})
+    command = command_of(page, "slice-command", range=[0, 255], **asked)
+    made = run(command)
+    check(name, shown == made, f"{command} {len(shown)} {made[:200]}")
+    return shown
+
+
 def small_memory():
     """The volume is in memory, then leaves it for its file."""
     server = Server("ct.nrrd", "--overlay", "turned.nrrd", "-q", "--memory", "8M")
@@ -93,5 +111,27 @@ def small_memory():
     server.stop()
 
 
+def without_a_place():
+    """Overlays that are known by their dims alone, in parts of the volume."""
+    for base, *memory in ("v.npy",), ("ct.nrrd", "--memory", "8M"):
+        server = Server(base, "--overlay", "l.npy", "-q", *memory)
+        page = Page(server)
+        name = " ".join([base, *memory])
+        is_of_command(page, name, 1, size=[64, 64])
+        slice_is_of_command(page, "its slice", axis="z", index=20)
+        is_of_command(page, f"{name} clipped", 2, clip=[[1, 0, 0, 30]])
+        slice_is_of_command(page, "its slice", axis="z", index=20)
+        slice_is_of_command(page, "and another", axis="x", index=17)
+        is_of_command(page, f"{name} cropped", 3, clip=None,
+                      crop=[[3, 30], [2, 40], [5, 44]])
+        with_it = slice_is_of_command(page, "its slice", axis="y", index=18)
+        is_of_command(page, f"{name} whole", 4, crop=None, overlay=None)
+        without = slice_is_of_command(page, "its slice", axis="y", index=20)
+        check("is another", with_it != without)
+        page.close()
+        server.stop()
+
+
 small_memory()
+without_a_place()
 finish()

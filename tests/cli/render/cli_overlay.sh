@@ -18,7 +18,7 @@ def write(name, dims, steps, origin, voxels):
     text = ("NRRD0004\ntype: uint8\ndimension: 3\nsizes: %d %d %d\n" % dims +
             "space: RAS\nspace directions: (%g,0,0) (0,%g,0) (0,0,%g)\n" % steps +
             "space origin: (%g,%g,%g)\nencoding: raw\n" % origin)
-    if name not in ("w.nrrd", "pet.nrrd"):  # labels, says the file
+    if name not in ("w.nrrd", "pet.nrrd", "same.nrrd"):  # labels, says the file
         text += "Segment0_LabelValue:=1\nSegment1_LabelValue:=3\n"
     text += "\n"
     open(name, "wb").write(text.encode() + bytes(voxels))
@@ -30,6 +30,7 @@ header, voxels = open("v.nrrd", "rb").read().split(b"\n\n", 1)
 write("w.nrrd", (nx, ny, nz), (1, 1, 1), (5, 6, 7), voxels[:nx * ny * nz])
 grid = [(x, y, z) for z in range(nz) for y in range(ny) for x in range(nx)]
 write("seg.nrrd", (nx, ny, nz), (1, 1, 1), (5, 6, 7), [label(*p) for p in grid])
+write("same.nrrd", (nx, ny, nz), (1, 1, 1), (5, 6, 7), [label(*p) for p in grid])
 write("flip.nrrd", (nx, ny, nz), (-1, 1, 1), (5 + nx - 1, 6, 7),
       [label(nx - 1 - x, y, z) for x, y, z in grid])
 write("one.nrrd", (nx, ny, nz), (1, 1, 1), (5, 6, 7),
@@ -165,6 +166,22 @@ for axis in axial x; do
     check "through a pipe" cmp -s first.png by.png
     rm first.png by.png by.json
 done
+
+# The same voxels without a place, of parts of the volume.
+"$TOOL" convert same.nrrd -o same.npy -q
+for way in "slice --axis axial" "slice --axis x --at 20" \
+    "slice --axis coronal --crop 3:30,2:20,5:29" "render -s 60x50 --crop 3:30,2:20,5:29"; do
+    # shellcheck disable=SC2086
+    run 0 "$way, with a place" "$TOOL" $way w.nrrd --overlay same.nrrd -o placed.png -q -y
+    # shellcheck disable=SC2086
+    run 0 "without one" "$TOOL" $way w.nrrd --overlay same.npy -o placeless.png -q -y
+    check "is the same" cmp -s placed.png placeless.png
+done
+run 0 "a slice with a place" "$TOOL" slice w.nrrd --axis x --overlay same.nrrd -o placed.png -q -y
+"$TOOL" slice - --axis x --overlay same.npy -o placeless.png -y -q <w.nrrd
+check "is that without one, through a pipe" cmp -s placed.png placeless.png
+refused 3 "one of other voxels" 'the overlay has 16x14x15 voxels' \
+    "$TOOL" slice w.npy -o z.png --overlay pet.nrrd
 
 refused 2 "a look of none" 'are of an overlay; give --overlay FILE too' \
     "$TOOL" render w.nrrd -o z.png --overlay-range 1,2
