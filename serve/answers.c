@@ -154,22 +154,26 @@ static json_t *strip_of(const snow_transfer *transfer, double low,
     return list;
 }
 
-/* [[3, "liver", "#b25a00", 1], ...]: those that a recipe has opacities for,
- * with their opacity, but not the background. */
+/* [[3, "liver", "#b25a00", 1], ...] with their opacity, but not the background.
+ * A name that is not UTF-8 is none.  None of more than a recipe has opacities
+ * for: those of the rest would be lost. */
 static json_t *labels_of(const snow_transfer *transfer) {
     json_t *list = json_array();
     const snow_label *label;
-    for (size_t i = 0; i < SNOW_RECIPE_POINTS_MAX &&
-                       (label = snow_transfer_label(transfer, i));
-         i++) {
+    if (snow_transfer_label(transfer, SNOW_RECIPE_POINTS_MAX))
+        return list;
+    for (size_t i = 0; (label = snow_transfer_label(transfer, i)); i++) {
         double rgba[4];
         char color[8];
-        if (!(label->value < 0 || label->value > 0 || *label->name))
-            continue;
+        json_t *name = json_string(label->name);
+        if (!name)
+            name = json_string("");
         snow_transfer_evaluate(transfer, label->value, rgba);
         write_color(rgba, color);
-        json_array_append_new(list, json_pack("[f,s,s,f]", label->value,
-                                              label->name, color, rgba[3]));
+        if (label->value < 0 || label->value > 0 || *label->name)
+            json_array_append_new(list, json_pack("[f,O,s,f]", label->value,
+                                                  name, color, rgba[3]));
+        json_decref(name);
     }
     return list;
 }

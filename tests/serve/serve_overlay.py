@@ -20,12 +20,14 @@ def ball(at, middle, radius):
     return sum((a - m) ** 2 for a, m in zip(at, middle)) < radius ** 2
 
 
-def write_nrrd(name, dims, place, value):
+def write_nrrd(name, dims, place, value, kind=("uint8", "B")):
     with open(name, "wb") as out:
-        out.write(("NRRD0004\ntype: uint8\ndimension: 3\nsizes: %d %d %d\n"
-                   "encoding: raw\n%s\n" % (*dims, place)).encode("latin-1"))
-        out.write(bytes(value(x, y, z) for z in range(dims[2])
-                        for y in range(dims[1]) for x in range(dims[0])))
+        out.write(("NRRD0004\ntype: %s\nendian: little\ndimension: 3\n"
+                   "sizes: %d %d %d\nencoding: raw\n%s\n" %
+                   (kind[0], *dims, place)).encode("latin-1"))
+        out.write(b"".join(struct.pack("<" + kind[1], value(x, y, z))
+                           for z in range(dims[2]) for y in range(dims[1])
+                           for x in range(dims[0])))
 
 
 def write_npy(name, dims, value):
@@ -100,7 +102,8 @@ def slice_is_of_command(page, name, **asked):
 
 def small_memory():
     """The volume is in memory, then leaves it for its file."""
-    server = Server("ct.nrrd", "--overlay", "turned.nrrd", "-q", "--memory", "8M")
+    server = Server("ct.nrrd", "--overlay", "turned.nrrd", "-q", "-j", "2",
+                    "--memory", "8M")
     page = Page(server)
     first = is_of_command(page, "a picture in 8M", 1, size=[120, 100])
     none = is_of_command(page, "without its overlay", 2, overlay=None)
@@ -114,7 +117,7 @@ def small_memory():
 def without_a_place():
     """Overlays that are known by their dims alone, in parts of the volume."""
     for base, *memory in ("v.npy",), ("ct.nrrd", "--memory", "8M"):
-        server = Server(base, "--overlay", "l.npy", "-q", *memory)
+        server = Server(base, "--overlay", "l.npy", "-q", "-j", "2", *memory)
         page = Page(server)
         name = " ".join([base, *memory])
         is_of_command(page, name, 1, size=[64, 64])
@@ -132,6 +135,30 @@ def without_a_place():
         server.stop()
 
 
+def names():
+    """Labels that the page lists: each by a name, or by its number alone."""
+    def listed(name, place, value):
+        write_nrrd(name, DIMS, HERE + place, value, ("uint16", "H"))
+        server = Server("ct.nrrd", "--overlay", name, "-q")
+        page = Page(server)
+        labels = page.hear_text("look")["overlay"]["labels"]
+        page.close()
+        server.stop()
+        return [[value, text] for value, text, _, _ in labels]
+
+    found = listed("latin.nrrd", "Segment0_LabelValue:=1\nSegment0_Name:=l\xe9ver\n"
+                   "Segment1_LabelValue:=2\nSegment1_Name:=lung\n", label)
+    check("a name that is not UTF-8 is left out, its label is not",
+          found == [[1, ""], [2, "lung"]], found)
+    for count, most in (255, 255), (300, 0):
+        found = listed("many.nrrd", "".join(
+            f"Segment{n}_LabelValue:={n + 1}\n" for n in range(count)),
+            lambda x, y, z: (x + 48 * y) % (count + 1))
+        check(f"of {count} labels all are listed, or none",
+              len(found) == most, len(found))
+
+
+names()
 small_memory()
 without_a_place()
 finish()
