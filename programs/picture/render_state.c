@@ -273,7 +273,7 @@ static int frame_alone(render_state *s, const options *step) {
         before = 0;
         status = done == CONTINUE ? frame_view(s) : SNOW_STATUS_OK;
     }
-    if (may_drop(s, status))
+    if (may_drop(s, status) || may_drop(s, (snow_status)done))
         return drop_channels(s, step);
     if (status != SNOW_STATUS_OK)
         return fail_volume(s->context, status, name_of_input(s->path));
@@ -632,9 +632,11 @@ int render_state_begin(render_state *s, double azimuth) {
             done = open_layers(s, &step);
         if (done == CONTINUE)
             done = make_frame(s);
-        if (done != CONTINUE)
+        if (done == CONTINUE)
+            status =
+                is_sum_of_channels(s) ? project_channels(s) : draw_alone(s);
+        else if (!may_drop(s, (snow_status)done))
             return done;
-        status = is_sum_of_channels(s) ? project_channels(s) : draw_alone(s);
     }
     if (may_drop(s, status)) {
         options step = render_state_step(s, s->whole.time);
