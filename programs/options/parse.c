@@ -414,9 +414,16 @@ bool read_preset(const option_row *row, const char *text, void *field,
 
 bool read_colormap(const option_row *row, const char *text, void *field,
                    char wrong[WRONG_BYTES]) {
-    if (snow_colormap_from_name(text) < 0)
-        return refuse_name(row, text, snow_colormap_name, wrong);
-    return read_text(row, text, field, wrong);
+    const bool known = snow_colormap_from_name(text) >= 0;
+    if (!known && strchr(text, ':')) {
+        snprintf(wrong, WRONG_BYTES,
+                 "is no list of colours: must be at most %d VALUE:#RRGGBB, "
+                 "values rising; correct it",
+                 SNOW_COLORMAP_POINTS_MAX);
+        return false;
+    }
+    return known ? read_text(row, text, field, wrong)
+                 : refuse_name(row, text, snow_colormap_name, wrong);
 }
 
 /* The library knows all spellings of a view, but needs a context for its

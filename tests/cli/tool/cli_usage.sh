@@ -72,6 +72,8 @@ phantom --mask m cube -o y.nrrd|--mask: is not an option of phantom
 --preset bone x|--preset: 'bone' is unknown; did you mean ct-bone, ct-bones or ct-cropped-volume-bone\? snowglass help preset
 --preset ct-bnoe x|did you mean ct-bone\?
 --preset Angio x|did you mean mr-angio\?
+-c 9:#ff0000,5:#00ff00 x|--colormap: '9:#ff0000,5:#00ff00' is no list of colours: must be at most 32 VALUE:#RRGGBB, values rising
+-c 9:red x|--colormap: '9:red' is no list of colours
 -c viridi x|--colormap: 'viridi' is unknown; did you mean viridis\? snowglass help colormap
 --view axail x|--view: 'axail' is unknown; did you mean axial\?
 --frames 3 x|--frames: is not an option of render but of turntable
