@@ -123,8 +123,6 @@ typedef struct counting {
     snow_block_counts *block_counts;
     int64_t *columns; /* of the whole: their blocks */
     span_rows spans;
-    int64_t *across; /* of slices along x: the rays of their rows z */
-    int64_t across_z;
 } counting;
 
 static int64_t *block_at(const counting *c, int64_t x, int64_t y, int64_t z) {
@@ -167,37 +165,6 @@ static void see_spans(counting *c, const snow_interesting_row *row) {
     }
 }
 
-/* The rays of rows z, of slices along x. */
-static const int64_t *rays_across(counting *c, int64_t z) {
-    const snow_hiding *h = c->block_counts->hiding;
-    for (int64_t x = 0; x < h->dims[2] && c->across_z != z; x++)
-        c->across[x] = snow_hiding_ray(h, 1, x, z);
-    c->across_z = z;
-    return c->across;
-}
-
-/* Notes the samples of rays (decompose/hiding.h). */
-static void see_rays(counting *c, const snow_interesting_row *row) {
-    snow_hiding *h = c->block_counts->hiding;
-    const bool along_x = h->axes[2] == 0;
-    const int64_t *across = along_x ? rays_across(c, row->z) : NULL;
-    int64_t slice = h->axes[2] == 1 ? row->y : row->z, ray[2];
-    ray[1] = along_x ? 0
-                     : snow_hiding_ray(h, 1, slice,
-                                       h->axes[1] == 1 ? row->y : row->z);
-    for (size_t n = 0; n < row->count && ray[1] >= 0; n++) {
-        const int64_t x = row->stored + row->columns[n];
-        if (along_x && across[x] < 0)
-            continue;
-        slice = along_x ? x : slice;
-        ray[0] = snow_hiding_ray(h, 0, slice, along_x ? row->y : x);
-        ray[1] = along_x ? across[x] : ray[1];
-        if (ray[0] >= 0)
-            snow_hiding_add(h, ray, slice,
-                            (double)row->opacities[n * row->stride]);
-    }
-}
-
 static void count_row(void *of, const snow_interesting_row *row) {
     counting *c = of;
     const int64_t *columns = c->columns + row->stored;
@@ -206,15 +173,12 @@ static void count_row(void *of, const snow_interesting_row *row) {
         counts[columns[row->columns[n]]]++;
     if (c->block_counts->span)
         see_spans(c, row);
-    if (c->block_counts->hiding)
-        see_rays(c, row);
 }
 
 static snow_status prepare_counting(snow_context *context,
                                     const int64_t dims[3], counting *c) {
     span_rows *s = &c->spans;
     SNOW_TRY(SNOW_RESERVE(context, c->columns, 0, dims[0]));
-    SNOW_TRY(SNOW_RESERVE(context, c->across, 0, dims[0]));
     for (int64_t x = 0; x < dims[0]; x++)
         c->columns[x] = snow_block_counts_find(c->block_counts, 0, x);
     if (!c->block_counts->span)
@@ -234,7 +198,7 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
                                           const snow_transfer *transfer,
                                           double threshold, snow_isa isa,
                                           snow_block_counts *block_counts) {
-    counting c = {.block_counts = block_counts, .across_z = -1};
+    counting c = {.block_counts = block_counts};
     snow_extent part;
     snow_volume_find_extent(volume, &part);
     const snow_interesting_walk walk = {.volume = volume,
@@ -248,7 +212,6 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
     if (status == SNOW_STATUS_OK && block_counts->span)
         count_spans(&c, -1);
     snow_release(volume->context, c.columns);
-    snow_release(volume->context, c.across);
     snow_release(volume->context, c.spans.seen);
     return status;
 }

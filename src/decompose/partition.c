@@ -177,18 +177,11 @@ snow_status snow_partition_counted(snow_context *context,
     }
     int64_t *starts = sums + items + 1;
     row r = {sums, items, SNOW_THICKEST * ((items - 1) / ranks + 1), ranks};
-    if (block_counts->thickest && block_counts->thickest < r.longest)
-        r.longest = block_counts->thickest;
-    snow_status status = SNOW_STATUS_OK;
-    if (block_counts->hiding)
-        status = snow_hiding_cut(context, block_counts->hiding, sums,
-                                 block_counts->span, r.longest, ranks, starts);
-    else
-        partition(&r, starts);
-    for (int rank = 0; rank < ranks && status == SNOW_STATUS_OK; rank++)
+    partition(&r, starts);
+    for (int rank = 0; rank < ranks; rank++)
         boxes[rank] = slab_box(block_counts, starts[rank], starts[rank + 1]);
     snow_release(context, sums);
-    return status;
+    return SNOW_STATUS_OK;
 }
 
 /* --- loads ---------------------------------------------------------------- */

@@ -9,7 +9,7 @@
 #ifndef SNOW_DECOMPOSE_PARTITION_H
 #define SNOW_DECOMPOSE_PARTITION_H
 
-#include "decompose/hiding.h"
+#include "base/base.h"
 
 /* What is partitioned, and where: along `axis`, the slices' axis, only before
  * voxels borders[0] = 0, borders[1], ... borders[count] = dims[axis], which
@@ -27,13 +27,11 @@ typedef struct snow_partition_grid {
 #define SNOW_COST_SPAN 32
 typedef struct snow_block_counts {
     snow_partition_grid grid;
-    int span;            /* 0: interesting voxels are counted */
-    snow_hiding *hiding; /* of slabs without borders; NULL: nothing hides */
+    int span;          /* 0: interesting voxels are counted */
     int64_t block[3];  /* voxels of a block; not along an axis with borders, and
                           those at the far ends may be smaller */
     int64_t blocks[3]; /* along each axis */
     int64_t *counts;   /* x fastest; owned by the caller */
-    int64_t thickest;  /* slices of a slab, at most; 0: SNOW_THICKEST equal */
 } snow_block_counts;
 
 /* Makes blocks for slabs, one for each slice of the axis; or for bricks of a
@@ -68,7 +66,7 @@ void snow_partition_equal(const snow_partition_grid *grid, int ranks,
 #define SNOW_EMPTINESS 64
 
 /* Slabs whose most expensive one is as cheap as possible, from block counts for
- * slabs; none is thicker than `thickest` and SNOW_THICKEST equal ones. Errors:
+ * slabs; none is thicker than SNOW_THICKEST equal ones. Errors:
  * SNOW_STATUS_NO_MEMORY.
  */
 #define SNOW_THICKEST 4

@@ -12,12 +12,6 @@
 /* Slabs of fewer slices on the average are too coarse to be made equal. */
 #define LEAST_SLICES 3
 
-/* Samples along rays are too few to predict slabs of fewer slices. */
-#define LEAST_HIDING 20
-
-/* More than its share a rank stores a fourth of it, or so many bytes. */
-#define THICKER_BYTES ((int64_t)8 << 20)
-
 /* What a span of a row costs to be drawn, in interesting voxels (measured:
  * docs/measurements/ranks.md). */
 #define COST_OF_SPAN 24
@@ -34,16 +28,6 @@ static snow_partition choose_partition(const snow_partition_params *order,
     if (order->slabs_only || order->ranks <= slices / LEAST_SLICES)
         return SNOW_PARTITION_COUNTED;
     return SNOW_PARTITION_BRICKS;
-}
-
-/* An equal slab and a fourth, or slices that take few bytes. */
-static int64_t thickest_of(const snow_volume_info *whole, int64_t slices,
-                           int ranks) {
-    const int64_t bytes = whole->dims[0] * whole->dims[1] * whole->dims[2] /
-                          slices * (int64_t)snow_type_size(whole->type);
-    const int64_t equal = (slices - 1) / ranks + 1;
-    const int64_t few = THICKER_BYTES / bytes;
-    return equal + (equal / 4 > few ? equal / 4 : few) + 1;
 }
 
 /* The groups that have slices, which come first. */
@@ -87,13 +71,6 @@ snow_partition_params_make(snow_context *context, const snow_volume_info *whole,
                                    .isa = resolved.isa};
     if (resolved.method == SNOW_METHOD_SHEAR_WARP)
         out->span = COST_OF_SPAN;
-    out->thickest = thickest_of(whole, placement.slices, ranks);
-    /* From elsewhere other slices hide. */
-    out->hides = out->span && resolved.mode == SNOW_MODE_OVER && !how.turns &&
-                 !resolved.deterministic &&
-                 ranks <= placement.slices / LEAST_HIDING;
-    snow_clip_viewer(&placement, &out->viewer);
-    out->length = placement.path / resolved.opacity_length;
     memcpy(out->grid.dims, whole->dims, sizeof out->grid.dims);
     SNOW_TRY(snow_ghosts_needed(context, whole, &known, &unresolved, slopes,
                                 how.turns, out->layers));
@@ -136,13 +113,8 @@ static snow_status count_all(snow_comm *comm,
     counting c = {order, transfer, counts};
     size_t blocks = snow_block_counts_blocks(counts);
     counts->span = order->span;
-    counts->thickest = order->grid.borders ? 0 : order->thickest;
     snow_status status =
         SNOW_RESERVE(volume->context, counts->counts, 0, blocks);
-    if (status == SNOW_STATUS_OK && counts->hiding)
-        status =
-            snow_hiding_new(volume->context, order->grid.dims, order->grid.axis,
-                            &order->viewer, order->length, counts->hiding);
     if (status == SNOW_STATUS_OK) {
         memset(counts->counts, 0, blocks * sizeof *counts->counts);
         status = snow_slabs_visit(volume, &cut, count_slab, &c);
@@ -150,10 +122,6 @@ static snow_status count_all(snow_comm *comm,
     if (!comm)
         return status;
     SNOW_TRY(snow_comm_agree_status(comm, status));
-    if (counts->hiding)
-        SNOW_TRY(snow_comm_reduce_ints(comm, counts->hiding->depths,
-                                       snow_hiding_words(counts->hiding),
-                                       SNOW_REDUCE_SUM));
     return snow_comm_reduce_ints(comm, counts->counts, blocks, SNOW_REDUCE_SUM);
 }
 
@@ -182,15 +150,11 @@ snow_status snow_partition_boxes(snow_comm *comm,
         order->cut == SNOW_PARTITION_BRICKS
             ? snow_block_counts_for_bricks(&order->grid, order->ranks)
             : snow_block_counts_for_slabs(&order->grid);
-    snow_hiding hiding = {.depths = NULL};
-    if (order->hides && order->cut == SNOW_PARTITION_COUNTED)
-        counts.hiding = &hiding;
     snow_status status = count_all(comm, order, volume, transfer, &counts);
     if (status == SNOW_STATUS_OK)
         status = count_for_partition(volume->context, order, &counts, boxes);
     if (status == SNOW_STATUS_OK && loads)
         snow_partition_loads(&counts, boxes, order->ranks, loads);
-    snow_hiding_free(volume->context, &hiding);
     snow_release(volume->context, counts.counts);
     return comm ? snow_comm_agree_status(comm, status) : status;
 }

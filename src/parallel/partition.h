@@ -20,10 +20,6 @@ typedef struct snow_partition_params {
     double threshold;
     snow_isa isa;
     int span; /* of the counts (decompose/partition.h); 0: voxels are counted */
-    int64_t thickest;   /* slices that a rank has the memory for */
-    bool hides;         /* slabs are cut for what their fronts hide */
-    snow_viewer viewer; /* from whom, */
-    double length;      /* by rays so long from slice to slice */
 } snow_partition_params;
 
 /* What picture and ranks ask for; `slopes` as in render/ghosts.h.  Not to be

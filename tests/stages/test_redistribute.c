@@ -191,23 +191,6 @@ static void any_cut_moves_to_any_boxes(void **state) {
     }
 }
 
-/* More than the buffers hold, of thin and of thick boxes. */
-static void many_voxels_move_in_rounds(void **state) {
-    (void)state;
-    for (uint64_t seed = 1; seed <= 3; seed++) {
-        scene s = make_scene(3, 1, seed);
-        s.dims[0] = 160;
-        s.dims[1] = 150;
-        s.dims[2] = 140;
-        s.value = 8; /* 27 MB */
-        const snow_box all = {{0, 0, 0}, {160, 150, 140}};
-        cut_boxes(&s, 3 * (int)seed);
-        for (int n = 0; n < s.ranks; n++)
-            s.wanted[n] = n ? random_box(&s) : all;
-        run_scene(&s);
-    }
-}
-
 /* A box with so many voxels more on every side, as far as the grid goes. */
 static snow_box grow(const scene *s, snow_box box, int64_t by) {
     for (int i = 0; i < 3; i++) {
@@ -290,7 +273,6 @@ static void voxels_that_nobody_holds_are_refused_everywhere(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_cut_moves_to_any_boxes),
-        cmocka_unit_test(many_voxels_move_in_rounds),
         cmocka_unit_test(ghost_voxels_come_from_all_around),
         cmocka_unit_test(overlapping_boxes_are_refused_everywhere),
         cmocka_unit_test(voxels_that_nobody_holds_are_refused_everywhere),
