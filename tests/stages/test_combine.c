@@ -331,7 +331,8 @@ static snow_status exchange_by(snow_combiner *combiner,
     const size_t bytes =
         (size_t)region->count * (size_t)order->channels * sizeof **kept;
     *kept = malloc(bytes + 1);
-    memcpy(*kept, region->pixels, bytes);
+    if (bytes)
+        memcpy(*kept, region->pixels, bytes);
     return SNOW_STATUS_OK;
 }
 
