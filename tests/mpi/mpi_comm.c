@@ -151,7 +151,7 @@ static int wait_beside_stopped(snow_comm *comm) {
         raise(SIGSTOP);
     while (snow_comm_rank(comm) != 0)
         continue;
-    snow_comm_set_timeout(comm, 1);
+    snow_comm_set_timeout(comm, 4); /* the last one stops before */
     if (snow_comm_receive(comm, &byte, 1, 1, 1, &message) != SNOW_STATUS_OK ||
         snow_comm_wait_all(comm, &message, 1) == SNOW_STATUS_OK)
         return complain("a message that nobody sent");

@@ -17,5 +17,5 @@ done
 NAME="a silent rank beside one that is stopped"
 launch 3 "$TESTS/mpi_comm" stopped >"$OUT" 2>"$ERR" </dev/null
 check "$NAME: the job fails" [ $? -ne 0 ]
-says '^mpi_comm: rank 2 \(process .*rank 0 has waited 1 s.* it is stopped'
+says '^mpi_comm: rank 2 \(process .*rank 0 has waited 4 s.* it is stopped'
 finish
