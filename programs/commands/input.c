@@ -54,23 +54,28 @@ int open_input(snow_context *context, const options *opts, const char *path,
     return status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
 }
 
-/* Notes are left to the reading itself.  Standard input can be read only once,
- * and a pattern of names is no file. */
-int check_input(const options *opts) {
-    const char *path = opts->operand_count == 1 ? opts->operands[0] : "-";
+/* What a file says.  Notes are left to the reading itself. */
+static int inspect(const options *opts, const char *path,
+                   snow_volume_info *info) {
     snow_context *context = NULL;
-    if (strcmp(path, "-") == 0 || strchr(path, '%'))
-        return CONTINUE;
-    snow_volume_info info;
     snow_volume_options data = data_options(opts);
-    snow_volume_info_init(&info);
+    snow_volume_info_init(info);
     snow_status status = snow_context_new(NULL, &context);
     if (status == SNOW_STATUS_OK)
-        status = snow_volume_inspect(context, path, &data, &info);
+        status = snow_volume_inspect(context, path, &data, info);
     int done =
         status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
     snow_context_free(context);
     return done;
+}
+
+/* Standard input can be read only once, and a pattern of names is no file. */
+int check_input(const options *opts) {
+    const char *path = opts->operand_count == 1 ? opts->operands[0] : "-";
+    snow_volume_info info;
+    if (strcmp(path, "-") == 0 || strchr(path, '%'))
+        return CONTINUE;
+    return inspect(opts, path, &info);
 }
 
 int check_input_first(const options *opts, const char *const *outputs,
@@ -141,22 +146,14 @@ static int refuse_channel(const char *name, const snow_volume_info *info) {
 
 /* The number of each channel that was named. */
 static int find_channels(options *opts) {
-    snow_context *context = NULL;
     const char *missing, *path = opts->operands[0];
-    snow_volume_options data = data_options(opts);
     snow_volume_info info;
     if (strcmp(path, "-") == 0)
         return fail_usage("--channel: standard input is read once, so that "
                           "names are not known; give numbers");
-    snow_volume_info_init(&info);
-    snow_status status = snow_context_new(NULL, &context);
-    if (status == SNOW_STATUS_OK)
-        status = snow_volume_inspect(context, path, &data, &info);
-    int done =
-        status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
+    int done = inspect(opts, path, &info);
     if (done == CONTINUE && !channels_find(&opts->channels, &info, &missing))
         done = refuse_channel(missing, &info);
-    snow_context_free(context);
     return done;
 }
 
