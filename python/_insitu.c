@@ -132,7 +132,7 @@ static PyObject *movie_brick(PyObject *module, PyObject *args) {
     return answer(status, snow_insitu_message(movie));
 }
 
-/* step(movie, number, time, unit): collective; a time of NaN is none */
+/* step(movie, number, time, unit): collective; NaN: without a time */
 static PyObject *movie_step(PyObject *module, PyObject *args) {
     PyObject *capsule;
     long long number;

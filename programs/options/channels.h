@@ -24,7 +24,7 @@ typedef struct channel_list {
 bool channels_parse(const char *text, channel_list *out,
                     char wrong[WRONG_BYTES]);
 
-/* Finds the numbers of names, in any case; false: *missing is none. */
+/* Finds the numbers of names, in any case; false: *missing is unknown. */
 bool channels_find(channel_list *list, const snow_volume_info *info,
                    const char **missing);
 
