@@ -1,5 +1,5 @@
-/* channels.c - see channels.h.  The form of a word behind a channel says what it
- * is: a range has "..", an opacity is a number, a colour is neither. */
+/* channels.c - see channels.h.  The form of a word behind a channel says what
+ * it is: a range has "..", an opacity is a number, a colour is neither. */
 #include "options/channels.h"
 
 #include <math.h>
