@@ -103,7 +103,7 @@ typedef struct snow_volume_options {
     const char *component; /* "x", "magnitude", ... or NULL (docs/formats.md) */
     const char *label_table; /* path: names and colours of labels; or NULL */
     bool each_channel;       /* no warning of other channels */
-    int64_t levels; /* of refinement that are read, the coarsest first; 0: all */
+    int64_t levels; /* of refinement, so many of the coarsest; 0: all */
 } snow_volume_options;
 SNOW_RECORD(snow_volume_options);
 /* Opens a file (format by its first bytes, then its name; gzip is undone), "-"

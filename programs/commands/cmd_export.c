@@ -246,12 +246,12 @@ static void add_time(const options *opts, const snow_volume_info *info,
 static char *recipe_text(const options *opts, const snow_volume_info *info,
                          const char *tf) {
     static const char *const done[] = {
-        "input",      "output",    "depth",         "verb",    "version",
-        "quality",    "bits",      "channel",       "dims",    "type",
-        "endian",     "offset",    "time",          "dataset", "spacing",
-        "series",     "mask",      "labels",        "crop",    "overwrite",
-        "memory",     "component", "allow-gaps",    "threads", "isa",
-        "method",     "footprint", "deterministic", "tf",      "encoding",
+        "input",       "output",    "depth",         "verb",    "version",
+        "quality",     "bits",      "channel",       "dims",    "type",
+        "endian",      "offset",    "time",          "dataset", "spacing",
+        "series",      "mask",      "labels",        "crop",    "overwrite",
+        "memory",      "component", "allow-gaps",    "threads", "isa",
+        "method",      "footprint", "deterministic", "tf",      "encoding",
         "label-table", "levels"};
     json_t *tree = config_tree(opts, verb_of(VERB_RENDER));
     for (size_t i = 0; i < sizeof done / sizeof *done; i++)

@@ -82,7 +82,7 @@ static void what_is_no_message_is_refused(void **state) {
 static void a_page_names_no_file(void **state) {
     (void)state;
     static const char *const foreign[] = {
-        "input",   "output",    "depth",   "raw",    "tf",   "dataset",
+        "input",   "output",    "depth",   "raw",        "tf",   "dataset",
         "series",  "overwrite", "threads", "isa",        "dims", "type",
         "offset",  "endian",    "spacing", "allow-gaps", "verb", "version",
         "quality", "method",    "config",  "",           "x"};

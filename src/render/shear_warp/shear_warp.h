@@ -98,8 +98,8 @@ void snow_value_forget_slabs(snow_value_path *path);
 /* Whether memory was too small, and there is more: what was kept is gone. */
 bool snow_value_lacks_room(snow_value_path *path, snow_status status);
 
-/* Drops encodings until a limit leaves so many bytes, as for the exchange of the
- * image among ranks. */
+/* Drops encodings until a limit leaves so many bytes, as for the exchange of
+ * the image among ranks. */
 void snow_value_leave_room(snow_value_path *path, uint64_t bytes);
 uint64_t snow_value_exchange_bytes(const snow_value_path *path);
 
