@@ -65,7 +65,8 @@ static int find_transfer(const options *opts, const char *name, named *out) {
         return done;
     int preset = snow_preset_from_name(name),
         map = snow_colormap_from_name(name);
-    if (map >= 0 && !snow_colormap_name((size_t)map))
+    snow_color_point point;
+    if (map >= 0 && snow_colormap_points((size_t)map, &point, 1) == 0)
         map = -1; /* a list of colours, which has no points of its own */
     bool file = access(name, F_OK) == 0 || (preset < 0 && map < 0);
     if (!file && preset >= 0 && !snow_preset_look((size_t)preset)->color_count)
@@ -79,7 +80,8 @@ static int find_transfer(const options *opts, const char *name, named *out) {
         return CONTINUE;
     }
     if (!file) {
-        take_colormap(map, snow_colormap_name((size_t)map), out);
+        const char *plain = snow_colormap_name((size_t)map);
+        take_colormap(map, plain ? plain : name, out);
         return CONTINUE;
     }
     snow_status status = snow_look_load(out->context, name, &out->tf);

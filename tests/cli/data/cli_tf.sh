@@ -21,6 +21,8 @@ run 0 "tf show of both signs" "$TOOL" tf show signed
 prints '^values +shares of a range that is symmetric around 0$'
 run 0 "tf show of a colour map" "$TOOL" tf show magma
 prints '^kind +colour map'
+run 0 "tf show of a reversed map" "$TOOL" tf show magma_r
+prints '^name +magma_r'
 run 0 "tf show of a file" "$TOOL" tf show "$SEEDS/presets.xml#ct-bone"
 prints '^name +CT-Bone'
 run 0 "tf show as a picture" "$TOOL" tf show ct-bone -o show.png

@@ -59,10 +59,13 @@ says "--depth: no.webp cannot hold depths"
 
 run 0 "a PNG of means tells its range" render -m mean -o told.png
 says "means of [-0-9.e]+\.\.[-0-9.e]+ in the look's colours"
+range=$(grep -o "means of [^ ]*" "$ERR")
 run 0 "a range that is asked for" render -m sum --range 10,500 -o range.png
 says "sums of 10\.\.500 in the look's colours"
 run 0 "a colour map" render -q -m mean -c viridis -o viridis.png
 run 6 "changes the colours" "$TOOL" compare told.png viridis.png
+run 0 "a reversed map" render -m mean -c viridis_r -y -o viridis.png
+check "is spread over the same range" grep -qF "${range:-no range}" "$ERR"
 
 # Colours at values stay there, also where one is alone, and so do those of the
 # printed command.
