@@ -43,9 +43,14 @@ static void write_cells(snow_value_store *s, int run, int64_t slice,
     }
 }
 
+snow_value_run snow_value_open_run(snow_value_run run) {
+    return (snow_value_run){run.first > 0 ? run.first : SNOW_VALUE_HOLE + 1,
+                            run.last < SNOW_VALUE_MOST ? run.last : INT16_MAX};
+}
+
 /* The numbers that a cell must be within to be invisible. */
 static snow_value_run sure_run(const snow_value_store *s, int run) {
-    snow_value_run sure = s->runs[run];
+    snow_value_run sure = snow_value_open_run(s->runs[run]);
     if (!s->holes)
         return sure;
     sure.first = (int16_t)(sure.first + (sure.first > 0 ? BEYOND : 0));

@@ -61,6 +61,10 @@ void snow_value_cells_band(snow_value_store *store,
  * bspline cells grow before. */
 void snow_value_cells_coarse(snow_value_store *store, int64_t eight);
 
+/* A run that, at an end of all numbers, goes on to those beyond a side, which
+ * are clamped before they are seen. */
+snow_value_run snow_value_open_run(snow_value_run run);
+
 size_t snow_value_shell_bytes(const snow_value_store *store,
                               const snow_value_store_params *params);
 

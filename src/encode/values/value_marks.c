@@ -77,6 +77,7 @@ static bool is_beyond_outside(const snow_value_coder *coder,
     snow_value_code_row(coder, stored + column * size, 1, &side);
     snow_value_code_row(coder, stored + (column + step) * size, 1, &inside);
     int16_t beyond = snow_value_beyond(side, inside, false);
+    run = snow_value_open_run(run);
     return beyond < run.first || beyond > run.last;
 }
 

@@ -223,6 +223,13 @@ run 0 "sheared is another name of shear-warp" \
 prints '"method": "shear-warp"'
 run 0 "shear-warp by its name" render -q -o name.npy --method shear-warp
 run 0 "is the same picture" "$TOOL" compare alias.npy name.npy
+
+# Noise at a side that goes on beyond it, below the lowest value, is not seen.
+for i in 0 1 2 3 4 5 6 7; do printf '\0\7\3\11\1\10\2\5'; done >noise.raw
+for i in 0 1 2 3 4 5 6 7; do cat noise.raw; done >cube.raw
+run 7 "invisible noise" "$TOOL" render -q cube.raw --dims 8x8x8 --type uint8 \
+    --range 30,255 --encoding crs -o noise.png --stats -
+check "has no interesting voxels" [ "$(number ia)" -eq 0 ]
 run 0 "figures in words and as JSON" "$TOOL" -v phantom:shells \
     --dims 96x96x96 -s 40x30 -o w.png --stats -
 look=$(sed -n 's/.*(look \([0-9.]*\)).*/\1/p' "$ERR")
