@@ -109,9 +109,9 @@ static FILE *open_page(char path[PATH_MAX]) {
     self[length > 0 ? length : 0] = 0;
     char *slash = strrchr(self, '/');
     FILE *page = NULL;
-    for (size_t i = PLACE_COUNT; !page && slash && i-- > 0;) {
+    for (size_t i = PLACE_COUNT; !page && slash && i > 0; i--) {
         snprintf(path, PATH_MAX, "%.*s/%s", (int)(slash - self), self,
-                 places[i]);
+                 places[i - 1]);
         page = fopen(path, "rb");
     }
     return page;

@@ -40,7 +40,7 @@ void options_init(options *out) {
         .level = NAN,
         .opacity_unit = "voxel",
         .shade = "phong",
-        .light = {.light = settings.light},
+        .light = {settings.light},
         .ambient = settings.ambient,
         .diffuse = settings.diffuse,
         .specular = settings.specular,

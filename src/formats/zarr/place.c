@@ -161,7 +161,8 @@ static void take_channel(const json_t *from, snow_channel *out) {
         out->window[0] = json_number_value(start);
         out->window[1] = json_number_value(end);
     }
-    color += color && *color == '#';
+    if (color && *color == '#')
+        color++;
     if (!color || strlen(color) != 6)
         return;
     const unsigned long rgb = strtoul(color, &rest, 16);
