@@ -46,7 +46,7 @@ typedef struct snow_recipe {
     const char *overlay, *overlay_preset, *overlay_colormap; /* or NULL */
     snow_range overlay_range;
     double overlay_low, overlay_high;
-    size_t overlay_opacity_count; /* 0: the preset's */
+    size_t overlay_opacity_count; /* 0: the preset's; 1 at NaN: a factor */
     snow_opacity_point overlay_opacities[SNOW_RECIPE_POINTS_MAX];
     const char *channels; /* a list, as of the tool's --channel, or NULL */
 } snow_recipe;

@@ -327,9 +327,10 @@ const option_row option_table[] = {
      FIELD(overlay_colormap), 0, 0, "", "as --colormap (default hot)"},
     {"overlay-range", 0, "LO,HI|pLO,pHI|full", TOPIC_DATA, OVERLAID, read_range,
      FIELD(overlay_range), 0, 0, "", "as --range (default: from its histogram)"},
-    {"overlay-opacity", 0, "V:O,V:O", TOPIC_DATA, OVERLAID, read_points,
+    {"overlay-opacity", 0, "F|V:O,V:O", TOPIC_DATA, OVERLAID, read_factor_points,
      FIELD(overlay_opacity), 0, 0, "",
-     "as --opacity (default: from its histogram; 1 for labels)"},
+     "as --opacity, or one factor from 0 to 1 for all its opacities, in a slice "
+     "the most that it covers (default: from its histogram; 1 for labels)"},
     {"clip", 0, "A,B,C,D", TOPIC_DATA, INPUT, read_clip, FIELD(clip), 0, 0, "",
      "remove the voxels beyond a plane in world coordinates, where A x + B y + "
      "C z > D; up to six planes, in one list (default: none)"},

@@ -294,6 +294,18 @@ bool value_points(const char *text, point_list *out) {
     return true;
 }
 
+bool value_factor(const char *text, point_list *out) {
+    double factor;
+    if (!value_real(text, &factor) || factor < 0 || factor > 1)
+        return false;
+    *out = (point_list){{{NAN, factor}}, 1};
+    return true;
+}
+
+bool points_are_factor(const point_list *list) {
+    return list->count == 1 && isnan(list->points[0].value);
+}
+
 /* Compares whole words: "crs|rle" and "" are not choices although they occur.
  * Case does not matter. */
 bool value_is_choice(const char *choices, const char *text) {

@@ -12,7 +12,8 @@
 
 #define POINTS_MAX 256
 
-/* A list of control points of the opacity. */
+/* A list of control points of the opacity; or one factor for all opacities of a
+ * look, the opacity of a point whose value is NaN. */
 typedef struct point_list {
     snow_opacity_point points[POINTS_MAX];
     size_t count;
@@ -75,6 +76,10 @@ bool value_range(const char *text, range_value *out);
 
 /* "v:o,v:o,...": values that do not decrease, opacities from 0 to 1. */
 bool value_points(const char *text, point_list *out);
+
+/* Parses one factor, from 0 to 1; whether a list is one. */
+bool value_factor(const char *text, point_list *out);
+bool points_are_factor(const point_list *list);
 
 /* True if `text` is one of the words of "a|b|c", in any case; "" is not a
  * choice. */

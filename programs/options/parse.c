@@ -477,6 +477,19 @@ bool read_points(const option_row *row, const char *text, void *field,
     return true;
 }
 
+bool read_factor_points(const option_row *row, const char *text, void *field,
+                        char wrong[WRONG_BYTES]) {
+    (void)row;
+    if (!value_factor(text, field) && !value_points(text, field))
+        return refuse(
+            wrong,
+            "is neither a factor from 0 to 1, such as 0.6, nor control points; "
+            "give VALUE:OPACITY pairs, values rising, opacities 0 to 1, at "
+            "most "
+            "256, such as 80:0,200:0.5");
+    return true;
+}
+
 bool read_gradient_points(const option_row *row, const char *text, void *field,
                           char wrong[WRONG_BYTES]) {
     (void)row;

@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 int layers_check(const options *opts) {
@@ -45,27 +46,68 @@ void layers_leave_out(options *opts) {
 }
 
 /* Labels where it has some; else, where nothing is asked, hot colours. */
+static snow_status choose_look(const snow_volume *of, snow_look *look,
+                               snow_transfer **out) {
+    snow_status status = snow_transfer_new_for_volume(of, look, out);
+    if (status != SNOW_STATUS_OK || look->preset || look->colormap ||
+        snow_transfer_label(*out, 0))
+        return status;
+    snow_transfer_free(*out);
+    *out = NULL;
+    look->colormap = "hot";
+    return snow_transfer_new_for_volume(of, look, out);
+}
+
+/* The opacities of a look, each times the factor; of labels at their numbers.
+ * NULL: no memory. */
+static snow_opacity_point *scale_points(const snow_transfer *transfer,
+                                        double factor, size_t *count) {
+    snow_look look = {.size = sizeof look};
+    const snow_label *label;
+    size_t labels = 0;
+    while (snow_transfer_label(transfer, labels))
+        labels++;
+    if (!labels && snow_transfer_get_look(transfer, &look) != SNOW_STATUS_OK)
+        return NULL;
+    *count = labels ? labels : look.opacity_count;
+    snow_opacity_point *out = malloc((*count + 1) * sizeof *out);
+    for (size_t n = 0; out && n < *count; n++)
+        if ((label = snow_transfer_label(transfer, n)))
+            out[n] =
+                (snow_opacity_point){label->value, factor * label->color[3]};
+        else
+            out[n] = (snow_opacity_point){look.opacities[n].value,
+                                          factor * look.opacities[n].opacity};
+    return out;
+}
+
 static snow_status make_look(const options *opts, const snow_volume *of,
                              layers *l) {
     const range_value range = opts->overlay_range;
+    const point_list *asked = &opts->overlay_opacity;
+    const bool factor = points_are_factor(asked);
     snow_look look = {.size = sizeof look,
                       .preset = opts->overlay_preset,
                       .colormap = opts->overlay_colormap,
                       .range = range.kind,
                       .low = range.low,
                       .high = range.high};
-    if (opts->overlay_opacity.count) {
-        look.opacities = opts->overlay_opacity.points;
-        look.opacity_count = opts->overlay_opacity.count;
+    if (asked->count && !factor) {
+        look.opacities = asked->points;
+        look.opacity_count = asked->count;
     }
-    snow_status status = snow_transfer_new_for_volume(of, &look, &l->transfer);
-    if (status != SNOW_STATUS_OK || look.preset || look.colormap ||
-        snow_transfer_label(l->transfer, 0))
+    snow_transfer *whole = NULL;
+    snow_status status = choose_look(of, &look, factor ? &whole : &l->transfer);
+    if (status != SNOW_STATUS_OK || !factor)
         return status;
-    snow_transfer_free(l->transfer);
-    l->transfer = NULL;
-    look.colormap = "hot";
-    return snow_transfer_new_for_volume(of, &look, &l->transfer);
+    snow_opacity_point *points =
+        scale_points(whole, asked->points[0].opacity, &look.opacity_count);
+    look.opacities = points;
+    status = points ? snow_transfer_new_for_volume(of, &look, &l->transfer)
+                    : SNOW_STATUS_NO_MEMORY;
+    free(points);
+    snow_transfer_free(whole);
+    return status;
 }
 
 /* Values of all steps have the look of the first; labels may be others. */
@@ -335,72 +377,6 @@ snow_status layers_set(const layers *l, const channel_set *c,
     if (l->volume)
         all[count++] = (snow_inlay){l->volume, l->transfer, false};
     return snow_frame_set_inlays(frame, all, count);
-}
-
-/* --- slices --------------------------------------------------------------- */
-
-/* The most that an overlay covers of a slice where no opacities are asked. */
-#define COVER 0.5
-
-/* What its opacities are multiplied by: opacities of sheets say little of a
- * single one. */
-static double cover_of(const options *opts, const snow_transfer *transfer) {
-    snow_look look = {.size = sizeof look};
-    double most = 0;
-    if (opts->overlay_opacity.count)
-        return 1;
-    if (!snow_transfer_label(transfer, 0) &&
-        snow_transfer_get_look(transfer, &look) == SNOW_STATUS_OK)
-        for (size_t n = 0; n < look.opacity_count; n++)
-            most = fmax(most, look.opacities[n].opacity);
-    return most > 0 ? COVER / most : COVER;
-}
-
-/* Lays the colours of values over a picture. */
-static void lay(const snow_transfer *transfer, double cover,
-                const snow_image *values, const snow_image *below,
-                snow_image *out) {
-    const size_t count =
-        (size_t)snow_image_width(out) * (size_t)snow_image_height(out);
-    const int parts = snow_image_channels(below);
-    const float *value = snow_image_pixels((snow_image *)(uintptr_t)values);
-    const float *from = snow_image_pixels((snow_image *)(uintptr_t)below);
-    float *to = snow_image_pixels(out);
-    for (size_t n = 0; n < count; n++, from += parts, to += 4) {
-        double rgba[4];
-        snow_transfer_evaluate(transfer, (double)value[n], rgba);
-        const double share = fmin(cover * rgba[3], 1);
-        rgba[3] = 1;
-        for (int c = 0; c < 4; c++)
-            to[c] = (float)(share * rgba[c] +
-                            (1 - share) * (double)from[c == 3       ? parts - 1
-                                                       : parts == 4 ? c
-                                                                    : 0]);
-    }
-}
-
-snow_status layers_lay_slice(const options *opts, const layers *l,
-                             int64_t index, const snow_view *view,
-                             const snow_settings *settings,
-                             snow_context *context, snow_image **image) {
-    snow_settings how = *settings;
-    snow_image *values = NULL, *made = NULL;
-    if (!l->volume)
-        return SNOW_STATUS_OK;
-    if (snow_transfer_label(l->transfer, 0))
-        how.kernel = SNOW_KERNEL_BOX; /* numbers of labels are not mixed */
-    snow_status status =
-        snow_slice_render(l->volume, index, NULL, view, &how, &values);
-    if (status == SNOW_STATUS_OK)
-        status = snow_image_new(context, snow_image_width(values),
-                                snow_image_height(values), 4, &made);
-    if (status == SNOW_STATUS_OK) {
-        lay(l->transfer, cover_of(opts, l->transfer), values, *image, made);
-        snow_image_free(*image);
-        *image = made;
-    }
-    snow_image_free(values);
-    return status;
 }
 
 void layers_close(layers *l) {

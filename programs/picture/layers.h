@@ -41,7 +41,7 @@ void layers_drop_look(layers *l);
 
 /* Lays its slice over the picture of a slice of the volume, which is replaced:
  * with the opacities of --overlay-opacity, else with those of its look, of
- * which the largest becomes 1/2. */
+ * which the largest becomes 1/2, or the factor of --overlay-opacity. */
 snow_status layers_lay_slice(const options *opts, const layers *l,
                              int64_t index, const snow_view *view,
                              const snow_settings *settings,

@@ -162,6 +162,9 @@ def split(options: Mapping[str, Any]) -> tuple[
     if given.get("overlay") and "labels" in data:
         raise ValueError("a recipe with an overlay and labels cannot be drawn "
                          "here; use the command line")
+    if isinstance(second.get("opacity"), (int, float)):
+        raise ValueError("a recipe with one factor as overlay-opacity cannot be "
+                         "drawn here; use the command line, or give points")
     if second:
         given["overlay_look"] = Look(**second)
     if given.get("shift"):

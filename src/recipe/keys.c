@@ -158,7 +158,7 @@ const recipe_key recipe_keys[] = {
     KNOWN("overlay-preset", overlay_preset, preset_name, snow_preset_from_name),
     KNOWN("overlay-colormap", overlay_colormap, colormap_name, snow_colormap_from_name),
     MADE("overlay-range", range, overlay_range, 0, 0, 0),
-    MADE("overlay-opacity", points, overlay_opacity_count, 0, 0, 0),
+    MADE("overlay-opacity", points, overlay_opacity_count, 0, 1, 0),
     MADE("clip", clip, data.clip, 0, 0, 4),
     MADE("time", long, data.time, -9e15, 9e15, 0),
     MADE("frames", int, frames, 1, 1000000, 0),

@@ -44,6 +44,40 @@ write("pet.nrrd", (16, 14, 15), (2, 2, 2), (5.5, 6.5, 7.5),
 END
 "$TOOL" convert w.nrrd -o w.npy -q && rm v.nrrd
 
+# A factor on all opacities.
+for over in seg.nrrd pet.nrrd; do
+    run 0 "$over" "$TOOL" render w.nrrd --overlay $over -o a.npy -s 60x50
+    points=$(sed -n 's/.*overlay .*; opacity \(.*\) (from.*/\1/p' "$ERR" |
+        awk -F ', ' '{for (n = 1; n <= NF; n++) {split($n, p, " at ")
+            printf "%s%s:%.9g", (n > 1) ? "," : "", p[2], 0.5 * p[1]}}')
+    run 0 "times 1" render w.nrrd --overlay $over --overlay-opacity 1 -o b.npy
+    check "is the same" cmp -s a.npy b.npy
+    run 0 "times 0.5" render w.nrrd --overlay $over --overlay-opacity 0.5 -o c.npy \
+        --save-config half.json
+    check "is another" [ -n "$(cmp a.npy c.npy)" ]
+    run 0 "half at each point" render w.nrrd --overlay $over -o d.npy \
+        --overlay-opacity "${points:-1:0.5,3:0.5}"
+    check "is the same too" cmp -s c.npy d.npy
+    check "is kept" grep -q '"overlay-opacity": 0.5[,}]' half.json
+    cp c.npy half.npy
+    run 0 "its configuration" "$TOOL" --config half.json -q -y
+    check "gives it again" cmp -s c.npy half.npy
+    run 0 "a slice" "$TOOL" slice w.nrrd --overlay $over -q -o full.png
+    run 0 "half of it" "$TOOL" slice w.nrrd --overlay $over -q -o half.png \
+        --overlay-opacity 0.5
+    check "is what it is by itself" cmp -s full.png half.png
+    run 0 "less of it" "$TOOL" slice w.nrrd --overlay $over -q -o less.png \
+        --overlay-opacity 0.25
+    check "is fainter" [ -n "$(cmp full.png less.png)" ]
+    rm ./*.npy full.png half.png less.png half.json
+done
+"$TOOL" convert w.nrrd -o w.npy -q
+refused 2 "a factor of more than 1" 'is neither a factor from 0 to 1, such as 0.6, nor' \
+    "$TOOL" render w.nrrd --overlay seg.nrrd -o z.png --overlay-opacity 1.5
+echo '{"input": "w.nrrd", "opacity": 0.5}' >f.json
+refused 3 "one of the volume itself" '"opacity" must be \[\[value' \
+    "$TOOL" render --config f.json -o z.png
+
 # Three time steps of values, and their inverse.
 python3 - <<'END'
 import struct
