@@ -200,25 +200,51 @@ static bool is_unplaced(const snow_volume_info *info) {
     return !given;
 }
 
+/* Of standard input only what the crop left is known (`grid`): all of it has as
+ * many voxels as the overlay if the crop leaves as many of that. */
+static bool guess_whole(const options *opts, const snow_volume_info *grid,
+                        const int64_t dims[3], snow_volume_info *out) {
+    *out = *grid;
+    for (int c = 0; c < 3; c++) {
+        const int64_t *crop = opts->crop[c];
+        const int64_t end = crop[1] ? crop[1] : dims[c];
+        if (end > dims[c] || end - crop[0] != grid->dims[c])
+            return false;
+        out->dims[c] = dims[c];
+        for (int row = 0; row < 3; row++)
+            out->matrix[row][3] -= out->matrix[row][c] * (double)crop[0];
+    }
+    return true;
+}
+
+/* The volume before its crop; whose warnings came before. */
+static bool find_whole(const options *opts, const snow_volume_info *grid,
+                       const int64_t dims[3], snow_volume_info *out) {
+    snow_volume_options data = data_options(opts);
+    snow_context *context = NULL;
+    memset(data.crop, 0, sizeof data.crop);
+    snow_volume_info_init(out);
+    if (strcmp(opts->operands[0], "-") == 0)
+        return guess_whole(opts, grid, dims, out);
+    const bool known =
+        snow_context_new(NULL, &context) == SNOW_STATUS_OK &&
+        snow_volume_inspect(context, opts->operands[0], &data, out) ==
+            SNOW_STATUS_OK;
+    snow_context_free(context);
+    return known;
+}
+
 /* Whether the crop of the volume is one of the overlay too: they have the same
  * voxels, but not both a place, by which a part would be found. */
-static bool shares_crop(const options *opts, const snow_volume_info *info,
+static bool shares_crop(const options *opts, const snow_volume_info *grid,
                         const layers *l) {
     static const int64_t all[3][2];
-    snow_volume_options data = data_options(opts);
-    snow_context *context = NULL; /* whose warnings came before */
-    snow_volume_info file;
-    snow_volume_info_init(&file);
-    if (memcmp(data.crop, all, sizeof all) == 0)
-        return false;
-    memset(data.crop, 0, sizeof data.crop);
-    bool known =
-        l->whole || (snow_context_new(NULL, &context) == SNOW_STATUS_OK &&
-                     snow_volume_inspect(context, opts->operands[0], &data,
-                                         &file) == SNOW_STATUS_OK);
-    snow_context_free(context);
-    const snow_volume_info *whole = l->whole ? l->whole : &file;
-    return known && memcmp(whole->dims, info->dims, sizeof info->dims) == 0 &&
+    const snow_volume_info *info = snow_volume_get_info(l->volume);
+    snow_volume_info found;
+    const snow_volume_info *whole = l->whole ? l->whole : &found;
+    return memcmp(opts->crop, all, sizeof all) != 0 &&
+           (l->whole || find_whole(opts, grid, info->dims, &found)) &&
+           memcmp(whole->dims, info->dims, sizeof info->dims) == 0 &&
            (is_unplaced(whole) || is_unplaced(info) ||
             whole->medical != info->medical);
 }
@@ -296,8 +322,13 @@ static int read_layer(const options *opts, snow_context *context,
 /* Its look is of the whole, so that only then it is cropped. */
 static int crop_layer(const options *opts, snow_context *context,
                       const snow_volume_info *grid, bool parts, layers *l) {
-    if (!shares_crop(opts, snow_volume_get_info(l->volume), l))
+    if (!shares_crop(opts, grid, l))
         return CONTINUE;
+    if (!l->whole && strcmp(opts->operands[0], "-") == 0 &&
+        opts->verbosity >= 0 && process_talks())
+        say("note: %s: has no place, and is taken to have as many voxels as "
+            "standard input before its crop",
+            opts->overlay);
     layers_drop_volume(l);
     return open_step(opts, context, grid, parts, true, l);
 }

@@ -192,10 +192,11 @@ snow_status snow_transfer_set_log(snow_transfer *transfer) {
     double color = transfer->colors[0].value;
     double opacity = transfer->opacities[0].value;
     if (!(color > 0) || !(opacity > 0))
-        return snow_fail(
-            transfer->context, SNOW_STATUS_BAD_USAGE,
-            "a control point at %g has no logarithm; give values above 0",
-            color > 0 ? opacity : color);
+        return snow_fail(transfer->context, SNOW_STATUS_BAD_USAGE,
+                         "the %s at %g has no logarithm; give values above 0, "
+                         "or symlog in place of log",
+                         color > 0 ? "opacity" : "colour",
+                         color > 0 ? opacity : color);
     transfer->log = true;
     return SNOW_STATUS_OK;
 }

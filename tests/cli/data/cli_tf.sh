@@ -90,8 +90,10 @@ run 0 "from the histogram" small --log -o m.png
 says 'logarithmic'
 run 0 "every method" small -q --log --preset linear --method footprint \
     --shade none -o f.png
-refused 2 "a point at 0" 'control point at 0 has no logarithm' \
+refused 2 "a point at 0" 'the opacity at 0 has no logarithm; give values above 0, or symlog' \
     small --log --opacity 0:0,9:1 -o x.png
+refused 2 "a colour below 0" 'the colour at -2 has no logarithm' \
+    small --log -c "-2:#000000,9:#ff0000" -o x.png
 refused 2 "Hounsfield units" 'give a range too' small --log --preset ct-soft \
     -o x.png
 

@@ -210,7 +210,16 @@ for way in "slice --axis axial" "slice --axis x --at 20" \
     # shellcheck disable=SC2086
     run 0 "without one" "$TOOL" $way w.nrrd --overlay same.npy -o placeless.png -q -y
     check "is the same" cmp -s placed.png placeless.png
+    case $way in *--crop*)
+        # shellcheck disable=SC2086
+        "$TOOL" ${way/ / - } --overlay same.npy -o placeless.png -y <w.nrrd 2>"$ERR"
+        check "through a pipe too" cmp -s placed.png placeless.png
+        check "with a note" grep -q "same.npy: has no place, and is taken" "$ERR"
+        ;;
+    esac
 done
+"$TOOL" render - --crop 3:30,2:20,5:29 --overlay pet.nrrd -o z.png <w.npy 2>"$ERR"
+check "one of other voxels is refused there" grep -q "the overlay has 16x14x15 voxels" "$ERR"
 run 0 "a slice with a place" "$TOOL" slice w.nrrd --axis x --overlay same.nrrd -o placed.png -q -y
 "$TOOL" slice - --axis x --overlay same.npy -o placeless.png -y -q <w.nrrd
 check "is that without one, through a pipe" cmp -s placed.png placeless.png
