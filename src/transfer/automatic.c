@@ -12,7 +12,7 @@
  *     and the upper part is no small share, the object fills the volume (a
  *     cut-out of a brain, for example).  There are no surfaces then, and the
  *     faces of the block show most: all is nearly solid, black to white over
- *     all values, and unshaded.  The same holds for volumes of one slice.
+ *     all values, and unshaded.  The same holds for volumes of few slices.
  *     Values that reach as far below 0 as above are densities about a mean (of
  *     proteins), whose upper part is what matters.
  *   - A CT in Hounsfield units gets the preset for bone or for soft tissue: its
@@ -228,6 +228,21 @@ static int axes_of_one(const snow_histogram *histogram) {
     return (part.dims[0] == 1) + (part.dims[1] == 1) + (part.dims[2] == 1);
 }
 
+/* Two to five slices, each of 16 times as many rows and columns, are no more of
+ * a body than one: shading would show their noise. */
+static bool is_slice(const snow_histogram *histogram) {
+    snow_extent part;
+    snow_volume_find_extent(histogram->volume, &part);
+    const int64_t *n = part.dims;
+    const int64_t least =
+        n[0] < n[1] ? (n[0] < n[2] ? n[0] : n[2]) : (n[1] < n[2] ? n[1] : n[2]);
+    return axes_of_one(histogram) == 1 ||
+           (least > 1 && least <= 5 &&
+            (n[0] >= 16 * least) + (n[1] >= 16 * least) +
+                    (n[2] >= 16 * least) ==
+                2);
+}
+
 /* For a volume whose voxels all have one value, or none finite. */
 static void build_constant(const snow_histogram *histogram,
                            snow_transfer_builder *builder) {
@@ -379,7 +394,7 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
         build_constant(histogram, builder);
         return SNOW_STATUS_OK;
     }
-    bool slice = axes_of_one(histogram) == 1;
+    bool slice = is_slice(histogram);
     int preset = -1;
     if (slice)
         snow_window_of(histogram, builder, &p.low, &p.high);

@@ -57,6 +57,23 @@ for ranks in $COUNTS; do
         check "has the same bits" cmp -s one.npy many.npy
     done
 done
+# A mask cuts all channels.
+"$TOOL" convert c.npy --channel 1 -o seg.nrrd -q
+"$TOOL" convert c.npy --channel 1 --time 1 -o other.npy -q
+for mask in "--mask other.npy --labels 20:200" "--mask seg.nrrd --labels 9:30 --deterministic"; do
+    way="render c.npy $list -s 80x70 -q --azimuth 33 $mask"
+    # shellcheck disable=SC2086
+    run 0 "$mask alone" "$TOOL" $way -y -o one.npy
+    # shellcheck disable=SC2086
+    run 0 "without it" "$TOOL" render c.npy $list -s 80x70 -q --azimuth 33 -y -o whole.npy
+    check "is another picture" [ -n "$(cmp one.npy whole.npy)" ]
+    for ranks in $COUNTS; do
+        # shellcheck disable=SC2086
+        run 0 "by $ranks" launch "$ranks" "$MPI_TOOL" $way -y -o many.npy
+        run 0 "is as by one" "$TOOL" compare one.npy many.npy --tolerance 1/255
+    done
+done
+check "the bits too" cmp -s one.npy many.npy
 run 0 "without a word" launch 3 "$MPI_TOOL" render c.npy $list -s 80x70 -y -o many.npy
 check "no channel is left out" [ "$(grep -c 'note: channel' "$ERR")" = 0 ]
 says 'channels 0 red 20..200, 1 #20ff40 [0-9.]+ opacity 0.7, 2 blue; '

@@ -662,6 +662,7 @@ static void one_heap_of_values_is_a_solid_block(void **state) {
     (void)state;
     static float values[20 * 20 * 20];
     const int64_t cube[3] = {20, 20, 20}, slice[3] = {80, 100, 1};
+    const int64_t few[3] = {2, 50, 80}, many[3] = {50, 32, 5};
     snow_context *context = support_context();
     fill_heap(values, 8000, 100, 10);
     snow_transfer *transfer = look_at_block(context, values, cube);
@@ -685,6 +686,14 @@ static void one_heap_of_values_is_a_solid_block(void **state) {
     transfer = look_at_block(context, values, slice);
     assert_true(snow_transfer_is_unshaded(transfer));
     assert_true(opacity_at(transfer, 100) == 1);
+    snow_transfer_free(transfer);
+    /* So are two, and not five of few rows. */
+    transfer = look_at_block(context, values, few);
+    assert_true(snow_transfer_is_unshaded(transfer));
+    assert_true(opacity_at(transfer, 100) == 1);
+    snow_transfer_free(transfer);
+    transfer = look_at_block(context, values, many);
+    assert_false(snow_transfer_is_unshaded(transfer));
     snow_transfer_free(transfer);
     snow_context_free(context);
 }
