@@ -248,11 +248,10 @@ static snow_status make_annotations(const work *w, const options *opts,
         opts,
         s->whole,
         s->view,
-        s->layers.transfer && snow_transfer_label(s->layers.transfer, 0)
-            ? s->layers.transfer
-            : s->transfer,
+        s->transfer,
         {painted->range[0], painted->range[1]},
-        &s->channels};
+        &s->channels,
+        layers_legend(&s->layers)};
     return annotations_make(&annotations, opts->azimuth, -1, image, s->context,
                             out);
 }

@@ -390,14 +390,13 @@ static void report(const slice_work *w) {
 
 /* Letters stay at the edges: a slice fills its picture. */
 static snow_status make_overlay(slice_work *w, snow_overlay **out) {
-    const snow_transfer *labels = w->layers.transfer;
-    picture_annotations annotations = {
-        &w->opts,
-        *snow_volume_get_info(w->volume),
-        w->view,
-        labels && snow_transfer_label(labels, 0) ? labels : w->transfer,
-        {0, 0},
-        w->transfer ? &w->channels : NULL};
+    picture_annotations annotations = {&w->opts,
+                                       *snow_volume_get_info(w->volume),
+                                       w->view,
+                                       w->transfer,
+                                       {0, 0},
+                                       w->transfer ? &w->channels : NULL,
+                                       layers_legend(&w->layers)};
     annotations_find_unit(&w->opts, w->volume, false, &annotations.info);
     return annotations_make(&annotations, 0, -1, NULL, w->context, out);
 }

@@ -75,7 +75,8 @@ static void annotations(void *self, picture_annotations *out) {
         s->view,
         s->transfer,
         {shots->painted.range[0], shots->painted.range[1]},
-        &s->channels};
+        &s->channels,
+        layers_legend(&s->layers)};
 }
 
 /* Frames are annotated elsewhere and silently: what one has no room for is said

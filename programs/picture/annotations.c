@@ -3,6 +3,7 @@
  * of floats never do. */
 #include "picture/annotations.h"
 #include "movie/movie_encoder.h"
+#include "picture/default_name.h"
 #include "run/log.h"
 #include "run/start.h"
 
@@ -158,6 +159,32 @@ static snow_status add_colors(const picture_annotations *annotations,
                                   over ? NULL : range);
 }
 
+/* The labels of an overlay have the place of the volume's bar, which its values
+ * leave there.  A bar of values is called by its file. */
+static snow_status add_legend(const picture_annotations *annotations,
+                              snow_overlay *overlay) {
+    const options *opts = annotations->opts;
+    const bool slice = strcmp(opts->mode, "slice") == 0;
+    const bool mixed =
+        annotations->channels && annotations->channels->list.count;
+    const snow_transfer *over =
+        slice || strcmp(opts->mode, "over") == 0 ? annotations->overlay : NULL;
+    const bool labels = over && snow_transfer_label(over, 0);
+    char name[STEM_BYTES];
+    double range[2];
+    if (labels && !mixed) {
+        make_caption(annotations, name);
+        return snow_overlay_color_bar(overlay, over, name, NULL);
+    }
+    snow_status status = mixed ? add_channels(annotations, overlay)
+                               : add_colors(annotations, overlay);
+    if (status != SNOW_STATUS_OK || !over || labels)
+        return status;
+    default_stem(opts->overlay, name);
+    snow_transfer_domain(over, &range[0], &range[1]);
+    return snow_overlay_color_bar(overlay, over, name, slice ? range : NULL);
+}
+
 /* The title, and below it the time of the picture. */
 static snow_status add_title(const picture_annotations *annotations,
                              int64_t step, snow_overlay *overlay) {
@@ -181,11 +208,8 @@ static snow_status add_annotations(const picture_annotations *annotations,
                                    snow_overlay *overlay) {
     const options *opts = annotations->opts;
     snow_status status = SNOW_STATUS_OK;
-    if (opts->legend && annotations->channels &&
-        annotations->channels->list.count)
-        status = add_channels(annotations, overlay);
-    else if (opts->legend)
-        status = add_colors(annotations, overlay);
+    if (opts->legend)
+        status = add_legend(annotations, overlay);
     if (status == SNOW_STATUS_OK && (opts->legend || opts->scale_bar))
         status = snow_overlay_scale_bar(overlay, &annotations->info, view);
     if (status == SNOW_STATUS_OK)

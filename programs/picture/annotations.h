@@ -15,7 +15,8 @@ typedef struct picture_annotations {
     const snow_transfer *transfer;
     double range[2]; /* the range that mean and sum are painted over; both 0:
                         none */
-    const channel_set *channels; /* instead of that look; NULL: none */
+    const channel_set *channels;  /* instead of that look; NULL: none */
+    const snow_transfer *overlay; /* of layers_legend, or NULL */
 } picture_annotations;
 
 /* Refuses annotations for files of floats, which cannot show them.  Returns

@@ -16,7 +16,7 @@
 #include <sys/stat.h>
 
 /* The last part of a path; for "." and "..", of the folder that they mean. */
-static void take_name(const char *path, char out[NAME_MAX + 1]) {
+static void take_name(const char *path, char out[STEM_BYTES]) {
     char real[PATH_MAX];
     size_t length = strlen(path);
     while (length > 1 && path[length - 1] == '/')
@@ -28,7 +28,7 @@ static void take_name(const char *path, char out[NAME_MAX + 1]) {
         name = strrchr(real, '/') + 1;
         end = name + strlen(name);
     }
-    snprintf(out, NAME_MAX + 1, "%.*s", (int)(end - name), name);
+    snprintf(out, STEM_BYTES, "%.*s", (int)(end - name), name);
 }
 
 /* Removes a suffix such as .nrrd; 1.2.840 has no suffix. */
@@ -38,9 +38,7 @@ static void drop_suffix(char *name) {
         *dot = '\0';
 }
 
-/* "head" for scans/head.nii.gz, head.h5:/a/b, phantom:head, and a folder of
- * that name. */
-static void name_of(const char *given, char out[NAME_MAX + 1]) {
+void default_stem(const char *given, char out[STEM_BYTES]) {
     bool phantom = strncmp(given, "phantom:", 8) == 0;
     const char *within = strstr(given, ":/"); /* a dataset of a file */
     char path[PATH_MAX];
@@ -58,7 +56,7 @@ static void name_of(const char *given, char out[NAME_MAX + 1]) {
 
 int default_name(options *opts) {
     static char path[NAME_MAX + 8];
-    char name[NAME_MAX + 1];
+    char name[STEM_BYTES];
     struct stat what;
     if (opts->output || opts->operand_count != 1)
         return CONTINUE;
@@ -72,7 +70,7 @@ int default_name(options *opts) {
         return fail_usage("%s: a pattern gives the picture no name; add "
                           "-o OUT.png",
                           opts->operands[0]);
-    name_of(opts->operands[0], name);
+    default_stem(opts->operands[0], name);
     snprintf(path, sizeof path, "%s.png", name);
     opts->output = path;
     opts->named = true;

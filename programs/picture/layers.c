@@ -226,10 +226,9 @@ static bool find_whole(const options *opts, const snow_volume_info *grid,
     snow_volume_info_init(out);
     if (strcmp(opts->operands[0], "-") == 0)
         return guess_whole(opts, grid, dims, out);
-    const bool known =
-        snow_context_new(NULL, &context) == SNOW_STATUS_OK &&
-        snow_volume_inspect(context, opts->operands[0], &data, out) ==
-            SNOW_STATUS_OK;
+    const bool known = snow_context_new(NULL, &context) == SNOW_STATUS_OK &&
+                       snow_volume_inspect(context, opts->operands[0], &data,
+                                           out) == SNOW_STATUS_OK;
     snow_context_free(context);
     return known;
 }
@@ -386,6 +385,12 @@ int layers_open(const options *opts, snow_context *context,
         say("overlay %s: %s", opts->overlay,
             snow_transfer_description(l->transfer));
     return done;
+}
+
+const snow_transfer *layers_legend(const layers *l) {
+    const bool named = l->volume && snow_transfer_label(l->transfer, 0);
+    return named && snow_volume_get_info(l->volume)->times > 1 ? NULL
+                                                               : l->transfer;
 }
 
 void layers_drop_volume(layers *l) {

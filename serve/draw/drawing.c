@@ -410,16 +410,14 @@ static int shrunk(int side, int shrink) {
 static int annotate(drawing *d, const paint_given *painted,
                     const snow_image *image, snow_overlay **out) {
     render_state *s = &d->state;
-    const snow_transfer *over = s->layers.transfer;
-    const bool labels = s->settings.mode == SNOW_MODE_OVER && over &&
-                        snow_transfer_label(over, 0);
     const picture_annotations annotations = {
         &d->opts,
         s->whole,
         s->view,
-        labels ? over : s->transfer,
+        s->transfer,
         {painted->range[0], painted->range[1]},
-        &s->channels};
+        &s->channels,
+        layers_legend(&s->layers)};
     snow_status status = annotations_make(&annotations, s->view.azimuth, -1,
                                           image, s->context, out);
     return status == SNOW_STATUS_OK ? CONTINUE

@@ -132,6 +132,24 @@ run 0 "a turntable" "$TOOL" turntable w.nrrd --overlay seg.nrrd -o t_%d.png -q \
     --frames 2 -s 60x50
 check "turns both" [ -n "$(cmp t_0.png t_1.png)" ]
 
+# What a legend explains: labels of the overlay, or a bar for each volume.
+for over in seg.nrrd pet.nrrd; do
+    clear="--overlay $over --overlay-opacity 0 -s 200"
+    # shellcheck disable=SC2086
+    run 0 "$over, clear" render w.nrrd $clear -o clear.png
+    run 0 "is not seen" render w.nrrd -s 200 -o plain.png
+    run 0 "in the picture" "$TOOL" compare clear.png plain.png --tolerance 1/255
+    # shellcheck disable=SC2086
+    run 0 "but it is" render w.nrrd $clear --legend -o clear.png -y
+    run 0 "in the legend" render w.nrrd -s 200 --legend -o plain.png -y
+    run 6 "of the picture" "$TOOL" compare clear.png plain.png --tolerance 1/255
+    # shellcheck disable=SC2086
+    run 0 "and of a turn" "$TOOL" turntable w.nrrd $clear --legend -q \
+        --frames 2 -o turn_%d.png
+    check "which begins so" cmp -s clear.png turn_0.png
+    rm clear.png plain.png turn_?.png
+done
+
 run 0 "a movie" "$TOOL" movie base.nii --overlay over.nii $steps -o m_%d.png -q -s 60x50
 for t in 0 2; do
     run 0 "step $t" render base.nii --overlay over.nii $steps --time $t -o s_$t.png
