@@ -12,8 +12,12 @@ typedef struct field {
                   text, 3 three doubles, 6 three pairs of int64_t, n three
                   int64_t */
     size_t offset;
-    int (*value_of)(const char *name); /* of an enum */
+    const char *(*name_of)(int value); /* of an enum below ENUM_MOST, or NULL */
+    int (*value_of)(const char *name); /* where names have other forms, too */
 } field;
+
+/* No enum has as many values. */
+#define ENUM_MOST 16
 
 bool record_numbers(const char *name, PyObject *value, Py_ssize_t count,
                     bool whole, void *to) {
@@ -48,14 +52,42 @@ static bool set_crop(PyObject *value, int64_t crop[3][2]) {
     return fine;
 }
 
+static int find_enum(const field *f, const char *name) {
+    if (f->value_of)
+        return f->value_of(name);
+    for (int n = 0; n < ENUM_MOST; n++)
+        if (f->name_of(n) && strcmp(f->name_of(n), name) == 0)
+            return n;
+    return -1;
+}
+
 static bool set_enum(const field *f, PyObject *value, int *to) {
-    const char *name = PyUnicode_AsUTF8AndSize(value, NULL);
+    char known[256] = "";
+    const char *name =
+        PyUnicode_Check(value) ? PyUnicode_AsUTF8AndSize(value, NULL) : "";
     if (!name)
         return false;
-    *to = f->value_of(name);
+    *to = find_enum(f, name);
     if (*to >= 0)
         return true;
-    PyErr_Format(PyExc_ValueError, "%s: there is no '%s'", f->name, name);
+    for (int n = 0, used = 0; n < ENUM_MOST && used < (int)sizeof known; n++)
+        if (f->name_of(n))
+            used += snprintf(known + used, sizeof known - (size_t)used, ", %s",
+                             f->name_of(n));
+    PyErr_Format(*name ? PyExc_ValueError : PyExc_TypeError,
+                 "%s: there is no %R; take one of %s", f->name, value,
+                 known + 2);
+    return false;
+}
+
+/* An exception of Python's own, which does not know what it is about. */
+static bool name_error(const field *f) {
+    PyObject *type, *value, *trace;
+    PyErr_Fetch(&type, &value, &trace);
+    PyErr_Format(type, "%s: %S", f->name, value);
+    Py_XDECREF(type);
+    Py_XDECREF(value);
+    Py_XDECREF(trace);
     return false;
 }
 
@@ -68,8 +100,7 @@ static bool set_field(const field *f, PyObject *value, void *record) {
     case 'i': {
         long number = PyLong_AsLong(value);
         if (!PyErr_Occurred() && number != (int)number)
-            PyErr_Format(PyExc_ValueError, "%s: %ld is out of range", f->name,
-                         number);
+            PyErr_Format(PyExc_ValueError, "%ld is out of range", number);
         *(int *)(void *)to = (int)number;
         break;
     }
@@ -96,7 +127,7 @@ static bool set_field(const field *f, PyObject *value, void *record) {
     default:
         return set_crop(value, (int64_t(*)[2])(void *)to);
     }
-    return !PyErr_Occurred();
+    return !PyErr_Occurred() || name_error(f);
 }
 
 bool record_has(PyObject *given, const char *name) {
@@ -138,21 +169,51 @@ static bool fill(PyObject *given, const field *fields, size_t count,
     return true;
 }
 
-#define FIELD(record, name, kind, of) \
-    { #name, kind, offsetof(record, name), of }
+#define FIELD(record, name, kind) \
+    { #name, kind, offsetof(record, name), NULL, NULL }
+#define ENUM(record, name, name_of, value_of) \
+    { #name, 'e', offsetof(record, name), name_of, value_of }
 
-static int shade_of(const char *name) {
-    return strcmp(name, "phong") == 0  ? SNOW_SHADE_PHONG
-           : strcmp(name, "none") == 0 ? SNOW_SHADE_NONE
-                                       : -1;
+/* Those of the library, by numbers. */
+#define NAMES_OF(what)                               \
+    static const char *what##_at(int n) {            \
+        return snow_##what##_name((snow_##what)(n)); \
+    }
+NAMES_OF(method)
+NAMES_OF(encoding)
+NAMES_OF(kernel)
+NAMES_OF(quality)
+NAMES_OF(isa)
+NAMES_OF(mode)
+
+static const char *type_at(int n) {
+    return n > SNOW_TYPE_NONE && n <= SNOW_TYPE_FLOAT64
+               ? snow_type_name((snow_type)n)
+               : NULL;
 }
 
-static int light_of(const char *name) {
-    return strcmp(name, "auto") == 0        ? SNOW_LIGHT_AUTO
-           : strcmp(name, "key") == 0       ? SNOW_LIGHT_KEY
-           : strcmp(name, "head") == 0      ? SNOW_LIGHT_HEAD
-           : strcmp(name, "direction") == 0 ? SNOW_LIGHT_DIRECTION
-                                            : -1;
+static const char *shade_at(int n) {
+    return n == SNOW_SHADE_PHONG  ? "phong"
+           : n == SNOW_SHADE_NONE ? "none"
+                                  : NULL;
+}
+
+static const char *light_at(int n) {
+    return n == SNOW_LIGHT_AUTO        ? "auto"
+           : n == SNOW_LIGHT_KEY       ? "key"
+           : n == SNOW_LIGHT_HEAD      ? "head"
+           : n == SNOW_LIGHT_DIRECTION ? "direction"
+                                       : NULL;
+}
+
+static const char *endian_at(int n) {
+    return n == SNOW_ENDIAN_LITTLE ? "little"
+           : n == SNOW_ENDIAN_BIG  ? "big"
+                                   : NULL;
+}
+
+static const char *domain_at(int n) {
+    return n == SNOW_DOMAIN_RANGE ? "range" : NULL;
 }
 
 static int type_of_name(const char *name) {
@@ -160,40 +221,35 @@ static int type_of_name(const char *name) {
     return type == SNOW_TYPE_NONE ? -1 : (int)type;
 }
 
-static int endian_of(const char *name) {
-    return strcmp(name, "little") == 0 ? SNOW_ENDIAN_LITTLE
-           : strcmp(name, "big") == 0  ? SNOW_ENDIAN_BIG
-                                       : -1;
-}
-
-#define SETTING(name, kind, of) FIELD(snow_settings, name, kind, of)
+#define SETTING(name, kind) FIELD(snow_settings, name, kind)
+#define CHOICE(name, value_of) ENUM(snow_settings, name, name##_at, value_of)
 static const field settings_fields[] = {
-    SETTING(threshold, 'd', NULL),
-    SETTING(method, 'e', snow_method_from_name),
-    SETTING(encoding, 'e', snow_encoding_from_name),
-    SETTING(kernel, 'e', snow_kernel_from_name),
-    SETTING(footprint, 'i', NULL),
-    SETTING(opacity_length, 'd', NULL),
-    SETTING(shade, 'e', shade_of),
-    SETTING(ambient, 'd', NULL),
-    SETTING(diffuse, 'd', NULL),
-    SETTING(specular, 'd', NULL),
-    SETTING(shininess, 'd', NULL),
-    SETTING(light_azimuth, 'd', NULL),
-    SETTING(light_elevation, 'd', NULL),
-    SETTING(quality, 'e', snow_quality_from_name),
-    SETTING(isa, 'e', snow_isa_from_name),
-    SETTING(threads, 'i', NULL),
-    SETTING(deterministic, 'b', NULL),
-    SETTING(mode, 'e', snow_mode_from_name),
-    SETTING(iso, 'd', NULL),
-    SETTING(depth, 'b', NULL),
-    SETTING(light, 'e', light_of),
-    SETTING(depth_darkening, 'd', NULL),
-    SETTING(occlusion, 'd', NULL),
+    SETTING(threshold, 'd'),
+    CHOICE(method, snow_method_from_name),
+    CHOICE(encoding, snow_encoding_from_name),
+    CHOICE(kernel, snow_kernel_from_name),
+    SETTING(footprint, 'i'),
+    SETTING(opacity_length, 'd'),
+    CHOICE(shade, NULL),
+    SETTING(ambient, 'd'),
+    SETTING(diffuse, 'd'),
+    SETTING(specular, 'd'),
+    SETTING(shininess, 'd'),
+    SETTING(light_azimuth, 'd'),
+    SETTING(light_elevation, 'd'),
+    CHOICE(quality, snow_quality_from_name),
+    CHOICE(isa, snow_isa_from_name),
+    SETTING(threads, 'i'),
+    SETTING(deterministic, 'b'),
+    CHOICE(mode, snow_mode_from_name),
+    SETTING(iso, 'd'),
+    SETTING(depth, 'b'),
+    CHOICE(light, NULL),
+    SETTING(depth_darkening, 'd'),
+    SETTING(occlusion, 'd'),
 };
 
-#define VIEW(name, kind) FIELD(snow_view, name, kind, NULL)
+#define VIEW(name, kind) FIELD(snow_view, name, kind)
 static const field view_fields[] = {
     VIEW(width, 'i'),     VIEW(height, 'i'),   VIEW(azimuth, 'd'),
     VIEW(elevation, 'd'), VIEW(roll, 'd'),     VIEW(zoom, 'd'),
@@ -201,24 +257,29 @@ static const field view_fields[] = {
     VIEW(upward, '3'),
 };
 
-#define OPTION(name, kind, of) FIELD(snow_volume_options, name, kind, of)
+#define OPTION(name, kind) FIELD(snow_volume_options, name, kind)
 static const field option_fields[] = {
-    OPTION(dims, 'n', NULL),         OPTION(type, 'e', type_of_name),
-    OPTION(endian, 'e', endian_of),  OPTION(spacing, '3', NULL),
-    OPTION(offset, 'u', NULL),       OPTION(time, 'l', NULL),
-    OPTION(crop, '6', NULL),         OPTION(channel, 'l', NULL),
-    OPTION(dataset, 's', NULL),      OPTION(series, 's', NULL),
-    OPTION(mask, 's', NULL),         OPTION(labels, 's', NULL),
-    OPTION(label_table, 's', NULL),  OPTION(component, 's', NULL),
-    OPTION(allow_gaps, 'b', NULL),   OPTION(each_time, 'b', NULL),
-    OPTION(each_channel, 'b', NULL), OPTION(levels, 'l', NULL),
+    OPTION(dims, 'n'),
+    ENUM(snow_volume_options, type, type_at, type_of_name),
+    ENUM(snow_volume_options, endian, endian_at, NULL),
+    OPTION(spacing, '3'),
+    OPTION(offset, 'u'),
+    OPTION(time, 'l'),
+    OPTION(crop, '6'),
+    OPTION(channel, 'l'),
+    OPTION(dataset, 's'),
+    OPTION(series, 's'),
+    OPTION(mask, 's'),
+    OPTION(labels, 's'),
+    OPTION(label_table, 's'),
+    OPTION(component, 's'),
+    OPTION(allow_gaps, 'b'),
+    OPTION(each_time, 'b'),
+    OPTION(each_channel, 'b'),
+    OPTION(levels, 'l'),
 };
 
-static int domain_of(const char *name) {
-    return strcmp(name, "range") == 0 ? SNOW_DOMAIN_RANGE : -1;
-}
-
-#define LOOK(name, kind) FIELD(snow_look, name, kind, NULL)
+#define LOOK(name, kind) FIELD(snow_look, name, kind)
 static const field look_fields[] = {
     LOOK(name, 's'),
     LOOK(preset, 's'),
@@ -228,7 +289,7 @@ static const field look_fields[] = {
     LOOK(log, 'b'),
     LOOK(per_mm, 'b'),
     LOOK(symlog, 'd'),
-    FIELD(snow_look, domain, 'e', domain_of),
+    ENUM(snow_look, domain, domain_at, NULL),
 };
 
 #define FILL(given, fields, record) \

@@ -45,6 +45,7 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
     """Any source as an array, and its place in the world."""
     import numpy
     values: Optional[str] = None
+    given_place = affine is not None
     if _is_nibabel(source):
         if affine is None and spacing is None:
             affine = _affine_in_mm(source)
@@ -61,11 +62,14 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
     elif hasattr(source, "attrs"):  # of HDF5, Zarr
         values = _text_of(source.attrs.get("units"))
     array = _to_array(source)
-    if axes is None and affine is not None and _is_fortran(array):
-        axes = "xyz"
-        warnings.warn("affine= with an array in Fortran order: its dimensions are "
-                      "taken for [x, y, z], as those of nibabel; axes= says so, "
-                      "or 'zyx'", _snowglass.SnowglassWarning, stacklevel=4)
+    if given_place and axes in (None, "xyz") and _is_fortran(array):
+        if axes is None:
+            warnings.warn("affine= with an array in Fortran order: its dimensions "
+                          "are taken for [x, y, z], and its world for a patient's, "
+                          "as nibabel has them; axes= says so, or 'zyx'",
+                          _snowglass.SnowglassWarning, stacklevel=4)
+        axes, unit = "xyz", "mm" if unit is None else unit
+        medical = True if medical is None else medical
     axes = axes or "zyx"
     if sorted(axes) != ["x", "y", "z"]:
         raise ValueError(f"axes '{axes}': give the order of the dimensions, "
@@ -254,8 +258,10 @@ def _plain_type(array: Any, copy: Optional[bool]) -> Any:
     if array.dtype == bool:
         return array.view(numpy.uint8)
     if array.dtype.kind not in "iuf" or array.dtype.itemsize > 8:
+        way = "give the path of its file, or one of its fields" \
+            if array.dtype.names else "convert it"
         raise TypeError(f"an array of {array.dtype}: volumes have integers or "
-                        f"floats of up to 64 bits; convert it")
+                        f"floats of up to 64 bits; {way}")
     wanted = array.dtype.newbyteorder("=")
     if wanted == numpy.float16:
         wanted = numpy.dtype(numpy.float32)
@@ -297,9 +303,12 @@ def _matrix(spacing: Any, affine: Any) -> Any:
         if matrix.shape != (4, 4):
             raise ValueError(f"affine of shape {matrix.shape}: it must be 4x4")
         return matrix
-    steps: Sequence[float] = (1, 1, 1) if spacing is None else \
-        (spacing,) * 3 if numpy.ndim(spacing) == 0 else spacing
-    if len(steps) != 3 or not all(float(step) > 0 for step in steps):
+    try:
+        steps = numpy.broadcast_to(
+            numpy.asarray(1 if spacing is None else spacing, float), 3)
+    except (TypeError, ValueError):
+        steps = numpy.zeros(3)
+    if not (steps > 0).all():
         raise ValueError(f"spacing {spacing!r}: give three lengths above 0, "
                          f"along x, y, z")
-    return numpy.diag([float(step) for step in steps] + [1.0])
+    return numpy.diag([*steps, 1.0])

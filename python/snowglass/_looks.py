@@ -50,6 +50,8 @@ class Look:
             if getattr(self, name) is not None:
                 raise TypeError(f"give {name} or {other}, not both")
             object.__setattr__(self, name, value)
+        for name in ("opacity", "gradient_opacity"):
+            _check_points(name, getattr(self, name))
         if self.symlog is not True and not 0 <= float(self.symlog) < math.inf:
             raise ValueError(f"symlog {self.symlog}: must be a magnitude above "
                              f"0, or True to have it chosen")
@@ -64,6 +66,14 @@ class Look:
                   "log": self.log, "low": low, "high": high,
                   "symlog": -1.0 if self.symlog is True else float(self.symlog)}
         return fields, kind, colors, self.opacity, self.gradient_opacity
+
+
+def _check_points(name: str, points: Any) -> None:
+    """Elsewhere there are names of ramps, and lists of opacities alone."""
+    if points is not None and (isinstance(points, str) or not all(
+            hasattr(point, "__len__") and len(point) == 2 for point in points)):
+        raise TypeError(f"{name} {points!r}: give points (value, {name}), such as "
+                        f"[(100, 0), (700, 0.8)]")
 
 
 def look_of(look: Union[Look, str, None]) -> Look:

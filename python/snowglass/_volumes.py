@@ -354,8 +354,8 @@ class Volume(_snowglass.Volume):
         progress      called as progress(stage, fraction), or True: printed
 
         Settings: quality ("draft", "normal", "high"), mode ("over", "mip",
-        "minip", "mean", "sum", "iso"), iso, method, threshold, shade ("phong",
-        "none"), ambient, diffuse, specular, shininess, depth, threads,
+        "minip", "mean", "sum", "iso"), iso, method, threshold, shade (True or
+        "phong", False or "none"), ambient, diffuse, specular, shininess, depth, threads,
         deterministic, depth_darkening, occlusion, opacity_length, kernel,
         encoding, footprint, isa.
 
@@ -368,6 +368,8 @@ class Volume(_snowglass.Volume):
             raise TypeError("background is an option of save: pictures are "
                             "transparent until then")
         look = _given_look(look, settings)
+        if isinstance(settings.get("shade"), bool):
+            settings["shade"] = "phong" if settings["shade"] else "none"
         mode = settings.get("mode") or "over"
         mixture = self._mixture(look, mode, settings)
         first: _snowglass.Volume = mixture.volumes[0] if mixture else self
@@ -641,8 +643,13 @@ def _sides(size: Any) -> tuple[int, int]:
     try:  # arrays have __index__ too, which fails
         return operator.index(size), operator.index(size)
     except TypeError:
+        pass
+    try:
         width, height = size
-    return operator.index(width), operator.index(height)
+        return operator.index(width), operator.index(height)
+    except (TypeError, ValueError):
+        raise ValueError(f"size {size!r}: give (width, height) in pixels, or one "
+                         f"number for both") from None
 
 
 def _set_light(light: Union[str, Sequence[float], None],

@@ -199,9 +199,42 @@ class Stumbles(InFolder):
                 (lambda: sg.Volume(ball(), voxel_size=1), "take one of spacing"),
                 (lambda: sg.Volume(ball(), dims=(1, 2, 3)), "for files only"),
                 (lambda: volume.render(color="red"), "take one of threshold"),
-                (lambda: volume.render(background="white"), "option of save")):
+                (lambda: volume.render(background="white"), "option of save"),
+                (lambda: volume.render(zoom="2"), "^zoom: must be"),
+                (lambda: volume.render(mode=3), "^mode: there is no 3; take one of"),
+                (lambda: volume.render(opacity="sigmoid"), r"'sigmoid': give points"),
+                (lambda: volume.render(opacity=[0, 0.5, 1]), "opacity .*give points"),
+                (lambda: sg.Volume(ball().astype([("red", "i2")])), "its fields")):
             with self.assertRaisesRegex(TypeError, answer):
                 call()
+
+    def test_a_wrong_value_is_answered_by_the_right_ones(self):
+        volume = sg.Volume(ball())
+        for call, answer in (
+                (lambda: volume.render(quality="ultra"),
+                 "'ultra'; take one of normal, draft, high$"),
+                (lambda: volume.render(shade="flat"), "take one of phong, none$"),
+                (lambda: volume.render(threads=2 ** 40), "^threads: 1099511627776"),
+                (lambda: sg.Volume("a.raw", type="int9"),
+                 "type: .*take one of int8, .*, float64$"),
+                (lambda: sg.Volume("a.raw", endian="x"), "take one of little, big$"),
+                (lambda: volume.render(size="10x10"), r"'10x10': give \(width"),
+                (lambda: volume.render(size=(10,)), r"\(10,\): give \(width"),
+                (lambda: sg.Volume(ball(), spacing="1,1,2"), "three lengths"),
+                (lambda: sg.Volume(ball(), spacing=(1, 2)), "three lengths"),
+                (lambda: sg.Volume(ball(), spacing=(1, 1, -1)), "three lengths")):
+            with self.assertRaisesRegex(ValueError, answer):
+                call()
+
+    def test_shade_is_a_name_or_a_truth(self):
+        volume = sg.Volume(ball().astype(float))
+        for shade, name in ((True, "phong"), (False, "none")):
+            made, named = (volume.render("ct-bone", shade=each)
+                           for each in (shade, name))
+            self.assertEqual(sg.compare(made, named).largest, 0)
+            self.assertEqual(made.recipe, named.recipe)
+        self.assertGreater(sg.compare(volume.render("ct-bone", shade=True),
+                                      made).largest, 0.01)
 
     def test_dimensions_of_one_are_left_out(self):
         for array in (ball()[None], ball()[None, None], ball()[..., None]):
@@ -225,6 +258,20 @@ class Stumbles(InFolder):
             warnings.simplefilter("error")
             self.assertEqual(sg.Volume(numpy.asfortranarray(array), affine=affine,
                                        axes="zyx").dims, array.shape[::-1])
+
+    @unittest.skipUnless(has("nibabel"), "nibabel is missing")
+    def test_data_and_affine_of_nibabel_are_its_image(self):
+        import nibabel
+        image = nibabel.Nifti1Image(ball().T, numpy.diag([0.7, 0.7, 1.25, 1]))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            apart = sg.Volume(image.get_fdata(), affine=image.affine, axes="xyz")
+        whole = sg.Volume(image)
+        for name in ("dims", "matrix", "medical", "unit"):
+            self.assertEqual(apart.info[name], whole.info[name], name)
+        plain = sg.Volume(image.get_fdata(), affine=image.affine, axes="xyz",
+                          medical=False, unit="um")
+        self.assertEqual((plain.info["medical"], plain.info["unit"]), (False, "um"))
 
     @unittest.skipUnless(has("xarray"), "xarray is missing")
     def test_xarray_with_time_and_units_of_all_kinds(self):
