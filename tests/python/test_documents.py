@@ -1,8 +1,10 @@
 """The blocks of docs/python.md run, one after the other; one that needs what is
-not there says so in its first line."""
+not there says so in its first line.  So does the program that it names."""
 import os
 import pathlib
 import re
+import subprocess
+import sys
 import tempfile
 import unittest
 import warnings
@@ -37,6 +39,14 @@ class Documents(unittest.TestCase):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             exec(compile(block, "python.md", "exec"), known)
+
+    @unittest.skipIf(os.environ.get("SNOW_SANITIZED"), "memory is not its own")
+    def test_overhead_is_measured(self):
+        program = pathlib.Path(__file__).with_name("overhead.py")
+        ended = subprocess.run([sys.executable, "-B", program, "--once"],
+                               capture_output=True, text=True)
+        self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+        self.assertEqual(ended.stdout.count("at most"), 4, ended.stdout)
 
 
 if __name__ == "__main__":
