@@ -31,10 +31,14 @@ done
 for function in $(sed -nE 's/^SNOW_API [^(]*\b(snow_[a-z0-9_]+)\(.*/\1/p' include/snowglass/*.h); do
     grep -q "id=\"$function\"" site/docs/c-api.html || lacking+=" $function"
 done
-for name in Volume.render Look Image.save compare series; do
+for name in Volume.render Look Image.save compare series Viewer.close insitu.Movie; do
     grep -q "<h[23] id=\"$(tr -d . <<<"${name,,}")\"" site/docs/python-api.html ||
         lacking+=" $name"
 done
+check "what only the package itself calls is no reference" [ -z "$(grep -E \
+    '<h[23] id="(wrapped|wrap|bundle|drawing)"' site/docs/python-api.html)" ]
+check "it says how a class is called" \
+    grep -q 'Volume(source: Any, \*, progress' site/docs/python-api.html
 check "references are whole${lacking:+, but for$lacking}" [ -z "$lacking" ]
 
 if command -v tidy >/dev/null; then
