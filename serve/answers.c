@@ -3,6 +3,7 @@
 #include "message.h"
 
 #include "commands/commands.h"
+#include "draw/mixed.h"
 #include "draw/pick.h"
 #include "draw/slices.h"
 #include "draw/small.h"
@@ -76,6 +77,21 @@ static const char *base_of(const char *path) {
     return slash ? slash + 1 : path;
 }
 
+/* A name that is not UTF-8 is none. */
+static json_t *channel_name(const snow_volume_info *info, int64_t index) {
+    json_t *name = index < SNOW_CHANNELS_MAX
+                       ? json_string(info->channel[index].name)
+                       : NULL;
+    return name ? name : json_string("");
+}
+
+static json_t *channel_names(const snow_volume_info *info) {
+    json_t *list = json_array();
+    for (int n = 0; n < info->channels && n < SNOW_CHANNELS_MAX; n++)
+        json_array_append_new(list, channel_name(info, n));
+    return list;
+}
+
 void answer_info(drawing *d, outbox *box) {
     const snow_volume_info *info = &d->state.whole;
     double middle[3], radius, ends[2], window[2];
@@ -99,6 +115,7 @@ void answer_info(drawing *d, outbox *box) {
     json_object_set_new(tree, "views", views(d));
     json_object_set_new(tree, "presets", presets());
     json_object_set_new(tree, "colormaps", names_of(snow_colormap_name));
+    json_object_set_new(tree, "channels", channel_names(info));
     json_object_set_new(tree, "tf", json_boolean(d->first.tf != NULL));
     json_object_set_new(tree, "mask", json_boolean(d->first.mask != NULL));
     json_object_set_new(tree, "overlay",
@@ -189,6 +206,29 @@ static json_t *overlay_look(const drawing *d) {
                      labels_of(transfer));
 }
 
+/* [[0, "DAPI", "blue", "#0000ff", 10, 200, 1], ...]: those that are drawn, with
+ * colour, range and opacity where they are mixed. */
+static json_t *channels_of(const drawing *d) {
+    const channel_set *c = &d->state.channels;
+    json_t *list = json_array();
+    for (int n = 0; n < mixed_count(d); n++) {
+        const channel_pick *pick = &c->list.picks[n];
+        const snow_transfer *look = n ? c->looks[n] : d->state.transfer;
+        const int64_t index = n ? pick->index : mixed_first(d);
+        double low, high, rgba[4];
+        char color[8];
+        snow_transfer_domain(look, &low, &high);
+        snow_transfer_evaluate(look, high, rgba);
+        write_color(rgba, color);
+        json_array_append_new(
+            list, json_pack("[I,o,s,s,f,f,f]", (json_int_t)index,
+                            channel_name(&d->state.whole, index),
+                            c->list.count ? pick->color : "", color, low, high,
+                            c->list.count ? pick->opacity : 1));
+    }
+    return list;
+}
+
 void answer_look(drawing *d, outbox *box) {
     const snow_transfer *transfer = d->state.transfer;
     snow_look look = {.size = sizeof look};
@@ -198,7 +238,7 @@ void answer_look(drawing *d, outbox *box) {
     snow_transfer_domain(transfer, &low, &high);
     put(box, 0, PARCEL_LOOK,
         json_pack(
-            "{s:s, s:f, s:f, s:I, s:o, s:o, s:o, s:s, s:b, s:o, s:o}", "t",
+            "{s:s, s:f, s:f, s:I, s:o, s:o, s:o, s:s, s:b, s:o, s:o, s:o}", "t",
             "look", "low", low, "high", high, "count",
             (json_int_t)look.opacity_count, "opacity",
             points_of(look.opacities, look.opacity_count), "gradient",
@@ -206,7 +246,8 @@ void answer_look(drawing *d, outbox *box) {
             "strip", strip_of(transfer, low, high), "text",
             snow_transfer_description(transfer), "shaded",
             d->state.settings.shade == SNOW_SHADE_PHONG, "labels",
-            labels_of(transfer), "overlay", overlay_look(d)));
+            labels_of(transfer), "overlay", overlay_look(d), "channels",
+            channels_of(d)));
 }
 
 void answer_figures(drawing *d, outbox *box) {

@@ -165,7 +165,7 @@ static int open_all(viewer *v) {
         snow_comm_set_timeout(comm, opts->timeout);
     int done = series_take(opts, verb_of(VERB_SERVE));
     if (done == CONTINUE)
-        done = settle_channels(opts, false);
+        done = settle_channels(opts, true);
     if (done == CONTINUE)
         done = look_load(opts); /* on every rank: the file is small */
     json_t *recipe = done == CONTINUE ? first_recipe(opts) : NULL;

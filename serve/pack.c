@@ -28,7 +28,7 @@ struct packer {
     pthread_mutex_t lock;
     pthread_cond_t changed;
     picture *waiting, *done;
-    bool ending, drafting; /* a draft is being packed */
+    bool ending, packing, drafting; /* the latter: a draft is packed */
     outbox *box;
     snow_context *context; /* the thread's own */
 };
@@ -247,11 +247,12 @@ static void *run(void *user) {
             continue;
         }
         p->waiting = NULL;
+        p->packing = true;
         p->drafting = next->level == 0;
         pthread_mutex_unlock(&p->lock);
         pack(p, next);
         pthread_mutex_lock(&p->lock);
-        p->drafting = false;
+        p->packing = p->drafting = false;
         next->next = p->done;
         p->done = next;
         pthread_cond_signal(&p->changed);
@@ -280,6 +281,12 @@ packer *packer_new(outbox *box) {
     return NULL;
 }
 
+static picture *take_done(packer *p) {
+    picture *done = p->done;
+    p->done = NULL;
+    return done;
+}
+
 picture *packer_put(packer *p, picture *made) {
     pthread_mutex_lock(&p->lock);
     if (p->waiting) {
@@ -287,8 +294,7 @@ picture *packer_put(packer *p, picture *made) {
         p->done = p->waiting;
     }
     p->waiting = made;
-    picture *done = p->done;
-    p->done = NULL;
+    picture *done = take_done(p);
     pthread_cond_signal(&p->changed);
     pthread_mutex_unlock(&p->lock);
     return done;
@@ -299,6 +305,15 @@ void packer_wait_for_draft(packer *p) {
     while (p->drafting || (p->waiting && p->waiting->level == 0))
         pthread_cond_wait(&p->changed, &p->lock);
     pthread_mutex_unlock(&p->lock);
+}
+
+picture *packer_wait(packer *p) {
+    pthread_mutex_lock(&p->lock);
+    while (p->packing || p->waiting)
+        pthread_cond_wait(&p->changed, &p->lock);
+    picture *done = take_done(p);
+    pthread_mutex_unlock(&p->lock);
+    return done;
 }
 
 picture *packer_end(packer *p) {

@@ -39,6 +39,10 @@ picture *packer_put(packer *p, picture *made);
  * processors, would delay it. */
 void packer_wait_for_draft(packer *p);
 
+/* Until all are packed, which are for the renderer to free: no picture before
+ * is then in its memory. */
+picture *packer_wait(packer *p);
+
 /* Packs a small picture at once, in the calling thread, which owns its context,
  * as JPEG or, if it is to be `exact`, as the PNG that the tool writes: a parcel
  * for pane and n of the page, or NULL. */

@@ -34,11 +34,8 @@ json_t *recipe_file_tree(const drawing *d) {
     static const char *const keys[] = {"input", "tf", "mask", "overlay"};
     static options opts; /* large; one thread draws */
     char beside[PATH_MAX + 8], folder[PATH_MAX];
-    opts = d->opts;
+    drawing_options(d, &opts);
     opts.output = NULL;
-    opts.quality = "high";
-    if (strcmp(opts.mode, "over") != 0)
-        layers_leave_out(&opts);
     json_t *tree = config_tree(&opts, verb_of(VERB_RENDER));
     if (!tree || strstr(opts.operands[0], "://"))
         return tree;

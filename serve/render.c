@@ -100,6 +100,8 @@ static int draw(renderer *r, int level) {
         SNOW_QUALITY_DRAFT, SNOW_QUALITY_NORMAL, SNOW_QUALITY_HIGH};
     snow_image *image;
     snow_overlay *overlay;
+    if (level > 0)
+        free_pictures(packer_wait(r->pack));
     double begin = seconds_now();
     int done =
         drawing_render(r->drawing, qualities[level], level ? 0 : r->shrink,

@@ -7,7 +7,6 @@
 #include "picture/annotations.h"
 #include "picture/channels.h"
 #include "picture/layers.h"
-#include "picture/light.h"
 #include "picture/outputs.h"
 #include "picture/render_stats.h"
 #include "picture/show.h"
@@ -225,28 +224,6 @@ static int open_slice(slice_work *w) {
 
 /* --- the picture ---------------------------------------------------------- */
 
-/* Their light is added up, as in a composite of Fiji. */
-static snow_status add_channels(slice_work *w) {
-    const channel_set *c = &w->channels;
-    snow_image *sum = NULL;
-    snow_status status =
-        light_add(w->context, w->image, c->list.picks[0].opacity, &sum);
-    for (int n = 1; n < c->list.count && status == SNOW_STATUS_OK; n++) {
-        snow_image_free(w->image);
-        w->image = NULL;
-        status = snow_slice_render(c->volumes[n], 0, c->looks[n], &w->view,
-                                   &w->settings, &w->image);
-        if (status == SNOW_STATUS_OK)
-            status =
-                light_add(w->context, w->image, c->list.picks[n].opacity, &sum);
-    }
-    if (sum)
-        light_limit(sum);
-    snow_image_free(w->image);
-    w->image = sum;
-    return status;
-}
-
 /* The view is that of the voxels that were read, since its zoom counts in their
  * size. */
 static snow_status draw(slice_work *w) {
@@ -262,7 +239,8 @@ static snow_status draw(slice_work *w) {
         status = snow_slice_render(w->volume, 0, w->transfer, &w->view,
                                    &w->settings, &w->image);
     if (status == SNOW_STATUS_OK && w->transfer && w->channels.list.count)
-        status = add_channels(w);
+        status = channels_add_slices(&w->channels, w->context, 0, &w->view,
+                                     &w->settings, &w->image);
     if (status == SNOW_STATUS_OK)
         status = layers_lay_slice(&w->opts, &w->layers, 0, &w->view,
                                   &w->settings, w->context, &w->image);

@@ -110,7 +110,7 @@ typedef struct options {
     int64_t channel;       /* the first of the list, or the only one */
     channel_list channels; /* none: all that the file shows, or the first */
     bool mixes;            /* the channels of the file are drawn together */
-    bool one_channel;      /* never, as in the viewer */
+    bool one_channel;      /* never: no picture is made */
     const char *component; /* NULL: not given */
     const char *dataset;   /* NULL: not given */
     const char *series;    /* NULL: not given */

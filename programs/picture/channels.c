@@ -256,6 +256,29 @@ snow_status channels_open(const options *opts, snow_context *context,
     return status;
 }
 
+/* Their light is added up, as in a composite of Fiji. */
+snow_status channels_add_slices(const channel_set *c, snow_context *context,
+                                int64_t index, const snow_view *view,
+                                const snow_settings *settings,
+                                snow_image **image) {
+    snow_image *sum = NULL;
+    snow_status status =
+        light_add(context, *image, c->list.picks[0].opacity, &sum);
+    for (int n = 1; n < c->list.count && status == SNOW_STATUS_OK; n++) {
+        snow_image_free(*image);
+        *image = NULL;
+        status = snow_slice_render(c->volumes[n], index, c->looks[n], view,
+                                   settings, image);
+        if (status == SNOW_STATUS_OK)
+            status = light_add(context, *image, c->list.picks[n].opacity, &sum);
+    }
+    if (sum)
+        light_limit(sum);
+    snow_image_free(*image);
+    *image = sum;
+    return status;
+}
+
 /* --- reports -------------------------------------------------------------- */
 
 void channels_describe(const channel_set *c, char *out, size_t size) {

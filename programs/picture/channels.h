@@ -47,6 +47,13 @@ snow_status channels_open(const options *opts, snow_context *context,
                           const char *path, bool in_file, uint64_t slab_bytes,
                           channel_set *c);
 
+/* Adds the light of their slices `index` to that of the first one, in its
+ * place. */
+snow_status channels_add_slices(const channel_set *c, snow_context *context,
+                                int64_t index, const snow_view *view,
+                                const snow_settings *settings,
+                                snow_image **image);
+
 /* "channels 0 DAPI blue 10..200, 1 GFP green 5..90". */
 void channels_describe(const channel_set *c, char *out, size_t size);
 

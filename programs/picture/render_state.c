@@ -534,11 +534,14 @@ static int take_figures(render_state *s) {
                                     : fail_status(s->context, status);
 }
 
-/* Other modes than over have none. */
+/* Other modes than over have none; a frame may have those of a picture before.
+ */
 static snow_status set_layers(render_state *s) {
     static const layers none;
+    static const channel_set alone;
     const bool over = s->settings.mode == SNOW_MODE_OVER;
-    return layers_set(over ? &s->layers : &none, &s->channels, s->frame);
+    return layers_set(over ? &s->layers : &none, over ? &s->channels : &alone,
+                      s->frame);
 }
 
 static snow_status begin_part(render_state *s) {
@@ -580,7 +583,7 @@ static snow_status project(render_state *s, snow_volume **volume,
 
 static snow_status project_channels(render_state *s) {
     snow_image *sum = NULL;
-    snow_status status = SNOW_STATUS_OK, added = SNOW_STATUS_OK;
+    snow_status status = set_layers(s), added = SNOW_STATUS_OK;
     for (int n = 0; n < s->channels.list.count && status == SNOW_STATUS_OK;
          n++) {
         snow_image_free(s->made);
@@ -598,12 +601,28 @@ static snow_status project_channels(render_state *s) {
     return status == SNOW_STATUS_OK ? added : status;
 }
 
+static snow_status draw_volume(render_state *s) {
+    if (is_sum_of_channels(s))
+        return project_channels(s);
+    snow_status status = set_layers(s);
+    return status == SNOW_STATUS_OK
+               ? snow_frame_render(s->frame, s->volume, s->transfer, &s->view,
+                                   &s->settings, &s->made)
+               : status;
+}
+
+/* What pictures before this one left in the frame has to go where the limit of
+ * memory is too low for both. */
 static snow_status draw_alone(render_state *s) {
     double before = snow_volume_read_seconds(s->volume);
-    snow_status status = set_layers(s);
-    if (status == SNOW_STATUS_OK)
-        status = snow_frame_render(s->frame, s->volume, s->transfer, &s->view,
-                                   &s->settings, &s->made);
+    snow_status status = draw_volume(s);
+    if (status == SNOW_STATUS_NO_MEMORY && s->drawn.path) {
+        snow_frame_free(s->frame);
+        s->frame = NULL;
+        status = snow_frame_new(s->context, &s->frame);
+        if (status == SNOW_STATUS_OK)
+            status = draw_volume(s);
+    }
     s->times.read += snow_volume_read_seconds(s->volume) - before;
     return status;
 }
@@ -622,9 +641,9 @@ int render_state_begin(render_state *s, double azimuth) {
     if (done != CONTINUE)
         return done;
     s->view.azimuth = azimuth;
-    status = is_sum_of_channels(s) ? project_channels(s)
-             : process_ranks() > 1 ? begin_part(s)
-                                   : draw_alone(s);
+    status = process_ranks() == 1    ? draw_alone(s)
+             : is_sum_of_channels(s) ? project_channels(s)
+                                     : begin_part(s);
     if (may_leave(s, status)) {
         options step = render_state_step(s, s->whole.time);
         done = leave_in_file(s, &step);
@@ -633,8 +652,7 @@ int render_state_begin(render_state *s, double azimuth) {
         if (done == CONTINUE)
             done = make_frame(s);
         if (done == CONTINUE)
-            status =
-                is_sum_of_channels(s) ? project_channels(s) : draw_alone(s);
+            status = draw_alone(s);
         else if (!may_drop(s, (snow_status)done))
             return done;
     }

@@ -1,6 +1,7 @@
 /* drawing.c - implements drawing.h over the tool's render_state. */
 #include "draw/drawing.h"
 #include "commands/commands.h"
+#include "draw/mixed.h"
 #include "draw/ranks.h"
 #include "draw/slices.h"
 #include "options/config.h"
@@ -16,8 +17,8 @@
 #include <string.h>
 
 /* What a volume is opened by, and what a look is made of besides. */
-static const char *const data_keys[] = {
-    "crop", "channel", "component", "labels", "clip", "time", "mask", NULL};
+static const char *const data_keys[] = {"crop", "component", "labels", "clip",
+                                        "time", "mask",      NULL};
 static const char *const base_keys[] = {
     "crop", "channel", "component", "labels", "time", "mask", NULL};
 static const char *const overlay_keys[] = {"overlay", "labels", "time", NULL};
@@ -26,7 +27,8 @@ static const char *const overlay_look_keys[] = {
     NULL};
 static const char *const look_keys[] = {
     "preset", "colormap", "log",   "symlog", "opacity", "gradient-opacity",
-    "range",  "window",   "level", "shift",  "mode",    NULL};
+    "range",  "window",   "level", "shift",  "mode",    "channel",
+    NULL};
 
 /* The smallest side of a draft that is drawn in a hurry. */
 #define SIDE_LEAST 64
@@ -49,6 +51,14 @@ void drawing_settle_overlay(const drawing *d, options *opts) {
     layers_leave_out(opts);
 }
 
+int drawing_settle_channels(options *opts) {
+    int done = settle_channels(opts, true);
+    opts->mixes = true; /* of the others the page tells */
+    if (opts->channels.count && channels_hinder(opts))
+        opts->channels.count = 0;
+    return done;
+}
+
 /* A preset that a page chose replaces the file of --tf. */
 static int make_options(drawing *d, const json_t *given, options *out) {
     json_t *recipe = json_copy((json_t *)given);
@@ -65,6 +75,8 @@ static int make_options(drawing *d, const json_t *given, options *out) {
     if (out->tf)
         out->loaded = d->first.loaded;
     drawing_settle_overlay(d, out);
+    if (done == CONTINUE)
+        done = drawing_settle_channels(out);
     return done == CONTINUE ? check_settings(out) : done;
 }
 
@@ -105,10 +117,13 @@ static int reopen(drawing *d) {
     snow_transfer_free(s->transfer);
     s->transfer = NULL;
     s->framed = false;
+    mixed_forget(d);
+    channels_close(&s->channels);
+    s->channels.chosen = false;
     int done = render_state_open(s, d->opts.operands[0], d->opts.time);
     d->look_is_new = d->volume_is_new = true;
     d->look_is_quick = false;
-    return done;
+    return done == CONTINUE ? mixed_note(d) : done;
 }
 
 static size_t count_clips(const snow_volume_options *data) {
@@ -120,43 +135,67 @@ static size_t count_clips(const snow_volume_options *data) {
     return count;
 }
 
-/* The volume without clip planes: the one that was shown before there were any,
- * or opened once; NULL where it stays in its file, or does not fit. */
-static snow_volume *base_of(drawing *d) {
-    snow_volume_options data = data_options(&d->opts);
-    memset(data.clip, 0, sizeof data.clip);
-    if (d->base || d->state.plan.streams)
-        return d->base;
-    if (d->plain_key && d->base_key && !strcmp(d->plain_key, d->base_key)) {
-        d->base = d->state.volume;
-        d->state.volume = NULL;
-        take_key(&d->plain_key, NULL);
+static void close_bases(drawing *d) {
+    for (int n = 0; n < SNOW_CHANNELS_MAX; n++) {
+        snow_volume_close(d->base[n]);
+        d->base[n] = NULL;
     }
-    if (d->base)
-        return d->base;
-    if (snow_volume_open(d->state.context, d->opts.operands[0], &data,
-                         &d->base) != SNOW_STATUS_OK)
-        d->base = NULL;
-    return d->base;
 }
 
-/* Where clip planes move, the volume without them is kept, and read only once.
- * What needs more memory than there is, stays in its file or is that of many
- * ranks is opened as ever. */
+static snow_status open_base(drawing *d, int n) {
+    const channel_list *list = &d->state.channels.list;
+    snow_volume_options data = list->count
+                                   ? channels_data(&d->opts, &list->picks[n])
+                                   : data_options(&d->opts);
+    memset(data.clip, 0, sizeof data.clip);
+    return snow_volume_open(d->state.context, d->opts.operands[0], &data,
+                            &d->base[n]);
+}
+
+/* The volumes without clip planes: those that were shown before there were any,
+ * or opened once; false where they stay in their file, or do not fit. */
+static bool find_bases(drawing *d) {
+    snow_status status = SNOW_STATUS_OK;
+    if (d->base[0] || d->state.plan.streams)
+        return d->base[0];
+    if (d->plain_key && d->base_key && !strcmp(d->plain_key, d->base_key)) {
+        for (int n = 0; n < mixed_count(d); n++) {
+            d->base[n] = *mixed_volume(d, n);
+            *mixed_volume(d, n) = NULL;
+        }
+        take_key(&d->plain_key, NULL);
+        return true;
+    }
+    for (int n = 0; n < mixed_count(d) && status == SNOW_STATUS_OK; n++)
+        status = open_base(d, n);
+    if (status != SNOW_STATUS_OK)
+        close_bases(d);
+    return status == SNOW_STATUS_OK;
+}
+
+/* Where clip planes move, the volumes without them are kept, and read only
+ * once. What needs more memory than there is, stays in its file or is that of
+ * many ranks is opened as ever. */
 static bool reclip(drawing *d) {
     render_state *s = &d->state;
     snow_volume_options data = data_options(&d->opts);
     size_t count = count_clips(&data);
-    snow_volume *made = NULL, *base;
+    snow_volume *made[SNOW_CHANNELS_MAX] = {NULL};
+    bool all = true;
     if (process_ranks() > 1 || !s->volume || !count || data.mask ||
-        !(base = base_of(d)))
+        !find_bases(d))
         return false;
-    if (snow_volume_clip(base, d->opts.clip[0], count, &made) != SNOW_STATUS_OK)
-        return false;
-    snow_volume_close(s->volume);
-    s->volume = made;
-    s->whole = *snow_volume_get_info(made);
-    return true;
+    for (int n = 0; n < mixed_count(d); n++)
+        all = all && snow_volume_clip(d->base[n], d->opts.clip[0], count,
+                                      &made[n]) == SNOW_STATUS_OK;
+    for (int n = 0; n < mixed_count(d); n++) {
+        snow_volume **shown = mixed_volume(d, n);
+        snow_volume_close(all ? *shown : made[n]);
+        *shown = all ? made[n] : *shown;
+    }
+    if (all)
+        s->whole = *snow_volume_get_info(s->volume);
+    return all;
 }
 
 bool drawing_is_clipped(const drawing *d) {
@@ -164,17 +203,24 @@ bool drawing_is_clipped(const drawing *d) {
     return count_clips(&data) > 0;
 }
 
-const snow_volume *drawing_unclipped(drawing *d) {
-    const snow_volume *base = drawing_is_clipped(d) ? base_of(d) : NULL;
-    return base ? base : d->state.volume;
+snow_volume *drawing_unclipped(drawing *d, int n) {
+    return drawing_is_clipped(d) && find_bases(d) ? d->base[n]
+                                                  : *mixed_volume(d, n);
 }
 
 /* Forgets the volume without clip planes where another is meant, or none. */
 static void drop_base(drawing *d, char *key) {
-    if (take_key(&d->base_key, key)) {
-        snow_volume_close(d->base);
-        d->base = NULL;
-    }
+    if (take_key(&d->base_key, key))
+        close_bases(d);
+}
+
+/* What the volumes without clip planes are made of. */
+static char *base_key_of(const drawing *d, const json_t *recipe) {
+    json_t *tree = json_copy((json_t *)recipe);
+    json_object_set_new(tree, "channel", mixed_tree(d));
+    char *key = key_of(tree, base_keys);
+    json_decref(tree);
+    return key;
 }
 
 snow_status drawing_new_transfer(drawing *d, const snow_look *look,
@@ -193,6 +239,8 @@ static snow_comm *comm_of_all(void) {
 static int restyle(drawing *d) {
     snow_transfer *made = NULL;
     snow_look look = look_options(&d->opts);
+    if (d->state.channels.list.count)
+        return mixed_restyle(d);
     snow_status status = drawing_new_transfer(d, &look, &made);
     if (status != SNOW_STATUS_OK)
         return fail_status(d->state.context, status);
@@ -209,7 +257,8 @@ static int restyle(drawing *d) {
 static bool restyle_quickly(drawing *d) {
     snow_transfer *made = NULL, *before = d->state.transfer;
     snow_look base = {.size = sizeof base}, look = look_options(&d->opts);
-    if (!before || snow_transfer_label(before, 0) ||
+    if (!before || d->state.channels.list.count ||
+        snow_transfer_label(before, 0) ||
         snow_transfer_get_look(before, &base) != SNOW_STATUS_OK ||
         base.symlog > 0)
         return false;
@@ -252,6 +301,11 @@ static int open_overlay(drawing *d) {
     return process_agree(done);
 }
 
+/* The look whose visible part is framed; NULL: the whole box is. */
+static const snow_transfer *framed_by(const drawing *d) {
+    return d->state.channels.list.count > 1 ? NULL : d->state.transfer;
+}
+
 /* As render_state_open does. */
 static int place(drawing *d) {
     render_state *s = &d->state;
@@ -264,7 +318,7 @@ static int place(drawing *d) {
     render_state_choose_shade(s);
     if (strcmp(d->opts.fit, "visible") != 0)
         return CONTINUE;
-    snow_status status = snow_view_fit(comm_of_all(), s->volume, s->transfer,
+    snow_status status = snow_view_fit(comm_of_all(), s->volume, framed_by(d),
                                        &s->settings, NULL, 0, &s->view);
     return status == SNOW_STATUS_OK ? CONTINUE
                                     : fail_status(s->context, status);
@@ -278,8 +332,17 @@ static void forget(drawing *d) {
     free(d->plain_key);
     free(d->overlay_key);
     free(d->overlay_look_key);
+    mixed_forget(d);
+    d->shown.count = 0;
     d->data_key = d->look_key = d->color_key = d->plain_key = NULL;
     d->overlay_key = d->overlay_look_key = NULL;
+}
+
+/* What pictures before left in it has to go before more is opened where there
+ * is little memory. */
+static void drop_frame(drawing *d) {
+    snow_frame_free(d->state.frame);
+    d->state.frame = NULL;
 }
 
 static int apply(drawing *d, const json_t *recipe) {
@@ -288,18 +351,28 @@ static int apply(drawing *d, const json_t *recipe) {
         return done;
     json_decref(d->tree);
     d->tree = json_deep_copy(recipe);
-    bool other_data = take_key(&d->data_key, key_of(recipe, data_keys));
+    bool anew, rearranged;
+    done = process_agree(mixed_follow(d, &anew, &rearranged));
+    if (done != CONTINUE) {
+        forget(d);
+        return done;
+    }
+    bool other_data = take_key(&d->data_key, key_of(recipe, data_keys)) || anew;
     bool other_look = take_key(&d->look_key, key_of(recipe, look_keys));
     bool other_colors = take_key(&d->color_key, color_key_of(recipe));
     bool overlaid = drop_overlay(d, recipe, other_data);
     bool clips = json_object_get(recipe, "clip") != NULL;
-    if (other_data)
+    if (other_data || rearranged)
         slices_forget(d);
-    drop_base(d, clips ? key_of(recipe, base_keys) : NULL);
-    bool clipped = other_data && reclip(d);
-    if ((other_data && !clipped) || !d->state.volume) {
+    if (d->state.plan.streams && (other_data || other_look || overlaid))
+        drop_frame(d);
+    anew |= other_look && d->state.channels.list.count && process_ranks() > 1;
+    drop_base(d, clips ? base_key_of(d, recipe) : NULL);
+    if (other_data)
+        mixed_forget(d);
+    bool clipped = other_data && !anew && reclip(d);
+    if (anew || (other_data && !clipped) || !d->state.volume) {
         done = reopen(d);
-        take_key(&d->plain_key, clips ? NULL : key_of(recipe, base_keys));
     } else {
         if (clipped || !d->state.transfer ||
             (other_look && (other_colors || !restyle_quickly(d))))
@@ -307,6 +380,7 @@ static int apply(drawing *d, const json_t *recipe) {
         if (done == CONTINUE)
             done = open_overlay(d);
     }
+    take_key(&d->plain_key, clips ? NULL : base_key_of(d, recipe));
     d->look_is_new |= overlaid;
     if (done == CONTINUE)
         done = place(d);
@@ -334,8 +408,9 @@ int drawing_open(const options *first, json_t *recipe, drawing *out) {
 }
 
 void drawing_close(drawing *d) {
-    snow_volume_close(d->base);
+    close_bases(d);
     snow_transfer_free(d->slice_look);
+    channels_close(&d->slice_channels);
     layers_close(&d->slice_layers);
     slices_forget(d);
     render_state_free(&d->state);
@@ -356,7 +431,7 @@ json_t *drawing_fit(drawing *d) {
     render_state *s = &d->state;
     snow_view view = s->view;
     const double margin = render_state_margin(&d->opts);
-    const snow_transfer *seen = margin < 1 ? NULL : s->transfer;
+    const snow_transfer *seen = margin < 1 ? NULL : framed_by(d);
     double azimuths[TURN_SIDES], radius;
     ranks_tell(d, RANKS_FIT, NULL);
     if (view.has_position)
@@ -426,9 +501,11 @@ static int annotate(drawing *d, const paint_given *painted,
 
 static int draw(drawing *d, snow_image **image, paint_given *painted) {
     render_state *s = &d->state;
+    const int channels = s->channels.list.count;
     s->fault = 0;
     s->left = PICTURES_LEFT;
     int done = render_state_draw(s, s->view.azimuth, image);
+    d->look_is_new |= s->channels.list.count != channels; /* some gave way */
     if (done != CONTINUE)
         return done;
     done =
@@ -482,17 +559,22 @@ void drawing_name_output(const char *input, const char *slice, char out[100]) {
                  *slice ? "-" : "", slice);
 }
 
+void drawing_options(const drawing *d, options *out) {
+    *out = d->opts;
+    out->quality = "high";
+    if (strcmp(out->mode, "over") != 0)
+        layers_leave_out(out);
+    mixed_settle(d, out);
+}
+
 char *drawing_command(const drawing *d, unsigned verb) {
     static options opts; /* large; one thread draws */
     char output[100];
-    opts = d->opts;
+    drawing_options(d, &opts);
     drawing_name_output(opts.operands[0], "", output);
     if (verb == VERB_TURNTABLE)
         memcpy(strrchr(output, '.'), ".mp4", 4);
     opts.output = output;
-    opts.quality = "high";
-    if (strcmp(opts.mode, "over") != 0)
-        layers_leave_out(&opts);
     json_t *tree = config_tree(&opts, verb_of(verb));
     if (!tree)
         return NULL;

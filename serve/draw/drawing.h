@@ -12,9 +12,19 @@
 #include <jansson.h>
 
 typedef struct kept_slice {
-    snow_volume *volume; /* or NULL */
+    snow_volume *volumes[SNOW_CHANNELS_MAX]; /* of each channel; or NULL */
     int64_t index;
 } kept_slice;
+
+typedef struct kept_channel {
+    snow_volume *volume; /* or NULL */
+    int64_t index;
+} kept_channel;
+
+typedef struct shown_channels {
+    int64_t index[SNOW_CHANNELS_MAX];
+    int count;
+} shown_channels;
 
 typedef struct drawing {
     options first; /* as of the command line */
@@ -24,15 +34,18 @@ typedef struct drawing {
     char *data_key, *look_key; /* what volume and look were made of */
     char *color_key;           /* and the look's colours, while points move */
     bool look_is_quick;        /* its colours are those of the look before */
-    snow_volume *base; /* the volume without clip planes, while these move; or
-                          NULL */
-    char *base_key;    /* what it was made of */
-    char *plain_key;   /* the same of the volume that is shown, where it has no
-                          clip planes */
+    shown_channels shown;      /* the numbers of what is drawn (mixed.h) */
+    kept_channel away[SNOW_CHANNELS_MAX]; /* what was switched off */
+    snow_volume *base[SNOW_CHANNELS_MAX]; /* each without clip planes, while
+                                             these move; or NULL */
+    char *base_key;                       /* what they were made of */
+    char *plain_key; /* the same of the volume that is shown, where it has no
+                        clip planes */
     bool volume_is_new, look_is_new; /* since the caller last looked */
     bool live; /* a simulation draws it: nothing but grid and look is known */
     snow_transfer *slice_look;            /* of the last slice (slices.h) */
-    char *slice_key;                      /* what it was made of */
+    channel_set slice_channels;           /* and of its channels */
+    char *slice_key;                      /* what they were made of */
     char *overlay_key, *overlay_look_key; /* of the overlay: file; look */
     layers slice_layers;                  /* the overlay where slices lie */
     kept_slice kept[3]; /* the last slice across each axis of the grid, of a
@@ -56,9 +69,16 @@ void drawing_settle_overlay(const drawing *d, options *opts);
 /* Whether clip planes cut the volume. */
 bool drawing_is_clipped(const drawing *d);
 
-/* The volume as it is without clip planes; as it is with them, where that
- * cannot be had.  Not for many ranks, which have parts. */
-const snow_volume *drawing_unclipped(drawing *d);
+/* The volume, or its n-th channel, as it is without clip planes; as it is with
+ * them, where that cannot be had.  Not for many ranks, which have parts. */
+snow_volume *drawing_unclipped(drawing *d, int n);
+
+/* The options of the present recipe, as a command of render needs them. */
+void drawing_options(const drawing *d, options *out);
+
+/* Options as recipes have them: which channels are meant.  Those of a list give
+ * way to its first one where they cannot be mixed. */
+int drawing_settle_channels(options *opts);
 
 /* The middle of the volume, and from there to its farthest corner: what zoom 1
  * shows (snowglass/view.h). */

@@ -1,6 +1,7 @@
 /* slices.c - implements slices.h by the functions of the verb slice. */
 #include "draw/slices.h"
 #include "commands/commands.h"
+#include "draw/mixed.h"
 #include "options/config.h"
 #include "run/log.h"
 #include "run/start.h"
@@ -84,6 +85,19 @@ json_t *slices_info(drawing *d) {
 
 /* --- what is asked, as options of the verb slice ------------------------- */
 
+/* Channels are mixed where the colours of the look are asked. */
+static void take_channels(const drawing *d, const slice_asked *asked,
+                          json_t *tree) {
+    char text[1024];
+    const bool mixed = mixed_text(d, text, sizeof text);
+    if (d->state.whole.channels < 2 && !mixed)
+        return;
+    if (!mixed || !asked->colored)
+        snprintf(text, sizeof text, "%lld", (long long)mixed_first(d));
+    if (!json_object_get(tree, "component"))
+        json_object_set_new(tree, "channel", json_string(text));
+}
+
 /* The recipe of a slice: of the data what the volume has, but no clip planes;
  * of the look its colours alone. */
 static json_t *slice_tree(const drawing *d, const slice_asked *asked) {
@@ -103,6 +117,7 @@ static json_t *slice_tree(const drawing *d, const slice_asked *asked) {
     json_object_set_new(tree, "range",
                         json_pack("[f,f]", asked->low, asked->high));
     json_object_set_new(tree, "no-labels", json_true());
+    take_channels(d, asked, tree);
     return tree;
 }
 
@@ -117,22 +132,41 @@ static int slice_options(const drawing *d, json_t *tree, options *out) {
     if (out->tf)
         out->loaded = d->first.loaded;
     drawing_settle_overlay(d, out);
+    if (done == CONTINUE)
+        done = drawing_settle_channels(out);
     return done == CONTINUE ? check_look(out) : done;
+}
+
+static snow_status open_looks(drawing *d, const options *opts,
+                              snow_volume *const *volumes) {
+    channel_set *c = &d->slice_channels;
+    snow_status status = SNOW_STATUS_OK;
+    for (int n = 0; n < c->list.count && status == SNOW_STATUS_OK; n++)
+        status = channels_look(NULL, opts, snow_volume_get_info(volumes[n]),
+                               &c->list.picks[n], volumes[n],
+                               n ? &c->looks[n] : &d->slice_look);
+    return status;
 }
 
 /* Makes the look of slices anew where another is meant. */
 static int restyle(drawing *d, const options *opts, const json_t *tree,
-                   const snow_volume *volume) {
+                   snow_volume *const *volumes) {
     char *key = json_dumps(tree, JSON_COMPACT | JSON_SORT_KEYS);
     if (key && d->slice_key && strcmp(key, d->slice_key) == 0) {
         free(key);
         return CONTINUE;
     }
     snow_transfer_free(d->slice_look);
+    channels_close(&d->slice_channels);
     free(d->slice_key);
     d->slice_look = NULL;
     d->slice_key = key;
-    return open_look(d->state.context, opts, volume, &d->slice_look);
+    d->slice_channels.list = opts->channels;
+    if (!opts->channels.count)
+        return open_look(d->state.context, opts, volumes[0], &d->slice_look);
+    snow_status status = open_looks(d, opts, volumes);
+    return status == SNOW_STATUS_OK ? CONTINUE
+                                    : fail_status(d->state.context, status);
 }
 
 /* --- the picture ---------------------------------------------------------- */
@@ -142,34 +176,49 @@ static bool has_all(const drawing *d) {
     return process_ranks() == 1 && snow_volume_voxels(d->state.volume);
 }
 
+static void forget_slice(kept_slice *kept) {
+    for (int n = 0; n < SNOW_CHANNELS_MAX; n++)
+        snow_volume_close(kept->volumes[n]);
+    *kept = (kept_slice){.index = 0};
+}
+
 void slices_forget(drawing *d) {
-    for (int i = 0; i < 3; i++) {
-        snow_volume_close(d->kept[i].volume);
-        d->kept[i].volume = NULL;
-    }
+    for (int i = 0; i < 3; i++)
+        forget_slice(&d->kept[i]);
+}
+
+/* One channel of a slice. */
+static int open_kept(drawing *d, const options *given, kept_slice *kept,
+                     int n) {
+    static options opts; /* large; one thread draws */
+    opts = *given;
+    if (opts.channels.count)
+        opts.channel = opts.channels.picks[n].index;
+    return kept->volumes[n] ? CONTINUE
+                            : open_input(d->state.context, &opts,
+                                         opts.operands[0], &kept->volumes[n]);
 }
 
 /* A volume that stays in its file, or of which ranks have parts, is opened
  * again, cropped to the slice, which is then its first.  It is kept: the
  * picture at rest and the value where slices cross need it too. */
 static int open_slice(drawing *d, options *opts, int along, int64_t *index,
-                      const snow_volume **out) {
+                      snow_volume *out[SNOW_CHANNELS_MAX]) {
     kept_slice *kept = &d->kept[along];
-    const int64_t wanted = *index;
-    *out = has_all(d) ? drawing_unclipped(d) : kept->volume;
-    if (has_all(d))
-        return CONTINUE;
-    *index = 0;
-    if (kept->volume && kept->index == wanted)
-        return CONTINUE;
+    const int count = opts->channels.count ? opts->channels.count : 1;
+    const bool here = has_all(d);
     int64_t *crop = opts->crop[along];
-    crop[0] += wanted;
-    crop[1] = crop[0] + 1;
-    snow_volume_close(kept->volume);
-    *kept = (kept_slice){.index = wanted};
-    int done =
-        open_input(d->state.context, opts, opts->operands[0], &kept->volume);
-    *out = kept->volume;
+    int done = CONTINUE;
+    if (!here && kept->index != *index)
+        forget_slice(kept);
+    crop[0] += here ? 0 : *index;
+    crop[1] = here ? crop[1] : crop[0] + 1;
+    kept->index = *index;
+    for (int n = 0; n < count && done == CONTINUE; n++) {
+        done = here ? CONTINUE : open_kept(d, opts, kept, n);
+        out[n] = here ? drawing_unclipped(d, n) : kept->volumes[n];
+    }
+    *index = here ? *index : 0;
     return done;
 }
 
@@ -188,8 +237,10 @@ static int open_overlay(drawing *d, const options *opts,
 
 /* The view is that of the voxels that are there, since its zoom counts in their
  * size. */
-static int draw(drawing *d, const snow_volume *volume, const char *axis,
+static int draw(drawing *d, snow_volume *const *volumes, const char *axis,
                 int64_t index, const options *opts, snow_image **image) {
+    channel_set channels = d->slice_channels;
+    const snow_volume *volume = volumes[0];
     const layers *overlay;
     snow_settings settings;
     snow_view view;
@@ -202,6 +253,11 @@ static int draw(drawing *d, const snow_volume *volume, const char *axis,
     if (status == SNOW_STATUS_OK)
         status = snow_slice_render(volume, index, d->slice_look, &view,
                                    &settings, image);
+    if (status == SNOW_STATUS_OK && channels.list.count) {
+        memcpy(channels.volumes, volumes, sizeof channels.volumes);
+        status = channels_add_slices(&channels, d->state.context, index, &view,
+                                     &settings, image);
+    }
     if (status == SNOW_STATUS_OK) {
         int done = open_overlay(d, opts, volume, &overlay);
         if (done != CONTINUE)
@@ -229,7 +285,7 @@ static int check_slice(drawing *d, const slice_asked *asked, int *along) {
 int slices_draw(drawing *d, const slice_asked *asked, snow_image **image,
                 snow_image_options *form) {
     static options opts; /* large; one thread draws */
-    const snow_volume *volume = NULL;
+    snow_volume *volumes[SNOW_CHANNELS_MAX] = {NULL};
     int64_t index = asked->index;
     int along;
     *image = NULL;
@@ -239,11 +295,11 @@ int slices_draw(drawing *d, const slice_asked *asked, snow_image **image,
     json_t *tree = slice_tree(d, asked);
     done = slice_options(d, tree, &opts);
     if (done == CONTINUE)
-        done = open_slice(d, &opts, along, &index, &volume);
+        done = open_slice(d, &opts, along, &index, volumes);
     if (done == CONTINUE)
-        done = restyle(d, &opts, tree, volume);
+        done = restyle(d, &opts, tree, volumes);
     if (done == CONTINUE)
-        done = draw(d, volume, asked->axis, index, &opts, image);
+        done = draw(d, volumes, asked->axis, index, &opts, image);
     if (done != CONTINUE) {
         snow_image_free(*image);
         *image = NULL;
@@ -301,24 +357,24 @@ static double value_at(const snow_volume *volume, const int64_t at[3]) {
 static double value_in_file(drawing *d, const int64_t at[3]) {
     static options opts; /* large; one thread draws */
     const slice_asked any = {.low = 0, .high = 1};
-    const snow_volume *volume = NULL;
+    snow_volume *volumes[SNOW_CHANNELS_MAX];
     int64_t within[3] = {at[0], at[1], at[2]};
     int along = 2, done = CONTINUE;
     for (int i = 0; i < 3; i++) {
         if (at[i] < 0 || at[i] >= d->state.whole.dims[i])
             return NAN;
-        if (d->kept[i].volume && d->kept[i].index == at[i])
+        if (d->kept[i].volumes[0] && d->kept[i].index == at[i])
             along = i;
     }
     json_t *tree = slice_tree(d, &any);
     done = slice_options(d, tree, &opts);
     json_decref(tree);
     if (done == CONTINUE)
-        done = open_slice(d, &opts, along, &within[along], &volume);
-    return done == CONTINUE ? value_at(volume, within) : NAN;
+        done = open_slice(d, &opts, along, &within[along], volumes);
+    return done == CONTINUE ? value_at(volumes[0], within) : NAN;
 }
 
 double slices_value(drawing *d, const int64_t at[3]) {
-    return has_all(d) ? value_at(drawing_unclipped(d), at)
+    return has_all(d) ? value_at(drawing_unclipped(d, 0), at)
                       : value_in_file(d, at);
 }

@@ -10,7 +10,8 @@ import tempfile
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from viewer_client import TOOL, Page, Server, check, finish
+from viewer_client import TOOL, Page, Server, check, finish, slice_is_of_command, \
+    write_channels
 
 RANKS = 3
 MANY = (sys.argv[2], "-n", str(RANKS), sys.argv[3])
@@ -110,6 +111,29 @@ STATES = ({"size": [SIDE, SIDE]},
           {"clip": None, "preset": None, "mode": "mip", "crop": [
               [10, 50], [0, 40], [5, 40]]},
           {"crop": None, "mode": "minip"})
+
+
+MIXES = ({"size": [SIDE, SIDE]}, {"channel": "2:red:20..900,0:0.5"},
+         {"channel": "1"}, {"channel": None, "clip": [[1, 0, 0, 8]]},
+         {"mode": "mip"})
+
+
+def channels():
+    """Channels are mixed by all ranks, and slices by the first one."""
+    place = os.path.join(FOLDER.name, "told.zarr")
+    write_channels(place, True)
+    many = Server(place, "-q", "--deterministic", tool=MANY)
+    atexit.register(many.process.kill)
+    page = Page(many)
+    for n, state in enumerate(MIXES, 2):
+        shown = at_rest(page, n, state)
+        check(f"channels {n} are the picture of their command",
+              shown == by_command(command_of(page)), state)
+    for colored in True, False:
+        slice_is_of_command(page, f"a slice, colored: {colored}", axis="z",
+                            index=11, colored=colored)
+    many.process.send_signal(signal.SIGTERM)
+    many.process.communicate(timeout=60)
 
 
 def same_as_one(exact):
@@ -259,6 +283,7 @@ def refused():
 refused()
 same_as_one(True)
 same_as_one(False)
+channels()
 newest_and_rest()
 histogram_in_place()
 lost_rank()

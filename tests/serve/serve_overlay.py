@@ -1,13 +1,13 @@
 """Overlays in the viewer: pictures and slices are those of their commands."""
 import os
-import shlex
 import struct
 import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from viewer_client import TOOL, Page, Server, check, finish
+from viewer_client import (TOOL, Page, Server, check, finish, is_of_command,
+                           slice_is_of_command)
 
 FOLDER = tempfile.TemporaryDirectory()
 os.chdir(FOLDER.name)
@@ -60,58 +60,29 @@ write_npy("v.npy", DIMS, density)
 write_npy("l.npy", DIMS, label)
 
 
-def run(text):
-    words = shlex.split(text)
-    words[0] = TOOL
-    words[words.index("--output") + 1] = "again.png"
-    done = subprocess.run([*words, "-y", "-q"], capture_output=True, text=True)
-    return open("again.png", "rb").read() if done.returncode == 0 else \
-        done.stderr.encode()
-
-
-def command_of(page, what, **asked):
-    page.say({"t": "ask", "what": what, **asked})
-    return page.hear_text("command")["text"]
-
-
-def is_of_command(page, name, n, **recipe):
-    page.say({"t": "set", "n": n, "recipe": recipe})
-    shown, command = page.hear_picture(2, n), command_of(page, "command")
-    made = run(command)
-    check(name, shown == made, f"{command} {made[:200]}")
-    return shown
-
-
-def slice_is_of_command(page, name, **asked):
-    page.say({"t": "ask", "what": "slice", "pane": 2, "n": 7, "exact": True,
-              "range": [0, 255], **asked})
-    shown = None
-    while shown is None:
-        what, message = page.hear()
-        if what == "closed" or (what == "text" and message["t"] == "slice"):
-            shown = b""
-        if what == "picture" and message[10] == 2:
-            shown = message[32:]
-        elif what == "picture":
-            page.say({"t": "ack", "n": 0})
-    command = command_of(page, "slice-command", range=[0, 255], **asked)
-    made = run(command)
-    check(name, shown == made, f"{command} {len(shown)} {made[:200]}")
-    return shown
-
-
-def small_memory():
-    """The volume is in memory, then leaves it for its file."""
+def small_memory(limit):
+    """The volume is in memory, then leaves it for its file; what drafts leave in
+    memory gives way to the picture at rest."""
     server = Server("ct.nrrd", "--overlay", "turned.nrrd", "-q", "-j", "2",
-                    "--memory", "8M")
+                    "--memory", limit)
     page = Page(server)
-    first = is_of_command(page, "a picture in 8M", 1, size=[120, 100])
+    first = is_of_command(page, f"a picture in {limit}", 1, size=[120, 100])
     none = is_of_command(page, "without its overlay", 2, overlay=None)
     check("is another", none != first)
     again = is_of_command(page, "with it again", 3, overlay=True)
     check("is the first", again == first)
     page.close()
     server.stop()
+
+
+def least_memory():
+    """What the command needs, to 100 KiB."""
+    return next(limit for limit in (f"{n}00K" for n in range(30, 200))
+                if not subprocess.run(
+                    [TOOL, "render", "ct.nrrd", "--overlay", "turned.nrrd", "-y",
+                     "-q", "-j", "2", "--size", "120x100", "--quality", "high",
+                     "--memory", limit, "-o", "least.png"],
+                    capture_output=True).returncode)
 
 
 def without_a_place():
@@ -159,6 +130,7 @@ def names():
 
 
 names()
-small_memory()
+small_memory("8M")
+small_memory(least_memory())
 without_a_place()
 finish()

@@ -8,6 +8,7 @@ import collections
 import http.client
 import json
 import os
+import shlex
 import socket
 import struct
 import subprocess
@@ -294,6 +295,86 @@ class Page:
 
     def close(self):
         self.socket.close()
+
+
+COUNT, DEEP, HIGH, WIDE = 3, 22, 26, 30
+
+
+def brightness(c, z, y, x):
+    """A ball of each channel beside the others, on a faint ground."""
+    far = (x - 9 - 6 * c) ** 2 + (y - 12) ** 2 + (z - 11) ** 2
+    return max(10 * c, 1000 - 12 * far) if far < 75 else 3 * ((x + y + z) % 4)
+
+
+def write_channels(name, windows):
+    """An OME-Zarr of three channels with names and colours, or ranges too."""
+    shape = [COUNT, DEEP, HIGH, WIDE]
+    os.makedirs(f"{name}/0")
+    channels = [{"label": label, "color": color, "active": True,
+                 **({"window": {"start": 20, "end": 900}} if windows else {})}
+                for label, color in (("DAPI", "0000ff"), ("GFP", "00ff00"),
+                                     ("Cy5", "ff8000"))]
+    axes = [{"name": "c", "type": "channel"}] + [
+        {"name": axis, "type": "space", "unit": "micrometer"} for axis in "zyx"]
+    scale = [{"type": "scale", "scale": [1, 0.9, 0.5, 0.5]}]
+    for path, tree in (
+            (f"{name}/.zgroup", {"zarr_format": 2}),
+            (f"{name}/.zattrs", {
+                "multiscales": [{"version": "0.4", "axes": axes, "datasets": [
+                    {"path": "0", "coordinateTransformations": scale}]}],
+                "omero": {"channels": channels}}),
+            (f"{name}/0/.zarray", {
+                "zarr_format": 2, "shape": shape, "chunks": shape, "dtype": "<u2",
+                "compressor": None, "fill_value": 0, "order": "C",
+                "filters": None})):
+        with open(path, "w") as out:
+            json.dump(tree, out)
+    with open(f"{name}/0/0.0.0.0", "wb") as out:
+        out.write(b"".join(struct.pack("<H", brightness(c, z, y, x))
+                           for c in range(COUNT) for z in range(DEEP)
+                           for y in range(HIGH) for x in range(WIDE)))
+
+
+def run_command(text):
+    """The bytes of a copied command's picture, or what it says."""
+    words = shlex.split(text)
+    words[0] = TOOL
+    words[words.index("--output") + 1] = "again.png"
+    done = subprocess.run([*words, "-y", "-q"], capture_output=True, text=True)
+    return open("again.png", "rb").read() if done.returncode == 0 else \
+        done.stderr.encode()
+
+
+def command_of(page, what, **asked):
+    page.say({"t": "ask", "what": what, **asked})
+    return page.hear_text("command")["text"]
+
+
+def is_of_command(page, name, n, **recipe):
+    """Sets a recipe; the picture at rest must be that of its command."""
+    page.say({"t": "set", "n": n, "recipe": recipe})
+    shown, command = page.hear_picture(2, n), command_of(page, "command")
+    made = run_command(command)
+    check(name, shown == made, f"{command} {made[:200]}")
+    return shown
+
+
+def slice_is_of_command(page, name, **asked):
+    page.say({"t": "ask", "what": "slice", "pane": 2, "n": 7, "exact": True,
+              "range": [0, 255], **asked})
+    shown = None
+    while shown is None:
+        what, message = page.hear()
+        if what == "closed" or (what == "text" and message["t"] == "slice"):
+            shown = b""
+        if what == "picture" and message[10] == 2:
+            shown = message[32:]
+        elif what == "picture":
+            page.say({"t": "ack", "n": 0})
+    command = command_of(page, "slice-command", range=[0, 255], **asked)
+    made = run_command(command)
+    check(name, shown == made, f"{command} {len(shown)} {made[:200]}")
+    return shown
 
 
 def drag_over(server, link, side, seconds):

@@ -1,0 +1,106 @@
+"""Channels in the viewer: pictures and slices are those of their commands."""
+import os
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from viewer_client import (SHORT, Page, Server, check, finish, is_of_command,
+                           slice_is_of_command, write_channels)
+
+FOLDER = tempfile.TemporaryDirectory()
+os.chdir(FOLDER.name)
+def look_of(page, good):
+    """The next look that is good."""
+    while True:
+        look = page.hear_text("look")
+        if not look or good(look):
+            return look
+
+
+def numbers(look):
+    return [one[0] for one in look["channels"]]
+
+
+def too_large():
+    """In memory for one channel, the first is drawn, and the command says so."""
+    server = Server("told.zarr", "-q", "-j", "2", "--memory", "6M")
+    page = Page(server)
+    page.say({"t": "set", "n": 1, "recipe": {"size": [96, 80]}})
+    look = look_of(page, lambda look: len(look["channels"]) == 1)
+    check("one is drawn in 6M", numbers(look) == [0], look["channels"])
+    is_of_command(page, "the first", 2, azimuth=20)
+    slice_is_of_command(page, "its slice", axis="y", index=12, colored=True)
+    page.close()
+    server.stop()
+
+
+def switched(name, *options, clip=None):
+    """All, some, one, none but the first; clipped; in other modes."""
+    server = Server(name, "-q", "-j", "2", *options)
+    page, what = Page(server), " ".join([name, *options])
+    info = page.hear_text("info")
+    check(f"{what}: channels have names", info["channels"] == ["DAPI", "GFP", "Cy5"],
+          info["channels"])
+    look = look_of(page, lambda look: True)
+    check("all are drawn", numbers(look) == [0, 1, 2], look["channels"])
+    check("in their colours", [one[3] for one in look["channels"]] ==
+          ["#0000ff", "#00ff00", "#ff8000"], look["channels"])
+    spec = ["%d:%s:%r..%r" % (one[0], one[2], one[4], one[5])
+            for one in look["channels"]]
+    every = is_of_command(page, "all", 1, size=[96, 80])
+    told = is_of_command(page, "as the page tells them", 2, channel=",".join(spec))
+    check("are the same", every == told)
+    two = is_of_command(page, "two", 3, channel=f"{spec[0]},{spec[2]}")
+    back = is_of_command(page, "three again", 4, channel=",".join(spec))
+    check("are the first three", back == every and two != every)
+    other = is_of_command(page, "another colour, range and opacity", 5,
+                          channel=f"{spec[2]}:0.5,1:#ff40c0:100..700")
+    check("is another", other not in (every, two))
+    colored = slice_is_of_command(page, "a slice in colours", axis="z", index=11,
+                                  colored=True)
+    grey = slice_is_of_command(page, "and in grey", axis="z", index=11)
+    check("is another", grey != colored)
+    clipped = is_of_command(page, "clipped", 6, clip=[[1, 0, 0, 6]])
+    check("is another", clipped != other)
+    is_of_command(page, "clipped elsewhere", 7, clip=[[1, 0, 0, 9]])
+    shown = slice_is_of_command(page, "slices show what is cut", axis="z",
+                                index=11, colored=True)
+    check("as before", shown == colored)
+    is_of_command(page, "all of them clipped", 8, channel=None)
+    alone = is_of_command(page, "one alone", 9, channel="1", clip=None)
+    first = is_of_command(page, "the first alone", 10, channel="0")
+    is_of_command(page, "by a preset", 11, preset="linear")
+    grey = slice_is_of_command(page, "its slice", axis="y", index=12, colored=True)
+    green = is_of_command(page, "one in its colour", 12, preset=None,
+                          channel=spec[1])
+    check("are four", len({alone, first, green, every}) == 4)
+    is_of_command(page, "all again", 13, channel=",".join(spec))
+    projected = is_of_command(page, "and projected", 14, mode="mip")
+    slice_is_of_command(page, "its slice", axis="x", index=12, colored=True)
+    check("is another", projected not in (every, green))
+    page.say({"t": "set", "n": 15, "recipe": {"mode": "mean"}})
+    look = look_of(page, lambda look: len(look["channels"]) == 1)
+    check("a mode of one channel draws the first", numbers(look) == [0],
+          look["channels"])
+    is_of_command(page, "as its command does", 16, outline=True)
+    last = is_of_command(page, "and all again", 17, channel=None, mode=None,
+                         outline=None, clip=clip)
+    check("are the first", last == every)
+    page.say({"t": "set", "n": 18, "recipe": {"channel": "7:red,0"}})
+    said = page.hear_text("said")["text"]
+    check("one that is not there is refused", "channel 7 does not exist" in said, said)
+    last = is_of_command(page, "and the page goes on", 19, channel=None)
+    check("as before", last == every)
+    page.close()
+    server.stop()
+
+
+write_channels("plain.zarr", False)
+write_channels("told.zarr", True)
+switched("plain.zarr")
+if not SHORT:
+    switched("told.zarr")
+    switched("told.zarr", "--clip", "0,0,1,8", clip=[[0, 0, 1, 8]])
+    switched("told.zarr", "--memory", "12M")
+    too_large()
+finish()
