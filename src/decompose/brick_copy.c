@@ -1,8 +1,12 @@
 /* decompose/brick_copy.c - boxes of voxels: what two share, and copies between
  * memories of any strides. */
-#include <snowglass/extend.h>
+#define _DEFAULT_SOURCE /* madvise */
+#include "decompose/redistribute.h"
+#include "decompose/slab.h"
 
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 /* Side of the blocks in which strided voxels are copied: at most 16 * 16 cache
  * lines, whichever axis is the fastest in memory. */
@@ -118,4 +122,27 @@ bool snow_box_intersect(const snow_box *a, const snow_box *b, snow_box *out) {
     }
     *out = shared;
     return true;
+}
+
+snow_box snow_box_slices(const snow_box *held, int round, int rounds) {
+    const snow_slab slab = snow_slab_equal(held->count[2], rounds, round);
+    snow_box box = *held;
+    box.first[2] += slab.first;
+    box.count[2] = slab.count;
+    return box;
+}
+
+void snow_brick_forget(const snow_brick *brick, int round, int rounds,
+                       size_t value) {
+    const snow_box box = snow_box_slices(&brick->box, round, rounds);
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    const int64_t first = box.first[2] - brick->box.first[2];
+    const int64_t size = (box.count[2] - 1) * brick->stride[2] +
+                         (box.count[1] - 1) * brick->stride[1] + box.count[0];
+    const uintptr_t at = (uintptr_t)brick->voxels +
+                         (uintptr_t)(first * brick->stride[2]) * value;
+    const uintptr_t begin = (at + page - 1) / page * page;
+    const uintptr_t end = (at + (uintptr_t)size * value) / page * page;
+    if (snow_box_voxels(&box) && begin < end)
+        (void)madvise((void *)begin, end - begin, MADV_DONTNEED);
 }

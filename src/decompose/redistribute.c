@@ -18,23 +18,29 @@
  * one to find what it receives. Both list the parts of a message in the same
  * order, that of the sender's boxes, and pack them one after another, x
  * fastest. The work of a rank grows with its own boxes times ranks, plus the
- * boxes of all. */
-#include "comm/comm.h"
+ * boxes of all.
+ *
+ * Many voxels move in rounds, some slices of each box in each, so that buffers
+ * are small. */
+#include "decompose/redistribute.h"
 
 #include <string.h>
 
+/* Of a buffer, about. */
+#define ROUND_BYTES ((int64_t)4 << 20)
+
 /* A part of a message, or of the copy within a rank: voxels of one box. */
 typedef struct portion {
-    int brick; /* of the sender's boxes */
-    snow_box box;
+    int brick;        /* of the sender's boxes */
+    snow_box box, of; /* the sender's box */
 } portion;
 
-/* Portions of one message.  Offset and count are in voxels of the buffer that
- * holds all messages of its direction. */
+/* Portions of one message.  Its offset in a round is in voxels of the buffer
+ * that holds all messages of its direction. */
 typedef struct block_message {
     int rank; /* of the other side */
     size_t first, portions;
-    int64_t offset, count;
+    int64_t offset;
 } block_message;
 
 /* All that is sent, received, or kept. */
@@ -53,6 +59,8 @@ struct snow_voxels {
     snow_box wanted;
     traffic sent, received, kept;
     snow_message *messages; /* those received, then those sent */
+    int rounds;             /* of a move, the same on all ranks */
+    bool gives_up;          /* bricks that are moved */
     size_t ready; /* bytes of a value that buffers and messages fit; the same on
                      all ranks */
 };
@@ -98,16 +106,13 @@ void snow_voxels_free(snow_voxels *voxels) {
     snow_release(voxels->context, voxels);
 }
 
-static void clear_traffic(traffic *t) {
-    t->portion_count = t->block_message_count = 0;
-    t->voxels = 0;
-}
-
 /* Drops the plan; buffers are kept. */
 static void clear_plan(snow_voxels *voxels) {
-    clear_traffic(&voxels->sent);
-    clear_traffic(&voxels->received);
-    clear_traffic(&voxels->kept);
+    traffic *const all[] = {&voxels->sent, &voxels->received, &voxels->kept};
+    for (int n = 0; n < 3; n++) {
+        all[n]->portion_count = all[n]->block_message_count = 0;
+        all[n]->voxels = 0;
+    }
     voxels->ready = 0;
 }
 
@@ -139,11 +144,12 @@ static snow_status take_box_table(snow_comm *comm, const snow_box *held,
     return status;
 }
 
-static snow_status add_portion(snow_context *context, traffic *t, int brick,
-                               const snow_box *box) {
+static snow_status add_portion(snow_context *context, traffic *t,
+                               const portion *p) {
     SNOW_TRY(SNOW_RESERVE(context, t->portions, t->portion_count,
                           t->portion_count + 1));
-    t->portions[t->portion_count++] = (portion){brick, *box};
+    t->portions[t->portion_count++] = *p;
+    t->voxels += snow_box_voxels(&p->box);
     return SNOW_STATUS_OK;
 }
 
@@ -152,22 +158,20 @@ static snow_status add_portion(snow_context *context, traffic *t, int brick,
 static snow_status add_block_message(snow_context *context, traffic *t,
                                      int rank, const snow_box *held, int count,
                                      const snow_box *wanted) {
-    block_message p = {
-        .rank = rank, .first = t->portion_count, .offset = t->voxels};
-    snow_box box;
+    block_message p = {.rank = rank, .first = t->portion_count};
+    portion part;
     for (int n = 0; n < count; n++) {
-        if (!snow_box_intersect(&held[n], wanted, &box))
+        part = (portion){.brick = n, .of = held[n]};
+        if (!snow_box_intersect(&held[n], wanted, &part.box))
             continue;
-        SNOW_TRY(add_portion(context, t, n, &box));
+        SNOW_TRY(add_portion(context, t, &part));
         p.portions++;
-        p.count += snow_box_voxels(&box);
     }
     if (!p.portions)
         return SNOW_STATUS_OK;
     SNOW_TRY(SNOW_RESERVE(context, t->block_messages, t->block_message_count,
                           t->block_message_count + 1));
     t->block_messages[t->block_message_count++] = p;
-    t->voxels += p.count;
     return SNOW_STATUS_OK;
 }
 
@@ -255,7 +259,36 @@ snow_status snow_voxels_plan(snow_voxels *voxels, const snow_box *held,
     return status;
 }
 
-/* --- moving --------------------------------------------------------------- */
+/* --- rounds --------------------------------------------------------------- */
+
+/* What of a portion moves in a round; false: nothing. */
+static bool part_of(const portion *p, int round, int rounds, snow_box *out) {
+    const snow_box slices = snow_box_slices(&p->of, round, rounds);
+    return snow_box_intersect(&p->box, &slices, out);
+}
+
+/* The voxels of some portions in a round. */
+static int64_t voxels_of(const traffic *t, size_t first, size_t portions,
+                         int round, int rounds) {
+    int64_t voxels = 0;
+    snow_box box;
+    for (size_t i = first; i < first + portions; i++)
+        if (part_of(&t->portions[i], round, rounds, &box))
+            voxels += snow_box_voxels(&box);
+    return voxels;
+}
+
+/* Room for any round. */
+static snow_status make_buffer(const snow_voxels *voxels, traffic *t,
+                               size_t value) {
+    int64_t most = 0;
+    for (int round = 0; round < voxels->rounds; round++) {
+        const int64_t here =
+            voxels_of(t, 0, t->portion_count, round, voxels->rounds);
+        most = here > most ? here : most;
+    }
+    return snow_reserve(voxels->context, &t->buffer, 0, (uint64_t)most, value);
+}
 
 /* Collective if values are larger than any before: the size so far is the same
  * on all ranks. */
@@ -263,92 +296,128 @@ static snow_status make_ready(snow_voxels *voxels, size_t value) {
     if (value <= voxels->ready)
         return SNOW_STATUS_OK;
     traffic *out = &voxels->sent, *in = &voxels->received;
-    snow_status status = snow_reserve(voxels->context, &out->buffer, 0,
-                                      (uint64_t)out->voxels, value);
+    int64_t most = out->voxels > in->voxels ? out->voxels : in->voxels;
+    int64_t rounds = most / (ROUND_BYTES / (int64_t)value) + 1;
+    SNOW_TRY(snow_comm_reduce_ints(voxels->comm, &rounds, 1, SNOW_REDUCE_MAX));
+    voxels->rounds = (int)rounds;
+    snow_status status = make_buffer(voxels, out, value);
     if (status == SNOW_STATUS_OK)
-        status = snow_reserve(voxels->context, &in->buffer, 0,
-                              (uint64_t)in->voxels, value);
+        status = make_buffer(voxels, in, value);
     SNOW_TRY(snow_comm_agree_status(voxels->comm, status));
     voxels->ready = value;
     return SNOW_STATUS_OK;
 }
 
-static snow_status start_receiving(snow_voxels *voxels, size_t value) {
+/* --- moving --------------------------------------------------------------- */
+
+static snow_status start_receiving(snow_voxels *voxels, int round,
+                                   size_t value) {
     traffic *t = &voxels->received;
+    int64_t at = 0;
     for (size_t n = 0; n < t->block_message_count; n++) {
-        const block_message *p = &t->block_messages[n];
-        SNOW_TRY(snow_comm_receive(voxels->comm,
-                                   t->buffer + (size_t)p->offset * value,
-                                   (size_t)p->count * value, p->rank,
-                                   SNOW_TAG_VOXELS, &voxels->messages[n]));
+        block_message *p = &t->block_messages[n];
+        const int64_t count =
+            voxels_of(t, p->first, p->portions, round, voxels->rounds);
+        p->offset = at;
+        at += count;
+        voxels->messages[n] = (snow_message){0};
+        if (count)
+            SNOW_TRY(snow_comm_receive(voxels->comm,
+                                       t->buffer + (size_t)p->offset * value,
+                                       (size_t)count * value, p->rank,
+                                       SNOW_TAG_VOXELS, &voxels->messages[n]));
     }
     return SNOW_STATUS_OK;
 }
 
 static snow_status start_sending(snow_voxels *voxels, const snow_brick *bricks,
-                                 size_t value) {
+                                 int round, size_t value) {
     traffic *t = &voxels->sent;
-    snow_message *messages =
+    char *at = t->buffer;
+    snow_message *message =
         voxels->messages + voxels->received.block_message_count;
-    for (size_t n = 0; n < t->block_message_count; n++) {
+    for (size_t n = 0; n < t->block_message_count; n++, message++) {
         const block_message *p = &t->block_messages[n];
-        char *first = t->buffer + (size_t)p->offset * value, *at = first;
+        const char *first = at;
+        snow_box box;
         for (size_t i = p->first; i < p->first + p->portions; i++) {
-            const portion *part = &t->portions[i];
-            snow_brick_copy(&bricks[part->brick], value, &part->box, &part->box,
+            if (!part_of(&t->portions[i], round, voxels->rounds, &box))
+                continue;
+            snow_brick_copy(&bricks[t->portions[i].brick], value, &box, &box,
                             at);
-            at += (size_t)snow_box_voxels(&part->box) * value;
+            at += (size_t)snow_box_voxels(&box) * value;
         }
-        SNOW_TRY(snow_comm_send(voxels->comm, first, (size_t)(at - first),
-                                p->rank, SNOW_TAG_VOXELS, &messages[n]));
+        *message = (snow_message){0};
+        if (at > first)
+            SNOW_TRY(snow_comm_send(voxels->comm, first, (size_t)(at - first),
+                                    p->rank, SNOW_TAG_VOXELS, message));
     }
     return SNOW_STATUS_OK;
 }
 
 static void keep_own(const snow_voxels *voxels, const snow_brick *bricks,
-                     size_t value, void *dense) {
+                     int round, size_t value, void *dense) {
     const traffic *t = &voxels->kept;
+    snow_box box;
     for (size_t i = 0; i < t->portion_count; i++)
-        snow_brick_copy(&bricks[t->portions[i].brick], value,
-                        &t->portions[i].box, &voxels->wanted, dense);
+        if (part_of(&t->portions[i], round, voxels->rounds, &box))
+            snow_brick_copy(&bricks[t->portions[i].brick], value, &box,
+                            &voxels->wanted, dense);
 }
 
 /* Copies the voxels of a message to their places. */
-static void unpack(const snow_voxels *voxels, const block_message *p,
+static void unpack(const snow_voxels *voxels, const block_message *p, int round,
                    size_t value, void *dense) {
     const traffic *t = &voxels->received;
     const char *at = t->buffer + (size_t)p->offset * value;
+    snow_box box;
     for (size_t i = p->first; i < p->first + p->portions; i++) {
-        const snow_box *box = &t->portions[i].box;
+        if (!part_of(&t->portions[i], round, voxels->rounds, &box))
+            continue;
         snow_brick packed = {
-            *box, at, {1, box->count[0], box->count[0] * box->count[1]}};
-        snow_brick_copy(&packed, value, box, &voxels->wanted, dense);
-        at += (size_t)snow_box_voxels(box) * value;
+            box, at, {1, box.count[0], box.count[0] * box.count[1]}};
+        snow_brick_copy(&packed, value, &box, &voxels->wanted, dense);
+        at += (size_t)snow_box_voxels(&box) * value;
     }
 }
 
 /* Unpacks messages as they arrive, while others are in flight. */
-static snow_status finish_receiving(snow_voxels *voxels, size_t value,
-                                    void *dense) {
+static snow_status finish_receiving(snow_voxels *voxels, int round,
+                                    size_t value, void *dense) {
     int count = (int)voxels->received.block_message_count;
     for (int left = count, which; left > 0; left--) {
         SNOW_TRY(
             snow_comm_wait_any(voxels->comm, voxels->messages, count, &which));
         if (which < 0)
             break;
-        unpack(voxels, &voxels->received.block_messages[which], value, dense);
+        unpack(voxels, &voxels->received.block_messages[which], round, value,
+               dense);
     }
+    return SNOW_STATUS_OK;
+}
+
+void snow_voxels_give_up(snow_voxels *voxels) {
+    voxels->gives_up = true;
+}
+
+static snow_status move_round(snow_voxels *voxels, const snow_brick *bricks,
+                              int round, size_t value, void *dense) {
+    SNOW_TRY(start_receiving(voxels, round, value));
+    SNOW_TRY(start_sending(voxels, bricks, round, value));
+    keep_own(voxels, bricks, round, value, dense);
+    SNOW_TRY(finish_receiving(voxels, round, value, dense));
+    SNOW_TRY(snow_comm_wait_all(
+        voxels->comm, voxels->messages + voxels->received.block_message_count,
+        (int)voxels->sent.block_message_count));
+    if (voxels->gives_up)
+        snow_brick_forget(bricks, round, voxels->rounds, value);
     return SNOW_STATUS_OK;
 }
 
 snow_status snow_voxels_move(snow_voxels *voxels, const snow_brick *bricks,
                              size_t value, void *dense) {
     SNOW_TRY(make_ready(voxels, value));
-    SNOW_TRY(start_receiving(voxels, value));
-    SNOW_TRY(start_sending(voxels, bricks, value));
-    keep_own(voxels, bricks, value, dense);
-    SNOW_TRY(finish_receiving(voxels, value, dense));
-    return snow_comm_wait_all(
-        voxels->comm, voxels->messages + voxels->received.block_message_count,
-        (int)voxels->sent.block_message_count);
+    for (int round = 0; round < voxels->rounds; round++)
+        SNOW_TRY(move_round(voxels, bricks, round, value, dense));
+    return SNOW_STATUS_OK;
 }

@@ -397,7 +397,7 @@ static snow_status open_shares(const opening *o, snow_partition_params *order,
     SNOW_TRY(make_order(o, known, order));
     return (*share)->stream ? open_counted(o, order, share, known, volume)
                             : snow_part_cut(o->comm, &o->whole, order, *share,
-                                            known, volume);
+                                            true, known, volume);
 }
 
 /* What is there when it fails is freed by the caller. */

@@ -1,6 +1,7 @@
 /* parallel/part.c - a rank's part of a volume, made of what all ranks hold. */
 #include "parallel/part.h"
 
+#include "decompose/redistribute.h"
 #include "transfer/transfer.h"
 #include "volume/clip_planes.h"
 #include "volume/mask.h"
@@ -104,7 +105,8 @@ static snow_status cut_again(const snow_volume *held, snow_volume *volume) {
 
 /* Collective.  Fills the part `to` from the parts that all ranks hold. */
 static snow_status move_voxels(snow_comm *comm, const snow_volume *from,
-                               const snow_part_place *p, snow_volume *to) {
+                               bool spent, const snow_part_place *p,
+                               snow_volume *to) {
     static const snow_box nothing;
     snow_voxels *voxels = NULL;
     const snow_brick held = brick_of(from);
@@ -115,6 +117,8 @@ static snow_status move_voxels(snow_comm *comm, const snow_volume *from,
     if (status == SNOW_STATUS_OK)
         status =
             snow_voxels_plan(voxels, &held.box, 1, any ? &p->stored : &nothing);
+    if (status == SNOW_STATUS_OK && spent && from->owned)
+        snow_voxels_give_up(voxels);
     if (all)
         snow_clip_planes_show(from->clip, from->info.type, true, from->owned);
     if (status == SNOW_STATUS_OK)
@@ -142,7 +146,7 @@ static snow_status open_again(snow_comm *comm, const snow_volume_info *whole,
 static snow_status send_share(snow_comm *comm, const snow_volume_info *whole,
                               const snow_partition_params *order,
                               const snow_box *boxes, const snow_volume *held,
-                              snow_volume **out) {
+                              bool spent, snow_volume **out) {
     snow_volume *volume = NULL;
     snow_part_place p =
         snow_part_place_of(whole, &boxes[snow_comm_rank(comm)], order->layers);
@@ -151,7 +155,7 @@ static snow_status send_share(snow_comm *comm, const snow_volume_info *whole,
     snow_status status = snow_comm_agree_status(
         comm, snow_part_new(snow_comm_context(comm), whole, &p, &volume));
     if (status == SNOW_STATUS_OK)
-        status = move_voxels(comm, held, &p, volume);
+        status = move_voxels(comm, held, spent, &p, volume);
     if (status == SNOW_STATUS_OK)
         *out = volume;
     else
@@ -161,7 +165,7 @@ static snow_status send_share(snow_comm *comm, const snow_volume_info *whole,
 
 snow_status snow_part_cut(snow_comm *comm, const snow_volume_info *whole,
                           const snow_partition_params *order,
-                          const snow_volume *held,
+                          const snow_volume *held, bool spent,
                           const snow_transfer *transfer, snow_volume **out) {
     snow_context *context = snow_comm_context(comm);
     snow_box *boxes = NULL;
@@ -170,7 +174,7 @@ snow_status snow_part_cut(snow_comm *comm, const snow_volume_info *whole,
     if (status == SNOW_STATUS_OK)
         status = snow_partition_boxes(comm, order, held, transfer, boxes, NULL);
     if (status == SNOW_STATUS_OK)
-        status = send_share(comm, whole, order, boxes, held, out);
+        status = send_share(comm, whole, order, boxes, held, spent, out);
     snow_release(context, boxes);
     return status;
 }
@@ -210,9 +214,10 @@ snow_ranks_distribute(snow_comm *comm, const snow_volume_info *whole,
                       const snow_partition_params *order, const snow_box *boxes,
                       const snow_transfer *transfer, snow_volume **volume) {
     snow_volume *recut;
-    SNOW_TRY(
-        boxes ? send_share(comm, whole, order, boxes, *volume, &recut)
-              : snow_part_cut(comm, whole, order, *volume, transfer, &recut));
+    SNOW_TRY(boxes
+                 ? send_share(comm, whole, order, boxes, *volume, false, &recut)
+                 : snow_part_cut(comm, whole, order, *volume, false, transfer,
+                                 &recut));
     snow_volume_close(*volume);
     *volume = recut;
     return SNOW_STATUS_OK;

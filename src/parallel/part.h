@@ -27,10 +27,11 @@ snow_status snow_part_set(snow_volume *volume, const snow_volume_info *whole,
 snow_status snow_part_new(snow_context *context, const snow_volume_info *whole,
                           const snow_part_place *place, snow_volume **out);
 
-/* Collective.  Cuts what all ranks hold as the order says. */
+/* Collective.  Cuts what all ranks hold as the order says; what is `spent` may
+ * lose its voxels meanwhile, and is only to be closed. */
 snow_status snow_part_cut(snow_comm *comm, const snow_volume_info *whole,
                           const snow_partition_params *order,
-                          const snow_volume *held,
+                          const snow_volume *held, bool spent,
                           const snow_transfer *transfer, snow_volume **out);
 
 /* Whether this rank's part gives its share of a picture. */

@@ -1,0 +1,19 @@
+/* decompose/redistribute.h - voxels that change hands for good
+ * (snowglass/extend.h has the rest). */
+#ifndef SNOW_DECOMPOSE_REDISTRIBUTE_H
+#define SNOW_DECOMPOSE_REDISTRIBUTE_H
+
+#include "comm/comm.h"
+
+/* The one brick, whose rows lie one after another, is needed no more once it is
+ * moved: its pages go back to the system meanwhile, and what it holds is lost.
+ */
+void snow_voxels_give_up(snow_voxels *voxels);
+
+/* The slices of a box that move in one of some rounds; whole pages of a brick
+ * that have moved go back to the system. */
+snow_box snow_box_slices(const snow_box *box, int round, int rounds);
+void snow_brick_forget(const snow_brick *brick, int round, int rounds,
+                       size_t value);
+
+#endif
