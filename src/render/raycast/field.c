@@ -296,12 +296,23 @@ static void find_taps(const snow_field *field, int axis, double place,
     }
 }
 
-static double voxel_of(const snow_field *field, int64_t at) {
-    double native;
-    snow_volume_stored(field->volume, at, 1, &native);
-    if (field->volume->clip && isnan(native))
-        native = snow_clip_planes_value(field->volume->clip, at);
-    return field_value_of(field, native);
+/* The weights and slopes of the voxels of a row that have a label, summed. */
+static void add_row(const snow_field *field, int64_t row,
+                    const label_taps *taps, double label, double sums[2]) {
+    const int64_t *at = taps->at;
+    double natives[SNOW_LABEL_TAPS];
+    sums[0] = sums[1] = 0;
+    snow_volume_stored(field->volume, row + at[0],
+                       (size_t)(at[SNOW_LABEL_TAPS - 1] - at[0] + 1), natives);
+    for (int n = 0; n < SNOW_LABEL_TAPS; n++) {
+        double native = natives[at[n] - at[0]];
+        if (field->volume->clip && isnan(native))
+            native = snow_clip_planes_value(field->volume->clip, row + at[n]);
+        if (field_value_of(field, native) != label)
+            continue;
+        sums[0] += taps->weight[n];
+        sums[1] += taps->slope[n];
+    }
 }
 
 void snow_field_label_gradient(const snow_field *field, const double at[3],
@@ -311,16 +322,15 @@ void snow_field_label_gradient(const snow_field *field, const double at[3],
         find_taps(field, axis, at[axis], &taps[axis]);
         gradient[axis] = 0;
     }
-    const label_taps *u = &taps[0], *v = &taps[1], *w = &taps[2];
+    const label_taps *v = &taps[1], *w = &taps[2];
     for (int z = 0; z < SNOW_LABEL_TAPS; z++)
-        for (int y = 0; y < SNOW_LABEL_TAPS; y++)
-            for (int x = 0; x < SNOW_LABEL_TAPS; x++) {
-                if (voxel_of(field, u->at[x] + v->at[y] + w->at[z]) != label)
-                    continue;
-                gradient[0] += u->slope[x] * v->weight[y] * w->weight[z];
-                gradient[1] += u->weight[x] * v->slope[y] * w->weight[z];
-                gradient[2] += u->weight[x] * v->weight[y] * w->slope[z];
-            }
+        for (int y = 0; y < SNOW_LABEL_TAPS; y++) {
+            double row[2];
+            add_row(field, v->at[y] + w->at[z], &taps[0], label, row);
+            gradient[0] += row[1] * v->weight[y] * w->weight[z];
+            gradient[1] += row[0] * v->slope[y] * w->weight[z];
+            gradient[2] += row[0] * v->weight[y] * w->slope[z];
+        }
     /* What cancels out but for rounding has no direction. */
     for (int axis = 0; axis < 3; axis++)
         if (fabs(gradient[axis]) < 1e-9)
