@@ -1,6 +1,7 @@
 /* input.c - opens the volume and makes the transfer function from the
  * options. */
 #include "commands/commands.h"
+#include "picture/layers.h"
 #include "picture/outputs.h"
 #include "run/log.h"
 #include "run/start.h"
@@ -93,7 +94,9 @@ static int overlay_is_labels(const options *opts, const char *path, bool *is) {
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL;
     const snow_look look = {.size = sizeof look};
-    int done = CONTINUE;
+    int done = layers_check_file(path);
+    if (done != CONTINUE)
+        return done;
     snow_status status = snow_context_new(NULL, &context);
     if (status == SNOW_STATUS_OK)
         status = snow_volume_open(context, path, NULL, &volume);

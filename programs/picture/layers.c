@@ -2,6 +2,7 @@
  * values, on the grid of the first. */
 #include "picture/layers.h"
 #include "commands/commands.h"
+#include "picture/outputs.h"
 #include "run/log.h"
 #include "run/start.h"
 
@@ -10,6 +11,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+int layers_check_file(const char *path) {
+    return path && is_special(path)
+               ? fail_usage("%s: an overlay is read from a file; write it to "
+                            "one",
+                            path)
+               : CONTINUE;
+}
+
 int layers_check(const options *opts) {
     const bool alone = !opts->overlay_preset && !opts->overlay_colormap &&
                        opts->overlay_range.kind == SNOW_RANGE_AUTO &&
@@ -17,6 +26,9 @@ int layers_check(const options *opts) {
     if (!opts->overlay && !alone)
         return fail_usage("--overlay-preset, -range, -opacity and -colormap: "
                           "are of an overlay; give --overlay FILE too");
+    const int done = layers_check_file(opts->overlay);
+    if (done != CONTINUE)
+        return done;
     if (strcmp(opts->mode, "slice") == 0)
         return CONTINUE;
     if (opts->overlay && strcmp(opts->mode, "over") != 0)

@@ -23,6 +23,7 @@ typedef struct layers {
  * where ranks or slabs share the volume.  Both return CONTINUE or an exit code.
  */
 int layers_check(const options *opts);
+int layers_check_file(const char *path); /* that it can be read twice */
 int layers_open(const options *opts, snow_context *context,
                 const snow_volume *base, layers *l);
 

@@ -246,6 +246,11 @@ refused 3 "one of other voxels" 'the overlay has 16x14x15 voxels' \
 
 refused 2 "a look of none" 'are of an overlay; give --overlay FILE too' \
     "$TOOL" render w.nrrd -o z.png --overlay-range 1,2
+mkfifo pipe
+refused 2 "a pipe" 'pipe: an overlay is read from a file; write it to one' \
+    "$TOOL" render w.nrrd -o z.png --overlay pipe --labels 1
+refused 2 "standard input" 'an overlay is read from a file' \
+    "$TOOL" slice w.nrrd -o z.png --overlay -
 refused 2 "another mode" 'overlay: needs mode over' \
     "$TOOL" render w.nrrd -o z.png --overlay seg.nrrd -m mip
 refused 2 "another method" 'needs method shear-warp or raycast; remove --method footprint' \
