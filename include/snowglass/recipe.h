@@ -48,7 +48,7 @@ typedef struct snow_recipe {
     double overlay_low, overlay_high;
     size_t overlay_opacity_count; /* 0: the preset's; 1 at NaN: a factor */
     snow_opacity_point overlay_opacities[SNOW_RECIPE_POINTS_MAX];
-    const char *channels; /* a list, as of the tool's --channel, or NULL */
+    const char *channels, *steps; /* of the tool: --channel, --time; or NULL */
 } snow_recipe;
 SNOW_RECORD(snow_recipe);
 

@@ -19,7 +19,7 @@
 #include <string.h>
 
 static void fill_data(const options *opts, snow_recipe *out) {
-    static char text[1024];
+    static char text[1024], steps[64];
     out->data = data_options(opts);
     if (opts->channels.count) {
         channels_text(&opts->channels, text, sizeof text);
@@ -29,6 +29,13 @@ static void fill_data(const options *opts, snow_recipe *out) {
     }
     out->data.labels = opts->labels;
     out->data.label_table = opts->label_table;
+    if (opts->time_range) {
+        char end[24] = "";
+        if (opts->time_end != INT64_MAX)
+            snprintf(end, sizeof end, "%" PRId64, opts->time_end);
+        snprintf(steps, sizeof steps, "%" PRId64 ":%s", opts->time, end);
+        out->steps = steps;
+    }
     if (!opts->component && !opts->channel && out->data.channel_given)
         out->data.component = "0"; /* a recipe has no channel 0 */
 }
@@ -195,16 +202,29 @@ static void note_range(const options *opts, const snow_transfer *transfer) {
     chosen.range = json_vector(ends, 2);
 }
 
+/* From where it was chosen. */
+static void note_symlog(const snow_look *look) {
+    if (look->symlog > 0)
+        chosen.symlog = json_real(look->symlog);
+}
+
 /* Means and sums are painted over the values of the picture, and their range in
- * files of floats means nothing.  No option gives an empty range. */
+ * files of floats means nothing.  No option gives an empty range, or one from 0
+ * on a logarithmic scale, or the points of a symmetric one: these are left to
+ * be chosen again. */
 static void note_projection(const options *opts, const snow_transfer *transfer,
                             const double painted[2]) {
     bool of_picture =
         strcmp(opts->mode, "mean") == 0 || strcmp(opts->mode, "sum") == 0;
-    if (!of_picture)
+    snow_look look = {.size = sizeof look};
+    if (snow_transfer_get_look(transfer, &look) != SNOW_STATUS_OK)
+        return;
+    if (!of_picture) {
+        note_symlog(&look);
         note_range(opts, transfer);
-    else if (options_range(opts).kind == SNOW_RANGE_AUTO &&
-             !options_place_colors(opts) && painted[0] < painted[1])
+    } else if (options_range(opts).kind == SNOW_RANGE_AUTO &&
+               !options_place_colors(opts) && painted[0] < painted[1] &&
+               !(look.symlog > 0) && !(look.log && painted[0] <= 0))
         chosen.range = json_vector(painted, 2);
 }
 
@@ -214,8 +234,7 @@ static void note_look(const options *opts, const snow_transfer *transfer) {
     snow_look look = {.size = sizeof look};
     if (snow_transfer_get_look(transfer, &look) != SNOW_STATUS_OK)
         return;
-    if (look.symlog > 0) /* from where it was chosen */
-        chosen.symlog = json_real(look.symlog);
+    note_symlog(&look);
     if (look.name) {
         chosen.preset = json_string(look.name);
         if (strcmp(look.name, "signed") == 0)

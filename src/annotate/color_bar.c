@@ -312,8 +312,7 @@ snow_status snow_overlay_color_bar(snow_overlay *overlay,
         bar.low = range[0];
         bar.high = range[1];
     }
-    /* Means and sums are spread evenly over all colours. */
-    if (bar.low == bar.from && bar.high == bar.to)
+    if (!transfer->log || bar.low > 0)
         bar.scale = (snow_scale){transfer->log, transfer->linear};
     size_t first = overlay->shape_count;
     SNOW_TRY(draw_colors(overlay, transfer, &bar));

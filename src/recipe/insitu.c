@@ -36,6 +36,7 @@ static snow_status make_picture(snow_context *context,
                           : recipe->axis     ? "axis"
                           : recipe->overlay  ? "overlay"
                           : recipe->channels ? "channel"
+                          : recipe->steps    ? "time"
                                              : NULL;
     if (foreign)
         return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,

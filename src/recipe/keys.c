@@ -160,7 +160,7 @@ const recipe_key recipe_keys[] = {
     MADE("overlay-range", range, overlay_range, 0, 0, 0),
     MADE("overlay-opacity", points, overlay_opacity_count, 0, 1, 0),
     MADE("clip", clip, data.clip, 0, 0, 4),
-    MADE("time", long, data.time, -9e15, 9e15, 0),
+    MADE("time", time, steps, -9e15, 9e15, 0),
     MADE("frames", int, frames, 1, 1000000, 0),
     REAL("fps", fps, 0.01, 1000),
     TEXT("axis", axis),

@@ -79,23 +79,45 @@ static json_t *write_told_long(const recipe_key *key, const void *field) {
     return value ? json_integer(value) : NULL;
 }
 
-/* A number, or a list of them as text. */
+/* A number, in a field of its own, or a text in this one. */
+static bool read_either(const recipe_key *key, const json_t *value, void *field,
+                        int64_t *number, const char *what,
+                        char wrong[WRONG_BYTES]) {
+    if (json_is_integer(value))
+        return recipe_read_whole(key, value, number, wrong);
+    return recipe_text.read(key, value, field, wrong) ||
+           recipe_refuse(wrong, what);
+}
+
+static snow_recipe *recipe_at(const void *field, size_t offset) {
+    return (snow_recipe *)(uintptr_t)((const char *)field - offset);
+}
+
 static bool read_channel(const recipe_key *key, const json_t *value,
                          void *field, char wrong[WRONG_BYTES]) {
-    snow_recipe *recipe =
-        (snow_recipe *)((char *)field - offsetof(snow_recipe, channels));
-    if (json_is_integer(value))
-        return recipe_read_whole(key, value, &recipe->data.channel, wrong);
-    return recipe_text.read(key, value, field, wrong) ||
-           recipe_refuse(wrong, "a number, or a list as text");
+    snow_recipe *r = recipe_at(field, offsetof(snow_recipe, channels));
+    return read_either(key, value, field, &r->data.channel,
+                       "a number, or a list as text", wrong);
 }
 
 static json_t *write_channel(const recipe_key *key, const void *field) {
-    const snow_recipe *recipe =
-        (const snow_recipe *)(const void *)((const char *)field -
-                                            offsetof(snow_recipe, channels));
-    return recipe->channels ? recipe_text.write(key, field)
-                            : write_told_long(key, &recipe->data.channel);
+    const snow_recipe *r = recipe_at(field, offsetof(snow_recipe, channels));
+    return r->channels ? recipe_text.write(key, field)
+                       : write_told_long(key, &r->data.channel);
+}
+
+static bool read_time(const recipe_key *key, const json_t *value, void *field,
+                      char wrong[WRONG_BYTES]) {
+    snow_recipe *r = recipe_at(field, offsetof(snow_recipe, steps));
+    return read_either(key, value, field, &r->data.time,
+                       "a number, or a text such as \"2:8\" or \"0.3s\"",
+                       wrong);
+}
+
+static json_t *write_time(const recipe_key *key, const void *field) {
+    const snow_recipe *r = recipe_at(field, offsetof(snow_recipe, steps));
+    return r->steps ? recipe_text.write(key, field)
+                    : write_told_long(key, &r->data.time);
 }
 
 static bool read_flag(const recipe_key *key, const json_t *value, void *field,
@@ -132,5 +154,6 @@ const recipe_kind recipe_symlog = {read_symlog, write_symlog};
 const recipe_kind recipe_real = {recipe_read_real, recipe_write_real};
 const recipe_kind recipe_int = {recipe_read_int, recipe_write_given_int};
 const recipe_kind recipe_channel = {read_channel, write_channel};
+const recipe_kind recipe_time = {read_time, write_time};
 const recipe_kind recipe_long = {read_long, write_told_long};
 const recipe_kind recipe_flag = {read_flag, write_flag};

@@ -166,7 +166,7 @@ static void an_empty_recipe_is_the_defaults(void **state) {
     snow_context_free(context);
 }
 
-static void one_number_is_a_factor_on_opacities(void **state) {
+static void other_kinds_of_values_are_kept(void **state) {
     (void)state;
     snow_context *context = support_context();
     snow_recipe r = {.size = sizeof r};
@@ -177,6 +177,12 @@ static void one_number_is_a_factor_on_opacities(void **state) {
     assert_true(r.overlay_opacities[0].opacity == 0.5);
     char *text = write_text(context, &r);
     assert_non_null(strstr(text, "\"overlay-opacity\": 0.5"));
+    free(text);
+    snow_recipe_clear(&r);
+    assert_int_equal(parse(context, "{\"time\": \"2:8\"}", &r), SNOW_STATUS_OK);
+    assert_string_equal(r.steps, "2:8");
+    text = write_text(context, &r);
+    assert_non_null(strstr(text, "\"time\": \"2:8\""));
     free(text);
     snow_recipe_clear(&r);
     snow_context_free(context);
@@ -199,6 +205,7 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"gradient-opacity\": [[0, 2]]}", "\"gradient-opacity\" must be"},
         {"{\"opacity\": []}", "\"opacity\" must be"},
         {"{\"opacity\": 0.5}", "\"opacity\" must be"},
+        {"{\"time\": 0.5}", "\"time\" must be a number, or a text"},
         {"{\"overlay-opacity\": 1.5}", "\"overlay-opacity\" must be a number"},
         {"{\"range\": [2, 1]}", "\"range\" must be"},
         {"{\"range\": [\"p1\", 3]}", "\"range\" must be"},
@@ -334,7 +341,7 @@ int main(void) {
         cmocka_unit_test(every_key_reaches_its_field),
         cmocka_unit_test(what_is_written_reads_as_it_was),
         cmocka_unit_test(an_empty_recipe_is_the_defaults),
-        cmocka_unit_test(one_number_is_a_factor_on_opacities),
+        cmocka_unit_test(other_kinds_of_values_are_kept),
         cmocka_unit_test(a_wrong_recipe_is_refused_by_its_key),
         cmocka_unit_test(other_spellings_mean_the_same),
         cmocka_unit_test(a_view_without_a_name_is_the_usual_one_turned),

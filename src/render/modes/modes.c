@@ -2,6 +2,7 @@
  * ramp, a local image of pairs by the picture's method, and what they mean. */
 #include "render/modes/modes.h"
 #include "render/job.h"
+#include "transfer/scale.h"
 
 #include <float.h>
 #include <math.h>
@@ -328,13 +329,29 @@ void snow_image_value_range(const snow_image *values, double *low,
     }
 }
 
+/* The value of the look that has the share of its range which a value has of
+ * another, both on the look's scale: colours are those of a look over that
+ * other range. */
+static double spread(const snow_transfer *transfer, double low, double high,
+                     double value) {
+    snow_scale scale = {transfer->log, transfer->linear};
+    double first, last, part = 0.5;
+    snow_transfer_domain(transfer, &first, &last);
+    if (scale.log && !(low > 0))
+        scale = (snow_scale){.log = false};
+    if (high > low)
+        part =
+            scale.log || scale.linear > 0
+                ? snow_share_on(scale, low, high, fmin(fmax(value, low), high))
+                : (value - low) / (high - low);
+    return snow_between_on(scale, first, last, fmin(fmax(part, 0), 1));
+}
+
 snow_status snow_image_apply_colormap(const snow_image *values,
                                       const snow_transfer *transfer, double low,
                                       double high, snow_image **out) {
     snow_image *image = NULL;
     snow_transfer_hint hint = {0, 0};
-    double first, last;
-    snow_transfer_domain(transfer, &first, &last);
     size_t channels = transfer->grey ? 2 : 4;
     if (values->channels != 1 || !(low <= high))
         return snow_fail(
@@ -349,10 +366,8 @@ snow_status snow_image_apply_colormap(const snow_image *values,
         double value = (double)values->pixels[n], rgba[4];
         if (isnan(value))
             continue;
-        double part = high > low ? (value - low) / (high - low) : 0.5;
-        snow_transfer_near(transfer,
-                           first + fmin(fmax(part, 0), 1) * (last - first),
-                           &hint, rgba);
+        snow_transfer_near(transfer, spread(transfer, low, high, value), &hint,
+                           rgba);
         for (size_t c = 0; c + 1 < channels; c++)
             image->pixels[n * channels + c] = (float)rgba[c];
         image->pixels[n * channels + channels - 1] = 1;

@@ -68,6 +68,12 @@ again "a name that begins with a dash" render a.png -s 30x20 ./-ct.nhdr
 run 0 "after two dashes" "$TOOL" render -v -o dash.png -s 30x20 -- -ct.nhdr
 says 'again: snowglass render ./-ct.nhdr --output'
 again "a logarithm" render a.png tiny.nhdr --log
+for mode in mean sum mip; do
+    again "logarithms of $mode" render a.png float.nhdr -m $mode --log -c turbo \
+        -s 200 --legend
+    again "$mode, symmetric" render a.png float.nhdr -m $mode --symlog -c RdBu
+done
+again "a logarithm of a sum of zeros" render a.png negative.nhdr -m sum --log
 again "a colour map" render a.png phantom:head $small -c viridis
 again "opacities" render a.png phantom:head $small --opacity 10:0,200:0.7
 again "a range" render a.png phantom:head $small --range p2,p98
@@ -107,6 +113,10 @@ again "a turntable of its own speed" turntable 'f_%d.png' phantom:cube $small \
 cp ct.nhdr step_1.nhdr
 cp negative.nhdr step_2.nhdr
 again "a movie" movie 'f_%d.png' step_1.nhdr step_2.nhdr -s 40x40
+for steps in 1: -2:-1; do
+    again "steps $steps" movie 'f_%d.png' step_1.nhdr step_2.nhdr step_2.nhdr -s 40x40 \
+        --time=$steps
+done
 
 # --- the line of what was chosen ----------------------------------------------
 # "light-grey 38.9..204; opacity 0 at 38.9, 0.25 at 64.4 (from the histogram)"
