@@ -70,12 +70,10 @@ typedef enum snow_ghosts { /* where ghost voxels come from */
     SNOW_GHOSTS_AUTO = 0,  /* the bricks' halos, else from their owners */
     SNOW_GHOSTS_NONE       /* outermost voxels are repeated: faint seams */
 } snow_ghosts;
-
 typedef enum snow_balance {    /* where the work is done */
     SNOW_BALANCE_IN_PLACE = 0, /* where the voxels are, if the method can */
     SNOW_BALANCE_REPARTITION   /* voxels move to ranks with equal parts */
 } snow_balance;
-
 SNOW_API snow_status snow_insitu_set_distribution(
     snow_insitu *insitu, snow_ghosts ghosts, snow_balance balance);
 /* Alike on all ranks. The look (copied) is fitted to the next picture's values;
@@ -87,6 +85,9 @@ SNOW_API snow_status snow_insitu_set_view(
 SNOW_API snow_status snow_insitu_set_settings(
     snow_insitu *insitu, const snow_settings *settings);
 SNOW_API void snow_insitu_set_shaded(snow_insitu *insitu, bool shaded);
+/* Voxels taken from now on are cut by snow_volume_clip; a count of 0: not. */
+SNOW_API snow_status snow_insitu_set_clip(
+    snow_insitu *insitu, const double *planes, size_t count);
 SNOW_API snow_status snow_insitu_set_ranks(
     snow_insitu *insitu, const snow_ranks_options *how);
 /* Where a step writes, with one %d (or %04d) for its number; what it draws over
@@ -122,7 +123,6 @@ SNOW_API snow_status snow_insitu_step(snow_insitu *insitu, int64_t step);
 typedef struct snow_spread { /* over the ranks */
     double least, mean, most;
 } snow_spread;
-
 typedef enum snow_degradation { /* of a picture, to keep a limit */
     SNOW_DEGRADATION_NONE = 0,
     SNOW_DEGRADATION_DRAFT,   /* draft quality */

@@ -89,6 +89,7 @@ static int64_t print_of(const snow_insitu *insitu, const snow_view *view) {
                               insitu->pattern != NULL,
                               insitu->transfer != NULL,
                               insitu->shaded,
+                              insitu->clip_count,
                               how->cut,
                               how->combining,
                               how->radix,
@@ -101,6 +102,8 @@ static int64_t print_of(const snow_insitu *insitu, const snow_view *view) {
     add_view(&print, view);
     add_settings(&print, &insitu->settings);
     add_look(&print, &insitu->look.look);
+    add_points(&print, insitu->clips, (size_t)insitu->clip_count,
+               sizeof *insitu->clips);
     ADD_ALL(&print, insitu->whole.dims);
     ADD_ALL(&print, insitu->whole.matrix);
     return (int64_t)(print >> 2);
@@ -110,10 +113,11 @@ static snow_status check_prints(snow_insitu *insitu, int64_t least,
                                 int64_t most) {
     if (least == most)
         return SNOW_STATUS_OK;
-    return snow_context_fail(insitu->context, SNOW_STATUS_BAD_USAGE,
-                             "grids, looks, views, settings or limits differ "
-                             "between ranks; call the "
-                             "setters with the same values on all ranks");
+    return snow_context_fail(
+        insitu->context, SNOW_STATUS_BAD_USAGE,
+        "grids, looks, views, settings, clip planes or limits "
+        "differ between ranks; call the setters with the "
+        "same values on all ranks");
 }
 
 snow_status snow_insitu_check(snow_insitu *insitu) {

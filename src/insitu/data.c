@@ -114,6 +114,22 @@ static snow_status reserve_dense(snow_insitu *insitu, size_t value) {
     return SNOW_STATUS_OK;
 }
 
+/* Another volume, which has no values beyond the planes. */
+static snow_status clip_voxels(snow_insitu *insitu) {
+    const size_t count = (size_t)insitu->clip_count;
+    snow_volume *cut;
+    if (!count)
+        return SNOW_STATUS_OK;
+    INSITU_TRY(snow_volume_clip(insitu->volume, insitu->clips[0], count, &cut));
+    snow_volume_close(insitu->volume);
+    insitu->volume = cut;
+    const int64_t *dims = snow_volume_get_info(cut)->dims;
+    insitu->pitch[0] = dims[0];
+    insitu->pitch[1] = dims[0] * dims[1];
+    insitu->copied = true;
+    return SNOW_STATUS_OK;
+}
+
 /* A volume over voxels that lie in `memory`: the rank's part of the whole. */
 static snow_status wrap_voxels(snow_insitu *insitu, const void *voxels,
                                const snow_box *memory, const int64_t pitch[2]) {
@@ -133,6 +149,7 @@ static snow_status wrap_voxels(snow_insitu *insitu, const void *voxels,
     INSITU_TRY(
         snow_volume_wrap(insitu->context, &info, voxels, &insitu->volume));
     snow_volume_set_pitch(insitu->volume, pitch);
+    INSITU_TRY(clip_voxels(insitu));
     INSITU_TRY(snow_volume_set_extent(insitu->volume, &part));
     INSITU_TRY(snow_volume_set_whole(insitu->volume, &insitu->whole));
     snow_volume_freeze(insitu->volume); /* until the next update */

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 snow_status snow_insitu_new(snow_comm *comm, snow_insitu **out) {
     snow_context *context = snow_comm_context(comm);
@@ -217,6 +218,23 @@ snow_status snow_insitu_set_settings(snow_insitu *insitu,
     snow_settings known;
     INSITU_TRY(INSITU_READ(insitu, snow_settings, settings, &known));
     insitu->settings = known;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_insitu_set_clip(snow_insitu *insitu, const double *planes,
+                                 size_t count) {
+    if (count > SNOW_CLIPS_MAX)
+        return snow_insitu_refuse(insitu,
+                                  "too many clip planes: %zu; give at most %d",
+                                  count, SNOW_CLIPS_MAX);
+    for (size_t i = 0; i < 4 * count; i++)
+        if (!isfinite(planes[i]))
+            return snow_insitu_refuse(
+                insitu, "clip plane %zu has a number that is not finite",
+                i / 4);
+    insitu->clip_count = (int64_t)count;
+    if (count)
+        memcpy(insitu->clips, planes, count * sizeof *insitu->clips);
     return SNOW_STATUS_OK;
 }
 

@@ -118,6 +118,8 @@ struct snow_insitu {
     bool has_view;
     snow_settings settings;
     bool shaded; /* as they say, whatever the look */
+    double clips[SNOW_CLIPS_MAX][4];
+    int64_t clip_count;
     snow_ranks_options how;
     char *pattern; /* NULL: no output */
     snow_image_options form;

@@ -29,25 +29,41 @@ typedef struct picture {
     snow_look_file *tf;
 } picture;
 
-static snow_status make_picture(snow_context *context,
-                                const snow_recipe *recipe, picture *p) {
-    snow_view usual;
+/* What would be another picture of a file, and cannot be made here. */
+static snow_status check_foreign(snow_context *context,
+                                 const snow_recipe *recipe) {
+    static const int64_t whole[3][2];
+    const snow_volume_options *data = &recipe->data;
     const char *foreign = recipe->depth      ? "depth"
                           : recipe->axis     ? "axis"
                           : recipe->overlay  ? "overlay"
                           : recipe->channels ? "channel"
                           : recipe->steps    ? "time"
-                                             : NULL;
-    if (foreign)
-        return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
-                                 "\"%s\" is for pictures of files; remove it "
-                                 "from a recipe for a simulation",
-                                 foreign);
+                          : memcmp(data->crop, whole, sizeof whole) != 0
+                              ? "crop"
+                          : data->mask        ? "mask"
+                          : data->labels      ? "labels"
+                          : data->label_table ? "label-table"
+                          : data->levels      ? "levels"
+                                              : NULL;
+    return foreign ? snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
+                                       "\"%s\" is for pictures of files; "
+                                       "remove it from a recipe for a "
+                                       "simulation",
+                                       foreign)
+                   : SNOW_STATUS_OK;
+}
+
+static snow_status make_picture(snow_context *context,
+                                const snow_recipe *recipe, picture *p) {
+    snow_view usual;
     snow_look_init(&p->look);
     snow_view_init(&usual);
     snow_view_init(&p->view);
     snow_settings_init(&p->settings);
-    snow_status status = snow_recipe_get_look(context, recipe, &p->look);
+    snow_status status = check_foreign(context, recipe);
+    if (status == SNOW_STATUS_OK)
+        status = snow_recipe_get_look(context, recipe, &p->look);
     if (status == SNOW_STATUS_OK && recipe->tf)
         status = snow_look_load(context, recipe->tf, &p->tf);
     if (status == SNOW_STATUS_OK && p->tf)
@@ -85,6 +101,17 @@ static snow_status set_marks(const snow_recipe *recipe, snow_insitu *insitu) {
                                     : status;
 }
 
+/* The planes of a recipe are its first ones. */
+static snow_status set_clip(const snow_recipe *recipe, snow_insitu *insitu) {
+    const double(*planes)[4] = recipe->data.clip;
+    size_t count = 0;
+    while (count < SNOW_CLIPS_MAX &&
+           (planes[count][0] != 0 || planes[count][1] != 0 ||
+            planes[count][2] != 0))
+        count++;
+    return snow_insitu_set_clip(insitu, planes[0], count);
+}
+
 /* The path comes first, since it may be refused. */
 static snow_status set_picture(const snow_recipe *recipe, const picture *p,
                                snow_insitu *insitu) {
@@ -97,6 +124,8 @@ static snow_status set_picture(const snow_recipe *recipe, const picture *p,
         status = snow_insitu_set_view(insitu, &p->view);
     if (status == SNOW_STATUS_OK)
         status = snow_insitu_set_settings(insitu, &p->settings);
+    if (status == SNOW_STATUS_OK)
+        status = set_clip(recipe, insitu);
     if (status == SNOW_STATUS_OK)
         snow_insitu_set_shaded(insitu, has_shade(recipe));
     return status == SNOW_STATUS_OK ? set_marks(recipe, insitu) : status;

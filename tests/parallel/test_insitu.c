@@ -37,6 +37,7 @@ typedef struct scene {
     snow_balance balance;
     snow_ghosts ghosts;
     bool fades;               /* by gradients */
+    bool clipped;             /* by planes */
     bool preset;              /* by those of a preset */
     bool grows;               /* its last slices do, after step 0 */
     const char *colormap;     /* NULL: viridis */
@@ -135,6 +136,8 @@ static snow_look look_of(const scene *s, snow_opacity_point scaled[5]) {
                        .gradient_opacity_count = s->fades ? 2 : 0};
 }
 
+static const double planes[2][4] = {{1, 0.5, 0, 18}, {0, 0, -1, -4}};
+
 /* The picture of one process. */
 static snow_image *serial_picture(snow_context *context, const scene *s,
                                   double t, const snow_look *look) {
@@ -147,6 +150,13 @@ static snow_image *serial_picture(snow_context *context, const scene *s,
     snow_image *image = NULL;
     assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
                      SNOW_STATUS_OK);
+    if (s->clipped) {
+        snow_volume *cut;
+        assert_int_equal(snow_volume_clip(volume, planes[0], 2, &cut),
+                         SNOW_STATUS_OK);
+        snow_volume_close(volume);
+        volume = cut;
+    }
     assert_int_equal(snow_transfer_new_for_volume(volume, look, &transfer),
                      SNOW_STATUS_OK);
     assert_int_equal(snow_frame_new(context, &frame), SNOW_STATUS_OK);
@@ -274,6 +284,8 @@ static snow_status describe_picture(snow_insitu *insitu, const scene *s) {
     SNOW_TRY(snow_insitu_set_distribution(insitu, s->ghosts, s->balance));
     SNOW_TRY(snow_insitu_set_view(insitu, &s->view));
     SNOW_TRY(snow_insitu_set_settings(insitu, &s->settings));
+    if (s->clipped)
+        SNOW_TRY(snow_insitu_set_clip(insitu, planes[0], 2));
     return snow_insitu_set_look(insitu, &look);
 }
 
@@ -507,6 +519,18 @@ static void every_type_and_layout_does(void **state) {
             s.halo = layout == 1 ? 8 : layout;
             expect_serial(&s, "a layout");
         }
+}
+
+static void clip_planes_cut_the_voxels_of_all_ranks(void **state) {
+    static const snow_type types[] = {SNOW_TYPE_FLOAT64, SNOW_TYPE_UINT8};
+    (void)state;
+    for (int n = 0; n < 4; n++) {
+        scene s = make_scene(3, n == 1 ? 1 : 3, 1, n == 1 ? 3 : 1);
+        s.clipped = true;
+        s.halo = n == 2 ? 3 : 0;
+        s.type = types[n == 3];
+        expect_serial(&s, "clip planes");
+    }
 }
 
 static void wide_halos_are_used_in_place_of_messages(void **state) {
@@ -1518,6 +1542,7 @@ int main(void) {
         cmocka_unit_test(a_gradient_opacity_does),
         cmocka_unit_test(a_list_of_colours_does),
         cmocka_unit_test(every_type_and_layout_does),
+        cmocka_unit_test(clip_planes_cut_the_voxels_of_all_ranks),
         cmocka_unit_test(wide_halos_are_used_in_place_of_messages),
         cmocka_unit_test(halos_beyond_the_grid_do_not_make_copies),
         cmocka_unit_test(halos_of_short_types_do),

@@ -88,12 +88,26 @@ static void a_recipes_legend_and_step_are_drawn(void **state) {
     assert_true(label[0] != label[1] && label[0] != plain[0]);
 }
 
+static void a_recipes_planes_cut_the_picture(void **state) {
+    image_fixture *f = *state;
+    uint64_t plain[2], cut[2], spared[2];
+    make_steps(f, "{\"range\": [0, 8]}", plain);
+    make_steps(f, "{\"range\": [0, 8], \"clip\": [[1, 0, 0, 6]]}", cut);
+    make_steps(f, "{\"range\": [0, 8], \"clip\": [[1, 0, 0, 11]]}", spared);
+    assert_true(plain[0] == spared[0] && cut[0] != plain[0]);
+}
+
 static void others_are_refused_in_situ(void **state) {
     image_fixture *f = *state;
     static const char *const texts[][2] = {
         {"{\"depth\": \"d.npy\"}", "\"depth\" is for pictures of files"},
-        {"{\"overlay\": \"o.nii\"}", "\"overlay\" is for pictures of files"}};
-    for (size_t n = 0; n < 2; n++) {
+        {"{\"overlay\": \"o.nii\"}", "\"overlay\" is for pictures of files"},
+        {"{\"crop\": [[0, 9], [0, 9], [0, 9]]}", "\"crop\" is for"},
+        {"{\"mask\": \"m.nii\"}", "\"mask\" is for pictures of files"},
+        {"{\"labels\": \"1,2\"}", "\"labels\" is for pictures of files"},
+        {"{\"label-table\": \"t\"}", "\"label-table\" is for pictures"},
+        {"{\"levels\": 1}", "\"levels\" is for pictures of files"}};
+    for (size_t n = 0; n < sizeof texts / sizeof *texts; n++) {
         snow_comm *comm = NULL;
         snow_insitu *insitu = NULL;
         snow_recipe r = {.size = sizeof r};
@@ -452,6 +466,7 @@ int main(void) {
     cmocka_unit_test_setup_teardown(test, support_image_setup, \
                                     support_image_teardown)
     const struct CMUnitTest tests[] = {
+        HERE(a_recipes_planes_cut_the_picture),
         HERE(others_are_refused_in_situ),
         HERE(a_picture_tells_its_grid_and_look),
         HERE(a_recipes_legend_and_step_are_drawn),
