@@ -154,7 +154,9 @@ static int take_moment(options *opts, snow_context *context) {
     if (status != SNOW_STATUS_OK)
         return fail_status(context, status);
     times.count = info.times;
-    return nearest(&times, &opts->time);
+    int done = nearest(&times, &opts->time);
+    opts->time -= times.count; /* from the end: no note on a step 0 unasked */
+    return done;
 }
 
 /* Whether files of a pattern are the slices of one volume. */
@@ -211,8 +213,9 @@ static int choose_file(options *opts, const step_files *files,
         return done;
     if (opts->verbosity >= 0 && files->count > 1)
         say("note: %s: step %" PRId64 " of %" PRId64
-            " (counted from 0) is taken; --time N takes another",
-            opts->input[0], step, files->count);
+            " (counted from 0) is taken%s",
+            opts->input[0], step, files->count,
+            options_given(opts, "time") ? "" : "; --time N takes another");
     opts->time = 0;
     return CONTINUE;
 }

@@ -42,8 +42,8 @@ void snow_volume_order_bytes(snow_volume *volume, bool big_endian) {
                         snow_type_size(volume->info.type));
 }
 
-/* Warns even for step 0: the user must know that this is one step of many,
- * unless all steps are opened in turn. */
+/* Warns of the step that is taken unasked: the user must know that this is one
+ * of many, unless all steps are opened in turn. */
 snow_status snow_volume_pick_time(snow_context *context, const char *what,
                                   const snow_volume_options *options,
                                   snow_volume_info *info) {
@@ -54,7 +54,7 @@ snow_status snow_volume_pick_time(snow_context *context, const char *what,
                          "0, or from -1 at its end",
                          what, (long long)time, (long long)all);
     info->time = time < 0 ? all + time : time;
-    if (all > 1 && !options->each_time)
+    if (all > 1 && !time && !options->each_time)
         snow_notify(context,
                     "%s %lld of %lld (counted from 0) is taken; --time N takes "
                     "another",

@@ -69,7 +69,14 @@ check "no word on which of them is taken" bash -c "! grep -q 'is taken' '$ERR'"
 # shellcheck disable=SC2086
 run 0 "one of the steps" "$TOOL" movie -s 40x30 times.nrrd --time 1 \
     -o 'single%d.png' $look
-says 'note: time step 1 of 3 '
+check "no word on another" bash -c "! grep -q 'is taken' '$ERR'"
+for time in "" "--time 2" "--time last"; do
+    # shellcheck disable=SC2086
+    run 0 "a still ${time:-without a step}" "$TOOL" render -s 9x9 times.nrrd $time \
+        -o still.png -y
+    [ -z "$time" ] || check "no word" bash -c "! grep -q 'is taken' '$ERR'"
+    [ -n "$time" ] || says 'note: time step 0 of 3 .* --time N takes another'
+done
 # shellcheck disable=SC2086
 run 0 "the steps in one file" movie times.nrrd -o 't%d.png' $look
 check "are frames" same_bytes "$(echo t*.png)" "$(echo f_00.png f_02.png f_04.png)"

@@ -24,14 +24,14 @@ for pair in "0 0000" "1 0010" "2 0030" "last 0030" "-1 0030" "-3 0000"; do
     check "which is step $time too" cmp -s one.png two.png
 done
 run 0 "without --time" "$TOOL" render "${look[@]}" run_%04d.nrrd -o first.png
-says 'run_0000.nrrd: step 0 of 3 .counted from 0. is taken'
+says 'run_0000.nrrd: step 0 of 3 .counted from 0. is taken; --time N takes another'
 run 0 "named after the file" render run_%04d.nrrd --time 1
 check "which it is" [ -s run_0010.png ]
 for verb in info "convert -o a.nrrd" "turntable --frames 1 -s 32x32 -o t_%d.png" \
     "slice -o s.png"; do
     read -ra words <<<"$verb"
     run 0 "${words[0]}" "$TOOL" "${words[0]}" run_%04d.nrrd "${words[@]:1}" --time last
-    says 'run_0030.nrrd: step 2 of 3'
+    says 'run_0030.nrrd: step 2 of 3 .counted from 0. is taken$'
 done
 refused 2 "a step that is not there" 'no step 3; run_%04d.nrrd stands for 3' \
     "$TOOL" info run_%04d.nrrd --time 3
