@@ -7,7 +7,8 @@
  *
  * So the borders of levels are places like any other to those that look across.
  * A level is held around the box only: by as many cells as voxels are refined
- * from, and those that are divided by theirs. */
+ * from, and of the rows of those that are divided by theirs what the file
+ * has. */
 #include "formats/amr/amr.h"
 #include "volume/mask.h"
 #include "volume/refine.h"
@@ -25,6 +26,9 @@ typedef struct level_cells {
     float *shares;  /* of a cell: with a value; covered by cells, whatever their
                        values */
     float *covered;
+    unsigned char *begun; /* 1 for each row that has them; no memory of others
+                             is touched, which is most where fine levels are
+                             small */
 } level_cells;
 
 typedef struct gathering {
@@ -43,6 +47,18 @@ static int64_t place_in(const snow_box *box, const int64_t at[3]) {
     return ((at[2] - box->first[2]) * box->count[1] + at[1] - box->first[1]) *
                box->count[0] +
            at[0] - box->first[0];
+}
+
+/* Clears the row of a cell where it has not begun. */
+static void begin_row(level_cells *to, int64_t place) {
+    const int64_t width = to->box.count[0], row = place / width;
+    const size_t first = (size_t)(row * width), count = (size_t)width;
+    if (to->begun[row])
+        return;
+    to->begun[row] = 1;
+    memset(to->values + first, 0, count * sizeof *to->values);
+    memset(to->shares + first, 0, count * sizeof *to->shares);
+    memset(to->covered + first, 0, count * sizeof *to->covered);
 }
 
 /* The cells of the level below that those of a box are refined from. */
@@ -89,15 +105,15 @@ static snow_status make_room(gathering *g) {
     for (int l = 0; l < g->grid->finest; l++) {
         level_cells *cells = &g->levels[l];
         const uint64_t count = (uint64_t)snow_box_voxels(&cells->box);
+        const int64_t rows = cells->box.count[1] * cells->box.count[2];
         cells->values =
             snow_allocate_array(context, count, sizeof *cells->values);
         cells->shares =
             snow_allocate_array(context, 2 * count, sizeof *cells->shares);
-        if (!cells->values || !cells->shares)
+        cells->begun = snow_allocate_clear(context, (size_t)rows);
+        if (!cells->values || !cells->shares || !cells->begun)
             return SNOW_STATUS_NO_MEMORY;
         cells->covered = cells->shares + count;
-        memset(cells->values, 0, (size_t)count * sizeof *cells->values);
-        memset(cells->shares, 0, (size_t)count * 2 * sizeof *cells->shares);
     }
     g->taken =
         snow_allocate_clear(context, (size_t)snow_box_voxels(&g->box) / 8 + 1);
@@ -108,6 +124,7 @@ static void release(gathering *g) {
     for (int l = 0; l < g->grid->finest; l++) {
         snow_release(g->grid->context, g->levels[l].values);
         snow_release(g->grid->context, g->levels[l].shares);
+        snow_release(g->grid->context, g->levels[l].begun);
     }
     snow_release(g->grid->context, g->taken);
 }
@@ -143,6 +160,7 @@ static void add_below(gathering *g, int level, const int64_t at[3],
     const float part = 1 / (float)(ratio[0] * ratio[1] * ratio[2]);
     int64_t place = place_in(&to->box, cell);
     int64_t left = ratio[0] - at[0] % ratio[0];
+    begin_row(to, place);
     for (int64_t i = 0; i < count; i++) {
         const float share = shares ? shares[i] : isfinite(values[i]) ? 1 : 0;
         if (share > 0)
@@ -178,6 +196,7 @@ static void take_voxels(gathering *g, const int64_t at[3], int64_t count,
 static void take_cells(level_cells *to, const int64_t at[3], int64_t count,
                        const double *values) {
     const int64_t place = place_in(&to->box, at);
+    begin_row(to, place);
     for (int64_t i = place; i < place + count; i++) {
         const float own = to->covered[i] < (float)ALL ? 1 - to->covered[i] : 0;
         if (own <= 0)
@@ -216,26 +235,41 @@ static snow_status take_box(gathering *g, size_t number, double **row) {
     return SNOW_STATUS_OK;
 }
 
-/* Sums become means, which are added to the level below. */
-static void finish_level(gathering *g, int level) {
+/* Sums of a row become means, which are added to the level below. */
+static void finish_row(gathering *g, int level, int64_t row) {
     level_cells *cells = &g->levels[level];
     const snow_box *box = &cells->box;
-    const int64_t all = snow_box_voxels(box), width = box->count[0];
-    for (int64_t i = 0; i < all; i++)
+    const int64_t width = box->count[0], first = row * width;
+    const int64_t at[3] = {box->first[0], box->first[1] + row % box->count[1],
+                           box->first[2] + row / box->count[1]};
+    for (int64_t i = first; i < first + width; i++)
         cells->values[i] = cells->shares[i] > 0
                                ? cells->values[i] / (double)cells->shares[i]
                                : NAN;
-    for (int64_t i = 0; i < all && level > 0; i += width) {
-        const int64_t row = i / width;
-        const int64_t at[3] = {box->first[0],
-                               box->first[1] + row % box->count[1],
-                               box->first[2] + row / box->count[1]};
-        add_below(g, level, at, width, cells->values + i, cells->shares + i,
-                  cells->covered + i);
+    if (level > 0)
+        add_below(g, level, at, width, cells->values + first,
+                  cells->shares + first, cells->covered + first);
+}
+
+/* Rows that have not begun have no value, where voxels are refined from
+ * them. */
+static void finish_level(gathering *g, int level, const snow_box *needed) {
+    level_cells *cells = &g->levels[level];
+    const snow_box *box = &cells->box;
+    const int64_t width = box->count[0];
+    for (int64_t row = 0; row < box->count[1] * box->count[2]; row++) {
+        const int64_t z = box->first[2] + row / box->count[1];
+        if (cells->begun[row])
+            finish_row(g, level, row);
+        else if (z >= needed->first[2] &&
+                 z < needed->first[2] + needed->count[2])
+            for (int64_t i = row * width; i < (row + 1) * width; i++)
+                cells->values[i] = NAN;
     }
 }
 
-static snow_status go_down(gathering *g) {
+static snow_status go_down(gathering *g,
+                           const snow_box needed[AMR_MOST_LEVELS]) {
     const amr_grid *grid = g->grid;
     snow_monitor *monitor = grid->context->monitor;
     snow_status status = SNOW_STATUS_OK;
@@ -251,7 +285,7 @@ static snow_status go_down(gathering *g) {
             snow_monitor_whole(monitor, whole);
         }
         if (l < grid->finest && status == SNOW_STATUS_OK)
-            finish_level(g, l);
+            finish_level(g, l, &needed[l]);
     }
     snow_release(grid->context, row);
     return status;
@@ -284,8 +318,9 @@ static bool fill_cells(void *user, int64_t y, int64_t z, const double *row) {
     const level_rows *rows = user;
     const int64_t at[3] = {rows->needed->first[0], y, z};
     const int64_t place = place_in(&rows->cells->box, at);
+    const bool begun = rows->cells->begun[place / rows->cells->box.count[0]];
     for (int64_t x = 0; x < rows->needed->count[0]; x++) {
-        if (rows->cells->covered[place + x] > 0)
+        if (begun && rows->cells->covered[place + x] > 0)
             continue;
         if (!row)
             return true;
@@ -334,7 +369,7 @@ snow_status snow_amr_read(const amr_grid *grid,
     SNOW_TRY(snow_volume_new(grid->context, info, &g.out));
     snow_status status = make_room(&g);
     if (status == SNOW_STATUS_OK)
-        status = go_down(&g);
+        status = go_down(&g, needed);
     if (status == SNOW_STATUS_OK)
         status = go_up(&g, needed);
     release(&g);
