@@ -24,9 +24,25 @@ macro(wrap_module name)
                         "${text}return {${exported}};\n})();\n")
 endmacro()
 
+# Modules without functions around them share their names.
+macro(unwrap_module)
+  string(REGEX REPLACE "\nimport [{][^}]*[}][ \n]*from '[.]/[a-z_]+[.]js';" "" text "${text}")
+  string(REGEX REPLACE "\nexport " "\n" text "${text}")
+  file(STRINGS ${file_${name}} defined REGEX "^(export )?(async )?(const|let|class|function) ")
+  list(TRANSFORM defined REPLACE "^.*(const|let|class|function) ([A-Za-z0-9_]+).*$" "\\2")
+  get_property(names GLOBAL PROPERTY names)
+  foreach(one ${defined})
+    if(one IN_LIST names)
+      message(FATAL_ERROR "${name}.js: another module has a ${one} too: rename one")
+    endif()
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY names ${defined})
+  string(APPEND modules "${text}")
+endmacro()
+
 # Appends a module to `modules`, after those that it imports.  The last names of
 # `path` lead here.  Where ENGINE is set, all but it get that in the place of
-# engine_server.
+# engine_server, whose names it may have too; else modules share their names.
 function(add_module name path)
   if(name IN_LIST path)
     message(FATAL_ERROR "${FOLDER}: modules import each other: ${path}")
@@ -44,11 +60,15 @@ function(add_module name path)
       add_module(${one} "${path};${name}")
     endif()
   endforeach()
-  string(REGEX REPLACE "(\nimport [{][^}]*) as " "\\1: " text "${text}")
-  string(REGEX REPLACE "\nimport ([{][^}]*[}])[ \n]*from '[.]/([a-z_]+)[.]js';"
-         "\nconst \\1 = \\2_;" text "${text}")
   get_property(modules GLOBAL PROPERTY modules)
-  if(path)
+  if(ENGINE)
+    string(REGEX REPLACE "(\nimport [{][^}]*) as " "\\1: " text "${text}")
+    string(REGEX REPLACE "\nimport ([{][^}]*[}])[ \n]*from '[.]/([a-z_]+)[.]js';"
+           "\nconst \\1 = \\2_;" text "${text}")
+  endif()
+  if(NOT ENGINE)
+    unwrap_module()
+  elseif(path)
     wrap_module(${name})
   else()
     string(APPEND modules "${text}")

@@ -11,7 +11,7 @@ import {kindOf} from './pointer.js';
 export const COLORS = ['#ff7b72', '#56d364', '#6db1ff', '#e3b341']; // across x, y, z of the grid
 const REST = 200; // ms until the exact picture is asked for
 const STEP = 60; // of the wheel
-const ZOOM_MOST = 40;
+const MAGNIFIED_MOST = 40;
 
 /** Of a CT, in Hounsfield units: width and level. */
 const WINDOWS = {'soft tissue': [400, 40], brain: [80, 40], liver: [150, 60], lung: [1500, -600],
@@ -164,7 +164,7 @@ class Pane {
     /** About a place, which stays. */
     zoomAt(factor, [x, y]) {
         const before = this.place;
-        this.zoom = Math.max(1, Math.min(ZOOM_MOST, this.zoom * factor));
+        this.zoom = Math.max(1, Math.min(MAGNIFIED_MOST, this.zoom * factor));
         const after = this.place, part = 1 / before.scale - 1 / after.scale;
         const {clientWidth, clientHeight} = this.canvas;
         this.middle = this.zoom === 1 ? [0, 0]

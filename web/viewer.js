@@ -31,7 +31,7 @@ const figures = make('span', {className: 'faint grow'});
 const undo = button('Undo', 'Undo (z)', () => actions.undo());
 const redo = button('Redo', 'Redo (Shift+z)', () => actions.redo());
 const buttons = make('span', {className: 'buttons'});
-const text = make('textarea', {readOnly: true, spellcheck: false, 'aria-label': 'Text to copy'});
+const copied = make('textarea', {readOnly: true, spellcheck: false, 'aria-label': 'Text to copy'});
 const dialog = make('dialog', {});
 const picture = make('div', {className: 'picture'}, canvas, said);
 const views = make('div', {className: 'views'}, picture);
@@ -58,10 +58,10 @@ function open(name, ...children) {
 
 /** Shows a text, and copies it where the browser allows that. */
 async function copy(name, value) {
-    text.value = value;
-    open(name, text);
-    text.select();
-    text.scrollTop = 0; // a long command is read from its beginning
+    copied.value = value;
+    open(name, copied);
+    copied.select();
+    copied.scrollTop = 0; // a long command is read from its beginning
     try {
         await navigator.clipboard.writeText(value);
         say('Copied.');
@@ -153,9 +153,9 @@ function fitWindow() {
         recipe.apply({size});
 }
 
-let round = 0;
+let trip = 0;
 engine.on('measured', ms => {
-    round = ms;
+    trip = ms;
 });
 engine.on('picture', frame => {
     const [width, height] = frame.level ? [frame.width, frame.height]
@@ -174,7 +174,7 @@ engine.on('picture', frame => {
         level.textContent = page.info?.live ? `step ${page.step}` : LEVELS[frame.level];
         figures.textContent = `${frame.width} x ${frame.height}, drawn in ${frame.render.toFixed(1)} ms, ` +
             `packed in ${frame.pack.toFixed(1)} ms, ${(frame.bytes / 1024).toFixed(0)} kB, ` +
-            `round trip ${round.toFixed(0)} ms`;
+            `round trip ${trip.toFixed(0)} ms`;
     }
     overlay.follow();
 });

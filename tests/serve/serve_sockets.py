@@ -1,4 +1,5 @@
 """The viewer's door: who is refused, and that nobody keeps others out."""
+import glob
 import json
 import os
 import re
@@ -12,7 +13,8 @@ import tempfile
 import threading
 import time
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, HERE)
 from viewer_client import (SANITIZED, SHORT, TOOL, Page, Server, ThinLink, check,
                            drag_over, finish)
 
@@ -21,6 +23,21 @@ SMALL = os.path.join(FOLDER.name, "small.nrrd")
 SIDE = 96
 subprocess.run([TOOL, "phantom", "head", "--dims", "48x48x48", "-o", SMALL],
                check=True, capture_output=True)
+
+
+def texts_of_web():
+    """Texts with blanks, which the page's packing could take for code."""
+    found = []
+    quoted = re.compile(r"""'(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*"|`(?:[^`\\]|\\.)*`""")
+    for path in glob.glob(os.path.join(HERE, "../../web/*.js")):
+        with open(path, encoding="utf-8") as file:
+            text = re.sub(r"(?s)/\*.*?\*/", "", file.read())
+        for line in re.sub(r"(?m)^\s*//.*| // [^'\"`]*$", "", text).splitlines():
+            for each in quoted.findall(line):
+                code = r"\$\{[^}]*\}" if each[0] == "`" else "$^"
+                found += [part for part in re.split(code, each[1:-1])
+                          if " " in part]
+    return found
 
 
 def pages(server):
@@ -46,6 +63,8 @@ def pages(server):
     plain = server.get("/a/prefix/viewer.js")[2]
     check("and is the same under a prefix", len(plain) > len(packed) and
           b"class ServerEngine" in plain)
+    missing = [text for text in texts_of_web() if text not in plain.decode()]
+    check("its texts are those of the modules", not missing, missing)
     status = server.get("/viewer.js", If_None_Match=headers["etag"])[0]
     check("it is not sent again", status == 304, status)
     check("HEAD has no body", server.get("/", method="HEAD")[2] == b"")
