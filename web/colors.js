@@ -1,7 +1,8 @@
 // colors.js - colours at data values, in the place of a map with a name: the
 // recipe's colormap is then "60:#000000,255:#ff8800".
 
-import {button, fill, make, number, row, section, short, show} from './controls.js';
+import {mixed} from './channels.js';
+import {apart, button, fill, make, near, number, row, section, show} from './controls.js';
 
 const FIRST = 5; // points that are taken of a map
 
@@ -11,11 +12,12 @@ const text = points => points.map(point => point.join(':')).join();
 export const ownColors = map => map?.includes(':')
     ? map.split(',').map(part => part.split(':')).map(([value, color]) => [+value, color]) : null;
 
-/** Another range, with which one's own colours go, as those of a map do. */
-export function ranged({low, high}, map, range) {
-    const [a, b] = range, own = ownColors(map);
-    return !own ? {range} : {range, colormap: text(own.map(([value, color]) =>
-        [+(a + (value - low) / (high - low || 1) * (b - a)).toPrecision(6), color]))};
+/** Another range, with which one's own colours go, as those of a map do.  Both are of
+ * the data: the shift of the keys is added to a range, but not to colours. */
+export function ranged({low, high}, {colormap, shift = 0}, [a, b]) {
+    const own = ownColors(colormap), range = apart([a - shift, b - shift], 6);
+    return own ? {range, colormap: text(own.map(([value, color]) =>
+        [...near([a + (value - low) / (high - low || 1) * (b - a)], b - a, 6), color]))} : {range};
 }
 
 export class Colors {
@@ -30,7 +32,7 @@ export class Colors {
     /** [60, '#000000']: what the look has there. */
     at(value) {
         const {low, high, strip} = this.page.look;
-        return [+value.toPrecision(5),
+        return [...near([value], high - low, 5),
             strip[Math.round((value - low) / (high - low) * (strip.length - 1))] ?? strip[0]];
     }
 
@@ -64,7 +66,7 @@ export class Colors {
 
     update() {
         const {look} = this.page;
-        this.element.hidden = !look || look.labels?.length > 0;
+        this.element.hidden = !look || look.labels?.length > 0 || mixed(look);
         if (this.element.hidden)
             return;
         const {points} = this;
@@ -72,7 +74,7 @@ export class Colors {
             this.rows.push(this.row(this.rows.length));
         points.forEach(([at, color], i) => {
             this.rows[i].ink.value = color;
-            show(this.rows[i].value, short(at));
+            show(this.rows[i].value, ...near([at], look.high - look.low, 5));
         });
         fill(this.list, this.rows.slice(0, points.length).map(({element}) => element));
     }

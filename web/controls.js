@@ -90,5 +90,13 @@ export function show(field, value) {
         field.value = value;
 }
 
+/** Numbers to some digits of a range's width, so that they stay apart. */
+export function near(values, width, digits) {
+    const places = digits - 1 - Math.floor(Math.log10(width));
+    return values.map(x => +x.toFixed(Math.max(0, Math.min(100, places || 0))));
+}
+
+export const apart = ([low, high], digits) => near([low, high], high - low, digits);
+
 /** At most five digits, without zeros at the end. */
 export const short = value => String(+Number(value).toPrecision(5));

@@ -1,6 +1,7 @@
 // panel.js - the controls beside the picture.
 
 import {bounds, ends, facing, grips, moved, PLANES_MOST, tilted, tiltedTo} from './clip.js';
+import {Channels, mixed} from './channels.js';
 import {Colors, ownColors, ranged} from './colors.js';
 import {button, check, fill, line, make, number, row, section, select, short, show, slider}
     from './controls.js';
@@ -20,6 +21,7 @@ export class Panel {
         this.editor = new Editor(recipe, page);
         this.gradient = new Editor(recipe, page, BY_GRADIENT);
         this.colors = new Colors(recipe, page);
+        this.channels = new Channels(recipe, page, {...NO_SHAPE, preset: null});
         this.element = make('aside', {className: 'panel', 'aria-label': 'Controls'});
         this.updates = [];
         engine.on('small', frame => this.showThumbnail(frame));
@@ -29,7 +31,7 @@ export class Panel {
     build() {
         const {live} = this.page.info; // a simulation knows its own data
         this.updates = [];
-        this.element.replaceChildren(this.look(),
+        this.element.replaceChildren(this.channels.element, this.look(),
             this.colors.element,
             section('Opacity by gradient', false, this.gradient.element), this.presets(),
             this.overlay(), this.named(), this.camera(), live ? '' : this.slices.section(each => this.follow(each)), live ? '' : this.clipping(), this.shading(),
@@ -43,6 +45,7 @@ export class Panel {
                 each(this.recipe.keys);
         this.editor.follow();
         this.gradient.follow();
+        this.channels.update();
         this.colors.update();
     }
 
@@ -71,7 +74,10 @@ export class Panel {
         const shift = number('shift of the look in data units', value => recipe.set({shift: value || null}));
         const log = check('logarithmic values', on => recipe.set({log: on || null, symlog: null}));
         const symlog = check('on both sides of 0', on => recipe.set({symlog: on || null, log: null}));
+        const alone = make('div', {}, this.editor.element, row('Range', low, high, percent), row('Shift', shift),
+            row('Colours', maps));
         this.follow(keys => {
+            alone.hidden = mixed(page.look);
             show(modes, keys.mode ?? 'over');
             isoRow.hidden = keys.mode !== 'iso';
             show(iso, keys.iso ?? '');
@@ -82,15 +88,13 @@ export class Panel {
             log.box.checked = Boolean(keys.log);
             symlog.box.checked = Boolean(keys.symlog);
         });
-        return section('Look', true, this.editor.element, row('Range', low, high, percent), row('Shift', shift),
-            row('Colours', maps), row('Mode', modes), isoRow, log.label, symlog.label);
+        return section('Look', true, alone, row('Mode', modes), isoRow, log.label, symlog.label);
     }
 
     setRange(low, high) {
-        const {look} = this.page, shift = this.value('shift', 0); // which is added to a range
-        const range = [low ?? look.low, high ?? look.high].map(value => value - shift);
+        const {look} = this.page, range = [low ?? look.low, high ?? look.high];
         if (range[0] < range[1])
-            this.recipe.set(ranged(look, this.recipe.keys.colormap, range));
+            this.recipe.set(ranged(look, this.recipe.keys, range));
     }
 
     /** Pictures of the volume itself, made when the list is opened. */
@@ -103,7 +107,8 @@ export class Panel {
             const image = make('img', {alt: '', hidden: true});
             const choose = make('button', {type: 'button', title: text,
                 'aria-label': `Preset ${name || none}: ${text}`,
-                onclick: () => this.recipe.set({...NO_SHAPE, preset: name || null})},
+                onclick: () => this.recipe.set({...NO_SHAPE, preset: name || null,
+                    ...mixed(page.look) && {channel: `${page.look.channels[0][0]}`}})},
             image, name || none);
             this.follow(keys => choose.setAttribute('aria-pressed',
                 (keys.preset ?? '') === name));

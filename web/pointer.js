@@ -1,7 +1,9 @@
 // pointer.js - mouse, wheel and fingers on the picture.
 
 import {panned, round, turned, zoomed} from './camera.js';
+import {listed, mixed} from './channels.js';
 import {ranged} from './colors.js';
+import {apart} from './controls.js';
 
 /** What a drag does, by button and key; otherwise what was chosen, as a finger has
  * neither. */
@@ -106,20 +108,27 @@ export class Pointer {
 
     /** To the right: wider; up: a higher level. */
     windowed() {
-        const {low, high} = this.start, [x, y] = this.total;
-        const width = (high - low) * Math.exp(x / 250);
-        const level = (low + high) / 2 - (high - low) * y / this.canvas.clientHeight;
-        const digits = value => +(value - (this.recipe.keys.shift ?? 0)).toPrecision(5);
-        return ranged(this.start, this.map, [digits(level - width / 2), digits(level + width / 2)]);
+        const {start} = this, [x, y] = this.total;
+        const to = (low, high) => {
+            const half = (high - low) * Math.exp(x / 250) / 2;
+            const level = (low + high) / 2 - (high - low) * y / this.canvas.clientHeight;
+            return apart([level - half, level + half], 5);
+        };
+        return mixed(start) ? listed(start.channels.map(([a, b, c, d, low, high, e]) =>
+            [a, b, c, d, ...to(low, high), e]))
+            : ranged(start, {...this.recipe.keys, colormap: this.map}, to(start.low, start.high));
     }
 
     /** Up: more opaque; not of a look whose points the page has not all. */
     faded() {
+        const factor = Math.exp(-this.total[1] / 120);
+        if (mixed(this.start))
+            return listed(this.start.channels.map(one =>
+                Object.assign([...one], {6: Math.min(1, +(one[6] * factor).toFixed(3))})));
         if (!this.recipe.keys.opacity && this.start.count > this.start.opacity.length) {
             this.page.say('The look has too many points to change here; choose a preset.');
             return {};
         }
-        const factor = Math.exp(-this.total[1] / 120);
         return {opacity: this.start.opacity.map(
             ([value, opacity]) => [value, Math.min(1, opacity * factor)])};
     }

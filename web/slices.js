@@ -4,7 +4,7 @@
 // that no server gets, so that undo and links have it.
 
 import {add, cross, dot} from './camera.js';
-import {button, check, make, number, row, section, select, short, show, slider}
+import {apart, button, check, make, number, row, section, select, short, show, slider}
     from './controls.js';
 import {kindOf} from './pointer.js';
 
@@ -29,12 +29,6 @@ function voxel({matrix, dims}, place) {
 
 export function world({matrix}, index) {
     return matrix.map(line => +(line[3] + dot(line.slice(0, 3), index)).toPrecision(9));
-}
-
-/** The ends of a range to some digits of its width, so that they stay apart. */
-function rounded([low, high], digits) {
-    const places = digits - 1 - Math.floor(Math.log10(high - low));
-    return [low, high].map(x => +x.toFixed(Math.max(0, Math.min(100, places))));
 }
 
 /** "R" or, of no patient, "+x": where a step along the grid goes. */
@@ -362,7 +356,7 @@ export class Slices {
         if (!info.slices)
             return;
         this.views.classList.remove('alone');
-        this.recipe.set({slices: this.keys ? null : {range: rounded(info.window, 5),
+        this.recipe.set({slices: this.keys ? null : {range: apart(info.window, 5),
             at: world(info, info.dims.map(count => Math.floor(count / 2)))}});
     }
 
@@ -380,7 +374,7 @@ export class Slices {
 
     setWindow(width, level) {
         if (width > 0)
-            this.set({range: rounded([level - width / 2, level + width / 2], 6)});
+            this.set({range: apart([level - width / 2, level + width / 2], 6)});
     }
 
     /** To the right: wider; up: a higher level. */

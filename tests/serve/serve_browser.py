@@ -8,7 +8,8 @@ import sys
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from viewer_client import DATA, SHORT, TOOL, Server, check, finish, skip
+from viewer_client import (DATA, SHORT, TOOL, Server, check, finish, skip,
+                           write_channels)
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 WEB = os.path.abspath(sys.argv[3])
@@ -96,11 +97,24 @@ def overlaid():
         server.stop()
 
 
+def mixed():
+    """Balls of three channels, with names and colours."""
+    place = os.path.join(shots, "told.zarr")
+    shutil.rmtree(place, ignore_errors=True)
+    write_channels(place, True)
+    server = Server(place)
+    drive(server.url, shots, "channels")
+    same_bytes()
+    same_bytes("slice.txt", "slice.png")
+    server.stop()
+
+
 watch("short" if SHORT else "long", "phantom:head")
 if not SHORT:
     many_points()
     masked()
     overlaid()
+    mixed()
 scan = os.path.join(DATA, "classic", "CThead_256x256x113_u16be.raw.gz")
 if not SHORT and os.path.exists(scan):
     watch("film", scan, "--dims", "256x256x113", "--type", "uint16", "--endian",

@@ -904,6 +904,23 @@ async function fused() {
     JSON.stringify([now['overlay-range'], now['overlay-opacity']]));
     check('which the command has', /--overlay-colormap viridis/.test(command), command);
     await shot(page, 'fused');
+    await page.evaluate(() => window.snowglass.recipe.set({shift: 10}));
+    await rest(page);
+    await page.getByLabel('highest value of the range', {exact: true}).fill('190');
+    await page.keyboard.press('Enter');
+    await rest(page);
+    const shifted = await keys(page);
+    check('a shift is added to the range alone', /,190:#[\da-f]{6}$/.test(shifted.colormap) &&
+        shifted.range[1] === 180, JSON.stringify([shifted.range, shifted.colormap]));
+    await page.evaluate(() => window.snowglass.recipe.set({shift: null, colormap: null,
+        range: [100000, 100001]}));
+    await rest(page);
+    await page.locator('details', {has: page.locator('summary', {hasText: 'Look'})})
+        .getByLabel('Colours').selectOption(':');
+    await rest(page);
+    const near = (await keys(page)).colormap.split(',').map(part => part.split(':')[0]).join();
+    check('colours of a narrow range are apart', near === '100000,100000.25,100000.5,100000.75,100001',
+        near);
     await page.locator('details', {has: page.locator('summary', {hasText: 'Overlay'})})
         .getByRole('button', {name: /^Opacity of the preset/}).click();
     await rest(page);
@@ -911,7 +928,67 @@ async function fused() {
     await page.context().close();
 }
 
-const alone = {points: manyPoints, mask: masked, overlay: overlaid, fused};
+/** Channels are switched, coloured, windowed; a preset shows one of them. */
+async function mixed() {
+    const page = await open({viewport: {width: 1600, height: 1000}});
+    const list = async () => (await keys(page)).channel ?? '';
+    const section = page.locator('details', {has: page.locator('summary', {hasText: 'Channels'})});
+    const rowOf = name => section.getByLabel(name, {exact: true});
+    check('all channels are drawn', await rowOf('DAPI').isChecked() && await rowOf('GFP').isChecked() &&
+        await rowOf('Cy5').isChecked() && !await list(), await list());
+    check('no transfer function is in their place', !await page.locator('.editor').first().isVisible());
+    await page.keyboard.press('x');
+    await slicesRest(page);
+    await page.getByLabel('in the colours of the look').evaluate(box => box.click());
+    await slicesRest(page);
+    await shot(page, 'channels');
+    await rowOf('GFP').uncheck();
+    await rest(page);
+    check('one is switched off', /^0:blue:20\.\.900:1,2:#ff8000:20\.\.900:1$/.test(await list()), await list());
+    await rowOf('GFP').check();
+    await rest(page);
+    check('and on again, as it was', (await list()).endsWith(',1:green:20..900:1'), await list());
+    await section.getByLabel('colour of Cy5').fill('#ff00c0');
+    await section.getByLabel('highest value of the range of DAPI').fill('700');
+    await page.keyboard.press('Enter');
+    await section.getByRole('slider', {name: 'opacity of GFP'}).fill('0.5');
+    await rest(page);
+    check('colour, range and opacity are taken', (await list()).split(',').sort().join() ===
+        '0:blue:20..700:1,1:green:20..900:0.5,2:#ff00c0:20..900:1', await list());
+    await drag(page, 0, -60, 'right');
+    const before = await list();
+    check('a right drag moves all ranges', /^0:blue:6\d\.\d*\.\.7\d\d/.test(before), before);
+    await drag(page, 0, 80, 'right', 'Control');
+    check('and with Ctrl all opacities', /:0\.257$/.test(await list()), await list());
+    await page.keyboard.press('z');
+    await rest(page);
+    check('a drag is undone', await list() === before, await list());
+    const command = await keepBoth(page);
+    check('the command has the list', command.includes(`--channel ${before.replace(/:1(?=,|$)/g, '')}`),
+        `${command} ${before}`);
+    await page.locator('summary', {hasText: 'Presets'}).click();
+    await page.getByRole('button', {name: /^Preset linear/}).click();
+    await rest(page);
+    check('a preset shows one', await list() === '0' && !await rowOf('GFP').isChecked() &&
+        await page.locator('.editor').first().isVisible(), await list());
+    await rowOf('Cy5').check();
+    await rest(page);
+    check('another makes them two', /^0,2:#ff00c0/.test(await list()) && !('preset' in await keys(page)),
+        await list());
+    await rowOf('Cy5').uncheck();
+    await rest(page);
+    await rowOf('DAPI').click();
+    check('the last one stays', await rowOf('DAPI').isChecked(), await list());
+    await section.getByRole('button', {name: /^All channels/}).click();
+    await rest(page);
+    check('all are back', !await list() && await rowOf('Cy5').isChecked(), await list());
+    await page.context().close();
+    const small = await open({viewport: {width: 400, height: 700}, hasTouch: true});
+    await shot(small, 'channels-small');
+    await small.context().close();
+}
+
+const alone = {points: manyPoints, mask: masked, overlay: overlaid, fused, channels: mixed};
 if (alone[tier]) {
     await alone[tier]();
     check('nothing is on the console', said.length === 0, said.join(' | '));

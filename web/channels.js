@@ -1,0 +1,75 @@
+// channels.js - the channels of a file: which are mixed, in which colour, range
+// and opacity.  A channel is what the look tells of it: [0, 'DAPI', 'blue', '#0000ff',
+// 10, 200, 1], without a colour where it is drawn alone.
+
+import {apart, button, check, make, number, section, show, slider} from './controls.js';
+
+export const mixed = look => Boolean(look?.channels?.[0]?.[2]);
+
+/** Changes of a recipe: the file says what is not known of a channel. */
+export const listed = channels => ({channel: channels.map(([index, , map, , low, high, opacity]) =>
+    (map ? [index, map, ...low < high ? [`${low}..${high}`] : [], opacity] : [index]).join(':')).join()});
+
+export class Channels {
+    /** `plain` are the changes that take a look of one volume away. */
+    constructor(recipe, page, plain) {
+        Object.assign(this, {recipe, page, plain});
+        this.known = [];
+        this.rows = [];
+        this.list = make('div', {});
+        this.element = section('Channels', true, this.list, button('All',
+            'All channels as the file shows them', () => recipe.set({...plain, channel: null, component: null})));
+    }
+
+    /** The next change may come before the server's look. */
+    set(channels) {
+        const {look} = this.page, begins = mixed(look) ? {} : this.plain;
+        look.channels = channels;
+        this.recipe.set({...begins, ...listed(channels)});
+    }
+
+    /** One of them stays. */
+    turn(index, on) {
+        const others = this.page.look.channels.filter(one => one[0] !== index);
+        if (on || others.length)
+            this.set(on ? [...others, this.known[index] ?? [index]] : others);
+        else
+            this.update();
+    }
+
+    put(index, changes) {
+        this.set(this.page.look.channels.map(one => one[0] === index ? Object.assign([...one], changes) : one));
+    }
+
+    row(index, name) {
+        const box = check(name, on => this.turn(index, on));
+        const ink = make('input', {type: 'color', 'aria-label': `colour of ${name}`,
+            oninput: () => this.put(index, {2: ink.value, 3: ink.value})});
+        const ends = ['lowest', 'highest'].map((word, i) => number(`${word} value of the range of ${name}`,
+            value => this.put(index, {[4 + i]: value})));
+        const opacity = slider(`opacity of ${name}`, 0, 1, 0.02, this.recipe, value => this.put(index, {6: value}));
+        const more = make('div', {className: 'row'}, ink, ...ends, opacity);
+        return {box: box.box, ink, ends, opacity, more, element: make('div', {}, box.label, more)};
+    }
+
+    update() {
+        const {info, look} = this.page, drawn = look?.channels ?? [], names = info?.channels ?? [];
+        this.element.hidden = names.length < 2;
+        for (const one of [...names.map((name, i) => [i, name]), ...drawn])
+            if (!this.rows[one[0]]) {
+                this.rows[one[0]] = this.row(one[0], one[1] || `channel ${one[0]}`);
+                this.list.append(this.rows[one[0]].element);
+            }
+        this.rows.forEach(({box, ink, ends, opacity, more}, index) => {
+            const one = drawn.find(([k]) => k === index);
+            box.checked = Boolean(one);
+            more.hidden = !one?.[2];
+            if (more.hidden)
+                return;
+            this.known[index] = one;
+            ink.value = one[3];
+            apart(one.slice(4, 6), 5).forEach((value, i) => show(ends[i], value));
+            opacity.value = one[6];
+        });
+    }
+}
