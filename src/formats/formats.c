@@ -12,24 +12,15 @@
 #include "formats/unsupported.h"
 #include "formats/zarr/zarr.h"
 #include "io/folder.h"
+#include "io/relayed.h"
 #include "phantom/phantom.h"
 #include "volume/mask.h"
+#include "volume/relayed.h"
 
 #include <math.h>
 #include <string.h>
 
 #define PHANTOM "phantom:"
-
-/* A suffix counts only while the user has not described the bytes: .img and
- * .bin mean many things. */
-static const snow_format *choose(const char *name, const void *bytes,
-                                 size_t size,
-                                 const snow_volume_options *options) {
-    const snow_format *format = snow_format_of_bytes(bytes, size);
-    if (!format && !options->dims[0])
-        format = snow_format_of_name(name);
-    return format ? format : &snow_format_raw;
-}
 
 /* True if an option describes raw data. */
 static bool looks_raw(const snow_volume_options *options) {
@@ -154,7 +145,9 @@ static snow_status read_with(const snow_format *format, snow_source *source,
     return SNOW_STATUS_OK;
 }
 
-/* An empty file has its own message: each format would miss something else. */
+/* An empty file has its own message: each format would miss something else.  A
+ * suffix counts only while the user has not described the bytes: .img and .bin
+ * mean many things. */
 static snow_status read_source(snow_source *source,
                                const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **out) {
@@ -164,8 +157,11 @@ static snow_status read_source(snow_source *source,
     if (!size)
         return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
                          "is empty; get or write the file again");
-    return read_with(choose(snow_source_name(source), bytes, size, options),
-                     source, options, info, out);
+    const snow_format *format = snow_format_of_bytes(bytes, size);
+    if (!format && !options->dims[0])
+        format = snow_format_of_name(snow_source_name(source));
+    return read_with(format ? format : &snow_format_raw, source, options, info,
+                     out);
 }
 
 /* A failure's message with the file's name, as one line of printable text
@@ -270,19 +266,21 @@ static snow_status open_stack(snow_context *context, const char *path,
     return SNOW_STATUS_OK;
 }
 
-/* The path of a data set in "file.h5:/path", if this is not a file but its
- * first part is; otherwise NULL. */
-static const char *data_set_in(const char *path) {
-    const char *found = NULL;
-    for (const char *at = path; (at = strstr(at, ":/")); at++)
-        found = at;
-    if (!found || snow_is_there(path, strlen(path)) ||
-        !snow_is_there(path, (size_t)(found - path)))
-        return NULL;
-    return found + 1;
-}
-
 static snow_open_named_fn open_named_path;
+
+static snow_status open_file(snow_context *context, const char *path,
+                             snow_relay *relay, int depth,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    snow_source *source;
+    snow_status status =
+        snow_source_open_relayed(context, path, relay, &source);
+    if (status != SNOW_STATUS_OK)
+        return name_failure(context, status,
+                            strcmp(path, "-") ? path : "standard input");
+    snow_source_set_opener(source, depth, open_named_path);
+    return open_source(source, options, info, out);
+}
 
 static snow_status open_inside(snow_context *context, const char *path,
                                const char *inside, int depth,
@@ -315,7 +313,7 @@ static snow_status open_named_path(snow_context *context, const char *path,
     if (!strncmp(path, PHANTOM, strlen(PHANTOM)))
         return open_phantom(context, path + strlen(PHANTOM), options, info,
                             out);
-    const char *inside = data_set_in(path);
+    const char *inside = snow_data_set_in(path);
     char *header;
     if (inside)
         return open_inside(context, path, inside, depth, options, info, out);
@@ -328,13 +326,7 @@ static snow_status open_named_path(snow_context *context, const char *path,
     }
     if (snow_is_folder(path) || snow_is_pattern(path))
         return open_stack(context, path, options, info, out);
-    snow_source *source;
-    snow_status status = snow_source_open(context, path, &source);
-    if (status != SNOW_STATUS_OK)
-        return name_failure(context, status,
-                            strcmp(path, "-") ? path : "standard input");
-    snow_source_set_opener(source, depth, open_named_path);
-    return open_source(source, options, info, out);
+    return open_file(context, path, NULL, depth, options, info, out);
 }
 
 /* A volume on the way to be opened, component by component. */
@@ -345,12 +337,16 @@ typedef struct input {
     const void *bytes; /* else, in memory */
     size_t size;
     snow_bytes_behind with; /* or by a function, if there is one */
+    snow_relay *relay;      /* of a file; NULL: none */
 } input;
 
 static snow_status read_input(void *user, const snow_volume_options *options,
                               snow_volume_info *info, snow_volume **out) {
     const input *in = user;
     snow_source *source;
+    if (in->relay)
+        return open_file(in->context, in->path, in->relay, 0, options, info,
+                         out);
     if (in->is_file)
         return open_named_path(in->context, in->path, 0, options, info, out);
     snow_status status =
@@ -408,6 +404,22 @@ snow_status snow_volume_inspect(snow_context *context, const char *path,
     snow_volume_info info;
     SNOW_TRY(open_any(context, path, options, &info, NULL));
     return SNOW_RECORD_FILL(context, snow_volume_info, &info, out);
+}
+
+snow_status snow_volume_open_relayed(snow_context *context, const char *path,
+                                     snow_relay *relay,
+                                     const snow_volume_options *options,
+                                     snow_volume_info *info,
+                                     snow_volume **out) {
+    input in = {
+        .context = context, .path = path, .is_file = true, .relay = relay};
+    snow_monitor monitor;
+    snow_volume_info made;
+    snow_monitor_begin_reading(context, &monitor);
+    SNOW_TRY(snow_monitor_end(
+        &monitor, snow_components_read(context, read_input, &in, false, options,
+                                       &made, out)));
+    return SNOW_RECORD_FILL(context, snow_volume_info, &made, info);
 }
 
 snow_status snow_volume_open_streamed(snow_context *context, const char *path,

@@ -31,6 +31,16 @@ bool snow_is_there(const char *path, size_t length) {
     return stat(whole, &about) == 0;
 }
 
+const char *snow_data_set_in(const char *path) {
+    const char *found = NULL;
+    for (const char *at = path; (at = strstr(at, ":/")); at++)
+        found = at;
+    if (!found || snow_is_there(path, strlen(path)) ||
+        !snow_is_there(path, (size_t)(found - path)))
+        return NULL;
+    return found + 1;
+}
+
 bool snow_is_folder(const char *path) {
     struct stat about;
     return stat(path, &about) == 0 && S_ISDIR(about.st_mode);

@@ -18,6 +18,10 @@ const char *snow_path_name(const char *path);
  * folder. */
 bool snow_is_there(const char *path, size_t length);
 
+/* The path of a data set in "file.h5:/path", if this is not a file but its
+ * first part is; otherwise NULL. */
+const char *snow_data_set_in(const char *path);
+
 /* True if the path is a folder; or if there is no file of that name, but its
  * last component contains a '*', a '?' or a number such as %04d. */
 bool snow_is_folder(const char *path);

@@ -18,6 +18,7 @@
 
 #include "parallel/part.h"
 #include "parallel/same_file.h"
+#include "parallel/shares.h"
 #include "transfer/look.h"
 #include "volume/mask.h"
 
@@ -30,6 +31,8 @@ typedef struct opening {
     snow_comm *comm;
     snow_context *context;
     snow_open_fn *open;
+    snow_open_relayed_fn *open_relayed;
+    snow_relay *relay; /* while it is this rank's turn */
     snow_format_name_fn *format_name;
     const char *path;
     snow_volume_options options;
@@ -40,8 +43,9 @@ typedef struct opening {
     const snow_view *view;
     const snow_settings *settings;
     const snow_ranks_options *how;
-    bool again; /* it can be read in slabs, several times, */
-    bool plain; /* at no more cost than its bytes */
+    bool again;  /* it can be read in slabs, several times, */
+    bool plain;  /* at no more cost than its bytes */
+    bool packed; /* ranks unpack it in turn */
 } opening;
 
 /* Opens a box of what the options ask for, which is a box itself perhaps.  One
@@ -59,8 +63,29 @@ static snow_status read_box(const opening *o, const snow_part_place *p,
         options.crop[i][0] += p->stored.first[i];
         options.crop[i][1] = options.crop[i][0] + p->stored.count[i];
     }
-    SNOW_TRY(o->open(o->context, o->path, &options, &info, &volume));
+    SNOW_TRY(o->relay ? o->open_relayed(o->context, o->path, o->relay, &options,
+                                        &info, &volume)
+                      : o->open(o->context, o->path, &options, &info, &volume));
     return snow_part_set(volume, &o->whole, p, out);
+}
+
+/* What is read in turn: a box, or, where there is none, the header. */
+typedef struct reading {
+    opening *opening;
+    const snow_part_place *place;
+    snow_volume **out;
+} reading;
+
+static snow_status read_part(void *user, snow_relay *relay) {
+    const reading *r = user;
+    opening *o = r->opening;
+    if (!r->place)
+        return o->open_relayed(o->context, o->path, relay, &o->options,
+                               &o->whole, NULL);
+    o->relay = relay;
+    const snow_status status = read_box(o, r->place, r->out);
+    o->relay = NULL;
+    return status;
 }
 
 /* --- what fits into memory ------------------------------------------------ */
@@ -137,6 +162,8 @@ static bool is_plain(const opening *o) {
     struct stat about;
     snow_volume_options all = o->options;
     snow_volume_info info = o->whole;
+    if (o->packed)
+        return false;
     memset(all.crop, 0, sizeof all.crop);
     if (stat(o->path, &about) != 0 || !S_ISREG(about.st_mode))
         return false;
@@ -148,14 +175,6 @@ static bool is_plain(const opening *o) {
                          (double)snow_type_size(info.type);
     return about.st_size <= HEADER_BYTES ? !is_packed_beside(o, bytes)
                                          : (double)about.st_size >= 0.9 * bytes;
-}
-
-/* Collective.  Whether all say so. */
-static snow_status agree_all(const opening *o, bool here, bool *all) {
-    int64_t word = here;
-    SNOW_TRY(snow_comm_reduce_ints(o->comm, &word, 1, SNOW_REDUCE_MIN));
-    *all = word != 0;
-    return SNOW_STATUS_OK;
 }
 
 /* A box that stays in the file. */
@@ -172,24 +191,6 @@ static snow_status open_in_file(const opening *o, const snow_part_place *p,
 }
 
 /* --- shares --------------------------------------------------------------- */
-
-/* Equal runs of slices, or, with more ranks than slices, of each slice's rows;
- * those of the last ranks may be empty. */
-static snow_box share_of(const snow_volume_info *whole, int rank, int ranks) {
-    snow_box box = {{0, 0, 0}, {whole->dims[0], 0, 0}};
-    int slabs = ranks < whole->dims[2] ? ranks : (int)whole->dims[2];
-    int parts = ranks / slabs;
-    snow_slab z = {0, 0}, y = {0, 0};
-    if (rank < slabs * parts) {
-        z = snow_slab_equal(whole->dims[2], slabs, rank / parts);
-        y = snow_slab_equal(whole->dims[1], parts, rank % parts);
-    }
-    box.first[1] = y.first;
-    box.count[1] = y.count;
-    box.first[2] = z.first;
-    box.count[2] = z.count;
-    return box;
-}
 
 /* Collective.  Rank 0 has read a stream: the others get to know what it is.
  * The format's name is a constant of each process. */
@@ -232,13 +233,15 @@ static snow_status inspect_file(opening *o, int64_t *stream,
                        (S_ISREG(about.st_mode) || S_ISDIR(about.st_mode));
     snow_warning_fn *warning = o->context->warning;
     o->context->warning = NULL;
+    reading header = {.opening = o};
     snow_status status =
-        o->open(o->context, o->path, &o->options, &o->whole, NULL);
+        snow_share_is_packed(o->context, read_part, &header, &o->packed);
     const bool unpacked = status == SNOW_STATUS_OK && is_plain(o);
     o->context->warning = warning;
     SNOW_TRY(snow_comm_agree_status(o->comm, status));
-    SNOW_TRY(agree_all(o, again, &o->again));
-    SNOW_TRY(agree_all(o, unpacked, &o->plain));
+    SNOW_TRY(snow_share_agree(o->comm, again, &o->again));
+    SNOW_TRY(snow_share_agree(o->comm, unpacked, &o->plain));
+    SNOW_TRY(snow_share_agree(o->comm, o->packed, &o->packed));
     SNOW_TRY(snow_ranks_compare_file(o->comm, o->plain ? o->open : NULL,
                                      o->path, &o->options, &o->whole));
     /* What a mask leaves out is counted over all voxels together. */
@@ -249,20 +252,24 @@ static snow_status inspect_file(opening *o, int64_t *stream,
 /* Collective.  The share of this rank, unless it has one.  A large one stays in
  * the file where that costs little, and any where some rank has no room for it
  * and its box. */
-static snow_status read_share(const opening *o, bool stream,
-                              snow_volume **share) {
+static snow_status read_share(opening *o, bool stream, snow_volume **share) {
     static const int64_t no_layers[3];
     int ranks = snow_comm_size(o->comm), rank = snow_comm_rank(o->comm);
     snow_box box = stream ? (snow_box){{0, 0, 0}, {0, 0, 0}}
-                          : share_of(&o->whole, rank, ranks);
+                          : snow_share_of(o->whole.dims, rank, ranks);
     snow_part_place p = snow_part_place_of(&o->whole, &box, no_layers);
     snow_status status = SNOW_STATUS_OK;
     bool fit;
     const int64_t bytes =
         snow_box_voxels(&p.stored) * (int64_t)snow_type_size(o->whole.type);
-    SNOW_TRY(
-        agree_all(o, fits(o, &p) && (!o->plain || bytes <= SHARE_MOST), &fit));
-    if (!*share)
+    SNOW_TRY(snow_share_agree(
+        o->comm, fits(o, &p) && (!o->plain || bytes <= SHARE_MOST), &fit));
+    reading turn = {o, &p, share};
+    if (o->packed && fit)
+        status = snow_shares_in_turn(o->comm,
+                                     snow_share_readers(o->whole.dims, ranks),
+                                     o->path, read_part, &turn);
+    else if (!*share)
         status = o->again && !fit ? open_in_file(o, &p, share)
                                   : read_box(o, &p, share);
     return snow_comm_agree_status(o->comm, status);
@@ -322,7 +329,7 @@ static snow_status open_box(const opening *o, const snow_box *boxes,
     const snow_part_place p = snow_part_place_of(
         &o->whole, &boxes[snow_comm_rank(o->comm)], order->layers);
     bool fit;
-    SNOW_TRY(agree_all(o, fits(o, &p), &fit));
+    SNOW_TRY(snow_share_agree(o->comm, fits(o, &p), &fit));
     const snow_status status =
         fit || !o->again ? read_box(o, &p, out) : open_in_file(o, &p, out);
     return snow_comm_agree_status(o->comm, status);
@@ -381,7 +388,7 @@ static snow_status open_counted(const opening *o,
 }
 
 /* Collective.  By way of shares. */
-static snow_status open_shares(const opening *o, snow_partition_params *order,
+static snow_status open_shares(opening *o, snow_partition_params *order,
                                bool stream, snow_volume **share,
                                snow_volume **volume, snow_transfer **transfer) {
     SNOW_TRY(read_share(o, stream, share));
@@ -425,17 +432,17 @@ static snow_status read_records(opening *o, const snow_volume_options *options,
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_ranks_open_by(snow_open_fn *open,
-                               snow_format_name_fn *format_name,
-                               snow_comm *comm, const char *path,
-                               const snow_volume_options *options,
-                               const snow_look *look, const snow_view *view,
-                               const snow_settings *settings,
-                               const snow_ranks_options *how,
-                               snow_volume **volume, snow_transfer **transfer) {
+snow_status
+snow_ranks_open_by(snow_open_fn *open, snow_open_relayed_fn *open_relayed,
+                   snow_format_name_fn *format_name, snow_comm *comm,
+                   const char *path, const snow_volume_options *options,
+                   const snow_look *look, const snow_view *view,
+                   const snow_settings *settings, const snow_ranks_options *how,
+                   snow_volume **volume, snow_transfer **transfer) {
     opening o = {.comm = comm,
                  .context = snow_comm_context(comm),
                  .open = open,
+                 .open_relayed = open_relayed,
                  .format_name = format_name,
                  .path = path,
                  .view = view,

@@ -111,7 +111,7 @@ for draft in "${drafts[@]}"; do
     done
 done
 
-# Files of which each rank reads its part, and unpacks all.
+# Files of which each rank reads its part, and unpacks it in turn.
 run 0 "a file" "$TOOL" phantom engine --dims 40x40x40 -o v.nrrd
 run 0 "a packed file" "$TOOL" phantom engine --dims 40x40x40 -o v.nii.gz
 for file in $(long_tier && echo v.nrrd) v.nii.gz; do
@@ -119,6 +119,15 @@ for file in $(long_tier && echo v.nrrd) v.nii.gz; do
     run 0 "$file by 3" launch 3 "$MPI_TOOL" $file -q -y -o many.npy
     run 0 "$file by 3 is as by one" "$TOOL" compare one.npy many.npy \
         --tolerance 1/255
+done
+
+# Whoever has read the end of it, one line tells what lies behind.
+for size in 40 90; do
+    run 0 "another packed file" "$TOOL" phantom engine \
+        --dims ${size}x${size}x$size -q -y -o tail.nii.gz
+    echo more >>tail.nii.gz
+    run 0 "more behind the data" launch 3 "$MPI_TOOL" tail.nii.gz -y -o x.png
+    check "is told once" [ "$(grep -c 'compressed data are ignored' "$ERR")" = 1 ]
 done
 
 # Movies.  On a background, since a transparent pixel is rounded twice: its

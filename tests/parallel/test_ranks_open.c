@@ -3,6 +3,7 @@
  */
 #include "support/volumes.h"
 
+#include "base/fingerprint.h"
 #include "decompose/deterministic.h"
 #include "render/ghosts.h"
 #include "transfer/transfer.h"
@@ -363,6 +364,38 @@ static void the_file_is_read_once(void **state) {
                       cut, (long long)slice * 200, (unsigned long long)sum,
                       (unsigned long long)most, (long long)stored);
     }
+    snow_volume_close(whole);
+}
+
+/* Deflate's blocks at a share's ends are unpacked by two, and the header by
+ * all: of a file that packs badly that is little. */
+static void a_packed_file_is_unpacked_once(void **state) {
+    support_place *place = *state;
+    const int64_t dims[3] = {192, 160, 200};
+    snow_volume *whole;
+    uint64_t random = 1, sum = 0;
+    assert_int_equal(
+        snow_volume_open_phantom(place->context, "engine", dims, 0, &whole),
+        SNOW_STATUS_OK);
+    unsigned char *noise = whole->owned;
+    for (size_t n = 0; n < 192 * 160 * 200; n++)
+        noise[n] = (unsigned char)(support_random(&random) >> 58);
+    char path[256];
+    snprintf(path, sizeof path, "%s", support_place_path(place, "e.nii.gz"));
+    assert_int_equal(snow_volume_save(whole, path, true), SNOW_STATUS_OK);
+    snow_volume_close(whole);
+    assert_int_equal(snow_volume_open(place->context, path, NULL, &whole),
+                     SNOW_STATUS_OK);
+    order o;
+    begin_order(&o, whole);
+    o.path = path;
+    o.how.cut = SNOW_PARTITION_COUNTED;
+    open_by(place, &o, 8);
+    const uint64_t packed = (uint64_t)snow_fingerprint_of(path).bytes;
+    for (int rank = 0; rank < 8; rank++)
+        sum += o.read[rank];
+    assert_in_range(sum, packed, packed + 8 * 400000);
+    assert_true(packed > 4000000);
     snow_volume_close(whole);
 }
 
@@ -899,6 +932,7 @@ int main(void) {
         TEST(deterministic_cuts_lie_between_groups),
         TEST(a_crop_is_dealt_out_like_a_volume),
         TEST(the_file_is_read_once),
+        TEST(a_packed_file_is_unpacked_once),
         TEST(another_view_is_served_without_the_file),
         TEST(bricks_for_turns_stay_where_they_are),
         TEST(every_method_is_cut_into_bricks_but_deterministic_pictures),

@@ -129,6 +129,28 @@ int64_t snow_filter_stage_remaining(const snow_filter_stage *filter) {
     return filter->taken < size ? (int64_t)(size - filter->taken) : 0;
 }
 
+bool snow_filter_stage_pass(snow_filter_stage *filter, uint64_t size) {
+    while (size) {
+        if (filter->begin == filter->end && filter->jump) {
+            int64_t remaining = snow_filter_stage_remaining(filter);
+            if (remaining >= 0 && (uint64_t)remaining >= size &&
+                filter->jump(filter, size)) {
+                filter->taken += size;
+                return true;
+            }
+        }
+        if (snow_filter_stage_fill(filter, 1) != SNOW_STATUS_OK ||
+            filter->begin == filter->end)
+            return false;
+        uint64_t some = filter->end - filter->begin;
+        if (some > size)
+            some = size;
+        snow_filter_stage_drop(filter, (size_t)some);
+        size -= some;
+    }
+    return true;
+}
+
 /* Seeking does not change the buffer; the caller has emptied it. */
 static bool jump_in_file(snow_filter_stage *filter, uint64_t count) {
     return lseek(((file_filter *)filter)->descriptor, (off_t)count, SEEK_CUR) >=

@@ -109,29 +109,6 @@ static snow_status pull_blocks(snow_filter_stage *base, void *bytes,
     return filter->left ? pull_block(filter, bytes, size, got) : SNOW_STATUS_OK;
 }
 
-/* Drops bytes of the stage below; false if it has fewer. */
-static bool drop_below(snow_filter_stage *below, uint64_t size) {
-    while (size) {
-        if (below->begin == below->end && below->jump) {
-            int64_t remaining = snow_filter_stage_remaining(below);
-            if (remaining >= 0 && (uint64_t)remaining >= size &&
-                below->jump(below, size)) {
-                below->taken += size;
-                return true;
-            }
-        }
-        if (snow_filter_stage_fill(below, 1) != SNOW_STATUS_OK ||
-            below->begin == below->end)
-            return false;
-        uint64_t some = below->end - below->begin;
-        if (some > size)
-            some = size;
-        snow_filter_stage_drop(below, (size_t)some);
-        size -= some;
-    }
-    return true;
-}
-
 /* Skips the rest of the current block, then whole blocks without unpacking,
  * then a part of one. The bytes in between are not buffered here, as for every
  * jump. */
@@ -141,7 +118,8 @@ static bool jump_blocks(snow_filter_stage *base, uint64_t count) {
         if (!filter->left && filter->next < filter->blocks.count &&
             size_of(filter, filter->next) <= count) {
             count -= size_of(filter, filter->next);
-            if (!drop_below(base->below, filter->blocks.packed[filter->next++]))
+            if (!snow_filter_stage_pass(base->below,
+                                        filter->blocks.packed[filter->next++]))
                 filter->damaged = true;
         } else {
             unsigned char scratch[4096];
