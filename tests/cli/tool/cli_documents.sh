@@ -11,7 +11,8 @@ mkdir "$place/files"
 cd "$place/files" || exit 1
 
 for name in head.nii.gz ct.nii.gz mra.nii.gz brain.nii.gz organs.nii.gz \
-    seg.nii.gz pet.nii.gz ct.nrrd sim.nrrd seg.nrrd volume.mha scan.mha; do
+    seg.nii.gz pet.nii.gz ct.nrrd sim.nrrd seg.nrrd head512.nrrd volume.mha \
+    scan.mha; do
     "$tool" phantom head --dims 32x32x32 -q -o "$name" || exit 1
 done
 # With values of Hounsfield units, and more.
