@@ -11,6 +11,14 @@
 #define OWN SNOW_REFINE_REACH
 #define INNER (OWN - 2)
 
+/* Values that are blended at once, if all are there. */
+#define AT_ONCE 64
+
+/* The exponent of a double: all ones of what is not finite, which one more at
+ * its end carries into the sign. */
+#define EXPONENT UINT64_C(0x7ff0000000000000)
+#define EXPONENT_END (UINT64_C(1) << 52)
+
 /* The weights of a voxel's inner stencil, and on which side of its cell's
  * centre it lies: the last of the centres is not among its four, or the
  * first. */
@@ -25,7 +33,9 @@ typedef struct refining {
     const int64_t *ratio;
     place *places[3];    /* of the voxels of a cell */
     double *none;        /* a slice of no values, ... */
-    double *slice, *row; /* ... of blended ones, a row of them, ... */
+    double *slice, *row; /* ... of blended ones, a row of them, without values
+                            before and behind, ... */
+    double *part;        /* ... one voxel of each of its cells, ... */
     double *out;         /* ... and a row of voxels */
 } refining;
 
@@ -80,17 +90,11 @@ static void complete(double p[STENCIL]) {
         p[OWN - 2] = go_on(p[OWN - 1], p[OWN], p[OWN + 1], p[OWN + 2]);
 }
 
-static double clamped(double value, double low, double high) {
-    return value < low ? low : value > high ? high : value;
-}
-
-static double least_of(const double p[4]) {
-    double a = p[0] < p[1] ? p[0] : p[1], b = p[2] < p[3] ? p[2] : p[3];
+static double less(double a, double b) {
     return a < b ? a : b;
 }
 
-static double most_of(const double p[4]) {
-    double a = p[0] > p[1] ? p[0] : p[1], b = p[2] > p[3] ? p[2] : p[3];
+static double more(double a, double b) {
     return a > b ? a : b;
 }
 
@@ -99,7 +103,9 @@ static double at_place(const double p[STENCIL], const place *at) {
     double sum = 0;
     for (int i = 0; i < 5; i++)
         sum += at->weights[i] * inner[i];
-    return clamped(sum, least_of(four), most_of(four));
+    const double low = less(less(four[0], four[1]), less(four[2], four[3]));
+    const double high = more(more(four[0], four[1]), more(four[2], four[3]));
+    return sum < low ? low : less(high, sum);
 }
 
 /* Whether its own value can be blended with others; completes these. */
@@ -111,18 +117,54 @@ static bool prepare(double p[STENCIL]) {
     return true;
 }
 
-/* Blends rows or slices, value by value. */
+/* Blends `count` values as if all were there; whether all are.  Without a
+ * branch, so that several are blended at once. */
+static bool blend_all(const double *const from[STENCIL], const place *at,
+                      int64_t count, double *restrict out) {
+    const double *const *inner = from + INNER, *const *four = inner + at->above;
+    const double *a = inner[0], *b = inner[1], *c = inner[2], *d = inner[3],
+                 *e = inner[4];
+    const double *first = four[0], *last = four[3];
+    const double *left = four[1], *right = four[2], *w = at->weights;
+    const double wa = w[0], wb = w[1], wc = w[2], wd = w[3], we = w[4];
+    uint64_t lacks = 0;
+    for (int64_t i = 0; i < count; i++) {
+        const double low =
+            less(less(first[i], left[i]), less(right[i], last[i]));
+        const double high =
+            more(more(first[i], left[i]), more(right[i], last[i]));
+        const double sum =
+            0 + wa * a[i] + wb * b[i] + wc * c[i] + wd * d[i] + we * e[i];
+        out[i] = sum < low ? low : less(high, sum);
+        const double all = a[i] + b[i] + c[i] + d[i] + e[i];
+        uint64_t bits;
+        memcpy(&bits, &all, sizeof bits);
+        lacks |= (bits & EXPONENT) + EXPONENT_END;
+    }
+    return !(lacks >> 63);
+}
+
+/* Blends rows or slices, or a row with itself moved aside, value by value. */
 static void blend(const double *const from[STENCIL], const place *at,
                   int64_t count, double *out) {
     if (at->centred) {
         memcpy(out, from[OWN], (size_t)count * sizeof *out);
         return;
     }
-    for (int64_t i = 0; i < count; i++) {
-        double p[STENCIL];
+    for (int64_t first = 0; first < count; first += AT_ONCE) {
+        const int64_t left = count - first;
+        const int64_t some = left < AT_ONCE ? left : AT_ONCE;
+        const double *part[STENCIL];
         for (int k = 0; k < STENCIL; k++)
-            p[k] = from[k][i];
-        out[i] = prepare(p) ? at_place(p, at) : p[OWN];
+            part[k] = from[k] + first;
+        if (blend_all(part, at, some, out + first))
+            continue;
+        for (int64_t i = 0; i < some; i++) {
+            double p[STENCIL];
+            for (int k = 0; k < STENCIL; k++)
+                p[k] = part[k][i];
+            out[first + i] = prepare(p) ? at_place(p, at) : p[OWN];
+        }
     }
 }
 
@@ -135,28 +177,21 @@ static void choose(const refining *r, const double *first, int64_t step,
     }
 }
 
-static double cell_at(const double *row, int64_t x, int64_t count) {
-    return x >= 0 && x < count ? row[x] : NAN;
-}
-
-/* A row of cells as voxels `first` .. `first + count - 1` of the grid. */
+/* A row of cells as voxels `first` .. `first + count - 1` of the grid: the
+ * first voxels of all cells, the second ones, and so on. */
 static void spread_row(const refining *r, int64_t first, int64_t count) {
-    const int64_t ratio = r->ratio[0], cells = r->box->count[0];
-    const int64_t end = first + count;
-    for (int64_t cell = first / ratio; cell * ratio < end; cell++) {
-        const int64_t x = cell - r->box->first[0];
-        double p[STENCIL];
-        for (int i = 0; i < STENCIL; i++)
-            p[i] = cell_at(r->row, x + i - OWN, cells);
-        const double own = p[OWN];
-        const bool blends = prepare(p);
-        for (int64_t k = 0; k < ratio; k++) {
-            const int64_t voxel = cell * ratio + k;
-            const place *at = &r->places[0][k];
-            if (voxel >= first && voxel < end)
-                r->out[voxel - first] =
-                    blends && !at->centred ? at_place(p, at) : own;
-        }
+    const int64_t ratio = r->ratio[0], cell = first / ratio;
+    const int64_t cells = (first + count - 1) / ratio - cell + 1;
+    const double *from[STENCIL];
+    for (int i = 0; i < STENCIL; i++)
+        from[i] = r->row + (cell - r->box->first[0]) + i - OWN;
+    for (int64_t k = 0; k < ratio; k++) {
+        blend(from, &r->places[0][k], cells, r->part);
+        const int64_t before = first - cell * ratio - k; /* -ratio .. ratio */
+        const int64_t skipped = before > 0 ? 1 : 0;
+        double *to = r->out - before;
+        for (int64_t i = skipped; i * ratio < count + before; i++)
+            to[i * ratio] = r->part[i];
     }
 }
 
@@ -192,7 +227,8 @@ static snow_status begin(snow_context *context, refining *r,
     const int64_t *count = r->box->count;
     const uint64_t slice = (uint64_t)(count[0] * count[1]);
     *values = snow_allocate_array(
-        context, 2 * slice + (uint64_t)(count[0] + voxels->count[0]),
+        context,
+        2 * slice + (uint64_t)(2 * count[0] + 2 * OWN + voxels->count[0]),
         sizeof **values);
     *places = snow_allocate_array(
         context, (uint64_t)(r->ratio[0] + r->ratio[1] + r->ratio[2]),
@@ -201,10 +237,13 @@ static snow_status begin(snow_context *context, refining *r,
         return SNOW_STATUS_NO_MEMORY;
     r->none = *values;
     r->slice = r->none + slice;
-    r->row = r->slice + slice;
-    r->out = r->row + count[0];
+    r->row = r->slice + slice + OWN;
+    r->part = r->row + count[0] + OWN;
+    r->out = r->part + count[0];
     for (uint64_t i = 0; i < slice; i++)
         r->none[i] = NAN;
+    for (int i = 0; i < OWN; i++)
+        r->row[i - OWN] = r->row[count[0] + i] = NAN;
     place *at = *places;
     for (int axis = 0; axis < 3; axis++) {
         r->places[axis] = at;
