@@ -101,6 +101,22 @@ static char *color_key_of(const json_t *recipe) {
     return text;
 }
 
+/* What stays the same while a range is dragged, over which the points of the
+ * look are spread; NULL: there is none, or some points stay at their values. */
+static char *spread_key_of(const json_t *recipe) {
+    static const char *const ends[] = {"range", "window", "level"};
+    const char *map = json_string_value(json_object_get(recipe, "colormap"));
+    const bool stay =
+        json_object_get(recipe, "opacity") || (map && strchr(map, ':'));
+    json_t *without = json_copy((json_t *)recipe);
+    bool dragged = false;
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+        dragged |= json_object_del(without, ends[i]) == 0;
+    char *text = dragged && !stay ? key_of(without, look_keys) : NULL;
+    json_decref(without);
+    return text;
+}
+
 /* Replaces a key; whether it is another. */
 static bool take_key(char **key, char *now) {
     bool other = !*key || !now || strcmp(*key, now) != 0;
@@ -251,26 +267,33 @@ static int restyle(drawing *d) {
     return CONTINUE;
 }
 
-/* The colours of the look before with other opacities, for which no voxel is
- * counted; of the pictures at rest the look is made anew, whose text is
- * another. Whether it can be had. */
-static bool restyle_quickly(drawing *d) {
+/* The look before with other opacities or, where `spread` is set, over another
+ * range, for which no voxel is counted; of the pictures at rest the look is
+ * made anew, whose text is another. Whether it can be had. */
+static bool restyle_quickly(drawing *d, bool spread) {
     snow_transfer *made = NULL, *before = d->state.transfer;
+    const range_value range = options_range(&d->opts);
     snow_look base = {.size = sizeof base}, look = look_options(&d->opts);
     if (!before || d->state.channels.list.count ||
         snow_transfer_label(before, 0) ||
         snow_transfer_get_look(before, &base) != SNOW_STATUS_OK ||
-        base.symlog > 0)
+        base.symlog > 0 || (spread && range.kind != SNOW_RANGE_VALUES))
         return false;
-    const snow_look quick = {.size = sizeof quick,
-                             .base = &base,
-                             .opacities = look.opacities,
-                             .opacity_count = look.opacity_count};
+    snow_look quick = {.size = sizeof quick, .base = &base};
+    if (spread) {
+        quick.range = SNOW_RANGE_VALUES;
+        quick.low = range.low + d->opts.shift;
+        quick.high = range.high + d->opts.shift;
+    } else {
+        quick.opacities = look.opacities;
+        quick.opacity_count = look.opacity_count;
+    }
     if (drawing_new_transfer(d, &quick, &made) != SNOW_STATUS_OK)
         return false;
     snow_transfer_free(before);
     d->state.transfer = made;
     d->look_is_quick = true;
+    d->look_is_new |= spread;
     return true;
 }
 
@@ -329,12 +352,14 @@ static void forget(drawing *d) {
     free(d->data_key);
     free(d->look_key);
     free(d->color_key);
+    free(d->spread_key);
     free(d->plain_key);
     free(d->overlay_key);
     free(d->overlay_look_key);
     mixed_forget(d);
     d->shown.count = 0;
-    d->data_key = d->look_key = d->color_key = d->plain_key = NULL;
+    d->data_key = d->look_key = d->color_key = d->spread_key = NULL;
+    d->plain_key = NULL;
     d->overlay_key = d->overlay_look_key = NULL;
 }
 
@@ -360,6 +385,7 @@ static int apply(drawing *d, const json_t *recipe) {
     bool other_data = take_key(&d->data_key, key_of(recipe, data_keys)) || anew;
     bool other_look = take_key(&d->look_key, key_of(recipe, look_keys));
     bool other_colors = take_key(&d->color_key, color_key_of(recipe));
+    bool other_shape = take_key(&d->spread_key, spread_key_of(recipe));
     bool overlaid = drop_overlay(d, recipe, other_data);
     bool clips = json_object_get(recipe, "clip") != NULL;
     if (other_data || rearranged)
@@ -375,7 +401,8 @@ static int apply(drawing *d, const json_t *recipe) {
         done = reopen(d);
     } else {
         if (clipped || !d->state.transfer ||
-            (other_look && (other_colors || !restyle_quickly(d))))
+            (other_look && ((other_colors && other_shape) ||
+                            !restyle_quickly(d, other_colors))))
             done = restyle(d);
         if (done == CONTINUE)
             done = open_overlay(d);

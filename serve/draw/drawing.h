@@ -33,6 +33,7 @@ typedef struct drawing {
     render_state state;
     char *data_key, *look_key; /* what volume and look were made of */
     char *color_key;           /* and the look's colours, while points move */
+    char *spread_key;          /* all but its range, while that moves */
     bool look_is_quick;        /* its colours are those of the look before */
     shown_channels shown;      /* the numbers of what is drawn (mixed.h) */
     kept_channel away[SNOW_CHANNELS_MAX]; /* what was switched off */
