@@ -37,9 +37,11 @@ def c(snippet, folder):
     if "insitu" in snippet.text:
         # 512 to the power of three doubles are 1 GB, of which it draws a corner.
         text = snippet.text.replace("512, 512, 512", "64, 64, 64")
-        (folder / "program.c").write_text(framed("simulation.c", text))
+        name = "levels.c" if "_set_cells" in text else "simulation.c"
+        (folder / "program.c").write_text(framed(name, text))
         return call("mpicc program.c -o program $(pkg-config --cflags --libs "
-                    "snowglass-mpi) && mpirun -n 1 ./program", folder)
+                    "snowglass-mpi) && rm -f u_*.png && mpirun -n 1 ./program && "
+                    "[ -s u_0007.png ]", folder)
     name = "streamed.c" if "streamed" in snippet.text else "picture.c"
     (folder / "program.c").write_text(framed(name, snippet.text))
     return call("cc -std=c11 -Wall -Werror -Wno-misleading-indentation program.c "

@@ -131,6 +131,9 @@ def run_line(line, folder):
 def viewer(words, folder):
     """Shows its URL, answers, and ends with a signal."""
     os.makedirs("/run/user/1000", mode=0o700, exist_ok=True)
+    if "--live" in words:  # of a running simulation
+        (folder / words[words.index("--live") + 1]).write_text(
+            '{"output": "u_%04d.png", "reread": true}')
     with open(folder / "said", "w+b") as said:
         process = subprocess.Popen(words, cwd=folder, env=environment(),
                                    stdout=said, stderr=said)
