@@ -95,6 +95,17 @@ def series(folder):
             file["rho"] = numpy.indices((16, 16, 16)).sum(0) * (step + 1.0)
 
 
+def cells(folder):
+    """The file of two channels that a snippet names."""
+    import numpy
+    import tifffile
+    z, c, y, x = numpy.indices((8, 2, 16, 16))
+    tifffile.imwrite(folder / "cells.ome.tif",
+                     (20 * (c + 1) * ((x - 8) ** 2 + y < 40)).astype("u1"),
+                     metadata={"axes": "ZCYX",
+                               "Channel": {"Name": ["DAPI", "GFP"]}})
+
+
 def python(snippet, folder):
     """In one interpreter, as one reads a document."""
     launched = re.match(r"# needs files of a run: (mpiexec .*)\n", snippet.text)
@@ -102,6 +113,8 @@ def python(snippet, folder):
         (folder / "movie.py").write_text(snippet.text)
         return call(launched.group(1), folder)
     series(folder)
+    if "cells.ome.tif" in snippet.text:
+        cells(folder)
     here = os.getcwd()
     os.chdir(folder)
     try:
