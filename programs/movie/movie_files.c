@@ -67,9 +67,9 @@ static int by_number(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Finds the numbers of all existing files, in rising order. */
-static int find_numbers(const char *pattern, const frame_names *names,
-                        numbers *out) {
+/* Finds the numbers of all existing files, in rising order, and their width
+ * where any will do. */
+static int find_numbers(const char *pattern, frame_names *names, numbers *out) {
     const struct dirent *entry;
     DIR *folder = opendir(names_folder(names));
     if (!folder) {
@@ -77,6 +77,9 @@ static int find_numbers(const char *pattern, const frame_names *names,
         return SNOW_STATUS_BAD_INPUT;
     }
     bool good = true;
+    while ((entry = readdir(folder)))
+        names_widen(names, entry->d_name);
+    rewinddir(folder);
     while (good && (entry = readdir(folder))) {
         int64_t number = names_index(names, entry->d_name);
         if (number >= 0)

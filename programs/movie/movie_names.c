@@ -58,6 +58,7 @@ const char *names_read(const char *path, frame_names *out) {
             if (found)
                 return "has two numbers; write one %04d";
             found = true;
+            out->any = at[1] == 'T';
             part = out->after;
             used = 0;
             at += length;
@@ -114,6 +115,16 @@ int64_t names_index(const frame_names *names, const char *file) {
         index = 10 * index + (number[i] - '0');
     }
     return index;
+}
+
+void names_widen(frame_names *names, const char *file) {
+    const size_t before = strlen(names->before);
+    if (!names->any || strncmp(file, names->before, before) != 0)
+        return;
+    const size_t digits = strspn(file + before, "0123456789");
+    if (digits > 1 && digits <= DIGITS_MOST && file[before] == '0' &&
+        strcmp(file + before + digits, names->after) == 0)
+        names->digits = (int)digits;
 }
 
 const char *names_folder(const frame_names *names) {

@@ -8,6 +8,7 @@ except ImportError as missing:
     print("skip  ", missing)
     sys.exit(77)
 import gzip
+import json
 
 import oracle
 
@@ -126,6 +127,23 @@ oracle.expect("t.nc", oracle.magnitude(v), options=["--dataset", "v"],
 for number, name in enumerate("xyz"):
     oracle.expect("t.nc", v[..., number],
                   options=["--dataset", "v", "--component", name])
+
+# WRF: a time without coordinates, but with a variable of dates along it.
+with netCDF4.Dataset("t.nc", "w", format="NETCDF3_64BIT_OFFSET") as file:
+    for name, size in (("Time", None), ("z", 6), ("y", 7), ("x", 8)):
+        file.createDimension(name, size)
+    for name, unit in (("ITIMESTEP", ""), ("XTIME", "minutes since 2018-06-17")):
+        file.createVariable(name, "f4", ("Time",)).units = unit
+        file[name][:] = np.arange(5) * 360
+    file.createVariable("w", "f4", ("Time", "z", "y", "x"))[:] = \
+        oracle.sample("f4", (5, 6, 7, 8))
+    file["w"].setncatts({"description": "z-wind component", "units": "m s-1"})
+said = json.loads(oracle.run("t.nc", "--dataset", "w", "--time", "12h").stdout)
+for key, value in (("time", 2), ("time_value", 720),
+                   ("time_unit", "minutes since 2018-06-17"),
+                   ("long_name", "z-wind component"), ("value_unit", "m s-1")):
+    if said[key] != value:
+        oracle.fail("WRF", f"{key} is {said[key]}, not {value}")
 
 # Coordinates, packed and missing values; a gzip stream around them.
 for form in FORMATS:

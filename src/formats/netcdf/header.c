@@ -171,6 +171,8 @@ static void keep_words(cursor *c, const char *name, int64_t count,
         keep_text(text, v->standard_name, sizeof v->standard_name);
     if (!strcmp(name, "long_name"))
         keep_text(text, v->long_name, sizeof v->long_name);
+    if (!strcmp(name, "description") && !*v->long_name)
+        keep_text(text, v->long_name, sizeof v->long_name);
     if (!strcmp(name, "calendar"))
         keep_text(text, v->calendar, sizeof v->calendar);
     if (!strcmp(name, "axis"))

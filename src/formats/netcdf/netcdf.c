@@ -119,17 +119,22 @@ static bool lay_out(const netcdf_header *header, const netcdf_variable *v,
     return snow_add_u64(bytes, v->begin, end) && *end <= (uint64_t)INT64_MAX;
 }
 
-/* The coordinate variable of a dimension has its name and is its only axis;
+/* The coordinate variable of a dimension has its name and is its only axis; of
+ * a time without one (WRF) any variable along it that has the unit of a date.
  * NULL if there is none. */
 static const netcdf_variable *coordinates_of(const netcdf_header *header,
                                              int64_t dimension) {
+    const netcdf_variable *date = NULL;
     for (int64_t i = 0; i < header->variable_count; i++) {
         const netcdf_variable *v = &header->variables[i];
-        if (v->axes == 1 && v->axis[0] == dimension && v->type &&
-            !strcmp(v->name, header->dimensions[dimension].name))
+        if (v->axes != 1 || v->axis[0] != dimension || !v->type)
+            continue;
+        if (!strcmp(v->name, header->dimensions[dimension].name))
             return v;
+        if (!date && strstr(v->units, " since "))
+            date = v;
     }
-    return NULL;
+    return date;
 }
 
 /* Reads the variable's values as data into an array of that size; returns false

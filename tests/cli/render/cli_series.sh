@@ -36,6 +36,9 @@ done
 refused 2 "a step that is not there" 'no step 3; run_%04d.nrrd stands for 3' \
     "$TOOL" info run_%04d.nrrd --time 3
 refused 2 "nor that far from the end" 'no step -4' "$TOOL" info run_%04d.nrrd --time -4
+run 0 "a number of any width" "$TOOL" info run_%T.nrrd --time last
+says 'run_0030.nrrd: step 2 of 3'
+refused 3 "another width" 'no file matches' "$TOOL" info run_%d.nrrd
 refused 3 "a pattern without files" 'no file matches' "$TOOL" info no_%d.nrrd
 
 # Physical time: the nearest step.
