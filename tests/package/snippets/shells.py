@@ -128,6 +128,20 @@ def run_line(line, folder):
     return None
 
 
+def end_by_signal(process):
+    """Whether it ends.  Of many ranks mpirun itself may need the signal twice."""
+    for _ in range(2):
+        process.terminate()
+        try:
+            process.wait(60)
+            return True
+        except subprocess.TimeoutExpired:
+            pass
+    process.kill()
+    process.wait()
+    return False
+
+
 def viewer(words, folder):
     """Shows its URL, answers, and ends with a signal."""
     os.makedirs("/run/user/1000", mode=0o700, exist_ok=True)
@@ -144,8 +158,9 @@ def viewer(words, folder):
             time.sleep(0.1)
         text = (folder / "said").read_text()
         code = process.poll()
-        process.terminate()
-        process.wait()
+        ended = end_by_signal(process)
+    if not ended:
+        return "does not end by a signal"
     if code is not None or "://" not in text:
         return f"shows no URL: {text}"
     return None
