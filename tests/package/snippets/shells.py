@@ -96,7 +96,7 @@ def environment(**more):
 def run_line(line, folder):
     if line.startswith("https://"):  # what a browser would be given
         return None
-    line = re.sub(r"--map-by \S+ --bind-to core", "-n 2", line)  # is not here
+    line = re.sub(r"--map-by \S+ --bind-to core|-n \d\d+", "-n 2", line)
     alone = line.startswith("--")  # options
     if alone:
         line = f"snowglass head.nii.gz -o new.png -q {line}"
@@ -108,7 +108,7 @@ def run_line(line, folder):
         if word in ("-o", "--save-config", "--stats"):
             subprocess.run(["rm", "-rf", words[n + 1]], cwd=folder, check=True)
     command = [shell, "-c", line]
-    if "serve" in words[:2]:
+    if "serve" in words[:2] or words[:1] == ["mpirun"] and "serve" in words:
         return viewer(words, folder)
     if "--show" in words:
         return terminal(command, folder)
