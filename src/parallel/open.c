@@ -8,13 +8,13 @@
  *   +---------+      3   ..:::.    and cut  |  1 | 3  |   ranks to ranks
  *                                           +----+----+
  *
- * A share is an equal run of rows as they lie in the file.  Small ones, and
- * those of packed files, which are dear to read, lie in memory until their
- * voxels have moved.  Large ones of plain files are counted slab by slab and
- * dropped; the box is then read by itself, so that nothing lies beside it.  A
- * box that a limit has no room for stays in the file, and is drawn slab by slab
- * (volume/stream.h).  Invariant: the owned boxes of all ranks cover the grid
- * and do not overlap, before and after. */
+ * A share is an equal run of rows as they lie in the file, and lies in memory
+ * until its voxels have moved.  Under a limit, large ones of plain files, which
+ * are cheap to read, are counted slab by slab and dropped; the box is then read
+ * by itself, so that nothing lies beside it.  A box that a limit has no room
+ * for stays in the file, and is drawn slab by slab (volume/stream.h).
+ * Invariant: the owned boxes of all ranks cover the grid and do not overlap,
+ * before and after. */
 
 #include "parallel/part.h"
 #include "parallel/same_file.h"
@@ -136,8 +136,8 @@ static bool fits(const opening *o, const snow_part_place *p) {
 /* A file of a few kilobytes is only a header. */
 #define HEADER_BYTES 65536
 
-/* Shares up to this size lie in memory beside their boxes, so that the file is
- * read once. */
+/* Under a limit, shares up to this size lie in memory beside their boxes, so
+ * that the file is read once. */
 #define SHARE_MOST (INT64_C(16) << 20)
 
 /* Whether one voxel of the data beside a header is as dear as all, as those of
@@ -262,8 +262,9 @@ static snow_status read_share(opening *o, bool stream, snow_volume **share) {
     bool fit;
     const int64_t bytes =
         snow_box_voxels(&p.stored) * (int64_t)snow_type_size(o->whole.type);
-    SNOW_TRY(snow_share_agree(
-        o->comm, fits(o, &p) && (!o->plain || bytes <= SHARE_MOST), &fit));
+    const bool small = bytes <= SHARE_MOST || !o->context->limit;
+    SNOW_TRY(
+        snow_share_agree(o->comm, fits(o, &p) && (!o->plain || small), &fit));
     reading turn = {o, &p, share};
     if (o->packed && fit)
         status = snow_shares_in_turn(o->comm,
