@@ -15,7 +15,7 @@ static bool holds_components(const int64_t *sizes, const snow_axis_hint *hint,
                              const int *others, int count) {
     if (hint->components)
         return count > 2;
-    return count > 3 && sizes[others[0]] >= 2 && sizes[others[0]] <= 4 &&
+    return count > 3 && sizes[others[0]] >= 1 && sizes[others[0]] <= 4 &&
            sizes[others[1]] > sizes[others[0]] && !hint->space;
 }
 

@@ -23,7 +23,7 @@ typedef struct snow_axes {
     bool interleaved;  /* channels are next to each other: components */
 } snow_axes;
 
-/* Assigns the axes.  The fastest one counts components if it has 2 to 4
+/* Assigns the axes.  The fastest one counts components if it has 1 to 4
  * entries, fewer than the next one, and is one more than space has.  Of others
  * that are too many for space the slowest is time, and the next one channels.
  * Returns false if any is left. */

@@ -75,6 +75,13 @@ void snow_cf_measure(double *coordinates, int64_t count, const char *units,
     out->uneven = !out->even && snow_uneven_fits(coordinates, count);
 }
 
+bool snow_cf_is_down(const char *positive, const char *units) {
+    static const char *const pressures[] = {
+        "Pa",       "hPa",       "kPa",     "bar",  "mbar", "mb",
+        "millibar", "millibars", "decibar", "dbar", "atm",  NULL};
+    return *positive ? is_same(positive, "down") : is_any_of(units, pressures);
+}
+
 void snow_cf_release(snow_context *context, cf_axis *axes, int count) {
     for (int i = 0; i < count; i++)
         snow_release(context, axes[i].coordinates);
@@ -102,8 +109,9 @@ static void place_axis(snow_context *context, const cf_axis axes[3], int i,
     const cf_axis *x = &axes[0], *axis = &axes[i];
     double usual = x->given ? fabs(x->step) : 1;
     bool same = axis->given && !strcmp(axis->unit, x->unit);
-    info->matrix[i][i] = same ? axis->step : usual;
-    info->matrix[i][3] = same ? axis->first : 0;
+    const double up = axis->down ? -1 : 1;
+    info->matrix[i][i] = up * (same ? axis->step : copysign(usual, axis->step));
+    info->matrix[i][3] = same ? up * axis->first : 0;
     if (grid->at[i])
         info->matrix[i][i] *=
             (double)(grid->count[i] - 1) / (double)(grid->even[i] - 1);

@@ -15,6 +15,7 @@ typedef struct cf_axis {
     bool given;
     bool even;   /* neighbours are equally spaced */
     bool uneven; /* they are not, but rise or fall throughout */
+    bool down;   /* they grow downward, as depths and pressures do */
     double first, step;
     double *coordinates; /* all of them; NULL: none */
     char unit[64], calendar[24];
@@ -44,6 +45,10 @@ snow_axis_hint snow_cf_hint(const cf_words *words);
 void snow_cf_measure(double *coordinates, int64_t count, const char *units,
                      cf_axis *out);
 
+/* Whether coordinates grow downward (section 4.3): by their attribute positive,
+ * or where that is "", by a unit of pressure. */
+bool snow_cf_is_down(const char *positive, const char *units);
+
 /* Releases the coordinates of axes. */
 void snow_cf_release(snow_context *context, cf_axis *axes, int count);
 
@@ -57,7 +62,8 @@ void snow_cf_name(const char *name, const char *units, const char *long_name,
 
 /* Sets spacing, origin and unit from the coordinates of x, y and z.  Axes in
  * another unit than x (time, or height beside degrees) get x's spacing, with a
- * warning unless the options give it.  Plans the grid of uneven axes, whose
+ * warning unless the options give it.  The world's z grows upward: coordinates
+ * that grow downward get the other sign.  Plans the grid of uneven axes, whose
  * sizes info->dims become. */
 void snow_cf_place(snow_context *context, const cf_axis axes[3],
                    const snow_volume_options *options, snow_volume_info *info,

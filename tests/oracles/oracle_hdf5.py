@@ -105,6 +105,7 @@ colours = oracle.sample("u1", (7, 8, 3))
 with h5py.File("v.h5", "w") as file:
     file["t"] = t
     file["five"] = five
+    file["one"] = five[..., :1]
     file["colours"] = colours
     file["thin"] = colours
     file["colours"].attrs["CLASS"] = np.bytes_("IMAGE")
@@ -115,6 +116,7 @@ for time in (0, 4):
                   options=["--time", time, "--component", "y"])
 oracle.expect("v.h5:/t", oracle.magnitude(t[2]), options=["--time", 2])
 oracle.expect("v.h5:/five", five[3], options=["--time", 3])
+oracle.expect("v.h5:/one", five[..., 0])
 oracle.expect("v.h5:/colours", colours[None, ..., 2],
               options=["--component", "z"])
 oracle.expect("v.h5:/thin", colours)

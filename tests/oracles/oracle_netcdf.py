@@ -145,6 +145,30 @@ for key, value in (("time", 2), ("time_value", 720),
     if said[key] != value:
         oracle.fail("WRF", f"{key} is {said[key]}, not {value}")
 
+# What grows downward: an ocean's depth, pressure, and a height from the top.
+for form in FORMATS:
+    for attributes, values, along in (
+            ({"units": "m", "positive": "down"}, np.arange(4) * 5.0, -3),
+            ({"units": "hPa"}, 1000 - np.arange(4) * 100.0, 3),
+            ({"units": "hPa"}, 100 + np.arange(4) * 100.0, -3),
+            ({"units": "m"}, np.arange(4) * 5.0, 3),
+            ({"units": "m"}, 20 - np.arange(4) * 5.0, -3),
+            ({"units": "degrees", "positive": "down"}, 1 + np.arange(4) * 2.0, -2)):
+        a = oracle.sample("f4", (4, 5, 6))
+        with netCDF4.Dataset("d.nc", "w", format=form) as file:
+            for name, coordinates, own in (
+                    ("z", values, attributes),
+                    ("lat", np.arange(5) * 1.0, {"units": "degrees_north"}),
+                    ("lon", np.arange(6) * 3.0, {"units": "degrees_east"})):
+                file.createDimension(name, len(coordinates))
+                file.createVariable(name, "f8", (name,))[:] = coordinates
+                file[name].setncatts(own)
+            file.createVariable("v", "f4", ("z", "lat", "lon"),
+                                fill_value=False)[:] = a
+        first = -1 if attributes["units"] == "degrees" else 0
+        oracle.expect("d.nc", a, oracle.affine((3, 1, along), (0, 0, first)),
+                      unit="degrees", name=f"{form} {attributes} {values}")
+
 # Coordinates, packed and missing values; a gzip stream around them.
 for form in FORMATS:
     packed = oracle.sample("i2", (2, 4, 5, 6))

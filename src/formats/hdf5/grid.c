@@ -154,7 +154,7 @@ typedef struct scales {
 static snow_status read_scale(const scales *s, hid_t scale, hsize_t count,
                               cf_axis *out) {
     snow_context *context = s->context;
-    char name[64], units[64];
+    char name[64], units[64], positive[64];
     hid_t space = H5Dget_space(scale);
     hssize_t points = H5Sget_simple_extent_npoints(space);
     H5Sclose(space);
@@ -175,7 +175,9 @@ static snow_status read_scale(const scales *s, hid_t scale, hsize_t count,
     snow_cf_release(context, out,
                     1); /* of a damaged file that lists it twice */
     snow_cf_measure(values, points, units, out);
+    read_text(s->file, scale, "positive", positive, sizeof positive);
     read_text(s->file, scale, "calendar", out->calendar, sizeof out->calendar);
+    out->down = snow_cf_is_down(positive, units);
     return SNOW_STATUS_OK;
 }
 

@@ -175,6 +175,8 @@ static void keep_words(cursor *c, const char *name, int64_t count,
         keep_text(text, v->long_name, sizeof v->long_name);
     if (!strcmp(name, "calendar"))
         keep_text(text, v->calendar, sizeof v->calendar);
+    if (!strcmp(name, "positive"))
+        keep_text(text, v->positive, sizeof v->positive);
     if (!strcmp(name, "axis"))
         keep_text(text, v->axis_name, sizeof v->axis_name);
     /* Version 1 has no unsigned bytes; they are marked this way. */

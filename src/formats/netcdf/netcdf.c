@@ -175,6 +175,7 @@ static snow_status read_axis(const netcdf_header *header, snow_seekable *bytes,
     snow_volume_close(line);
     if (read) {
         snow_cf_measure(values, count, v->units, out);
+        out->down = snow_cf_is_down(v->positive, v->units);
         memcpy(out->calendar, v->calendar, sizeof out->calendar);
     } else
         snow_release(header->context, values);

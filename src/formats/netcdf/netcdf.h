@@ -35,7 +35,7 @@ typedef struct netcdf_variable {
     uint64_t bytes; /* of the variable, or of its part of a record */
     uint64_t begin;
     char units[64], standard_name[64], axis_name[64], long_name[65];
-    char calendar[24];
+    char calendar[24], positive[8];
     bool is_unsigned; /* set by an attribute, whatever the type */
     cf_values values;
 } netcdf_variable;
