@@ -145,6 +145,17 @@ for key, value in (("time", 2), ("time_value", 720),
     if said[key] != value:
         oracle.fail("WRF", f"{key} is {said[key]}, not {value}")
 
+# Lines of a scan that have dates are no steps of time.
+for form in FORMATS:
+    a = oracle.sample("f4", (6, 7, 8))
+    with netCDF4.Dataset("s.nc", "w", format=form) as file:
+        for name in ("z", "y", "x"):
+            file.createDimension(name, LENGTHS[name])
+        file.createVariable("scanned", "f8", ("y",))[:] = np.arange(7) * 60.0
+        file["scanned"].units = "seconds since 2020-01-01"
+        file.createVariable("v", "f4", ("z", "y", "x"), fill_value=False)[:] = a
+    oracle.expect("s.nc", a, options=["--dataset", "v"], name=f"{form} a scan")
+
 # What grows downward: an ocean's depth, pressure, and a height from the top.
 for form in FORMATS:
     for attributes, values, along in (

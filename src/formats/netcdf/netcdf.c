@@ -120,18 +120,20 @@ static bool lay_out(const netcdf_header *header, const netcdf_variable *v,
 }
 
 /* The coordinate variable of a dimension has its name and is its only axis; of
- * a time without one (WRF) any variable along it that has the unit of a date.
- * NULL if there is none. */
+ * a dimension called time without one (WRF) any variable along it that has the
+ * unit of a date.  NULL if there is none. */
 static const netcdf_variable *coordinates_of(const netcdf_header *header,
                                              int64_t dimension) {
+    const char *name = header->dimensions[dimension].name;
+    const bool is_time = snow_cf_hint(&(cf_words){name, "", "", ""}).time;
     const netcdf_variable *date = NULL;
     for (int64_t i = 0; i < header->variable_count; i++) {
         const netcdf_variable *v = &header->variables[i];
         if (v->axes != 1 || v->axis[0] != dimension || !v->type)
             continue;
-        if (!strcmp(v->name, header->dimensions[dimension].name))
+        if (!strcmp(v->name, name))
             return v;
-        if (!date && strstr(v->units, " since "))
+        if (is_time && !date && strstr(v->units, " since "))
             date = v;
     }
     return date;
