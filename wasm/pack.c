@@ -25,6 +25,11 @@ void packer_wait_for_draft(packer *p) {
     (void)p;
 }
 
+picture *packer_wait(packer *p) {
+    (void)p;
+    return NULL;
+}
+
 picture *packer_end(packer *p) {
     (void)p;
     return NULL;
