@@ -440,7 +440,8 @@ void drawing_close(drawing *d) {
     channels_close(&d->slice_channels);
     layers_close(&d->slice_layers);
     slices_forget(d);
-    render_state_free(&d->state);
+    mixed_forget(d);
+    render_state_free(&d->state); /* what opened the volumes */
     json_decref(d->tree);
     free(d->slice_key);
     forget(d);

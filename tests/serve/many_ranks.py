@@ -132,8 +132,11 @@ def channels():
     for colored in True, False:
         slice_is_of_command(page, f"a slice, colored: {colored}", axis="z",
                             index=11, colored=colored)
-    many.process.send_signal(signal.SIGTERM)
-    many.process.communicate(timeout=60)
+    at_rest(page, 9, {"channel": "0,2"})
+    os.kill(ranks_of(many)[0], signal.SIGINT)
+    code, lines = end_of(many)
+    check("a job with a channel switched off ends in order",
+          code == 0 and not lines, f"{code} {lines}")
 
 
 def same_as_one(exact):

@@ -34,6 +34,18 @@ def too_large():
     server.stop()
 
 
+def ends_with_one_off():
+    """What was put away is closed before what it was read by."""
+    server = Server("plain.zarr", "-q", "-j", "2")
+    page = Page(server)
+    page.say({"t": "set", "n": 1, "recipe": {"size": [64, 64]}})
+    page.hear_picture(2, 1)
+    page.say({"t": "set", "n": 2, "recipe": {"channel": "0,2"}})
+    page.hear_picture(2, 2)
+    page.close()
+    server.stop()
+
+
 def switched(name, *options, clip=None):
     """All, some, one, none but the first; clipped; in other modes."""
     server = Server(name, "-q", "-j", "2", *options)
@@ -98,6 +110,7 @@ def switched(name, *options, clip=None):
 write_channels("plain.zarr", False)
 write_channels("told.zarr", True)
 switched("plain.zarr")
+ends_with_one_off()
 if not SHORT:
     switched("told.zarr")
     switched("told.zarr", "--clip", "0,0,1,8", clip=[[0, 0, 1, 8]])
