@@ -23,7 +23,7 @@ class Snowglass(CMakePackage):
     variant("gdcm", default=False, description="Unpack DICOM")
     variant("exr", default=False, description="Write OpenEXR")
     variant("webp", default=True, description="Write WebP")
-    variant("jpeg", default=True, description="Write JPEG")
+    variant("jpeg", default=True, description="JPEG slices and pictures")
     variant("blosc", default=True, description="Read Zarr packed by Blosc")
     variant("zstd", default=True, description="Read Zarr packed by Zstandard")
     variant("lz4", default=True, description="Read Zarr packed by LZ4")

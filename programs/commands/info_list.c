@@ -63,6 +63,13 @@ static bool path_in(const char *folder, const char *name, char out[PATH_MAX]) {
            (is_file(out) || is_folder(out));
 }
 
+/* Whether files of the format may be the slices of one volume. */
+static bool are_images(const snow_volume_info *info) {
+    return strcmp(info->format, "png") == 0 ||
+           strcmp(info->format, "jpeg") == 0 ||
+           strcmp(info->format, "tiff") == 0;
+}
+
 /* Whether what a folder holds is a volume by itself, and no part of one that
  * the folder should be: a slice, or an array of a Zarr group. */
 static bool stands_alone(const char *path, const snow_volume_info *info) {
@@ -70,8 +77,8 @@ static bool stands_alone(const char *path, const snow_volume_info *info) {
         return is_folder(path);
     if (strcmp(info->format, "zarr") == 0)
         return ends_with(path, ".zarr");
-    return strcmp(info->format, "png") != 0 &&
-           (strcmp(info->format, "tiff") != 0 || info->dims[2] > 1);
+    return !are_images(info) ||
+           (strcmp(info->format, "tiff") == 0 && info->dims[2] > 1);
 }
 
 /* The suffix of a name; "" also for numbers, as in slice.001. */
@@ -112,7 +119,7 @@ bool info_is_list(const options *opts) {
         return false;
     /* Slices among volumes of their own are no reason to hide these. */
     if (probe(opts, path, &info) && strcmp(info.format, "dicom") != 0 &&
-        strcmp(info.format, "png") != 0 && strcmp(info.format, "tiff") != 0)
+        !are_images(&info))
         return false;
     return holds_volumes(opts, path);
 }

@@ -162,7 +162,7 @@ static int take_moment(options *opts, snow_context *context) {
 /* Whether files of a pattern are the slices of one volume. */
 static bool are_slices(snow_context *context, const options *opts,
                        const char *path) {
-    static const char *const formats[] = {"tiff", "png", "dicom"};
+    static const char *const formats[] = {"tiff", "png", "jpeg", "dicom"};
     snow_volume_options data = data_options(opts);
     snow_volume_info info = {.size = sizeof info};
     data.time = 0;

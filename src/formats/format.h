@@ -26,6 +26,7 @@ typedef struct snow_format {
     bool (*probe)(const unsigned char *bytes, size_t size);
     bool crops;
     bool slices;   /* a folder or a pattern of its files is a volume */
+    bool previews; /* but beside slices of another format they are previews */
     bool sets;     /* heeds the option that chooses a data set */
     bool channels; /* heeds the option that chooses a channel */
     bool series;   /* heeds the option that chooses a series */
@@ -49,6 +50,7 @@ extern const snow_format snow_format_vti;
 extern const snow_format snow_format_vtr;
 extern const snow_format snow_format_tiff;
 extern const snow_format snow_format_png;
+extern const snow_format snow_format_jpeg;
 extern const snow_format snow_format_hdf5;
 extern const snow_format snow_format_netcdf;
 extern const snow_format snow_format_dicom;

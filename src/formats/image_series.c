@@ -30,6 +30,16 @@ static const snow_format *slice_format(const stack *s, const char *path) {
     return format && format->slices ? format : NULL;
 }
 
+/* Whether any file is a slice that cannot be a preview of others. */
+static bool holds_slices(const stack *s, const snow_folder *files) {
+    for (size_t i = 0; i < files->count; i++) {
+        const snow_format *format = slice_format(s, files->paths[i]);
+        if (format && !format->previews)
+            return true;
+    }
+    return false;
+}
+
 static snow_status refuse_empty(snow_context *context, const char *path) {
     char name[256];
     if (snow_is_folder(path) && snow_folder_below(path, name, sizeof name))
@@ -39,17 +49,18 @@ static snow_status refuse_empty(snow_context *context, const char *path) {
                          name);
     return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                      "names no slices; give a folder or a pattern of .tif, "
-                     ".png or DICOM files");
+                     ".png, .jpg or DICOM files");
 }
 
 /* Keeps the files whose names belong to slices: folders also hold notes and
- * tables.  All must have one format. */
+ * tables, and previews beside the slices.  All must have one format. */
 static snow_status choose_files(stack *s, const char *path,
                                 snow_folder *files) {
     size_t kept = 0, others = 0;
+    bool previews = holds_slices(s, files);
     for (size_t i = 0; i < files->count; i++) {
         const snow_format *format = slice_format(s, files->paths[i]);
-        if (!format)
+        if (!format || (previews && format->previews))
             continue;
         if (!s->format)
             s->format = format;

@@ -6,14 +6,15 @@
  * that are both, for programs that know slices only as that.  Raw, which
  * recognises nothing, is the last. */
 static const snow_format *const formats[] = {
-    &snow_format_dicom,     &snow_format_nrrd, &snow_format_nifti,
-    &snow_format_metaimage, &snow_format_npy,  &snow_format_vtk,
-    &snow_format_vtr,       &snow_format_pvd,  &snow_format_pvti,
-    &snow_format_vtm,       &snow_format_vth,  &snow_format_xdmf,
-    &snow_format_amrex,     &snow_format_vti,  &snow_format_mrc,
-    &snow_format_tiff,      &snow_format_png,  &snow_format_hdf5,
-    &snow_format_netcdf,    &snow_format_den,  &snow_format_zarr,
-    &snow_format_visit,     &snow_format_bov,  &snow_format_raw,
+    &snow_format_dicom,     &snow_format_nrrd,   &snow_format_nifti,
+    &snow_format_metaimage, &snow_format_npy,    &snow_format_vtk,
+    &snow_format_vtr,       &snow_format_pvd,    &snow_format_pvti,
+    &snow_format_vtm,       &snow_format_vth,    &snow_format_xdmf,
+    &snow_format_amrex,     &snow_format_vti,    &snow_format_mrc,
+    &snow_format_tiff,      &snow_format_png,    &snow_format_jpeg,
+    &snow_format_hdf5,      &snow_format_netcdf, &snow_format_den,
+    &snow_format_zarr,      &snow_format_visit,  &snow_format_bov,
+    &snow_format_raw,
 };
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
 

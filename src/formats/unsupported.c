@@ -28,9 +28,6 @@ static const struct {
     {0, "MATLAB 5.0", 10,
      "is a MATLAB file of version 5, which is not supported; save it with "
      "-v7.3, as HDF5"},
-    {0, "\xFF\xD8\xFF", 3,
-     "is a JPEG picture, whose lossy values are not the measured ones; use PNG "
-     "or TIFF slices"},
     {0, "RIFF", 4,
      "is a RIFF file (WebP, sound or film) and not a volume; use PNG or TIFF "
      "slices"},

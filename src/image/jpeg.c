@@ -3,58 +3,16 @@
  *
  * A picture is laid on its background, black if it has none, as by a viewer
  * that knows no alpha.  Quality 92 without subsampling of colours keeps thin
- * letters and edges of colour clean.  libjpeg allocates its own memory, which
- * no context counts, and ends by a jump when it fails. */
+ * letters and edges of colour clean. */
 #include "image/image.h"
 
+#include "io/jpeg.h"
 #include "io/seekable.h"
-
-#include <string.h>
-
-/* Start of image, and the first byte of the next marker. */
-static bool probe_jpeg(const unsigned char *bytes, size_t size) {
-    return size >= 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0;
-}
 
 #if SNOW_HAVE_JPEG
 
-#include <setjmp.h>
-#include <stdio.h>
-
-#include <jpeglib.h>
-
 #define QUALITY 92
 #define BUFFER_BYTES 65536
-
-/* A small progressive file may need all its coefficients in memory. */
-#define COEFFICIENT_BYTES (1L << 30)
-
-/* What libjpeg's callbacks need; `base` is first, so that they find it. */
-typedef struct jpeg_fault {
-    struct jpeg_error_mgr base;
-    jmp_buf out;
-    char text[JMSG_LENGTH_MAX];
-} jpeg_fault;
-
-static void leave(j_common_ptr info) {
-    jpeg_fault *fault = (jpeg_fault *)info->err;
-    info->err->format_message(info, fault->text);
-    longjmp(fault->out, 1);
-}
-
-/* Warnings of damage count as errors, since half a picture is none. */
-static void hear(j_common_ptr info, int level) {
-    if (level < 0)
-        leave(info);
-}
-
-static struct jpeg_error_mgr *begin_faults(jpeg_fault *fault) {
-    jpeg_std_error(&fault->base);
-    fault->base.error_exit = leave;
-    fault->base.emit_message = hear;
-    fault->text[0] = '\0';
-    return &fault->base;
-}
 
 /* --- writing -------------------------------------------------------------- */
 
@@ -113,8 +71,8 @@ static snow_status write_jpeg(const snow_image *image,
         memset(options.background, 0, sizeof options.background);
     options.flatten = true;
     snow_levels levels;
-    jpeg_fault fault;
-    struct jpeg_compress_struct info = {.err = begin_faults(&fault)};
+    snow_jpeg_fault fault;
+    struct jpeg_compress_struct info = {.err = snow_jpeg_begin_faults(&fault)};
     jpeg_target *target =
         snow_allocate_array(image->context, 1, sizeof *target);
     snow_status status = snow_levels_begin(image, &options, false, &levels);
@@ -176,13 +134,13 @@ static snow_status make_picture(const snow_source *source,
 
 /* The picture belongs to the caller, so that a jump loses nothing. */
 static snow_status decode(const snow_source *source, const unsigned char *bytes,
-                          size_t size, jpeg_fault *fault,
+                          size_t size, snow_jpeg_fault *fault,
                           struct jpeg_decompress_struct *info,
                           snow_image **out) {
     if (setjmp(fault->out))
         return refuse(source, fault->text);
     jpeg_create_decompress(info);
-    info->mem->max_memory_to_use = COEFFICIENT_BYTES;
+    info->mem->max_memory_to_use = SNOW_JPEG_COEFFICIENT_BYTES;
     jpeg_mem_src(info, bytes, (unsigned long)size);
     jpeg_read_header(info, TRUE);
     info->out_color_space = JCS_RGB;
@@ -205,8 +163,9 @@ static snow_status read_jpeg(snow_source *source, snow_image **out) {
     snow_context *context = snow_source_context(source);
     snow_seekable *store = NULL;
     snow_image *image = NULL;
-    jpeg_fault fault;
-    struct jpeg_decompress_struct info = {.err = begin_faults(&fault)};
+    snow_jpeg_fault fault;
+    struct jpeg_decompress_struct info = {.err =
+                                              snow_jpeg_begin_faults(&fault)};
     SNOW_TRY(snow_seekable_open(source, &store));
     uint64_t size = snow_seekable_size(store);
     unsigned char *bytes = snow_allocate_array(context, size + 1, 1);
@@ -231,7 +190,7 @@ const snow_image_format snow_image_jpeg = {.name = "JPEG",
                                            .other = ".jpeg",
                                            .bits = 8,
                                            .write = write_jpeg,
-                                           .probe = probe_jpeg,
+                                           .probe = snow_jpeg_probe,
                                            .read = read_jpeg,
                                            .in_any_order = true};
 
@@ -242,6 +201,6 @@ const snow_image_format snow_image_jpeg = {.name = "JPEG",
                                            .other = ".jpeg",
                                            .bits = 8,
                                            .package = "libjpeg62-turbo-dev",
-                                           .probe = probe_jpeg};
+                                           .probe = snow_jpeg_probe};
 
 #endif

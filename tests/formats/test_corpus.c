@@ -75,7 +75,7 @@ static void no_reader_is_lost_without_memory(void **state) {
         {"vtk", "a.vtk"},       {"vti", "a.vti"},        {"tiff", "a.tif"},
         {"png_slice", "a.png"}, {"hdf5", "a.h5"},        {"netcdf", "a.nc"},
         {"nrrd", "a.nrrd"},     {"nifti", "a.nii"},      {"metaimage", "a.mha"},
-        {"den", "a.den"},       {"vth", "a.vth"},
+        {"den", "a.den"},       {"vth", "a.vth"},        {"jpeg", "a.jpg"},
     };
     const size_t count = sizeof subjects / sizeof *subjects;
     for (size_t i = 0; i < count; i++)

@@ -29,6 +29,12 @@ def skip(why):
     sys.exit(77)
 
 
+def library(name):
+    """The version of an optional library of the tool's, or None."""
+    told = subprocess.run([TOOL, "doctor", "--json"], capture_output=True)
+    return json.loads(told.stdout)["libraries"].get(name)
+
+
 def need_modules():
     """Readers of modules are found by /proc/self/maps (src/base/module.c)."""
     if not os.access("/proc/self/maps", os.R_OK):

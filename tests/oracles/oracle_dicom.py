@@ -32,9 +32,7 @@ import oracle
 oracle.need_modules()
 
 # Without GDCM what is packed by JPEG's kinds is refused, and nothing else.
-GDCM = json.loads(subprocess.run([oracle.TOOL, "doctor", "--json"],
-                                 capture_output=True).stdout
-                  )["libraries"].get("gdcm")
+GDCM = oracle.library("gdcm")
 UNBUILT = "this build cannot read compressed DICOM images"
 
 place = oracle.folder()

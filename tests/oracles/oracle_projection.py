@@ -93,6 +93,13 @@ zarr("x.ome.zarr", voxels)
 for path in ("pages.tif", "imagej.tif", "x.ome.tif", "tif", "png",
              "x.ome.zarr"):
     check(path, voxels)
+if oracle.library("libjpeg"):
+    os.mkdir("jpg")
+    for z, page in enumerate(voxels):
+        Image.fromarray(page).save(f"jpg/{z:03}.jpg")
+    # What was written is not what is read, but close to it.
+    check("jpg", np.stack([np.asarray(Image.open(f"jpg/{z:03}.jpg"))
+                           for z in range(len(voxels))]))
 # An image is the mask of a grid with a place and the other way round.
 with open("placed.nrrd", "wb") as file:
     file.write(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 40 24 18\n"

@@ -1,4 +1,4 @@
-"""TIFF and PNG stacks beside tifffile and Pillow."""
+"""TIFF, PNG and JPEG stacks beside tifffile and Pillow."""
 import sys
 
 try:
@@ -21,6 +21,34 @@ place = oracle.folder()
 oracle.usual = oracle.image()
 TYPES = ["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8", "f4", "f8", "f2"]
 tiffcp = shutil.which("tiffcp")
+
+
+def compare_jpeg():
+    """Grey and colours, sampled alike or not, of sizes that no block divides:
+    what Pillow reads of what it wrote."""
+    y, x = np.mgrid[:53, :75]
+    pages = [(100 + 60 * np.sin(x / 9 + z) + y).astype("u1") for z in range(5)]
+    kinds = [("L", {}), ("L", {"progressive": True}), ("RGB", {}),
+             ("RGB", {"subsampling": 0}), ("RGB", {"subsampling": 1}),
+             ("RGB", {"progressive": True, "quality": 60})]
+    for mode, how in kinds:
+        shutil.rmtree("jpeg", ignore_errors=True)
+        os.mkdir("jpeg")
+        for z, page in enumerate(pages):
+            whole = np.stack([page, page[::-1], 255 - page], -1)
+            Image.fromarray(page if mode == "L" else whole).save(
+                f"jpeg/p_{z}.jpg", **how)
+        read = np.stack([np.asarray(Image.open(f"jpeg/p_{z}.jpg"))
+                         for z in range(len(pages))])
+        if mode == "L":
+            oracle.expect("jpeg", read, name=f"JPEG {how}")
+        else:
+            for channel in range(3):
+                oracle.expect("jpeg/p_%d.jpg", read[..., channel],
+                              options=["--channel", channel],
+                              name=f"JPEG {how} channel {channel}")
+    shutil.copy("stack/s20.png", "jpeg/p_9.png")
+    oracle.expect("jpeg", a[3:4], name="previews beside PNG")
 
 
 def wide(a):
@@ -172,8 +200,10 @@ try:
     shutil.copy("png/p_003.png", "stack/s20.png")
     os.remove("stack/s17.tif")
     oracle.refuse("stack", "one kind")
+    if oracle.library("libjpeg"):
+        compare_jpeg()
 except ImportError:
-    print("no Pillow: PNG is not compared")
+    print("no Pillow: PNG and JPEG are not compared")
 
 for relative, step, unit in (
         ("formats/tiff/mini-t1-head.tif", (1e6 / 666666,) * 2 + (1.5,), "mm"),

@@ -79,6 +79,7 @@ static void every_format_reads_it(void **state) {
         {"vti", "a.vti"},        {"tiff", "a.tif"},      {"png_slice", "a.png"},
         {"netcdf", "a.nc"},      {"nrrd", "a.nrrd"},     {"nifti", "a.nii"},
         {"hdf5", "a.h5"},        {"metaimage", "a.mha"}, {"den", "a.den"},
+        {"jpeg", "a.jpg"},
     };
     for (size_t i = 0; i < sizeof subjects / sizeof *subjects; i++) {
         char folder[512], path[1024];
