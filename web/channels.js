@@ -18,7 +18,7 @@ export class Channels {
         this.rows = [];
         this.list = make('div', {});
         this.element = section('Channels', true, this.list, button('All',
-            'All channels as the file shows them', () => recipe.set({...plain, channel: null, component: null})));
+            'All channels as the file shows them', () => recipe.set({...plain, channel: null})));
     }
 
     /** The next change may come before the server's look. */

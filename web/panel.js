@@ -21,7 +21,7 @@ export class Panel {
         this.editor = new Editor(recipe, page);
         this.gradient = new Editor(recipe, page, BY_GRADIENT);
         this.colors = new Colors(recipe, page);
-        this.channels = new Channels(recipe, page, {...NO_SHAPE, preset: null});
+        this.channels = new Channels(recipe, page, {...NO_SHAPE, preset: null, component: null});
         this.element = make('aside', {className: 'panel', 'aria-label': 'Controls'});
         this.updates = [];
         engine.on('small', frame => this.showThumbnail(frame));

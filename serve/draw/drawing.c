@@ -54,6 +54,10 @@ void drawing_settle_overlay(const drawing *d, options *opts) {
 int drawing_settle_channels(options *opts) {
     int done = settle_channels(opts, true);
     opts->mixes = true; /* of the others the page tells */
+    if (opts->channels.count) {
+        opts->tf = NULL; /* which is of one volume */
+        opts->loaded = NULL;
+    }
     if (opts->channels.count && channels_hinder(opts))
         opts->channels.count = 0;
     return done;

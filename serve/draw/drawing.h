@@ -77,8 +77,8 @@ snow_volume *drawing_unclipped(drawing *d, int n);
 /* The options of the present recipe, as a command of render needs them. */
 void drawing_options(const drawing *d, options *out);
 
-/* Options as recipes have them: which channels are meant.  Those of a list give
- * way to its first one where they cannot be mixed. */
+/* Options as recipes have them: which channels are meant.  A list replaces the
+ * file of --tf, and gives way to its first one where it cannot be mixed. */
 int drawing_settle_channels(options *opts);
 
 /* The middle of the volume, and from there to its farthest corner: what zoom 1

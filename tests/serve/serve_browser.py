@@ -107,6 +107,14 @@ def mixed():
     same_bytes()
     same_bytes("slice.txt", "slice.png")
     server.stop()
+    points = os.path.join(shots, "points.json")
+    with open(points, "w") as out:
+        json.dump({"snowglass-tf": 1, "values": "data",
+                   "opacities": [[0, 0], [900, 1]]}, out)
+    for options in ("--component", "1"), ("--tf", points):
+        server = Server(place, *options)
+        drive(server.url, shots, "begun")
+        server.stop()
 
 
 watch("short" if SHORT else "long", "phantom:head")

@@ -1,4 +1,5 @@
 """Channels in the viewer: pictures and slices are those of their commands."""
+import json
 import os
 import sys
 import tempfile
@@ -42,6 +43,24 @@ def ends_with_one_off():
     page.hear_picture(2, 1)
     page.say({"t": "set", "n": 2, "recipe": {"channel": "0,2"}})
     page.hear_picture(2, 2)
+    page.close()
+    server.stop()
+
+
+def begun_with_one(name, *options):
+    """A component or a look of the command line gives way to a list of channels."""
+    server = Server("plain.zarr", "-q", "-j", "2", *options)
+    page = Page(server)
+    one = is_of_command(page, f"{name}: one channel", 1, size=[64, 64])
+    two = is_of_command(page, "two in its place", 2, component=None,
+                        channel="0:blue,2:red")
+    slice_is_of_command(page, "their slice", axis="z", index=11, colored=True)
+    check("are others", two != one)
+    alone = is_of_command(page, "in a mode of one channel", 3, mode="mean")
+    check("is another", alone not in (one, two))
+    back = is_of_command(page, "one again", 4, mode=None, channel=None,
+                         component="1")
+    check("has the look of the command line", options[0] != "--tf" or back != two)
     page.close()
     server.stop()
 
@@ -111,6 +130,11 @@ write_channels("plain.zarr", False)
 write_channels("told.zarr", True)
 switched("plain.zarr")
 ends_with_one_off()
+begun_with_one("a component", "--component", "1")
+with open("look.json", "w") as out:
+    json.dump({"snowglass-tf": 1, "values": "data", "colormap": "viridis",
+               "opacities": [[0, 0], [900, 1]]}, out)
+begun_with_one("a file of a look", "--tf", "look.json")
 if not SHORT:
     switched("told.zarr")
     switched("told.zarr", "--clip", "0,0,1,8", clip=[[0, 0, 1, 8]])

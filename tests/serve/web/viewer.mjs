@@ -988,7 +988,20 @@ async function mixed() {
     await small.context().close();
 }
 
-const alone = {points: manyPoints, mask: masked, overlay: overlaid, fused, channels: mixed};
+/** A component, or a file of a look, of the command line gives way to channels. */
+async function begun() {
+    const page = await open();
+    const rowOf = name => page.locator('details', {has: page.locator('summary', {hasText: 'Channels'})})
+        .getByLabel(name, {exact: true});
+    await rowOf('Cy5').check();
+    await rest(page);
+    check('two are drawn', await page.evaluate(() => window.snowglass.page.look.channels
+        .filter(one => one[2]).length) === 2, JSON.stringify(await keys(page)));
+    check('without the component', !('component' in await keys(page)));
+    await page.context().close();
+}
+
+const alone = {points: manyPoints, mask: masked, overlay: overlaid, fused, channels: mixed, begun};
 if (alone[tier]) {
     await alone[tier]();
     check('nothing is on the console', said.length === 0, said.join(' | '));
