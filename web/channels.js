@@ -46,7 +46,8 @@ export class Channels {
         const ink = make('input', {type: 'color', 'aria-label': `colour of ${name}`,
             oninput: () => this.put(index, {2: ink.value, 3: ink.value})});
         const ends = ['lowest', 'highest'].map((word, i) => number(`${word} value of the range of ${name}`,
-            value => this.put(index, {[4 + i]: value})));
+            value => (i ? this.known[index][4] < value : value < this.known[index][5]) &&
+                this.put(index, {[4 + i]: value})));
         const opacity = slider(`opacity of ${name}`, 0, 1, 0.02, this.recipe, value => this.put(index, {6: value}));
         const more = make('div', {className: 'row'}, ink, ...ends, opacity);
         return {box: box.box, ink, ends, opacity, more, element: make('div', {}, box.label, more)};

@@ -955,6 +955,13 @@ async function mixed() {
     await rest(page);
     check('colour, range and opacity are taken', (await list()).split(',').sort().join() ===
         '0:blue:20..700:1,1:green:20..900:0.5,2:#ff00c0:20..900:1', await list());
+    const ranges = await list();
+    await section.getByLabel('lowest value of the range of DAPI').fill('800');
+    await page.keyboard.press('Enter');
+    await section.getByLabel('highest value of the range of GFP').fill('20');
+    await page.keyboard.press('Enter');
+    await rest(page);
+    check('a range with nothing in it is not taken', await list() === ranges, await list());
     await drag(page, 0, -60, 'right');
     const before = await list();
     check('a right drag moves all ranges', /^0:blue:6\d\.\d*\.\.7\d\d/.test(before), before);
