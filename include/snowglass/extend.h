@@ -129,7 +129,7 @@ SNOW_API snow_status snow_voxels_move(
 
 /* Lets rows and slices of wrapped voxels of at least 4 bytes lie apart. */
 SNOW_API void snow_volume_set_pitch(snow_volume *, const int64_t pitch[2]);
-/* Gives a part the matrix of its whole, exactly. */
+/* Gives a part the matrix of its whole, exactly; a whole the given matrix. */
 SNOW_API snow_status snow_volume_set_whole(
     snow_volume *volume, const snow_volume_info *whole);
 

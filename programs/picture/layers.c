@@ -7,6 +7,7 @@
 #include "run/start.h"
 
 #include <math.h>
+#include <snowglass/extend.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -246,15 +247,16 @@ static bool find_whole(const options *opts, const snow_volume_info *grid,
 }
 
 /* Whether the crop of the volume is one of the overlay too: they have the same
- * voxels, but not both a place, by which a part would be found. */
+ * voxels, but not both a place, by which a part would be found.  *whole is the
+ * volume before it. */
 static bool shares_crop(const options *opts, const snow_volume_info *grid,
-                        const layers *l) {
+                        const layers *l, snow_volume_info *whole) {
     static const int64_t all[3][2];
     const snow_volume_info *info = snow_volume_get_info(l->volume);
-    snow_volume_info found;
-    const snow_volume_info *whole = l->whole ? l->whole : &found;
+    if (l->whole)
+        *whole = *l->whole;
     return memcmp(opts->crop, all, sizeof all) != 0 &&
-           (l->whole || find_whole(opts, grid, info->dims, &found)) &&
+           (l->whole || find_whole(opts, grid, info->dims, whole)) &&
            memcmp(whole->dims, info->dims, sizeof info->dims) == 0 &&
            (is_unplaced(whole) || is_unplaced(info) ||
             whole->medical != info->medical);
@@ -330,10 +332,23 @@ static int read_layer(const options *opts, snow_context *context,
                                     : fail_overlay(opts, context, l, status);
 }
 
+/* The box of the volume: both have offsets now, which look like places. */
+static int put_on_box(const options *opts, snow_context *context,
+                      const snow_volume_info *whole, layers *l) {
+    snow_volume_info box = *whole;
+    for (int row = 0; row < 3; row++)
+        for (int c = 0; c < 3; c++)
+            box.matrix[row][3] += box.matrix[row][c] * (double)opts->crop[c][0];
+    const snow_status status = snow_volume_set_whole(l->volume, &box);
+    return status == SNOW_STATUS_OK ? CONTINUE
+                                    : fail_overlay(opts, context, l, status);
+}
+
 /* Its look is of the whole, so that only then it is cropped. */
 static int crop_layer(const options *opts, snow_context *context,
                       const snow_volume_info *grid, bool parts, layers *l) {
-    if (!shares_crop(opts, grid, l))
+    snow_volume_info whole;
+    if (!shares_crop(opts, grid, l, &whole))
         return CONTINUE;
     if (!l->whole && strcmp(opts->operands[0], "-") == 0 &&
         opts->verbosity >= 0 && process_talks())
@@ -341,7 +356,8 @@ static int crop_layer(const options *opts, snow_context *context,
             "standard input before its crop",
             opts->overlay);
     layers_drop_volume(l);
-    return open_step(opts, context, grid, parts, true, l);
+    const int done = open_step(opts, context, grid, parts, true, l);
+    return done == CONTINUE ? put_on_box(opts, context, &whole, l) : done;
 }
 
 /* On the grid of a volume in memory, cut as it is.  Labels lie there by their

@@ -17,6 +17,7 @@ typedef struct opening {
     snow_volume_options options; /* of the volume, without mask */
     snow_volume_options mask;    /* of the mask */
     snow_volume_info grid;       /* of the whole mask */
+    bool same;                   /* it has the voxels of the whole volume */
     snow_label_range labels[SNOW_LABELS_MAX];
     size_t count;
     double clip[SNOW_CLIPS_MAX][4];
@@ -120,7 +121,6 @@ static snow_status crop_mask(opening *o, const snow_volume_info *volume) {
 static snow_status look_at_both(opening *o) {
     snow_volume_options whole = o->options;
     snow_volume_info info;
-    bool same;
     SNOW_TRY(look_at_mask(o));
     if (o->grid.times > 1)
         o->mask.time = o->options.time;
@@ -129,10 +129,10 @@ static snow_status look_at_both(opening *o) {
     memset(whole.crop, 0, sizeof whole.crop);
     SNOW_TRY(look(o, o->path, &whole, &info));
     snow_status status =
-        snow_grids_compare(o->context, &info, &o->grid, "mask", &same);
+        snow_grids_compare(o->context, &info, &o->grid, "mask", &o->same);
     if (status != SNOW_STATUS_OK)
         return snow_fail_within(o->context, status, "%s", o->mask_path);
-    if (!same)
+    if (!o->same)
         return crop_mask(o, &info);
     memcpy(o->mask.crop, o->options.crop, sizeof o->mask.crop);
     return SNOW_STATUS_OK;
@@ -171,6 +171,7 @@ static snow_status leave_out_of(const opening *o, const snow_volume *volume,
     return SNOW_STATUS_OK;
 }
 
+/* The boxes of grids without a place have offsets, which look like one. */
 static snow_status read_mask(const opening *o, const snow_volume *volume,
                              snow_volume **out) {
     snow_volume_info info;
@@ -178,6 +179,8 @@ static snow_status read_mask(const opening *o, const snow_volume *volume,
     if (!o->mask_path)
         return leave_out_of(o, volume, NULL, out);
     SNOW_TRY(o->open(o->context, o->mask_path, &o->mask, &info, &mask));
+    if (o->same)
+        memcpy(mask->info.matrix, volume->info.matrix, sizeof info.matrix);
     snow_status status =
         snow_volume_resample(mask, volume, true, "mask", &fitted);
     if (status == SNOW_STATUS_OK)

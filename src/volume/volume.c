@@ -236,6 +236,10 @@ snow_status snow_volume_set_whole(snow_volume *volume,
     for (int row = 0; row < 3; row++)
         volume->origin[row] = whole.matrix[row][3];
     volume->knows_origin = true;
+    if (!volume->is_part) {
+        memcpy(volume->info.matrix, whole.matrix, sizeof whole.matrix);
+        snow_volume_info_measure(&volume->info);
+    }
     return SNOW_STATUS_OK;
 }
 

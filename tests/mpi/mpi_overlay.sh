@@ -78,12 +78,21 @@ for frame in 0 1 2 3; do
 done
 
 "$TOOL" convert seg.nrrd -o bare.npy -q
-way="render v.nrrd --overlay bare.npy $look --crop 3:36,0:30,4:40"
+"$TOOL" convert v.nrrd -o v.npy -q
+for volume in v.nrrd "v.npy --spacing 0.5x0.5x0.9"; do
+    way="render $volume --overlay bare.npy $look --crop 3:36,0:30,4:40"
+    # shellcheck disable=SC2086
+    run 0 "a crop of $volume and one without a place, alone" "$TOOL" $way -y -o one.npy
+    # shellcheck disable=SC2086
+    run 0 "by $MOST" launch "$MOST" "$MPI_TOOL" $way -y -o many.npy
+    run 0 "is of both" "$TOOL" compare one.npy many.npy --tolerance 1/255
+done
+way="render v.npy --spacing 0.5x0.5x0.9 --mask bare.npy --labels 1 $look"
 # shellcheck disable=SC2086
-run 0 "a crop of one without a place, alone" "$TOOL" $way -y -o one.npy
+run 0 "its mask, alone" "$TOOL" $way -y -o one.npy
 # shellcheck disable=SC2086
 run 0 "by $MOST" launch "$MOST" "$MPI_TOOL" $way -y -o many.npy
-run 0 "is of both" "$TOOL" compare one.npy many.npy --tolerance 1/255
+run 0 "is of all" "$TOOL" compare one.npy many.npy --tolerance 1/255
 
 for overlay in seg.nrrd bare.npy; do
     run 0 "a slice with $overlay, alone" "$TOOL" slice v.nrrd --overlay $overlay -q -y -o one.png

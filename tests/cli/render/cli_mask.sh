@@ -84,6 +84,18 @@ run 0 "a converted mask" "$TOOL" convert v.npy -o box.npy -q --mask m.npy \
     --labels 1,3 --crop 10:30,2:,:20
 run 0 "is the same box" render box.npy -o g.npy
 check "and picture, but for its place" cmp -s f.npy g.npy
+# Of voxels that are no cubes, neither of which has a place.
+for name in v m; do
+    printf '%s\n' NRRD0004 'type: uint8' 'dimension: 3' 'sizes: 32 28 30' \
+        'spacings: 0.5 0.5 0.9' 'encoding: raw' '' >$name-half.nrrd
+    tail -c $((32 * 28 * 30)) $name.npy >>$name-half.nrrd
+done
+run 0 "a box of both, of flat voxels" render v-half.nrrd -o flat.npy \
+    --mask m-half.nrrd --labels 1,3 --crop 10:30,2:,:20
+run 0 "with a mask of cubes" "$TOOL" render v-half.nrrd --no-labels -s 90x80 \
+    -o cubes.npy --mask m.npy --labels 1,3 --crop 10:30,2:,:20
+check "is the same" cmp -s flat.npy cubes.npy
+check "nothing is resampled" bash -c "! grep -q 'another grid' '$ERR'"
 run 0 "from standard input" bash -c \
     "'$TOOL' render - -q --no-labels -s 90x80 -o h.npy --mask m.npy <v.npy"
 check "is the same" cmp -s c.npy h.npy

@@ -236,6 +236,24 @@ for way in "slice --axis axial" "slice --axis x --at 20" \
         ;;
     esac
 done
+
+# Neither has a place, and the voxels have other sides: their crops have offsets, which are
+# no places.
+for name in w same; do
+    printf '%s\n' NRRD0004 'type: uint8' 'dimension: 3' 'sizes: 32 28 30' \
+        'spacings: 0.5 0.5 0.9' 'encoding: raw' '' >$name-half.nrrd
+    tail -c $((32 * 28 * 30)) $name.npy >>$name-half.nrrd
+done
+for way in "slice --axis y" "slice --axis x --at 20 --crop 3:30,2:20,5:29" \
+    "render -s 60x50" "render -s 60x50 --crop 3:30,2:20,5:29"; do
+    # shellcheck disable=SC2086
+    run 0 "$way of flat voxels" "$TOOL" $way w-half.nrrd --overlay same-half.nrrd \
+        -o flat.png -q -y
+    # shellcheck disable=SC2086
+    run 0 "with cubes" "$TOOL" $way w-half.nrrd --overlay same.npy -o cubes.png -y
+    check "is the same" cmp -s flat.png cubes.png
+    check "nothing is resampled" bash -c "! grep -q 'another grid' '$ERR'"
+done
 "$TOOL" render - --crop 3:30,2:20,5:29 --overlay pet.nrrd -o z.png <w.npy 2>"$ERR"
 check "one of other voxels is refused there" grep -q "the overlay has 16x14x15 voxels" "$ERR"
 run 0 "a slice with a place" "$TOOL" slice w.nrrd --axis x --overlay same.nrrd -o placed.png -q -y
