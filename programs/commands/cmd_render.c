@@ -251,7 +251,7 @@ static snow_status make_annotations(const work *w, const options *opts,
         s->transfer,
         {painted->range[0], painted->range[1]},
         &s->channels,
-        layers_legend(&s->layers)};
+        layers_legend(&s->layers, false)};
     return annotations_make(&annotations, opts->azimuth, -1, image, s->context,
                             out);
 }

@@ -374,7 +374,7 @@ static snow_status make_overlay(slice_work *w, snow_overlay **out) {
                                        w->transfer,
                                        {0, 0},
                                        w->transfer ? &w->channels : NULL,
-                                       layers_legend(&w->layers)};
+                                       layers_legend(&w->layers, false)};
     annotations_find_unit(&w->opts, w->volume, false, &annotations.info);
     return annotations_make(&annotations, 0, -1, NULL, w->context, out);
 }

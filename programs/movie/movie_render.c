@@ -76,7 +76,7 @@ static void annotations(void *self, picture_annotations *out) {
         s->transfer,
         {shots->painted.range[0], shots->painted.range[1]},
         &s->channels,
-        layers_legend(&s->layers)};
+        layers_legend(&s->layers, s->each_time && shots->count > 1)};
 }
 
 /* Frames are annotated elsewhere and silently: what one has no room for is said

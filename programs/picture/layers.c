@@ -415,10 +415,11 @@ int layers_open(const options *opts, snow_context *context,
     return done;
 }
 
-const snow_transfer *layers_legend(const layers *l) {
+const snow_transfer *layers_legend(const layers *l, bool steps) {
     const bool named = l->volume && snow_transfer_label(l->transfer, 0);
-    return named && snow_volume_get_info(l->volume)->times > 1 ? NULL
-                                                               : l->transfer;
+    return steps && named && snow_volume_get_info(l->volume)->times > 1
+               ? NULL
+               : l->transfer;
 }
 
 void layers_drop_volume(layers *l) {

@@ -33,8 +33,8 @@ snow_status layers_set(const layers *l, const channel_set *c,
 void layers_close(layers *l);
 
 /* What a legend shows beside the look of the volume; NULL: nothing, or labels
- * that are others at the next step. */
-const snow_transfer *layers_legend(const layers *l);
+ * that are others at the next one of the `steps` that are drawn. */
+const snow_transfer *layers_legend(const layers *l, bool steps);
 
 /* Takes an overlay out of the options, with its look and its labels. */
 void layers_leave_out(options *opts);

@@ -524,7 +524,7 @@ static int annotate(drawing *d, const paint_given *painted,
         s->transfer,
         {painted->range[0], painted->range[1]},
         &s->channels,
-        layers_legend(&s->layers)};
+        layers_legend(&s->layers, false)};
     snow_status status = annotations_make(&annotations, s->view.azimuth, -1,
                                           image, s->context, out);
     return status == SNOW_STATUS_OK ? CONTINUE

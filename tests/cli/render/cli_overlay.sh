@@ -161,6 +161,37 @@ run 0 "one step" "$TOOL" movie base.nii --overlay still.nrrd $steps -o n_%d.png 
 check "is told once" [ "$(grep -c "overlay still" "$ERR")" = 1 ]
 run 0 "by itself" render base.nii --overlay still.nrrd $steps --time 2 -o p.png
 check "is in all steps" cmp -s n_2.png p.png
+# Labels of three steps: a picture of one names its labels.
+python3 - <<'END'
+def write(name, value):
+    text = ("NRRD0004\ntype: uint8\ndimension: 4\nsizes: 20 20 20 3\n"
+            "kinds: domain domain domain time\nencoding: raw\n\n")
+    open(name, "wb").write(text.encode() + bytes(
+        value(x, y, z, t) for t in range(3) for z in range(20)
+        for y in range(20) for x in range(20)))
+
+write("ball.nrrd", lambda x, y, z, t: max(0, 250 - 3 * ((x - 10) ** 2 + (y - 10) ** 2)))
+write("named.nrrd", lambda x, y, z, t: (t + 1) * (5 * t <= x < 5 * t + 8))
+END
+"$TOOL" convert named.nrrd --time 1 -o still.nrrd -q -y
+for way in render "slice --axis y"; do
+    # shellcheck disable=SC2086
+    run 0 "$way of a step" "$TOOL" $way ball.nrrd --overlay named.nrrd --time 1 -s 200 \
+        --legend -q -y -o a.png
+    # shellcheck disable=SC2086
+    run 0 "with its labels" "$TOOL" $way ball.nrrd --overlay still.nrrd --time 1 -s 200 \
+        --legend -q -y -o b.png
+    check "names them" cmp -s a.png b.png
+    # shellcheck disable=SC2086
+    run 0 "without names" "$TOOL" $way ball.nrrd --overlay still.nrrd --time 1 -s 200 \
+        -q -y -o b.png
+    check "shows the names" [ -n "$(cmp a.png b.png)" ]
+done
+run 0 "a movie of a step" "$TOOL" movie ball.nrrd --overlay named.nrrd --time 1 -s 200 \
+    --legend -q -o one_%d.png
+run 0 "with its labels" "$TOOL" movie ball.nrrd --overlay still.nrrd --time 1 -s 200 \
+    --legend -q -o two_%d.png
+check "names them" cmp -s one_0.png two_0.png
 refused 3 "other steps" 'over.nii: holds 3 time steps, and the volume 1' \
     "$TOOL" render w.nrrd -o z.png --overlay over.nii
 
