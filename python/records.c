@@ -93,6 +93,11 @@ static bool name_error(const field *f) {
 
 static bool set_field(const field *f, PyObject *value, void *record) {
     char *to = (char *)record + f->offset;
+    if (strchr("ilu", f->kind) && !PyIndex_Check(value)) {
+        PyErr_Format(PyExc_TypeError, "%s: must be a whole number, not %R",
+                     f->name, value);
+        return false;
+    }
     switch (f->kind) {
     case 'd':
         *(double *)(void *)to = PyFloat_AsDouble(value);

@@ -51,10 +51,9 @@ class Look:
                 raise TypeError(f"give {name} or {other}, not both")
             object.__setattr__(self, name, value)
         for name in ("opacity", "gradient_opacity"):
-            _check_points(name, getattr(self, name))
-        if self.symlog is not True and not 0 <= float(self.symlog) < math.inf:
-            raise ValueError(f"symlog {self.symlog}: must be a magnitude above "
-                             f"0, or True to have it chosen")
+            object.__setattr__(self, name, _points(name, getattr(self, name)))
+        object.__setattr__(self, "symlog", _magnitude(self.symlog))
+        object.__setattr__(self, "log", bool(self.log))
 
     def _arguments(self) -> tuple[Any, ...]:
         """Those of the core's `_look`."""
@@ -68,12 +67,31 @@ class Look:
         return fields, kind, colors, self.opacity, self.gradient_opacity
 
 
-def _check_points(name: str, points: Any) -> None:
-    """Elsewhere there are names of ramps, and lists of opacities alone."""
-    if points is not None and (isinstance(points, str) or not all(
-            hasattr(point, "__len__") and len(point) == 2 for point in points)):
-        raise TypeError(f"{name} {points!r}: give points (value, {name}), such as "
+def _points(name: str, given: Any) -> Optional[Tuple[Any, ...]]:
+    """Any iterable, which may be one that is read only once.  Elsewhere there are
+    names of ramps, and lists of opacities alone."""
+    if given is None:
+        return None
+    points = tuple(given) if hasattr(given, "__iter__") else (given,)
+    if isinstance(given, str) or not all(
+            hasattr(point, "__len__") and len(point) == 2 for point in points):
+        raise TypeError(f"{name} {given!r}: give points (value, {name}), such as "
                         f"[(100, 0), (700, 0.8)]")
+    return points
+
+
+def _magnitude(symlog: Any) -> Any:
+    if hasattr(symlog, "tolist"):  # numbers of NumPy
+        symlog = symlog.tolist()
+    if isinstance(symlog, bool):
+        return symlog
+    fault = f"symlog {symlog!r}: must be a magnitude above 0, or True to have " \
+            f"it chosen"
+    if not hasattr(symlog, "__float__"):
+        raise TypeError(fault)
+    if not 0 <= float(symlog) < math.inf:
+        raise ValueError(fault)
+    return symlog
 
 
 def look_of(look: Union[Look, str, None]) -> Look:

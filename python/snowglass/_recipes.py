@@ -153,6 +153,10 @@ def split(options: Mapping[str, Any]) -> tuple[
     given = {name.replace("-", "_"): value for name, value in options.items()}
     data = {name: given.pop(name) for name in DATA if name in given}
     colors = take_look(given)
+    if isinstance(data.get("time"), str):
+        raise ValueError(f"a recipe of steps by a text (time {data['time']}) cannot "
+                         f"be drawn here; use the command line, or give one "
+                         f"number")
     if "tf" in given:
         raise ValueError("a recipe with a file of a look (tf) cannot be drawn "
                          "here; use the command line")

@@ -368,8 +368,11 @@ class Volume(_snowglass.Volume):
             raise TypeError("background is an option of save: pictures are "
                             "transparent until then")
         look = _given_look(look, settings)
-        if isinstance(settings.get("shade"), bool):
-            settings["shade"] = "phong" if settings["shade"] else "none"
+        shade: Any = settings.get("shade")
+        if hasattr(shade, "tolist"):  # a truth of NumPy
+            shade = shade.tolist()
+        if isinstance(shade, bool):
+            settings["shade"] = "phong" if shade else "none"
         mode = settings.get("mode") or "over"
         mixture = self._mixture(look, mode, settings)
         first: _snowglass.Volume = mixture.volumes[0] if mixture else self

@@ -204,6 +204,10 @@ class Stumbles(InFolder):
                 (lambda: volume.render(mode=3), "^mode: there is no 3; take one of"),
                 (lambda: volume.render(opacity="sigmoid"), r"'sigmoid': give points"),
                 (lambda: volume.render(opacity=[0, 0.5, 1]), "opacity .*give points"),
+                (lambda: sg.Look(opacity=0.5), "^opacity 0.5: give points"),
+                (lambda: sg.Look(symlog="a"), "^symlog 'a': must be a magnitude"),
+                (lambda: volume.render(threads="2"),
+                 "^threads: must be a whole number, not '2'"),
                 (lambda: sg.Volume(ball().astype([("red", "i2")])), "its fields")):
             with self.assertRaisesRegex(TypeError, answer):
                 call()
@@ -215,6 +219,9 @@ class Stumbles(InFolder):
                  "'ultra'; take one of normal, draft, high$"),
                 (lambda: volume.render(shade="flat"), "take one of phong, none$"),
                 (lambda: volume.render(threads=2 ** 40), "^threads: 1099511627776"),
+                (lambda: sg.Look(symlog=-1), "^symlog -1: must be a magnitude"),
+                (lambda: sg.render(ball(), time="2:4"),
+                 r"\(time 2:4\) cannot be drawn here; use the command line"),
                 (lambda: sg.Volume("a.raw", type="int9"),
                  "type: .*take one of int8, .*, float64$"),
                 (lambda: sg.Volume("a.raw", endian="x"), "take one of little, big$"),
@@ -226,9 +233,24 @@ class Stumbles(InFolder):
             with self.assertRaisesRegex(ValueError, answer):
                 call()
 
+    def test_points_may_be_what_is_read_once(self):
+        volume = sg.Volume(ball())
+        listed = sg.Look(opacity=[(10, 0), (90, .8)],
+                         gradient_opacity=[(0, 0), (20, 1)])
+        once = sg.Look(opacity=zip([10, 90], [0, .8]),
+                       gradient_opacity=iter([(0, 0), (20, 1)]))
+        for _ in range(2):
+            self.assertEqual(sg.compare(volume.render(listed, size=40),
+                                        volume.render(once, size=40)).largest, 0)
+
+    def test_truths_of_numpy_are_truths(self):
+        self.assertIs(sg.Look(symlog=numpy.bool_(True)).symlog, True)
+        self.assertIs(sg.Look(symlog=numpy.bool_(False)).symlog, False)
+
     def test_shade_is_a_name_or_a_truth(self):
         volume = sg.Volume(ball().astype(float))
-        for shade, name in ((True, "phong"), (False, "none")):
+        for shade, name in ((True, "phong"), (False, "none"),
+                            (numpy.bool_(True), "phong"), (numpy.bool_(False), "none")):
             made, named = (volume.render("ct-bone", shade=each)
                            for each in (shade, name))
             self.assertEqual(sg.compare(made, named).largest, 0)
