@@ -43,32 +43,37 @@ void steps_free(step_files *files) {
     free(files->paths);
 }
 
+/* A number of a file, and the digits that it has at least. */
+typedef struct number {
+    int64_t value;
+    int digits;
+} number;
+
 /* The numbers of a pattern's files, in a growing list. */
 typedef struct numbers {
-    int64_t *items;
+    number *items;
     size_t count, room;
 } numbers;
 
-static bool add_number(numbers *list, int64_t number) {
+static bool add_number(numbers *list, int64_t value, int digits) {
     if (list->count == list->room) {
         size_t room = list->room ? 2 * list->room : 256;
-        int64_t *items = realloc(list->items, room * sizeof *items);
+        number *items = realloc(list->items, room * sizeof *items);
         if (!items)
             return false;
         list->items = items;
         list->room = room;
     }
-    list->items[list->count++] = number;
+    list->items[list->count++] = (number){value, digits};
     return true;
 }
 
 static int by_number(const void *a, const void *b) {
-    int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-    return (x > y) - (x < y);
+    const number *x = a, *y = b;
+    return (x->value > y->value) - (x->value < y->value);
 }
 
-/* Finds the numbers of all existing files, in rising order, and their width
- * where any will do. */
+/* Finds the numbers of all existing files, in rising order. */
 static int find_numbers(const char *pattern, frame_names *names, numbers *out) {
     const struct dirent *entry;
     DIR *folder = opendir(names_folder(names));
@@ -77,13 +82,11 @@ static int find_numbers(const char *pattern, frame_names *names, numbers *out) {
         return SNOW_STATUS_BAD_INPUT;
     }
     bool good = true;
-    while ((entry = readdir(folder)))
-        names_widen(names, entry->d_name);
-    rewinddir(folder);
     while (good && (entry = readdir(folder))) {
-        int64_t number = names_index(names, entry->d_name);
-        if (number >= 0)
-            good = add_number(out, number);
+        names_widen(names, entry->d_name);
+        int64_t value = names_index(names, entry->d_name);
+        if (value >= 0)
+            good = add_number(out, value, names->digits);
     }
     closedir(folder);
     if (!good)
@@ -101,27 +104,50 @@ static int find_numbers(const char *pattern, frame_names *names, numbers *out) {
 static int64_t step_of(const numbers *list) {
     int64_t step = INT64_MAX;
     for (size_t i = 1; i < list->count; i++)
-        if (list->items[i] - list->items[i - 1] < step)
-            step = list->items[i] - list->items[i - 1];
+        if (list->items[i].value - list->items[i - 1].value < step)
+            step = list->items[i].value - list->items[i - 1].value;
     return step;
 }
 
-static int add_numbers(const char *pattern, const frame_names *names,
-                       const char *set, const numbers *list, step_files *out) {
+/* The first file that does not follow the one before it, in a series without
+ * gaps, is refused. */
+static int check_next(const char *pattern, frame_names *names,
+                      const number *item, int64_t step, bool gaps) {
+    char path[PATH_MAX];
+    const int64_t last = item[-1].value;
+    if (last == item->value) {
+        names_path(names, last, path, sizeof path);
+        say("%s: another file of %s has this number too; remove one, or name "
+            "the files one by one",
+            path, pattern);
+        return SNOW_STATUS_BAD_INPUT;
+    }
+    if (gaps || item->value - last == step)
+        return CONTINUE;
+    names->digits = item[-1].digits;
+    names_path(names, last + step, path, sizeof path);
+    say("%s: this step of %s is missing; create it, or name the files one by "
+        "one",
+        path, pattern);
+    return SNOW_STATUS_BAD_INPUT;
+}
+
+static int add_numbers(const char *pattern, frame_names *names, const char *set,
+                       const numbers *list, step_files *out) {
     char path[2 * PATH_MAX];
     int64_t step = step_of(list);
     int done = CONTINUE;
     for (size_t i = 0; i < list->count && done == CONTINUE; i++) {
-        if (i && !out->gaps && list->items[i] - list->items[i - 1] != step) {
-            names_path(names, list->items[i - 1] + step, path, PATH_MAX);
-            say("%s: this step of %s is missing; create it, or name the files "
-                "one by one",
-                path, pattern);
-            return SNOW_STATUS_BAD_INPUT;
-        }
-        if (!names_path(names, list->items[i], path, PATH_MAX))
+        const number *item = &list->items[i];
+        names->digits = item->digits;
+        if (i)
+            done = check_next(pattern, names, item, step, out->gaps);
+        if (done != CONTINUE)
+            return done;
+        names->digits = item->digits;
+        if (!names_path(names, item->value, path, PATH_MAX))
             continue;
-        if (set && !names_in_set(set, list->items[i], path + strlen(path),
+        if (set && !names_in_set(set, item->value, path + strlen(path),
                                  sizeof path - strlen(path)))
             return fail_usage("%s: has a %% that is no number; write %%d, "
                               "%%04d or %%T",

@@ -9,7 +9,7 @@
 
 /* The most digits that a pattern can require and a number can have. */
 #define DIGITS_MOST 9
-#define NUMBER_LONGEST 15
+#define NUMBER_LONGEST 18
 
 bool names_are_meant(const char *path) {
     return strchr(path, '%') != NULL;
@@ -122,7 +122,7 @@ void names_widen(frame_names *names, const char *file) {
     if (!names->any || strncmp(file, names->before, before) != 0)
         return;
     const size_t digits = strspn(file + before, "0123456789");
-    if (digits > 1 && digits <= DIGITS_MOST && file[before] == '0' &&
+    if (digits > 0 && digits <= NUMBER_LONGEST &&
         strcmp(file + before + digits, names->after) == 0)
         names->digits = (int)digits;
 }

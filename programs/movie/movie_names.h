@@ -13,7 +13,7 @@ typedef struct frame_names {
     char folder[PATH_MAX];
     char before[NAME_MAX + 1], after[NAME_MAX + 1];
     int digits; /* minimum, filled up with zeros; 0: as many as needed */
-    bool any;   /* of any minimum, which existing names show: %T */
+    bool any;   /* each existing name has its own: %T */
 } frame_names;
 
 /* Whether a path contains a %, so that it is meant as a pattern. */
@@ -37,7 +37,7 @@ bool names_in_set(const char *set, int64_t index, char *out, size_t size);
  * the pattern. */
 int64_t names_index(const frame_names *names, const char *file);
 
-/* Of a pattern for any minimum: that of a name which begins with zeros. */
+/* Gives a pattern for any minimum the width of this name's number. */
 void names_widen(frame_names *names, const char *file);
 
 /* The folder as a path for opendir. */

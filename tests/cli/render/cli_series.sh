@@ -39,6 +39,21 @@ refused 2 "nor that far from the end" 'no step -4' "$TOOL" info run_%04d.nrrd --
 run 0 "a number of any width" "$TOOL" info run_%T.nrrd --time last
 says 'run_0030.nrrd: step 2 of 3'
 refused 3 "another width" 'no file matches' "$TOOL" info run_%d.nrrd
+for name in mixed_007 mixed_8 mixed_09 mixed_10 long_0000000100 long_0000000200; do
+    cp run_0010.nrrd $name.nrrd
+done
+run 0 "files of several widths" "$TOOL" movie -q "${look[@]}" mixed_%T.nrrd -o w_%d.png
+check "are all in the movie" [ "$(echo w_*.png)" = "w_0.png w_1.png w_2.png w_3.png" ]
+run 0 "each under its own name" "$TOOL" info mixed_%T.nrrd --time 2
+says 'mixed_09.nrrd: step 2 of 4'
+run 0 "a long number" "$TOOL" info long_%T.nrrd --time last
+says 'long_0000000200.nrrd: step 1 of 2'
+rm mixed_09.nrrd
+refused 3 "a gap between several widths" 'mixed_9.nrrd: this step of mixed_%T.nrrd is missing' \
+    "$TOOL" movie mixed_%T.nrrd -o x_%d.png
+mv mixed_10.nrrd mixed_08.nrrd
+refused 3 "two of one number" 'another file of mixed_%T.nrrd has this number too' \
+    "$TOOL" info mixed_%T.nrrd --time 0
 refused 3 "a pattern without files" 'no file matches' "$TOOL" info no_%d.nrrd
 
 # Physical time: the nearest step.
