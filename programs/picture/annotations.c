@@ -160,7 +160,8 @@ static snow_status add_colors(const picture_annotations *annotations,
 }
 
 /* The labels of an overlay have the place of the volume's bar, which its values
- * leave there.  A bar of values is called by its file. */
+ * leave there; beside bars of channels they have another.  A bar of values is
+ * called by its file. */
 static snow_status add_legend(const picture_annotations *annotations,
                               snow_overlay *overlay) {
     const options *opts = annotations->opts;
@@ -178,11 +179,12 @@ static snow_status add_legend(const picture_annotations *annotations,
     }
     snow_status status = mixed ? add_channels(annotations, overlay)
                                : add_colors(annotations, overlay);
-    if (status != SNOW_STATUS_OK || !over || labels)
+    if (status != SNOW_STATUS_OK || !over)
         return status;
     default_stem(opts->overlay, name);
     snow_transfer_domain(over, &range[0], &range[1]);
-    return snow_overlay_color_bar(overlay, over, name, slice ? range : NULL);
+    return snow_overlay_color_bar(overlay, over, name,
+                                  slice && !labels ? range : NULL);
 }
 
 /* The title, and below it the time of the picture. */

@@ -288,6 +288,9 @@ static snow_status draw_labels(snow_overlay *overlay, const snow_transfer *t) {
         y += step;
     }
     snow_overlay_settle_mirrored(overlay, first, false);
+    if (rows && overlay->shape_count == first)
+        snow_notify(overlay->context,
+                    "the picture has no room for the names of the labels");
     return SNOW_STATUS_OK;
 }
 

@@ -189,6 +189,27 @@ run 0 "a legend" render ome.tif -o legend.png -s 300x300 --legend --channel 0:bl
 run 0 "of channels without names" "$TOOL" render plain.tif -o legend2.png -s 300x300 --legend --channel 0:blue,2:red
 check "has other titles" [ -n "$(cmp legend.png legend2.png)" ]
 check "and no note" [ "$(grep -c note "$ERR")" = 0 ]
+# Labels of an overlay are named beside the bars.
+for name in liver spleen; do
+    printf '%s\n' NRRD0004 'type: uint8' 'dimension: 3' 'sizes: 20 16 6' 'encoding: raw' \
+        Segment0_LabelValue:=1 Segment0_Name:=$name '' >$name.nrrd
+    { head -c 960 /dev/zero | tr '\0' '\1'; head -c 960 /dev/zero; } >>$name.nrrd
+    for verb in render "slice --axis z"; do
+        # shellcheck disable=SC2086
+        run 0 "$verb with $name" "$TOOL" $verb ome.tif --channel 0:blue,2:red \
+            --overlay $name.nrrd -s 300x300 -q -o "$name-${verb%% *}.png"
+        # shellcheck disable=SC2086
+        run 0 "and a legend" "$TOOL" $verb ome.tif --channel 0:blue,2:red --legend \
+            --overlay $name.nrrd -s 300x300 -q -o "$name-${verb%% *}-legend.png"
+    done
+done
+for verb in render slice; do
+    check "$verb draws the same" cmp -s liver-$verb.png spleen-$verb.png
+    check "and names each" [ -n "$(cmp liver-$verb-legend.png spleen-$verb-legend.png)" ]
+done
+run 0 "in a small picture" "$TOOL" render ome.tif --channel 0,1,2,0:grey --legend \
+    --overlay liver.nrrd -s 128x128 -o small.png
+check "says that it does not" grep -q 'has no room for the names of the labels' "$ERR"
 run 0 "one of many" "$TOOL" render plain.tif -o legend3.png -s 300x300 --legend --channel 0,1,2,0:grey,1:cyan
 says 'note: the picture has no room for the colour bar of channel 1$'
 check "and says it once" [ "$(grep -c note "$ERR")" = 1 ]
