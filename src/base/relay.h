@@ -28,8 +28,7 @@ typedef struct snow_relay_point {
  * before `seen`. */
 typedef struct snow_relay {
     uint64_t source;          /* which one; 0: none yet */
-    uint64_t skips;           /* its readers skip what they do not need, */
-    uint64_t failed;          /* or could not read */
+    uint64_t skips;           /* its readers skip what they do not need */
     snow_relay_point from;    /* where its reader may begin; then, to hand on */
     snow_relay_point seen[2]; /* by the present reader, the later one first */
     bool last;                /* nobody reads on: the rest is verified */
