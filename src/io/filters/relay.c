@@ -52,12 +52,15 @@ void snow_relay_begin_member(inflate_filter *inflater) {
 
 /* --- reading on ----------------------------------------------------------- */
 
-/* Continues at a point that lies ahead. */
+/* Continues at a point that lies ahead; where it does not, nothing is done. */
 static snow_status enter(inflate_filter *inflater, const snow_relay_point *p) {
     snow_filter_stage *below = inflater->filter.below;
     z_stream *stream = &inflater->stream;
     const int bits = p->bits;
-    if (!snow_filter_stage_pass(below, p->packed - (bits > 0) - below->taken))
+    const uint64_t begin = p->packed - (bits > 0);
+    if (begin < below->taken)
+        return SNOW_STATUS_OK;
+    if (!snow_filter_stage_pass(below, begin - below->taken))
         return snow_inflate_fail(inflater, "truncated");
     inflater->entered = p->unpacked > p->member;
     inflater->unpacked = p->unpacked;
