@@ -297,7 +297,8 @@ static snow_status make_ready(snow_voxels *voxels, size_t value) {
         return SNOW_STATUS_OK;
     traffic *out = &voxels->sent, *in = &voxels->received;
     int64_t most = out->voxels > in->voxels ? out->voxels : in->voxels;
-    int64_t rounds = most / (ROUND_BYTES / (int64_t)value) + 1;
+    const int64_t once = ROUND_BYTES / (int64_t)value;
+    int64_t rounds = most / (once > 0 ? once : 1) + 1;
     SNOW_TRY(snow_comm_reduce_ints(voxels->comm, &rounds, 1, SNOW_REDUCE_MAX));
     voxels->rounds = (int)rounds;
     snow_status status = make_buffer(voxels, out, value);
