@@ -124,7 +124,7 @@ static snow_status move_voxels(snow_comm *comm, const snow_volume *from,
     if (status == SNOW_STATUS_OK)
         status = snow_voxels_move(voxels, &held,
                                   snow_type_size(from->info.type), to->owned);
-    if (all)
+    if (all && !spent) /* memory that was given up is not written to */
         snow_clip_planes_show(from->clip, from->info.type, false, from->owned);
     snow_voxels_free(voxels);
     to->lost_clip = lost;
