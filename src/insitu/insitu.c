@@ -227,6 +227,11 @@ snow_status snow_insitu_set_clip(snow_insitu *insitu, const double *planes,
         return snow_insitu_refuse(insitu,
                                   "too many clip planes: %zu; give at most %d",
                                   count, SNOW_CLIPS_MAX);
+    if (count && !planes)
+        return snow_insitu_refuse(insitu,
+                                  "no clip planes where there are to be %zu; "
+                                  "give them, or a count of 0",
+                                  count);
     for (size_t i = 0; i < 4 * count; i++)
         if (!isfinite(planes[i]))
             return snow_insitu_refuse(

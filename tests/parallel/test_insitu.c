@@ -1359,6 +1359,7 @@ typedef enum fault {
     FAULT_LOOK,    /* another colour map */
     FAULT_OPACITY, /* another opacity of one point */
     FAULT_LIGHT,   /* another setting */
+    FAULT_CLIP,    /* planes on rank 0 only */
     FAULT_OVERLAP, /* voxels held twice */
     FAULT_LACK,    /* voxels that nobody holds */
     FAULT_NO_GRID, /* everywhere */
@@ -1374,6 +1375,7 @@ static const char *const fault_words[FAULTS] = {
     "differ between ranks",
     "differ between ranks",
     "differ between ranks",
+    "clip planes or limits differ between ranks",
     "belongs to two ranks",
     "no rank holds",
     "there is no grid",
@@ -1419,6 +1421,8 @@ static void make_fault(snow_insitu *insitu, faulty *f, int rank) {
     settings.diffuse = 0.5;
     if (f->fault == FAULT_LIGHT)
         snow_insitu_set_settings(insitu, &settings);
+    if (f->fault == FAULT_CLIP)
+        snow_insitu_set_clip(insitu, NULL, 0);
     if (f->fault == FAULT_OVERLAP)
         count[2]++;
     if (f->fault == FAULT_LACK)
@@ -1439,7 +1443,7 @@ static snow_status faulty_rank(snow_comm *comm, void *user) {
         describe_picture(insitu, &f->scene);
         describe_bricks(insitu, &f->scene, rank, 0, &m);
     }
-    if (rank == 1)
+    if (rank == 1 || (rank == 2 && f->fault == FAULT_CLIP))
         make_fault(insitu, f, rank);
     f->status[rank] = f->fault == FAULT_NO_PATH ? snow_insitu_step(insitu, 0)
                                                 : snow_insitu_update(insitu);
@@ -1461,6 +1465,7 @@ static void what_is_wrong_on_one_rank_is_told_to_all(void **state) {
     for (int n = 0; n < FAULTS; n++) {
         snow_context *context = support_context();
         faulty f = {.scene = make_scene(3, 1, 1, 3), .fault = (fault)n};
+        f.scene.clipped = n == FAULT_CLIP;
         assert_int_equal(snow_comm_run_threads(context, 3, faulty_rank, &f),
                          SNOW_STATUS_OK);
         for (int rank = 0; rank < 3; rank++) {
@@ -1502,6 +1507,9 @@ static void setters_refuse_what_cannot_be(void **state) {
         SNOW_STATUS_BAD_USAGE);
     assert_int_equal(snow_insitu_set_look(insitu, &look),
                      SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(snow_insitu_set_clip(insitu, NULL, 1),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(snow_insitu_set_clip(insitu, NULL, 0), SNOW_STATUS_OK);
     static const char *const patterns[] = {
         "a.png", "a_%s.png", "a_%d%d.png", "a_%04x.png", "a_%099d.png", "%"};
     for (int i = 0; i < 6; i++)
