@@ -4,6 +4,7 @@
 
 #include <snowglass/recipe.h>
 
+#include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -94,7 +95,20 @@ static void merge(const viewer_state *s, json_t *recipe,
     }
 }
 
-/* What the library says against a recipe, or NULL. */
+/* What a recipe may have, and a page cannot show; or NULL. */
+static const char *beyond_pages(const snow_recipe *recipe) {
+    if (recipe->steps && strcmp(recipe->steps, "last") != 0)
+        return "the page: \"time\" must be one step, as a range or a moment "
+               "is of the command line; give its number";
+    if (recipe->overlay_opacity_count == 1 &&
+        isnan(recipe->overlay_opacities[0].value))
+        return "the page: \"overlay-opacity\" is a factor, which is for "
+               "pictures; give opacities at values, such as [[10, 0], "
+               "[30, 0.5]]";
+    return NULL;
+}
+
+/* What is against a recipe, or NULL. */
 static char *fault_of(viewer_state *s, const json_t *recipe) {
     snow_recipe record = {.size = sizeof record};
     char *text = json_dumps(recipe, JSON_COMPACT);
@@ -103,10 +117,11 @@ static char *fault_of(viewer_state *s, const json_t *recipe) {
     snow_status status =
         snow_recipe_parse(s->checker, "the page", text, strlen(text), &record);
     free(text);
-    if (status == SNOW_STATUS_OK)
-        snow_recipe_clear(&record);
-    return status == SNOW_STATUS_OK ? NULL
-                                    : strdup(snow_context_message(s->checker));
+    if (status != SNOW_STATUS_OK)
+        return strdup(snow_context_message(s->checker));
+    const char *beyond = beyond_pages(&record);
+    snow_recipe_clear(&record);
+    return beyond ? strdup(beyond) : NULL;
 }
 
 /* A step back, a link: crop and camera come together, and fit. */

@@ -129,7 +129,23 @@ def names():
               len(found) == most, len(found))
 
 
+def only_values():
+    """A factor is for pictures: as on the command line, it is refused."""
+    server = Server("ct.nrrd", "--overlay", "turned.nrrd", "-q", "-j", "2")
+    page = Page(server)
+    is_of_command(page, "a picture", 1, size=[64, 60])
+    page.say({"t": "set", "n": 2, "recipe": {"overlay-opacity": 0.5}})
+    said = page.hear_text("said")["text"]
+    check("a factor is refused", '"overlay-opacity"' in said, said)
+    is_of_command(page, "and not kept", 3, azimuth=20)
+    is_of_command(page, "opacities at labels are taken", 4,
+                  **{"overlay-opacity": [[1, 0.5], [2, 0]]})
+    page.close()
+    server.stop()
+
+
 names()
+only_values()
 small_memory("8M")
 small_memory(least_memory())
 without_a_place()

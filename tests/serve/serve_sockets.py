@@ -150,6 +150,12 @@ def odd_messages(server):
     page.say({"t": "set", "n": 1, "recipe": {"zoom": "large", "preset": 7}})
     said = page.hear_text("said")
     check("a wrong value is answered", said and "zoom" in said["text"], said)
+    for n, time_of in enumerate(("2:4", "0.3s"), 2):
+        page.say({"t": "set", "n": n, "recipe": {"time": time_of}})
+        said = page.hear_text("said")
+        check(f"so is time {time_of}", said and '"time"' in said["text"], said)
+    page.say({"t": "set", "n": 4, "recipe": {"time": "last"}})
+    check("the last step is taken", page.hear_picture(2, 4) is not None)
     page.say({"t": "ask", "what": "nothing"})
     check("and so is a wrong question", page.hear_text("said") is not None)
     page.close()
