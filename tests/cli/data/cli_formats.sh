@@ -50,6 +50,13 @@ if has .jpg; then
     run 0 "frames" "$TOOL" turntable -q phantom:head --dims 32x32x32 -s 90x80 \
         --frames 2 -o 'j_%d.jpg'
     check "two of them" [ -s j_1.jpg ]
+    run 0 "which a pattern makes slices" "$TOOL" info 'j_%d.jpg'
+    prints '^dims +90 x 80 x 2 '
+    mkdir volumes
+    "$TOOL" convert -q phantom:cube --dims 9x8x7 -o volumes/b.nrrd
+    cp a.jpg volumes
+    run 0 "a preview does not hide volumes" "$TOOL" info volumes
+    prints '^volumes/b.nrrd: nrrd 9x8x7'
 else
     refused 2 "JPEG is not in this build" 'install libjpeg62-turbo-dev' \
         render -o a.jpg
