@@ -154,9 +154,7 @@ static int take_moment(options *opts, snow_context *context) {
     if (status != SNOW_STATUS_OK)
         return fail_status(context, status);
     times.count = info.times;
-    int done = nearest(&times, &opts->time);
-    opts->time -= times.count; /* from the end: no note on a step 0 unasked */
-    return done;
+    return nearest(&times, &opts->time);
 }
 
 /* Whether files of a pattern are the slices of one volume. */

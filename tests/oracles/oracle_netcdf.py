@@ -9,6 +9,7 @@ except ImportError as missing:
     sys.exit(77)
 import gzip
 import json
+import subprocess
 
 import oracle
 
@@ -144,6 +145,12 @@ for key, value in (("time", 2), ("time_value", 720),
                    ("long_name", "z-wind component"), ("value_unit", "m s-1")):
     if said[key] != value:
         oracle.fail("WRF", f"{key} is {said[key]}, not {value}")
+# The printed command has the step's number, which stays when more are written.
+again = subprocess.run([oracle.TOOL, "render", "t.nc", "--dataset", "w", "--time", "12h",
+                        "-s", "9x9", "-o", "w.png", "-y", "-v"],
+                       capture_output=True, text=True, check=True).stderr
+if " --time 2 " not in again:
+    oracle.fail("WRF", f"the command of a step at a time is {again}")
 
 # Lines of a scan that have dates are no steps of time.
 for form in FORMATS:
