@@ -198,7 +198,7 @@ static void a_point_that_was_passed_is_not_entered(void **state) {
     assert_int_equal(read_share(files.context, path, relay, false, 0, 2),
                      SNOW_STATUS_OK);
     assert_true(relay->from.unpacked > 0 && relay->from.bits > 0);
-    for (size_t before = 0; before < 600; before++)
+    for (size_t before = 0; before < 20; before++)
         if (read_over_point(files.context, path, *relay, before) !=
             SNOW_STATUS_OK)
             fail_msg("%zu: %s", before, snow_context_message(files.context));
