@@ -53,7 +53,7 @@ void drawing_settle_overlay(const drawing *d, options *opts) {
 
 int drawing_settle_channels(options *opts) {
     int done = settle_channels(opts, true);
-    opts->mixes = true; /* of the others the page tells */
+    opts->mixes = true; /* the page lists the others */
     if (opts->channels.count) {
         opts->tf = NULL; /* which is of one volume */
         opts->loaded = NULL;

@@ -66,7 +66,7 @@ static snow_status read_some(snow_source *source, size_t from, size_t to) {
     return status == SNOW_STATUS_OK ? snow_source_finish(source) : status;
 }
 
-/* One reader of several; zlib is not told by its first bytes. */
+/* One reader of several; the first bytes do not show zlib. */
 static snow_status read_share(snow_context *context, const char *path,
                               snow_relay *relay, bool zlib, int reader,
                               int readers) {

@@ -121,13 +121,13 @@ for file in $(long_tier && echo v.nrrd) v.nii.gz; do
         --tolerance 1/255
 done
 
-# Whoever has read the end of it, one line tells what lies behind.
+# Whoever has read the end of it, one line says what lies behind.
 for size in 40 90; do
     run 0 "another packed file" "$TOOL" phantom engine \
         --dims ${size}x${size}x$size -q -y -o tail.nii.gz
     echo more >>tail.nii.gz
     run 0 "more behind the data" launch 3 "$MPI_TOOL" tail.nii.gz -y -o x.png
-    check "is told once" [ "$(grep -c 'compressed data are ignored' "$ERR")" = 1 ]
+    check "is said once" [ "$(grep -c 'compressed data are ignored' "$ERR")" = 1 ]
 done
 
 # Movies.  On a background, since a transparent pixel is rounded twice: its
@@ -251,7 +251,7 @@ for way in "render mask.nrrd -o x.png" "render mask.nrrd -o x.png --cut equal" \
         # shellcheck disable=SC2086
         run 7 "$way by $ranks" launch "$ranks" "$MPI_TOOL" $way -y -s 32x32 \
             --clip 0,0,1,-1000
-        check "is told once" test "$(grep -c 'no voxel is left' "$ERR")" = 1
+        check "is said once" test "$(grep -c 'no voxel is left' "$ERR")" = 1
     done
 done
 run 7 "a mask of nothing" launch 3 "$MPI_TOOL" phantom:head --dims 40x36x44 \

@@ -89,7 +89,7 @@ static void count_scans(j_common_ptr common) {
 }
 
 /* Why libjpeg or the source jumped. */
-static snow_status tell_fault(const jpeg_reader *reader) {
+static snow_status refuse_fault(const jpeg_reader *reader) {
     const struct jpeg_error_mgr *fault = &reader->fault.base;
     if (reader->status != SNOW_STATUS_OK)
         return reader->status;
@@ -131,7 +131,7 @@ static long most_memory(const snow_context *context) {
 /* Every failure of libjpeg returns here or in decode, once. */
 static snow_status read_header(jpeg_reader *reader) {
     if (setjmp(reader->fault.out))
-        return tell_fault(reader);
+        return refuse_fault(reader);
     jpeg_create_decompress(&reader->info);
     reader->bytes =
         (struct jpeg_source_mgr){.init_source = do_nothing,
@@ -213,7 +213,7 @@ static snow_status decode(jpeg_reader *reader, int64_t channel,
                           const snow_region *region, unsigned char *out) {
     struct jpeg_decompress_struct *info = &reader->info;
     if (setjmp(reader->fault.out))
-        return tell_fault(reader);
+        return refuse_fault(reader);
     info->mem->max_memory_to_use = most_memory(reader->context);
     info->out_color_space =
         info->jpeg_color_space == JCS_GRAYSCALE ? JCS_GRAYSCALE : JCS_RGB;
