@@ -237,12 +237,45 @@ void print_zsh(void) {
 
 /* --- fish ----------------------------------------------------------------- */
 
+/* Inside single quotes. */
+static void put_fish(char letter) {
+    printf(strchr("'\\", letter) ? "\\%c" : "%c", letter);
+}
+
 static void print_fish_text(const char *text) {
     char room[BRIEF_BYTES];
     printf("-d '");
     for (text = brief(text, room); *text; text++)
-        printf(strchr("'\\", *text) ? "\\%c" : "%c", *text);
+        put_fish(*text);
     printf("'\n");
+}
+
+/* A word that the option's text describes; fish reads the list once more, hence
+ * the inner quotes.  The others are described as the option is. */
+static void print_fish_word(const option_row *row, const char *word) {
+    char room[BRIEF_BYTES];
+    const char *text = word_text(row->text, word);
+    printf("%s", word);
+    if (!text)
+        return;
+    printf("\\t\"");
+    for (text = brief(text, room); *text; text++) {
+        if (strchr("\"$\\", *text))
+            put_fish('\\');
+        put_fish(*text);
+    }
+    printf("\"");
+}
+
+static void print_fish_words(const option_row *row) {
+    char room[WORD_BYTES];
+    const char *word;
+    printf("-a '");
+    for (size_t i = 0; (word = option_word(row, i, room)); i++) {
+        printf(i ? " " : "");
+        print_fish_word(row, word);
+    }
+    printf("' ");
 }
 
 static void print_fish_option(const option_row *row, const char *command) {
@@ -257,11 +290,8 @@ static void print_fish_option(const option_row *row, const char *command) {
         printf("-r -F ");
     } else if (option_takes_word(row)) {
         printf("-x ");
-        if (has_words(row)) {
-            printf("-a '");
-            print_option_words(row, " ");
-            printf("' ");
-        }
+        if (has_words(row))
+            print_fish_words(row);
     }
     print_fish_text(row->text);
 }

@@ -66,6 +66,15 @@ const char *option_word(const option_row *row, size_t index,
     return literal(row->argument, "|", index, room);
 }
 
+const char *word_text(const char *text, const char *word) {
+    size_t length = strlen(word);
+    for (const char *at = text; (at = strstr(at, word)); at += length)
+        if (strncmp(at + length, ": ", 2) == 0 &&
+            (at == text || (at - text >= 2 && strchr(";.", at[-2]))))
+            return at + length + 2;
+    return NULL;
+}
+
 const char *verb_word(const verb_row *verb, size_t index,
                       char room[WORD_BYTES]) {
     if (verb->bit == VERB_PHANTOM)

@@ -148,9 +148,9 @@ const option_row option_table[] = {
      0, "", "shading of the voxels (default phong)"},
     {"light", 0, "key|head|AZ,EL", TOPIC_LOOK, RENDER, read_light, FIELD(light),
      0, 0, "",
-     "key: most of the light from the upper left of the camera, the rest from "
-     "the camera; head: all from the camera; or a direction: degrees to the "
-     "right of the camera and up (default key)"},
+     "where the light comes from. key: most of it from the upper left of the "
+     "camera, the rest from the camera; head: all from the camera; or a "
+     "direction: degrees to the right of the camera and up (default key)"},
     {"ambient", 0, "A", TOPIC_LOOK, RENDER, read_real, FIELD(ambient), 0, 1, "",
      "strength of the ambient light (default 0.2)"},
     {"diffuse", 0, "D", TOPIC_LOOK, RENDER, read_real, FIELD(diffuse), 0, 1, "",
@@ -182,10 +182,10 @@ const option_row option_table[] = {
 
     {"quality", 0, "draft|normal|high", TOPIC_QUALITY, WRITTEN, read_choice,
      FIELD(quality), 0, 0, "",
-     "draft: one intermediate pixel per voxel and linear filters; normal: two "
-     "pixels and cubic filters; high: also interpolates between slices. With "
-     "method raycast: steps of 1/2, 1/4 or 1/16 voxel. The other methods have "
-     "one quality (default normal)"},
+     "speed or quality. draft: one intermediate pixel per voxel and linear "
+     "filters; normal: two pixels and cubic filters; high: also interpolates "
+     "between slices. With method raycast: steps of 1/2, 1/4 or 1/16 voxel. The "
+     "other methods have one quality (default normal)"},
 
     {"view", 0, "NAME", TOPIC_CAMERA, RENDER, read_view, FIELD(view), 0, 0, "",
      "side that the camera is on (default anterior for a file with a medical "
@@ -201,10 +201,10 @@ const option_row option_table[] = {
      "", "magnification of what --fit frames, 1e-6 to 1e6 (default 1)"},
     {"fit", 0, "visible|volume", TOPIC_CAMERA, RENDER, read_choice, FIELD(fit),
      0, 0, "",
-     "visible: frame what the look shows, once for all frames of a turntable; "
-     "projections and movies of time steps show the whole box; volume: frame "
-     "the sphere around the box, at one scale from every side. With --position "
-     "or --target as volume (default visible)"},
+     "what the picture frames. visible: what the look shows, once for all "
+     "frames of a turntable; projections and movies of time steps show the whole "
+     "box; volume: the sphere around the box, at one scale from every side. With "
+     "--position or --target as volume (default visible)"},
     {"perspective", 0, "[FOV]", TOPIC_CAMERA, RENDER, read_fov, FIELD(fov),
      SNOW_FOV_MIN, SNOW_FOV_MAX, "",
      "perspective projection with a field of view over the shorter side, in "
@@ -242,8 +242,8 @@ const option_row option_table[] = {
     {"unit", 0, "TEXT", TOPIC_LABELS, PICTURE, read_text, FIELD(unit), 0, 0, "",
      "the unit of the values beside it (default: the file's, or HU)"},
     {"annotate", 0, "time|step", TOPIC_LABELS, PICTURE, read_choice, FIELD(annotate), 0, 0, "",
-     "time: draw the physical time of the step, or its number where the file "
-     "has no time; step: draw its number"},
+     "draw which step it is. time: its physical time, or its number where the "
+     "file has no time; step: its number"},
     {"time-format", 0, "FORMAT", TOPIC_LABELS, PICTURE, read_text, FIELD(time_format), 0, 0, "",
      "how --annotate time writes it: one number as in printf (\"t = %.2f s\"), "
      "or a date (%Y-%m-%d %H:%M:%S) where the unit counts from one"},

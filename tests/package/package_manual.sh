@@ -176,9 +176,10 @@ fi
 fish_offers() { # WHAT TEXT
     local got
     got=$(HOME=$WORK fish --no-config -c "source $fish_file; source $fish_mpi
-        complete -C '$2'" | cut -f1 | tr '\n' ' ')
+        complete -C '$2'" | cut "-f${3:-1}" | tr '\n' ' ')
     [ "${got% }" = "$1" ] || { echo "'$2': '$got', not '$1'" && return 1; }
 }
+fish_describes() { fish_offers "$@" 2; }
 if have fish; then
     check "fish: a verb" fish_offers turntable 'snowglass turn'
     check "fish: an option" fish_offers --encoding 'snowglass render a --enc'
@@ -186,6 +187,15 @@ if have fish; then
         'snowglass a --encoding '
     check "fish: an option of its verb alone" fish_offers "" \
         'snowglass info a --enc'
+    check "fish: an option is described" fish_describes "speed or quality" \
+        'snowglass a --qualit'
+    check "fish: so is each choice" fish_describes \
+        'one intermediate pixel per voxel and linear filters' \
+        'snowglass a --quality d'
+    check "fish: the last too" fish_describes \
+        'also interpolates between slices' 'snowglass a --quality h'
+    check "fish: others as their option" fish_describes \
+        'reconstruction kernel' 'snowglass a --kernel bs'
     [ -z "$fish_mpi" ] ||
         check "fish: for MPI" fish_offers --radix 'snowglass-mpi a --radi'
 else
