@@ -14,7 +14,7 @@
 
 #define NAME "snowglass.insitu"
 
-static PyObject *error_type, *warning_type; /* of the core */
+static PyObject *error_type, *warnings; /* of the package */
 
 static void end_movie(PyObject *capsule) {
     snow_insitu_free(PyCapsule_GetPointer(capsule, NAME));
@@ -44,7 +44,7 @@ static void warn(void *user, const char *text) {
     PyGILState_STATE state = PyGILState_Ensure();
     (void)user;
     if (!PyErr_Occurred())
-        PyErr_WarnEx(warning_type, text, 1);
+        Py_XDECREF(PyObject_CallMethod(warnings, "warn", "s", text));
     PyGILState_Release(state);
 }
 
@@ -175,7 +175,7 @@ PyMODINIT_FUNC PyInit__insitu(void) {
     if (!core)
         return NULL;
     error_type = PyObject_GetAttrString(core, "Error");
-    warning_type = PyObject_GetAttrString(core, "SnowglassWarning");
     Py_DECREF(core);
-    return error_type && warning_type ? PyModule_Create(&definition) : NULL;
+    warnings = PyImport_ImportModule("snowglass._warnings");
+    return error_type && warnings ? PyModule_Create(&definition) : NULL;
 }

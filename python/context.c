@@ -150,6 +150,20 @@ void context_set_error(snow_status status, const char *message) {
     Py_XDECREF(text);
 }
 
+/* As warnings of the line that called the package. */
+static bool warn_of(PyObject *texts) {
+    PyObject *module = PyImport_ImportModule("snowglass._warnings");
+    bool fine = module != NULL;
+    for (Py_ssize_t n = 0; fine && n < PyList_Size(texts); n++) {
+        PyObject *warned =
+            PyObject_CallMethod(module, "warn", "O", PyList_GetItem(texts, n));
+        fine = warned != NULL;
+        Py_XDECREF(warned);
+    }
+    Py_XDECREF(module);
+    return fine;
+}
+
 bool context_leave(context_object *c, snow_status status) {
     bool fine = !c->raised && status == SNOW_STATUS_OK;
     if (!c->raised && !PyErr_Occurred() && status != SNOW_STATUS_OK)
@@ -161,11 +175,8 @@ bool context_leave(context_object *c, snow_status status) {
     c->held = false;
     c->progress = NULL;
     PyThread_release_lock(c->lock);
-    for (Py_ssize_t n = 0; fine && empty && n < PyList_Size(texts); n++) {
-        const char *text =
-            PyUnicode_AsUTF8AndSize(PyList_GetItem(texts, n), NULL);
-        fine = text && !PyErr_WarnEx(warning_type, text, 2);
-    }
+    if (fine && empty && PyList_Size(texts) > 0)
+        fine = warn_of(texts);
     if (empty)
         Py_DECREF(texts);
     return fine && !PyErr_Occurred();

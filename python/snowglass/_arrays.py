@@ -1,11 +1,12 @@
 """Arrays of other libraries as volumes."""
 from __future__ import annotations
 
+import math
 import os
-import warnings
 from typing import Any, Mapping, NamedTuple, Optional, Sequence
 
-from . import _recipes, _snowglass
+from . import _recipes
+from ._warnings import warn
 
 
 class Wrapped(NamedTuple):
@@ -25,6 +26,11 @@ class Wrapped(NamedTuple):
 #: What `wrap` takes beside the array.
 OPTIONS = ("spacing", "affine", "axes", "unit", "medical", "slope", "intercept",
            "copy", "frozen")
+
+
+#: Units of coordinates that grow downward.
+PRESSURES = ("Pa", "hPa", "kPa", "bar", "mbar", "mb", "millibar", "millibars",
+             "decibar", "dbar", "atm")
 
 
 def check_options(options: Mapping[str, Any]) -> None:
@@ -64,10 +70,9 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
     array = _to_array(source)
     if given_place and axes in (None, "xyz") and _is_fortran(array):
         if axes is None:
-            warnings.warn("affine= with an array in Fortran order: its dimensions "
-                          "are taken for [x, y, z], and its world for a patient's, "
-                          "as nibabel has them; axes= says so, or 'zyx'",
-                          _snowglass.SnowglassWarning, stacklevel=4)
+            warn("affine= with an array in Fortran order: its dimensions are taken "
+                 "for [x, y, z], and its world for a patient's, as nibabel has them; "
+                 "axes= says so, or 'zyx'")
         axes, unit = "xyz", "mm" if unit is None else unit
         medical = True if medical is None else medical
     axes = axes or "zyx"
@@ -169,7 +174,6 @@ def _is_xarray(source: Any) -> bool:
 
 def _of_xarray(source: Any, spacing: Any, axes: Optional[str],
                unit: Optional[str], affine: Any) -> tuple[Any, ...]:
-    import numpy
     # Times and the like, of which there is one.
     source = source.squeeze([name for name in source.dims if source.sizes[
         name] == 1][:max(source.ndim - 3, 0)])
@@ -177,31 +181,51 @@ def _of_xarray(source: Any, spacing: Any, axes: Optional[str],
     if axes is None:
         axes = "".join(names) if sorted(names) == ["x", "y", "z"] else "zyx"
     if spacing is None and affine is None and len(names) == 3:
-        steps, origins, units = {}, {}, []
-        for axis, name in zip(axes, names):
-            steps[axis], origins[axis] = 1.0, 0.0
-            if name not in source.coords or source.sizes[name] < 2:
-                continue
-            places = numpy.asarray(source.coords[name].values)
-            if places.dtype.kind not in "iuf":
-                continue
-            each = numpy.diff(places.astype(float))
-            if abs(each.max() - each.min()) > 1e-3 * abs(each.mean()):
-                warnings.warn(f"coordinate '{name}' is not evenly spaced: its "
-                              f"mean step is taken",
-                              _snowglass.SnowglassWarning, stacklevel=4)
-            steps[axis], origins[axis] = float(each.mean()), float(places[0])
-            units.append(str(source.coords[name].attrs.get("units", "")))
-        affine = numpy.eye(4)
-        for n, axis in enumerate("xyz"):
-            affine[n, n], affine[n, 3] = steps[axis], origins[axis]
-        units = [each for each in units if each]
-        if len(set(units)) > 1:
-            warnings.warn(f"coordinates have the units {', '.join(map(repr, units))}"
-                          f": their steps are taken as they are; spacing= gives "
-                          f"others", _snowglass.SnowglassWarning, stacklevel=4)
-        unit = unit or next(iter(units), None)
+        affine, found = _place_of(source, dict(zip(axes, names)))
+        unit = unit or found
     return source.values, spacing, axes, unit, affine
+
+
+def _place_of(source: Any, names: Mapping[str, str]) -> tuple[Any, str]:
+    """The matrix of its coordinates, and the unit of x, else of y or z.  An axis
+    with another unit cannot be compared with the others: a metre is not longer
+    than a degree.  As of files, it has the spacing of x then."""
+    import numpy
+    found = {axis: _coordinate(source, names[axis]) for axis in "xyz"}
+    unit = next((each.unit for each in found.values() if each.unit), "")
+    affine = numpy.eye(4)
+    for n, axis in enumerate("xyz"):
+        step, first, its = found[axis]
+        if its not in ("", unit):
+            warn(f"coordinate '{names[axis]}' has another unit ({its!r}) than the "
+                 f"others ({unit!r}): it has the spacing of x; spacing= gives another")
+            step, first = math.copysign(found["x"].step, step), 0.0
+        affine[n, n], affine[n, 3] = step, first
+    return affine, unit
+
+
+class _Coordinate(NamedTuple):
+    step: float = 1.0
+    first: float = 0.0
+    unit: str = ""
+
+
+def _coordinate(source: Any, name: str) -> _Coordinate:
+    import numpy
+    if name not in source.coords or source.sizes[name] < 2:
+        return _Coordinate()
+    places = numpy.asarray(source.coords[name].values)
+    if places.dtype.kind not in "iuf":
+        return _Coordinate()
+    each = numpy.diff(places.astype(float))
+    if abs(each.max() - each.min()) > 1e-3 * abs(each.mean()):
+        warn(f"coordinate '{name}' is not evenly spaced: its mean step is taken")
+    attributes = source.coords[name].attrs
+    unit = str(attributes.get("units", ""))
+    down = attributes.get("positive") == "down" or unit in PRESSURES
+    step, first = float(each.mean()), float(places[0])
+    return _Coordinate(-step if down else step, -first if down else first,
+                       "degrees" if unit.startswith("degree") else unit)
 
 
 def _volumes_first(group: Any) -> list[str]:
@@ -290,8 +314,7 @@ def _refuse_copy(copy: Optional[bool], why: str) -> None:
         raise ValueError(f"the array cannot be used in place: {why}; allow a "
                          f"copy")
     if copy is None:
-        warnings.warn(f"the array is copied: {why}",
-                      _snowglass.SnowglassWarning, stacklevel=5)
+        warn(f"the array is copied: {why}")
 
 
 def _matrix(spacing: Any, affine: Any) -> Any:

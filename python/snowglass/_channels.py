@@ -7,12 +7,12 @@ import math
 import os
 import re
 import stat
-import warnings
 from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence, \
     Union
 
 from . import _snowglass
 from ._looks import Look, Range, _parse_range, is_ranged
+from ._warnings import warn
 
 #: The most that are shown together.
 MOST = 8
@@ -302,7 +302,7 @@ class Channels:
             [pick.opacity for pick in self.picks])
 
     def warn(self, why: Optional[str]) -> None:
-        warn_of_one(self.first, self.count, why, 5)
+        warn_of_one(self.first, self.count, why)
 
     def _said(self, n: int) -> Mapping[str, Any]:
         number = self.numbers[n]
@@ -352,11 +352,9 @@ class Channels:
             if pick.opacity < 1 or look.opacity is not None else made
 
 
-def warn_of_one(first: int, count: int, why: Optional[str], level: int) -> None:
-    warnings.warn(f"channel {first} of {count} (counted from 0) is used; "
-                  f"channel=N of Volume selects another"
-                  f"{'; ' + why if why else ''}", _snowglass.SnowglassWarning,
-                  stacklevel=level)
+def warn_of_one(first: int, count: int, why: Optional[str]) -> None:
+    warn(f"channel {first} of {count} (counted from 0) is used; "
+         f"channel=N of Volume selects another{'; ' + why if why else ''}")
 
 
 def picked(path: Any, fields: dict[str, Any]
@@ -391,7 +389,7 @@ def of_volume(volume: Any, path: Any, fields: Mapping[str, Any], clip: Any,
         picks = [Pick(number) for number in numbers]
     if not picks:
         if info["channel_count"] > 1:
-            warn_of_one(0, info["channel_count"], None, 5)
+            warn_of_one(0, info["channel_count"], None)
         return None
 
     def open(base: Any, number: int) -> _snowglass.Volume:

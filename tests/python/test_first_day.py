@@ -139,6 +139,28 @@ class FirstPictures(InFolder):
         self.assertEqual(volume.spacing, (1.5, 1.5, 2.5))
         self.assertEqual(volume.info["unit"], "um")
 
+    @unittest.skipUnless(has("xarray", "netCDF4"), "xarray or netCDF4 is missing")
+    def test_heights_beside_degrees_lie_as_those_of_files(self):
+        import xarray
+        array = xarray.DataArray(ball().astype(numpy.float32), name="t", dims=(
+            "level", "lat", "lon"), coords={
+                "level": ("level", numpy.arange(30) * 500.0, {
+                    "units": "m", "positive": "up"}),
+                "lat": ("lat", 60 - numpy.arange(40) * 0.5, {
+                    "units": "degrees_north"}),
+                "lon": ("lon", numpy.arange(50) * 0.5, {"units": "degrees_east"})})
+        with self.assertWarnsRegex(sg.SnowglassWarning, "'level' has another unit"):
+            volume = sg.Volume(array)
+        self.assertEqual(volume.spacing, (0.5, 0.5, 0.5))
+        self.shows_a_ball(volume.render())
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            array.to_netcdf("t.nc")
+            file = sg.Volume("t.nc")
+            numpy.testing.assert_allclose(volume.affine, file.affine)
+            array.coords["level"].attrs["positive"] = "down"
+            self.assertEqual(sg.Volume(array).affine[2, 2], -0.5)
+
     @unittest.skipUnless(has("tifffile"), "tifffile is missing")
     def test_a_stack_of_tiffs(self):
         import tifffile
@@ -301,14 +323,27 @@ class Stumbles(InFolder):
         array = xarray.DataArray(ball(), dims=("z", "y", "x"), coords={
             "z": ("z", numpy.arange(30) * 10.0, {"units": "hPa"}),
             "y": ("y", numpy.arange(40.0), {"units": "degrees"})})
-        with self.assertWarnsRegex(sg.SnowglassWarning, "'hPa', 'degrees'"):
+        with self.assertWarnsRegex(sg.SnowglassWarning, "'hPa'.* than .*'degrees'"):
             volume = sg.Volume(array.expand_dims(time=[0]))
         self.assertEqual(volume.dims, (50, 40, 30))
-        self.assertEqual(volume.spacing, (1, 1, 10))
+        self.assertEqual(volume.spacing, (1, 1, 1))
+        self.assertEqual(volume.affine[2, 2], -1)
+        self.assertEqual(volume.info["unit"], "degrees")
         data = array.to_dataset(name="t")
         data["mean"] = array.mean()
         with self.assertRaisesRegex(TypeError, r"choose .* dataset\['t'\]"):
             sg.Volume(data)
+
+    def test_warnings_name_the_line_that_called(self):
+        array = numpy.zeros((8, 8, 16), numpy.int16)
+        array[2:6, 2:6, 4:12] = 700
+        for call in (lambda: sg.Volume(array[..., ::2]),       # of the package
+                     lambda: sg.render(array[..., ::2], size=16),
+                     lambda: sg.render("phantom:head", look="ct-bone", size=16)):
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                call()                                         # the last of the core
+            self.assertEqual([each.filename for each in caught], [__file__])
 
     @unittest.skipUnless(has("h5py"), "h5py is missing")
     def test_the_unit_of_a_data_set_stands_over_the_legend(self):
