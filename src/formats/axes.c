@@ -10,13 +10,17 @@ static int find_time(int rank, const snow_axis_hint *hints) {
     return -1;
 }
 
-/* `others` are the axes that are not time. */
-static bool holds_components(const int64_t *sizes, const snow_axis_hint *hint,
-                             const int *others, int count) {
-    if (hint->components)
-        return count > 2;
-    return count > 3 && sizes[others[0]] >= 1 && sizes[others[0]] <= 4 &&
-           sizes[others[1]] > sizes[others[0]] && !hint->space;
+/* The place among `others`, the axes that are not time, of the one that counts
+ * components: said to, or the fastest, by its size.  -1: there is none. */
+static int find_components(const int64_t *sizes, const snow_axis_hint *hints,
+                           const int *others, int count) {
+    for (int n = 0; n < count && count > 2; n++)
+        if (hints[others[n]].components)
+            return n;
+    const bool few = count > 3 && sizes[others[0]] >= 1 &&
+                     sizes[others[0]] <= 4 &&
+                     sizes[others[1]] > sizes[others[0]];
+    return few && !hints[others[0]].space ? 0 : -1;
 }
 
 /* The slowest axis that has no meaning yet. */
@@ -32,16 +36,19 @@ bool snow_axes_assign(int rank, const int64_t sizes[SNOW_MOST_AXES],
     for (int i = 0; i < rank; i++)
         if (i != out->time)
             left[count++] = i;
-    int first = 0;
-    if (count && holds_components(sizes, &hints[left[0]], left, count)) {
-        out->channel = left[first++];
+    const int at = find_components(sizes, hints, left, count);
+    if (at >= 0) {
+        out->channel = left[at];
         out->interleaved = true;
+        count--;
+        for (int i = at; i < count; i++)
+            left[i] = left[i + 1];
     }
-    if (count - first > 3 && out->time < 0)
+    if (count > 3 && out->time < 0)
         out->time = slowest(left, &count);
-    if (count - first > 3 && out->channel < 0)
+    if (count > 3 && out->channel < 0)
         out->channel = slowest(left, &count);
-    for (int i = 0; i < 3 && first + i < count; i++)
-        out->space[i] = left[first + i];
-    return count - first <= 3;
+    for (int i = 0; i < 3 && i < count; i++)
+        out->space[i] = left[i];
+    return count <= 3;
 }

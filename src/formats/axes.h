@@ -20,13 +20,13 @@ typedef struct snow_axis_hint {
 typedef struct snow_axes {
     int space[3];      /* x, y, z; -1: there is none */
     int time, channel; /* -1: there is none */
-    bool interleaved;  /* channels are next to each other: components */
+    bool interleaved;  /* channels are the components of a voxel */
 } snow_axes;
 
-/* Assigns the axes.  The fastest one counts components if it has 1 to 4
- * entries, fewer than the next one, and is one more than space has.  Of others
- * that are too many for space the slowest is time, and the next one channels.
- * Returns false if any is left. */
+/* Assigns the axes.  One counts components if a hint says so, or it is the
+ * fastest, has 1 to 4 entries, fewer than the next one, and is one more than
+ * space has.  Of others that are too many for space the slowest is time, and
+ * the next one channels. Returns false if any is left. */
 bool snow_axes_assign(int rank, const int64_t sizes[SNOW_MOST_AXES],
                       const snow_axis_hint hints[SNOW_MOST_AXES],
                       snow_axes *out);

@@ -44,12 +44,15 @@ snow_axis_hint snow_cf_hint(const cf_words *words) {
         "ns",   "ps",    "fs",     "min",    "minute",  "mins",  "minutes",
         "h",    "hr",    "hrs",    "hour",   "hours",   "d",     "day",
         "days", "month", "months", "yr",     "year",    "years", NULL};
+    static const char *const parts[] = {"component", "components", "vector",
+                                        NULL};
     snow_axis_hint hint = {0};
     bool in_space = is_any_of(words->axis, spaces);
     hint.time = is_same(words->axis, "t") ||
                 (!in_space && (is_same(words->standard_name, "time") ||
                                strstr(words->units, " since ") ||
                                is_same(words->name, "time")));
+    hint.components = !in_space && is_any_of(words->name, parts);
     hint.duration = !in_space && is_any_of(words->units, times);
     hint.space = in_space || is_any_of(words->name, lines) ||
                  (*words->units && !is_same(words->units, "1"));

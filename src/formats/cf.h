@@ -34,7 +34,8 @@ cf_values snow_cf_values_default(void);
 /* What a dimension is by its name, and by attributes of its coordinates
  * (sections 4 and 4.4): time by axis "T", standard_name "time", units "...
  * since
- * ...", or the name "time".  Texts may be "". */
+ * ...", or the name "time"; components by the name "component".  Texts may be
+ * "". */
 typedef struct cf_words {
     const char *name, *units, *axis, *standard_name;
 } cf_words;

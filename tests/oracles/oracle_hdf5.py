@@ -125,6 +125,22 @@ oracle.refuse("v.h5:/t", "not a component", ["--component", "radius"], 2)
 oracle.refuse("v.h5:/t", "give one of them",
               ["--component", "x", "--channel", 1], 2)
 
+# Labels of axes say which counts components, and which is time.
+with h5py.File("v.h5", "w") as file:
+    for name, labels in (("a", ("component", "z", "y", "x")),
+                         ("b", ("time", "z", "y", "x")),
+                         ("c", ("z", "y", "x", "t"))):
+        v = file.create_dataset(name, data=t[:, 0])
+        for axis, label in zip(v.dims, labels):
+            axis.label = label
+    file["e"] = t[0]
+    file["e"].dims[3].label = "x"
+oracle.expect("v.h5:/a", t[4, 0], options=["--component", 4])
+oracle.refuse("v.h5:/a", "the file has 1", ["--time", 1], 2)
+oracle.expect("v.h5:/b", t[2, 0], options=["--time", 2])
+oracle.expect("v.h5:/c", t[:, 0, ..., 1], options=["--time", 1])
+oracle.expect("v.h5:/e", t[0, 5], options=["--time", 5])
+
 # openPMD: labels, spacing and offset follow the order of the indices.
 m = oracle.sample("<f4", (4, 5, 6))
 with h5py.File("p.h5", "w") as file:
@@ -136,13 +152,35 @@ with h5py.File("p.h5", "w") as file:
         step = {"x": 1.5, "y": 2.0, "z": 3.0}
         mesh.attrs["gridSpacing"] = [step[name] for name in labels]
         mesh.attrs["gridGlobalOffset"] = [10 * step[name] for name in labels]
-        mesh.attrs["gridUnitSI"] = 1.0
+        mesh.attrs["gridUnitSI"] = 1.0 if order == "C" else 1e-3
         mesh["rho"] = m
         mesh["rho"].attrs["position"] = [0.5 if name == "x" else 0
                                          for name in labels]
-for order in "CF":
-    oracle.expect(f"p.h5:/{order}/rho", m,
-                  oracle.affine((1.5, 2, 3), (15.75, 20, 30)), unit="m")
+for order, unit in (("C", 1), ("F", 1e-3)):
+    oracle.expect(f"p.h5:/{order}/rho", m, oracle.affine(
+        unit * np.array((1.5, 2, 3)), unit * np.array((15.75, 20, 30))),
+                  unit="m")
+
+# Image data of VTKHDF, at points and cells, one and several steps.
+turn = np.array(((0, -1, 0), (1, 0, 0), (0, 0, 1.)))
+with h5py.File("w.h5", "w") as file:
+    root = file.create_group("VTKHDF")
+    root.attrs["Type"] = np.bytes_("ImageData")
+    root.attrs["WholeExtent"] = (2, 7, 0, 4, 0, 3)
+    root.attrs["Origin"] = (10., 20, 30)
+    root.attrs["Spacing"] = (0.5, 1, 2)
+    root.attrs["Direction"] = turn.ravel()
+    root["PointData/rho"] = m
+    root["CellData/rho"] = m[1:, 1:, 1:]
+    root["PointData/all"] = np.stack((m, 2 * m))
+    root["Steps/Values"] = (0.25, 0.75)
+matrix = np.eye(4)
+matrix[:3, :3] = turn * (0.5, 1, 2)
+matrix[:3, 3] = (10, 21, 30)
+oracle.expect("w.h5:/VTKHDF/PointData/rho", m, matrix)
+oracle.expect("w.h5:/VTKHDF/PointData/all", 2 * m, matrix, ["--time", "0.6"])
+matrix[:3, 3] += matrix[:3, :3] @ (0.5, 0.5, 0.5)
+oracle.expect("w.h5:/VTKHDF/CellData/rho", m[1:, 1:, 1:], matrix)
 
 # Attributes that give a place.
 with h5py.File("f.h5", "w") as file:

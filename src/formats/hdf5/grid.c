@@ -7,6 +7,7 @@
  *     openPMD             gridSpacing and others of the group, by axisLabels
  *                         and dataOrder
  *     HDF5 images         IMAGE_SUBCLASS and INTERLACE_MODE: colours
+ *     DIMENSION_LABELS    what the axes are: "component", "time", "x"
  *     NetCDF-4            coordinates by dimension scales, units; scale_factor,
  *                         add_offset and _FillValue of the values
  *
@@ -118,22 +119,25 @@ static bool is_fortran(const hdf5_file *file, hid_t object) {
 static bool place_by_mesh(const hdf5_file *file, hid_t object,
                           const hdf5_set *set, snow_volume_info *info) {
     int order[3];
-    double spacing[3], offset[3] = {0}, unit = 1, position[3] = {0};
+    double spacing[3], offset[3] = {0}, unit = 0, position[3] = {0};
     if (snow_hdf5_numbers(object, "gridSpacing", 3, spacing) != 3 ||
         !all_above_0(spacing) || !read_labels(file, object, order))
         return false;
     snow_hdf5_numbers(object, "gridGlobalOffset", 3, offset);
     snow_hdf5_numbers(set->id, "position", 3, position);
-    if (snow_hdf5_numbers(object, "gridUnitSI", 1, &unit) == 1 && unit == 1)
+    snow_hdf5_numbers(object, "gridUnitSI", 1, &unit);
+    if (unit > 0 && isfinite(unit))
         memcpy(info->unit, "m", 2);
+    else
+        unit = 1;
     bool fortran = is_fortran(file, object);
     for (int b = 0; b < 3; b++) {
         int label = fortran ? b : 2 - b; /* of x, y and z of the array */
         for (int a = 0; a < 3; a++)
-            info->matrix[a][b] = order[label] == a ? spacing[label] : 0;
+            info->matrix[a][b] = order[label] == a ? unit * spacing[label] : 0;
     }
     for (int b = 0; b < 3; b++) {
-        double first = offset[b] + position[b] * spacing[b];
+        double first = unit * (offset[b] + position[b] * spacing[b]);
         info->matrix[order[b]][3] = isfinite(first) ? first : 0;
     }
     return true;
@@ -200,6 +204,27 @@ static snow_axis_hint hint_of(const scales *s, hid_t scale, const char *path) {
     return snow_cf_hint(&words);
 }
 
+/* Of a dimension called time without coordinates (WRF): those of any variable
+ * along it that has the unit of a date. */
+static snow_status read_dates(const scales *s, hid_t scale,
+                              const scale_use *uses, hssize_t count,
+                              hsize_t steps, cf_axis *out) {
+    snow_status status = SNOW_STATUS_OK;
+    for (hssize_t i = 0;
+         i < count && !out->coordinates && status == SNOW_STATUS_OK; i++) {
+        char units[64] = "";
+        hid_t along =
+            H5Rdereference2(scale, H5P_DEFAULT, H5R_OBJECT, &uses[i].set);
+        if (along >= 0 && H5Iget_type(along) == H5I_DATASET)
+            read_text(s->file, along, "units", units, sizeof units);
+        if (strstr(units, " since "))
+            status = read_scale(s, along, steps, out);
+        if (along >= 0)
+            H5Oclose(along);
+    }
+    return status;
+}
+
 /* Assigns the scale to the axes of the data set that use it. */
 static void use_scale(scales *s, hid_t scale, const char *path,
                       const scale_use *uses, hssize_t count) {
@@ -208,8 +233,12 @@ static void use_scale(scales *s, hid_t scale, const char *path,
         if (uses[i].set != s->address || uses[i].axis < 0 || from_end < 0)
             continue;
         s->hints[from_end] = hint_of(s, scale, path);
-        s->status = read_scale(s, scale, s->set->sizes[uses[i].axis],
-                               &s->axes[from_end]);
+        const hsize_t steps = s->set->sizes[uses[i].axis];
+        cf_axis *axis = &s->axes[from_end];
+        s->status = read_scale(s, scale, steps, axis);
+        if (s->status == SNOW_STATUS_OK && s->hints[from_end].time &&
+            !axis->coordinates)
+            s->status = read_dates(s, scale, uses, count, steps, axis);
     }
 }
 
@@ -273,6 +302,19 @@ static herr_t look_at_scale(hid_t file, const char *name,
     return s->status != SNOW_STATUS_OK;
 }
 
+/* What the labels of axes say, which h5py writes, where no scale does. */
+static void read_axis_labels(scales *s) {
+    char label[64];
+    for (int i = 0; i < s->set->axes; i++) {
+        snow_axis_hint *hint = &s->hints[s->set->axes - 1 - i];
+        const cf_words words = {label, "", label, ""};
+        snow_hdf5_text(s->file, s->set->id, "DIMENSION_LABELS", (size_t)i,
+                       label, sizeof label);
+        if (*label && !hint->time && !hint->space)
+            *hint = snow_cf_hint(&words);
+    }
+}
+
 /* NetCDF-4 and h5py: axes and scales refer to each other.  The references of
  * the scales are read, because those of the axes are in the global heap, where
  * libhdf5 crashes if it is damaged. */
@@ -304,6 +346,7 @@ snow_status snow_hdf5_read_axes(snow_context *context, const hdf5_file *file,
     int64_t sizes[HDF5_MOST_AXES];
     memset(out, 0, sizeof *out);
     SNOW_TRY(read_scales(&s));
+    read_axis_labels(&s);
     for (int i = 0; i < HDF5_MOST_AXES; i++)
         sizes[i] = i < set->axes ? (int64_t)set->sizes[set->axes - 1 - i] : 1;
     out->colors = s.hints[0].components = is_coloured(file, set->id);
@@ -351,7 +394,8 @@ void snow_hdf5_place(snow_context *context, const hdf5_file *file,
     char group[HDF5_NAME_BYTES];
     *values = snow_cf_values_default();
     read_values(set, values);
-    if (place_by_size(set, info) || place_by_mesh(file, set->id, set, info))
+    if (place_by_size(set, info) || place_by_mesh(file, set->id, set, info) ||
+        snow_hdf5_place_image(file, set, info))
         return;
     memcpy(group, set->path, sizeof group);
     char *slash = strrchr(group, '/');

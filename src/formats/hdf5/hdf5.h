@@ -6,6 +6,7 @@
  *   text.c    texts of attributes
  *   grid.c    attributes -> geometry and value conversion
  *   meaning.c attributes -> quantity, unit, time
+ *   vtkhdf.c  VTK's own attributes -> geometry, time
  *   hdf5.c    a box of the data set -> the volume */
 #ifndef SNOW_FORMATS_HDF5_HDF5_H
 #define SNOW_FORMATS_HDF5_HDF5_H
@@ -106,6 +107,12 @@ void snow_hdf5_place(snow_context *context, const hdf5_file *file,
                      const hdf5_set *set, const hdf5_axes *axes,
                      const snow_volume_options *options, snow_volume_info *info,
                      cf_values *values, snow_uneven *grid);
+
+/* Of image data that VTK wrote: sets the matrix, false of others; the time. */
+bool snow_hdf5_place_image(const hdf5_file *file, const hdf5_set *set,
+                           snow_volume_info *info);
+void snow_hdf5_time_image(const hdf5_file *file, const hdf5_set *set,
+                          snow_volume_info *info);
 
 /* Reads up to `most` numbers of an attribute; returns how many there are, 0 if
  * it is missing or has other values. */

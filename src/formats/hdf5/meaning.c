@@ -109,6 +109,7 @@ void snow_hdf5_mean(const hdf5_file *file, const hdf5_set *set,
     if (axes->roles.time >= 0)
         snow_cf_time(&axes->scales[axes->roles.time], info);
     take_si(file, set, info, values);
+    snow_hdf5_time_image(file, set, info);
     take_time(file, set, info);
 }
 

@@ -1,0 +1,86 @@
+/* formats/hdf5/vtkhdf.c - image data of VTKHDF (vtk.org, "VTKHDF File Format"):
+ *
+ *     /VTKHDF              Type "ImageData", WholeExtent, Origin, Spacing,
+ *                          Direction (rows of a matrix; its columns are the
+ * axes) PointData/rho      values at points, CellData/rho of cells Steps/Values
+ * times, where arrays have an axis of time before z */
+#include "formats/hdf5/hdf5.h"
+
+#if SNOW_HAVE_HDF5
+
+#include <math.h>
+#include <string.h>
+
+#define ROOT "/VTKHDF"
+
+static bool is_in(const hdf5_set *set, const char *group) {
+    return !strncmp(set->path, group, strlen(group));
+}
+
+/* -1: the data set is none of image data. */
+static hid_t open_root(const hdf5_file *file, const hdf5_set *set) {
+    char type[16];
+    if (!is_in(set, ROOT "/PointData/") && !is_in(set, ROOT "/CellData/"))
+        return -1;
+    hid_t root = H5Oopen(snow_hdf5_id(file), ROOT, H5P_DEFAULT);
+    if (root < 0)
+        return -1;
+    snow_hdf5_text(file, root, "Type", 0, type, sizeof type);
+    if (!strcmp(type, "ImageData"))
+        return root;
+    H5Oclose(root);
+    return -1;
+}
+
+bool snow_hdf5_place_image(const hdf5_file *file, const hdf5_set *set,
+                           snow_volume_info *info) {
+    double spacing[3], origin[3] = {0}, extent[6] = {0};
+    double turn[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const double shift = is_in(set, ROOT "/CellData/") ? 0.5 : 0;
+    hid_t root = open_root(file, set);
+    if (root < 0)
+        return false;
+    const bool given = snow_hdf5_numbers(root, "Spacing", 3, spacing) == 3;
+    snow_hdf5_numbers(root, "Origin", 3, origin);
+    snow_hdf5_numbers(root, "WholeExtent", 6, extent);
+    snow_hdf5_numbers(root, "Direction", 9, turn);
+    H5Oclose(root);
+    for (int a = 0; a < 3 && given; a++) {
+        info->matrix[a][3] = origin[a];
+        for (int b = 0; b < 3; b++) {
+            info->matrix[a][b] = turn[3 * a + b] * spacing[b];
+            info->matrix[a][3] += info->matrix[a][b] * (extent[2 * b] + shift);
+        }
+    }
+    return given;
+}
+
+void snow_hdf5_time_image(const hdf5_file *file, const hdf5_set *set,
+                          snow_volume_info *info) {
+    hid_t root = open_root(file, set);
+    if (root < 0)
+        return;
+    hid_t times = H5Lexists(root, "Steps", H5P_DEFAULT) > 0 &&
+                          H5Lexists(root, "Steps/Values", H5P_DEFAULT) > 0
+                      ? H5Dopen2(root, "Steps/Values", H5P_DEFAULT)
+                      : -1;
+    hsize_t count = 0, at = (hsize_t)info->time, one = 1;
+    hid_t space = times >= 0 ? H5Dget_space(times) : -1;
+    hid_t memory = H5Screate_simple(1, &one, NULL);
+    double value;
+    if (space >= 0 && H5Sget_simple_extent_ndims(space) == 1 &&
+        H5Sget_simple_extent_dims(space, &count, NULL) == 1 && at < count &&
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, &at, NULL, &one, NULL) >=
+            0 &&
+        H5Dread(times, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, &value) >=
+            0)
+        info->time_value = value;
+    H5Sclose(memory);
+    if (space >= 0)
+        H5Sclose(space);
+    if (times >= 0)
+        H5Dclose(times);
+    H5Oclose(root);
+}
+
+#endif
