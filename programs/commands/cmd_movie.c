@@ -26,6 +26,13 @@ static void remark_still(const options *opts, const shot_list *list) {
             "around the volume use turntable, for a picture render");
 }
 
+/* Ranks learn how many steps the look is chosen from. */
+static void share_looked(shot_list *list) {
+    const int looked = process_share((int)list->looked);
+    if (looked < list->looked)
+        list->looked = looked;
+}
+
 /* Lists the steps.  The rank that writes also checks the output. */
 static int prepare_movie(const options *opts, shot_renderer *shots,
                          step_files *files, shot_list *list, movie **s) {
@@ -42,7 +49,10 @@ static int prepare_movie(const options *opts, shot_renderer *shots,
         remark_still(opts, list);
     if (done == CONTINUE && process_talks())
         done = movie_open(opts, list, s);
-    return process_agree(done);
+    done = process_agree(done);
+    if (done == CONTINUE)
+        share_looked(list);
+    return done;
 }
 
 /* Chooses the transfer function, then makes the frames. */

@@ -219,7 +219,7 @@ static void set_form(movie *s) {
     s->form.overwrite = true; /* of unfinished files */
 }
 
-static int open_parts(movie *s) {
+static int open_parts(movie *s, shot_list *list) {
     int done = place_read(s->opts->output, &s->place);
     if (done == CONTINUE)
         done = open_context(s->opts, &s->context);
@@ -228,13 +228,13 @@ static int open_parts(movie *s) {
     if (done == CONTINUE && s->opts->stats)
         done = check_stats_path(s->opts->stats, s->opts->overwrite);
     if (done == CONTINUE)
-        done = record_open(s->opts, s->list, &s->place, &s->record);
+        done = record_open(s->opts, list, &s->place, &s->record);
     if (done == CONTINUE)
         set_form(s);
     return done;
 }
 
-int movie_open(const options *opts, const shot_list *list, movie **out) {
+int movie_open(const options *opts, shot_list *list, movie **out) {
     movie *s = calloc(1, sizeof *s);
     double *times = calloc((size_t)list->count, sizeof *times);
     if (!s || !times) {
@@ -247,7 +247,7 @@ int movie_open(const options *opts, const shot_list *list, movie **out) {
     s->list = list;
     s->encoder.pipe = -1;
     s->record.file = -1;
-    int done = open_parts(s);
+    int done = open_parts(s, list);
     if (done != CONTINUE) {
         movie_close(s);
         return done;

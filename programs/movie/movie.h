@@ -30,10 +30,11 @@ typedef struct movie_shot {
 
 typedef struct shot_list {
     movie_shot *shots;
-    int64_t count; /* at least 1 */
-    bool steps;    /* they are time steps */
-    bool together; /* all frames depend on all shots, by the look: a changed
-                      list is another movie */
+    int64_t count;  /* at least 1 */
+    bool steps;     /* they are time steps */
+    int64_t looked; /* the look of all frames is chosen from so many shots, the
+                       first: if one of them changes it is another movie; 0: of
+                       none */
 } shot_list;
 
 /* The figures of one or more frames and of the renderer. */
@@ -82,10 +83,10 @@ typedef struct movie movie;
 int movie_check(const options *opts);
 
 /* Opens the output: checks whether it can be written and what an earlier run
- * left there.  Writes nothing yet, but locks what will be resumed.  `list` and
- * `opts` must outlive the movie.  Only for the rank that writes.  Returns
- * CONTINUE or an exit code. */
-int movie_open(const options *opts, const shot_list *list, movie **out);
+ * left there.  Writes nothing yet, but locks what will be resumed, whose look
+ * stays that of list->looked shots.  `list` and `opts` must outlive the movie.
+ * Only for the rank that writes.  Returns CONTINUE or an exit code. */
+int movie_open(const options *opts, shot_list *list, movie **out);
 
 /* Makes all frames that are missing, the movie from them, and the figures of
  * --stats.  Ranks that do not write pass NULL for `s`.  Returns an exit

@@ -20,6 +20,7 @@
 #include <unistd.h>
 
 #define FIRST_LINE "snowglass frames 1\n"
+#define LOOK_LINE "look of "
 #define RECORD_MOST                                                           \
     (INT64_C(1) << 30) /* bytes; the record of a million frames takes a tenth \
                         */
@@ -85,8 +86,8 @@ static const char *kernels(const options *opts) {
 }
 
 static void print_shots(FILE *out, const shot_list *list) {
-    if (list->together)
-        fprintf(out, "look of %" PRId64 " steps\n", list->count);
+    if (list->looked)
+        fprintf(out, LOOK_LINE "%" PRId64 " steps\n", list->looked);
     for (int64_t i = 0; i < list->count; i++) {
         const movie_shot *shot = &list->shots[i];
         fprintf(out, "frame %" PRId64 " azimuth %.17g time %" PRId64 " ", i,
@@ -192,17 +193,22 @@ static int64_t count_frames(const char *text) {
     return count;
 }
 
-/* Continues along the frames, each of which is made independently.  One that is
- * not kept may have changed (a broken step was repaired), and there may be more
- * than before.  `changed` is set if anything has changed. */
+/* Continues along the frames.  One that is not kept, and on which the look of
+ * those kept does not depend, may have changed (a broken step was repaired),
+ * and there may be more than before.  `changed` is set if anything has changed.
+ */
 static bool agree_on_frames(const char **old, const char **now,
-                            const bool *kept, bool *changed) {
+                            const frame_record *record, int64_t looked,
+                            bool *changed) {
     /* Steps were added to their file: those before are as they were. */
     const bool grows = count_frames(*now) > count_frames(*old);
-    for (; begins(*old, "frame ") && **now; kept++) {
+    if (!record->keeps)
+        looked = 0;
+    for (int64_t i = 0; begins(*old, "frame ") && **now; i++) {
         size_t length = line_length(*old), other = line_length(*now);
         bool same = length == other && strncmp(*old, *now, length) == 0;
-        if (!same && *kept && !(grows && has_grown(*old, *now)))
+        if (!same && (i < looked || record->kept[i]) &&
+            !(grows && has_grown(*old, *now)))
             return false;
         *changed |= !same;
         *old += length;
@@ -280,9 +286,9 @@ static bool fits(const shot_list *list, const movie_place *place,
     bool changed = false;
     mark_kept(done, place, list->count, out);
     if (!agree_on_settings(old, now) ||
-        !agree_on_frames(old, now, out->kept, &changed))
+        !agree_on_frames(old, now, out, list->looked, &changed))
         return false;
-    if (out->done > list->count || (changed && list->together && out->keeps))
+    if (out->done > list->count)
         return false;
     out->anew = changed;
     return true;
@@ -326,26 +332,54 @@ static int open_file(const movie_place *place, frame_record *out) {
     return CONTINUE;
 }
 
-int record_open(const options *opts, const shot_list *list,
-                const movie_place *place, frame_record *out) {
-    *out = (frame_record){.file = -1, .anew = true};
+/* The look of frames that are there stays when others are added. */
+static void keep_look(const char *old, shot_list *list) {
+    const char *line = strstr(old, "\n" LOOK_LINE);
+    int64_t looked;
+    if (line && sscanf(line + 1, LOOK_LINE "%" SCNd64 " steps", &looked) == 1 &&
+        looked > 0 && looked < list->looked)
+        list->looked = looked;
+}
+
+static int fail_list(const shot_list *list) {
+    return fail_memory("out of memory for a list of %" PRId64
+                       " frames; make fewer",
+                       list->count);
+}
+
+static int describe(const options *opts, const shot_list *list,
+                    frame_record *out) {
+    free(out->text);
     out->text = write_text(opts, list);
-    out->kept = calloc((size_t)list->count, sizeof *out->kept);
-    if (!out->text || !out->kept)
-        return fail_memory("out of memory for a list of %" PRId64
-                           " frames; make fewer",
-                           list->count);
+    return out->text ? CONTINUE : fail_list(list);
+}
+
+int record_open(const options *opts, shot_list *list, const movie_place *place,
+                frame_record *out) {
+    *out = (frame_record){.file = -1, .anew = true};
     int done = open_file(place, out);
     if (done != CONTINUE)
         return done;
     char *old = out->file >= 0 ? read_text_of(out->file) : NULL;
+    const int64_t all = list->looked;
+    if (old && opts->resume)
+        keep_look(old, list);
+    out->kept = calloc((size_t)list->count, sizeof *out->kept);
+    done = out->kept ? describe(opts, list, out) : fail_list(list);
+    if (done != CONTINUE) {
+        free(old);
+        return done;
+    }
     bool continues =
         old && *old; /* not of a run that was killed before it wrote */
     out->replaces = opts->overwrite || continues;
     done = continues ? compare(opts, list, place, old, out)
                      : check_other_files(opts, place, false);
     free(old);
-    return done;
+    if (done != CONTINUE || out->keeps || list->looked == all)
+        return done;
+    list->looked = all; /* no frame is there that has the look */
+    return describe(opts, list, out);
 }
 
 static int write_all(int file, const char *text, size_t size) {

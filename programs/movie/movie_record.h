@@ -31,11 +31,12 @@ typedef struct frame_record {
     bool replaces; /* existing frames may be replaced */
 } frame_record;
 
-/* Reads an existing record and compares it.  Writes nothing.  Returns CONTINUE
- * or an exit code: another run is active, frames exist that must not be
- * replaced, or --resume was given with other settings. */
-int record_open(const options *opts, const shot_list *list,
-                const movie_place *place, frame_record *out);
+/* Reads an existing record and compares it.  Of a list that has grown the look
+ * stays that of the shots before (list->looked).  Writes nothing.  Returns
+ * CONTINUE or an exit code: another run is active, frames exist that must not
+ * be replaced, or --resume was given with other settings. */
+int record_open(const options *opts, shot_list *list, const movie_place *place,
+                frame_record *out);
 
 /* Creates an empty record if there is none, before anything else is written: if
  * two runs start together, one continues.  Returns 0 or an error number: EEXIST

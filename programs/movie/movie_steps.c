@@ -111,7 +111,7 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
     int done = take_range(opts, &from, &out->count);
     if (done != CONTINUE)
         return done;
-    out->together = out->count > 1 && !look_is_fixed(opts);
+    out->looked = out->count > 1 && !look_is_fixed(opts) ? out->count : 0;
     out->shots = calloc((size_t)out->count, sizeof *out->shots);
     if (!out->shots)
         return fail_list();
@@ -544,19 +544,46 @@ static int look_at_steps(const shot_list *list, shot_renderer *shots,
     return done;
 }
 
+/* Frames that are there have the look of the steps before.  Labels have colours
+ * of their own, and those of later steps may be new. */
+static int look_at_more(const shot_list *list, shot_renderer *shots) {
+    render_state *s = &shots->state;
+    if (!s->transfer || !snow_transfer_label(s->transfer, 0)) {
+        if (s->opts->verbosity >= 0 && process_talks())
+            say("note: the look is that of the first %" PRId64
+                " steps, as of the frames that are there; --overwrite without "
+                "--resume chooses it from all",
+                list->looked);
+        return CONTINUE;
+    }
+    snow_transfer_free(s->transfer);
+    s->transfer = NULL;
+    int done = look_at_steps(list, shots, 0);
+    if (done == CONTINUE && !snow_transfer_label(s->transfer, 0))
+        done =
+            fail_usage("--resume: the frames that are there show labels, and "
+                       "a step that has come since has none; give another "
+                       "output");
+    return done;
+}
+
 int steps_look(const shot_list *list, shot_renderer *shots) {
     render_state *s = &shots->state;
-    if (!list->together)
+    shot_list looked = *list;
+    looked.count = list->looked;
+    if (!looked.count)
         return CONTINUE;
     /* All steps are opened again later and cause the same notes.  They are
      * printed now, except if ranks read steps that rank 0 does not see now. */
     const bool later = process_ranks() > 1;
     hear_warnings(s->opts, s->context, !later);
-    int done = choose_channels(list, shots), n = 0;
+    int done = choose_channels(&looked, shots), n = 0;
     do
         if (done == CONTINUE)
-            done = look_at_steps(list, shots, n);
+            done = look_at_steps(&looked, shots, n);
     while (++n < s->channels.list.count && done == CONTINUE);
+    if (done == CONTINUE && list->looked < list->count)
+        done = look_at_more(list, shots);
     hear_warnings(s->opts, s->context, later);
     return done;
 }

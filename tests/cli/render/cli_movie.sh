@@ -125,14 +125,40 @@ run 0 "with the step put right" movie run/s_%04d.nrrd -o 'y%d.png' $look \
 prints '"rendered": 3, "kept": 3'
 check "the movie goes on" same_bytes "$(echo y*.png)" "$(echo f_*.png)"
 
-# A simulation that goes on: frames may be added where the look stays.
+# A simulation that goes on: frames may be added, and the look stays.
+auto=(-s 40x30 --range full)
+run 0 "a look chosen from all steps" "$TOOL" movie run/s_%04d.nrrd -o 'auto%d.png' \
+    "${auto[@]}" -y
+chosen=$(grep -o 'grey .*(from' "$ERR")
 step run/s_0060.nrrd 3
 # shellcheck disable=SC2086
 run 0 "one step more" movie run/s_%04d.nrrd -o 'y%d.png' $look --resume \
     --stats -
 prints '"rendered": 1, "kept": 6'
-refused 4 "but not where it is chosen from all of them" "look of 6 steps" \
-    movie run/s_%04d.nrrd -o 'auto%d.png' --range full --resume
+cat auto*.png >before
+run 0 "with the look chosen before" "$TOOL" movie run/s_%04d.nrrd -o 'auto%d.png' \
+    "${auto[@]}" --resume --stats -
+prints '"rendered": 1, "kept": 6'
+says 'the look is that of the first 6 steps, as of the frames that are there'
+check "which is the same" grep -qF "$chosen" "$ERR"
+check "as are its frames" cmp before <(cat auto[0-5].png)
+run 0 "and once more" "$TOOL" movie run/s_%04d.nrrd -o 'auto%d.png' \
+    "${auto[@]}" --resume --stats -
+prints '"rendered": 0, "kept": 7'
+cp auto6.png before.png
+rm auto6.png
+touch -d '2001-01-01' run/s_0060.nrrd
+run 0 "also of a step that has changed" "$TOOL" movie run/s_%04d.nrrd \
+    -o 'auto%d.png' "${auto[@]}" --resume
+check "whose frame is the same" cmp before.png auto6.png
+rm auto1.png
+touch -d '2001-01-01' run/s_0020.nrrd
+refused 4 "but not where it depends on that step" "frame 2 .*s_0020" \
+    "$TOOL" movie run/s_%04d.nrrd -o 'auto%d.png' "${auto[@]}" --resume
+run 0 "unless it starts again" "$TOOL" movie run/s_%04d.nrrd -o 'auto%d.png' \
+    "${auto[@]}" --resume -y --stats -
+prints '"rendered": 7, "kept": 0'
+check "from all steps" bash -c "! grep -q 'the first 6' '$ERR'"
 touch -d '2001-01-01' run/s_0010.nrrd
 # shellcheck disable=SC2086
 refused 4 "nor where a step has changed" "frame 1 .*s_0010" \
@@ -164,6 +190,13 @@ label_step() { # label_step FILE LABEL: a block of 1 and one of the label
 }
 label_step l_0.nrrd 3
 label_step l_1.nrrd 9
+run 0 "labels" "$TOOL" movie l_%d.nrrd -s 40x30 -o 'more%d.png' -q
+label_step l_2.nrrd 7
+run 0 "a step with another" "$TOOL" movie l_%d.nrrd -s 40x30 -o 'more%d.png' --resume
+says 'labels 0\.\.9'
+run 0 "of all three" "$TOOL" movie l_%d.nrrd -s 40x30 -o 'three%d.png' -q
+check "has its colour" same_bytes "$(echo more*.png)" "$(echo three*.png)"
+rm l_2.nrrd
 for look in "" "--preset labels"; do
     # shellcheck disable=SC2086
     run 0 "a movie of labels" "$TOOL" movie l_%d.nrrd -s 40x30 -o 'l%d.png' \
