@@ -315,6 +315,7 @@ bool record_fill_view(PyObject *given, snow_view *view) {
 
 bool record_fill_options(PyObject *given, snow_volume_options *options) {
     options->channel_given = record_has(given, "channel");
+    options->time_given = record_has(given, "time");
     return FILL(given, option_fields, options);
 }
 

@@ -102,7 +102,7 @@ typedef struct snow_volume_options {
     bool allow_gaps; /* DICOM: missing and cut slices are NaN, with a warning */
     const char *component; /* "x", "magnitude", ... or NULL (docs/formats.md) */
     const char *label_table; /* path: names and colours of labels; or NULL */
-    bool each_channel;       /* no warning of other channels */
+    bool each_channel, time_given; /* no warning of others: channels, steps */
     int64_t levels; /* of refinement, so many of the coarsest; 0: all */
 } snow_volume_options;
 SNOW_RECORD(snow_volume_options);

@@ -19,6 +19,7 @@ snow_volume_options data_options(const options *opts) {
         .offset = opts->offset,
         .time = opts->time,
         .each_time = opts->each_time,
+        .time_given = options_given(opts, "time"),
         .channel = opts->channel,
         .channel_given = options_given(opts, "channel"),
         .each_channel = opts->mixes,

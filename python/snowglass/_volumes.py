@@ -118,8 +118,6 @@ class Volume(_snowglass.Volume):
             if fields.get(name) is not None:
                 fields[name] = os.fsencode(fields[name]) \
                     if name in ("mask", "label_table") else str(fields[name])
-        if fields.get("time") is not None:  # others need no note
-            fields.setdefault("each_time", True)
         if "type" in fields and fields["type"] is not None:
             fields["type"] = str(fields["type"])
         picks, numbers = _channels.picked(path, fields)

@@ -54,7 +54,7 @@ snow_status snow_volume_pick_time(snow_context *context, const char *what,
                          "0, or from -1 at its end",
                          what, (long long)time, (long long)all);
     info->time = time < 0 ? all + time : time;
-    if (all > 1 && !time && !options->each_time)
+    if (all > 1 && !time && !options->each_time && !options->time_given)
         snow_notify(context,
                     "%s %lld of %lld (counted from 0) is taken; --time N takes "
                     "another",

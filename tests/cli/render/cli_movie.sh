@@ -70,7 +70,7 @@ check "no word on which of them is taken" bash -c "! grep -q 'is taken' '$ERR'"
 run 0 "one of the steps" "$TOOL" movie -s 40x30 times.nrrd --time 1 \
     -o 'single%d.png' $look
 check "no word on another" bash -c "! grep -q 'is taken' '$ERR'"
-for time in "" "--time 2" "--time last"; do
+for time in "" "--time 0" "--time 2" "--time last"; do
     # shellcheck disable=SC2086
     run 0 "a still ${time:-without a step}" "$TOOL" render -s 9x9 times.nrrd $time \
         -o still.png -y
