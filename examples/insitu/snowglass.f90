@@ -2,7 +2,7 @@
 !
 ! To be compiled with your program, which links -lsnowglass-recipe
 ! -lsnowglass-mpi -lsnowglass.  Each interface is the C function of its name;
-! what the arguments are is told in the C headers.  All functions answer a
+! the C headers describe the arguments.  All functions answer a
 ! status, 0 for success.
 !
 ! A Fortran array u(0:nx+1, 0:ny+1, 0:nz+1) of one ghost layer is told by

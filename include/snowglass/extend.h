@@ -127,7 +127,7 @@ SNOW_API snow_status snow_voxels_plan(snow_voxels *voxels, const snow_box *held,
 SNOW_API snow_status snow_voxels_move(
     snow_voxels *voxels, const snow_brick *bricks, size_t value, void *dense);
 
-/* Lets rows and slices of wrapped voxels of at least 4 bytes lie apart. */
+/* Lets rows and slices of wrapped voxels lie apart. */
 SNOW_API void snow_volume_set_pitch(snow_volume *, const int64_t pitch[2]);
 /* Gives a part the matrix of its whole, exactly; a whole the given matrix. */
 SNOW_API snow_status snow_volume_set_whole(

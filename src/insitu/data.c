@@ -19,12 +19,9 @@
 /* --- taking --------------------------------------------------------------- */
 
 /* Whether a volume can have rows and slices that lie so. */
-static bool can_wrap(const snow_insitu_brick *brick, const snow_box *memory) {
-    const int64_t *stride = brick->stride, row = memory->count[0];
-    if (stride[0] == 1 && snow_type_size(brick->type) >= 4)
-        return stride[1] > 0 && stride[2] > 0;
-    return stride[0] == 1 && stride[1] == row &&
-           stride[2] == row * memory->count[1];
+static bool can_wrap(const snow_insitu_brick *brick) {
+    const int64_t *stride = brick->stride;
+    return stride[0] == 1 && stride[1] > 0 && stride[2] > 0;
 }
 
 /* The only brick's voxels where they lie, with the part of its halo that is
@@ -41,7 +38,7 @@ static const void *in_place(const snow_insitu *insitu, snow_box *memory,
     int64_t back = 0;
     *memory = snow_insitu_grow_box(&brick->box, brick->halo.low,
                                    brick->halo.high, insitu->whole.dims);
-    if (!can_wrap(brick, memory) ||
+    if (!can_wrap(brick) ||
         !snow_insitu_box_holds(memory, &insitu->layout.stored))
         return NULL;
     for (int i = 0; i < 3; i++)

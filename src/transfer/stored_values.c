@@ -21,31 +21,41 @@ static bool is_even(const void *bytes, size_t size) {
     return !differ;
 }
 
+/* Of the run of a walk, the part that lies in memory without a gap; the walk
+ * goes on behind it. */
+static const void *next_part(snow_voxel_walk *w, uint64_t *count) {
+    const snow_volume *volume = w->volume;
+    *count = w->end - w->at;
+    const int64_t at =
+        snow_volume_run(volume, (int64_t)w->at + w->ahead, count);
+    w->at += *count;
+    return (const char *)volume->voxels +
+           at * (int64_t)snow_type_size(volume->info.type);
+}
+
 /* `user` points to the counts. */
 static snow_status count_stored(const snow_volume *volume, void *user) {
-    uint64_t *counts = user;
+    uint64_t *counts = user, count;
     snow_voxel_walk w =
         snow_voxel_walk_begin(volume, false, SNOW_HISTOGRAM_EXACT);
-#define COUNT_TYPE(name, c_type, smallest)                             \
-    case name: {                                                       \
-        const c_type *voxels = volume->voxels;                         \
-        const uint64_t some = EVEN / sizeof *voxels;                   \
-        while (snow_voxel_walk_next_run(&w)) {                         \
-            const c_type *at = voxels + (int64_t)w.at + w.ahead;       \
-            const c_type *end = at + (w.end - w.at);                   \
-            while (at < end)                                           \
-                if ((uint64_t)(end - at) >= some &&                    \
-                    is_even(at, sizeof *voxels)) {                     \
-                    counts[*at - (smallest)] += some;                  \
-                    at += some;                                        \
-                } else {                                               \
-                    const c_type *last =                               \
-                        (uint64_t)(end - at) < some ? end : at + some; \
-                    while (at < last)                                  \
-                        counts[*at++ - (smallest)]++;                  \
-                }                                                      \
-        }                                                              \
-        break;                                                         \
+#define COUNT_TYPE(name, c_type, smallest)                                     \
+    case name: {                                                               \
+        const uint64_t some = EVEN / sizeof(c_type);                           \
+        while (w.at < w.end || snow_voxel_walk_next_run(&w)) {                 \
+            const c_type *at = next_part(&w, &count);                          \
+            const c_type *end = at + count;                                    \
+            while (at < end)                                                   \
+                if ((uint64_t)(end - at) >= some && is_even(at, sizeof *at)) { \
+                    counts[*at - (smallest)] += some;                          \
+                    at += some;                                                \
+                } else {                                                       \
+                    const c_type *last =                                       \
+                        (uint64_t)(end - at) < some ? end : at + some;         \
+                    while (at < last)                                          \
+                        counts[*at++ - (smallest)]++;                          \
+                }                                                              \
+        }                                                                      \
+        break;                                                                 \
     }
     switch (volume->info.type) {
         COUNT_TYPE(SNOW_TYPE_INT8, int8_t, INT8_MIN)

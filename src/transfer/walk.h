@@ -29,9 +29,8 @@ typedef struct snow_voxel_walk {
 snow_voxel_walk snow_voxel_walk_begin(const snow_volume *volume, bool log,
                                       snow_histogram_mode histogram_mode);
 
-/* Finds the next run, from `at` to `end`; false if none is left. A run is
- * contiguous in memory too: whole rows or slices of the volume are stored
- * without gaps. */
+/* Finds the next run, from `at` to `end`; false if none is left.  Linear
+ * indices of the voxels in memory follow one another, too. */
 bool snow_voxel_walk_next_run(snow_voxel_walk *walk);
 
 /* Finds the next voxels, up to SNOW_WALK_BLOCK, that a sampled block has in the

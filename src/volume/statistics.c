@@ -48,23 +48,26 @@ static void widen(const snow_volume *volume, int64_t first, size_t count,
     }
 }
 
+int64_t snow_volume_run(const snow_volume *volume, int64_t first,
+                        uint64_t *count) {
+    const int64_t *dims = volume->info.dims;
+    if (!volume->pitch[0])
+        return first;
+    const int64_t x = first % dims[0], row = first / dims[0];
+    if (*count > (uint64_t)(dims[0] - x))
+        *count = (uint64_t)(dims[0] - x);
+    return row / dims[1] * volume->pitch[1] + row % dims[1] * volume->pitch[0] +
+           x;
+}
+
 void snow_volume_stored(const snow_volume *volume, int64_t first, size_t count,
                         double *out) {
-    const int64_t *dims = volume->info.dims;
-    if (!volume->pitch[0]) {
-        widen(volume, first, count, out);
-        return;
-    }
     while (count) {
-        const int64_t x = first % dims[0], row = first / dims[0];
-        const size_t left = (size_t)(dims[0] - x);
-        const size_t here = count < left ? count : left;
-        widen(volume,
-              row / dims[1] * volume->pitch[1] +
-                  row % dims[1] * volume->pitch[0] + x,
-              here, out);
+        uint64_t here = count;
+        const int64_t at = snow_volume_run(volume, first, &here);
+        widen(volume, at, (size_t)here, out);
         first += (int64_t)here;
-        count -= here;
+        count -= (size_t)here;
         out += here;
     }
 }
@@ -98,7 +101,8 @@ int32_t snow_type_lowest(snow_type type) {
         return true;                                               \
     }
 
-bool snow_volume_extremes(const snow_volume *volume, int64_t first,
+/* Of values in memory without a gap. */
+static bool find_extremes(const snow_volume *volume, int64_t first,
                           size_t count, int32_t *low, int32_t *high) {
     switch (volume->info.type) {
         EXTREMES(INT8, int8_t, uint8_t, 0x80)
@@ -108,6 +112,24 @@ bool snow_volume_extremes(const snow_volume *volume, int64_t first,
     default:
         return false;
     }
+}
+
+bool snow_volume_extremes(const snow_volume *volume, int64_t first,
+                          size_t count, int32_t *low, int32_t *high) {
+    *low = INT32_MAX;
+    *high = INT32_MIN;
+    while (count) {
+        uint64_t here = count;
+        int32_t least, most;
+        const int64_t at = snow_volume_run(volume, first, &here);
+        if (!find_extremes(volume, at, (size_t)here, &least, &most))
+            return false;
+        *low = least < *low ? least : *low;
+        *high = most > *high ? most : *high;
+        first += (int64_t)here;
+        count -= (size_t)here;
+    }
+    return true;
 }
 
 /* What names no modality is CT if it is a patient's, has more than 8 bits, and

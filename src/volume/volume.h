@@ -14,7 +14,7 @@ struct snow_volume {
     snow_volume_info info;
     const void *voxels; /* NULL where they stay in the file: */
     int64_t pitch[2]; /* values from row to row and slice to slice, where there
-                         are gaps, in types of 4 bytes and more; 0: dense */
+                         are gaps; 0: dense */
     snow_stream *stream;    /* how slabs are read, one block; else NULL */
     const char *path;       /* of that file, within the block; else NULL */
     snow_clip_planes *clip; /* planes that have cut it, and values next to them;
@@ -45,6 +45,11 @@ void snow_volume_whole(const snow_volume *volume, snow_volume_info *out);
 
 /* Values from a voxel to the next one along each axis. */
 void snow_volume_steps(const snow_volume *volume, int64_t out[3]);
+
+/* The place in memory of the voxel of a linear index, and of how many of
+ * `count` that follow it there is no gap. */
+int64_t snow_volume_run(const snow_volume *volume, int64_t first,
+                        uint64_t *count);
 
 /* What a box of a whole is as a volume of its own. */
 snow_volume_info snow_volume_info_of_box(const snow_volume_info *whole,

@@ -39,6 +39,7 @@ typedef struct scene {
     bool fades;               /* by gradients */
     bool clipped;             /* by planes */
     bool preset;              /* by those of a preset */
+    bool automatic;           /* a look chosen from the values */
     bool grows;               /* its last slices do, after step 0 */
     const char *colormap;     /* NULL: viridis */
     bool first_deterministic; /* the picture before */
@@ -119,6 +120,8 @@ static snow_look look_of(const scene *s, snow_opacity_point scaled[5]) {
         scaled[i] = points[i];
         scaled[i].value *= scale_of(type);
     }
+    if (s->automatic)
+        return (snow_look){.size = sizeof(snow_look)};
     if (s->preset)
         return (snow_look){.size = sizeof(snow_look),
                            .preset = "ct-cardiac",
@@ -553,7 +556,10 @@ static void halos_beyond_the_grid_do_not_make_copies(void **state) {
     static const double turns[][2] = {{10, 0}, {95, 10}, {30, 80}};
     static const snow_method methods[] = {SNOW_METHOD_AUTO, SNOW_METHOD_TESTED,
                                           SNOW_METHOD_FOOTPRINT};
-    for (int n = 0; n < 54; n += (int)support_stride(5)) {
+    static const snow_type types[] = {SNOW_TYPE_FLOAT32, SNOW_TYPE_FLOAT64,
+                                      SNOW_TYPE_UINT8, SNOW_TYPE_UINT16,
+                                      SNOW_TYPE_INT16};
+    for (int n = 0; n < 135; n += (int)support_stride(7)) {
         const int *cut = cuts[n % 3];
         scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
         s.halo = 8;
@@ -562,22 +568,13 @@ static void halos_beyond_the_grid_do_not_make_copies(void **state) {
             s.settings.method = SNOW_METHOD_RAYCAST;
         s.view.azimuth = turns[n / 9 % 3][0];
         s.view.elevation = turns[n / 9 % 3][1];
-        s.type = n / 27 ? SNOW_TYPE_FLOAT64 : SNOW_TYPE_FLOAT32;
+        s.type = types[n / 27];
         s.fades = n % 2;
+        s.automatic = n % 5 == 2;
         s.first_deterministic = n % 4 == 3;
         expect_serial(&s, "halos");
         assert_int_equal(s.figures.ranks_copied, 0);
     }
-}
-
-/* Types of 8 and 16 bits are used in place where they are dense. */
-static void halos_of_short_types_do(void **state) {
-    (void)state;
-    scene s = make_scene(4, 2, 2, 1);
-    s.halo = 8;
-    s.type = SNOW_TYPE_INT16;
-    expect_serial(&s, "halos of words");
-    assert_int_equal(s.figures.ranks_copied, 4);
 }
 
 static void without_ghosts_there_are_seams_and_no_messages(void **state) {
@@ -1553,7 +1550,6 @@ int main(void) {
         cmocka_unit_test(clip_planes_cut_the_voxels_of_all_ranks),
         cmocka_unit_test(wide_halos_are_used_in_place_of_messages),
         cmocka_unit_test(halos_beyond_the_grid_do_not_make_copies),
-        cmocka_unit_test(halos_of_short_types_do),
         cmocka_unit_test(without_ghosts_there_are_seams_and_no_messages),
         cmocka_unit_test(voxels_that_lie_as_wanted_are_not_copied),
         cmocka_unit_test(several_bricks_of_a_rank_are_one_part),

@@ -51,7 +51,8 @@ static void place_stored(snow_value_store *s,
     const snow_placement *p = params->placement;
     const snow_value_coder *coder = params->coder;
     const int64_t *dims = params->volume->info.dims;
-    const int64_t strides[3] = {1, dims[0], dims[0] * dims[1]};
+    int64_t strides[3];
+    snow_volume_steps(params->volume, strides);
     s->in_place = params->encoding == SNOW_ENCODING_AUTO && !params->copied &&
                   snow_value_store_by_stored(params) && !coder->scale.clamps &&
                   coder->type != SNOW_TYPE_INT8;
@@ -63,7 +64,8 @@ static void place_stored(snow_value_store *s,
         snow_type_size(coder->type) == 1 ? SNOW_VALUE_BYTES : SNOW_VALUE_WORDS;
     s->rule = coder->scale.rule;
     s->stored = params->volume->voxels;
-    s->native_count = dims[0] * dims[1] * dims[2];
+    s->native_count =
+        (dims[2] - 1) * strides[2] + (dims[1] - 1) * strides[1] + dims[0];
     s->slice_step = strides[p->slice_axis];
     s->row_step = strides[p->v_axis];
 }
