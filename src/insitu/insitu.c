@@ -57,13 +57,13 @@ void snow_insitu_forget(snow_insitu *insitu) {
 
 /* What pictures took, beside the simulation. */
 static void report_cost(snow_insitu *insitu) {
-    double all = insitu->between + insitu->within;
+    const double all = insitu->between + insitu->within;
+    const double percent = 100 * insitu->within / all;
     if (insitu->pictures > 1 && all > 0 && insitu->limit_seconds == 0)
         snow_insitu_report(insitu,
-                           "%lld pictures took %.2g %% of the time, %.3g s "
+                           "%lld pictures took %.*f %% of the time, %.3g s "
                            "beside %.3g s between two of them",
-                           (long long)insitu->pictures,
-                           100 * insitu->within / all,
+                           (long long)insitu->pictures, percent < 10, percent,
                            insitu->within / (double)(insitu->pictures - 1),
                            insitu->between / (double)(insitu->pictures - 1));
 }
@@ -147,6 +147,8 @@ snow_status snow_insitu_set_recipe_status(snow_insitu *insitu,
     snprintf(insitu->recipe_message, sizeof insitu->recipe_message, "%s",
              status == SNOW_STATUS_OK ? ""
                                       : snow_context_message(insitu->context));
+    if (status != SNOW_STATUS_OK && insitu->given == SNOW_STATUS_OK)
+        keep_message(insitu);
     return status;
 }
 

@@ -191,6 +191,7 @@ static void a_wrong_recipe_makes_no_picture(void **state) {
     write_recipe(m, "{\"colour\": 3}");
     assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
                      SNOW_STATUS_BAD_INPUT);
+    assert_non_null(strstr(snow_insitu_message(m->insitu), "\"colour\""));
     for (int step = 0; step < 3; step++) {
         assert_int_equal(snow_insitu_update(m->insitu), SNOW_STATUS_BAD_INPUT);
         assert_non_null(strstr(snow_insitu_message(m->insitu), "colour"));
