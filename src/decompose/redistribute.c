@@ -297,6 +297,8 @@ static snow_status make_ready(snow_voxels *voxels, size_t value) {
         return SNOW_STATUS_OK;
     traffic *out = &voxels->sent, *in = &voxels->received;
     int64_t most = out->voxels > in->voxels ? out->voxels : in->voxels;
+    if (voxels->gives_up && voxels->kept.voxels > most)
+        most = voxels->kept.voxels; /* not all of them twice at once */
     const int64_t once = ROUND_BYTES / (int64_t)value;
     int64_t rounds = most / (once > 0 ? once : 1) + 1;
     SNOW_TRY(snow_comm_reduce_ints(voxels->comm, &rounds, 1, SNOW_REDUCE_MAX));

@@ -259,6 +259,61 @@ static snow_status swap_halves(snow_comm *comm, void *user) {
     return status;
 }
 
+/* Resident memory of the process in MB: the most since it was reset; -1 where
+ * it is not known. */
+static long most_resident(bool reset) {
+    FILE *file = fopen(reset ? "/proc/self/clear_refs" : "/proc/self/status",
+                       reset ? "w" : "r");
+    char line[256];
+    long kilobytes = -1024;
+    if (reset && file)
+        fputs("5", file);
+    while (!reset && file && fgets(line, sizeof line, file))
+        sscanf(line, "VmHWM: %ld", &kilobytes);
+    if (!file || fclose(file) != 0)
+        return -1;
+    return reset ? most_resident(false) : kilobytes / 1024;
+}
+
+/* A rank alone, which keeps all. */
+static snow_status keep_all(snow_comm *comm, void *user) {
+    const snow_box all = {{0, 0, 0}, {512, 512, 256}};
+    const size_t bytes = (size_t)snow_box_voxels(&all);
+    char *held = malloc(bytes), *dense = malloc(bytes);
+    const snow_brick brick = {all, held, {1, 512, 512 * 512}};
+    snow_voxels *voxels = NULL;
+    memset(held, 1, bytes);
+    const long before = most_resident(true);
+    snow_status status = expect(comm, before > 64, "memory is not known");
+    if (status == SNOW_STATUS_OK)
+        status = snow_voxels_new(comm, &voxels);
+    if (status == SNOW_STATUS_OK)
+        status = snow_voxels_plan(voxels, &all, 1, &all);
+    if (status == SNOW_STATUS_OK) {
+        snow_voxels_give_up(voxels);
+        status = snow_voxels_move(voxels, &brick, 1, dense);
+    }
+    *(long *)user = most_resident(false) - before;
+    if (status == SNOW_STATUS_OK)
+        status = expect(comm, dense[0] == 1 && dense[bytes - 1] == 1,
+                        "wrong voxels");
+    snow_voxels_free(voxels);
+    free(held);
+    free(dense);
+    return status;
+}
+
+/* 64 MB that stay where they are take little more meanwhile. */
+static void what_is_kept_is_not_held_twice(void **state) {
+    (void)state;
+    long more = 0;
+    snow_context *context = support_context();
+    assert_int_equal(snow_comm_run_threads(context, 1, keep_all, &more),
+                     SNOW_STATUS_OK);
+    assert_in_range(more, 0, 24);
+    snow_context_free(context);
+}
+
 static void what_has_moved_gives_its_memory_back(void **state) {
     (void)state;
     scene s = {.ranks = 2, .value = 4};
@@ -356,6 +411,7 @@ int main(void) {
         cmocka_unit_test(many_voxels_move_in_rounds),
         cmocka_unit_test(large_values_move_too),
 #ifdef __linux__
+        cmocka_unit_test(what_is_kept_is_not_held_twice),
         cmocka_unit_test(what_has_moved_gives_its_memory_back),
 #endif
         cmocka_unit_test(ghost_voxels_come_from_all_around),
