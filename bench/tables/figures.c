@@ -55,7 +55,8 @@ typedef struct figure_job {
     const figure_cluster *cluster;
     const snow_image *expected; /* NULL: keep the picture instead */
     snow_image *kept;
-    double seconds, largest;
+    figure_time least;
+    double largest;
     figure_progress *progress;
     int counted_way; /* for the progress; below 0: not counted */
 } figure_job;
@@ -165,6 +166,20 @@ static snow_status render(snow_comm *comm, const figure_job *job,
                              &node->view, &node->settings, &how, image);
 }
 
+/* Collective.  What the nodes' local images took of this machine. */
+static snow_status compare_nodes(snow_comm *comm, const figure_node *node,
+                                 figure_time *out) {
+    const int nodes = snow_comm_size(comm);
+    double mine = snow_frame_ranks_stats(node->frame)->cpu_splat;
+    double all[NODES_MOST];
+    snow_status status = snow_comm_allgather(comm, &mine, sizeof mine, all);
+    for (int n = 0; n < nodes && status == SNOW_STATUS_OK; n++) {
+        out->slowest = fmax(out->slowest, all[n]);
+        out->mean += all[n] / nodes;
+    }
+    return status;
+}
+
 /* The least of the pictures is kept: what disturbs a node is not its work.
  * Nodes begin together, since they have just agreed. */
 static snow_status time_picture(snow_comm *comm, figure_job *job,
@@ -173,10 +188,13 @@ static snow_status time_picture(snow_comm *comm, figure_job *job,
     snow_image_free(*image);
     *image = NULL;
     snow_status status = render(comm, job, node, image);
-    double seconds = snow_comm_seconds(comm) - start;
-    if (snow_comm_rank(comm) == 0 && seconds < job->seconds)
-        job->seconds = seconds;
-    return snow_comm_agree_status(comm, status);
+    figure_time taken = {.seconds = snow_comm_seconds(comm) - start};
+    status = snow_comm_agree_status(comm, status);
+    if (status == SNOW_STATUS_OK)
+        status = compare_nodes(comm, node, &taken);
+    if (snow_comm_rank(comm) == 0 && taken.seconds < job->least.seconds)
+        job->least = taken;
+    return status;
 }
 
 /* The first picture makes room, the others are timed. */
@@ -186,7 +204,7 @@ static snow_status time_pictures(snow_comm *comm, figure_job *job,
     snow_status status = SNOW_STATUS_OK;
     for (int n = 0; n <= PICTURES && status == SNOW_STATUS_OK; n++) {
         if (n <= 1 && snow_comm_rank(comm) == 0)
-            job->seconds = INFINITY;
+            job->least.seconds = INFINITY;
         status = time_picture(comm, job, node, &image);
     }
     if (snow_comm_rank(comm) != 0 || status != SNOW_STATUS_OK)
@@ -219,21 +237,23 @@ static snow_status be_node(snow_comm *comm, void *user) {
 /* The least of some runs. */
 static snow_status measure(snow_context *context, const snow_network *network,
                            int nodes, int runs, figure_job *job,
-                           double *seconds) {
-    double least = INFINITY;
+                           figure_time *out) {
+    *out = (figure_time){.seconds = INFINITY};
     for (int run = 0; run < runs; run++) {
         double begin = figure_progress_clock();
         snow_status status =
             snow_comm_run_simulated(context, nodes, network, be_node, job);
         if (status != SNOW_STATUS_OK)
             return status;
-        least = fmin(least, job->seconds);
+        if (job->least.seconds < out->seconds)
+            *out = job->least;
         if (job->counted_way >= 0)
             figure_progress_step(job->progress, job->counted_way,
                                  figure_progress_clock() - begin,
                                  job->volume->name, nodes);
     }
-    *seconds = least;
+    out->slowest *= network->slowness;
+    out->mean *= network->slowness;
     return SNOW_STATUS_OK;
 }
 
@@ -241,11 +261,11 @@ static snow_status measure(snow_context *context, const snow_network *network,
  * others are held against. */
 static snow_status measure_way(snow_context *context, int runs,
                                const snow_network *network, figure_job *job,
-                               double *seconds, double *largest) {
+                               figure_time *taken, double *largest) {
     job->expected = NULL;
     for (int n = 0; n < FIGURE_NODES; n++) {
         snow_status status =
-            measure(context, network, figure_nodes[n], runs, job, &seconds[n]);
+            measure(context, network, figure_nodes[n], runs, job, &taken[n]);
         if (status != SNOW_STATUS_OK)
             return status;
         job->expected = job->kept;
@@ -266,17 +286,17 @@ static snow_status measure_cluster(snow_context *context, int runs, int cluster,
         job->way = BENCH_ORIGINAL;
         job->counted_way = -1;
         job->expected = NULL;
-        double seconds;
-        status = measure(context, &ours, 1, runs, job, &seconds);
+        figure_time alone;
+        status = measure(context, &ours, 1, runs, job, &alone);
         if (status == SNOW_STATUS_OK)
-            network.slowness = job->paper->paper_seconds / seconds;
+            network.slowness = job->paper->paper_seconds / alone.seconds;
     }
     times->slowness[cluster] = network.slowness;
     for (int way = 0; way < FIGURE_WAYS && status == SNOW_STATUS_OK; way++) {
         job->way = figure_ways[way];
         job->counted_way = way;
         status = measure_way(context, runs, &network, job,
-                             times->seconds[cluster][way], &times->largest);
+                             times->taken[cluster][way], &times->largest);
     }
     return status;
 }
@@ -307,8 +327,8 @@ measure_volume(snow_context *context, const bench_options *options,
 
 double figure_speedup(const figure_times *times, int figure, int cluster,
                       int way, int nodes) {
-    double one = times->seconds[cluster][figure == 11 ? 0 : way][0];
-    return one / times->seconds[cluster][way][nodes];
+    double one = times->taken[cluster][figure == 11 ? 0 : way][0].seconds;
+    return one / times->taken[cluster][way][nodes].seconds;
 }
 
 /* For a test: the phantom, an eighth as long along each side. */

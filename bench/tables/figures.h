@@ -28,12 +28,18 @@ extern const int figure_nodes[FIGURE_NODES];
 extern const bench_way figure_ways[FIGURE_WAYS];
 extern const char *const figure_way_names[FIGURE_WAYS];
 
+/* Seconds of a picture; of them, those of the slowest node's local image and of
+ * the mean one, encoding included. */
+typedef struct figure_time {
+    double seconds, slowest, mean;
+} figure_time;
+
 typedef struct figure_times {
     const char *source;
     double sparse_ratio;
     double slowness[FIGURE_CLUSTERS];
-    /* Seconds of a picture, encoding and combining included: medians. */
-    double seconds[FIGURE_CLUSTERS][FIGURE_WAYS][FIGURE_NODES];
+    /* Of a picture, encoding and combining included: the least. */
+    figure_time taken[FIGURE_CLUSTERS][FIGURE_WAYS][FIGURE_NODES];
     double largest; /* difference from the picture of one node, all cases */
 } figure_times;
 

@@ -24,10 +24,12 @@ static void print_way(int figure, const figure_times *times, int cluster,
     printf("  %-9s", figure_way_names[way]);
     for (int n = 0; n < FIGURE_NODES; n++)
         printf(" %7.2f", figure_speedup(times, figure, cluster, way, n));
-    double seconds = times->seconds[cluster][way][FIGURE_NODES - 1];
-    printf("  %9.3f ms, %3.0f %%\n", 1e3 * seconds,
-           100 * times->seconds[cluster][way][0] / seconds /
-               figure_nodes[FIGURE_NODES - 1]);
+    const figure_time *taken = times->taken[cluster][way];
+    const figure_time *all = &taken[FIGURE_NODES - 1];
+    printf("  %9.3f ms, %3.0f %%; %9.3f, %.2f\n", 1e3 * all->seconds,
+           100 * taken[0].seconds / all->seconds /
+               figure_nodes[FIGURE_NODES - 1],
+           1e3 * all->slowest, all->slowest / all->mean);
 }
 
 void figure_print(const bench_options *options, int figure,
@@ -39,7 +41,8 @@ void figure_print(const bench_options *options, int figure,
             printf("%-9s  ", figure_volumes[v].label);
             for (int n = 0; n < FIGURE_NODES; n++)
                 printf(" %7d", figure_nodes[n]);
-            printf("  nodes: %d take, efficiency\n",
+            printf("  nodes: %d take, efficiency; their slowest local image, "
+                   "over the mean\n",
                    figure_nodes[FIGURE_NODES - 1]);
             for (int way = 0; way < FIGURE_WAYS; way++)
                 print_way(figure, &times[v], cluster, way);
@@ -59,13 +62,17 @@ void figure_print(const bench_options *options, int figure,
 static json_t *way_json(int figure, const figure_times *times, int cluster,
                         int way) {
     json_t *seconds = json_array(), *speedups = json_array();
+    json_t *slowest = json_array(), *means = json_array();
+    const figure_time *taken = times->taken[cluster][way];
     for (int n = 0; n < FIGURE_NODES; n++) {
-        json_array_append_new(seconds,
-                              json_real(times->seconds[cluster][way][n]));
+        json_array_append_new(seconds, json_real(taken[n].seconds));
+        json_array_append_new(slowest, json_real(taken[n].slowest));
+        json_array_append_new(means, json_real(taken[n].mean));
         json_array_append_new(speedups, json_real(figure_speedup(
                                             times, figure, cluster, way, n)));
     }
-    return json_pack("{s:o, s:o}", "seconds", seconds, "speedup", speedups);
+    return json_pack("{s:o, s:o, s:o, s:o}", "seconds", seconds, "speedup",
+                     speedups, "local_slowest", slowest, "local_mean", means);
 }
 
 static json_t *volume_json(int figure, int v, const figure_times *times) {
