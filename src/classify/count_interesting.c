@@ -22,6 +22,7 @@ static void trim_row(const snow_extent *part, const snow_row_block *row_block,
 
 typedef struct visiting {
     snow_extent part;
+    int64_t step;
     snow_classifier classifier;
     snow_placement placement;
     snow_row_block *row_blocks; /* of the workers */
@@ -33,6 +34,8 @@ static void visit_slice(void *of, int64_t item, int worker) {
     const visiting *v = of;
     const snow_extent *part = &v->part;
     const int64_t end = part->first[1] + part->count[1];
+    if (v->step > 1 && (part->first[2] + item) % v->step)
+        return;
     snow_row_block *row_block = &v->row_blocks[worker];
     snow_interesting_row row = {.z = part->first[2] + item,
                                 .stored = part->stored[0],
@@ -85,6 +88,7 @@ snow_status snow_visit_interesting(const snow_interesting_walk *walk,
                                 .columns = dims[0],
                                 .rows = dims[1],
                                 .slices = dims[2]},
+                  .step = walk->step,
                   .visit = visit,
                   .user = user};
     const snow_classify_options options = {.threshold = walk->threshold,
@@ -205,7 +209,8 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
                                         .transfer = transfer,
                                         .threshold = threshold,
                                         .exponent = 1,
-                                        .isa = isa};
+                                        .isa = isa,
+                                        .step = block_counts->step};
     snow_status status = prepare_counting(volume->context, part.dims, &c);
     if (status == SNOW_STATUS_OK)
         status = snow_visit_interesting(&walk, count_row, &c);

@@ -21,7 +21,8 @@ typedef struct snow_interesting_walk {
     const snow_transfer *transfer;
     double threshold, exponent; /* as snow_classify_options */
     snow_isa isa;
-    int threads; /* 0: one, which visits rows in order */
+    int threads;  /* 0: one, which visits rows in order */
+    int64_t step; /* of slices along z of the whole; 0: all are visited */
 } snow_interesting_walk;
 typedef void snow_interesting_fn(void *user, const snow_interesting_row *row);
 snow_status snow_visit_interesting(const snow_interesting_walk *walk,

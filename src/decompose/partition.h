@@ -28,6 +28,7 @@ typedef struct snow_partition_grid {
 typedef struct snow_block_counts {
     snow_partition_grid grid;
     int span;          /* 0: interesting voxels are counted */
+    int64_t step;      /* of the slices along z that are counted; 0: all are */
     int64_t block[3];  /* voxels of a block; not along an axis with borders, and
                           those at the far ends may be smaller */
     int64_t blocks[3]; /* along each axis */

@@ -16,6 +16,10 @@
  * docs/measurements/ranks.md). */
 #define COST_OF_SPAN 24
 
+/* Of a volume that has more, about so many slices are counted: slabs by those
+ * of a step are as equal. */
+#define SLICES_COUNTED 256
+
 SNOW_RECORD_OF_ZEROS(snow_ranks_options);
 
 /* By count, but for one rank, which has all, and for the method that splats
@@ -102,6 +106,24 @@ static snow_status count_slab(const snow_volume *slab, void *user) {
                                          c->order->isa, c->counts);
 }
 
+/* Slices of slabs are like those beside them; blocks have no slice to spare. */
+static int64_t step_of(const snow_partition_params *order) {
+    const int64_t step = order->grid.dims[2] / SLICES_COUNTED;
+    const bool slabs =
+        order->cut == SNOW_PARTITION_COUNTED && !order->grid.borders;
+    return slabs && step > 1 ? step : 1;
+}
+
+/* A slice that was not counted costs what the nearest one does that was. */
+static void fill_steps(snow_block_counts *counts) {
+    const int64_t step = counts->step, last = counts->blocks[2] - 1;
+    for (int64_t z = 0; z <= last; z++) {
+        const int64_t near = (z + step / 2) / step * step;
+        counts->counts[z] =
+            counts->counts[near <= last ? near : last / step * step];
+    }
+}
+
 /* Collective.  Local counts become those of all ranks. */
 static snow_status count_all(snow_comm *comm,
                              const snow_partition_params *order,
@@ -119,10 +141,14 @@ static snow_status count_all(snow_comm *comm,
         memset(counts->counts, 0, blocks * sizeof *counts->counts);
         status = snow_slabs_visit(volume, &cut, count_slab, &c);
     }
-    if (!comm)
-        return status;
-    SNOW_TRY(snow_comm_agree_status(comm, status));
-    return snow_comm_reduce_ints(comm, counts->counts, blocks, SNOW_REDUCE_SUM);
+    if (comm) {
+        SNOW_TRY(snow_comm_agree_status(comm, status));
+        status = snow_comm_reduce_ints(comm, counts->counts, blocks,
+                                       SNOW_REDUCE_SUM);
+    }
+    if (status == SNOW_STATUS_OK && counts->step > 1 && counts->grid.axis == 2)
+        fill_steps(counts);
+    return status;
 }
 
 static snow_status count_for_partition(snow_context *context,
@@ -150,6 +176,7 @@ snow_status snow_partition_boxes(snow_comm *comm,
         order->cut == SNOW_PARTITION_BRICKS
             ? snow_block_counts_for_bricks(&order->grid, order->ranks)
             : snow_block_counts_for_slabs(&order->grid);
+    counts.step = loads ? 1 : step_of(order);
     snow_status status = count_all(comm, order, volume, transfer, &counts);
     if (status == SNOW_STATUS_OK)
         status = count_for_partition(volume->context, order, &counts, boxes);
@@ -168,6 +195,7 @@ snow_status snow_partition_count(snow_comm *comm,
                                  const snow_volume *volume,
                                  const snow_transfer *transfer, double *costs) {
     snow_block_counts counts = snow_block_counts_for_slabs(&order->grid);
+    counts.step = step_of(order);
     snow_status status = count_all(comm, order, volume, transfer, &counts);
     for (size_t n = 0;
          n < snow_block_counts_blocks(&counts) && status == SNOW_STATUS_OK; n++)

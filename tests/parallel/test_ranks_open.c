@@ -779,6 +779,36 @@ static void a_plan_tells_parts_and_loads(void **state) {
     snow_volume_close(whole);
 }
 
+/* Of 1,040 slices each fourth is counted where only boxes are asked for. */
+static void slices_of_a_step_stand_for_all(void **state) {
+    support_place *place = *state;
+    snow_volume *whole;
+    snow_transfer *transfer;
+    const int64_t dims[3] = {40, 36, 1040};
+    assert_int_equal(
+        snow_volume_open_phantom(place->context, "head", dims, 0, &whole),
+        SNOW_STATUS_OK);
+    assert_int_equal(snow_transfer_new_for_volume(whole, NULL, &transfer),
+                     SNOW_STATUS_OK);
+    for (int axis = 0; axis < 3; axis++) {
+        snow_box some[7], all[7];
+        int64_t loads[7];
+        assert_int_equal(snow_ranks_partition(whole, transfer, 0,
+                                              SNOW_PARTITION_COUNTED, axis, 7,
+                                              some, NULL),
+                         SNOW_STATUS_OK);
+        assert_int_equal(snow_ranks_partition(whole, transfer, 0,
+                                              SNOW_PARTITION_COUNTED, axis, 7,
+                                              all, loads),
+                         SNOW_STATUS_OK);
+        for (int rank = 0; rank < 7; rank++)
+            assert_true(llabs(some[rank].first[axis] - all[rank].first[axis]) <=
+                        1);
+    }
+    snow_transfer_free(transfer);
+    snow_volume_close(whole);
+}
+
 static void options_that_are_none_are_refused_by_all(void **state) {
     support_place *place = *state;
     snow_volume *whole;
@@ -947,6 +977,7 @@ int main(void) {
         TEST(a_pipe_is_read_by_one_rank_and_sent_to_all),
         TEST(memory_that_is_missing_fails_all_ranks),
         TEST(a_plan_tells_parts_and_loads),
+        TEST(slices_of_a_step_stand_for_all),
         TEST(options_that_are_none_are_refused_by_all),
         TEST(pictures_from_all_sides_are_those_of_one_processor),
     };
