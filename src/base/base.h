@@ -22,6 +22,13 @@
 
 typedef struct snow_monitor snow_monitor; /* base/monitor.h */
 
+/* Blocks of voxels that a file is packed in, each of which is unpacked as a
+ * whole; of a box, `cut` of the first block's lie before it.  Sizes of 0: there
+ * are no blocks. */
+typedef struct snow_file_blocks {
+    int64_t size[3], cut[3];
+} snow_file_blocks;
+
 struct snow_context {
     snow_allocator allocator;
     pthread_mutex_t lock; /* of bytes, peak and message: several threads of a
@@ -43,6 +50,8 @@ struct snow_context {
                             (volume/stream.c); NULL: none */
     bool leaves_clipped; /* a volume is opened for whom values next to clip
                             planes are nothing */
+    snow_file_blocks blocks; /* of the file that was looked at last, if its
+                                reader says so */
     char message[SNOW_MESSAGE_BYTES];
 };
 

@@ -43,9 +43,10 @@ typedef struct opening {
     const snow_view *view;
     const snow_settings *settings;
     const snow_ranks_options *how;
-    bool again;  /* it can be read in slabs, several times, */
-    bool plain;  /* at no more cost than its bytes */
-    bool packed; /* ranks unpack it in turn */
+    bool again;              /* it can be read in slabs, several times, */
+    bool plain;              /* at no more cost than its bytes */
+    bool packed;             /* ranks unpack it in turn */
+    snow_file_blocks blocks; /* that it is packed in */
 } opening;
 
 /* Opens a box of what the options ask for, which is a box itself perhaps.  One
@@ -234,8 +235,11 @@ static snow_status inspect_file(opening *o, int64_t *stream,
     snow_warning_fn *warning = o->context->warning;
     o->context->warning = NULL;
     reading header = {.opening = o};
+    o->context->blocks = (snow_file_blocks){{0, 0, 0}, {0, 0, 0}};
     snow_status status =
         snow_share_is_packed(o->context, read_part, &header, &o->packed);
+    if (!o->packed)
+        o->blocks = o->context->blocks;
     const bool unpacked = status == SNOW_STATUS_OK && is_plain(o);
     o->context->warning = warning;
     SNOW_TRY(snow_comm_agree_status(o->comm, status));
@@ -255,8 +259,9 @@ static snow_status inspect_file(opening *o, int64_t *stream,
 static snow_status read_share(opening *o, bool stream, snow_volume **share) {
     static const int64_t no_layers[3];
     int ranks = snow_comm_size(o->comm), rank = snow_comm_rank(o->comm);
-    snow_box box = stream ? (snow_box){{0, 0, 0}, {0, 0, 0}}
-                          : snow_share_of(o->whole.dims, rank, ranks);
+    snow_box box = stream
+                       ? (snow_box){{0, 0, 0}, {0, 0, 0}}
+                       : snow_share_of(o->whole.dims, &o->blocks, rank, ranks);
     snow_part_place p = snow_part_place_of(&o->whole, &box, no_layers);
     snow_status status = SNOW_STATUS_OK;
     bool fit;
@@ -267,9 +272,9 @@ static snow_status read_share(opening *o, bool stream, snow_volume **share) {
         snow_share_agree(o->comm, fits(o, &p) && (!o->plain || small), &fit));
     reading turn = {o, &p, share};
     if (o->packed && fit)
-        status = snow_shares_in_turn(o->comm,
-                                     snow_share_readers(o->whole.dims, ranks),
-                                     o->path, read_part, &turn);
+        status = snow_shares_in_turn(
+            o->comm, snow_share_readers(o->whole.dims, &o->blocks, ranks),
+            o->path, read_part, &turn);
     else if (!*share)
         status = o->again && !fit ? open_in_file(o, &p, share)
                                   : read_box(o, &p, share);

@@ -7,11 +7,16 @@
 #include "comm/comm.h"
 
 /* Equal runs of slices, or, with more ranks than slices, of each slice's rows;
- * those of the last ranks may be empty. */
-snow_box snow_share_of(const int64_t dims[3], int rank, int ranks);
+ * those of the last ranks may be empty.  Of a file that is packed in blocks
+ * they are runs of whole blocks, each of which one rank unpacks, unless a share
+ * would become more than SNOW_SHARE_MOST times an equal one. */
+#define SNOW_SHARE_MOST 2
+snow_box snow_share_of(const int64_t dims[3], const snow_file_blocks *blocks,
+                       int rank, int ranks);
 
 /* How many ranks have one, which come first. */
-int snow_share_readers(const int64_t dims[3], int ranks);
+int snow_share_readers(const int64_t dims[3], const snow_file_blocks *blocks,
+                       int ranks);
 
 /* Collective.  Whether all say so. */
 snow_status snow_share_agree(snow_comm *comm, bool here, bool *all);

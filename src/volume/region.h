@@ -32,6 +32,16 @@ snow_status snow_region_lay_out(snow_context *context,
                                 const snow_volume_options *options,
                                 snow_volume_info *info, snow_region *out);
 
+/* For the readers of files that are packed in blocks: so large ones. */
+static inline void snow_region_in_blocks(snow_context *context,
+                                         const snow_region *region,
+                                         const int64_t size[3]) {
+    for (int i = 0; i < 3; i++) {
+        context->blocks.size[i] = size[i];
+        context->blocks.cut[i] = region->first[i] % size[i];
+    }
+}
+
 /* The runs of the box, from 0; their places in the array, in bytes. */
 int64_t snow_region_runs(const snow_region *region);
 void snow_region_run(const snow_region *region, int64_t run, uint64_t *begin,

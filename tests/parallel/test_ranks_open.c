@@ -399,6 +399,56 @@ static void a_packed_file_is_unpacked_once(void **state) {
     snow_volume_close(whole);
 }
 
+/* A Zarr array of 100 x 128 x 120 bytes in chunks of 16 x 64 x 128, which are
+ * files. */
+static void put_chunks(support_place *place, const char *name) {
+    static const char about[] =
+        "{\"zarr_format\":2,\"shape\":[100,128,120],\"chunks\":[16,64,128],"
+        "\"dtype\":\"|u1\",\"compressor\":null,\"fill_value\":0,"
+        "\"order\":\"C\",\"filters\":null}";
+    static unsigned char chunk[16 * 64 * 128];
+    char path[64];
+    uint64_t random = 1;
+    mkdir(support_place_path(place, name), 0700);
+    snprintf(path, sizeof path, "%s/.zarray", name);
+    support_place_put(place, path, about, sizeof about - 1);
+    for (int n = 0; n < 14; n++) {
+        for (size_t i = 0; i < sizeof chunk; i++)
+            chunk[i] = (unsigned char)(support_random(&random) >> 56);
+        snprintf(path, sizeof path, "%s/%d.%d.0", name, n / 2, n % 2);
+        support_place_put(place, path, chunk, sizeof chunk);
+    }
+}
+
+/* Shares begin between chunks, also where a crop cuts the first ones. */
+static void each_chunk_is_unpacked_by_one_rank(void **state) {
+    support_place *place = *state;
+    static const int ranks[] = {1, 2, 3, 5, 7, 14};
+    const uint64_t packed = 14 * 16 * 64 * 128; /* and headers */
+    put_chunks(place, "c.zarr");
+    char path[256];
+    snprintf(path, sizeof path, "%s", support_place_path(place, "c.zarr"));
+    for (int n = 0; n < 12; n++) {
+        const snow_volume_options options = {
+            .size = sizeof options, .crop = {{3, 0}, {n / 6 * 30, 0}, {n, 98}}};
+        snow_volume *whole;
+        order o;
+        uint64_t sum = 0;
+        assert_int_equal(
+            snow_volume_open(place->context, path, &options, &whole),
+            SNOW_STATUS_OK);
+        begin_order(&o, whole);
+        o.path = path;
+        o.options = options;
+        o.how.cut = SNOW_PARTITION_COUNTED;
+        open_by(place, &o, ranks[n % 6]);
+        for (int rank = 0; rank < ranks[n % 6]; rank++)
+            sum += o.read[rank];
+        assert_in_range(sum, packed, packed + (uint64_t)ranks[n % 6] * 1024);
+        snow_volume_close(whole);
+    }
+}
+
 static void another_view_is_served_without_the_file(void **state) {
     support_place *place = *state;
     static const int ranks[] = {1, 4, 9, 33};
@@ -966,6 +1016,7 @@ int main(void) {
         TEST(a_crop_is_dealt_out_like_a_volume),
         TEST(the_file_is_read_once),
         TEST(a_packed_file_is_unpacked_once),
+        TEST(each_chunk_is_unpacked_by_one_rank),
         TEST(another_view_is_served_without_the_file),
         TEST(bricks_for_turns_stay_where_they_are),
         TEST(every_method_is_cut_into_bricks_but_deterministic_pictures),

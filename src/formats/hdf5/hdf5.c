@@ -174,6 +174,23 @@ typedef struct hdf5_job {
     snow_uneven grid;
 } hdf5_job;
 
+/* Chunks are unpacked as a whole. */
+static void note_chunks(const hdf5_job *job, const snow_region *region) {
+    const int axes = job->set->axes;
+    hsize_t chunk[HDF5_MOST_AXES];
+    int64_t size[3] = {1, 1, 1};
+    const hid_t plan = H5Dget_create_plist(job->set->id);
+    const bool chunked = plan >= 0 && H5Pget_layout(plan) == H5D_CHUNKED &&
+                         H5Pget_chunk(plan, axes, chunk) == axes;
+    if (plan >= 0)
+        H5Pclose(plan);
+    for (int i = 0; i < 3 && chunked; i++)
+        if (job->axes.roles.space[i] >= 0)
+            size[i] = (int64_t)chunk[axes - 1 - job->axes.roles.space[i]];
+    if (chunked)
+        snow_region_in_blocks(job->context, region, size);
+}
+
 /* Reads a box of the file's own voxels as data, with missing ones. */
 static snow_status read_voxels(void *user, const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **out) {
@@ -183,6 +200,8 @@ static snow_status read_voxels(void *user, const snow_volume_options *options,
     snow_volume *volume = NULL;
     SNOW_TRY(snow_region_lay_out(context, options, info, &region));
     SNOW_TRY(check_size(context, job->file, &region));
+    if (!snow_uneven_any(&job->grid))
+        note_chunks(job, &region);
     if (out) {
         SNOW_TRY(snow_volume_new(context, info, &volume));
         snow_status status =

@@ -144,6 +144,16 @@ static void crop(const snow_region *region, zarr_box *box) {
     }
 }
 
+/* Chunks are unpacked as a whole. */
+static void note_chunks(const zarr_box *box, const snow_region *region) {
+    int64_t size[3];
+    for (int role = ZARR_X; role <= ZARR_Z; role++) {
+        const int axis = box->roles.axis[role];
+        size[role] = axis < 0 ? 1 : box->array->chunk[axis];
+    }
+    snow_region_in_blocks(box->store->context, region, size);
+}
+
 /* "zarr 2, level 1 of 3 (1), axes z y x, chunks 64x64x64, blosc lz4": as much
  * as fits. */
 static void spell(const zarr_found *found, char *out, size_t room) {
@@ -203,6 +213,7 @@ static snow_status read_found(const zarr_store *store, zarr_found *found,
     SNOW_TRY(snow_zarr_place(store, found, &box.roles, info));
     SNOW_TRY(snow_region_lay_out(store->context, options, info, &region));
     crop(&region, &box);
+    note_chunks(&box, &region);
     spell(found, info->storage, sizeof info->storage);
     if (!snow_volume_count(info->dims, info->type, &voxels, &bytes))
         bytes = UINT64_MAX; /* refused by the check of the region before */
