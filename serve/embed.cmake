@@ -65,7 +65,7 @@ foreach(again 1 2) # one name is between two
   string(REGEX REPLACE "([])A-Za-z0-9_']), ([[{('`A-Za-z0-9_.])" "\\1,\\2" text "${text}")
 endforeach()
 string(REPLACE "{}, " "{}," text "${text}")
-string(REGEX REPLACE "}, ([{(])" "},\\1" text "${text}")
+string(REGEX REPLACE "([})]), ([{(A-Za-z])" "\\1,\\2" text "${text}")
 string(REGEX REPLACE " =>\n" "=>" text "${text}")
 string(REGEX REPLACE "\n(if|for|while|switch) [(]" "\n\\1(" text "${text}")
 string(REGEX REPLACE "(return|const|let|of) ([[{(`'])" "\\1\\2" text "${text}")
@@ -74,6 +74,8 @@ string(REGEX REPLACE "([{,] ?[A-Za-z]+): ([A-Za-z0-9`'[({])" "\\1:\\2" text "${t
 string(REGEX REPLACE "([])]) {\n" "\\1{\n" text "${text}")
 string(REGEX REPLACE "} else (if|{)" "}else \\1" text "${text}")
 string(REPLACE "else {" "else{" text "${text}")
+string(REPLACE "try {" "try{" text "${text}")
+string(REGEX REPLACE "} catch ?" "}catch" text "${text}")
 string(REPLACE "' +\n'" "" text "${text}")
 string(REPLACE "` +\n`" "" text "${text}")
 string(REGEX REPLACE "([;{,(])\n" "\\1" text "${text}") # no newline is needed there
@@ -81,6 +83,8 @@ string(REGEX REPLACE "\n([})])" "\\1" text "${text}")
 string(REGEX REPLACE "([])}])\n" "\\1" text "${text}") # statements end in semicolons
 string(REGEX REPLACE "([?:&|+]|,)\n" "\\1" text "${text}")
 string(REGEX REPLACE "\n([.?:&|+])" "\\1" text "${text}")
+string(REGEX REPLACE "([];{}(\n])const([ [{])" "\\1let\\2" text "${text}") # nothing sets one
+string(REPLACE ";}" "}" text "${text}") # no statement is empty
 string(REPLACE "${blank}" " " text "${text}")
 add_file(2 viewer.js "text/javascript; charset=utf-8")
 file(REMOVE ${OUT}.gz)
