@@ -19,7 +19,9 @@
 /* Between two looks at the folder and at what pages want. */
 #define REST_SECONDS 0.05
 
-#define POINTS_MOST 64 /* of the opacity in a picture's text */
+/* In a picture's text, at most so many points of the opacity; and counts. */
+#define POINTS_MOST 64
+#define COUNTS 256
 
 struct live {
     char *path; /* of the recipe */
@@ -194,6 +196,22 @@ static snow_status make_look(live *l, double ends[2]) {
                                         &d->state.transfer);
 }
 
+/* How often values of the simulation occur, where a picture says so. */
+static void put_counts(const live *l, outbox *box, uint64_t client) {
+    double ends[2], counts[COUNTS];
+    json_t *list = json_object_get(l->told, "counts");
+    json_t *pair = json_object_get(l->told, "ends");
+    if (!read_numbers(pair, ends, 2) || !(ends[0] < ends[1]) ||
+        !read_numbers(list, counts, COUNTS))
+        return;
+    json_t *tree = json_pack("{s:s, s:f, s:f, s:O}", "t", "histogram", "lo",
+                             ends[0], "hi", ends[1], "counts", list);
+    char *text = json_dumps(tree, JSON_COMPACT | JSON_FORM);
+    outbox_put_text(box, client, PARCEL_COUNTS, text);
+    free(text);
+    json_decref(tree);
+}
+
 static bool same(const json_t *a, const json_t *b, const char *key) {
     return json_equal(json_object_get(a, key), json_object_get(b, key));
 }
@@ -226,6 +244,7 @@ static void tell(live *l, json_t *told, uint32_t revision, outbox *box) {
             answer_info(&l->drawing, box);
         answer_look(&l->drawing, box);
     }
+    put_counts(l, box, 0);
     answer_step(box, json_integer_value(json_object_get(told, "step")));
     json_decref(before);
 }
@@ -270,6 +289,8 @@ static void answer(const live *l, viewer_state *s, outbox *box,
     char line[512];
     if (strcmp(what, "fit") == 0) {
         frame_all(s, box);
+    } else if (strcmp(what, "histogram") == 0) {
+        put_counts(l, box, question->client);
     } else if (strcmp(what, "recipe") == 0) {
         answer_recipe_text(box, question->client, l->recipe);
     } else if (strstr(what, "command") || strcmp(what, "depth") == 0) {

@@ -18,6 +18,7 @@ typedef enum parcel_topic {
     PARCEL_STATE,
     PARCEL_FIGURES,
     PARCEL_PROGRESS,
+    PARCEL_COUNTS, /* of the values of a simulation */
     PARCEL_PICTURE,
     PARCEL_THIN_PICTURE, /* the same for pages on thin links */
     PARCEL_TOPICS

@@ -34,7 +34,7 @@ export class Panel {
         this.element.replaceChildren(this.channels.element, this.look(),
             this.colors.element,
             section('Opacity by gradient', false, this.gradient.element), this.presets(),
-            this.overlay(), this.named(), this.camera(), live ? '' : this.slices.section(each => this.follow(each)), live ? '' : this.clipping(), this.shading(),
+            this.overlay(), this.named(), this.camera(), live ? '' : this.slices.section(each => this.follow(each)), this.clipping(), this.shading(),
             this.time(), this.labels());
         this.update();
     }
@@ -219,7 +219,7 @@ export class Panel {
         });
         this.clips = section('Clip', false, ...rows, ...this.tilted(), make('div', {className: 'row'}, cut,
             button('Remove all', 'Remove all clip planes', () => recipe.set({clip: null}))),
-        ...this.masking(), ...this.cropping());
+        ...this.masking(), ...page.info.live ? [] : this.cropping());
         this.clips.addEventListener('toggle', () => {
             page.clipping = this.clips.open;
             recipe.changed();

@@ -81,8 +81,7 @@ static snow_status find_own_values(const snow_insitu *insitu, double least[2]) {
     return SNOW_STATUS_OK;
 }
 
-/* Collective.  Smallest and largest value of all ranks' parts. */
-static snow_status find_values(snow_insitu *insitu, double ends[2]) {
+snow_status snow_insitu_find_values(snow_insitu *insitu, double ends[2]) {
     double least[2];
     INSITU_TRY(
         snow_comm_agree_status(insitu->comm, find_own_values(insitu, least)));
@@ -179,7 +178,7 @@ static snow_status choose_look(snow_insitu *insitu) {
     if (insitu->transfer && !spread && !labels)
         return SNOW_STATUS_OK;
     if (spread && !labels)
-        INSITU_TRY(find_values(insitu, ends));
+        INSITU_TRY(snow_insitu_find_values(insitu, ends));
     if (!insitu->transfer) {
         INSITU_TRY(snow_ranks_new_transfer(insitu->comm, insitu->volume,
                                            &insitu->look.look,
@@ -327,7 +326,9 @@ static snow_status make_step(snow_insitu *insitu, int64_t step) {
     INSITU_TRY(update(insitu));
     INSITU_TRY(draw(insitu, &image));
     snow_status status = SNOW_STATUS_OK;
-    if (!insitu->left_out)
+    if (!insitu->left_out && insitu->refresh) /* the same on all ranks */
+        status = snow_insitu_count(insitu);
+    if (!insitu->left_out && status == SNOW_STATUS_OK)
         status = snow_insitu_write(insitu, step, image);
     snow_image_free(image);
     insitu->seconds.step = snow_comm_seconds(insitu->comm) - start;

@@ -8,7 +8,8 @@
  *                                        levels.c  cells that are wider, and
  *                                        cells.c   where they go
  *   draw.c    makes pictures of them     limits.c  with less and less work
- *   output.c  and writes them            enlarge.c at the size asked for */
+ *   output.c  and writes them            enlarge.c at the size asked for
+ *   counts.c  how often values occur */
 #ifndef SNOW_INSITU_INTERNAL_H
 #define SNOW_INSITU_INTERNAL_H
 
@@ -18,6 +19,7 @@
 
 #define SNOW_INSITU_MESSAGE 512
 #define TEXT_BYTES 256
+#define SNOW_INSITU_BINS 256
 
 /* Leaves a function when a call in it fails. */
 #define INSITU_TRY(call)                         \
@@ -152,6 +154,8 @@ struct snow_insitu {
     snow_frame *frame;
     snow_transfer *transfer; /* NULL: to be chosen */
     double seen[2];          /* the values that it was chosen from; NaN: none */
+    double ends[2];          /* of the values, where a recipe is read again */
+    int64_t counts[SNOW_INSITU_BINS]; /* and how often they occur between */
 
     /* The limits: the same on all ranks. */
     snow_degradation lowering;
@@ -282,6 +286,12 @@ void snow_insitu_leave_out(snow_insitu *insitu);
  * picture that is left out. */
 void snow_insitu_begin_limit(snow_insitu *insitu);
 snow_status snow_insitu_end_limit(snow_insitu *insitu, snow_status status);
+
+/* Collective.  The smallest and largest value of all ranks' parts (draw.c); how
+ * often values between them occur in some slices, for `ends` and `counts` of
+ * the file of a picture (counts.c). */
+snow_status snow_insitu_find_values(snow_insitu *insitu, double ends[2]);
+snow_status snow_insitu_count(snow_insitu *insitu);
 
 /* Replaces a picture by one of another size (enlarge.c). */
 snow_status snow_insitu_enlarge(snow_insitu *insitu, snow_image **image,

@@ -14,7 +14,7 @@
  * characters. */
 #define POINTS_MOST 64
 #define NUMBER_BYTES 32
-#define COMMENT_BYTES (NUMBER_BYTES * (20 + 2 * POINTS_MOST))
+#define COMMENT_BYTES (NUMBER_BYTES * (24 + 2 * POINTS_MOST + SNOW_INSITU_BINS))
 
 /* The place of the step's number: "%d", or "%0Nd" with N up to 18; the only
  * sign of per cent.  NULL where the text is no such pattern. */
@@ -171,9 +171,21 @@ static char *add_points(char *at, const snow_opacity_point *points,
     return at;
 }
 
+static char *add_counts(char *at, const snow_insitu *insitu) {
+    at += snprintf(at, NUMBER_BYTES, ",\"ends\":[");
+    at = add_number(at, insitu->ends[0], ',');
+    at = add_number(at, insitu->ends[1], ']');
+    at += snprintf(at, NUMBER_BYTES, ",\"counts\":[");
+    for (int i = 0; i < SNOW_INSITU_BINS; i++)
+        at += snprintf(at, NUMBER_BYTES, "%" PRId64 "%s", insitu->counts[i],
+                       i + 1 < SNOW_INSITU_BINS ? "," : "]");
+    return at;
+}
+
 /* What a viewer of the picture must know (docs/insitu.md): {"step": 60, "dims":
  * [48, 40, 56], "range": [0, 1], "matrix": [1, 0, 0, 0, 0, 1, ...], "opacity":
- * [[0, 0], [1, 0.5]]}, the last for looks of few points. */
+ * [[0, 0], [1, 0.5]], "ends": [-0.2, 1.1], "counts": [5, 17, ...]}, the opacity
+ * of looks of few points, and the last two where a recipe is read again. */
 static void describe(const snow_insitu *insitu, int64_t step,
                      char out[COMMENT_BYTES]) {
     const snow_volume_info *grid = &insitu->whole;
@@ -193,6 +205,8 @@ static void describe(const snow_insitu *insitu, int64_t step,
     if (snow_transfer_get_look(insitu->transfer, &look) == SNOW_STATUS_OK &&
         look.opacity_count && look.opacity_count <= POINTS_MOST)
         at = add_points(at, look.opacities, look.opacity_count);
+    if (insitu->refresh && insitu->ends[0] < insitu->ends[1])
+        at = add_counts(at, insitu);
     snprintf(at, NUMBER_BYTES, "}");
 }
 

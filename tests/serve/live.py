@@ -95,6 +95,11 @@ def steps_and_turns():
     look = page.hear_text("look")
     check("its look", look["low"] == 0 and look["high"] == 1 and
           look["opacity"] == [[0.3, 0], [1, 0.8]], look)
+    page.say({"t": "ask", "what": "histogram"})
+    counts = page.hear_text("histogram")
+    check("how often values occur, each voxel once", len(counts["counts"]) == 256
+          and sum(counts["counts"]) == 24 * 24 * 30 and
+          counts["lo"] < counts["hi"], counts)
     before = number(newest())
     shown = [hear_step(page) for _ in range(5)]
     steps = [step for step, _ in shown]
@@ -119,17 +124,26 @@ def steps_and_turns():
             break
     check("the simulation has drawn it", step is not None and
           picture != shown[0][1])
+    page.say({"t": "set", "n": 2, "recipe": {"clip": [[1, 0, 0, 105]]}})
+    check("clip planes are written into it",
+          wait_for(lambda: read().get("clip") == [[1, 0, 0, 105]]), read())
+    few = wait_for(lambda: 0 < sum(page.hear_text("histogram")["counts"]) <
+                   24 * 24 * 30)
+    check("and what they take away is not counted", few)
+    page.say({"t": "set", "n": 3, "recipe": {"clip": None}})
+    check("all of it is back", wait_for(lambda: sum(page.hear_text("histogram")
+          ["counts"]) == 24 * 24 * 30) and "clip" not in read(), read())
     page.say({"t": "ask", "what": "fit"})
     page.say({"t": "ask", "what": "command"})
     check("there is no command", "look.json" in page.hear_text("said")["text"])
     page.say({"t": "ask", "what": "recipe"})
     check("the recipe", json.loads(page.hear_text("recipe")["text"])["azimuth"]
           == 70)
-    page.say({"t": "set", "n": 2, "recipe": {"range": [0, 0.5]}})
+    page.say({"t": "set", "n": 4, "recipe": {"range": [0, 0.5]}})
     info = page.hear_text("info")
     check("another range is told, of the same pictures", info["max"] == 0.5 and
           info["name"] == RECIPE["output"], info)
-    page.say({"t": "set", "n": 3, "recipe": {"zoom": "large"}})
+    page.say({"t": "set", "n": 5, "recipe": {"zoom": "large"}})
     check("a wrong value is answered and not written",
           "zoom" in page.hear_text("said")["text"] and "zoom" not in read())
     end(simulation)
@@ -168,6 +182,11 @@ def strange_pictures():
     show(2, told)
     check("the next picture is told", page.hear_text("info")["dims"] ==
           told["dims"])
+    show(3, {**told, "ends": [0, 1], "counts": ["many"] * 256})
+    show(4, {**told, "ends": [0, 1], "counts": [7] * 256})
+    counts = page.hear_text("histogram")
+    check("counts that are none are not told", counts["counts"] == [7] * 256 and
+          [counts["lo"], counts["hi"]] == [0, 1], counts)
     check("the viewer ends in order", server.stop()[0] == 0)
 
 
