@@ -5,6 +5,7 @@
 #include "commands/commands.h"
 #include "picture/warnings.h"
 #include "run/log.h"
+#include "run/start.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -27,6 +28,7 @@ struct renderer {
     int level;      /* and quality; -1: none yet */
     int shrink;
     uint32_t revision; /* of the picture under way */
+    json_t *good;      /* the last recipe that could be drawn; NULL: none */
     bool told_empty;
     double radius; /* of the volume that was read last */
 };
@@ -142,25 +144,69 @@ static bool keep_scale(renderer *r) {
     return true;
 }
 
+/* What comes of a state: drawn, or CONTINUE where another one comes first. */
+typedef struct outcome {
+    int done;
+    bool applied, rescaled;
+} outcome;
+
+static outcome try_state(renderer *r, int level, const json_t *recipe,
+                         bool anew) {
+    outcome o = {.done = anew ? drawing_apply(r->drawing, recipe) : CONTINUE};
+    o.applied = o.done == CONTINUE;
+    o.rescaled = o.applied && keep_scale(r);
+    if (o.applied && !o.rescaled)
+        o.done = draw(r, level);
+    return o;
+}
+
+/* Where memory is short, pictures and volumes before go first: then there is
+ * as much as the command of the state has. */
+static outcome draw_state(renderer *r, int level, const json_t *recipe,
+                          bool anew) {
+    const bool again = process_ranks() == 1;
+    if (again)
+        say_later();
+    outcome o = try_state(r, level, recipe, anew);
+    const bool is_short = o.done == SNOW_STATUS_NO_MEMORY;
+    say_now(again && is_short);
+    if (!again || !is_short)
+        return o;
+    free_pictures(packer_wait(r->pack));
+    drawing_empty(r->drawing);
+    return try_state(r, level, recipe, true);
+}
+
+/* What a page asked for and the volume has not stays in no recipe: the state
+ * before comes back. */
+static void note_recipe(renderer *r, const outcome *o, json_t *recipe) {
+    if (o->applied) {
+        json_decref(r->good);
+        r->good = json_incref(recipe);
+    } else if (r->good &&
+               (o->done == SNOW_STATUS_BAD_USAGE ||
+                o->done == SNOW_STATUS_BAD_INPUT) &&
+               state_take_back(r->state, r->revision, r->good)) {
+        tell_state(r);
+    }
+}
+
 /* A state that cannot be drawn is not tried again. */
 static void serve_state(renderer *r, int level, json_t *recipe,
                         uint32_t revision) {
-    int done = CONTINUE;
+    const bool anew = r->drawn != revision || r->level < 0;
     r->revision = revision;
-    if (r->drawn != revision || r->level < 0)
-        done = drawing_apply(r->drawing, recipe);
+    outcome o = draw_state(r, level, recipe, anew);
+    note_recipe(r, &o, recipe);
     json_decref(recipe);
-    if (done == CONTINUE && keep_scale(r))
+    if (o.rescaled)
         return;
-    bool applied = done == CONTINUE;
-    if (applied)
-        done = draw(r, level);
-    if (r->drawing->look_is_new && applied)
+    if (r->drawing->look_is_new && o.applied)
         answer_look(r->drawing, r->box);
     r->drawing->look_is_new = false;
-    bool stopped = done == EXIT_INTERRUPTED;
+    bool stopped = o.done == EXIT_INTERRUPTED;
     r->drawn = revision;
-    r->level = done == CONTINUE ? level : stopped ? r->level : 2;
+    r->level = o.done == CONTINUE ? level : stopped ? r->level : 2;
 }
 
 void renderer_begin(drawing *d, viewer_state *s, outbox *box) {
@@ -222,5 +268,6 @@ void renderer_free(renderer *r) {
         return;
     free_pictures(packer_end(r->pack));
     snow_context_set_progress(r->drawing->state.context, NULL, NULL);
+    json_decref(r->good);
     free(r);
 }

@@ -158,6 +158,21 @@ bool state_crop_is_alone(viewer_state *s) {
     return alone;
 }
 
+bool state_take_back(viewer_state *s, uint32_t revision, const json_t *drawn) {
+    json_t *recipe = json_deep_copy(drawn);
+    pthread_mutex_lock(&s->lock);
+    json_object_set(recipe, "size", json_object_get(s->recipe, "size"));
+    bool other = s->revision == revision && !json_equal(recipe, s->recipe);
+    if (other) {
+        json_decref(s->recipe);
+        s->recipe = json_incref(recipe);
+        s->revision++;
+    }
+    pthread_mutex_unlock(&s->lock);
+    json_decref(recipe);
+    return other;
+}
+
 json_t *state_recipe(viewer_state *s) {
     pthread_mutex_lock(&s->lock);
     json_t *copy = json_deep_copy(s->recipe);

@@ -83,6 +83,10 @@ uint32_t state_revision(const viewer_state *s);
  * zoom is still by the size of the volume before. */
 bool state_crop_is_alone(viewer_state *s);
 
+/* In place of a state that cannot be drawn comes the last one that could, but
+ * for the size of the window; false where a newer one is there. */
+bool state_take_back(viewer_state *s, uint32_t revision, const json_t *drawn);
+
 /* A copy of the whole recipe. */
 json_t *state_recipe(viewer_state *s);
 

@@ -73,6 +73,11 @@ void say_to(void (*hear)(void *user, const char *line), void *user) {
     hear_user = user;
 }
 
+/* The lines that wait, each with its end. */
+static _Thread_local FILE *later;
+static _Thread_local char *lines;
+static _Thread_local size_t lines_bytes;
+
 static void wipe_stage(void) {
     if (stage_shown)
         fputs("\r\033[K", stderr);
@@ -87,6 +92,10 @@ static void say_list(const char *format, va_list arguments) {
     for (char *at = line; *at; at++) {
         if ((unsigned char)*at < ' ' || *at == 127)
             *at = '?';
+    }
+    if (later) {
+        fprintf(later, "%s\n", line);
+        return;
     }
     if (hear_line) {
         hear_line(hear_user, line);
@@ -111,6 +120,23 @@ void say(const char *format, ...) {
     va_start(arguments, format);
     say_list(format, arguments);
     va_end(arguments);
+}
+
+void say_later(void) {
+    if (!later)
+        later = open_memstream(&lines, &lines_bytes);
+}
+
+void say_now(bool drop) {
+    if (!later)
+        return;
+    fclose(later);
+    later = NULL;
+    for (char *at = lines, *end; !drop && at && (end = strchr(at, '\n'));
+         at = end + 1)
+        say("%.*s", (int)(end - at), at);
+    free(lines);
+    lines = NULL;
 }
 
 int fail_usage(const char *format, ...) {

@@ -15,6 +15,11 @@ void say(const char *format, ...) SNOW_PRINTF(1, 2);
 /* From here on messages go to a function instead, which any thread calls. */
 void say_to(void (*hear)(void *user, const char *line), void *user);
 
+/* What this thread says waits from here on: until it is said, or dropped since
+ * what it was about is tried again. */
+void say_later(void);
+void say_now(bool drop);
+
 /* The last line of a rank that does not print, or "". */
 const char *last_said(void);
 

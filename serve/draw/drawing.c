@@ -438,18 +438,32 @@ int drawing_open(const options *first, json_t *recipe, drawing *out) {
     return done == CONTINUE ? apply(out, recipe) : done;
 }
 
-void drawing_close(drawing *d) {
-    close_bases(d);
-    snow_transfer_free(d->slice_look);
-    channels_close(&d->slice_channels);
-    layers_close(&d->slice_layers);
+void drawing_empty(drawing *d) {
+    render_state *s = &d->state;
+    drop_frame(d);
+    drop_base(d, NULL);
     slices_forget(d);
+    snow_transfer_free(d->slice_look);
+    d->slice_look = NULL;
+    channels_close(&d->slice_channels);
+    take_key(&d->slice_key, NULL);
     mixed_forget(d);
+    channels_close(&s->channels);
+    layers_close(&s->layers);
+    layers_close(&d->slice_layers);
+    snow_transfer_free(s->transfer);
+    snow_volume_close(s->volume);
+    s->transfer = NULL;
+    s->volume = NULL;
+    s->in_slabs = s->channels.chosen = false;
+    s->drawn.path = NULL; /* the next picture is the first one */
+    forget(d);
+}
+
+void drawing_close(drawing *d) {
+    drawing_empty(d);
     render_state_free(&d->state); /* what opened the volumes */
     json_decref(d->tree);
-    free(d->slice_key);
-    forget(d);
-    free(d->base_key);
 }
 
 /* To five digits, which read well in a command. */

@@ -74,6 +74,10 @@ bool drawing_is_clipped(const drawing *d);
  * them, where that cannot be had.  Not for many ranks, which have parts. */
 snow_volume *drawing_unclipped(drawing *d, int n);
 
+/* Frees all that states before left, where the memory is short; drawing_apply
+ * follows.  Not for many ranks. */
+void drawing_empty(drawing *d);
+
 /* The options of the present recipe, as a command of render needs them. */
 void drawing_options(const drawing *d, options *out);
 

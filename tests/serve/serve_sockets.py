@@ -782,6 +782,28 @@ def nothing_to_slice():
     server.stop()
 
 
+def taken_back():
+    """What only the volume shows to be wrong is said, and leaves the state."""
+    server = Server(SMALL)
+    page = Page(server)
+    page.say({"t": "set", "n": 1, "recipe": {"size": [64, 48], "azimuth": 20}})
+    before = page.hear_picture(2, 1)
+    for n, wrong in enumerate(({"time": 7},
+                               {"crop": [[90, 99], [0, 9], [0, 9]]}), 2):
+        page.say({"t": "set", "n": n, "recipe": wrong})
+        key, = wrong
+        line = page.hear_text("said")["text"]
+        recipe = page.hear_text("state")["recipe"]
+        check(f"a wrong {key} is said, and taken back", key not in recipe and
+              recipe["azimuth"] == 20 and recipe["size"] == [64, 48],
+              f"{line} {recipe}")
+    page.say({"t": "set", "n": 9, "recipe": {"azimuth": 21}})
+    after = page.hear_picture(2, 9)
+    check("what comes after is drawn", after and after != before)
+    page.close()
+    server.stop()
+
+
 def flood_of_slices(page, n):
     """More than wait at a time, fewer than a page may leave unread: how many are
     answered, by none, and as too many."""
@@ -1046,6 +1068,7 @@ if not SHORT:
     answers_first()
     newest_values()
     nothing_to_slice()
+    taken_back()
     too_many_slices()
     values_and_depths()
     thin_links()
