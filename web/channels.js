@@ -18,7 +18,8 @@ export class Channels {
         this.rows = [];
         this.list = make('div', {});
         this.element = section('Channels', true, this.list, button('All',
-            'All channels as the file shows them', () => recipe.set({...plain, channel: null})));
+            'All channels as the file shows them', () => recipe.set({...plain, // else as --tf has them
+                channel: page.info.tf ? [...page.info.channels.keys()].join() : null})));
     }
 
     /** The next change may come before the server's look. */

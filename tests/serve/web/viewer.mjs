@@ -1000,10 +1000,13 @@ async function begun() {
     const page = await open();
     const rowOf = name => page.locator('details', {has: page.locator('summary', {hasText: 'Channels'})})
         .getByLabel(name, {exact: true});
+    const drawn = () => page.evaluate(() => window.snowglass.page.look.channels.filter(one => one[2]).length);
     await rowOf('Cy5').check();
     await rest(page);
-    check('two are drawn', await page.evaluate(() => window.snowglass.page.look.channels
-        .filter(one => one[2]).length) === 2, JSON.stringify(await keys(page)));
+    check('two are drawn', await drawn() === 2, JSON.stringify(await keys(page)));
+    await page.getByRole('button', {name: /^All channels/}).click();
+    await rest(page);
+    check('all are drawn', await drawn() === 3, JSON.stringify(await keys(page)));
     check('without the component', !('component' in await keys(page)));
     await page.context().close();
 }
