@@ -31,10 +31,9 @@ export class Panel {
     build() {
         const {live} = this.page.info; // a simulation knows its own data
         this.updates = [];
-        this.element.replaceChildren(this.channels.element, this.look(),
+        this.element.replaceChildren(this.channels.element, this.presets(), this.look(),
             this.colors.element,
-            section('Opacity by gradient', false, this.gradient.element), this.presets(),
-            this.overlay(), this.named(), this.camera(), live ? '' : this.slices.section(each => this.follow(each)), this.clipping(), this.shading(),
+            section('Opacity by gradient', false, this.gradient.element), this.overlay(), this.named(), this.camera(), live ? '' : this.slices.section(each => this.follow(each)), this.clipping(), this.shading(),
             this.time(), this.labels());
         this.update();
     }
