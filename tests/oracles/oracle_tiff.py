@@ -106,6 +106,20 @@ for contiguous in (None, True):
             oracle.expect("f.tif", h[t, :, c],
                           oracle.image((0.25, 0.5, 1.5)),
                           ["--time", t, "--channel", c], unit="um")
+# Pixels per inch or cm, where they are not those of screens and printers.
+flat = oracle.sample("u2", (4, 6, 5))
+for unit, x, y, spacing in (("CENTIMETER", 1000, 500, (0.01, 0.02, 0.01)),
+                            ("INCH", 2540, 2540, (0.01, 0.01, 0.01)),
+                            ("INCH", 254, 254, (0.1, 0.1, 0.1)),
+                            ("INCH", 300, 300, None),
+                            ("INCH", 72, 72, None),
+                            ("CENTIMETER", 118.11, 118.11, None),
+                            ("CENTIMETER", 28.35, 28.35, None),
+                            ("NONE", 1000, 1000, None)):
+    tifffile.imwrite("f.tif", flat, photometric="minisblack", metadata=None,
+                     resolution=(x, y), resolutionunit=unit)
+    oracle.expect("f.tif", flat, spacing and oracle.image(spacing),
+                  unit="mm" if spacing else "", name=f"{x} per {unit}")
 # Slices that were called times or channels.
 many = oracle.sample("u2", (9, 6, 5))
 for axes in ("TYX", "CYX", "ZYX"):

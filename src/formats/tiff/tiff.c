@@ -23,6 +23,7 @@ typedef struct tiff_plan {
     tiff_shape shape;
     int64_t images; /* pages, or the images that ImageJ wrote after the first */
     bool raw;       /* the latter */
+    bool measured;  /* the size of a pixel is known by the resolution alone */
     /* Distances, in images, of channels, slices and times. */
     int64_t channel_step, slice_step, time_step;
     int64_t channels, slices, times;
@@ -137,18 +138,47 @@ static void share_images(snow_context *context, tiff_plan *plan) {
     take_for_slices(context, plan);
 }
 
-/* ImageJ stores pixels per unit of length where others store those per inch on
- * paper, which have no meaning here.  Slices whose distance is not given are as
- * far apart as pixels. */
+/* Pixels an inch that programs write for screens and printers, and that nobody
+ * has measured; an inch of 2.54 cm may be rounded. */
+static bool is_of_paper(double inch) {
+    static const short usual[] = {72,  75,  90,  96,  100,  120, 144,
+                                  150, 180, 200, 220, 240,  300, 350,
+                                  360, 400, 600, 720, 1200, 2400};
+    for (size_t n = 0; n < sizeof usual / sizeof *usual; n++)
+        if (fabs(inch - usual[n]) < 0.005 * usual[n])
+            return true;
+    return false;
+}
+
+/* Pixels per unit of length: of ImageJ in the unit that its description names,
+ * of others, where that gives no size, per inch or cm. */
+static void take_resolution(snow_tiff *file, tiff_plan *plan) {
+    tiff_shape *shape = &plan->shape;
+    float x = 0, y = 0;
+    uint16_t unit = RESUNIT_NONE;
+    if (!TIFFGetField(file->tiff, TIFFTAG_XRESOLUTION, &x) ||
+        !TIFFGetField(file->tiff, TIFFTAG_YRESOLUTION, &y))
+        return;
+    TIFFGetFieldDefaulted(file->tiff, TIFFTAG_RESOLUTIONUNIT, &unit);
+    double mm = shape->imagej                ? 1
+                : unit == RESUNIT_INCH       ? 25.4
+                : unit == RESUNIT_CENTIMETER ? 10
+                                             : 0;
+    plan->measured = !shape->imagej && !(shape->spacing[0] > 0) && x > 0 &&
+                     y > 0 && mm > 0 && !is_of_paper((double)x * 25.4 / mm);
+    if (!shape->imagej && !plan->measured)
+        return;
+    shape->spacing[0] = mm / (double)x;
+    shape->spacing[1] = mm / (double)y;
+    if (plan->measured)
+        memcpy(shape->unit, "mm", 3);
+}
+
+/* Slices whose distance is not given are as far apart as pixels. */
 static void set_spacing(snow_tiff *file, tiff_plan *plan,
                         snow_volume_info *info) {
     tiff_shape *shape = &plan->shape;
-    float x = 0, y = 0;
-    if (shape->imagej && TIFFGetField(file->tiff, TIFFTAG_XRESOLUTION, &x) &&
-        TIFFGetField(file->tiff, TIFFTAG_YRESOLUTION, &y)) {
-        shape->spacing[0] = 1 / (double)x;
-        shape->spacing[1] = 1 / (double)y;
-    }
+    take_resolution(file, plan);
     for (int i = 0; i < 3; i++)
         if (shape->spacing[i] > 0 && isfinite(shape->spacing[i]))
             info->matrix[i][i] = shape->spacing[i];
@@ -260,6 +290,11 @@ static snow_status read_open(snow_tiff *file,
     int64_t channel;
     snow_region region;
     SNOW_TRY(make_plan(file, &plan, info));
+    if (plan.measured && !snow_spacing_given(options))
+        snow_notify(file->context,
+                    "a pixel is taken to be %.4g x %.4g mm by the file's "
+                    "resolution; --spacing sets another",
+                    plan.shape.spacing[0], plan.shape.spacing[1]);
     if (info->dims[2] > 1 && info->matrix[0][0] != 1 &&
         !(plan.shape.spacing[2] > 0) && !snow_spacing_given(options))
         snow_notify(file->context, SNOW_WIDTH_IS_DISTANCE, info->matrix[0][0]);
