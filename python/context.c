@@ -48,7 +48,7 @@ void context_discard(context_object *c, free_fn *release, void *object) {
 
 /* Called by the thread that called the library. */
 static bool report(void *user, snow_stage stage, double fraction) {
-    static const char *const names[] = {"read", "encode", "render"};
+    static const char *const names[] = {"read", "encode", "render", "write"};
     context_object *c = user;
     if (!c->saved)
         return false;

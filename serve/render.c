@@ -240,7 +240,7 @@ static bool hear_progress(void *user, snow_stage stage, double fraction) {
     renderer *r = user;
     static const char *const names[] = {
         [SNOW_STAGE_READ] = "reading", [SNOW_STAGE_ENCODE] = "encoding"};
-    if (stage == SNOW_STAGE_RENDER)
+    if (stage > SNOW_STAGE_ENCODE)
         return state_has_ended(r->state);
     json_t *tree = json_pack("{s:s, s:s, s:f}", "t", "progress", "stage",
                              names[stage], "part", fraction);

@@ -54,12 +54,12 @@ typedef bool snow_stop_fn(void *user);
 typedef enum snow_stage {
     SNOW_STAGE_READ = 0, /* a volume is opened, or a phantom made */
     SNOW_STAGE_ENCODE,   /* of a picture: classify, shade and encode */
-    SNOW_STAGE_RENDER    /* of a picture: all else */
+    SNOW_STAGE_RENDER,   /* of a picture: all else */
+    SNOW_STAGE_WRITE     /* a volume is saved */
 } snow_stage;
 
-/* Receives a stage's progress, 0 to 1, rising; true ends the call with STOPPED.
- * Called as snow_stop_fn, at most 20 times a second; a reported stage ends with
- * 1, and short ones are not. Or NULL. */
+/* Receives the progress of a long stage, rising to 1; true ends the call with
+ * STOPPED. Called as snow_stop_fn, at most 20 times a second. Or NULL. */
 typedef bool snow_progress_fn(void *user, snow_stage stage, double fraction);
 SNOW_API void snow_context_set_progress(
     snow_context *context, snow_progress_fn *progress, void *user);

@@ -351,7 +351,8 @@ void progress_end(const options *opts) {
 bool progress_hear(void *unused, snow_stage stage, double fraction) {
     static const char *const names[] = {[SNOW_STAGE_READ] = "reading",
                                         [SNOW_STAGE_ENCODE] = "encoding",
-                                        [SNOW_STAGE_RENDER] = "rendering"};
+                                        [SNOW_STAGE_RENDER] = "rendering",
+                                        [SNOW_STAGE_WRITE] = "writing"};
     (void)unused;
     pthread_mutex_lock(&clock_of_stage.lock);
     if (clock_of_stage.running) {

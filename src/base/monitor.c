@@ -19,7 +19,7 @@ static void init(snow_context *context, snow_monitor *monitor,
     *monitor = (snow_monitor){.context = context,
                               .stop = stop,
                               .stop_user = user,
-                              .reported = {-1, -1, -1},
+                              .reported = {-1, -1, -1, -1},
                               .share = 1};
     /* What is done at once reports nothing. */
     double soon = context->progress ? snow_seconds() + INTERVAL : 0;

@@ -18,7 +18,7 @@
 
 #include <stdatomic.h>
 
-#define SNOW_STAGES 3
+#define SNOW_STAGES 4
 
 struct snow_monitor {
     snow_context *context;

@@ -2,6 +2,7 @@
  *
  * The format's `write` makes the bytes.  The writer compresses them if the name
  * ends in .gz, and makes sure that the file is complete or absent. */
+#include "base/monitor.h"
 #include "formats/write.h"
 
 #include <stdio.h>
@@ -58,8 +59,11 @@ snow_status snow_volume_save(const snow_volume *volume, const char *path,
         return refuse_name(volume->context, path);
     snow_writer *writer;
     SNOW_TRY(snow_writer_open(volume->context, path, overwrite, &writer));
-    snow_status status = write_volume(volume, path, endings[i].format,
-                                      endings[i].packed, writer);
+    snow_monitor monitor;
+    snow_monitor_begin(volume->context, &monitor, NULL, NULL);
+    snow_status status =
+        snow_monitor_end(&monitor, write_volume(volume, path, endings[i].format,
+                                                endings[i].packed, writer));
     if (status != SNOW_STATUS_OK) {
         snow_writer_abandon(writer);
         return status;

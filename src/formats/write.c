@@ -1,30 +1,49 @@
 /* formats/write.c - what the formats' `write` members share. */
 #include "formats/write.h"
 
+#include "base/monitor.h"
+
 #include <stdio.h>
 #include <string.h>
 
 /* Voxels turned around at a time on machines of the other byte order. */
 #define CHUNK_BYTES 4096
+/* Written at a time; packed they take some ten milliseconds. */
+#define PART_BYTES ((size_t)1 << 18)
 
-/* Straight from the volume on little-endian machines: no copy of what may be
- * gigabytes. */
-snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer) {
-    int64_t voxels;
-    uint64_t bytes;
-    size_t size = snow_type_size(volume->info.type);
-    snow_volume_count(volume->info.dims, volume->info.type, &voxels, &bytes);
-    if (!snow_machine_big_endian())
-        return snow_writer_write(writer, volume->voxels, (size_t)bytes);
-    const unsigned char *at = volume->voxels;
+static snow_status write_swapped(const unsigned char *at, size_t bytes,
+                                 size_t size, snow_writer *writer) {
     while (bytes) {
         unsigned char chunk[CHUNK_BYTES];
-        size_t some = bytes < CHUNK_BYTES ? (size_t)bytes : CHUNK_BYTES;
+        size_t some = bytes < CHUNK_BYTES ? bytes : CHUNK_BYTES;
         memcpy(chunk, at, some);
         snow_swap_bytes(chunk, some / size, size);
         SNOW_TRY(snow_writer_write(writer, chunk, some));
         at += some;
         bytes -= some;
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Straight from the volume on little-endian machines: no copy of what may be
+ * gigabytes.  Part by part, so that a stop does not wait for all of it. */
+snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer) {
+    int64_t voxels;
+    uint64_t bytes;
+    size_t size = snow_type_size(volume->info.type);
+    snow_volume_count(volume->info.dims, volume->info.type, &voxels, &bytes);
+    snow_monitor *monitor = volume->context->monitor;
+    for (uint64_t done = 0; done < bytes;) {
+        const unsigned char *at = (unsigned char *)volume->voxels + done;
+        size_t some =
+            bytes - done < PART_BYTES ? (size_t)(bytes - done) : PART_BYTES;
+        SNOW_TRY(snow_machine_big_endian()
+                     ? write_swapped(at, some, size, writer)
+                     : snow_writer_write(writer, at, some));
+        done += some;
+        snow_monitor_report(monitor, SNOW_STAGE_WRITE, (double)done,
+                            (double)bytes);
+        SNOW_TRY(snow_monitor_status(monitor));
     }
     return SNOW_STATUS_OK;
 }

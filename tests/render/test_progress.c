@@ -163,6 +163,35 @@ static void reading_is_reported_and_can_be_stopped(void **state) {
     support_folder_remove(folder);
 }
 
+static void saving_is_reported_and_can_be_stopped(void **state) {
+    static const char *const names[] = {"v.nrrd", "v.nii.gz", "v.npy"};
+    char folder[SUPPORT_FOLDER_BYTES];
+    (void)state;
+    support_folder_make(folder);
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+        const char *path = support_folder_path(folder, names[n]);
+        snow_context *context = support_context();
+        snow_volume *volume;
+        listener l;
+        assert_int_equal(snow_volume_open_phantom(
+                             context, "turbulence",
+                             (const int64_t[3]){SIDE, SIDE, SIDE}, 0, &volume),
+                         SNOW_STATUS_OK);
+        listen_to(context, &l, 1);
+        assert_int_equal(snow_volume_save(volume, path, false),
+                         SNOW_STATUS_STOPPED);
+        assert_int_equal(l.calls, 1);
+        listen_to(context, &l, 0); /* no file is in the way */
+        assert_int_equal(snow_volume_save(volume, path, false), SNOW_STATUS_OK);
+        check_rate(&l);
+        assert_true(check_stage(&l, SNOW_STAGE_WRITE) >= 3);
+        assert_int_equal(check_stage(&l, SNOW_STAGE_WRITE), l.calls);
+        snow_volume_close(volume);
+        snow_context_free(context);
+    }
+    support_folder_remove(folder);
+}
+
 /* --- pictures ------------------------------------------------------------- */
 
 static void a_picture_is_reported(void **state) {
@@ -264,6 +293,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(a_phantom_is_reported_while_it_is_made),
         TEST(reading_is_reported_and_can_be_stopped),
+        TEST(saving_is_reported_and_can_be_stopped),
         TEST(a_picture_is_reported),
         TEST(many_calls_are_not_reported_more_often),
         TEST(nothing_is_reported_of_what_is_short),
