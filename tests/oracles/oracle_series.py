@@ -227,6 +227,16 @@ says("x.xmf", ["--time", 1, "--dataset", "cell"], dims=[11, 9, 7], max=1)
 oracle.refuse("x.xmf", "the file has rho, cell", ["--dataset", "no"], 2)
 text("v.xmf", START + grid(item("v", "x.h5:/v")) + END)
 check("v.xmf", ["--component", "x"])
+for kind, numbers in (("List", "0.25 0.5 0.75"), ("HyperSlab", "0.25 0.25 3"),
+                      ("List", "0.25")):
+    text("t.xmf", START + '<Grid GridType="Collection" '
+         f'CollectionType="Temporal"><Time TimeType="{kind}"><DataItem '
+         f'Format="XML" Dimensions="3">{numbers}</DataItem></Time>' +
+         "".join(grid(item("rho", f"x.h5:/step{t}/rho"))
+                 for t in range(3)) + "</Grid>" + END)
+    check("t.xmf", ["--time", 2], 2)
+    says("t.xmf", ["--time", 2],
+         time_value=0.75 if len(numbers) > 5 else None)
 values().tofile("x.bin")
 text("r.xmf", START + grid(item("r", "x.bin", more='Format="Binary" '
                                 'NumberType="Float" Precision="4" '

@@ -11,7 +11,8 @@
  *
  * Numbers stand in the order of the array, the slowest first.  A grid without a
  * topology or geometry of its own, or with a reference, has the last one
- * before. */
+ * before.  A collection may list the times of its grids (TimeType "List", or
+ * "HyperSlab": the first, the step, how many). */
 #include "formats/index/xdmf.h"
 #include "formats/vtk/vtk.h"
 
@@ -58,6 +59,18 @@ static snow_status read_numbers(xdmf_file *f, const xdmf_item *item,
     }
     snow_volume_close(row);
     return status != SNOW_STATUS_OK || values ? status : SNOW_STATUS_NO_MEMORY;
+}
+
+/* The time of a step by those of its collection; NaN: there are none. */
+static double time_of(xdmf_file *f, int64_t step) {
+    double *values = NULL, time = NAN;
+    const int64_t count = f->even_times ? 2 : step + 1;
+    if (f->times.length &&
+        read_numbers(f, &f->times, count, &values) == SNOW_STATUS_OK)
+        time =
+            f->even_times ? values[0] + (double)step * values[1] : values[step];
+    snow_release(f->context, values);
+    return time;
 }
 
 /* ORIGIN_DXDYDZ has two rows z y x, also of a grid in a plane (y x). */
@@ -205,7 +218,8 @@ static snow_status read_grid(xdmf_file *f, vtk_grid *grid,
                            out));
     info->times = series.times;
     info->time = series.time;
-    info->time_value = f->kept.time;
+    info->time_value =
+        isnan(f->kept.time) ? time_of(f, info->time) : f->kept.time;
     return SNOW_STATUS_OK;
 }
 

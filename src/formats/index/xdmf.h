@@ -45,7 +45,9 @@ typedef struct xdmf_file {
     xdmf_step kept; /* the step that is wanted */
     int64_t steps;
     uint64_t collections; /* a bit of each Grid that is open: it is one */
-    bool in_geometry, in_attribute, in_item, skips;
+    bool in_geometry, in_attribute, in_times, in_item, skips;
+    bool even_times; /* of a collection: first, step, count; else one each */
+    xdmf_item times; /* length 0: none */
     char attribute[64];
     bool cells, vector;
     xdmf_item item;

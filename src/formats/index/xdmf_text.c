@@ -112,7 +112,7 @@ static snow_status begin_item(xdmf_file *f, const char **attributes) {
     const char *seek = snow_index_attribute(attributes, "Seek");
     const char *number = snow_index_attribute(attributes, "NumberType");
     int64_t size = 4;
-    if (f->skips || !(f->in_geometry || f->in_attribute))
+    if (f->skips || !(f->in_geometry || f->in_attribute || f->in_times))
         return SNOW_STATUS_OK;
     if (kind && !snow_xdmf_is(kind, "uniform"))
         return snow_fail(f->context, SNOW_STATUS_BAD_INPUT,
@@ -153,6 +153,17 @@ static void begin_grid(xdmf_file *f, const char **attributes) {
     }
 }
 
+/* A grid's own time, or a list of those of a collection. */
+static void begin_time(xdmf_file *f, const char **attributes) {
+    const char *value = snow_index_attribute(attributes, "Value");
+    const char *kind = snow_index_attribute(attributes, "TimeType");
+    const bool collects = f->collections & 1;
+    if (value && !collects)
+        (void)snow_parse_double(value, &f->now.time);
+    f->even_times = snow_xdmf_is(kind, "hyperslab");
+    f->in_times = collects && (f->even_times || snow_xdmf_is(kind, "list"));
+}
+
 static snow_status begin_element(void *user, const char *name,
                                  const char **attributes) {
     xdmf_file *f = user;
@@ -167,9 +178,7 @@ static snow_status begin_element(void *user, const char *name,
     } else if (!strcmp(name, "DataItem")) {
         return begin_item(f, attributes);
     } else if (!strcmp(name, "Time")) {
-        const char *value = snow_index_attribute(attributes, "Value");
-        if (value && !(f->collections & 1))
-            (void)snow_parse_double(value, &f->now.time);
+        begin_time(f, attributes);
     }
     return SNOW_STATUS_OK;
 }
@@ -189,7 +198,9 @@ static void end_item(xdmf_file *f) {
     f->in_item = false;
     f->item.length = f->used - f->item.numbers;
     trim(&f->item);
-    if (f->in_geometry && grid->item_count < XDMF_MOST_ITEMS) {
+    if (f->in_times) {
+        f->times = f->item;
+    } else if (f->in_geometry && grid->item_count < XDMF_MOST_ITEMS) {
         grid->items[grid->item_count++] = f->item;
     } else if (f->in_attribute) {
         f->now.item = f->item;
@@ -220,6 +231,8 @@ static snow_status end_element(void *user, const char *name) {
         f->in_geometry = false;
     else if (!strcmp(name, "Attribute"))
         f->in_attribute = false;
+    else if (!strcmp(name, "Time"))
+        f->in_times = false;
     else if (!strcmp(name, "DataItem") && f->in_item)
         end_item(f);
     return SNOW_STATUS_OK;
@@ -230,7 +243,7 @@ static snow_status take_text(void *user, const char *text, size_t length) {
     xdmf_file *f = user;
     if (!f->in_item)
         return SNOW_STATUS_OK;
-    if (f->item.xml && f->in_geometry) {
+    if (f->item.xml && (f->in_geometry || f->in_times)) {
         SNOW_TRY(
             SNOW_RESERVE(f->context, f->numbers, f->used, f->used + length));
         memcpy(f->numbers + f->used, text, length);
