@@ -186,6 +186,9 @@ for z in (0, 4):
 text("c.bov", f"DATA_FILE: b_%03d.raw\nDATA_BRICKLETS: 4 5 4\n{HEAD}"
      "DATA_ENDIAN: LITTLE\nCENTERING: nodal\n")
 check("c.bov")
+text("c.bov", "# a remark\nDATA_FILE: b_%03d.raw # of each\n"
+     f"DATA_BRICKLETS: 4 5 4\n{HEAD.replace('FLOAT', 'FLOATS')}CENTERING: nodal\n")
+check("c.bov")
 text("c.bov", "DATA_FILE: b.raw\n")
 oracle.refuse("c.bov", "lacks DATA_FILE or DATA_SIZE")
 

@@ -78,7 +78,10 @@ static snow_type type_named(const char *value) {
                  {"REAL", SNOW_TYPE_FLOAT32}, {"DOUBLE", SNOW_TYPE_FLOAT64}};
     const char *none;
     char word[72];
-    snprintf(word, sizeof word, "%.60s:", value);
+    const size_t length = strlen(value);
+    const bool many =
+        length && toupper((unsigned char)value[length - 1]) == 'S';
+    snprintf(word, sizeof word, "%.*s:", (int)(length - many), value);
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (is_key(word, types[i].name, &none))
             return types[i].type;
@@ -133,6 +136,15 @@ static bool take_line(const char *line, bov_header *h) {
     return true;
 }
 
+/* A remark begins with # at the beginning or behind a blank. */
+static void cut_remark(char *line) {
+    for (char *at = line; *at; at++)
+        if (*at == '#' && (at == line || strchr(" \t", at[-1]))) {
+            *at = 0;
+            return;
+        }
+}
+
 static snow_status read_header(snow_source *source, bov_header *h) {
     snow_context *context = snow_source_context(source);
     *h = (bov_header){.type = SNOW_TYPE_FLOAT32, .components = 1, .time = NAN};
@@ -143,6 +155,7 @@ static snow_status read_header(snow_source *source, bov_header *h) {
         SNOW_TRY(snow_source_read_line(source, line, sizeof line, &got));
         if (!got)
             break;
+        cut_remark(line);
         for (size_t end = strlen(line); end && strchr(" \t", line[end - 1]);
              end--)
             line[end - 1] = 0;
