@@ -163,6 +163,8 @@ snow_status snow_partition_counted(snow_context *context,
                                    int ranks, snow_box *boxes) {
     int axis = block_counts->grid.axis;
     int64_t items = block_counts->blocks[axis], all = 0;
+    const int64_t emptiness =
+        block_counts->emptiness ? block_counts->emptiness : SNOW_EMPTINESS;
     int64_t *sums = NULL;
     SNOW_TRY(SNOW_RESERVE(context, sums, 0, items + 1 + ranks + 1));
     for (int64_t i = 0; i < items; i++)
@@ -172,7 +174,7 @@ snow_status snow_partition_counted(snow_context *context,
         snow_box slab = slab_box(block_counts, i, i + 1);
         double share =
             (double)slab.count[axis] / (double)block_counts->grid.dims[axis];
-        sums[i + 1] = sums[i] + SNOW_EMPTINESS * block_counts->counts[i] + 1 +
+        sums[i + 1] = sums[i] + emptiness * block_counts->counts[i] + 1 +
                       (int64_t)((double)all * share);
     }
     int64_t *starts = sums + items + 1;

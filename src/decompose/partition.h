@@ -28,6 +28,7 @@ typedef struct snow_partition_grid {
 typedef struct snow_block_counts {
     snow_partition_grid grid;
     int span;          /* 0: interesting voxels are counted */
+    int emptiness;     /* of slabs; 0: SNOW_EMPTINESS */
     int64_t step;      /* of the slices along z that are counted; 0: all are */
     int64_t block[3];  /* voxels of a block; not along an axis with borders, and
                           those at the far ends may be smaller */
@@ -65,6 +66,11 @@ void snow_partition_equal(const snow_partition_grid *grid, int ranks,
  * 1 / SNOW_EMPTINESS of the blocks: a part is at most SNOW_EMPTINESS + 1 times
  * as large as an equal one. */
 #define SNOW_EMPTINESS 64
+
+/* The same of slabs for methods that splat voxels, which encode all of them: in
+ * the paper's volumes that is a tenth to a sixth of their time
+ * (docs/measurements/ranks.md, the paper's figures). */
+#define SNOW_EMPTINESS_ENCODED 8
 
 /* Slabs whose most expensive one is as cheap as possible, from block counts for
  * slabs; none is thicker than SNOW_THICKEST equal ones. Errors:

@@ -135,6 +135,7 @@ static snow_status count_all(snow_comm *comm,
     counting c = {order, transfer, counts};
     size_t blocks = snow_block_counts_blocks(counts);
     counts->span = order->span;
+    counts->emptiness = order->span ? SNOW_EMPTINESS : SNOW_EMPTINESS_ENCODED;
     snow_status status =
         SNOW_RESERVE(volume->context, counts->counts, 0, blocks);
     if (status == SNOW_STATUS_OK) {

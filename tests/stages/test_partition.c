@@ -244,10 +244,13 @@ static void no_slabs_are_cheaper_than_counted_ones(void **state) {
         snow_box boxes[12];
         const snow_partition_grid grid = grid_of(dims, 2, 1);
         snow_block_counts block_counts = count(COUNTED, &grid, ranks, noise);
+        const int emptiness =
+            round % 2 ? SNOW_EMPTINESS_ENCODED : SNOW_EMPTINESS;
+        block_counts.emptiness = round % 2 ? emptiness : 0;
         for (int i = 0; i < items; i++)
             all += block_counts.counts[i];
         for (int i = 0; i < items; i++)
-            costs[i] = SNOW_EMPTINESS * block_counts.counts[i] + 1 +
+            costs[i] = emptiness * block_counts.counts[i] + 1 +
                        (int64_t)((double)all * (1.0 / items));
         cut(context, COUNTED, &block_counts, ranks, boxes);
         for (int rank = 0; rank < ranks; rank++) {
