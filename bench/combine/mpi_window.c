@@ -2,9 +2,10 @@
  * lay them over their own: by messages, as the exchange does, and out of a
  * window of shared memory (MPI-3).  A program of its own:
  *
- *   mpicc -O3 -march=native bench/combine/mpi_window.c -o window
+ *   mpicc -O3 -march=native -Iinclude bench/combine/mpi_window.c -o window
  *   mpirun -n 2 ./window */
-#include <mpi.h>
+#include <snowglass/mpi.h>
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
