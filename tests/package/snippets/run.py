@@ -28,7 +28,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 # Why a snippet is not run: of the document, and of the text.
 REASONS = [
     (r"model\.md|snowglass\.7", r".*", "a formula"),
-    (r".*", r"\./dev |scripts/|(?s:SNOW_[A-Z_]+=.*(build/|ctest|\./dev))|perf ",
+    (r".*", r"\./dev |scripts/|(?s:SNOW_[A-Z_]+=.*(build/|ctest|\./dev))|perf |"
+     r"mpicc .* bench/",
      "for the source tree, which users of packages have not"),
     (r".*", r"(module load .*\n)?cmake (-S \. )?-B|add_subdirectory",
      "builds the sources: as ./dev package debs does, and tests of them"),
