@@ -527,6 +527,21 @@ static int shrunk(int side, int shrink) {
     return small >= SIDE_LEAST ? small : side < SIDE_LEAST ? side : SIDE_LEAST;
 }
 
+/* Shear-warp draws voxel by voxel: where a pixel is as large as two of them,
+ * one of fewer pixels takes as long. */
+static int useful_shrink(const drawing *d, int shrink) {
+    const snow_view *view = &d->state.view;
+    const double *step = d->state.whole.spacing;
+    double middle[3], radius;
+    drawing_middle(d, middle, &radius);
+    const double voxels =
+        2 * radius / view->zoom / fmin(step[0], fmin(step[1], step[2]));
+    while (shrink > 0 && d->state.stats.method == SNOW_METHOD_SHEAR_WARP &&
+           fmin(view->width, view->height) / (1 << shrink) < voxels / 2)
+        shrink--;
+    return shrink;
+}
+
 /* Letters and bars, as `snowglass render` draws them. */
 static int annotate(drawing *d, const paint_given *painted,
                     const snow_image *image, snow_overlay **out) {
@@ -571,6 +586,7 @@ int drawing_render(drawing *d, snow_quality quality, int shrink,
     paint_given painted;
     *image = NULL;
     *overlay = NULL;
+    shrink = useful_shrink(d, shrink);
     ranks_tell(d, RANKS_RENDER, json_pack("[i,i]", (int)quality, shrink));
     s->settings.quality = quality;
     s->settings.stop = stop;
