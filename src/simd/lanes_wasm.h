@@ -52,6 +52,30 @@ static inline snow_scalar_eighth snow_lanes_narrow(snow_scalar_vec low,
         wasm_i32x4_trunc_sat_f32x4(wasm_f32x4_nearest((v128_t)high)));
 }
 
+static inline snow_scalar_eighth snow_lanes_bytes(const uint8_t *p) {
+    return (snow_scalar_eighth)wasm_u16x8_load8x8(p);
+}
+
+/* Of masks of 32 rows four at a time; rows.h says what. */
+static inline void snow_lanes_window(const uint32_t *low, const uint32_t *high,
+                                     int shift, uint32_t *out) {
+    const v128_t right = wasm_u32x4_shr(wasm_v128_load(low), (uint32_t)shift);
+    const v128_t left = wasm_i32x4_shl(wasm_i32x4_shl(wasm_v128_load(high), 1),
+                                       (uint32_t)(31 - shift));
+    wasm_v128_store(
+        out, wasm_v128_or(wasm_v128_load(out), wasm_v128_or(right, left)));
+}
+
+static inline uint32_t snow_lanes_and(uint32_t *a, const uint32_t *b,
+                                      uint32_t columns) {
+    const v128_t both =
+        wasm_v128_and(wasm_v128_and(wasm_v128_load(a), wasm_v128_load(b)),
+                      wasm_i32x4_splat((int32_t)columns));
+    wasm_v128_store(a, both);
+    return 15 & ~(uint32_t)wasm_i32x4_bitmask(
+                    wasm_i32x4_eq(both, wasm_i32x4_splat(0)));
+}
+
 /* Four entries of 64 bits, and their words 0 and 1, and 2 and 3, side by side.
  */
 static inline void snow_wasm_gather4(const uint64_t *table, const uint16_t *at,

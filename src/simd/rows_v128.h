@@ -26,7 +26,6 @@
 #define snow_v128_row_load snow_scalar_row_load
 #define snow_v128_row_store snow_scalar_row_store
 #define snow_v128_row_set1 snow_scalar_row_set1
-#define snow_v128_row_bytes snow_scalar_row_bytes
 #define snow_v128_row_add snow_scalar_row_add
 #define snow_v128_row_mul snow_scalar_row_mul
 #define snow_v128_row_and snow_scalar_row_and
@@ -36,8 +35,6 @@
 #define snow_v128_row_srl snow_scalar_row_srl
 #define snow_v128_row_sll snow_scalar_row_sll
 #define snow_v128_row_pairs snow_scalar_row_pairs
-#define snow_v128_rows_window snow_scalar_rows_window
-#define snow_v128_rows_and snow_scalar_rows_and
 #define snow_v128_pick_bits snow_scalar_pick_bits
 #define snow_v128_row_floats snow_scalar_row_floats
 #define snow_v128_row_round snow_scalar_row_round
@@ -97,7 +94,32 @@ static inline snow_v128_row snow_v128_row_expand(const int16_t *p,
 
 #if defined(__aarch64__)
 #define snow_v128_row_gather snow_scalar_row_gather
+#define snow_v128_row_bytes snow_scalar_row_bytes
+#define snow_v128_rows_window snow_scalar_rows_window
+#define snow_v128_rows_and snow_scalar_rows_and
 #else
+static inline snow_v128_row snow_v128_row_bytes(const uint8_t *p) {
+    snow_v128_row a;
+    for (int n = 0; n < 4; n++)
+        a.part[n] = snow_lanes_bytes(p + 8 * n);
+    return a;
+}
+
+static inline void snow_v128_rows_window(const uint32_t *low,
+                                         const uint32_t *high, int shift,
+                                         uint32_t *out) {
+    for (int n = 0; n < 32; n += 4)
+        snow_lanes_window(low + n, high + n, shift, out + n);
+}
+
+static inline uint32_t snow_v128_rows_and(uint32_t *a, const uint32_t *b,
+                                          uint32_t columns) {
+    uint32_t any = 0;
+    for (int n = 0; n < 32; n += 4)
+        any |= snow_lanes_and(a + n, b + n, columns) << n;
+    return any;
+}
+
 static inline void snow_v128_row_gather(const uint64_t *table,
                                         snow_v128_row index,
                                         snow_v128_row out[4]) {

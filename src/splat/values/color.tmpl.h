@@ -6,7 +6,7 @@
 
 /* --- light ---------------------------------------------------------------- */
 
-TARGET VALUE_INLINE V(vec)
+TARGET VALUE_LEAF V(vec)
     NAME(dot)(const float by[3], V(vec) u, V(vec) v, V(vec) p) {
     V(vec) sum = V(mul)(V(set1)(by[0]), u);
     sum = V(add)(sum, V(mul)(V(set1)(by[1]), v));
@@ -16,8 +16,8 @@ TARGET VALUE_INLINE V(vec)
 #include "splat/values/ray.tmpl.h"
 
 /* base^(power / 2^SNOW_VALUE_ROOTS) for 32 bases above 0. */
-TARGET VALUE_INLINE void NAME(power_of)(const V(vec) base[GROUPS],
-                                        uint32_t power, V(vec) result[GROUPS]) {
+TARGET VALUE_LEAF void NAME(power_of)(const V(vec) base[GROUPS], uint32_t power,
+                                      V(vec) result[GROUPS]) {
     V(vec) square[GROUPS], root[GROUPS];
     for (int k = 0; k < GROUPS; k++) {
         result[k] = V(set1)(1);
@@ -40,8 +40,8 @@ TARGET VALUE_INLINE void NAME(power_of)(const V(vec) base[GROUPS],
 }
 
 /* n . eye, light and half for LANES gradients, times their length. */
-TARGET VALUE_INLINE void NAME(face)(const snow_value_light *l, V(vec) u,
-                                    V(vec) v, V(vec) p, V(vec) out[3]) {
+TARGET VALUE_LEAF void NAME(face)(const snow_value_light *l, V(vec) u, V(vec) v,
+                                  V(vec) p, V(vec) out[3]) {
     out[0] = NAME(dot)(l->eye, u, v, p);
     if (!l->distant)
         return;
@@ -53,7 +53,7 @@ TARGET VALUE_INLINE void NAME(face)(const snow_value_light *l, V(vec) u,
 #define POWER_MOST 64
 
 /* base^power of 32 bases of 15 bits; `power` is a whole number above 0. */
-TARGET VALUE_INLINE V(row) NAME(row_power)(V(row) base, uint32_t power) {
+TARGET VALUE_LEAF V(row) NAME(row_power)(V(row) base, uint32_t power) {
     for (; !(power & 1); power >>= 1)
         base = V(row_mulhrs)(base, base);
     V(row) result = base;
@@ -66,7 +66,7 @@ TARGET VALUE_INLINE V(row) NAME(row_power)(V(row) base, uint32_t power) {
 }
 
 /* The shine of 32 samples, of 15 bits; `half` is n . h, times 32767. */
-TARGET VALUE_INLINE V(row)
+TARGET VALUE_LEAF V(row)
     NAME(shine)(const snow_value_light *l, const V(vec) half[GROUPS]) {
     const uint32_t power = l->power >> SNOW_VALUE_ROOTS;
     V(vec) base[GROUPS], result[GROUPS];
@@ -85,10 +85,10 @@ TARGET VALUE_INLINE V(row)
 
 /* Adds light `n`; `light` and `half` are n . l and n . h, turned to the eye,
  * times 32767. */
-TARGET VALUE_INLINE void NAME(add_light)(const snow_value_light *l, int n,
-                                         const V(vec) light[GROUPS],
-                                         const V(vec) half[GROUPS], float unit,
-                                         V(row) * color, V(row) * white) {
+TARGET VALUE_LEAF void NAME(add_light)(const snow_value_light *l, int n,
+                                       const V(vec) light[GROUPS],
+                                       const V(vec) half[GROUPS], float unit,
+                                       V(row) * color, V(row) * white) {
     const V(row) zero = V(row_set1)(0);
     const int16_t diffuse = (int16_t)(l->diffuse[n] * unit + 0.5F);
     const int16_t specular = (int16_t)(l->specular[n] * 32767 + 0.5F);
@@ -101,8 +101,8 @@ TARGET VALUE_INLINE void NAME(add_light)(const snow_value_light *l, int n,
 }
 
 /* The squares of the lengths of LANES gradients. */
-TARGET VALUE_INLINE V(vec) NAME(square_length)(const snow_value_light *l,
-                                               V(vec) u, V(vec) v, V(vec) p) {
+TARGET VALUE_LEAF V(vec) NAME(square_length)(const snow_value_light *l,
+                                             V(vec) u, V(vec) v, V(vec) p) {
     V(vec)
     length = NAME(dot)(l->metric, V(mul)(u, u), V(mul)(v, v), V(mul)(p, p));
     if (!l->square)
@@ -113,12 +113,12 @@ TARGET VALUE_INLINE V(vec) NAME(square_length)(const snow_value_light *l,
 
 /* 32 gradients to factors of the colour and of white, of 15 bits; samples from
  * `n` of the queue on. */
-TARGET VALUE_INLINE void NAME(light)(const snow_value_light *l,
-                                     const snow_value_rays *rays,
-                                     float slope[2][2], const value_queue *q,
-                                     int n, const V(row) slopes[3],
-                                     V(row) * color, V(row) * white,
-                                     const bool eye) {
+TARGET VALUE_LEAF void NAME(light)(const snow_value_light *l,
+                                   const snow_value_rays *rays,
+                                   float slope[2][2], const value_queue *q,
+                                   int n, const V(row) slopes[3],
+                                   V(row) * color, V(row) * white,
+                                   const bool eye) {
     const float unit = l->bright ? 16383.5F : 32767.0F;
     V(vec) g[3][GROUPS], ray[2][GROUPS], to[3][GROUPS];
     for (int axis = 0; axis < 3; axis++)
@@ -149,7 +149,7 @@ TARGET VALUE_INLINE void NAME(light)(const snow_value_light *l,
 /* --- colours -------------------------------------------------------------- */
 
 /* The place of the opacity, of 32768, from the top bits of the four words. */
-TARGET VALUE_INLINE V(row) NAME(split)(V(row) color[4]) {
+TARGET VALUE_LEAF V(row) NAME(split)(V(row) color[4]) {
     V(row) place = V(row_set1)(0x400);
     for (int c = 0; c < 4; c++) {
         place =
@@ -161,7 +161,7 @@ TARGET VALUE_INLINE V(row) NAME(split)(V(row) color[4]) {
 }
 
 /* The places of 32 samples in the table. */
-TARGET VALUE_INLINE V(row)
+TARGET VALUE_LEAF V(row)
     NAME(entries)(const snow_value_table *table, const int16_t *front,
                   const int16_t *back) {
     if (table->nodes) {
@@ -178,8 +178,8 @@ TARGET VALUE_INLINE V(row)
 }
 
 /* Twice the gradients of 32 samples along an axis of a slab's front or back. */
-TARGET VALUE_INLINE V(row) NAME(slope_of)(const value_queue *q, int n, int side,
-                                          int axis, const bool eye) {
+TARGET VALUE_LEAF V(row) NAME(slope_of)(const value_queue *q, int n, int side,
+                                        int axis, const bool eye) {
     V(row) slope = V(row_load)(q->slopes[3 * side + axis] + n);
     if (eye && axis < 2)
         slope = V(row_adds)(
@@ -188,8 +188,8 @@ TARGET VALUE_INLINE V(row) NAME(slope_of)(const value_queue *q, int n, int side,
 }
 
 /* Gradients of 32 samples from `n` on. */
-TARGET VALUE_INLINE void NAME(slopes)(const value_queue *q, int n, V(row) place,
-                                      V(row) slopes[3], const bool eye) {
+TARGET VALUE_LEAF void NAME(slopes)(const value_queue *q, int n, V(row) place,
+                                    V(row) slopes[3], const bool eye) {
     for (int axis = 0; axis < 3; axis++)
         slopes[axis] = NAME(mix)(NAME(slope_of)(q, n, 0, axis, eye),
                                  NAME(slope_of)(q, n, 1, axis, eye), place);
@@ -197,7 +197,7 @@ TARGET VALUE_INLINE void NAME(slopes)(const value_queue *q, int n, V(row) place,
 
 /* The places of the opacity in a slab, of which these are the places in what is
  * left of it; a whole one keeps its own. */
-TARGET VALUE_INLINE V(row)
+TARGET VALUE_LEAF V(row)
     NAME(place_within)(const value_queue *q, int n, V(row) place) {
     V(row) part = V(row_load)(q->part + n);
     V(row)

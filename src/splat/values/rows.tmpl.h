@@ -38,7 +38,7 @@ static inline NAME(source)
 
 /* Where a row of stored values begins: of the slice, or of `after` where `end`
  * is 1, or of the next one of either where `on` is 1. */
-TARGET VALUE_INLINE int64_t NAME(place_of)(const NAME(source) * s, int end,
+TARGET VALUE_LEAF int64_t NAME(place_of)(const NAME(source) * s, int end,
                                            int on, int64_t row) {
     const snow_value_store *store = s->store;
     if (store->in_place)
@@ -46,14 +46,14 @@ TARGET VALUE_INLINE int64_t NAME(place_of)(const NAME(source) * s, int end,
     return (end ? s->after : s->slice)[row + on * s->next];
 }
 
-TARGET VALUE_INLINE V(row) NAME(load_stored)(const unsigned char *stored,
+TARGET VALUE_LEAF V(row) NAME(load_stored)(const unsigned char *stored,
                                              int64_t place, const int kind) {
     if (kind == SNOW_VALUE_BYTES)
         return V(row_bytes)(stored + place);
     return V(row_load)((const int16_t *)(const void *)(stored + 2 * place));
 }
 
-TARGET VALUE_INLINE V(row)
+TARGET VALUE_LEAF V(row)
     NAME(by_rule)(V(row) stored, const snow_value_rule *rule, const int kind) {
     V(row)
     t = V(row_add)(V(row_mul)(stored, V(row_set1)((int16_t)rule->factor)),
@@ -92,7 +92,7 @@ TARGET static V(row) NAME(load_some)(const snow_value_store *s, int64_t place) {
 
 /* 32 numbers of a row of the volume from `column` on, of which those within its
  * columns are right. */
-TARGET VALUE_INLINE V(row)
+TARGET VALUE_LEAF V(row)
     NAME(row_inside)(const snow_value_store *s, int64_t place, int64_t column,
                      const int kind) {
     int64_t at = place + column;
@@ -105,7 +105,7 @@ TARGET VALUE_INLINE V(row)
 
 /* 32 numbers of a row of the volume from `column` on, and from the next one on;
  * columns may be beyond the sides. */
-TARGET VALUE_INLINE void NAME(pair_inside)(const snow_value_store *s,
+TARGET VALUE_LEAF void NAME(pair_inside)(const snow_value_store *s,
                                            int64_t place, int64_t column,
                                            const int kind, V(row) out[2]) {
     const int64_t behind = s->columns - 1, step = behind > 0;
@@ -151,7 +151,7 @@ TARGET static void NAME(pair_beyond)(const NAME(source) * from, int end, int on,
 
 /* 32 numbers of a row from `column` on, and from the next one on, wherever they
  * are; `sided`: some may be beyond a side. */
-TARGET VALUE_INLINE void NAME(pair)(const NAME(source) * s, int end, int on,
+TARGET VALUE_LEAF void NAME(pair)(const NAME(source) * s, int end, int on,
                                     int64_t row, int64_t column, const int kind,
                                     const bool sided, V(row) out[2]) {
     if (kind == SNOW_VALUE_NUMBERS) {

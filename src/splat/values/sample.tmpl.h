@@ -4,7 +4,7 @@
 /* --- masks ---------------------------------------------------------------- */
 
 /* Ors the cells of a sheet under a tile that are not wholly within a run. */
-TARGET VALUE_INLINE void NAME(add_cells)(const snow_value_store *s, int run,
+TARGET VALUE_LEAF void NAME(add_cells)(const snow_value_store *s, int run,
                                          const snow_value_sheet *sheet,
                                          value_window w, uint32_t *out) {
     const uint32_t *masks = s->masks +
@@ -78,12 +78,12 @@ static inline void NAME(clip_all)(const snow_value_splat *p, int n, int phase,
 
 /* --- sheets --------------------------------------------------------------- */
 
-TARGET VALUE_INLINE V(row) NAME(mix)(V(row) a, V(row) b, V(row) weight) {
+TARGET VALUE_LEAF V(row) NAME(mix)(V(row) a, V(row) b, V(row) weight) {
     return V(row_add)(a, V(row_mulhrs)(V(row_subs)(b, a), weight));
 }
 
 /* As value_toward. */
-TARGET VALUE_INLINE V(row) NAME(toward)(V(row) a, V(row) b, int16_t toward) {
+TARGET VALUE_LEAF V(row) NAME(toward)(V(row) a, V(row) b, int16_t toward) {
     V(row) middle = V(row_avg)(a, b);
     if (!toward)
         return middle;
@@ -95,7 +95,7 @@ TARGET VALUE_INLINE V(row) NAME(toward)(V(row) a, V(row) b, int16_t toward) {
 
 /* One row of voxels, mixed along u: of a slice or between it and the next one;
  * or the difference of two of them. */
-TARGET VALUE_INLINE V(row)
+TARGET VALUE_LEAF V(row)
     NAME(along)(const NAME(source) * s, int64_t row, V(row) weight,
                 const bool between, const bool difference, const int kind,
                 const bool sided) {
@@ -196,7 +196,7 @@ TARGET VALUE_INLINE void NAME(end_bytes)(const NAME(bytes) * r,
 
 /* A row of bytes mixed along u, or the difference to that which is `apart`
  * behind: numbers are sums and products, and so are differences of them. */
-TARGET VALUE_INLINE V(row)
+TARGET VALUE_LEAF V(row)
     NAME(along_bytes)(const NAME(bytes) * r, const unsigned char *at,
                       V(row) weight, const bool difference, const bool sided) {
     const V(row) factor = V(row_set1)((int16_t)r->rule.factor);

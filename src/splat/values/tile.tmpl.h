@@ -56,7 +56,7 @@ TARGET VALUE_INLINE uint32_t NAME(clip)(const value_cut cut[2],
 }
 
 /* Differences of the neighbours on both sides. */
-TARGET VALUE_INLINE V(row)
+TARGET VALUE_LEAF V(row)
     NAME(slope)(const int16_t *before, const int16_t *here,
                 const int16_t *after, bool broken) {
     int16_t slopes[32];
@@ -121,7 +121,7 @@ TARGET VALUE_INLINE void NAME(see_plain)(const snow_value_splat *p,
 
 /* Packs the visible samples of a phase, from number `count` on; of a `plain`
  * one (is_plain) those that are active. */
-TARGET VALUE_INLINE int
+TARGET VALUE_LEAF int
 NAME(collect_by)(const snow_value_splat *p, const value_rows *f,
                  const value_rows *b, const value_beside beside[2],
                  const value_phase *state, value_slab *slab, value_queue *q,

@@ -19,6 +19,13 @@
 #define VALUE_INLINE static inline __attribute__((always_inline))
 #endif
 
+/* What is small, and is called for each row of a tile: there too. */
+#if defined(__wasm__) && !defined(SNOW_SANITIZED)
+#define VALUE_LEAF static inline __attribute__((always_inline, unused))
+#else
+#define VALUE_LEAF VALUE_INLINE
+#endif
+
 /* Rows of a sheet's tile: one more on each side, for gradients. */
 #define SHEET_ROWS (SNOW_VALUE_ROWS + 2)
 
