@@ -234,6 +234,7 @@ class Page:
             if first & 15 == 8:
                 return "closed", int.from_bytes(body[:2], "big")
             if first & 15 == 9:
+                self.send_frame(0x8A, body)  # without it a page is thought gone
                 continue
             kind = first & 15 or kind
             whole += body
