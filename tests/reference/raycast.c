@@ -186,8 +186,8 @@ static bool is_member(const void *of, const int64_t voxel[3]) {
 static void label_gradient_at(const reference_cast *cast, const double at[3],
                               double label, double gradient[3]) {
     const member m = {cast, label};
-    reference_membership_gradient(cast->scene->info.dims, is_member, &m, at,
-                                  gradient);
+    reference_membership_gradient(cast->scene->info.dims, 3, true, is_member,
+                                  &m, at, gradient);
     for (int a = 0; a < 3; a++)
         gradient[a] = fabs(gradient[a]) < 1e-9 ? 0 : gradient[a];
 }
@@ -216,6 +216,38 @@ static void gradient_at(const reference_cast *cast, const double at[3],
     }
 }
 
+/* The range of all values that are finite numbers. */
+static double range_of(const reference_cast *cast) {
+    const int64_t *dims = cast->scene->info.dims;
+    double low = INFINITY, high = -INFINITY;
+    for (int64_t n = 0; n < dims[0] * dims[1] * dims[2]; n++) {
+        double value =
+            voxel_value(cast, (int64_t[]){n % dims[0], n / dims[0] % dims[1],
+                                          n / dims[0] / dims[1]});
+        low = fmin(low, value);
+        high = fmax(high, value);
+    }
+    return high > low ? high - low : 1;
+}
+
+static bool is_there(const void *of, const int64_t voxel[3]) {
+    return !isnan(voxel_value(of, voxel));
+}
+
+/* Adds that of what is there, smoothly: the border of holes is lit as if values
+ * fell off there by their whole range. */
+static void add_border(const reference_cast *cast, double range,
+                       const double at[3], double gradient[3]) {
+    double border[3];
+    if (cast->labels)
+        return;
+    reference_membership_gradient(cast->scene->info.dims, 2, false, is_there,
+                                  cast, at, border);
+    for (int n = 0; n < 3; n++)
+        if (fabs(border[n]) > 1e-9)
+            gradient[n] += range * border[n];
+}
+
 /* --- rays ----------------------------------------------------------------- */
 
 typedef struct walk {
@@ -223,6 +255,7 @@ typedef struct walk {
     const reference_camera *camera;
     reference_ray ray;
     double enter, leave, step;
+    const double *range; /* of the values, of each cast */
     int64_t steps;
 } walk;
 
@@ -357,8 +390,10 @@ static void sample_at(const walk *w, const double at[3], double rgba[4]) {
     if (scene->settings.threshold > 0 &&
         255 * rgba[3] <= scene->settings.threshold + 0.0001)
         rgba[3] = 0;
-    if (scene->settings.shade == SNOW_SHADE_PHONG)
-        shade(w, gradient, rgba);
+    if (scene->settings.shade != SNOW_SHADE_PHONG)
+        return;
+    add_border(w->cast, *w->range, at, gradient);
+    shade(w, gradient, rgba);
 }
 
 static void cast_over(const walk *w, double pixel[4], double *depth) {
@@ -366,7 +401,7 @@ static void cast_over(const walk *w, double pixel[4], double *depth) {
     for (int64_t i = 0; i < w->steps; i++) {
         double at[3], color[3] = {0, 0, 0}, alpha = 0, through = 1 - pixel[3];
         at_step(w, (double)i + 0.5, at);
-        for (walk one = *w; one.cast; one.cast = one.cast->next) {
+        for (walk one = *w; one.cast; one.cast = one.cast->next, one.range++) {
             double rgba[4];
             sample_at(&one, at, rgba);
             double own =
@@ -452,6 +487,7 @@ static void cast_iso(const walk *w, double pixel[4], double *depth) {
     if (scene->settings.shade != SNOW_SHADE_PHONG)
         return;
     gradient_at(w->cast, at, 0, gradient);
+    add_border(w->cast, *w->range, at, gradient);
     shade(w, gradient, pixel);
 }
 
@@ -463,9 +499,12 @@ double *reference_cast_rays(const reference_cast *cast, double *depth) {
     size_t count = (size_t)width * (size_t)height;
     double *pixels = calloc(count * (sums ? 1 : 4), sizeof *pixels);
     reference_camera camera;
+    double range[8], *to = range;
     reference_camera_of(scene, &camera);
+    for (const reference_cast *one = cast; one; one = one->next)
+        *to++ = range_of(one);
     for (size_t n = 0; n < count; n++) {
-        walk w = {.cast = cast, .camera = &camera};
+        walk w = {.cast = cast, .camera = &camera, .range = range};
         double *pixel = pixels + n * (sums ? 1 : 4);
         w.ray =
             reference_ray_at(scene, &camera, (double)(n % (size_t)width) + 0.5,

@@ -91,11 +91,12 @@ double reference_native(const reference_scene *scene, int64_t i, int64_t j,
 void reference_classify(const reference_scene *scene, double value,
                         double rgba[4]);
 
-/* That of a smooth membership: the sum of bells, three voxels to either side,
- * over the voxels that are members, of which none is beyond the grid; along
- * an axis of one voxel nothing changes. */
+/* That of a smooth membership: the sum of bells, `reach` voxels to either side,
+ * over the voxels that are members.  `sides`: none is beyond the grid, else
+ * what is beyond is as the nearest voxel inside.  Along an axis of one voxel
+ * nothing changes. */
 typedef bool reference_member_fn(const void *user, const int64_t voxel[3]);
-void reference_membership_gradient(const int64_t dims[3],
+void reference_membership_gradient(const int64_t dims[3], int reach, bool sides,
                                    reference_member_fn *is_member,
                                    const void *user, const double at[3],
                                    double gradient[3]);

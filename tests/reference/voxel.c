@@ -185,25 +185,25 @@ double *reference_samples(const reference_scene *scene,
 
 /* --- labels --------------------------------------------------------------- */
 
-/* A bell over three voxels to either side, and its slope. */
-static double bell(double t, bool slope) {
-    double x = fabs(t) / 3;
+/* A bell over some voxels to either side, and its slope. */
+static double bell(double t, int reach, bool slope) {
+    double x = fabs(t) / reach;
     if (x >= 1)
         return 0;
     if (slope)
-        return (t < 0 ? 1 : -1) * (6 * x - 6 * x * x) / 9;
-    return (1 - 3 * x * x + 2 * x * x * x) / 3;
+        return (t < 0 ? 1 : -1) * (6 * x - 6 * x * x) / (reach * reach);
+    return (1 - 3 * x * x + 2 * x * x * x) / reach;
 }
 
-void reference_membership_gradient(const int64_t dims[3],
+void reference_membership_gradient(const int64_t dims[3], int reach, bool sides,
                                    reference_member_fn *is_member,
                                    const void *user, const double at[3],
                                    double gradient[3]) {
     int64_t n[3], voxel[3];
     gradient[0] = gradient[1] = gradient[2] = 0;
-    for (n[2] = -3; n[2] <= 3; n[2]++)
-        for (n[1] = -3; n[1] <= 3; n[1]++)
-            for (n[0] = -3; n[0] <= 3; n[0]++) {
+    for (n[2] = -reach; n[2] <= reach; n[2]++)
+        for (n[1] = -reach; n[1] <= reach; n[1]++)
+            for (n[0] = -reach; n[0] <= reach; n[0]++) {
                 double way[3];
                 bool there = true;
                 for (int a = 0; a < 3; a++) {
@@ -211,11 +211,16 @@ void reference_membership_gradient(const int64_t dims[3],
                     voxel[a] = (int64_t)floor(place) + n[a];
                     way[a] = place - (double)voxel[a];
                     there = there && voxel[a] >= 0 && voxel[a] < dims[a];
+                    if (!sides)
+                        voxel[a] = voxel[a] < 0         ? 0
+                                   : voxel[a] < dims[a] ? voxel[a]
+                                                        : dims[a] - 1;
                 }
-                if (!there || !is_member(user, voxel))
+                if ((sides && !there) || !is_member(user, voxel))
                     continue;
                 for (int a = 0; a < 3; a++)
-                    gradient[a] += bell(way[0], a == 0) * bell(way[1], a == 1) *
-                                   bell(way[2], a == 2);
+                    gradient[a] += bell(way[0], reach, a == 0) *
+                                   bell(way[1], reach, a == 1) *
+                                   bell(way[2], reach, a == 2);
             }
 }

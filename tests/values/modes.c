@@ -126,6 +126,7 @@ static void show_surface(const value_field *field, const value_ray *ray,
                        rgba);
     rgba[3] = 1;
     value_gradient(field, ray, slab, place, gradient);
+    value_add_border(field, ray, slab, place, gradient);
     if (plan->scene->base.settings.shade == SNOW_SHADE_PHONG)
         value_shade(plan, ray, gradient, rgba);
 }

@@ -89,8 +89,10 @@ static bool draw_slab(value_model *model, const value_ray *ray, int slab,
     if (!labels)
         value_lengthen(rgba,
                        (part[1] - part[0]) / 32768.0 * ray->path / plan->path);
-    if (shaded)
+    if (shaded) {
+        value_add_border(&model->field, ray, slab, place, gradient);
         value_shade(plan, ray, gradient, rgba);
+    }
     return true;
 }
 

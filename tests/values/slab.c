@@ -140,8 +140,8 @@ static bool is_member(const void *of, const int64_t voxel[3]) {
 /* Twice that of the smooth membership of the field's label. */
 static void label_gradient(const value_field *field, const double at[3],
                            double gradient[3]) {
-    reference_membership_gradient(field->plan->dims, is_member, field, at,
-                                  gradient);
+    reference_membership_gradient(field->plan->dims, 3, true, is_member, field,
+                                  at, gradient);
     for (int a = 0; a < 3; a++)
         gradient[a] = floor(2 * VALUE_MOST * gradient[a] + 0.5);
 }
@@ -160,6 +160,28 @@ void value_gradient(const value_field *field, const value_ray *ray, int slab,
             ends[end] = n == 2 ? slope_across(field, ray, slab + end)
                                : slope_in_plane(field, ray, slab + end, n);
         gradient[n] = value_between(ends[0], ends[1], place);
+    }
+}
+
+static bool is_there(const void *of, const int64_t voxel[3]) {
+    return value_code(of, voxel) != VALUE_HOLE;
+}
+
+void value_add_border(const value_field *field, const value_ray *ray, int slab,
+                      int place, double gradient[3]) {
+    double ends[2][3];
+    for (int end = 0; end < 2; end++) {
+        double at[3];
+        value_ray_at(field->plan, ray, slab + end, at);
+        reference_membership_gradient(field->plan->dims, 2, false, is_there,
+                                      field, at, ends[end]);
+    }
+    for (int a = 0; a < 3 && !field->plan->scene->labels; a++) {
+        int twice[2];
+        for (int end = 0; end < 2; end++)
+            twice[end] = (int)floor(2 * VALUE_MOST * ends[end][a] + 0.5);
+        gradient[a] = value_saturate((int64_t)gradient[a] +
+                                     value_between(twice[0], twice[1], place));
     }
 }
 

@@ -174,6 +174,11 @@ bool value_cut(const value_plan *plan, const value_ray *ray, int slab,
 void value_gradient(const value_field *field, const value_ray *ray, int slab,
                     int place, double gradient[3]);
 
+/* Adds twice that of what is there, smoothly, by which the border of holes is
+ * lit. */
+void value_add_border(const value_field *field, const value_ray *ray, int slab,
+                      int place, double gradient[3]);
+
 /* Premultiplied colours that are shaded: from colour and alpha of an entry and
  * a gradient as above. */
 void value_shade(const value_plan *plan, const value_ray *ray,

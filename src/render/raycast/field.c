@@ -200,13 +200,20 @@ double snow_field_value(const snow_field_window *w) {
 
 /* --- gradients ------------------------------------------------------------ */
 
+/* Of two values, times a factor; what is rounding alone has no direction. */
+static double way_of(double from, double to, double factor) {
+    return fabs(to - from) > 1e-13 * (fabs(from) + fabs(to))
+               ? factor * (to - from)
+               : 0;
+}
+
 static double difference(double before, double here, double after) {
     if (!isnan(before) && !isnan(after))
-        return (after - before) / 2;
+        return way_of(before, after, 0.5);
     if (!isnan(after) && !isnan(here))
-        return after - here;
+        return way_of(here, after, 1);
     if (!isnan(before) && !isnan(here))
-        return here - before;
+        return way_of(before, here, 1);
     return 0;
 }
 
@@ -275,20 +282,22 @@ double snow_field_label(const snow_field *field, const double at[3],
 /* Weights of the voxels around a place along an axis, and their slopes; zeros
  * where there are none. */
 typedef struct label_taps {
+    int count;
     int64_t at[SNOW_LABEL_TAPS];
     double weight[SNOW_LABEL_TAPS], slope[SNOW_LABEL_TAPS];
 } label_taps;
 
+/* `sides`: there are none beyond the grid, else as the last ones there. */
 static void find_taps(const snow_field *field, int axis, double place,
-                      label_taps *taps) {
-    const int reach = SNOW_LABEL_TAPS / 2;
+                      int reach, bool sides, label_taps *taps) {
     const double end = (double)field->volume->info.dims[axis] - 1;
     place = end > 0 ? place : (double)field->stored[axis]; /* of one voxel */
     double first = floor(place) - reach + 1;
-    for (int n = 0; n < SNOW_LABEL_TAPS; n++) {
+    taps->count = 2 * reach;
+    for (int n = 0; n < taps->count; n++) {
         double way = place - (first + n), x = fabs(way) / reach;
         double at = first + n - (double)field->stored[axis];
-        const double there = at >= 0 && at <= end;
+        const double there = !sides || (at >= 0 && at <= end);
         taps->at[n] = (int64_t)fmin(fmax(at, 0), end) * field->steps[axis];
         taps->weight[n] = there * (1 - x * x * (3 - 2 * x)) / reach;
         taps->slope[n] =
@@ -296,35 +305,33 @@ static void find_taps(const snow_field *field, int axis, double place,
     }
 }
 
-/* The weights and slopes of the voxels of a row that have a label, summed. */
+/* The weights and slopes of the voxels of a row that have a label, or where it
+ * is NaN any value, summed. */
 static void add_row(const snow_field *field, int64_t row,
                     const label_taps *taps, double label, double sums[2]) {
     const int64_t *at = taps->at;
     double natives[SNOW_LABEL_TAPS];
     sums[0] = sums[1] = 0;
     snow_volume_stored(field->volume, row + at[0],
-                       (size_t)(at[SNOW_LABEL_TAPS - 1] - at[0] + 1), natives);
-    for (int n = 0; n < SNOW_LABEL_TAPS; n++) {
+                       (size_t)(at[taps->count - 1] - at[0] + 1), natives);
+    for (int n = 0; n < taps->count; n++) {
         double native = natives[at[n] - at[0]];
         if (field->volume->clip && isnan(native))
             native = snow_clip_planes_value(field->volume->clip, row + at[n]);
-        if (field_value_of(field, native) != label)
+        double value = field_value_of(field, native);
+        if (isnan(label) ? isnan(value) : value != label)
             continue;
         sums[0] += taps->weight[n];
         sums[1] += taps->slope[n];
     }
 }
 
-void snow_field_label_gradient(const snow_field *field, const double at[3],
-                               double label, double gradient[3]) {
-    label_taps taps[3];
-    for (int axis = 0; axis < 3; axis++) {
-        find_taps(field, axis, at[axis], &taps[axis]);
-        gradient[axis] = 0;
-    }
+static void smooth_gradient(const snow_field *field, const label_taps taps[3],
+                            double label, double gradient[3]) {
     const label_taps *v = &taps[1], *w = &taps[2];
-    for (int z = 0; z < SNOW_LABEL_TAPS; z++)
-        for (int y = 0; y < SNOW_LABEL_TAPS; y++) {
+    gradient[0] = gradient[1] = gradient[2] = 0;
+    for (int z = 0; z < w->count; z++)
+        for (int y = 0; y < v->count; y++) {
             double row[2];
             add_row(field, v->at[y] + w->at[z], &taps[0], label, row);
             gradient[0] += row[1] * v->weight[y] * w->weight[z];
@@ -335,4 +342,26 @@ void snow_field_label_gradient(const snow_field *field, const double at[3],
     for (int axis = 0; axis < 3; axis++)
         if (fabs(gradient[axis]) < 1e-9)
             gradient[axis] = 0;
+}
+
+void snow_field_label_gradient(const snow_field *field, const double at[3],
+                               double label, double gradient[3]) {
+    label_taps taps[3];
+    for (int axis = 0; axis < 3; axis++)
+        find_taps(field, axis, at[axis], SNOW_LABEL_TAPS / 2, true,
+                  &taps[axis]);
+    smooth_gradient(field, taps, label, gradient);
+}
+
+void snow_field_add_border(const snow_field *field, const double at[3],
+                           double gradient[3]) {
+    label_taps taps[3];
+    double border[3];
+    if (!(field->border > 0))
+        return;
+    for (int axis = 0; axis < 3; axis++)
+        find_taps(field, axis, at[axis], 2, false, &taps[axis]);
+    smooth_gradient(field, taps, NAN, border);
+    for (int axis = 0; axis < 3; axis++)
+        gradient[axis] += field->border * border[axis];
 }

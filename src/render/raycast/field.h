@@ -34,6 +34,7 @@ typedef struct snow_field {
     double linear;          /* above 0: they are places on such a scale */
     bool infinite_is_hole;  /* else infinities are the finite ends: */
     double least, most;     /* data values */
+    double border;          /* that values fall off by at holes; 0: none */
     double low[3], high[3]; /* where it is defined */
 } snow_field;
 
@@ -70,6 +71,11 @@ double snow_field_value(const snow_field_window *window);
 void snow_field_gradient(const snow_field *field, const double at[3],
                          double here, snow_field_window sides[6],
                          double gradient[3]);
+
+/* Adds to a gradient that of what is there, smoothly, times the field's range:
+ * the border of holes is lit as if values fell off there. */
+void snow_field_add_border(const snow_field *field, const double at[3],
+                           double gradient[3]);
 
 /* --- labels ----------------------------------------------------------------
  *

@@ -106,6 +106,7 @@ static void shade_surface(const snow_raycast_pass *pass, const snow_ray *ray,
         return;
     double value = value_at(pass, ray, i, eye, at);
     snow_field_gradient(&pass->field, at, value, eye->sides, gradient);
+    snow_field_add_border(&pass->field, at, gradient);
     for (int axis = 0; axis < 3; axis++)
         eye->gradients[axis][0] = gradient[axis];
     snow_shade_gradients(&eye->shader,

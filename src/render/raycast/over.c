@@ -148,6 +148,8 @@ static double find_opacity(const snow_raycast_pass *pass, const double at[3],
         snow_field_gradient(&pass->field, at, value, eye->sides, gradient);
     if (pass->gradient_factors)
         opacity *= gradient_factor(pass, data, gradient);
+    if (pass->shaded && !pass->labels)
+        snow_field_add_border(&pass->field, at, gradient);
     return snow_is_interesting(opacity, threshold) ? opacity : 0;
 }
 

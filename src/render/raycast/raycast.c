@@ -4,6 +4,7 @@
 
 #include "base/vec3.h"
 #include "classify/count_interesting.h"
+#include "classify/values/value_range.h"
 #include "render/modes/depth.h"
 #include "volume/clip_planes.h"
 
@@ -185,6 +186,13 @@ static double longest_step(const snow_volume_info *info, snow_quality quality) {
                                                    : 4);
 }
 
+/* How much values fall off at the border of holes, by their range; of one value
+ * anything does.  Those of logarithms are decimal. */
+static void set_border(snow_raycast_pass *pass, double range) {
+    pass->field.border =
+        range > 0 ? range * (pass->field.log ? 3.3219280948873623 : 1) : 1;
+}
+
 static void choose_cast(const snow_picture *p, snow_raycast_pass *pass) {
     const snow_identity_transfer *identity = &p->frame->identity;
     snow_mode mode = p->job.settings.mode;
@@ -196,6 +204,7 @@ static void choose_cast(const snow_picture *p, snow_raycast_pass *pass) {
         snow_raycast_see_look(pass);
     } else if (mode == SNOW_MODE_ISO) {
         pass->cast = snow_raycast_iso;
+        set_border(pass, range);
         pass->visible[0] = pass->level;
     } else {
         pass->cast = mode == SNOW_MODE_MIP || mode == SNOW_MODE_MINIP
@@ -232,6 +241,21 @@ static void set_depth(snow_raycast_pass *pass) {
     pass->depth[3] = of[3];
 }
 
+/* In mode over: whether there are holes, and the range. */
+static snow_status find_border(snow_raycast_pass *pass) {
+    const snow_volume *volume = pass->field.volume;
+    const snow_scale scale = {pass->field.log, pass->field.linear};
+    snow_data_range range;
+    if (!pass->shaded || pass->labels ||
+        (volume->info.type < SNOW_TYPE_FLOAT32 && !scale.log))
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_data_range_measure(volume, scale, pass->job->settings.threads,
+                                     &range));
+    if (range.holes)
+        set_border(pass, range.high - range.low);
+    return SNOW_STATUS_OK;
+}
+
 /* What is a volume's own. */
 static snow_status prepare_field(const snow_picture *p, const snow_job *job,
                                  const snow_volume *volume,
@@ -250,6 +274,8 @@ static snow_status prepare_field(const snow_picture *p, const snow_job *job,
         .step = longest_step(&volume->info, s->quality),
     };
     SNOW_TRY(snow_field_make(volume, transfer, s, !over, &pass->field));
+    if (over)
+        SNOW_TRY(find_border(pass));
     SNOW_TRY(snow_shader_init(job->context, volume, &job->placement, s,
                               &pass->shader));
     set_colors(pass);

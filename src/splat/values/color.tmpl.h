@@ -280,6 +280,11 @@ TARGET VALUE_INLINE void NAME(light_all)(const snow_value_splat *p,
             NAME(fade)(p, q, n, within, slopes, channels);
         if (p->light) {
             V(row) color, white;
+            for (int axis = 0; value_leans(p) && axis < 3; axis++)
+                slopes[axis] = V(row_adds)(
+                    slopes[axis],
+                    NAME(mix)(V(row_load)(q->border[axis] + n),
+                              V(row_load)(q->border[3 + axis] + n), place));
             NAME(light)
             (&light, p->rays, slope, q, n, slopes, &color, &white, eye);
             V(row_store)(q->light + n, color);

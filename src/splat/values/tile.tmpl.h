@@ -230,6 +230,8 @@ TARGET VALUE_INLINE void NAME(end_queue)(const snow_value_splat *p, int n,
     const V(row) zero = V(row_set1)(0);
     V(row_store)(q->front + count, zero);
     V(row_store)(q->back + count, zero);
+    for (int way = 0; value_leans(p) && way < BORDERS; way++)
+        V(row_store)(q->border[way] + count, zero);
     if (!eye)
         return;
     V(row_store)(q->part + count, zero);
@@ -278,8 +280,14 @@ TARGET VALUE_INLINE int NAME(gather)(const snow_value_splat *p, int n,
         for (int side = 0; sloped && eye && side < 2; side++)
             NAME(sample_beside)
         (p, n + side, phase, tile, slab->rows, room->rows, &beside[side]);
+        const int begin = count;
         count = NAME(collect)(p, f, b, beside, state, slab, &room->queue, count,
                               sloped, cuts, eye, plain);
+        if (sloped && value_leans(p)) {
+            const value_sample at = {p, n, phase, 0, 0, tile};
+            const bool holes[2] = {f->holes, b->holes};
+            snow_value_lean(&at, slab, holes, &room->queue, begin);
+        }
     }
     return count;
 }
@@ -458,6 +466,7 @@ TARGET VALUE_INLINE bool NAME(tile)(const snow_value_splat *p, int x, int y,
         (value_room *)(void *)((char *)memory + snow_value_planes_bytes(p));
     const int tile[2] = {x, y};
     bool drawn = false;
+    room->queue.border = value_borders(p, room);
     NAME(open)(p, x, y, room);
     if (p->resumes)
         NAME(resume)(p, planes, room);

@@ -130,3 +130,134 @@ void snow_value_bridge(const value_sides *s, uint32_t lanes, int16_t *across) {
             none ? near_difference(s, n) : quotient(before, s->here[n], after);
     }
 }
+
+/* --- borders -------------------------------------------------------------- */
+
+/* The bells of a border: as far as gradients of values, and what is stored. */
+#define BORDER_REACH 2
+
+/* Columns around a row of samples, and of each what its holes weigh in the rows
+ * and slices around, and how that grows along v and p. */
+#define HOLE_COLUMNS (32 * SNOW_VALUE_SPREAD_MOST + 8)
+typedef struct hole_columns {
+    int64_t first, count;
+    bool any, some[HOLE_COLUMNS]; /* there are holes; in a column */
+    double weight[HOLE_COLUMNS], along[HOLE_COLUMNS], across[HOLE_COLUMNS];
+} hole_columns;
+
+static int64_t clamp(int64_t i, int64_t count) {
+    return i < 0 ? 0 : i < count ? i : count - 1;
+}
+
+/* Adds those of a row of voxels. */
+static void add_holes(const snow_value_store *s, int64_t slice, int64_t row,
+                      const double by[3], hole_columns *out) {
+    const int64_t *at = snow_value_at(s, slice) + row;
+    const int32_t *ends =
+        s->ends[slice * (s->rows + 2 * s->margin) + s->margin + row];
+    int64_t from = out->first > ends[0] ? out->first : ends[0];
+    int64_t end = out->first + out->count;
+    end = end < ends[1] ? end : ends[1];
+    const int16_t *values = s->values + *at;
+    bool any = false;
+    for (int64_t i = from; i < end; i++)
+        any |= values[i] == SNOW_VALUE_HOLE;
+    if (!any)
+        return;
+    if (!out->any)
+        for (int64_t n = 0; n < out->count; n++)
+            out->weight[n] = out->along[n] = out->across[n] = out->some[n] = 0;
+    out->any = true;
+    for (int64_t i = from; i < end; i++)
+        if (values[i] == SNOW_VALUE_HOLE) {
+            out->some[i - out->first] = true;
+            out->weight[i - out->first] += by[0];
+            out->along[i - out->first] += by[1];
+            out->across[i - out->first] += by[2];
+        }
+}
+
+/* Those around the active samples of a row, from the first to the last.  Beyond
+ * a side all is as the last voxels there. */
+static void find_holes(const snow_value_store *s, const value_spot *first,
+                       const value_spot *last, hole_columns *out) {
+    double place[3];
+    value_place_of(first, place);
+    const value_bell v = value_bell_at(place[1], s->rows, BORDER_REACH);
+    const value_bell w = value_bell_at(place[2], s->slices, BORDER_REACH);
+    out->any = false;
+    out->first = clamp(first->i - BORDER_REACH + 1, s->columns);
+    out->count = clamp(last->i + BORDER_REACH, s->columns) - out->first + 1;
+    for (int z = 0; z < w.taps; z++)
+        for (int y = 0; y < v.taps; y++) {
+            const double by[3] = {w.weight[z] * v.weight[y],
+                                  w.weight[z] * v.slope[y],
+                                  w.slope[z] * v.weight[y]};
+            if (w.weight[z] != 0 || w.slope[z] != 0)
+                add_holes(s, clamp(w.at[z], s->slices), clamp(v.at[y], s->rows),
+                          by, out);
+        }
+}
+
+/* Of a sample: twice the gradient of what is there, as numbers; zeros are
+ * there. */
+static void lean_of(const snow_value_store *s, const hole_columns *holes,
+                    const value_spot *spot, int16_t out[3]) {
+    double place[3], sums[3] = {0, 0, 0};
+    bool near = false;
+    for (int x = 1 - BORDER_REACH; x <= BORDER_REACH; x++)
+        near |= holes->some[clamp(spot->i + x, s->columns) - holes->first];
+    if (!near)
+        return;
+    value_place_of(spot, place);
+    const value_bell u = value_bell_at(place[0], s->columns, BORDER_REACH);
+    for (int x = 0; x < u.taps; x++) {
+        int64_t n = clamp(u.at[x], s->columns) - holes->first;
+        sums[0] += u.slope[x] * holes->weight[n];
+        sums[1] += u.weight[x] * holes->along[n];
+        sums[2] += u.weight[x] * holes->across[n];
+    }
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = (int16_t)floor(-2 * SNOW_VALUE_MOST * sums[axis] + 0.5);
+}
+
+/* A row of samples on an end of their slab. */
+static void lean_row(value_sample at, uint32_t active, int end,
+                     int16_t *const border[3]) {
+    const snow_value_store *s = at.splat->store;
+    hole_columns holes;
+    at.lane = __builtin_ctz(active);
+    const value_spot first = value_spot_of(&at, end);
+    at.lane = 31 - __builtin_clz(active);
+    const value_spot last = value_spot_of(&at, end);
+    find_holes(s, &first, &last, &holes);
+    for (int n = 0; active; active &= active - 1, n++) {
+        int16_t lean[3] = {0, 0, 0};
+        at.lane = __builtin_ctz(active);
+        const value_spot spot = value_spot_of(&at, end);
+        if (holes.any)
+            lean_of(s, &holes, &spot, lean);
+        for (int axis = 0; axis < 3; axis++)
+            border[axis][n] = lean[axis];
+    }
+}
+
+void snow_value_lean(const value_sample *first, const value_slab *slab,
+                     const bool holes[2], value_queue *q, int count) {
+    value_sample at = *first;
+    for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
+        at.row = __builtin_ctz(rows);
+        const uint32_t active = slab->active[at.row];
+        const int some = __builtin_popcount(active);
+        for (int end = 0; end < 2; end++) {
+            int16_t *border[3];
+            for (int axis = 0; axis < 3; axis++) {
+                border[axis] = q->border[3 * end + axis] + count;
+                memset(border[axis], 0, (size_t)some * sizeof **border);
+            }
+            if (active && holes[end])
+                lean_row(at, active, end, border);
+        }
+        count += some;
+    }
+}

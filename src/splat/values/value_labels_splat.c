@@ -9,52 +9,15 @@
 /* Voxels around the samples of both ends of a slab. */
 #define AROUND 16
 
-/* Where a sample is on a sheet. */
-typedef struct spot {
-    const snow_value_sheet *sheet;
-    int64_t i, j;
-    int wu, wv;
-} spot;
-
-/* A sample of the lattice, on the sheets of a slab. */
-typedef struct label_sample {
-    const snow_value_splat *splat;
-    int slab, phase, row, lane;
-    const int *tile;
-} label_sample;
-
 /* A slab of a sample: its labels, and what they have at both ends. */
 typedef struct label_slab {
     const snow_value_splat *splat;
-    label_sample at;
+    value_sample at;
     double longer; /* than the table's way */
-    spot ends[2];
+    value_spot ends[2];
     int labels[AROUND], count;
     int member[AROUND][2];
 } label_slab;
-
-/* --- places --------------------------------------------------------------- */
-
-/* A sample on an end of its slab. */
-static spot spot_of(const label_sample *at, int end) {
-    const snow_value_splat *p = at->splat;
-    const int n = at->slab + end, phase = at->phase;
-    if (!p->rays) {
-        const snow_value_place *place = p->places + n * p->phases + phase;
-        return (spot){
-            p->sheets + n,
-            value_tile_column(p, at->tile[0]) + at->lane + place->whole[0],
-            value_tile_row(p, at->tile[1]) + at->row + place->whole[1],
-            place->weight[0], place->weight[1]};
-    }
-    const snow_value_lanes *u =
-        value_lanes_of(p->rays, n, phase, 0, at->tile[0]);
-    const snow_value_lanes *v =
-        value_lanes_of(p->rays, n, phase, 1, at->tile[1]);
-    return (spot){p->sheets + n, u->first + u->at[at->lane],
-                  v->first + v->at[at->row + 1], u->weight[at->lane],
-                  v->weight[at->row + 1]};
-}
 
 /* --- membership ----------------------------------------------------------- */
 
@@ -93,7 +56,8 @@ static int voxel_member(const snow_value_store *s, int label, int64_t i,
                : here;
 }
 
-static int member_at(const snow_value_store *s, int label, const spot *at) {
+static int member_at(const snow_value_store *s, int label,
+                     const value_spot *at) {
     int row[2];
     for (int y = 0; y < 2; y++) {
         int ends[2];
@@ -108,78 +72,43 @@ static int member_at(const snow_value_store *s, int label, const spot *at) {
 
 /* --- gradients ------------------------------------------------------------ */
 
-/* Voxels along an axis that a gradient is made of: those around a place within
- * REACH of it. */
-#define REACH 3
-#define TAPS (2 * REACH)
-
-/* A voxel beyond the grid, of which no label is. */
-#define NOWHERE (-1)
-
-/* Weights of the voxels around a place along an axis, and their slopes. */
-typedef struct label_taps {
-    int64_t at[TAPS];
-    double weight[TAPS], slope[TAPS];
-} label_taps;
-
-static void find_taps(double place, int64_t count, label_taps *taps) {
-    place = count == 1 ? 0 : place; /* along which nothing changes */
-    double first = floor(place) - REACH + 1;
-    for (int n = 0; n < TAPS; n++) {
-        double way = place - (first + n), x = fabs(way) / REACH;
-        const int64_t at = (int64_t)first + n;
-        taps->at[n] = at >= 0 && at < count ? at : NOWHERE;
-        taps->weight[n] = (1 - x * x * (3 - 2 * x)) / REACH;
-        taps->slope[n] = (way < 0 ? 6 : -6) * x * (1 - x) / (REACH * REACH);
-    }
-}
-
-/* What voxels of a row that have a label weigh, and how that grows.  A voxel
- * that is not stored has none that is seen. */
-static void add_row(const snow_value_store *s, int label, const label_taps *u,
+/* What voxels of a row that have a label weigh, and how that grows.  None is
+ * beyond the grid; one that is not stored has none that is seen. */
+static void add_row(const snow_value_store *s, int label, const value_bell *u,
                     int64_t row, int64_t slice, double out[2]) {
     out[0] = out[1] = 0;
-    if (row == NOWHERE || slice == NOWHERE)
+    if (row < 0 || row >= s->rows || slice < 0 || slice >= s->slices)
         return;
     const int64_t *at = snow_value_at(s, slice) + row;
     const int32_t *ends =
         s->ends[slice * (s->rows + 2 * s->margin) + s->margin + row];
-    for (int n = 0; n < TAPS; n++)
-        if (u->at[n] >= ends[0] && u->at[n] < ends[1] &&
-            s->values[*at + u->at[n]] == label) {
+    for (int n = 0; n < u->taps; n++)
+        if (u->at[n] >= ends[0] && u->at[n] < ends[1] && u->at[n] >= 0 &&
+            u->at[n] < s->columns && s->values[*at + u->at[n]] == label) {
             out[0] += u->weight[n];
             out[1] += u->slope[n];
         }
-}
-
-static double slice_of(const spot *at) {
-    const snow_value_sheet *sheet = at->sheet;
-    return (double)sheet->slice + sheet->at - floor(sheet->at);
 }
 
 /* Of a smooth membership, at a place of a slab. */
 static void find_slopes(const label_slab *slab, int label, int place,
                         value_queue *q, int count) {
     const snow_value_store *s = slab->splat->store;
-    const spot *front = &slab->ends[0], *back = &slab->ends[1];
-    const double t = place / 32768.0;
-    const double u[2] = {(double)front->i + front->wu / 32768.0,
-                         (double)back->i + back->wu / 32768.0};
-    const double v[2] = {(double)front->j + front->wv / 32768.0,
-                         (double)back->j + back->wv / 32768.0};
-    label_taps taps[3];
-    double sums[3] = {0, 0, 0};
-    find_taps(u[0] + t * (u[1] - u[0]), s->columns, &taps[0]);
-    find_taps(v[0] + t * (v[1] - v[0]), s->rows, &taps[1]);
-    find_taps(slice_of(front) + t * (slice_of(back) - slice_of(front)),
-              s->slices, &taps[2]);
-    for (int n = 0; n < TAPS * TAPS; n++) {
-        const int y = n % TAPS, z = n / TAPS;
+    double at[3], back[3], sums[3] = {0, 0, 0};
+    value_place_of(&slab->ends[0], at);
+    value_place_of(&slab->ends[1], back);
+    for (int axis = 0; axis < 3; axis++)
+        at[axis] += place / 32768.0 * (back[axis] - at[axis]);
+    const value_bell u = value_bell_at(at[0], s->columns, VALUE_BELL_MOST);
+    const value_bell v = value_bell_at(at[1], s->rows, VALUE_BELL_MOST);
+    const value_bell w = value_bell_at(at[2], s->slices, VALUE_BELL_MOST);
+    for (int n = 0; n < w.taps * v.taps; n++) {
+        const int y = n % v.taps, z = n / v.taps;
         double row[2];
-        add_row(s, label, &taps[0], taps[1].at[y], taps[2].at[z], row);
-        sums[0] += taps[2].weight[z] * taps[1].weight[y] * row[1];
-        sums[1] += taps[2].weight[z] * taps[1].slope[y] * row[0];
-        sums[2] += taps[2].slope[z] * taps[1].weight[y] * row[0];
+        add_row(s, label, &u, v.at[y], w.at[z], row);
+        sums[0] += w.weight[z] * v.weight[y] * row[1];
+        sums[1] += w.weight[z] * v.slope[y] * row[0];
+        sums[2] += w.slope[z] * v.weight[y] * row[0];
     }
     for (int axis = 0; axis < 3; axis++)
         q->slopes[axis][count] =
@@ -196,7 +125,7 @@ static void add_label(label_slab *slab, int label) {
 }
 
 /* In draft a sheet has the label of the nearest voxel. */
-static int nearest(const snow_value_store *s, const spot *at) {
+static int nearest(const snow_value_store *s, const value_spot *at) {
     return code_of(s, clamp(at->i + (at->wu >= 16384), s->columns),
                    clamp(at->j + (at->wv >= 16384), s->rows), at->sheet->slice);
 }
@@ -206,7 +135,7 @@ static void find_labels(label_slab *slab) {
     bool draft = slab->splat->labels_nearest;
     slab->count = 0;
     for (int end = 0; end < 2; end++) {
-        const spot *at = &slab->ends[end];
+        const value_spot *at = &slab->ends[end];
         for (int n = 0; n < (at->sheet->between ? 8 : 4) && !draft; n++)
             add_label(slab, code_of(s, clamp(at->i + n % 2, s->columns),
                                     clamp(at->j + n / 2 % 2, s->rows),
@@ -328,7 +257,7 @@ static label_part part_of(const value_slab *slab, int row, int lane) {
 }
 
 /* The ray of a sample, in phases from the tile's first cell. */
-static void ray_of(const label_sample *at, int16_t out[2]) {
+static void ray_of(const value_sample *at, int16_t out[2]) {
     const snow_value_rays *rays = at->splat->rays;
     const uint8_t *own = rays->spot[at->phase];
     out[0] = (int16_t)(at->lane * rays->phases[0] + own[0]);
@@ -360,7 +289,7 @@ int snow_value_collect_labels(const snow_value_splat *p, int n, int phase,
             sample.at.row = row;
             sample.at.lane = lane;
             for (int end = 0; end < 2; end++)
-                sample.ends[end] = spot_of(&sample.at, end);
+                sample.ends[end] = value_spot_of(&sample.at, end);
             if (p->rays) {
                 int16_t ray[2];
                 ray_of(&sample.at, ray);

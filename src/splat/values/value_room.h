@@ -3,7 +3,7 @@
 #ifndef SNOW_SPLAT_VALUE_ROOM_H
 #define SNOW_SPLAT_VALUE_ROOM_H
 
-#include "splat/values/value_splat.h"
+#include "splat/values/value_smooth.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -55,7 +55,9 @@ typedef struct value_beside {
 #define QUEUE (TOGETHER * SNOW_VALUE_ROWS * SNOW_VALUE_COLUMNS + 64)
 typedef struct value_queue {
     int16_t front[QUEUE], back[QUEUE];
-    int16_t slopes[6][QUEUE];         /* u, v, p: of the front, of the back */
+    int16_t slopes[6][QUEUE]; /* u, v, p: of the front, of the back */
+    int16_t (*border)[QUEUE]; /* [6]: the same of the border of holes, where
+                                 samples are lit by it (value_leans) */
     int16_t from[QUEUE], part[QUEUE]; /* of a slab that is cut, of 32768 */
     int16_t color[4][QUEUE];
     int16_t place[QUEUE]; /* of the opacity in the slab, of 32768 */
@@ -124,10 +126,18 @@ typedef struct value_room {
     value_rows rows[][2]; /* [phase][sheet & 1] */
 } value_room;
 
-/* Behind the rows: the slabs of a tile that may be seen. */
+/* Behind the rows: the borders of a queue, of some pictures; the slabs of a
+ * tile that may be seen. */
+#define BORDERS 6
+static inline int16_t (*value_borders(const snow_value_splat *splat,
+                                      value_room *room))[QUEUE] {
+    return (int16_t(*)[QUEUE])(void *)&room->rows[splat->phases];
+}
+
 static inline int32_t *value_slabs(const snow_value_splat *splat,
                                    value_room *room) {
-    return (int32_t *)(void *)&room->rows[splat->phases];
+    return (int32_t *)(void *)(value_borders(splat, room) +
+                               (splat->borders ? BORDERS : 0));
 }
 
 /* --- places --------------------------------------------------------------- */
@@ -296,6 +306,17 @@ typedef struct value_sides {
 /* Differences along P of the lanes that have a hole near. */
 void snow_value_bridge(const value_sides *sides, uint32_t lanes,
                        int16_t *across);
+
+/* How the border of what is there leans, of the active samples of a phase of a
+ * slab, from number `count` on; `holes`: a sheet has some near. */
+void snow_value_lean(const value_sample *first, const value_slab *slab,
+                     const bool holes[2], value_queue *queue, int count);
+
+/* Whether samples are lit by it. */
+static inline bool value_leans(const snow_value_splat *splat) {
+    return splat->borders && splat->light && splat->store->holes &&
+           !splat->labels;
+}
 
 /* The alpha of `share` times the length; exact for the least alpha where the
  * table is faint. */

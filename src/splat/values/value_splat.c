@@ -17,6 +17,7 @@
 size_t snow_value_splat_bytes(const snow_value_splat *splat) {
     size_t bytes = snow_value_planes_bytes(splat) + sizeof(value_room) +
                    (size_t)splat->phases * 2 * sizeof(value_rows) +
+                   (splat->borders ? BORDERS * QUEUE * sizeof(int16_t) : 0) +
                    (size_t)splat->sheet_count * sizeof(int32_t);
     return (bytes + 63) / 64 * 64;
 }

@@ -146,8 +146,9 @@ typedef struct snow_value_splat {
     double own[2][2];
     bool resumes; /* the planes hold what is in front; of over only */
     snow_value_reduction reduction;
-    bool floats; /* planes are of floats: the table is faint, or of sums, or
-                    there are several layers */
+    bool borders; /* there is room for those of holes */
+    bool floats;  /* planes are of floats: the table is faint, or of sums, or
+                     there are several layers */
 } snow_value_splat;
 
 /* Pixels of a tile: planes of 15 bits, of which channels are used; of floats

@@ -147,6 +147,42 @@ run 0 "of files masked by hand" "$TOOL" movie two.npy two.npy -q --no-labels \
     -s 60x50 -o 'x_%d.png'
 check "is the same" cmp -s w_1.png x_1.png
 
+# --- light --------------------------------------------------------------------
+# Matter of one value, and a ball of it: its middle faces a light at the eye, its
+# rim does not.
+python3 - <<'END'
+head = ("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 28 28 28\nencoding: raw\n\n")
+n = 28
+even = bytearray(b"\x64" * n ** 3)
+even[0], even[1] = 0, 200
+ball = bytes((x - 13) ** 2 + (y - 14) ** 2 + (z - 13) ** 2 < 120
+             for z in range(n) for y in range(n) for x in range(n))
+open("even.nrrd", "wb").write(head.encode() + even)
+open("ball.nrrd", "wb").write(head.encode() + ball)
+END
+lit="even.nrrd --mask ball.nrrd --light head --range 0,200 -c light-grey"
+for method in shear-warp raycast; do
+    run 0 "an organ of one value by $method" render $lit -o $method.npy \
+        --opacity 0:0.9,200:0.9 --method $method
+    check "is lit as a ball" python3 -c '
+import array, sys
+a = array.array("f", open(sys.argv[1], "rb").read()[-90 * 80 * 4 * 4:])
+pixel = lambda x, y: a[4 * (90 * y + x):4 * (90 * y + x) + 4]
+row = [pixel(x, 40) for x in range(90)]
+inside = [p[0] / p[3] for p in row if p[3] > 0.95]
+middle, rim = inside[len(inside) // 2], (inside[0] + inside[-1]) / 2
+assert len(inside) > 20 and middle > 1.4 * rim, (len(inside), middle, rim)' \
+        $method.npy
+done
+check "alike by both" python3 -c '
+import sys
+assert float([l.split()[1] for l in sys.argv[1].splitlines()
+              if "psnr" in l][0]) > 20' \
+    "$("$TOOL" compare shear-warp.npy raycast.npy)"
+run 0 "the automatic look" "$TOOL" render even.nrrd --mask ball.nrrd -o auto.png
+run 0 "a preset of Hounsfield units" "$TOOL" render even.nrrd --mask ball.nrrd \
+    --preset ct-soft --range -200,300 -o preset.png
+
 # --- recipes ------------------------------------------------------------------
 run 0 "a recipe is saved" render v.npy -o j.npy --mask m.npy --labels 1,2-3 \
     --save-config j.json
