@@ -13,6 +13,7 @@
  *     cut-out of a brain, for example).  There are no surfaces then, and the
  *     faces of the block show most: all is nearly solid, black to white over
  *     all values, and unshaded.  The same holds for volumes of few slices.
+ *     Where voxels are left out, by a mask, their border is the surface.
  *     Values that reach as far below 0 as above are densities about a mean (of
  *     proteins), whose upper part is what matters.
  *   - A CT in Hounsfield units gets the preset for bone or for soft tissue: its
@@ -221,6 +222,27 @@ static void build_solid(const snow_histogram_split *p, bool slice,
     add_opacity(builder, p->high, 0.70);
 }
 
+/* Where so many voxels have no value, as those outside a mask, what is left has
+ * a shape. */
+#define LEFT_OUT 0.02
+
+static bool has_shape(const snow_histogram *histogram) {
+    snow_extent part;
+    snow_volume_find_extent(histogram->volume, &part);
+    double all =
+        (double)part.dims[0] * (double)part.dims[1] * (double)part.dims[2];
+    return (double)(histogram->finite + histogram->dropped) <
+           (1 - LEFT_OUT) * all;
+}
+
+/* All that is left, with its surface. */
+static void build_shape(const snow_histogram_split *p,
+                        snow_transfer_builder *builder) {
+    build_grey(builder, "light-grey", p->low, p->high, DARKEST, 1);
+    add_opacity(builder, p->low, 0.5);
+    add_opacity(builder, p->high, 0.8);
+}
+
 /* The number of axes with one voxel: 1 is a slice, 2 a row. */
 static int axes_of_one(const snow_histogram *histogram) {
     snow_extent part;
@@ -259,8 +281,24 @@ static void build_constant(const snow_histogram *histogram,
 #define BINS_HU 40
 #define BIN_HU(value) (((value) + 1100) / 100)
 
+/* Whether it is seen from its face, which is a cut (transform/view.c). */
+static bool is_slab(const snow_histogram *histogram) {
+    const double *spacing = histogram->volume->info.spacing;
+    snow_extent part;
+    double side[3];
+    snow_volume_find_extent(histogram->volume, &part);
+    for (int axis = 0; axis < 3; axis++)
+        side[axis] = (double)part.dims[axis] * spacing[axis];
+    for (int axis = 0; axis < 3; axis++)
+        if (side[axis] <
+            0.25 * fmin(side[(axis + 1) % 3], side[(axis + 2) % 3]))
+            return true;
+    return false;
+}
+
 /* The preset for a CT in Hounsfield units: for bone, if that is 0.5 % of the
- * body, else for soft tissue; -1 for other volumes.  Of what names no modality
+ * body, else, and for a slab, of which only rings would be left, for soft
+ * tissue; -1 for other volumes.  Of what names no modality
  * 2 % have to be air. */
 static snow_status hounsfield_preset(const snow_histogram *histogram,
                                      int *preset) {
@@ -274,8 +312,9 @@ static snow_status hounsfield_preset(const snow_histogram *histogram,
     double body = share_of(counts, BIN_HU(-200), BINS_HU, all);
     double bone = share_of(counts, BIN_HU(300), BINS_HU, all);
     if (body > 0 && (*info->modality || air >= 0.02))
-        *preset =
-            snow_preset_from_name(bone >= 0.005 * body ? "ct-bone" : "ct-soft");
+        *preset = snow_preset_from_name(
+            bone >= 0.005 * body && !is_slab(histogram) ? "ct-bone"
+                                                        : "ct-soft");
     return SNOW_STATUS_OK;
 }
 
@@ -412,6 +451,10 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
                             ", for both signs", builder);
     if (field && !look->opacities)
         return build_field(histogram, &p, builder);
+    if (p.fills_volume && !slice && has_shape(histogram)) {
+        build_shape(&p, builder);
+        return SNOW_STATUS_OK;
+    }
     if (slice || p.fills_volume) {
         build_solid(&p, slice, scale, builder);
         return SNOW_STATUS_OK;

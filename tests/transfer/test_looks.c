@@ -739,6 +739,10 @@ static void ct_in_hounsfield_units_has_a_look_of_ct(void **state) {
         says(look_at_patient(context, ct, patient, any), "(ct-bone, for Houn"));
     assert_true(says(look_at_patient(context, soft, patient, any),
                      "(ct-soft, for Houn"));
+    snow_volume_info slab = patient;
+    slab.dims[2] = 4;
+    assert_true(
+        says(look_at_patient(context, ct, slab, any), "(ct-soft, for Houn"));
     assert_true(says(look_at_patient(context, shifted, patient, any),
                      "from the histogram"));
     assert_true(says(look_at_patient(context, bytes, eight, any),
