@@ -345,8 +345,8 @@ json_t *config_tree(const options *opts, const verb_row *verb) {
         json_object_del(tree, "shade");
     if (!opts->background.given && !opts->background.automatic)
         json_object_set_new(tree, "background", json_string("none"));
-    if (verb->bit == VERB_RENDER)
-        json_object_del(tree, "fps");
+    if (verb->bit == VERB_RENDER || !options_given(opts, "fps"))
+        json_object_del(tree, "fps"); /* few time steps have their own */
     if (verb->bit == VERB_SLICE)
         keep_slice(opts, tree);
     set_inputs(opts, tree);

@@ -113,6 +113,11 @@ again "a turntable of its own speed" turntable 'f_%d.png' phantom:cube $small \
 cp ct.nhdr step_1.nhdr
 cp negative.nhdr step_2.nhdr
 again "a movie" movie 'f_%d.png' step_1.nhdr step_2.nhdr -s 40x40
+if command -v ffmpeg >/dev/null; then
+    again "a movie of few steps" movie a.mp4 step_1.nhdr step_2.nhdr -s 40x40
+else
+    skipped "a movie of few steps" "there is no ffmpeg"
+fi
 for steps in 1: -2:-1; do
     again "steps $steps" movie 'f_%d.png' step_1.nhdr step_2.nhdr step_2.nhdr -s 40x40 \
         --time=$steps
