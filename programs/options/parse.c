@@ -447,13 +447,13 @@ bool read_color(const option_row *row, const char *text, void *field,
     (void)row;
     if (value_color(text, field))
         return true;
-    char names[128];
+    char names[128], near[128];
     value_color_names(names, sizeof names);
+    guess_choice(names, text, near, sizeof near);
     snprintf(wrong, WRONG_BYTES,
-             "is not a colour; give auto, none, #rgb, #rrggbb, red,green,blue "
-             "from 0 "
-             "to 1, or a name: %s",
-             names);
+             "is not a colour%s; give auto, none, #rgb, #rrggbb, "
+             "red,green,blue from 0 to 1, or a name: %s",
+             near, names);
     return false;
 }
 
@@ -511,9 +511,15 @@ bool read_light(const option_row *row, const char *text, void *field,
         light.light = SNOW_LIGHT_KEY;
     else if (strcasecmp(text, "head") == 0)
         light.light = SNOW_LIGHT_HEAD;
-    else if (!value_reals(text, ',', 2, pair))
-        return refuse(wrong, "is not a light; give key, head, or "
-                             "AZIMUTH,ELEVATION in degrees, such as 30,45");
+    else if (!value_reals(text, ',', 2, pair)) {
+        char near[128];
+        guess_choice("key|head", text, near, sizeof near);
+        snprintf(wrong, WRONG_BYTES,
+                 "is not a light%s; give key, head, or AZIMUTH,ELEVATION in "
+                 "degrees, such as 30,45",
+                 near);
+        return false;
+    }
     light.azimuth = pair[0];
     light.elevation = pair[1];
     *(light_value *)field = light;

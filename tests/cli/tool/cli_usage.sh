@@ -111,6 +111,8 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
 -s|--size: needs a value
 --bits 12 x|choose from: 8, 16
 --background brick x|is not a colour
+--background balck x|is not a colour \(did you mean black\?\);
+--light kye x|is not a light \(did you mean key\?\);
 --background '#12' x|is not a colour
 --background 1,2,3 x|is not a colour
 --threshold 256 x|from 0 to 255
