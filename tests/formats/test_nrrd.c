@@ -540,6 +540,13 @@ static void colours_are_channels(void **state) {
                                    "kinds: RGBA-color domain domain domain\n\n",
                              counting(), 48),
                   4, 3, 0);
+    snow_volume_options second = {.size = sizeof second, .channel = 1};
+    support_refused(&files,
+                    write_nrrd(&files, "e.nrrd",
+                               MAGIC "type: uint8\ndimension: 3\n"
+                                     "sizes: 4 4 3\nencoding: raw\n\n",
+                               counting(), 48),
+                    &second, SNOW_STATUS_BAD_USAGE, "the voxels have 1", MOST);
     support_files_end(&files);
 }
 

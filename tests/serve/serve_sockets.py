@@ -669,6 +669,20 @@ def slices():
     server.stop()
 
 
+def one_channel():
+    """A channel that the volume has not is refused as by `render`."""
+    server = Server(SMALL, "-q")
+    page = Page(server)
+    page.say({"t": "set", "n": 1, "recipe": {"size": [SIDE, SIDE], "channel": "5"}})
+    said = page.hear_text("said")["text"]
+    check("a channel that is not there is refused",
+          "channel 5 does not exist; the voxels have 1" in said, said)
+    state = page.hear_text("state")
+    check("and not kept", state and "channel" not in state["recipe"], state)
+    page.close()
+    server.stop()
+
+
 def mask_switch():
     """A page switches the mask of the command line, and never hears its path;
     the pictures are those of the commands."""
@@ -1059,6 +1073,7 @@ check("it ends in order", code == 0, f"{code} {said}")
 first_state()
 fit_at_position()
 slices()
+one_channel()
 mask_switch()
 dragged_points([], grey=True)
 if not SHORT:

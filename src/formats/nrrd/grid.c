@@ -184,6 +184,7 @@ snow_status snow_nrrd_lay_out(snow_context *context, const nrrd_header *header,
                               snow_volume_info *info, snow_region *region,
                               snow_array *values) {
     axis_choice choice;
+    int64_t only;
     *values = (snow_array){.all = 0};
     SNOW_TRY(choose_axes(context, header, &choice));
     info->type = header->type;
@@ -196,6 +197,8 @@ snow_status snow_nrrd_lay_out(snow_context *context, const nrrd_header *header,
     fill_matrix(header, &choice, info->matrix);
     SNOW_TRY(snow_volume_info_check(context, info));
     SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
+    if (choice.values < 0)
+        SNOW_TRY(snow_volume_pick_channel(context, options, 1, info, &only));
     SNOW_TRY(choice.values < 0
                  ? snow_region_lay_out(context, options, info, region)
                  : lay_values(context, header, choice.values, options, info,
