@@ -267,8 +267,8 @@ void answer_step(outbox *box, int64_t step) {
 /* --- what is asked
  * --------------------------------------------------------------- */
 
-static void answer_histogram(drawing *d, outbox *box, uint64_t client,
-                             const json_t *tree) {
+static int answer_histogram(drawing *d, outbox *box, uint64_t client,
+                            const json_t *tree) {
     uint64_t counts[VALUES_BINS];
     double ends[2];
     const json_t *lo = json_object_get(tree, "lo"),
@@ -279,13 +279,14 @@ static void answer_histogram(drawing *d, outbox *box, uint64_t client,
     double high = json_is_number(hi) ? json_number_value(hi) : ends[1];
     if (!(low < high) || !isfinite(high - low) ||
         values_count(d, low, high, counts) != CONTINUE)
-        return;
+        return CONTINUE;
     json_t *list = json_array();
     for (int i = 0; i < VALUES_BINS; i++)
         json_array_append_new(list, json_integer((json_int_t)counts[i]));
     put(box, client, PARCEL_PLAIN,
         json_pack("{s:s, s:f, s:f, s:o}", "t", "histogram", "lo", low, "hi",
                   high, "counts", list));
+    return CONTINUE;
 }
 
 static void answer_command(drawing *d, viewer_state *s, outbox *box,
@@ -392,36 +393,39 @@ static bool read_slice(const json_t *tree, slice_asked *out) {
 /* {"what": "slice", "axis": "axial", "index": 57, "range": [0, 80], "pane": 1,
  * "n": 8, "exact": true}: {"t": "slice", "pane": 1} where there is none, as the
  * page waits for it. */
-static void answer_slice(drawing *d, outbox *box, uint64_t client,
-                         const json_t *tree) {
+static int answer_slice(drawing *d, outbox *box, uint64_t client,
+                        const json_t *tree) {
     slice_asked asked;
     snow_image_options form;
     snow_image *image = NULL;
     json_int_t pane = json_integer_value(json_object_get(tree, "pane"));
     json_int_t n = json_integer_value(json_object_get(tree, "n"));
     bool exact = json_is_true(json_object_get(tree, "exact"));
+    int done = CONTINUE;
     if (pane < 1 || pane > 3)
-        return;
+        return CONTINUE;
     if (read_slice(tree, &asked))
-        slices_draw(d, &asked, &image, &form);
+        done = slices_draw(d, &asked, &image, &form);
     parcel *made =
         image ? pack_small(image, &form, exact, (int)pane, (uint32_t)n) : NULL;
     if (made)
         made->client = client;
-    else
+    else if (done != SNOW_STATUS_NO_MEMORY)
         put_no_slice(box, client, pane);
     outbox_put(box, made);
     snow_image_free(image);
+    return done;
 }
 
-static void answer_slice_command(drawing *d, outbox *box, uint64_t client,
-                                 const json_t *tree) {
+static int answer_slice_command(drawing *d, outbox *box, uint64_t client,
+                                const json_t *tree) {
     slice_asked asked;
     char *command = read_slice(tree, &asked) ? slices_command(d, &asked) : NULL;
     if (command)
         put(box, client, PARCEL_PLAIN,
             json_pack("{s:s, s:s}", "t", "command", "text", command));
     free(command);
+    return CONTINUE;
 }
 
 static void read_at(const json_t *tree, int64_t index[3]) {
@@ -438,11 +442,12 @@ static void put_value(outbox *box, uint64_t client, const int64_t at[3],
 }
 
 /* {"what": "value", "at": [12, 30, 57]} */
-static void answer_value(drawing *d, outbox *box, uint64_t client,
-                         const json_t *tree) {
+static int answer_value(drawing *d, outbox *box, uint64_t client,
+                        const json_t *tree) {
     int64_t at[3];
     read_at(tree, at);
     put_value(box, client, at, slices_value(d, at));
+    return CONTINUE;
 }
 
 void answer_none(outbox *box, uint64_t client, const json_t *tree) {
@@ -459,22 +464,23 @@ void answer_none(outbox *box, uint64_t client, const json_t *tree) {
 
 /* {"what": "depth", "x": 0.5, "y": 0.25}: of the picture as it was drawn last.
  * The page knows the camera. */
-static void answer_depth(drawing *d, outbox *box, uint64_t client,
-                         const json_t *tree) {
+static int answer_depth(drawing *d, outbox *box, uint64_t client,
+                        const json_t *tree) {
     double depth;
     double x = json_number_value(json_object_get(tree, "x"));
     double y = json_number_value(json_object_get(tree, "y"));
     if (x < 0 || x > 1 || y < 0 || y > 1 ||
         pick_depth(d, x, y, &depth) != CONTINUE)
-        return;
+        return CONTINUE;
     put(box, client, PARCEL_PLAIN,
         json_pack("{s:s, s:f, s:f, s:o}", "t", "depth", "x", x, "y", y, "depth",
                   json_number(depth)));
+    return CONTINUE;
 }
 
 /* What needs the newest state, which may not be drawn yet. */
 static bool answer_state(drawing *d, viewer_state *s, outbox *box,
-                         viewer_question *question, const char *what) {
+                         const viewer_question *question, const char *what) {
     if (strcmp(what, "command") == 0)
         answer_command(d, s, box, question->client, VERB_RENDER);
     else if (strcmp(what, "movie-command") == 0)
@@ -490,11 +496,12 @@ static bool answer_state(drawing *d, viewer_state *s, outbox *box,
     return true;
 }
 
-/* Makes what the newest state needs, once for each state. */
+/* Makes what the newest state needs, once for each state; why it cannot be made
+ * is said then, and a second try is only for one that was short of memory. */
 static int follow(drawing *d, viewer_state *s) {
     uint32_t revision = state_revision(s); /* the recipe may be newer */
     if (d->followed == revision)
-        return d->followed_done;
+        return d->followed_done == CONTINUE ? CONTINUE : SNOW_STATUS_FAILED;
     json_t *recipe = state_recipe(s);
     d->followed_done = drawing_apply(d, recipe);
     d->followed = revision;
@@ -506,27 +513,28 @@ static int follow(drawing *d, viewer_state *s) {
  * state, not of the last picture. */
 typedef struct answer_row {
     const char *what;
-    void (*answer)(drawing *, outbox *, uint64_t, const json_t *);
+    int (*answer)(drawing *, outbox *, uint64_t, const json_t *);
     bool newest;
 } answer_row;
 
 /* Why a state has no volume is said when it is made. */
-static void answer_by(const answer_row *row, drawing *d, viewer_state *s,
-                      outbox *box, const viewer_question *question) {
-    bool made = !row->newest || follow(d, s) == CONTINUE;
-    if (made && d->state.volume && d->state.transfer) {
-        row->answer(d, box, question->client, question->tree);
-        return;
-    }
+static int answer_by(const answer_row *row, drawing *d, viewer_state *s,
+                     outbox *box, const viewer_question *question) {
+    int made = row->newest ? follow(d, s) : CONTINUE;
+    if (made == CONTINUE && d->state.volume && d->state.transfer)
+        return row->answer(d, box, question->client, question->tree);
+    if (made == SNOW_STATUS_NO_MEMORY)
+        return made;
     answer_none(box, question->client, question->tree);
-    if (made)
+    if (made == CONTINUE)
         answer_said(
             box, question->client,
             "There is no volume: undo, or choose another time or crop.");
+    return CONTINUE;
 }
 
-void answer_question(drawing *d, viewer_state *s, outbox *box,
-                     viewer_question *question) {
+int answer_question(drawing *d, viewer_state *s, outbox *box,
+                    const viewer_question *question) {
     static const answer_row rows[] = {
         {"histogram", answer_histogram, false},
         {"slice", answer_slice, true},
@@ -535,14 +543,11 @@ void answer_question(drawing *d, viewer_state *s, outbox *box,
         {"depth", answer_depth, false}};
     const char *what =
         json_string_value(json_object_get(question->tree, "what"));
-    bool known = false;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        if (strcmp(what, rows[i].what) == 0) {
-            answer_by(&rows[i], d, s, box, question);
-            known = true;
-        }
-    if (!known && !answer_state(d, s, box, question, what))
+        if (strcmp(what, rows[i].what) == 0)
+            return answer_by(&rows[i], d, s, box, question);
+    if (!answer_state(d, s, box, question, what))
         answer_said(box, question->client,
                     "ask: nothing is known of what is asked");
-    json_decref(question->tree);
+    return CONTINUE;
 }

@@ -17,9 +17,10 @@ void answer_figures(drawing *d, outbox *box);
 void answer_step(outbox *box, int64_t step);
 void answer_recipe_text(outbox *box, uint64_t client, const json_t *tree);
 
-/* Answers one page.  Frees the question's tree. */
-void answer_question(drawing *d, viewer_state *s, outbox *box,
-                     viewer_question *question);
+/* Answers one page.  SNOW_STATUS_NO_MEMORY: had no room, and has answered
+ * nothing. */
+int answer_question(drawing *d, viewer_state *s, outbox *box,
+                    const viewer_question *question);
 
 /* Of slices and values, which a page waits for: that there is none. */
 void answer_none(outbox *box, uint64_t client, const json_t *tree);

@@ -162,6 +162,11 @@ static outcome try_state(renderer *r, int level, const json_t *recipe,
 
 /* Where memory is short, pictures and volumes before go first: then there is
  * as much as the command of the state has. */
+static void make_room(renderer *r) {
+    free_pictures(packer_wait(r->pack));
+    drawing_empty(r->drawing);
+}
+
 static outcome draw_state(renderer *r, int level, const json_t *recipe,
                           bool anew) {
     const bool again = process_ranks() == 1;
@@ -172,9 +177,30 @@ static outcome draw_state(renderer *r, int level, const json_t *recipe,
     say_now(again && is_short);
     if (!again || !is_short)
         return o;
-    free_pictures(packer_wait(r->pack));
-    drawing_empty(r->drawing);
+    make_room(r);
     return try_state(r, level, recipe, true);
+}
+
+static bool try_answer(renderer *r, const viewer_question *question) {
+    return answer_question(r->drawing, r->state, r->box, question) !=
+           SNOW_STATUS_NO_MEMORY;
+}
+
+static void serve_answer(renderer *r, const viewer_question *question) {
+    const bool again = process_ranks() == 1;
+    if (again)
+        say_later();
+    bool answered = try_answer(r, question);
+    say_now(again && !answered);
+    if (again && !answered) {
+        make_room(r);
+        answered = try_answer(r, question);
+        if (!r->drawing->state.volume)
+            r->level = -1; /* a picture opens it again, or says why not */
+    }
+    if (!answered)
+        answer_none(r->box, question->client, question->tree);
+    json_decref(question->tree);
 }
 
 /* What a page asked for and the volume has not stays in no recipe: the state
@@ -228,7 +254,7 @@ viewer_work renderer_step(renderer *r, double *due) {
     viewer_work work = state_next(r->state, r->drawn, r->level, due, &question,
                                   &recipe, &revision);
     if (work == WORK_ANSWER)
-        answer_question(r->drawing, r->state, r->box, &question);
+        serve_answer(r, &question);
     else if (work >= WORK_DRAFT)
         serve_state(r, (int)work - WORK_DRAFT, recipe, revision);
     return work;

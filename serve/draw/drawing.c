@@ -457,6 +457,7 @@ void drawing_empty(drawing *d) {
     s->volume = NULL;
     s->in_slabs = s->channels.chosen = false;
     s->drawn.path = NULL; /* the next picture is the first one */
+    d->followed = 0;
     forget(d);
 }
 

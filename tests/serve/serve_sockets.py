@@ -669,6 +669,27 @@ def slices():
     server.stop()
 
 
+def slices_in_little_memory():
+    """They have the room of their command, also after a picture that had none."""
+    flat = os.path.join(FOLDER.name, "flat.nrrd")
+    subprocess.run([TOOL, "convert", "phantom:head", "--dims", "400x400x20",
+                    "-o", flat, "-q"], check=True)
+    server = Server(flat, "-q", "-j", "2", "--memory", "14M")
+    page = Page(server)
+    page.say({"t": "set", "n": 1, "recipe": {"size": [64, 64]}})
+    said = page.hear_text("said")["text"]
+    check("the picture at rest has no room in 14M", "14.0 MiB" in said, said)
+    for axis, index in ("z", 3), ("y", 200), ("x", 80):
+        asked = {"axis": axis, "index": index, "range": [0, 255]}
+        exact = ask_slice(page, **asked, exact=True)
+        page.say({"t": "ask", "what": "slice-command", **asked})
+        made = run_command(page.hear_text("command")["text"], "--memory", "14M")
+        check(f"a slice across {axis} has", exact and made == exact[32:],
+              made if isinstance(made, str) else exact)
+    page.close()
+    server.stop()
+
+
 def one_channel():
     """A channel that the volume has not is refused as by `render`."""
     server = Server(SMALL, "-q")
@@ -1073,6 +1094,7 @@ check("it ends in order", code == 0, f"{code} {said}")
 first_state()
 fit_at_position()
 slices()
+slices_in_little_memory()
 one_channel()
 mask_switch()
 dragged_points([], grey=True)
