@@ -108,25 +108,33 @@ static void list_cube(advice *a, uint64_t size, snow_type type) {
 }
 
 /* Stacks of square slices of usual sides, not much longer than wide. */
-static void list_squares(advice *a, uint64_t size) {
+static void list_squares(advice *a, uint64_t size, snow_type type) {
     for (uint64_t side = 64; side <= 1024; side *= 2) {
         uint64_t slice = side * side * size, slices = a->bytes / slice;
         const int64_t dims[3] = {(int64_t)side, (int64_t)side, (int64_t)slices};
         if (slices >= side / 8 && slices < side)
-            list(a, dims, size, SNOW_TYPE_NONE);
+            list(a, dims, size, type);
+    }
+}
+
+/* Squares or cubes of the type, or of any. */
+static void list_guesses(advice *a, bool squares, snow_type type) {
+    for (uint64_t size = 1; size <= 8; size *= 2) {
+        if (type && snow_type_size(type) != size)
+            continue;
+        if (squares)
+            list_squares(a, size, type);
+        else
+            list_cube(a, size, type);
     }
 }
 
 static void list_fitting(advice *a, const snow_volume_options *options) {
-    snow_type type = options->type;
     if (options->dims[0])
-        list_by_dims(a, options->dims, type);
-    else if (!type)
-        for (uint64_t size = 1; size <= 8; size *= 2)
-            list_squares(a, size);
-    for (uint64_t size = 1; size <= 8; size *= 2)
-        if (!type || snow_type_size(type) == size)
-            list_cube(a, size, type);
+        list_by_dims(a, options->dims, options->type);
+    else
+        list_guesses(a, true, options->type);
+    list_guesses(a, false, options->type);
 }
 
 /* More bytes than voxels by as many as a header has. */
@@ -209,8 +217,8 @@ static bool hint_fits(const hint *h, uint64_t bytes,
     const int64_t *dims = h->dims[0] ? h->dims : options->dims;
     if (!size && options->type)
         size = snow_type_size(options->type);
-    return dims[0] && size && snow_mul_u64(product(dims), size, &all) &&
-           all == bytes;
+    return bytes && dims[0] && size &&
+           snow_mul_u64(product(dims), size, &all) && all == bytes;
 }
 
 static void add_hint(advice *a, const hint *h, bool fits) {

@@ -7,6 +7,7 @@
 #include "io/folder.h"
 
 #include <ctype.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -91,7 +92,7 @@ static void read_name(snow_context *context, const char *path,
         !options->endian && found.endian && options->type == found.type;
     if (endian)
         options->endian = found.endian;
-    if (dims || type || endian)
+    if (options->dims[0] && options->type && (dims || type || endian))
         snow_notify(
             context, "%s: read as %lldx%lldx%lld %s, %s endian, by its name",
             path, (long long)options->dims[0], (long long)options->dims[1],
@@ -111,23 +112,25 @@ static snow_status refuse_unspecified(snow_source *source,
     const char *stranger = snow_stranger(bytes, size);
     if (stranger)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT, "%s", stranger);
-    bool meant = options->dims[0] || options->type || options->endian ||
-                 options->offset || snow_has_suffix(name, ".raw") ||
-                 snow_has_suffix(name, ".raw.gz");
-    int64_t left = snow_source_remaining(source);
-    char advice[RAW_ADVICE_BYTES] = "";
-    if (meant && left > 0 && options->offset < (uint64_t)left)
-        snow_raw_advise(name, (uint64_t)left - options->offset, options,
-                        advice);
-    if (*advice)
-        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "is raw data of %llu bytes; give --dims XxYxZ and "
-                         "--type (uint8, int16, float32, ...)%s",
-                         (unsigned long long)left, advice);
-    return snow_fail(context,
-                     meant ? SNOW_STATUS_BAD_USAGE : SNOW_STATUS_BAD_INPUT,
-                     "has an unknown format; if it is raw data, give --dims "
-                     "XxYxZ and --type (uint8, int16, float32, ...)");
+    if (!options->dims[0] && !options->type && !options->endian &&
+        !options->offset && !snow_has_suffix(name, ".raw") &&
+        !snow_has_suffix(name, ".raw.gz"))
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "has an unknown format; if it is raw data, give --dims "
+            "XxYxZ and --type (uint8, int16, float32, ...)");
+    char length[40] = "", advice[RAW_ADVICE_BYTES];
+    int64_t left = snow_source_remaining(source); /* -1: compressed */
+    uint64_t here = left > 0 && options->offset < (uint64_t)left
+                        ? (uint64_t)left - options->offset
+                        : 0;
+    if (left >= 0)
+        snprintf(length, sizeof length, " of %lld bytes", (long long)left);
+    snow_raw_advise(name, here, options, advice);
+    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                     "is raw data%s; give --dims XxYxZ and --type (uint8, "
+                     "int16, float32, ...)%s",
+                     length, advice);
 }
 
 /* Refuses a file with too few bytes.  One with too many is read, and a note

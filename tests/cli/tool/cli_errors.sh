@@ -214,6 +214,21 @@ zeros 640000 foo_80_80_50_16bit.raw
 refused 2 "a raw file whose name needs a guess" \
     "raw data of 640000 bytes.*its name suggests --dims 80x80x50 --type uint16 or int16, which fits$" \
     "$TOOL" foo_80_80_50_16bit.raw -o z.png
+gzip -k foo_80_80_50_16bit.raw
+refused 2 "a compressed one" \
+    "is raw data; give --dims.*; its name suggests --dims 80x80x50 --type uint16 or int16$" \
+    "$TOOL" foo_80_80_50_16bit.raw.gz -o z.png
+zeros 327680 half_u16.raw
+refused 2 "a raw file without dims" \
+    "^snowglass: half_u16.raw: is raw data of 327680 bytes; give --dims.*; what fits: 64x64x40 uint16$" \
+    "$TOOL" half_u16.raw -o z.png
+check "no dims are made up" [ "$(grep -c . "$ERR")" = 1 ]
+refused 2 "the same, with its type given" "; what fits: 64x64x20 float32; its name suggests --type uint16$" \
+    "$TOOL" half_u16.raw --type float32 -o z.png
+zeros 1009 plain.raw
+refused 2 "bytes that fit nothing usual" \
+    "is raw data of 1009 bytes; give --dims XxYxZ and --type .uint8, int16, float32, \.\.\..$" \
+    "$TOOL" plain.raw --type uint8 -o z.png
 refused 3 "dims other than those of its name" \
     "need 1000000 .*its name suggests --dims 80x80x50 --type uint16 or int16, which fits$" \
     "$TOOL" foo_80_80_50_16bit.raw --dims 100x100x100 --type uint8 -o z.png
