@@ -101,9 +101,9 @@ static void report_choices(shot_renderer *shots, snow_image *image) {
     char text[1024];
     render_state_choices(&shots->state, text, sizeof text);
     if (opts->verbosity >= 0)
-        say("%s%s; %" PRId64 " frames of %lldx%lld to %s", text,
-            shots->painted.words, shots->count, (long long)opts->size[0],
-            (long long)opts->size[1], opts->output);
+        say("%s%s; %" PRId64 " frame%s of %lldx%lld to %s", text,
+            shots->painted.words, shots->count, shots->count == 1 ? "" : "s",
+            (long long)opts->size[0], (long long)opts->size[1], opts->output);
     /* An empty first step says nothing about later ones, so only a turntable
      * warns. */
     warn_picture(&shots->state, shots->state.turns ? image : NULL);

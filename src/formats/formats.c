@@ -273,6 +273,9 @@ static snow_status open_file(snow_context *context, const char *path,
                              const snow_volume_options *options,
                              snow_volume_info *info, snow_volume **out) {
     snow_source *source;
+    if (depth && snow_source_is_stream(path)) /* it could wait for ever */
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "%s: is a pipe; give a regular file", path);
     snow_status status =
         snow_source_open_relayed(context, path, relay, &source);
     if (status != SNOW_STATUS_OK)

@@ -374,7 +374,7 @@ def one_bit_more(data):
     data.Rows, data.Columns, data.NumberOfFrames = 961, 1, 1
 
 
-spoilt("claims 1 frames of 1x961 pixels", one_bit_more)
+spoilt("claims 1 frame of 1x961 pixels", one_bit_more)
 spoilt("whose frames have no positions",
        without("PerFrameFunctionalGroupsSequence",
                "SharedFunctionalGroupsSequence"))

@@ -202,10 +202,11 @@ static snow_status check_sizes(snow_context *context,
                          (long long)image->frames);
     if (!can_hold(reader, image))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "claims %lld frames of %lldx%lld pixels, which its "
+                         "claims %lld frame%s of %lldx%lld pixels, which its "
                          "%llu bytes cannot hold; it is truncated or damaged",
-                         (long long)image->frames, (long long)image->columns,
-                         (long long)image->rows,
+                         (long long)image->frames,
+                         image->frames == 1 ? "" : "s",
+                         (long long)image->columns, (long long)image->rows,
                          (unsigned long long)snow_seekable_size(reader->store));
     return SNOW_STATUS_OK;
 }

@@ -25,11 +25,11 @@ static snow_status fail_short(dicom_reader *reader, const dicom_image *image,
                               const dicom_element *pixels, uint64_t bytes) {
     return snow_fail(
         reader->context, SNOW_STATUS_BAD_INPUT,
-        "is truncated or damaged: its pixels have %lu bytes, but %lld "
-        "frames of %lldx%lld need %llu; get the file again",
-        (unsigned long)pixels->length, (long long)image->frames,
-        (long long)image->columns, (long long)image->rows,
-        (unsigned long long)bytes);
+        "is truncated or damaged: its pixels have %lu bytes, not the %llu "
+        "of %lld frame%s of %lldx%lld; get the file again",
+        (unsigned long)pixels->length, (unsigned long long)bytes,
+        (long long)image->frames, image->frames == 1 ? "" : "s",
+        (long long)image->columns, (long long)image->rows);
 }
 
 /* Single bits, the lowest of a byte first; frames follow one another without a

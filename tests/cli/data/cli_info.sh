@@ -230,6 +230,15 @@ mkfifo many/pipe many/pipe.nrrd
 run 0 "pipes in a folder are not waited for" timeout 60 "$TOOL" info many
 check "nor listed" [ "$(cut -d: -f1 "$OUT" | tr '\n' ' ')" = \
     "many/a.nii.gz many/b.nrrd " ]
+cat >pipe.xmf <<END
+<Xdmf><Domain><Grid><Topology TopologyType="3DCoRectMesh" Dimensions="8 8 8"/>
+<Geometry GeometryType="ORIGIN_DXDYDZ"><DataItem Dimensions="3">0 0 0</DataItem>
+<DataItem Dimensions="3">1 1 1</DataItem></Geometry><Attribute Center="Node">
+<DataItem Dimensions="8 8 8" Format="HDF">many/pipe:/a</DataItem></Attribute>
+</Grid></Domain></Xdmf>
+END
+run 3 "nor is a pipe that an XDMF file names" timeout 60 "$TOOL" info pipe.xmf
+says "pipe.xmf: .*many/pipe: is a pipe; give a regular file"
 run 0 "a folder and a file" "$TOOL" info many/deep/ phantom:cube
 prints '^many/deep/c.nrrd: '
 prints '^phantom:cube: '
