@@ -110,7 +110,7 @@ static int64_t step_of(const numbers *list) {
 }
 
 /* The first file that does not follow the one before it, in a series without
- * gaps, is refused. */
+ * gaps, is refused.  %T names the iterations that exist, at any distance. */
 static int check_next(const char *pattern, frame_names *names,
                       const number *item, int64_t step, bool gaps) {
     char path[PATH_MAX];
@@ -122,7 +122,7 @@ static int check_next(const char *pattern, frame_names *names,
             path, pattern);
         return SNOW_STATUS_BAD_INPUT;
     }
-    if (gaps || item->value - last == step)
+    if (gaps || names->iterations || item->value - last == step)
         return CONTINUE;
     names->digits = item[-1].digits;
     names_path(names, last + step, path, sizeof path);

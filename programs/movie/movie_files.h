@@ -19,8 +19,8 @@ typedef struct step_files {
 bool files_are_meant(const char *path);
 
 /* Finds the files.  A pattern stands for all existing files.  A missing number
- * between them is an error, as is a missing file.  Returns CONTINUE or an exit
- * code. */
+ * between them is an error, except of %T, as is a missing file.  Returns
+ * CONTINUE or an exit code. */
 int steps_find(const options *opts, step_files *out);
 void steps_free(step_files *files);
 

@@ -59,6 +59,7 @@ const char *names_read(const char *path, frame_names *out) {
                 return "has two numbers; write one %04d";
             found = true;
             out->any = at[1] == 'T';
+            out->iterations = at[length] == 'T';
             part = out->after;
             used = 0;
             at += length;

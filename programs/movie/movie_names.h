@@ -12,8 +12,9 @@
 typedef struct frame_names {
     char folder[PATH_MAX];
     char before[NAME_MAX + 1], after[NAME_MAX + 1];
-    int digits; /* minimum, filled up with zeros; 0: as many as needed */
-    bool any;   /* each existing name has its own: %T */
+    int digits;      /* minimum, filled up with zeros; 0: as many as needed */
+    bool any;        /* each existing name has its own: %T */
+    bool iterations; /* at any distance: %T, %06T */
 } frame_names;
 
 /* Whether a path contains a %, so that it is meant as a pattern. */

@@ -49,8 +49,10 @@ says 'mixed_09.nrrd: step 2 of 4'
 run 0 "a long number" "$TOOL" info long_%T.nrrd --time last
 says 'long_0000000200.nrrd: step 1 of 2'
 rm mixed_09.nrrd
-refused 3 "a gap between several widths" 'mixed_9.nrrd: this step of mixed_%T.nrrd is missing' \
-    "$TOOL" movie mixed_%T.nrrd -o x_%d.png
+run 0 "iterations at any distance" "$TOOL" movie -q "${look[@]}" mixed_%T.nrrd -o x_%d.png
+check "are all in the movie too" [ "$(echo x_*.png)" = "x_0.png x_1.png x_2.png" ]
+run 0 "and of fixed width" "$TOOL" movie -q "${look[@]}" run_%04T.nrrd -o y_%d.png
+check "are all in the movie as well" [ "$(echo y_*.png)" = "y_0.png y_1.png y_2.png" ]
 mv mixed_10.nrrd mixed_08.nrrd
 refused 3 "two of one number" 'another file of mixed_%T.nrrd has this number too' \
     "$TOOL" info mixed_%T.nrrd --time 0
