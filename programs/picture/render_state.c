@@ -97,13 +97,18 @@ static snow_status frame_turn(render_state *s, snow_comm *comm, size_t frames) {
     return status;
 }
 
-/* So that the edges of a box are in the picture, and the numbers of its axes.
- */
+/* So that the edges of a box are in the picture, the numbers of its axes, and
+ * lines of text above or below it. */
 #define OUTLINE_ZOOM 0.96
 #define AXES_ZOOM 0.8
+#define LINE_ZOOM 0.115
 
 double render_state_margin(const options *opts) {
-    return opts->axes ? AXES_ZOOM : opts->outline ? OUTLINE_ZOOM : 1;
+    const bool dated = opts->annotate || opts->time_label;
+    if (!opts->axes && !opts->outline)
+        return 1;
+    return fmin(opts->axes ? AXES_ZOOM : OUTLINE_ZOOM,
+                OUTLINE_ZOOM - LINE_ZOOM * ((opts->title != NULL) + dated));
 }
 
 /* Frames what the look shows, once for all pictures.  What later steps show is

@@ -75,7 +75,8 @@ int render_state_open(render_state *s, const char *path, int64_t time);
 void render_state_choose_shade(render_state *s);
 
 /* What the zoom of a framed box is multiplied by, so that its edges and the
- * numbers of its axes are in the picture; 1 where neither is drawn. */
+ * numbers of its axes are in the picture, clear of the lines of a title; 1
+ * where neither is drawn. */
 double render_state_margin(const options *opts);
 
 /* Renders from an azimuth.  *image belongs to the caller; NULL on ranks that do

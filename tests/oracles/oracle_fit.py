@@ -8,6 +8,7 @@ import sys
 
 try:
     import numpy as np
+    from PIL import Image
 except ImportError as missing:
     print("skip  ", missing)
     sys.exit(77)
@@ -37,7 +38,7 @@ def draw(*options, out="b.npy", verb="render", status=0):
     if done.returncode != status:
         oracle.fail(" ".join(options), f"exit {done.returncode}: {done.stderr.strip()}")
         return np.zeros((SIDE, SIDE, 4))
-    return np.load(out) if "%" not in out else None
+    return np.load(out) if out == "b.npy" else None
 
 
 def edges(picture):
@@ -101,4 +102,22 @@ for way in ((), ("--perspective",)):
     same(f"in slabs {way}", whole,
          draw("--view", "iso", *way, "--memory", "8M"))
     same(f"by one thread {way}", whole, draw("--view", "iso", *way, "-j", "1"))
+# A box is clear of the lines of text above it.
+def written(*options):
+    draw("--background", "none", *options, out="b.png")
+    with Image.open("b.png") as picture:
+        return np.asarray(picture.convert("RGBA"))
+
+
+SIDE = 300
+np.save("a.npy", np.full((40, 40, 40), 200, np.uint8))
+for box in ("--outline", "--axes"):
+    for lines in (("--title",), ("--annotate", "step", "--title")):
+        one, other = (written("--spacing", "1x1x1", box, *lines, title)
+                      for title in ("Run", "Gq."))
+        text = np.nonzero((one != other).any(axis=(1, 2)))[0]
+        top = np.nonzero(one[:, int(0.7 * SIDE), 3])[0][0]
+        oracle.checked += 1
+        if not text.size or text.max() >= top:
+            oracle.fail(f"{box} {lines}", f"text in rows {text}, box at {top}")
 oracle.finish()
