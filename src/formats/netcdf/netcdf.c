@@ -146,9 +146,10 @@ static bool read_coordinates(const netcdf_header *header,
                              const snow_volume *line, double *out) {
     size_t size = snow_type_size(v->type), count = (size_t)line->info.dims[0];
     uint64_t step = v->records ? header->record_bytes : size;
-    unsigned char *at = line->owned;
-    for (size_t i = 0; i < count; i++, at += size)
-        if (snow_seekable_read(bytes, v->begin + i * step, at, size) < size)
+    size_t part = step == size ? count * size : size;
+    for (size_t i = 0; i < count * size / part; i++)
+        if (snow_seekable_read(bytes, v->begin + i * step,
+                               line->owned + i * part, part) < part)
             return false;
     if (!snow_machine_big_endian())
         snow_swap_bytes(line->owned, count, size);
