@@ -133,8 +133,11 @@ static bool fills_volume(const uint64_t *counts, uint64_t all, const split *s,
            explained(counts, s) < ONE_HEAP && low > -ABOUT_0 * high;
 }
 
-static void read_counts(const uint64_t *counts, uint64_t all, snow_scale scale,
-                        double low, double high, snow_histogram_split *out) {
+/* `there` is the share of the volume that has values: what a mask leaves out is
+ * background, too. */
+static void read_counts(const uint64_t *counts, uint64_t all, double there,
+                        snow_scale scale, double low, double high,
+                        snow_histogram_split *out) {
     split s = {0}, veil = {0};
     out->top = out->high = high;
     out->low = low;
@@ -145,7 +148,7 @@ static void read_counts(const uint64_t *counts, uint64_t all, snow_scale scale,
     out->fills_volume = fills_volume(counts, all, &s, low, high);
     for (int tries = 0; tries < 3; tries++) {
         split upper = {0};
-        if (share_of(counts, (int)s.at, BINS, all) < MOST_OBJECT ||
+        if (there * share_of(counts, (int)s.at, BINS, all) < MOST_OBJECT ||
             !part_bins(counts, (int)s.at, BINS, &upper))
             break;
         s = upper;
@@ -153,13 +156,30 @@ static void read_counts(const uint64_t *counts, uint64_t all, snow_scale scale,
     out->background = snow_between_on(scale, low, high, s.below / BINS);
     out->threshold = snow_between_on(scale, low, high, s.at / BINS);
     out->object = snow_between_on(scale, low, high, s.above / BINS);
-    if (share_of(counts, (int)s.at, BINS, all) > VEIL_OBJECT ||
+    if (there * share_of(counts, (int)s.at, BINS, all) > VEIL_OBJECT ||
         !part_bins(counts, 0, (int)s.at, &veil))
         return;
     out->faint = snow_between_on(scale, low, high, veil.at / BINS);
     out->with_faint =
-        share_of(counts, (int)veil.at, (int)s.at, all) <= VEIL_MOST &&
+        there * share_of(counts, (int)veil.at, (int)s.at, all) <= VEIL_MOST &&
         out->faint < out->threshold;
+}
+
+/* Where so many voxels have no value, as those outside a mask, what is left has
+ * a shape. */
+#define LEFT_OUT 0.02
+
+/* The share of the voxels that have values. */
+static double share_there(const snow_histogram *histogram) {
+    snow_extent part;
+    snow_volume_find_extent(histogram->volume, &part);
+    double all =
+        (double)part.dims[0] * (double)part.dims[1] * (double)part.dims[2];
+    return (double)(histogram->finite + histogram->dropped) / all;
+}
+
+static bool has_shape(const snow_histogram *histogram) {
+    return share_there(histogram) < 1 - LEFT_OUT;
 }
 
 snow_status snow_histogram_split_at(const snow_histogram *histogram,
@@ -181,7 +201,8 @@ snow_status snow_histogram_split_at(const snow_histogram *histogram,
     }
     uint64_t counts[BINS], all;
     SNOW_TRY(snow_count_bins(histogram, ends[0], ends[1], BINS, counts, &all));
-    read_counts(counts, all, histogram->scale, ends[0], ends[1], out);
+    read_counts(counts, all, has_shape(histogram) ? share_there(histogram) : 1,
+                histogram->scale, ends[0], ends[1], out);
     return SNOW_STATUS_OK;
 }
 
@@ -220,19 +241,6 @@ static void build_solid(const snow_histogram_split *p, bool slice,
     add_opacity(builder, snow_between_on(scale, p->low, p->high, 0.15), 0);
     add_opacity(builder, snow_between_on(scale, p->low, p->high, 0.30), 0.30);
     add_opacity(builder, p->high, 0.70);
-}
-
-/* Where so many voxels have no value, as those outside a mask, what is left has
- * a shape. */
-#define LEFT_OUT 0.02
-
-static bool has_shape(const snow_histogram *histogram) {
-    snow_extent part;
-    snow_volume_find_extent(histogram->volume, &part);
-    double all =
-        (double)part.dims[0] * (double)part.dims[1] * (double)part.dims[2];
-    return (double)(histogram->finite + histogram->dropped) <
-           (1 - LEFT_OUT) * all;
 }
 
 /* All that is left, with its surface. */

@@ -660,7 +660,7 @@ static void fill_heap(float *values, int count, double middle, double width) {
 
 static void one_heap_of_values_is_a_solid_block(void **state) {
     (void)state;
-    static float values[20 * 20 * 20];
+    static float values[20 * 20 * 20], left[20 * 20 * 20];
     const int64_t cube[3] = {20, 20, 20}, slice[3] = {80, 100, 1};
     const int64_t few[3] = {2, 50, 80}, many[3] = {50, 32, 5};
     snow_context *context = support_context();
@@ -681,6 +681,15 @@ static void one_heap_of_values_is_a_solid_block(void **state) {
         values[i] = i % 3 ? 0 : 100 + (float)(i % 7);
     transfer = look_at_block(context, values, cube);
     assert_false(snow_transfer_is_unshaded(transfer));
+    snow_transfer_free(transfer);
+    /* Of two organs that a mask has left, the noise of one is not split. */
+    fill_heap(left, 3000, 900, 20);
+    fill_heap(left + 3000, 600, 50, 20);
+    for (int i = 3600; i < 8000; i++)
+        left[i] = NAN;
+    transfer = look_at_block(context, left, cube);
+    assert_false(snow_transfer_is_unshaded(transfer));
+    assert_true(opacity_at(transfer, 860) > 0.25);
     snow_transfer_free(transfer);
     /* A slice is a picture, whatever its values. */
     transfer = look_at_block(context, values, slice);
