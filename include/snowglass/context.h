@@ -52,7 +52,7 @@ typedef bool snow_stop_fn(void *user);
 
 /* What a long call is doing; slabs of a file are read in SNOW_STAGE_ENCODE. */
 typedef enum snow_stage {
-    SNOW_STAGE_READ = 0, /* a volume is opened, or a phantom made */
+    SNOW_STAGE_READ = 0, /* a volume is opened, made or measured */
     SNOW_STAGE_ENCODE,   /* of a picture: classify, shade and encode */
     SNOW_STAGE_RENDER,   /* of a picture: all else */
     SNOW_STAGE_WRITE     /* a volume is saved */

@@ -41,8 +41,7 @@ static snow_status gather_facts(facts *f) {
         f->threshold_count = 3;
     }
     snow_volume_statistics_init(&f->measures);
-    snow_volume_get_statistics(f->volume, &f->measures);
-    snow_status status = SNOW_STATUS_OK;
+    snow_status status = snow_volume_get_statistics(f->volume, &f->measures);
     for (size_t i = 0; i < f->threshold_count && status == SNOW_STATUS_OK; i++)
         status = snow_transfer_sparse_ratio(f->transfer, f->volume,
                                             f->thresholds[i], &f->ratios[i]);

@@ -6,6 +6,8 @@
  * 20 in any second, and work done within an interval reports nothing. */
 #include "base/monitor.h"
 
+#include <math.h>
+
 #define INTERVAL 0.053
 #define ASK_INTERVAL 0.001
 
@@ -19,6 +21,7 @@ static void init(snow_context *context, snow_monitor *monitor,
     *monitor = (snow_monitor){.context = context,
                               .stop = stop,
                               .stop_user = user,
+                              .last = SNOW_STAGE_ENCODE,
                               .reported = {-1, -1, -1, -1},
                               .share = 1};
     /* What is done at once reports nothing. */
@@ -49,6 +52,7 @@ void snow_monitor_begin(snow_context *context, snow_monitor *monitor,
 void snow_monitor_begin_reading(snow_context *context, snow_monitor *monitor) {
     init(context, monitor, NULL, NULL);
     monitor->reads = true;
+    monitor->last = SNOW_STAGE_READ;
     if (context->progress && !context->monitor)
         snow_monitor_enter(monitor);
 }
@@ -57,6 +61,7 @@ static void call_progress(snow_monitor *monitor, snow_stage stage,
                           double fraction, double due) {
     snow_context *context = monitor->context;
     monitor->reported[stage] = fraction;
+    monitor->last = stage;
     context->progress_due = due;
     if (context->progress(context->progress_user, stage, fraction))
         atomic_store(&monitor->stopped, true);
@@ -116,6 +121,17 @@ void snow_monitor_report(snow_monitor *monitor, snow_stage stage, double done,
                       now + INTERVAL);
 }
 
+/* Says again how far the stage is, where nothing was reported for so long,
+ * since the function may end the call. */
+static void repeat(snow_monitor *monitor, double now) {
+    if (monitor->context->progress &&
+        now >= monitor->context->progress_due + INTERVAL / 2 &&
+        !atomic_load(&monitor->stopped))
+        call_progress(monitor, monitor->last,
+                      fmax(monitor->reported[monitor->last], 0),
+                      now + INTERVAL);
+}
+
 bool snow_monitor_item(snow_monitor *monitor, int worker, int64_t item,
                        int64_t items) {
     if (!monitor)
@@ -128,6 +144,8 @@ bool snow_monitor_item(snow_monitor *monitor, int worker, int64_t item,
                                     (monitor->end - monitor->begin) *
                                         (double)item / (double)items,
                                 1);
+        else if (monitor->context->progress)
+            repeat(monitor, snow_seconds());
     }
     return atomic_load_explicit(&monitor->stopped, memory_order_relaxed);
 }
@@ -135,11 +153,12 @@ bool snow_monitor_item(snow_monitor *monitor, int worker, int64_t item,
 bool snow_monitor_look(snow_monitor *monitor, int worker) {
     if (!monitor)
         return false;
-    if (worker == 0 && monitor->stop) {
+    if (worker == 0 && (monitor->stop || monitor->context->progress)) {
         double now = snow_seconds();
         if (now - monitor->asked >= ASK_INTERVAL) {
             monitor->asked = now;
             ask(monitor);
+            repeat(monitor, now);
         }
     }
     return atomic_load_explicit(&monitor->stopped, memory_order_relaxed);
@@ -149,7 +168,7 @@ void snow_monitor_next(snow_monitor *monitor, snow_stage stage, double begin,
                        double end) {
     if (!monitor)
         return;
-    monitor->stage = stage;
+    monitor->stage = monitor->last = stage;
     monitor->begin = begin;
     monitor->end = end;
     monitor->armed = true;

@@ -30,6 +30,7 @@ struct snow_monitor {
     double asked; /* when `stop` was asked last */
     /* Progress.  Of a stage: what was reported last, below 0: nothing. */
     double reported[SNOW_STAGES];
+    snow_stage last;          /* that was reported last, or begins */
     double from, share;       /* the part of each stage that is under way */
     double begin, end;        /* the part of `stage` that is made by the ... */
     snow_stage stage;         /* ... next batch; `armed` */
@@ -39,12 +40,12 @@ struct snow_monitor {
 };
 
 /* Begins a monitor and makes it the context's own, unless nothing is to be
- * watched. */
+ * watched.  Its first stage is that of encoding. */
 void snow_monitor_begin(snow_context *context, snow_monitor *monitor,
                         snow_stop_fn *stop, void *user);
 
-/* The same of a call that reads or makes a volume, unless it is a slab of a
- * picture, which has a monitor of its own. */
+/* The same of a call that reads, makes or measures a volume, unless it is a
+ * part of another one, say of a picture, which has a monitor of its own. */
 void snow_monitor_begin_reading(snow_context *context, snow_monitor *monitor);
 
 /* Ends it, reports the ends of its stages where the call has succeeded, and
@@ -78,7 +79,7 @@ bool snow_monitor_item(snow_monitor *monitor, int worker, int64_t item,
                        int64_t items);
 
 /* Within a long item: the same, but asks no more than a thousand times a
- * second. */
+ * second, and reports what was reported last. */
 bool snow_monitor_look(snow_monitor *monitor, int worker);
 
 /* The next batch is the part from `begin` to `end` (0 to 1) of a stage. */

@@ -61,6 +61,7 @@ snow_status snow_volume_save(const snow_volume *volume, const char *path,
     SNOW_TRY(snow_writer_open(volume->context, path, overwrite, &writer));
     snow_monitor monitor;
     snow_monitor_begin(volume->context, &monitor, NULL, NULL);
+    monitor.last = SNOW_STAGE_WRITE;
     snow_status status =
         snow_monitor_end(&monitor, write_volume(volume, path, endings[i].format,
                                                 endings[i].packed, writer));

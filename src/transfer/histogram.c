@@ -92,6 +92,7 @@ typedef struct measuring {
 static snow_status measure_values(const snow_volume *slab, void *user) {
     measuring *m = user;
     snow_histogram *histogram = m->histogram;
+    snow_monitor *monitor = histogram->volume->context->monitor;
     double values[SNOW_WALK_BLOCK];
     size_t count;
     snow_voxel_walk w =
@@ -99,6 +100,9 @@ static snow_status measure_values(const snow_volume *slab, void *user) {
     if (histogram->sample)
         keep_sample(slab, histogram->sample, &m->sampled);
     while ((count = snow_voxel_walk_next_block(&w, values))) {
+        /* ranks end together, behind their passes */
+        if (!histogram->comm && snow_monitor_look(monitor, 0))
+            return snow_monitor_status(monitor);
         for (size_t i = 0; i < count; i++) {
             double value = values[i];
             if (!isfinite(value))

@@ -176,23 +176,37 @@ static void measure_value(snow_volume_statistics *m, double value,
     m->wsum += value * (double)(index % WEIGHT_PERIOD + 1);
 }
 
+/* Whether the caller wants a pass over the voxels to end, which reports where
+ * it is a call of its own. */
+static bool is_stopped(const snow_volume *volume, snow_monitor *own,
+                       int64_t first) {
+    if (first % WATCHED != 0)
+        return false;
+    if (own->entered)
+        snow_monitor_report(own, SNOW_STAGE_READ, (double)first,
+                            (double)voxel_count(volume));
+    return snow_monitor_look(volume->context->monitor, 0);
+}
+
 /* One thread and one order: the sums are compared to the last bit with those
  * of other readers. */
 snow_status snow_volume_get_statistics(const snow_volume *volume,
                                        snow_volume_statistics *out) {
     snow_volume_statistics m = {
         .voxels = voxel_count(volume), .min = NAN, .max = NAN};
+    snow_monitor monitor;
     double values[BLOCK];
     size_t count;
-    for (int64_t first = 0; volume->voxels && first < m.voxels;
+    snow_monitor_begin_reading(volume->context, &monitor);
+    for (int64_t first = 0; volume->voxels && first < m.voxels &&
+                            !is_stopped(volume, &monitor, first);
          first += (int64_t)count) {
-        if (first % WATCHED == 0 &&
-            snow_monitor_look(volume->context->monitor, 0))
-            break; /* the caller looks at the status */
         count = next_block(volume, first, values);
         for (size_t i = 0; i < count; i++)
             measure_value(&m, values[i], first + (int64_t)i);
     }
+    SNOW_TRY(snow_monitor_end(&monitor,
+                              snow_monitor_status(volume->context->monitor)));
     return SNOW_RECORD_FILL(volume->context, snow_volume_statistics, &m, out);
 }
 
@@ -210,9 +224,12 @@ snow_status snow_volume_histogram(const snow_volume *volume, double lo,
     /* Halves, where the whole range is more than a double can hold. */
     double scale = isfinite(hi - lo) ? 1 : 0.5;
     double range = scale * hi - scale * lo;
+    snow_monitor monitor;
     double values[BLOCK];
     size_t count;
-    for (int64_t first = 0; first < voxel_count(volume);
+    snow_monitor_begin_reading(volume->context, &monitor);
+    for (int64_t first = 0;
+         first < voxel_count(volume) && !is_stopped(volume, &monitor, first);
          first += (int64_t)count) {
         count = next_block(volume, first, values);
         for (size_t i = 0; i < count; i++) {
@@ -223,5 +240,6 @@ snow_status snow_volume_histogram(const snow_volume *volume, double lo,
             counts[bin < (double)bins ? (size_t)bin : bins - 1]++;
         }
     }
-    return SNOW_STATUS_OK;
+    return snow_monitor_end(&monitor,
+                            snow_monitor_status(volume->context->monitor));
 }

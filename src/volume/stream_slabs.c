@@ -261,7 +261,6 @@ snow_status snow_slabs_visit(const snow_volume *volume,
 static snow_status measure_slab(const snow_volume *slab, void *user) {
     snow_volume_statistics *range = user, here = {.size = sizeof here};
     SNOW_TRY(snow_volume_get_statistics(slab, &here));
-    SNOW_TRY(snow_monitor_status(slab->context->monitor));
     range->voxels += here.voxels;
     range->finite += here.finite;
     range->min = fmin(range->min, here.min);

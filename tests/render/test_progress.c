@@ -13,7 +13,7 @@
 #include <pthread.h>
 #include <snowglass/render.h>
 
-#define CALLS_MOST 2000
+#define CALLS_MOST 5000
 
 /* The library's questions come here. */
 double __wrap_snow_seconds(void);
@@ -192,6 +192,44 @@ static void saving_is_reported_and_can_be_stopped(void **state) {
     support_folder_remove(folder);
 }
 
+static snow_status measure(const snow_volume *volume, int what) {
+    uint64_t counts[16];
+    snow_volume_statistics figures = {.size = sizeof figures};
+    snow_transfer *transfer = NULL;
+    if (what == 2) {
+        snow_status status =
+            snow_transfer_new_for_volume(volume, NULL, &transfer);
+        snow_transfer_free(transfer);
+        return status;
+    }
+    return what ? snow_volume_histogram(volume, 0, 1, 16, counts)
+                : snow_volume_get_statistics(volume, &figures);
+}
+
+static void measuring_is_reported_and_can_be_stopped(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_volume *volume;
+    listener l;
+    assert_int_equal(snow_volume_open_phantom(
+                         context, "turbulence",
+                         (const int64_t[3]){SIDE, SIDE, SIDE}, 0, &volume),
+                     SNOW_STATUS_OK);
+    for (int what = 0; what < 3; what++) {
+        listen_to(context, &l, 1);
+        assert_int_equal(measure(volume, what), SNOW_STATUS_STOPPED);
+        assert_int_equal(l.calls, 1);
+        listen_to(context, &l, 0);
+        assert_int_equal(measure(volume, what), SNOW_STATUS_OK);
+        check_rate(&l);
+        assert_true(check_stage(&l, SNOW_STAGE_READ) >= 3);
+        assert_int_equal(check_stage(&l, SNOW_STAGE_READ), l.calls);
+    }
+    snow_volume_close(volume);
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+}
+
 /* --- pictures ------------------------------------------------------------- */
 
 static void a_picture_is_reported(void **state) {
@@ -248,6 +286,26 @@ static void a_picture_is_reported(void **state) {
     snow_context_free(context);
 }
 
+/* Work of one long item, or before the first batch, can be ended, too. */
+static void a_long_item_can_be_stopped(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_monitor monitor;
+    listener l;
+    int looks = 0;
+    listen_to(context, &l, 1);
+    snow_monitor_begin(context, &monitor, NULL, NULL);
+    snow_monitor_next(&monitor, SNOW_STAGE_RENDER, 0, 1);
+    while (looks < 100 && !snow_monitor_look(&monitor, 0))
+        looks++;
+    assert_int_equal(snow_monitor_end(&monitor, snow_monitor_status(&monitor)),
+                     SNOW_STATUS_STOPPED);
+    assert_true(looks < 10);
+    assert_int_equal(l.calls, 1);
+    assert_int_equal(l.stages[0], SNOW_STAGE_RENDER);
+    snow_context_free(context);
+}
+
 /* Calls of many short works, each of which reports its end. */
 static void many_calls_are_not_reported_more_often(void **state) {
     (void)state;
@@ -294,7 +352,9 @@ int main(void) {
         TEST(a_phantom_is_reported_while_it_is_made),
         TEST(reading_is_reported_and_can_be_stopped),
         TEST(saving_is_reported_and_can_be_stopped),
+        TEST(measuring_is_reported_and_can_be_stopped),
         TEST(a_picture_is_reported),
+        TEST(a_long_item_can_be_stopped),
         TEST(many_calls_are_not_reported_more_often),
         TEST(nothing_is_reported_of_what_is_short),
     };
