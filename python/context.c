@@ -69,7 +69,7 @@ static bool report(void *user, snow_stage stage, double fraction) {
 static void keep_warning(void *user, const char *text) {
     context_object *c = user;
     PyGILState_STATE state = PyGILState_Ensure();
-    PyObject *one = text_of(text);
+    PyObject *one = record_text(text);
     if (!one || PyList_Append(c->warnings, one))
         PyErr_Clear();
     Py_XDECREF(one);
@@ -136,7 +136,7 @@ bool context_enter(context_object *c, PyObject *progress) {
 }
 
 void context_set_error(snow_status status, const char *message) {
-    PyObject *text = text_of(message), *number = PyLong_FromLong(status);
+    PyObject *text = record_text(message), *number = PyLong_FromLong(status);
     PyObject *type = status == SNOW_STATUS_NO_MEMORY   ? PyExc_MemoryError
                      : status == SNOW_STATUS_BAD_USAGE ? PyExc_ValueError
                                                        : error_type;

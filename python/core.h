@@ -96,6 +96,10 @@ bool record_fill_look(PyObject *given, snow_look *look);
 bool record_numbers(const char *name, PyObject *value, Py_ssize_t count,
                     bool whole, void *to);
 
+/* A message of the library, in which options of the tool are arguments: crop=
+ * for --crop, time=2 for --time 2. */
+PyObject *record_text(const char *message);
+
 /* Whether a dictionary has an item other than None. */
 bool record_has(PyObject *given, const char *name);
 

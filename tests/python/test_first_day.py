@@ -255,6 +255,19 @@ class Stumbles(InFolder):
             with self.assertRaisesRegex(ValueError, answer):
                 call()
 
+    def test_messages_name_arguments_and_not_options(self):
+        numpy.save("a.npy", ball())
+        with open("a.bin", "wb") as file:
+            file.write(bytes(3 * 4 * 5))
+        for call, answer in (
+                (lambda: sg.Volume("a.npy", dataset="rho"), "^(.*: )?dataset=rho: "),
+                (lambda: sg.Volume("a.npy", dims=(1, 2, 3)),
+                 "remove dims=, type=, endian= and offset="),
+                (lambda: sg.Volume("a.bin"), "give dims=XxYxZ and type= ")):
+            with self.assertRaisesRegex((ValueError, sg.Error), answer) as caught:
+                call()
+            self.assertNotIn("--", str(caught.exception))
+
     def test_points_may_be_what_is_read_once(self):
         volume = sg.Volume(ball())
         listed = sg.Look(opacity=[(10, 0), (90, .8)],
