@@ -123,15 +123,17 @@ typedef struct span_rows {
     unsigned char *seen; /* whether they have interesting voxels */
 } span_rows;
 
+/* Of a worker, who has slices of its own. */
 typedef struct counting {
-    snow_block_counts *block_counts;
-    int64_t *columns; /* of the whole: their blocks */
+    const snow_block_counts *block_counts;
+    int64_t *counts;        /* the first worker's are those of all at last */
+    const int64_t *columns; /* of the whole: their blocks */
     span_rows spans;
 } counting;
 
 static int64_t *block_at(const counting *c, int64_t x, int64_t y, int64_t z) {
     const int64_t *blocks = c->block_counts->blocks;
-    return c->block_counts->counts +
+    return c->counts +
            (snow_block_counts_find(c->block_counts, 2, z) * blocks[1] +
             snow_block_counts_find(c->block_counts, 1, y)) *
                blocks[0] +
@@ -170,7 +172,7 @@ static void see_spans(counting *c, const snow_interesting_row *row) {
 }
 
 static void count_row(void *of, const snow_interesting_row *row) {
-    counting *c = of;
+    counting *c = (counting *)of + row->worker;
     const int64_t *columns = c->columns + row->stored;
     int64_t *counts = block_at(c, 0, row->y, row->z);
     for (size_t n = 0; n < row->count; n++)
@@ -179,15 +181,34 @@ static void count_row(void *of, const snow_interesting_row *row) {
         see_spans(c, row);
 }
 
-static snow_status prepare_counting(snow_context *context,
-                                    const int64_t dims[3], counting *c) {
+static snow_status find_columns(snow_context *context,
+                                const snow_block_counts *block_counts,
+                                int64_t **out) {
+    const int64_t count = block_counts->grid.dims[0];
+    SNOW_TRY(SNOW_RESERVE(context, *out, 0, count));
+    for (int64_t x = 0; x < count; x++)
+        (*out)[x] = snow_block_counts_find(block_counts, 0, x);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status prepare_worker(snow_context *context,
+                                  snow_block_counts *block_counts,
+                                  const int64_t *columns, bool first,
+                                  counting *c) {
+    const int64_t *dims = block_counts->grid.dims;
+    const size_t blocks = snow_block_counts_blocks(block_counts);
     span_rows *s = &c->spans;
-    SNOW_TRY(SNOW_RESERVE(context, c->columns, 0, dims[0]));
-    for (int64_t x = 0; x < dims[0]; x++)
-        c->columns[x] = snow_block_counts_find(c->block_counts, 0, x);
-    if (!c->block_counts->span)
+    c->block_counts = block_counts;
+    c->columns = columns;
+    if (first)
+        c->counts = block_counts->counts;
+    else {
+        SNOW_TRY(SNOW_RESERVE(context, c->counts, 0, blocks));
+        memset(c->counts, 0, blocks * sizeof *c->counts);
+    }
+    if (!block_counts->span)
         return SNOW_STATUS_OK;
-    const bool along_y = c->block_counts->grid.axis == 0;
+    const bool along_y = block_counts->grid.axis == 0;
     *s = (span_rows){.along_y = along_y,
                      .rows = dims[!along_y],
                      .spans = (dims[along_y] - 1) / SNOW_COST_SPAN + 1,
@@ -198,26 +219,62 @@ static snow_status prepare_counting(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
+/* What a worker has counted goes to the counts of all. */
+static void add_worker(counting *c) {
+    const snow_block_counts *all = c->block_counts;
+    const size_t blocks = snow_block_counts_blocks(all);
+    if (all->span)
+        count_spans(c, -1);
+    for (size_t n = 0; n < blocks && c->counts != all->counts; n++)
+        all->counts[n] += c->counts[n];
+}
+
+static void free_workers(snow_context *context, counting *workers,
+                         int threads) {
+    for (int n = 0; n < threads; n++) {
+        snow_release(context, workers[n].spans.seen);
+        if (n > 0)
+            snow_release(context, workers[n].counts);
+    }
+    snow_release(context, workers);
+}
+
+static snow_status count_blocks(const snow_interesting_walk *walk,
+                                snow_block_counts *block_counts,
+                                const int64_t *columns, counting *workers) {
+    snow_context *context = walk->volume->context;
+    for (int n = 0; n < walk->threads; n++)
+        SNOW_TRY(prepare_worker(context, block_counts, columns, n == 0,
+                                &workers[n]));
+    SNOW_TRY(snow_visit_interesting(walk, count_row, workers));
+    for (int n = 0; n < walk->threads; n++)
+        add_worker(&workers[n]);
+    return SNOW_STATUS_OK;
+}
+
 snow_status snow_count_interesting_blocks(const snow_volume *volume,
                                           const snow_transfer *transfer,
                                           double threshold, snow_isa isa,
+                                          int threads,
                                           snow_block_counts *block_counts) {
-    counting c = {.block_counts = block_counts};
-    snow_extent part;
-    snow_volume_find_extent(volume, &part);
+    snow_context *context = volume->context;
+    int64_t *columns = NULL;
     const snow_interesting_walk walk = {.volume = volume,
                                         .transfer = transfer,
                                         .threshold = threshold,
                                         .exponent = 1,
                                         .isa = isa,
+                                        .threads = threads,
                                         .step = block_counts->step};
-    snow_status status = prepare_counting(volume->context, part.dims, &c);
+    counting *workers =
+        snow_allocate_clear(context, (size_t)threads * sizeof *workers);
+    if (!workers)
+        return SNOW_STATUS_NO_MEMORY;
+    snow_status status = find_columns(context, block_counts, &columns);
     if (status == SNOW_STATUS_OK)
-        status = snow_visit_interesting(&walk, count_row, &c);
-    if (status == SNOW_STATUS_OK && block_counts->span)
-        count_spans(&c, -1);
-    snow_release(volume->context, c.columns);
-    snow_release(volume->context, c.spans.seen);
+        status = count_blocks(&walk, block_counts, columns, workers);
+    free_workers(context, workers, threads);
+    snow_release(context, columns);
     return status;
 }
 
@@ -233,7 +290,7 @@ snow_status snow_count_interesting(const snow_volume *volume,
     for (int axis = 0; axis < 3; axis++)
         block_counts.grid.dims[axis] = block_counts.block[axis] =
             part.dims[axis];
-    SNOW_TRY(snow_count_interesting_blocks(volume, transfer, threshold, isa,
+    SNOW_TRY(snow_count_interesting_blocks(volume, transfer, threshold, isa, 1,
                                            &block_counts));
     *out = count;
     return SNOW_STATUS_OK;

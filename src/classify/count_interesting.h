@@ -29,12 +29,14 @@ snow_status snow_visit_interesting(const snow_interesting_walk *walk,
                                    snow_interesting_fn *visit, void *user);
 
 /* Adds the interesting voxels that a volume owns to block counts. The grid of
- * the counts is the volume's own, or that of the volume it is a part of.
+ * the counts is the volume's own, or that of the volume it is a part of. Each
+ * thread but the first has counts of its own meanwhile.
  * Errors: SNOW_STATUS_BAD_USAGE (a row of 2^32 voxels or more),
  * SNOW_STATUS_NO_MEMORY. */
 snow_status snow_count_interesting_blocks(const snow_volume *volume,
                                           const snow_transfer *transfer,
                                           double threshold, snow_isa isa,
+                                          int threads,
                                           snow_block_counts *block_counts);
 
 /* The total number of interesting voxels. Errors: as above. */

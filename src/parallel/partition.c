@@ -72,7 +72,8 @@ snow_partition_params_make(snow_context *context, const snow_volume_info *whole,
     *out = (snow_partition_params){.ranks = ranks,
                                    .grid = {.axis = placement.slice_axis},
                                    .threshold = resolved.threshold,
-                                   .isa = resolved.isa};
+                                   .isa = resolved.isa,
+                                   .threads = resolved.threads};
     if (resolved.method == SNOW_METHOD_SHEAR_WARP)
         out->span = COST_OF_SPAN;
     memcpy(out->grid.dims, whole->dims, sizeof out->grid.dims);
@@ -100,10 +101,14 @@ typedef struct counting {
     snow_block_counts *counts;
 } counting;
 
+/* Blocks of slabs are few enough for counts of each thread. */
 static snow_status count_slab(const snow_volume *slab, void *user) {
     const counting *c = user;
+    const int threads =
+        c->order->cut == SNOW_PARTITION_COUNTED ? c->order->threads : 1;
     return snow_count_interesting_blocks(slab, c->transfer, c->order->threshold,
-                                         c->order->isa, c->counts);
+                                         c->order->isa,
+                                         threads > 1 ? threads : 1, c->counts);
 }
 
 /* Slices of slabs are like those beside them; blocks have no slice to spare. */

@@ -19,6 +19,7 @@ typedef struct snow_partition_params {
                           not give the same bits, or were not asked for */
     double threshold;
     snow_isa isa;
+    int threads; /* that count; 0: one */
     int span; /* of the counts (decompose/partition.h); 0: voxels are counted */
 } snow_partition_params;
 

@@ -85,15 +85,19 @@ static void costs_are_those_of_voxels_and_spans(void **state) {
     for (int axis = 0; axis < 3; axis++) {
         const snow_partition_grid grid = {.dims = {dims[0], dims[1], dims[2]},
                                           .axis = axis};
-        snow_block_counts counts = snow_block_counts_for_slabs(&grid);
-        int64_t sum = 0, costs[75] = {0};
-        counts.counts = costs;
-        counts.span = COST;
-        assert_int_equal(snow_count_interesting_blocks(volume, transfer, 0,
-                                                       SNOW_ISA_AUTO, &counts),
-                         SNOW_STATUS_OK);
+        int64_t costs[3][75] = {{0}}, sum = 0;
+        for (int threads = 1; threads <= 3; threads++) {
+            snow_block_counts counts = snow_block_counts_for_slabs(&grid);
+            counts.counts = costs[threads - 1];
+            counts.span = COST;
+            assert_int_equal(snow_count_interesting_blocks(volume, transfer, 0,
+                                                           SNOW_ISA_AUTO,
+                                                           threads, &counts),
+                             SNOW_STATUS_OK);
+            assert_memory_equal(costs[threads - 1], costs[0], sizeof costs[0]);
+        }
         for (int64_t n = 0; n < dims[axis]; n++)
-            sum += costs[n];
+            sum += costs[0][n];
         assert_int_equal(sum, all_costs(voxels, axis));
     }
     snow_transfer_free(transfer);
