@@ -41,6 +41,7 @@ const views = make('div', {className: 'views'}, picture);
 let quiet;
 function say(line, stays = false) {
     said.textContent = line;
+    picture.onpointerdown = () => stays || say(''); // it covers what is touched
     clearTimeout(quiet);
     if (!stays)
         quiet = setTimeout(() => {

@@ -617,6 +617,14 @@ async function touch() {
     now = await keys(page);
     check('two fingers zoom', now.zoom > 1.5 * before.zoom, now.zoom);
     await shot(page, 'touch');
+    await page.evaluate(() => window.snowglass.page.say('A note that covers the picture.'));
+    await page.touchscreen.tap(x, y);
+    check('a tap on the picture takes a note away', await page.locator('.said').textContent() === '');
+    await page.keyboard.press('x');
+    await slicesRest(page);
+    check('captions of narrow slices are whole', await page.evaluate(() => [...document.querySelectorAll(
+        'figcaption')].every(one => one.textContent && one.scrollWidth <= one.clientWidth)));
+    await shot(page, 'touch-slices');
     const wide = await page.evaluate(() => document.documentElement.scrollWidth);
     check('nothing is wider than the window', wide <= 400, wide);
     await page.context().close();
