@@ -203,13 +203,14 @@ def slow_pages():
     begin, first = time.monotonic(), number(newest())
     time.sleep(3)
     beside = (number(newest()) - first) / (time.monotonic() - begin)
+    # As many steps as fill what lies between the viewer and the pages.
+    went_on = wait_for(lambda: number(newest()) >= first + 20, 120)
     server.process.kill()
     steps, longest = end(simulation)
     print(f"       {alone:.1f} steps a second alone, {beside:.1f} beside a viewer "
           f"with {len(pages)} pages that read nothing; the longest of {steps} "
           f"took {longest:.2f} s")
-    check("pages that read nothing do not stop it", beside > alone / 4,
-          f"{alone} {beside}")
+    check("pages that read nothing do not stop it", went_on, newest())
     server.process.communicate()
 
 
