@@ -28,9 +28,18 @@ OPTIONS = ("spacing", "affine", "axes", "unit", "medical", "slope", "intercept",
            "copy", "frozen")
 
 
-#: Units of coordinates that grow downward.
-PRESSURES = ("Pa", "hPa", "kPa", "bar", "mbar", "mb", "millibar", "millibars",
+#: Units of coordinates that grow downward, as in src/formats/cf.c.
+PRESSURES = ("pa", "hpa", "kpa", "bar", "mbar", "mb", "millibar", "millibars",
              "decibar", "dbar", "atm")
+
+#: Metres of a unit, whose words may end in s, as in src/formats/cf.c.
+LENGTHS = {
+    "m": 1, "meter": 1, "metre": 1, "km": 1e3, "kilometer": 1e3, "kilometre": 1e3,
+    "cm": 1e-2, "centimeter": 1e-2, "centimetre": 1e-2, "mm": 1e-3,
+    "millimeter": 1e-3, "millimetre": 1e-3, "um": 1e-6, "\u00b5m": 1e-6,
+    "\u03bcm": 1e-6, "micron": 1e-6, "micrometer": 1e-6, "micrometre": 1e-6,
+    "nm": 1e-9, "nanometer": 1e-9, "nanometre": 1e-9}
+
 
 
 def check_options(options: Mapping[str, Any]) -> None:
@@ -187,45 +196,64 @@ def _of_xarray(source: Any, spacing: Any, axes: Optional[str],
 
 
 def _place_of(source: Any, names: Mapping[str, str]) -> tuple[Any, str]:
-    """The matrix of its coordinates, and the unit of x, else of y or z.  An axis
-    with another unit cannot be compared with the others: a metre is not longer
-    than a degree.  As of files, it has the spacing of x then."""
+    """The matrix of its coordinates, and the unit of x, as snow_cf_place has them
+    of files.  Other lengths become that unit.  An axis with another unit, or with
+    none beside one, cannot be compared with x: a metre is not longer than a
+    degree.  It has the spacing of x."""
     import numpy
     found = {axis: _coordinate(source, names[axis]) for axis in "xyz"}
-    unit = next((each.unit for each in found.values() if each.unit), "")
+    x = found["x"]
     affine = numpy.eye(4)
     for n, axis in enumerate("xyz"):
-        step, first, its = found[axis]
-        if its not in ("", unit):
-            warn(f"coordinate '{names[axis]}' has another unit ({its!r}) than the "
-                 f"others ({unit!r}): it has the spacing of x; spacing= gives another")
-            step, first = math.copysign(found["x"].step, step), 0.0
-        affine[n, n], affine[n, 3] = step, first
-    return affine, unit
+        step, first, unit, given = found[axis]
+        ratio = _ratio(unit, x.unit) if given else 0.0
+        if given and not ratio:
+            warn(f"coordinate '{names[axis]}' has another unit ({unit!r}) than x "
+                 f"({x.unit!r}): it has the spacing of x; spacing= gives another")
+        affine[n, n] = step * ratio or math.copysign(x.step, step)
+        affine[n, 3] = first * ratio
+    return affine, x.unit if x.given else ""
 
 
 class _Coordinate(NamedTuple):
     step: float = 1.0
     first: float = 0.0
     unit: str = ""
+    given: bool = False
+
+
+def _metres(unit: str) -> float:
+    word = unit[:-1] if len(unit) > 4 and unit.endswith("s") else unit
+    return LENGTHS.get(word, 0.0)
+
+
+def _ratio(unit: str, other: str) -> float:
+    """How many of the other unit one is; 0 if they cannot be compared."""
+    if unit == other:
+        return 1.0
+    return _metres(unit) / _metres(other) if _metres(other) else 0.0
 
 
 def _coordinate(source: Any, name: str) -> _Coordinate:
     import numpy
-    if name not in source.coords or source.sizes[name] < 2:
+    if name not in source.coords:
         return _Coordinate()
-    places = numpy.asarray(source.coords[name].values)
-    if places.dtype.kind not in "iuf":
-        return _Coordinate()
-    each = numpy.diff(places.astype(float))
-    if abs(each.max() - each.min()) > 1e-3 * abs(each.mean()):
-        warn(f"coordinate '{name}' is not evenly spaced: its mean step is taken")
     attributes = source.coords[name].attrs
     unit = str(attributes.get("units", ""))
-    down = attributes.get("positive") == "down" or unit in PRESSURES
+    positive = str(attributes.get("positive", "")).lower()
+    up = -1 if (positive == "down" if positive else unit.lower() in PRESSURES) else 1
+    unit = "degrees" if unit.startswith("degree") else unit
+    places = numpy.asarray(source.coords[name].values)
+    if places.dtype.kind not in "iuf" or len(places) < 2:
+        return _Coordinate(unit=unit)
+    each = numpy.diff(places.astype(float))
     step, first = float(each.mean()), float(places[0])
-    return _Coordinate(-step if down else step, -first if down else first,
-                       "degrees" if unit.startswith("degree") else unit)
+    if not (math.isfinite(step) and math.isfinite(first) and step):
+        return _Coordinate(unit=unit)
+    if abs(each.max() - each.min()) > 1e-3 * abs(step):
+        warn(f"coordinate '{name}' is not evenly spaced: its mean step is taken; of "
+             f"a file of it, as to_netcdf() writes, the slices would be resampled")
+    return _Coordinate(up * step, up * first, unit, True)
 
 
 def _volumes_first(group: Any) -> list[str]:

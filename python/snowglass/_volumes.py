@@ -41,9 +41,9 @@ class Volume(_snowglass.Volume):
         numpy.asarray takes), which is not copied where its memory has no gaps,
         in whatever order its axes lie, and must not change while it is drawn;
       - an image of nibabel, whose affine is heeded;
-      - a DataArray of xarray with three dimensions, whose evenly spaced
-        coordinates give the spacing (one with another unit than x has that of
-        x), and whose units stand over the legend.
+      - a DataArray of xarray with three dimensions, whose coordinates give the
+        spacing as those of a NetCDF file do (the mean step, where they are
+        uneven), and whose units stand over the legend.
 
     spacing     lengths of a voxel along x, y, z
     affine      4x4 matrix from indices x, y, z to the world, instead

@@ -36,6 +36,36 @@ static bool is_any_of(const char *text, const char *const *list) {
     return false;
 }
 
+/* The metres of a unit of length, whose words may end in s; 0 if it is none. */
+static double metres(const char *unit) {
+    static const struct {
+        const char *name;
+        double metres;
+    } lengths[] = {
+        {"m", 1},         {"meter", 1},         {"metre", 1},
+        {"km", 1e3},      {"kilometer", 1e3},   {"kilometre", 1e3},
+        {"cm", 1e-2},     {"centimeter", 1e-2}, {"centimetre", 1e-2},
+        {"mm", 1e-3},     {"millimeter", 1e-3}, {"millimetre", 1e-3},
+        {"um", 1e-6},     {"\302\265m", 1e-6},  {"\316\274m", 1e-6},
+        {"micron", 1e-6}, {"micrometer", 1e-6}, {"micrometre", 1e-6},
+        {"nm", 1e-9},     {"nanometer", 1e-9},  {"nanometre", 1e-9},
+    };
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        const size_t length = strlen(lengths[i].name);
+        if (!strncmp(unit, lengths[i].name, length) &&
+            (!unit[length] || (length > 3 && !strcmp(unit + length, "s"))))
+            return lengths[i].metres;
+    }
+    return 0;
+}
+
+/* How many of the other unit one is; 0 if they cannot be compared. */
+static double ratio(const char *unit, const char *other) {
+    if (!strcmp(unit, other))
+        return 1;
+    return metres(other) > 0 ? metres(unit) / metres(other) : 0;
+}
+
 snow_axis_hint snow_cf_hint(const cf_words *words) {
     static const char *const spaces[] = {"x", "y", "z", NULL};
     static const char *const lines[] = {"x", "lon", "longitude", "rlon", NULL};
@@ -103,18 +133,20 @@ static snow_uneven plan_grid(snow_context *context, const cf_axis axes[3],
     return grid;
 }
 
-/* An axis with another unit cannot be compared with the others: a month is not
- * longer than a degree.  It is as long as if its voxels in the file had the
- * mean distance of x. */
+/* Other lengths become the unit of x.  An axis with another unit, or with none
+ * beside one, cannot be compared with x: a month is not longer than a degree.
+ * It is as long as if its voxels in the file had the mean distance of x. */
 static void place_axis(snow_context *context, const cf_axis axes[3], int i,
                        const snow_uneven *grid, bool given,
                        snow_volume_info *info) {
     const cf_axis *x = &axes[0], *axis = &axes[i];
     double usual = x->given ? fabs(x->step) : 1;
-    bool same = axis->given && !strcmp(axis->unit, x->unit);
+    const double times = axis->given ? ratio(axis->unit, x->unit) : 0;
+    const bool same = times > 0;
     const double up = axis->down ? -1 : 1;
-    info->matrix[i][i] = up * (same ? axis->step : copysign(usual, axis->step));
-    info->matrix[i][3] = same ? up * axis->first : 0;
+    info->matrix[i][i] =
+        up * (same ? times * axis->step : copysign(usual, axis->step));
+    info->matrix[i][3] = same ? up * times * axis->first : 0;
     if (grid->at[i])
         info->matrix[i][i] *=
             (double)(grid->count[i] - 1) / (double)(grid->even[i] - 1);

@@ -62,8 +62,9 @@ void snow_cf_name(const char *name, const char *units, const char *long_name,
                   const char *standard_name, snow_volume_info *info);
 
 /* Sets spacing, origin and unit from the coordinates of x, y and z.  Axes in
- * another unit than x (time, or height beside degrees) get x's spacing, with a
- * warning unless the options give it.  The world's z grows upward: coordinates
+ * another length than x are converted to x's unit; those in another unit (time,
+ * or height beside degrees), or in none, get x's spacing, with a warning unless
+ * the options give it.  The world's z grows upward: coordinates
  * that grow downward get the other sign.  Plans the grid of uneven axes, whose
  * sizes info->dims become. */
 void snow_cf_place(snow_context *context, const cf_axis axes[3],

@@ -212,7 +212,7 @@ with h5py.File("g.h5", "w") as file:
                                         ("y", 9 - np.arange(5) * 0.5),
                                         ("x", np.arange(6) * 3.0 + 1))):
         s = file.create_dataset(name, data=values)
-        s.attrs["units"] = np.bytes_("km")
+        s.attrs["units"] = np.bytes_("km" if name != "z" else "kilometers")
         s.make_scale(name)
         v.dims[i].attach_scale(s)
 values = packed * 0.5 + 10

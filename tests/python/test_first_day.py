@@ -133,7 +133,8 @@ class FirstPictures(InFolder):
             ball().astype(numpy.float32), dims=("z", "y", "x"), attrs={
                 "units": "K"}, coords={
                     "z": ("z", numpy.arange(30) * 2.5, {"units": "um"}),
-                    "y": numpy.arange(40) * 1.5, "x": numpy.arange(50) * 1.5})
+                    "y": ("y", numpy.arange(40) * 1.5, {"units": "micrometer"}),
+                    "x": ("x", numpy.arange(50) * 1.5, {"units": "um"})})
         volume = sg.Volume(array)
         self.shows_a_ball(volume.render(legend=True))
         self.assertEqual(volume.spacing, (1.5, 1.5, 2.5))
@@ -160,6 +161,48 @@ class FirstPictures(InFolder):
             numpy.testing.assert_allclose(volume.affine, file.affine)
             array.coords["level"].attrs["positive"] = "down"
             self.assertEqual(sg.Volume(array).affine[2, 2], -0.5)
+
+    @unittest.skipUnless(has("xarray", "netCDF4"), "xarray or netCDF4 is missing")
+    def test_coordinates_count_as_those_of_files(self):
+        import xarray
+
+        def of(n, step, unit=None, **more):
+            return numpy.arange(float(n)) * step + 3, {
+                **({} if unit is None else {"units": unit}), **more}
+
+        def placed(z, y, x, more):
+            array = xarray.DataArray(ball().astype(numpy.float32), name="t", dims=(
+                "z", "y", "x"), coords={"z": ("z", *of(30, *z)), "y": (
+                    "y", *of(40, *y)), "x": ("x", *of(50, *x))})
+            array.coords["z"].attrs.update(more)
+            array.to_netcdf("u.nc")
+            volume, file = sg.Volume(array), sg.Volume("u.nc")
+            numpy.testing.assert_allclose(volume.affine, file.affine, rtol=1e-12)
+            self.assertEqual(volume.info["unit"], file.info["unit"])
+            return volume.affine.diagonal()[2::-1]
+
+        cases = [  # z, y, x; attributes of z; what z, y, x are
+            ((10, "meters"), (1, "m"), (1, "m"), {}, (10, 1, 1)),
+            ((10, "m"), (1, "metre"), (1, "meters"), {}, (10, 1, 1)),
+            ((3, "micrometer"), (1, "\u00b5m"), (2, "um"), {}, (3, 1, 2)),
+            ((500, "m"), (1, "kilometres"), (1, "km"), {}, (0.5, 1, 1)),
+            ((1, "km"), (500, "m"), (500, "m"), {}, (1000, 500, 500)),
+            ((10, "Mm"), (1, "mm"), (1, "mm"), {}, (1, 1, 1)),
+            ((2, "ms"), (1, "m"), (1, "m"), {}, (1, 1, 1)),
+            ((2,), (1, "m"), (1, "m"), {}, (1, 1, 1)),
+            ((2, "m"), (1, "m"), (3,), {}, (3, 3, 3)),
+            ((2,), (1,), (3,), {}, (2, 1, 3)),
+            ((2, "m"), (1, "m"), (1, "m"), {"positive": "DOWN"}, (-2, 1, 1)),
+            ((2, "hPa"), (1, "m"), (1, "m"), {"positive": "up"}, (1, 1, 1)),
+            ((2, "HPA"), (1, "m"), (1, "m"), {}, (-1, 1, 1))]
+        for z, y, x, more, expected in cases:
+            with self.subTest((z, y, x, more)), warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                numpy.testing.assert_allclose(placed(z, y, x, more), expected)
+        uneven = xarray.DataArray(ball(), dims=("z", "y", "x"), coords={
+            "z": numpy.arange(30.0) ** 2})
+        with self.assertWarnsRegex(sg.SnowglassWarning, "'z' is not evenly .*file"):
+            self.assertEqual(sg.Volume(uneven).spacing[2], 29)
 
     @unittest.skipUnless(has("tifffile"), "tifffile is missing")
     def test_a_stack_of_tiffs(self):
@@ -336,11 +379,14 @@ class Stumbles(InFolder):
         array = xarray.DataArray(ball(), dims=("z", "y", "x"), coords={
             "z": ("z", numpy.arange(30) * 10.0, {"units": "hPa"}),
             "y": ("y", numpy.arange(40.0), {"units": "degrees"})})
-        with self.assertWarnsRegex(sg.SnowglassWarning, "'hPa'.* than .*'degrees'"):
+        with self.assertWarnsRegex(sg.SnowglassWarning, "'hPa'.* than x"):
             volume = sg.Volume(array.expand_dims(time=[0]))
         self.assertEqual(volume.dims, (50, 40, 30))
         self.assertEqual(volume.spacing, (1, 1, 1))
         self.assertEqual(volume.affine[2, 2], -1)
+        array.coords["x"] = ("x", numpy.arange(50.0), {"units": "degrees_east"})
+        with self.assertWarnsRegex(sg.SnowglassWarning, "'hPa'.* than x .'degrees'"):
+            volume = sg.Volume(array)
         self.assertEqual(volume.info["unit"], "degrees")
         data = array.to_dataset(name="t")
         data["mean"] = array.mean()

@@ -468,8 +468,8 @@ class Arrays(InFolder):
         data = xarray.DataArray(
             self.array, dims=("z", "y", "x"),
             coords={"x": ("x", numpy.arange(64) * 0.5, {"units": "um"}),
-                    "y": 3 - numpy.arange(64) * 0.5,
-                    "z": numpy.arange(48) * 2.0})
+                    "y": ("y", 3 - numpy.arange(64) * 0.5, {"units": "um"}),
+                    "z": ("z", numpy.arange(48) * 2.0, {"units": "um"})})
         volume = sg.Volume(data)
         self.assertEqual(volume.spacing, (0.5, 0.5, 2.0))
         self.assertEqual(volume.info["unit"], "um")
