@@ -152,6 +152,18 @@ for name in $(sed -n 's/^Tests: //p' "$PACKAGING/debian/tests/control"); do
     check "debian/tests/$name can be run" [ -x "$PACKAGING/debian/tests/$name" ]
     check "and read" bash -n "$PACKAGING/debian/tests/$name"
 done
+# Only verbs that pack the committed sources need a repository of Git.
+if command -v dpkg-parsechangelog >/dev/null; then
+    mkdir archive && cp -r "$PACKAGING" archive/packaging
+    export GIT_CEILING_DIRECTORIES=$WORK
+    run 1 "a verb that does not exist" archive/packaging/make none out
+    says "there is no 'none'"
+    run 1 "packages without a repository" archive/packaging/make debs out
+    says "run this in a clone by git"
+    SNOW_COMMIT=0000 run 2 "packages of a given commit" archive/packaging/make debs out
+    says "not a git repository"
+    check "which is not looked up" [ -e archive/out/deb ]
+fi
 for file in "$PACKAGING"/debian/libsnowglass*"$series".symbols; do
     for so in $(sed -n 's/^\(lib[^ ]*\) .*/\1/p' "$file"); do
         [ -e "$libdir/$so" ] || [[ $so == *-mpi* ]] ||
