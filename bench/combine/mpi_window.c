@@ -16,6 +16,7 @@ typedef struct side {
     size_t floats;
     float *local, *region; /* what is given, and laid over */
     float *out, *in;       /* messages */
+    MPI_Win shared;
     float *window, *other; /* mine, the other rank's */
     int peer;
 } side;
@@ -38,7 +39,9 @@ static void by_message(side *s) {
 
 static void by_window(side *s) {
     memcpy(s->window, s->local, s->floats * sizeof(float));
+    MPI_Win_sync(s->shared);
     MPI_Barrier(MPI_COMM_WORLD);
+    MPI_Win_sync(s->shared);
     lay_over(s->region, s->other, s->floats);
 }
 
@@ -60,7 +63,6 @@ static double measure(side *s, void (*give)(side *)) {
 static void compare(size_t bytes, int rank) {
     side s = {.floats = bytes / sizeof(float), .peer = !rank};
     float **const all[] = {&s.local, &s.region, &s.out, &s.in};
-    MPI_Win window;
     MPI_Aint size;
     int unit;
     for (int i = 0; i < 4; i++) {
@@ -71,14 +73,16 @@ static void compare(size_t bytes, int rank) {
             (*all[i])[n] = 0.01F;
     }
     MPI_Win_allocate_shared((MPI_Aint)bytes, sizeof(float), MPI_INFO_NULL,
-                            MPI_COMM_WORLD, &s.window, &window);
-    MPI_Win_shared_query(window, s.peer, &size, &unit, &s.other);
+                            MPI_COMM_WORLD, &s.window, &s.shared);
+    MPI_Win_shared_query(s.shared, s.peer, &size, &unit, &s.other);
     const double message = measure(&s, by_message);
+    MPI_Win_lock_all(MPI_MODE_NOCHECK, s.shared);
     const double shared = measure(&s, by_window);
+    MPI_Win_unlock_all(s.shared);
     if (!rank)
         printf("%5zu KB: message %.3f ms, window %.3f ms\n", bytes / 1024,
                1e3 * message, 1e3 * shared);
-    MPI_Win_free(&window);
+    MPI_Win_free(&s.shared);
     for (int i = 0; i < 4; i++)
         free(*all[i]);
 }
