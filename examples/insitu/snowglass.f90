@@ -5,7 +5,7 @@
 ! the C headers describe the arguments.  All functions answer a
 ! status, 0 for success.
 !
-! A Fortran array u(0:nx+1, 0:ny+1, 0:nz+1) of one ghost layer is told by
+! A Fortran array u(0:nx+1, 0:ny+1, 0:nz+1) with one ghost layer is described by
 !
 !   halo = snow_halo([1,1,1], [1,1,1])
 !   status = snow_insitu_set_brick(movie, 0, first, count, halo)
