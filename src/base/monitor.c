@@ -116,19 +116,20 @@ void snow_monitor_report(snow_monitor *monitor, snow_stage stage, double done,
         atomic_load_explicit(&monitor->stopped, memory_order_relaxed))
         return;
     double now = snow_seconds();
+    monitor->last = stage;
+    monitor->reached = fraction_of(monitor, stage, done, all);
     if (now >= monitor->context->progress_due)
-        call_progress(monitor, stage, fraction_of(monitor, stage, done, all),
-                      now + INTERVAL);
+        call_progress(monitor, stage, monitor->reached, now + INTERVAL);
 }
 
-/* Says again how far the stage is, where nothing was reported for so long,
+/* Says how far the stage is, where nothing was reported for so long,
  * since the function may end the call. */
 static void repeat(snow_monitor *monitor, double now) {
     if (monitor->context->progress &&
         now >= monitor->context->progress_due + INTERVAL / 2 &&
         !atomic_load(&monitor->stopped))
         call_progress(monitor, monitor->last,
-                      fmax(monitor->reported[monitor->last], 0),
+                      fmax(monitor->reported[monitor->last], monitor->reached),
                       now + INTERVAL);
 }
 
@@ -169,6 +170,7 @@ void snow_monitor_next(snow_monitor *monitor, snow_stage stage, double begin,
     if (!monitor)
         return;
     monitor->stage = monitor->last = stage;
+    monitor->reached = 0;
     monitor->begin = begin;
     monitor->end = end;
     monitor->armed = true;

@@ -30,7 +30,8 @@ struct snow_monitor {
     double asked; /* when `stop` was asked last */
     /* Progress.  Of a stage: what was reported last, below 0: nothing. */
     double reported[SNOW_STAGES];
-    snow_stage last;          /* that was reported last, or begins */
+    snow_stage last;          /* the stage that is under way ... */
+    double reached;           /* ... and how far it is */
     double from, share;       /* the part of each stage that is under way */
     double begin, end;        /* the part of `stage` that is made by the ... */
     snow_stage stage;         /* ... next batch; `armed` */
@@ -79,7 +80,7 @@ bool snow_monitor_item(snow_monitor *monitor, int worker, int64_t item,
                        int64_t items);
 
 /* Within a long item: the same, but asks no more than a thousand times a
- * second, and reports what was reported last. */
+ * second, and reports how far the work is where nothing else does. */
 bool snow_monitor_look(snow_monitor *monitor, int worker);
 
 /* The next batch is the part from `begin` to `end` (0 to 1) of a stage. */

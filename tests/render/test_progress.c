@@ -306,6 +306,27 @@ static void a_long_item_can_be_stopped(void **state) {
     snow_context_free(context);
 }
 
+/* What was too early to be reported is not lost to the next look. */
+static void a_look_reports_how_far_the_work_is(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_monitor monitor;
+    listener l;
+    listen_to(context, &l, 0);
+    tick = 0.001;
+    snow_monitor_begin(context, &monitor, NULL, NULL);
+    snow_monitor_report(&monitor, SNOW_STAGE_RENDER, 1, 2);
+    assert_int_equal(l.calls, 0);
+    for (int n = 0; n < 200 && l.calls == 0; n++)
+        assert_false(snow_monitor_look(&monitor, 0));
+    assert_int_equal(l.calls, 1);
+    assert_int_equal(l.stages[0], SNOW_STAGE_RENDER);
+    assert_true(l.fractions[0] == 0.5);
+    assert_int_equal(snow_monitor_end(&monitor, SNOW_STATUS_OK),
+                     SNOW_STATUS_OK);
+    snow_context_free(context);
+}
+
 /* Calls of many short works, each of which reports its end. */
 static void many_calls_are_not_reported_more_often(void **state) {
     (void)state;
@@ -355,6 +376,7 @@ int main(void) {
         TEST(measuring_is_reported_and_can_be_stopped),
         TEST(a_picture_is_reported),
         TEST(a_long_item_can_be_stopped),
+        TEST(a_look_reports_how_far_the_work_is),
         TEST(many_calls_are_not_reported_more_often),
         TEST(nothing_is_reported_of_what_is_short),
     };
