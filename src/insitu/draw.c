@@ -40,11 +40,11 @@ static bool is_spread(const snow_look *look) {
 }
 
 /* The finite extremes of voxels, row by row, in a fifth of the time that
- * statistics take. */
-#define EXTREMES(type)                                                    \
+ * statistics take; of whole numbers in less. */
+#define EXTREMES(type, most, lowest)                                      \
     static void find_##type(const type *voxels, const int64_t dims[3],    \
                             const int64_t pitch[2], double least[2]) {    \
-        type low = (type)INFINITY, high = -(type)INFINITY;                \
+        type low = most, high = lowest;                                   \
         for (int64_t n = 0; n < dims[1] * dims[2]; n++) {                 \
             const type *row =                                             \
                 voxels + n / dims[1] * pitch[1] + n % dims[1] * pitch[0]; \
@@ -57,27 +57,40 @@ static bool is_spread(const snow_look *look) {
         least[0] = (double)low;                                           \
         least[1] = -(double)high;                                         \
     }
-EXTREMES(float)
-EXTREMES(double)
+EXTREMES(float, INFINITY, -INFINITY)
+EXTREMES(double, INFINITY, -INFINITY)
+EXTREMES(int8_t, INT8_MAX, INT8_MIN)
+EXTREMES(uint8_t, UINT8_MAX, 0)
+EXTREMES(int16_t, INT16_MAX, INT16_MIN)
+EXTREMES(uint16_t, UINT16_MAX, 0)
 
 /* The least value and minus the most of this rank's part, with its ghosts. */
 static snow_status find_own_values(const snow_insitu *insitu, double least[2]) {
-    const void *voxels = snow_volume_voxels(insitu->volume);
-    const int64_t *dims = snow_volume_get_info(insitu->volume)->dims;
+    const snow_volume *volume = insitu->volume;
+    const void *voxels = snow_volume_voxels(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     snow_volume_statistics here;
     least[0] = least[1] = INFINITY;
     if (snow_box_voxels(&insitu->layout.owned) == 0)
         return SNOW_STATUS_OK;
-    if (insitu->type == SNOW_TYPE_FLOAT32)
-        find_float(voxels, dims, insitu->pitch, least);
-    else if (insitu->type == SNOW_TYPE_FLOAT64)
-        find_double(voxels, dims, insitu->pitch, least);
-    else {
-        snow_volume_statistics_init(&here);
-        INSITU_TRY(snow_volume_get_statistics(insitu->volume, &here));
-        least[0] = here.min;
-        least[1] = -here.max;
+#define FIND(name, type)                                       \
+    case SNOW_TYPE_##name:                                     \
+        find_##type(voxels, info->dims, insitu->pitch, least); \
+        return SNOW_STATUS_OK;
+    switch (info->type) {
+        FIND(FLOAT32, float)
+        FIND(FLOAT64, double)
+        FIND(INT8, int8_t)
+        FIND(UINT8, uint8_t)
+        FIND(INT16, int16_t)
+        FIND(UINT16, uint16_t)
+    default:
+        break;
     }
+    snow_volume_statistics_init(&here);
+    INSITU_TRY(snow_volume_get_statistics(volume, &here));
+    least[0] = here.min;
+    least[1] = -here.max;
     return SNOW_STATUS_OK;
 }
 
@@ -170,20 +183,22 @@ static snow_status widen_look(snow_insitu *insitu, bool had_range) {
 
 /* Collective.  The transfer function, if it is not there yet, or too narrow. */
 static snow_status choose_look(snow_insitu *insitu) {
-    double start = snow_comm_seconds(insitu->comm), ends[2] = {0, 0};
-    double *seen = insitu->seen;
+    double start = snow_comm_seconds(insitu->comm);
+    double *seen = insitu->seen, *ends = insitu->ends;
     const bool spread = is_spread(&insitu->look.look);
     const bool labels =
         insitu->transfer && snow_transfer_label(insitu->transfer, 0);
+    insitu->knows_ends = spread && !labels;
+    ends[0] = ends[1] = 0;
     if (insitu->transfer && !spread && !labels)
         return SNOW_STATUS_OK;
-    if (spread && !labels)
+    if (insitu->knows_ends)
         INSITU_TRY(snow_insitu_find_values(insitu, ends));
     if (!insitu->transfer) {
         INSITU_TRY(snow_ranks_new_transfer(insitu->comm, insitu->volume,
                                            &insitu->look.look,
                                            &insitu->transfer));
-        memcpy(seen, ends, sizeof ends);
+        memcpy(seen, ends, sizeof insitu->ends);
     } else if (labels) {
         INSITU_TRY(learn_labels(insitu));
     } else if (has_grown(insitu, ends)) {
@@ -326,7 +341,7 @@ static snow_status make_step(snow_insitu *insitu, int64_t step) {
     INSITU_TRY(update(insitu));
     INSITU_TRY(draw(insitu, &image));
     snow_status status = SNOW_STATUS_OK;
-    if (!insitu->left_out && insitu->refresh) /* the same on all ranks */
+    if (!insitu->left_out) /* the same on all ranks */
         status = snow_insitu_count(insitu);
     if (!insitu->left_out && status == SNOW_STATUS_OK)
         status = snow_insitu_write(insitu, step, image);

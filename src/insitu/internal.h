@@ -155,7 +155,9 @@ struct snow_insitu {
     snow_transfer *transfer; /* NULL: to be chosen */
     double seen[2];          /* the values that it was chosen from; NaN: none */
     double ends[2];          /* of the values, where a recipe is read again */
-    int64_t counts[SNOW_INSITU_BINS]; /* and how often they occur between */
+    bool knows_ends;         /* those of this step's, from choosing the look */
+    int64_t counts[SNOW_INSITU_BINS]; /* and how often they occur between, */
+    bool counted;                     /* where that is known */
 
     /* The limits: the same on all ranks. */
     snow_degradation lowering;
@@ -288,8 +290,9 @@ void snow_insitu_begin_limit(snow_insitu *insitu);
 snow_status snow_insitu_end_limit(snow_insitu *insitu, snow_status status);
 
 /* Collective.  The smallest and largest value of all ranks' parts (draw.c); how
- * often values between them occur in some slices, for `ends` and `counts` of
- * the file of a picture (counts.c). */
+ * often values between them occur in some rows, for `ends` and `counts` of the
+ * file of a picture (counts.c), where a viewer may want them and there is
+ * memory. */
 snow_status snow_insitu_find_values(snow_insitu *insitu, double ends[2]);
 snow_status snow_insitu_count(snow_insitu *insitu);
 

@@ -185,7 +185,7 @@ static char *add_counts(char *at, const snow_insitu *insitu) {
 /* What a viewer of the picture must know (docs/insitu.md): {"step": 60, "dims":
  * [48, 40, 56], "range": [0, 1], "matrix": [1, 0, 0, 0, 0, 1, ...], "opacity":
  * [[0, 0], [1, 0.5]], "ends": [-0.2, 1.1], "counts": [5, 17, ...]}, the opacity
- * of looks of few points, and the last two where a recipe is read again. */
+ * of looks of few points, and the last two where they are known. */
 static void describe(const snow_insitu *insitu, int64_t step,
                      char out[COMMENT_BYTES]) {
     const snow_volume_info *grid = &insitu->whole;
@@ -205,7 +205,7 @@ static void describe(const snow_insitu *insitu, int64_t step,
     if (snow_transfer_get_look(insitu->transfer, &look) == SNOW_STATUS_OK &&
         look.opacity_count && look.opacity_count <= POINTS_MOST)
         at = add_points(at, look.opacities, look.opacity_count);
-    if (insitu->refresh && insitu->ends[0] < insitu->ends[1])
+    if (insitu->counted)
         at = add_counts(at, insitu);
     snprintf(at, NUMBER_BYTES, "}");
 }

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* The text that a PNG has for viewers. */
-static char comment[1024];
+static char comment[4096];
 
 static void read_comment(const char *path) {
     static const char key[] = "tEXtSnowglass";
@@ -462,6 +462,135 @@ static void a_recipe_that_fails_on_one_rank_is_applied_on_none(void **state) {
     remove(r.files.recipe);
 }
 
+/* --- how often values occur ------------------------------------------------
+ */
+
+/* Refuses blocks of some size. */
+typedef struct picky {
+    size_t refused;
+    int times;
+} picky;
+
+static void *picky_allocate(void *user, size_t bytes) {
+    picky *p = user;
+    /* A context may ask for a little more than it is asked for. */
+    if (!p->refused || bytes < p->refused || bytes > p->refused + 128)
+        return malloc(bytes);
+    p->times++;
+    return NULL;
+}
+
+static void picky_release(void *user, void *block) {
+    (void)user;
+    free(block);
+}
+
+typedef struct counting {
+    int64_t dims[3];
+    const char *suffix;
+    picky memory;
+    char said[512];
+    int64_t counted; /* in the file of the picture */
+} counting;
+
+static int64_t sum_of_counts(void) {
+    const char *at = strstr(comment, "\"counts\":[");
+    int64_t sum = 0;
+    if (!at)
+        return 0;
+    for (at = strchr(at, '['); *at != ']';) {
+        char *end;
+        sum += strtoll(at + 1, &end, 10);
+        at = end;
+    }
+    return sum;
+}
+
+/* A step of a recipe that is read again. */
+static void count_step(image_fixture *f, counting *c) {
+    const snow_allocator allocator = {picky_allocate, picky_release,
+                                      &c->memory};
+    const int64_t first[3] = {0};
+    const size_t size = (size_t)(c->dims[0] * c->dims[1] * c->dims[2]);
+    unsigned char *field = malloc(size);
+    char recipe[512], name[32], text[1024], path[512];
+    snow_context *context = NULL;
+    snow_comm *comm = NULL;
+    snow_insitu *insitu = NULL;
+    assert_non_null(field);
+    for (size_t n = 0; n < size; n++)
+        field[n] = (unsigned char)(n % 200);
+    snprintf(recipe, sizeof recipe, "%s", support_image_path(f, "r.json"));
+    snprintf(name, sizeof name, "c_%%d%s", c->suffix);
+    snprintf(path, sizeof path, "%s", support_image_path(f, name));
+    snprintf(text, sizeof text,
+             "{\"size\": 16, \"reread\": true, \"range\": [0, 255], "
+             "\"overwrite\": true, \"output\": \"%s\"}",
+             path);
+    FILE *file = fopen(recipe, "w");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+    assert_int_equal(snow_context_new(&allocator, &context), SNOW_STATUS_OK);
+    assert_int_equal(snow_comm_new_self(context, &comm), SNOW_STATUS_OK);
+    assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_STATUS_OK);
+    snow_insitu_set_warning(insitu, keep_text, c->said);
+    snow_insitu_set_grid(insitu, c->dims, NULL, NULL);
+    snow_insitu_set_brick(insitu, 0, first, c->dims, NULL);
+    snow_insitu_set_voxels(insitu, 0, SNOW_TYPE_UINT8, field, NULL);
+    assert_int_equal(snow_recipe_apply_file(insitu, recipe), SNOW_STATUS_OK);
+    if (snow_insitu_step(insitu, 0) != SNOW_STATUS_OK)
+        fail_msg("%s", snow_insitu_message(insitu));
+    snprintf(name, sizeof name, "c_0%s", c->suffix);
+    snprintf(path, sizeof path, "%s", support_image_path(f, name));
+    if (strcmp(c->suffix, ".png") == 0) {
+        read_comment(path);
+        c->counted = sum_of_counts();
+    }
+    assert_int_equal(remove(path), 0);
+    remove(recipe);
+    snow_insitu_free(insitu);
+    snow_comm_free(comm);
+    snow_context_free(context);
+    free(field);
+}
+
+static void values_are_counted_for_viewers(void **state) {
+    counting small = {.dims = {13, 12, 11}, .suffix = ".png"},
+             flat = {.dims = {1100, 1000, 2}, .suffix = ".png"},
+             deep = {.dims = {120, 100, 100}, .suffix = ".png"};
+    count_step(*state, &small);
+    assert_int_equal(small.counted, 13 * 12 * 11);
+    count_step(*state, &flat); /* each eighth row */
+    assert_int_equal(flat.counted, 1100 * 125 * 2);
+    count_step(*state, &deep); /* each fourth slice */
+    assert_int_equal(deep.counted, 120 * 100 * 25);
+    assert_string_equal(deep.said, "");
+}
+
+/* Where the counts have no room, the picture is written. */
+static void a_picture_is_written_without_counts(void **state) {
+    counting c = {.dims = {1303, 7, 3},
+                  .suffix = ".png",
+                  .memory = {.refused = 1303 * 7}};
+    count_step(*state, &c);
+    assert_true(c.memory.times > 0);
+    assert_int_equal(c.counted, 0);
+    assert_null(strstr(comment, "ends"));
+    assert_non_null(strstr(c.said, "without the counts"));
+}
+
+/* Files of values have no room for counts: the memory for them is not asked
+ * for. */
+static void files_of_values_have_no_counts(void **state) {
+    counting c = {.dims = {1303, 7, 3},
+                  .suffix = ".npy",
+                  .memory = {.refused = 1303 * 7}};
+    count_step(*state, &c);
+    assert_int_equal(c.memory.times, 0);
+    assert_string_equal(c.said, "");
+}
+
 int main(void) {
 #define HERE(test)                                             \
     cmocka_unit_test_setup_teardown(test, support_image_setup, \
@@ -478,6 +607,9 @@ int main(void) {
         HERE(a_range_begins_where_values_differ),
         HERE(labels_that_appear_have_their_colours),
         HERE(a_recipe_that_fails_on_one_rank_is_applied_on_none),
-        HERE(slices_beyond_the_grid_are_left_out_in_place)};
+        HERE(slices_beyond_the_grid_are_left_out_in_place),
+        HERE(values_are_counted_for_viewers),
+        HERE(a_picture_is_written_without_counts),
+        HERE(files_of_values_have_no_counts)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
