@@ -8,6 +8,7 @@
 #include "run/start.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,7 +29,8 @@ struct renderer {
     int level;      /* and quality; -1: none yet */
     int shrink;
     uint32_t revision; /* of the picture under way */
-    json_t *good;      /* the last recipe that could be drawn; NULL: none */
+    json_t *good;      /* the last recipe that was drawn, or opened with */
+    json_t *vain;      /* what had no room in an emptied drawing; NULL: none */
     bool told_empty;
     double radius; /* of the volume that was read last */
 };
@@ -167,18 +169,62 @@ static void make_room(renderer *r) {
     drawing_empty(r->drawing);
 }
 
+/* The quality and all of a recipe but where a turn is, which changes nothing of
+ * the memory that a picture needs. */
+static json_t *need_of(const json_t *recipe, int level) {
+    static const char *const turns[] = {"azimuth", "elevation", "roll"};
+    json_t *need = json_copy((json_t *)recipe);
+    for (size_t i = 0; i < sizeof turns / sizeof *turns; i++)
+        json_object_del(need, turns[i]);
+    json_object_set_new(need, "quality", json_integer(level));
+    return need;
+}
+
+static bool is_in_vain(const renderer *r, int level, const json_t *recipe) {
+    json_t *need = need_of(recipe, level);
+    bool same = r->vain && json_equal(need, r->vain);
+    json_decref(need);
+    return same;
+}
+
+/* In words of a page, whose window is the size. */
+static void say_no_room(const renderer *r, int level) {
+    const options *opts = &r->drawing->opts;
+    char limit[80] = "memory that there is";
+    if (opts->memory > 0)
+        snprintf(limit, sizeof limit, "--memory of %.1f MiB",
+                 (double)opts->memory / (1 << 20));
+    say("there is no room for %s of %lld x %lld pixels in the %s: make the "
+        "window smaller, crop the volume, or begin with more memory",
+        level == 2 ? "the final picture" : "a picture",
+        (long long)opts->size[0], (long long)opts->size[1], limit);
+}
+
+static outcome draw_emptied(renderer *r, int level, const json_t *recipe) {
+    make_room(r);
+    say_later();
+    outcome o = try_state(r, level, recipe, true);
+    say_now(o.done == SNOW_STATUS_NO_MEMORY);
+    json_decref(r->vain);
+    r->vain = o.done == SNOW_STATUS_NO_MEMORY ? need_of(recipe, level) : NULL;
+    return o;
+}
+
+/* Where memory is short, a second time in an emptied drawing: unless that is
+ * known to be in vain. */
 static outcome draw_state(renderer *r, int level, const json_t *recipe,
                           bool anew) {
-    const bool again = process_ranks() == 1;
-    if (again)
+    const bool one = process_ranks() == 1;
+    if (one)
         say_later();
     outcome o = try_state(r, level, recipe, anew);
-    const bool is_short = o.done == SNOW_STATUS_NO_MEMORY;
-    say_now(again && is_short);
-    if (!again || !is_short)
-        return o;
-    make_room(r);
-    return try_state(r, level, recipe, true);
+    bool is_short = one && o.done == SNOW_STATUS_NO_MEMORY;
+    say_now(is_short);
+    if (is_short && !is_in_vain(r, level, recipe))
+        o = draw_emptied(r, level, recipe);
+    if (one && o.done == SNOW_STATUS_NO_MEMORY)
+        say_no_room(r, level);
+    return o;
 }
 
 static bool try_answer(renderer *r, const viewer_question *question) {
@@ -203,17 +249,28 @@ static void serve_answer(renderer *r, const viewer_question *question) {
     json_decref(question->tree);
 }
 
+/* The volume and the look of the last good recipe.  What is noted of them was
+ * said when they were opened first, and would hide why they come back. */
+static void restore(renderer *r) {
+    say_later();
+    drawing_apply(r->drawing, r->good);
+    say_now(true);
+}
+
 /* What a page asked for and the volume has not stays in no recipe: the state
- * before comes back. */
+ * before comes back.  What has no room stays; answers are of the volume before.
+ */
 static void note_recipe(renderer *r, const outcome *o, json_t *recipe) {
-    if (o->applied) {
+    const bool wrong =
+        o->done == SNOW_STATUS_BAD_USAGE || o->done == SNOW_STATUS_BAD_INPUT;
+    if (!o->rescaled && (o->done == CONTINUE || o->done == EXIT_INTERRUPTED)) {
         json_decref(r->good);
         r->good = json_incref(recipe);
-    } else if (r->good &&
-               (o->done == SNOW_STATUS_BAD_USAGE ||
-                o->done == SNOW_STATUS_BAD_INPUT) &&
-               state_take_back(r->state, r->revision, r->good)) {
+    } else if (wrong && state_take_back(r->state, r->revision, r->good)) {
+        restore(r);
         tell_state(r);
+    } else if (o->done == SNOW_STATUS_NO_MEMORY && !r->drawing->state.volume) {
+        restore(r);
     }
 }
 
@@ -284,6 +341,7 @@ renderer *renderer_new(drawing *d, viewer_state *s, outbox *box, packer *pack) {
         return NULL;
     *r = (renderer){
         .drawing = d, .state = s, .box = box, .pack = pack, .level = -1};
+    r->good = state_recipe(s);
     drawing_middle(d, middle, &r->radius);
     snow_context_set_progress(d->state.context, hear_progress, r);
     return r;
@@ -295,5 +353,6 @@ void renderer_free(renderer *r) {
     free_pictures(packer_end(r->pack));
     snow_context_set_progress(r->drawing->state.context, NULL, NULL);
     json_decref(r->good);
+    json_decref(r->vain);
     free(r);
 }

@@ -38,7 +38,14 @@ def too_large():
             page.hear_picture(2, n)
         else:
             line = page.hear_text("said")["text"]
-            check("a large picture has no room in 6M", "--memory of 6.0 MiB" in line, line)
+            check("a large picture has no room in 6M", "900 x 700" in line and
+                  "--memory of 6.0 MiB" in line and "window" in line, line)
+    page.say({"t": "ask", "what": "value", "at": [3, 4, 5]})
+    value = page.hear_text("value")["value"]
+    check("values are those of the volume before", value is not None, value)
+    page.say({"t": "ask", "what": "command"})
+    command = page.hear_text("command")["text"]
+    check("and the command is that of the page", "--size 900x700" in command, command)
     page.say({"t": "set", "n": 3, "recipe": {"size": [96, 80]}})
     look = look_of(page, lambda look: len(look["channels"]) == 1)
     check("one is drawn in 6M", numbers(look) == [0], look)
@@ -139,10 +146,33 @@ def switched(name, *options, clip=None):
     server.stop()
 
 
+def refused():
+    """Why a state is taken back is the last that a page hears: not what is noted
+    of the volume that is opened again."""
+    server = Server("plain.zarr", "-j", "2", "--preset", "linear")
+    page = Page(server)
+    page.say({"t": "set", "n": 1, "recipe": {"size": [64, 64]}})
+    page.hear_picture(2, 1)
+    page.say({"t": "set", "n": 2, "recipe": {"component": "zz"}})
+    said, at_rest = [], False
+    while not at_rest:
+        what, message = page.hear()
+        if what == "picture":
+            page.say({"t": "ack", "n": 0})
+            at_rest = message[8] == 2
+        elif message["t"] == "said":
+            said.append(message["text"])
+    check("a component that is none is the last thing said",
+          len(said) == 1 and "--component zz" in said[0], said)
+    page.close()
+    server.stop()
+
+
 write_channels("plain.zarr", False)
 write_channels("told.zarr", True)
 switched("plain.zarr")
 ends_with_one_off()
+refused()
 begun_with_one("a component", "--component", "1")
 with open("look.json", "w") as out:
     json.dump({"snowglass-tf": 1, "values": "data", "colormap": "viridis",
