@@ -19,7 +19,7 @@ export class Channels {
         this.list = make('div', {});
         this.element = section('Channels', true, this.list, button('All',
             'All channels as the file shows them', () => recipe.set({...plain, // else as --tf has them
-                channel: page.info.tf ? [...page.info.channels.keys()].join() : null})));
+                channel: page.info.tf ? [...page.info.channels.keys()].slice(0, 8).join() : null})));
     }
 
     /** The next change may come before the server's look. */
