@@ -111,7 +111,7 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
     int done = take_range(opts, &from, &out->count);
     if (done != CONTINUE)
         return done;
-    out->looked = out->count > 1 && !look_is_fixed(opts) ? out->count : 0;
+    out->looked = look_is_fixed(opts) ? 0 : out->count;
     out->shots = calloc((size_t)out->count, sizeof *out->shots);
     if (!out->shots)
         return fail_list();
@@ -551,9 +551,9 @@ static int look_at_more(const shot_list *list, shot_renderer *shots) {
     if (!s->transfer || !snow_transfer_label(s->transfer, 0)) {
         if (s->opts->verbosity >= 0 && process_talks())
             say("note: the look is that of the first %" PRId64
-                " steps, as of the frames that are there; --overwrite without "
+                " step%s, as of the frames that are there; --overwrite without "
                 "--resume chooses it from all",
-                list->looked);
+                list->looked, list->looked == 1 ? "" : "s");
         return CONTINUE;
     }
     snow_transfer_free(s->transfer);

@@ -97,6 +97,16 @@ check "and no other anew" cmp -s before <(stat -c '%i %Y' g_0.png g_1.png g_2.pn
 sed -i 's/run_0010/run_0000/' steps.visit
 refused 4 "changed without growing" 'other settings' movie steps.visit -o g_%d.png --resume
 
+# One step at first.
+cp run_0010.nrrd st_0.nrrd
+run 0 "one step" "$TOOL" movie st_%d.nrrd -s 48x48 -o st_%d.png
+cp st_0.png before.png
+cp run_0030.nrrd st_1.nrrd
+run 0 "a second" "$TOOL" movie st_%d.nrrd -s 48x48 -o st_%d.png --resume
+says 'the look is that of the first 1 step, as of'
+check "is made" [ -s st_1.png ]
+check "and the first stays" cmp -s before.png st_0.png
+
 # Short movies take four seconds.
 if command -v ffprobe >/dev/null; then
     run 0 "three frames" movie run_0000.nrrd run_0010.nrrd run_0030.nrrd -o a.mp4
