@@ -115,6 +115,13 @@ for unit, x, y, spacing in (("CENTIMETER", 1000, 500, (0.01, 0.02, 0.01)),
                             ("INCH", 72, 72, None),
                             ("CENTIMETER", 118.11, 118.11, None),
                             ("CENTIMETER", 28.35, 28.35, None),
+                            ("INCH", 1, 1, None),
+                            ("CENTIMETER", 1, 1, (10, 10, 10)),
+                            ("CENTIMETER", 0.9, 0.9, None),
+                            ("INCH", 1e-7, 1e-7, None),
+                            ("CENTIMETER", 2e7, 2e7, None),
+                            ("INCH", 1000, 72, None),
+                            ("INCH", 72, 1000, None),
                             ("NONE", 1000, 1000, None)):
     tifffile.imwrite("f.tif", flat, photometric="minisblack", metadata=None,
                      resolution=(x, y), resolutionunit=unit)

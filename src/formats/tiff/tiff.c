@@ -138,16 +138,25 @@ static void share_images(snow_context *context, tiff_plan *plan) {
     take_for_slices(context, plan);
 }
 
-/* Pixels an inch that programs write for screens and printers, and that nobody
- * has measured; an inch of 2.54 cm may be rounded. */
+/* Sizes of a pixel that microscopes, scanners and cameras give. */
+#define LEAST_MM 1e-6
+#define MOST_MM 10
+
+/* Pixels an inch that programs write for screens and printers, or for nothing,
+ * and that nobody has measured; an inch of 2.54 cm may be rounded. */
 static bool is_of_paper(double inch) {
-    static const short usual[] = {72,  75,  90,  96,  100,  120, 144,
-                                  150, 180, 200, 220, 240,  300, 350,
-                                  360, 400, 600, 720, 1200, 2400};
+    static const short usual[] = {1,   72,  75,  90,  96,  100,  120,
+                                  144, 150, 180, 200, 220, 240,  300,
+                                  350, 360, 400, 600, 720, 1200, 2400};
     for (size_t n = 0; n < sizeof usual / sizeof *usual; n++)
         if (fabs(inch - usual[n]) < 0.005 * usual[n])
             return true;
     return false;
+}
+
+/* Whether somebody has measured pixels of this size. */
+static bool is_measured(double mm) {
+    return mm >= LEAST_MM && mm <= MOST_MM && !is_of_paper(25.4 / mm);
 }
 
 /* Pixels per unit of length: of ImageJ in the unit that its description names,
@@ -165,7 +174,8 @@ static void take_resolution(snow_tiff *file, tiff_plan *plan) {
                 : unit == RESUNIT_CENTIMETER ? 10
                                              : 0;
     plan->measured = !shape->imagej && !(shape->spacing[0] > 0) && x > 0 &&
-                     y > 0 && mm > 0 && !is_of_paper((double)x * 25.4 / mm);
+                     y > 0 && is_measured(mm / (double)x) &&
+                     is_measured(mm / (double)y);
     if (!shape->imagej && !plan->measured)
         return;
     shape->spacing[0] = mm / (double)x;
