@@ -10,12 +10,17 @@ static int find_time(int rank, const snow_axis_hint *hints) {
     return -1;
 }
 
+/* The most components of a voxel, a tensor's, that leave a picture of three
+ * axes; more entries are slices. */
+#define MOST_OF_PICTURE 9
+
 /* The place among `others`, the axes that are not time, of the one that counts
  * components: said to, or the fastest, by its size.  -1: there is none. */
 static int find_components(const int64_t *sizes, const snow_axis_hint *hints,
                            const int *others, int count) {
     for (int n = 0; n < count && count > 2; n++)
-        if (hints[others[n]].components)
+        if (hints[others[n]].components &&
+            (count > 3 || sizes[others[n]] <= MOST_OF_PICTURE))
             return n;
     const bool few = count > 3 && sizes[others[0]] >= 1 &&
                      sizes[others[0]] <= 4 &&

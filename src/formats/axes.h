@@ -25,8 +25,9 @@ typedef struct snow_axes {
 
 /* Assigns the axes.  One counts components if a hint says so, or it is the
  * fastest, has 1 to 4 entries, fewer than the next one, and is one more than
- * space has.  Of others that are too many for space the slowest is time, and
- * the next one channels. Returns false if any is left. */
+ * space has; of three axes a hint counts up to 9 entries.  Of others that are
+ * too many for space the slowest is time, and the next one channels.  Returns
+ * false if any is left. */
 bool snow_axes_assign(int rank, const int64_t sizes[SNOW_MOST_AXES],
                       const snow_axis_hint hints[SNOW_MOST_AXES],
                       snow_axes *out);

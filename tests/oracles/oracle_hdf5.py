@@ -133,12 +133,25 @@ with h5py.File("v.h5", "w") as file:
         v = file.create_dataset(name, data=t[:, 0])
         for axis, label in zip(v.dims, labels):
             axis.label = label
+    for name, label, count in (("f", "Vector", 9), ("g", "components", 10)):
+        file[name] = oracle.sample("<f4", (count, 7, 6))
+        file[name].dims[0].label = label
     file["e"] = t[0]
     file["e"].dims[3].label = "x"
+    # A scale says what an axis is; a label beside it says less.
+    file["component"] = np.arange(5.)
+    file["component"].make_scale("component")
+    file["h"] = t[:, 0]
+    file["h"].dims[0].attach_scale(file["component"])
+    file["h"].dims[0].label = "part"
 oracle.expect("v.h5:/a", t[4, 0], options=["--component", 4])
+oracle.expect("v.h5:/h", t[4, 0], options=["--component", 4])
 oracle.refuse("v.h5:/a", "the file has 1", ["--time", 1], 2)
 oracle.expect("v.h5:/b", t[2, 0], options=["--time", 2])
 oracle.expect("v.h5:/c", t[:, 0, ..., 1], options=["--time", 1])
+oracle.expect("v.h5:/f", oracle.sample("<f4", (9, 7, 6))[None, 8],
+              options=["--component", 8])
+oracle.expect("v.h5:/g", oracle.sample("<f4", (10, 7, 6)))
 oracle.expect("v.h5:/e", t[0, 5], options=["--time", 5])
 
 # openPMD: labels, spacing and offset follow the order of the indices.
@@ -174,11 +187,22 @@ with h5py.File("w.h5", "w") as file:
     root["CellData/rho"] = m[1:, 1:, 1:]
     root["PointData/all"] = np.stack((m, 2 * m))
     root["Steps/Values"] = (0.25, 0.75)
+    root["PointData/thin"] = oracle.sample("<f4", (2, 6, 5, 4))
+    root["PointData/tensor"] = oracle.sample("<f4", (2, 4, 5, 6, 9))
+    root["PointData/still"] = oracle.sample("<f4", (4, 5, 6, 3))
 matrix = np.eye(4)
 matrix[:3, :3] = turn * (0.5, 1, 2)
 matrix[:3, 3] = (10, 21, 30)
 oracle.expect("w.h5:/VTKHDF/PointData/rho", m, matrix)
 oracle.expect("w.h5:/VTKHDF/PointData/all", 2 * m, matrix, ["--time", "0.6"])
+oracle.expect("w.h5:/VTKHDF/PointData/thin",
+              oracle.sample("<f4", (2, 6, 5, 4))[1], matrix, ["--time", 1])
+oracle.expect("w.h5:/VTKHDF/PointData/tensor",
+              oracle.sample("<f4", (2, 4, 5, 6, 9))[1, ..., 8], matrix,
+              ["--time", 1, "--component", 8])
+oracle.expect("w.h5:/VTKHDF/PointData/still",
+              oracle.sample("<f4", (4, 5, 6, 3))[..., 2], matrix,
+              ["--component", 2])
 matrix[:3, 3] += matrix[:3, :3] @ (0.5, 0.5, 0.5)
 oracle.expect("w.h5:/VTKHDF/CellData/rho", m[1:, 1:, 1:], matrix)
 

@@ -310,7 +310,7 @@ static void read_axis_labels(scales *s) {
         const cf_words words = {label, "", label, ""};
         snow_hdf5_text(s->file, s->set->id, "DIMENSION_LABELS", (size_t)i,
                        label, sizeof label);
-        if (*label && !hint->time && !hint->space)
+        if (*label && !hint->time && !hint->space && !hint->components)
             *hint = snow_cf_hint(&words);
     }
 }
@@ -347,9 +347,11 @@ snow_status snow_hdf5_read_axes(snow_context *context, const hdf5_file *file,
     memset(out, 0, sizeof *out);
     SNOW_TRY(read_scales(&s));
     read_axis_labels(&s);
+    snow_hdf5_hint_image(file, set, s.hints);
     for (int i = 0; i < HDF5_MOST_AXES; i++)
         sizes[i] = i < set->axes ? (int64_t)set->sizes[set->axes - 1 - i] : 1;
-    out->colors = s.hints[0].components = is_coloured(file, set->id);
+    out->colors = is_coloured(file, set->id);
+    s.hints[0].components |= out->colors;
     if (snow_axes_assign(set->axes, sizes, s.hints, &out->roles))
         return SNOW_STATUS_OK;
     return snow_fail(context, SNOW_STATUS_BAD_INPUT,

@@ -108,11 +108,14 @@ void snow_hdf5_place(snow_context *context, const hdf5_file *file,
                      const snow_volume_options *options, snow_volume_info *info,
                      cf_values *values, snow_uneven *grid);
 
-/* Of image data that VTK wrote: sets the matrix, false of others; the time. */
+/* Of image data that VTK wrote: sets the matrix, false of others; the time;
+ * which axes are time and components, if it has steps. */
 bool snow_hdf5_place_image(const hdf5_file *file, const hdf5_set *set,
                            snow_volume_info *info);
 void snow_hdf5_time_image(const hdf5_file *file, const hdf5_set *set,
                           snow_volume_info *info);
+void snow_hdf5_hint_image(const hdf5_file *file, const hdf5_set *set,
+                          snow_axis_hint hints[HDF5_MOST_AXES]);
 
 /* Reads up to `most` numbers of an attribute; returns how many there are, 0 if
  * it is missing or has other values. */

@@ -1,9 +1,13 @@
 /* formats/hdf5/vtkhdf.c - image data of VTKHDF (vtk.org, "VTKHDF File Format"):
  *
- *     /VTKHDF              Type "ImageData", WholeExtent, Origin, Spacing,
- *                          Direction (rows of a matrix; its columns are the
- * axes) PointData/rho      values at points, CellData/rho of cells Steps/Values
- * times, where arrays have an axis of time before z */
+ *     /VTKHDF
+ *       Type             "ImageData"
+ *       WholeExtent, Origin, Spacing
+ *       Direction        rows of a matrix; its columns are the axes
+ *       PointData/rho    values at points
+ *       CellData/rho     values of cells
+ *       Steps/Values     times, where arrays have an axis of time before z
+ */
 #include "formats/hdf5/hdf5.h"
 
 #if SNOW_HAVE_HDF5
@@ -55,32 +59,67 @@ bool snow_hdf5_place_image(const hdf5_file *file, const hdf5_set *set,
     return given;
 }
 
+/* Opens the times of the steps and counts them; -1: there are none. */
+static hid_t open_times(hid_t root, hsize_t *count) {
+    hid_t times = H5Lexists(root, "Steps", H5P_DEFAULT) > 0 &&
+                          H5Lexists(root, "Steps/Values", H5P_DEFAULT) > 0
+                      ? H5Dopen2(root, "Steps/Values", H5P_DEFAULT)
+                      : -1;
+    hid_t space = times >= 0 ? H5Dget_space(times) : -1;
+    bool line = space >= 0 && H5Sget_simple_extent_ndims(space) == 1 &&
+                H5Sget_simple_extent_dims(space, count, NULL) == 1;
+    if (space >= 0)
+        H5Sclose(space);
+    if (line)
+        return times;
+    if (times >= 0)
+        H5Dclose(times);
+    return -1;
+}
+
 void snow_hdf5_time_image(const hdf5_file *file, const hdf5_set *set,
                           snow_volume_info *info) {
     hid_t root = open_root(file, set);
     if (root < 0)
         return;
-    hid_t times = H5Lexists(root, "Steps", H5P_DEFAULT) > 0 &&
-                          H5Lexists(root, "Steps/Values", H5P_DEFAULT) > 0
-                      ? H5Dopen2(root, "Steps/Values", H5P_DEFAULT)
-                      : -1;
     hsize_t count = 0, at = (hsize_t)info->time, one = 1;
-    hid_t space = times >= 0 ? H5Dget_space(times) : -1;
-    hid_t memory = H5Screate_simple(1, &one, NULL);
+    hid_t times = open_times(root, &count);
+    H5Oclose(root);
+    if (times < 0)
+        return;
+    hid_t space = H5Dget_space(times), memory = H5Screate_simple(1, &one, NULL);
     double value;
-    if (space >= 0 && H5Sget_simple_extent_ndims(space) == 1 &&
-        H5Sget_simple_extent_dims(space, &count, NULL) == 1 && at < count &&
+    if (at < count &&
         H5Sselect_hyperslab(space, H5S_SELECT_SET, &at, NULL, &one, NULL) >=
             0 &&
         H5Dread(times, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, &value) >=
             0)
         info->time_value = value;
     H5Sclose(memory);
-    if (space >= 0)
-        H5Sclose(space);
-    if (times >= 0)
-        H5Dclose(times);
+    H5Sclose(space);
+    H5Dclose(times);
+}
+
+/* An array of all steps has the axes time, z, y, x, and may have one of
+ * components. */
+void snow_hdf5_hint_image(const hdf5_file *file, const hdf5_set *set,
+                          snow_axis_hint hints[HDF5_MOST_AXES]) {
+    hid_t root = open_root(file, set);
+    if (root < 0)
+        return;
+    hsize_t count = 0;
+    hid_t times = open_times(root, &count);
     H5Oclose(root);
+    if (times < 0)
+        return;
+    H5Dclose(times);
+    if (set->axes < 4 || set->sizes[0] != count)
+        return;
+    hints[set->axes - 1].time = true;
+    if (set->axes == 4)
+        hints[0].space = true;
+    else
+        hints[0].components = true;
 }
 
 #endif
