@@ -240,6 +240,32 @@ for kind, numbers in (("List", "0.25 0.5 0.75"), ("HyperSlab", "0.25 0.25 3"),
     check("t.xmf", ["--time", 2], 2)
     says("t.xmf", ["--time", 2],
          time_value=0.75 if len(numbers) > 5 else None)
+# Times in HDF5; times that are none; a grid's own time beside a list.
+with h5py.File("times.h5", "w") as file:
+    file["list"] = (0.25, 0.5, 0.75)
+    file["even"] = (0.25, 0.25, 3)
+    file["two"] = (0.25, 0.5)
+NOTE = "its list of times has none"
+for kind, form, numbers, own, times in (
+        ("List", "HDF", "times.h5:/list", {}, (0.25, 0.5, 0.75)),
+        ("HyperSlab", "HDF", "times.h5:/even", {}, (0.25, 0.5, 0.75)),
+        ("List", "HDF", "times.h5:/two", {}, (None,) * 3),
+        ("List", "HDF", "times.h5:/no", {}, (None,) * 3),
+        ("List", "Binary", "times.bin", {}, (None,) * 3),
+        ("List", "XML", "nan inf 5", {}, (None, None, 5)),
+        ("HyperSlab", "XML", "1 0.5 9", {1: 7}, (1, 7, 2)),
+        ("List", "XML", "1 3 9", {1: 7, 2: "inf"}, (1, 7, None))):
+    text("t.xmf", START + '<Grid GridType="Collection" '
+         f'CollectionType="Temporal"><Time TimeType="{kind}"><DataItem '
+         f'Format="{form}" Dimensions="3">{numbers}</DataItem></Time>' +
+         "".join(grid((f'<Time Value="{own[t]}"/>' if t in own else "") +
+                      item("rho", f"x.h5:/step{t}/rho"))
+                 for t in range(3)) + "</Grid>" + END)
+    for t in range(3):
+        says("t.xmf", ["--time", t], time_value=times[t])
+        if ((NOTE in oracle.run("t.xmf", "--time", t).stderr) !=
+                (times[t] is None and t not in own)):
+            oracle.fail("t.xmf", f"the note on the time of step {t}")
 values().tofile("x.bin")
 text("r.xmf", START + grid(item("r", "x.bin", more='Format="Binary" '
                                 'NumberType="Float" Precision="4" '

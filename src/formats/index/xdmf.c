@@ -16,6 +16,7 @@
 #include "formats/index/xdmf.h"
 #include "formats/vtk/vtk.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -61,14 +62,23 @@ static snow_status read_numbers(xdmf_file *f, const xdmf_item *item,
     return status != SNOW_STATUS_OK || values ? status : SNOW_STATUS_NO_MEMORY;
 }
 
-/* The time of a step by those of its collection; NaN: there are none. */
+/* The time of a step by those of its collection; NaN: there are none.  Data
+ * sets are read whole. */
 static double time_of(xdmf_file *f, int64_t step) {
     double *values = NULL, time = NAN;
-    const int64_t count = f->even_times ? 2 : step + 1;
-    if (f->times.length &&
-        read_numbers(f, &f->times, count, &values) == SNOW_STATUS_OK)
+    int64_t count = f->even_times ? 2 : step + 1;
+    if (!f->times.xml)
+        count = f->even_times ? 3 : f->steps;
+    if (!f->times.length && !*f->times.text)
+        return NAN;
+    if (read_numbers(f, &f->times, count, &values) == SNOW_STATUS_OK)
         time =
             f->even_times ? values[0] + (double)step * values[1] : values[step];
+    if (!isfinite(time))
+        snow_notify(f->context,
+                    "its list of times has none that can be read for step "
+                    "%" PRId64 "; write a number for each step into the XML",
+                    step);
     snow_release(f->context, values);
     return time;
 }
@@ -218,8 +228,9 @@ static snow_status read_grid(xdmf_file *f, vtk_grid *grid,
                            out));
     info->times = series.times;
     info->time = series.time;
-    info->time_value =
+    const double time =
         isnan(f->kept.time) ? time_of(f, info->time) : f->kept.time;
+    info->time_value = isfinite(time) ? time : NAN;
     return SNOW_STATUS_OK;
 }
 

@@ -160,8 +160,10 @@ static void begin_time(xdmf_file *f, const char **attributes) {
     const bool collects = f->collections & 1;
     if (value && !collects)
         (void)snow_parse_double(value, &f->now.time);
-    f->even_times = snow_xdmf_is(kind, "hyperslab");
-    f->in_times = collects && (f->even_times || snow_xdmf_is(kind, "list"));
+    const bool even = snow_xdmf_is(kind, "hyperslab");
+    f->in_times = collects && (even || snow_xdmf_is(kind, "list"));
+    if (f->in_times)
+        f->even_times = even;
 }
 
 static snow_status begin_element(void *user, const char *name,
