@@ -347,6 +347,8 @@ json_t *config_tree(const options *opts, const verb_row *verb) {
         json_object_set_new(tree, "background", json_string("none"));
     if (verb->bit == VERB_RENDER || !options_given(opts, "fps"))
         json_object_del(tree, "fps"); /* few time steps have their own */
+    if (options_given(opts, "time") && !json_object_get(tree, "time"))
+        json_object_set_new(tree, "time", json_integer(opts->time));
     if (verb->bit == VERB_SLICE)
         keep_slice(opts, tree);
     set_inputs(opts, tree);

@@ -63,6 +63,14 @@ run 0 "a window" render phantom:shells --dims 32x32x32 -o h.png \
     --window 100 --level 120 --save-config h.json
 run 0 "is kept" render --config h.json -o i.png
 check "as a range" cmp -s h.png i.png
+"$TOOL" phantom cube --dims 16x16x16 -q -o step_0.nrrd && cp step_0.nrrd step_1.nrrd
+run 0 "step 0" "$TOOL" render step_%d.nrrd --time 0 -s 20x20 -o step.png \
+    --save-config step.json
+check "is kept" grep -q '"time": 0' step.json
+run 0 "and taken" "$TOOL" render --config step.json -o step_again.png
+check "no word on others" bash -c "! grep -q 'takes another' '$ERR'"
+run 0 "no step" render step_%d.nrrd -s 20x20 -o no_step.png --save-config no_step.json
+check "is not kept" bash -c "! grep -q '\"time\"' no_step.json"
 run 0 "to standard output" render phantom:cube -o j.png --save-config -
 prints '^\{"input": "phantom:cube", "output": "j.png", "size": \[512, 512\]'
 
