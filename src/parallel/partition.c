@@ -182,10 +182,17 @@ snow_status snow_partition_boxes(snow_comm *comm,
         order->cut == SNOW_PARTITION_BRICKS
             ? snow_block_counts_for_bricks(&order->grid, order->ranks)
             : snow_block_counts_for_slabs(&order->grid);
-    counts.step = loads ? 1 : step_of(order);
+    counts.step = step_of(order);
     snow_status status = count_all(comm, order, volume, transfer, &counts);
     if (status == SNOW_STATUS_OK)
         status = count_for_partition(volume->context, order, &counts, boxes);
+    if (loads && counts.step > 1) {
+        counts.step = 1;
+        if (comm)
+            status = snow_comm_agree_status(comm, status);
+        if (status == SNOW_STATUS_OK)
+            status = count_all(comm, order, volume, transfer, &counts);
+    }
     if (status == SNOW_STATUS_OK && loads)
         snow_partition_loads(&counts, boxes, order->ranks, loads);
     snow_release(volume->context, counts.counts);
