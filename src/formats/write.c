@@ -26,7 +26,8 @@ static snow_status write_swapped(const unsigned char *at, size_t bytes,
 }
 
 /* Straight from the volume on little-endian machines: no copy of what may be
- * gigabytes.  Part by part, so that a stop does not wait for all of it. */
+ * gigabytes.  Part by part, so that a stop does not wait for all of it; row by
+ * row where rows lie apart. */
 snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer) {
     int64_t voxels;
     uint64_t bytes;
@@ -34,9 +35,13 @@ snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer) {
     snow_volume_count(volume->info.dims, volume->info.type, &voxels, &bytes);
     snow_monitor *monitor = volume->context->monitor;
     for (uint64_t done = 0; done < bytes;) {
-        const unsigned char *at = (unsigned char *)volume->voxels + done;
-        size_t some =
-            bytes - done < PART_BYTES ? (size_t)(bytes - done) : PART_BYTES;
+        uint64_t count =
+            (bytes - done < PART_BYTES ? bytes - done : PART_BYTES) / size;
+        const unsigned char *at =
+            (unsigned char *)volume->voxels +
+            (size_t)snow_volume_run(volume, (int64_t)(done / size), &count) *
+                size;
+        const size_t some = (size_t)count * size;
         SNOW_TRY(snow_machine_big_endian()
                      ? write_swapped(at, some, size, writer)
                      : snow_writer_write(writer, at, some));

@@ -95,10 +95,17 @@ static void run(const snow_volume *volume, conversion *c, void *voxels) {
 }
 
 static void copy(const snow_volume *volume, void *voxels) {
+    const size_t size = snow_type_size(volume->info.type);
     int64_t count;
-    uint64_t bytes;
+    uint64_t here, bytes;
     snow_volume_count(volume->info.dims, volume->info.type, &count, &bytes);
-    memcpy(voxels, volume->voxels, (size_t)bytes);
+    for (int64_t first = 0; first < count; first += (int64_t)here) {
+        here = (uint64_t)(count - first);
+        const int64_t at = snow_volume_run(volume, first, &here);
+        memcpy((char *)voxels + (size_t)first * size,
+               (const char *)volume->voxels + (size_t)at * size,
+               (size_t)here * size);
+    }
 }
 
 static bool is_plain(const snow_volume_info *info) {

@@ -126,10 +126,14 @@ static void put_nearest(const regrid *r, const double at[3], bool within,
         double value = from->info.slope * snow_volume_native(from, voxel) +
                        from->info.intercept;
         memcpy(out, &value, size);
-    } else if (size == 1) { /* most masks */
-        *out = ((const char *)from->voxels)[voxel];
     } else {
-        memcpy(out, (const char *)from->voxels + (size_t)voxel * size, size);
+        uint64_t one = 1;
+        const size_t at = (size_t)snow_volume_run(from, voxel, &one);
+        const char *voxels = from->voxels;
+        if (size == 1) /* most masks */
+            *out = voxels[at];
+        else
+            memcpy(out, voxels + at * size, size);
     }
 }
 

@@ -180,6 +180,46 @@ static void a_scaling_goes_into_the_least_type_that_holds_it(void **state) {
           SNOW_TYPE_UINT8, doubled, sizeof doubled);
 }
 
+/* Rows 5 and slices 17 voxels apart, of 3x2x2. */
+static void what_lies_apart_is_as_if_dense(void **state) {
+    support_place *place = *state;
+    static const int64_t pitch[2] = {5, 17};
+    int16_t wide[34], dense[12];
+    snow_volume_info info = {
+        .size = sizeof info,
+        .dims = {3, 2, 2},
+        .type = SNOW_TYPE_INT16,
+        .slope = 1,
+        .matrix = {{1, 0, 0, 5}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+    snow_volume_info turned = info;
+    turned.matrix[0][0] = -1;
+    turned.matrix[0][3] = 7;
+    snow_volume *apart, *grid, *out = NULL;
+    for (int16_t n = 0; n < 34; n++)
+        wide[n] = n;
+    for (int n = 0; n < 12; n++)
+        dense[n] = wide[n % 3 + n / 3 % 2 * 5 + n / 6 * 17];
+    if (snow_volume_wrap(place->context, &info, wide, &apart) != SNOW_STATUS_OK)
+        fail_msg("%s", snow_context_message(place->context));
+    assert_int_equal(snow_volume_wrap(place->context, &turned, dense, &grid),
+                     SNOW_STATUS_OK);
+    snow_volume_set_pitch(apart, pitch);
+    assert_int_equal(snow_volume_convert(apart, SNOW_TYPE_NONE, NULL, &out),
+                     SNOW_STATUS_OK);
+    check(out, SNOW_TYPE_INT16, dense, sizeof dense);
+    const char *path = support_place_path(place, "apart.npy");
+    assert_int_equal(snow_volume_save(apart, path, false), SNOW_STATUS_OK);
+    assert_int_equal(snow_volume_open(place->context, path, NULL, &out),
+                     SNOW_STATUS_OK);
+    check(out, SNOW_TYPE_INT16, dense, sizeof dense);
+    assert_int_equal(snow_volume_regrid(&apart, grid, true), SNOW_STATUS_OK);
+    const int16_t *voxels = snow_volume_voxels(apart);
+    for (int n = 0; n < 12; n++)
+        assert_int_equal(voxels[n], dense[n / 3 * 3 + 2 - n % 3]);
+    snow_volume_close(apart);
+    snow_volume_close(grid);
+}
+
 #define IN_A_PLACE(name)                                       \
     cmocka_unit_test_setup_teardown(name, support_place_begin, \
                                     support_place_end)
@@ -194,6 +234,7 @@ int main(void) {
         IN_A_PLACE(a_range_is_spread_over_the_type),
         IN_A_PLACE(what_is_known_of_values_goes_with_them),
         IN_A_PLACE(a_scaling_goes_into_the_least_type_that_holds_it),
+        IN_A_PLACE(what_lies_apart_is_as_if_dense),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
