@@ -69,7 +69,7 @@ static snow_status measure_values(snow_in_flight *f, snow_data_range *range) {
 /* Collective.  What all parts have together; *lost: some rank has no planes. */
 static snow_status join_values(snow_in_flight *f, snow_data_range *range,
                                bool *lost) {
-    enum { LOST, FIRST, MINUS_LOW = 0, HIGH, HOLES, COUNT };
+    enum { LOST, FIRST, MINUS_LOW = 0, HIGH, HOLES, MASKED, COUNT };
     const int count = 1 + f->picture.job.layer_count;
     double all[FIRST + COUNT * (1 + SNOW_INLAYS_MOST)];
     all[LOST] = f->picture.job.volume->lost_clip;
@@ -78,6 +78,7 @@ static snow_status join_values(snow_in_flight *f, snow_data_range *range,
         words[MINUS_LOW] = -range[n].low;
         words[HIGH] = range[n].high;
         words[HOLES] = range[n].holes;
+        words[MASKED] = range[n].masked;
     }
     SNOW_TRY(snow_comm_reduce_doubles(
         f->ranks->comm, all, (size_t)(FIRST + COUNT * count), SNOW_REDUCE_MAX));
@@ -87,6 +88,7 @@ static snow_status join_values(snow_in_flight *f, snow_data_range *range,
         range[n].low = -words[MINUS_LOW];
         range[n].high = words[HIGH];
         range[n].holes = words[HOLES] > 0;
+        range[n].masked = words[MASKED] > 0;
     }
     return SNOW_STATUS_OK;
 }

@@ -80,14 +80,17 @@ static snow_brick brick_of(const snow_volume *volume) {
     return brick;
 }
 
-/* Collective.  Whether all ranks hold clip planes; *lost: some do, and others
- * do not. */
-static snow_status agree_planes(snow_comm *comm, const snow_volume *held,
-                                bool *all, bool *lost) {
-    double words[2] = {held->clip != NULL, -(held->clip != NULL)};
-    SNOW_TRY(snow_comm_reduce_doubles(comm, words, 2, SNOW_REDUCE_MAX));
+/* Collective.  What masks and planes have done to any rank's voxels.  *all: all
+ * ranks hold clip planes; where only some do they are lost. */
+static snow_status agree_cuts(snow_comm *comm, const snow_volume *held,
+                              bool *all, snow_volume *to) {
+    double words[4] = {held->clip != NULL, -(held->clip != NULL), held->masked,
+                       held->had_negative};
+    SNOW_TRY(snow_comm_reduce_doubles(comm, words, 4, SNOW_REDUCE_MAX));
     *all = words[1] < 0;
-    *lost = held->lost_clip || (words[0] > 0 && !*all);
+    to->lost_clip = held->lost_clip || (words[0] > 0 && !*all);
+    to->masked = words[2] > 0;
+    to->had_negative = words[3] > 0;
     return SNOW_STATUS_OK;
 }
 
@@ -110,8 +113,8 @@ static snow_status move_voxels(snow_comm *comm, const snow_volume *from,
     static const snow_box nothing;
     snow_voxels *voxels = NULL;
     const snow_brick held = brick_of(from);
-    bool any = snow_box_voxels(&p->owned) > 0, all, lost;
-    SNOW_TRY(agree_planes(comm, from, &all, &lost));
+    bool any = snow_box_voxels(&p->owned) > 0, all;
+    SNOW_TRY(agree_cuts(comm, from, &all, to));
     snow_status status =
         snow_comm_agree_status(comm, snow_voxels_new(comm, &voxels));
     if (status == SNOW_STATUS_OK)
@@ -127,7 +130,6 @@ static snow_status move_voxels(snow_comm *comm, const snow_volume *from,
     if (all && !spent) /* memory that was given up is not written to */
         snow_clip_planes_show(from->clip, from->info.type, false, from->owned);
     snow_voxels_free(voxels);
-    to->lost_clip = lost;
     if (status == SNOW_STATUS_OK && all)
         status = cut_again(from, to);
     return all ? snow_comm_agree_status(comm, status) : status;

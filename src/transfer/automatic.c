@@ -165,8 +165,8 @@ static void read_counts(const uint64_t *counts, uint64_t all, double there,
         out->faint < out->threshold;
 }
 
-/* Where so many voxels have no value, as those outside a mask, what is left has
- * a shape. */
+/* Where so many voxels have no value, as those outside a mask, they are the
+ * background. */
 #define LEFT_OUT 0.02
 
 /* The share of the voxels that have values. */
@@ -178,7 +178,7 @@ static double share_there(const snow_histogram *histogram) {
     return (double)(histogram->finite + histogram->dropped) / all;
 }
 
-static bool has_shape(const snow_histogram *histogram) {
+static bool is_left(const snow_histogram *histogram) {
     return share_there(histogram) < 1 - LEFT_OUT;
 }
 
@@ -201,7 +201,7 @@ snow_status snow_histogram_split_at(const snow_histogram *histogram,
     }
     uint64_t counts[BINS], all;
     SNOW_TRY(snow_count_bins(histogram, ends[0], ends[1], BINS, counts, &all));
-    read_counts(counts, all, has_shape(histogram) ? share_there(histogram) : 1,
+    read_counts(counts, all, is_left(histogram) ? share_there(histogram) : 1,
                 histogram->scale, ends[0], ends[1], out);
     return SNOW_STATUS_OK;
 }
@@ -289,19 +289,11 @@ static void build_constant(const snow_histogram *histogram,
 #define BINS_HU 40
 #define BIN_HU(value) (((value) + 1100) / 100)
 
-/* Whether it is seen from its face, which is a cut (transform/view.c). */
+/* Whether the whole is seen from its face, which is a cut. */
 static bool is_slab(const snow_histogram *histogram) {
-    const double *spacing = histogram->volume->info.spacing;
-    snow_extent part;
-    double side[3];
-    snow_volume_find_extent(histogram->volume, &part);
-    for (int axis = 0; axis < 3; axis++)
-        side[axis] = (double)part.dims[axis] * spacing[axis];
-    for (int axis = 0; axis < 3; axis++)
-        if (side[axis] <
-            0.25 * fmin(side[(axis + 1) % 3], side[(axis + 2) % 3]))
-            return true;
-    return false;
+    snow_volume_info whole;
+    snow_volume_whole(histogram->volume, &whole);
+    return snow_volume_thin_axis(&whole) >= 0;
 }
 
 /* The preset for a CT in Hounsfield units: for bone, if that is 0.5 % of the
@@ -459,7 +451,7 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
                             ", for both signs", builder);
     if (field && !look->opacities)
         return build_field(histogram, &p, builder);
-    if (p.fills_volume && !slice && has_shape(histogram)) {
+    if (p.fills_volume && !slice && histogram->masked && is_left(histogram)) {
         build_shape(&p, builder);
         return SNOW_STATUS_OK;
     }

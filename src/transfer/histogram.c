@@ -121,6 +121,8 @@ static snow_status measure_values(const snow_volume *slab, void *user) {
         }
     }
     histogram->dropped += w.dropped;
+    histogram->masked |= slab->masked;
+    histogram->had_negative |= slab->had_negative;
     return SNOW_STATUS_OK;
 }
 
@@ -135,13 +137,16 @@ static snow_status join_measures(snow_histogram *histogram) {
     }
     SNOW_TRY(
         snow_comm_reduce_doubles(histogram->comm, ends, 2, SNOW_REDUCE_MIN));
-    uint64_t counts[4] = {histogram->finite, 0, histogram->dropped,
-                          histogram->fractions};
+    uint64_t counts[6] = {histogram->finite,  0,
+                          histogram->dropped, histogram->fractions,
+                          histogram->masked,  histogram->had_negative};
     if (histogram->finite && histogram->min == ends[0])
         counts[1] = histogram->at_min;
-    SNOW_TRY(snow_histogram_sum(histogram, counts, 4));
+    SNOW_TRY(snow_histogram_sum(histogram, counts, 6));
     histogram->dropped = counts[2];
     histogram->fractions = counts[3] > 0;
+    histogram->masked = counts[4] > 0;
+    histogram->had_negative = counts[5] > 0;
     if (counts[0]) {
         histogram->min = ends[0];
         histogram->max = -ends[1];

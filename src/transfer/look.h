@@ -60,9 +60,11 @@ typedef struct snow_histogram {
     uint64_t at_min;     /* number of voxels with the smallest value */
     snow_volume *sample; /* for a volume that stays in its file: the voxels of a
                             sampled pass, as one row; NULL: it reads the file */
-    snow_scale scale; /* of the bins; logarithms ignore what is not above 0 */
-    uint64_t dropped; /* voxels that these ignore, where all are counted */
-    bool fractions;   /* values of floats that are no whole numbers */
+    snow_scale scale;  /* of the bins; logarithms ignore what is not above 0 */
+    uint64_t dropped;  /* voxels that these ignore, where all are counted */
+    bool fractions;    /* values of floats that are no whole numbers */
+    bool masked;       /* a mask has left out voxels */
+    bool had_negative; /* values, before a mask or planes */
 } snow_histogram;
 
 /* Counts the voxels that a volume is responsible for.  With a communicator

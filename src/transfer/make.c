@@ -149,12 +149,6 @@ static snow_status begin_builder(snow_context *context, const snow_look *look,
                                          builder);
 }
 
-/* Whether whole numbers became floats because a mask or planes have left some
- * out: what is left says nothing of the smallest. */
-static bool is_cut(const snow_volume_info *info) {
-    return info->whole && info->type >= SNOW_TYPE_FLOAT32 && !info->eight_bits;
-}
-
 /* Checks that the values suit those of a preset or a file.  Values of 8 bits
  * are no Hounsfield units: presets for these are spread over the object's. */
 static snow_status fit_values(const snow_histogram *histogram,
@@ -170,7 +164,7 @@ static snow_status fit_values(const snow_histogram *histogram,
                          "scale cannot show; give a range too",
                          points->name);
     if (look->base || look->shift != 0 || !(histogram->min >= 0) ||
-        is_cut(&histogram->volume->info))
+        histogram->had_negative)
         return SNOW_STATUS_OK;
     if (!snow_has_8_bits(&histogram->volume->info) || builder->scale.log ||
         histogram->max > 255) {

@@ -69,26 +69,11 @@ snow_status snow_view_from_name(snow_context *context, const char *name,
                      name);
 }
 
-/* The axis along which the volume is thinner than a quarter of the next wider
- * side; -1: none. */
-static int find_thin(const snow_volume_info *info) {
-    double side[3];
-    for (int axis = 0; axis < 3; axis++)
-        side[axis] = info->dims[axis] > 1
-                         ? (double)info->dims[axis] * info->spacing[axis]
-                         : 0; /* a slice has no thickness to be seen */
-    for (int axis = 0; axis < 3; axis++)
-        if (side[axis] <
-            0.25 * fmin(side[(axis + 1) % 3], side[(axis + 2) % 3]))
-            return axis;
-    return -1;
-}
-
 /* Of patients axial slices are seen from the feet, as radiologists do. */
 static const char *default_name(const snow_volume_info *info) {
     static const char *const faces[2][3] = {{"+x", "-y", "+z"},
                                             {"left", "anterior", "inferior"}};
-    int thin = find_thin(info), along = 0;
+    int thin = snow_volume_thin_axis(info), along = 0;
     double normal[3];
     if (thin < 0)
         return info->medical ? "anterior" : "+z";

@@ -194,6 +194,7 @@ snow_status snow_volume_convert(const snow_volume *volume, snow_type type,
     info.slope = 1;
     info.intercept = 0;
     SNOW_TRY(snow_volume_new(volume->context, &info, &made));
+    made->masked = volume->masked;
     if (is_plain(&volume->info) && c.type == volume->info.type && !range)
         copy(volume, made->owned); /* 64 bits whole */
     else

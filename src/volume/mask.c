@@ -218,12 +218,15 @@ static snow_status leave_out(const snow_volume *volume, const snow_cuts *by,
                              inside *in, snow_volume *made, bool *any) {
     const int64_t *dims = volume->info.dims;
     int64_t all = dims[0] * dims[1] * dims[2];
+    const double slope = volume->info.slope, from = volume->info.intercept;
     double values[BLOCK];
     *any = false;
     for (int64_t first = 0; first < all; first += BLOCK) {
         size_t count = all - first < BLOCK ? (size_t)(all - first) : BLOCK;
         snow_volume_stored(volume, first, count, values);
         restore(volume->clip, first, count, values);
+        for (size_t i = 0; i < count && !made->had_negative; i++)
+            made->had_negative = slope * values[i] + from < 0;
         if (by->mask)
             mask_values(by->mask, in, first, count, values);
         if (made->clip)
@@ -278,6 +281,8 @@ snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
     SNOW_TRY(snow_volume_new(volume->context, &info, &made));
     made->is_part = volume->is_part;
     made->lost_clip = volume->lost_clip;
+    made->masked = volume->masked || by->mask;
+    made->had_negative = volume->had_negative;
     made->part = volume->part;
     made->knows_origin = volume->knows_origin;
     memcpy(made->origin, volume->origin, sizeof made->origin);

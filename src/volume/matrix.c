@@ -46,3 +46,16 @@ bool snow_matrix_invert3(const double m[4][4], double inverse[3][3]) {
             inverse[i][j] = adjugate[i][j] / determinant / length[i];
     return true;
 }
+
+int snow_volume_thin_axis(const snow_volume_info *info) {
+    double side[3];
+    for (int axis = 0; axis < 3; axis++)
+        side[axis] = info->dims[axis] > 1
+                         ? (double)info->dims[axis] * info->spacing[axis]
+                         : 0; /* a slice has no thickness to be seen */
+    for (int axis = 0; axis < 3; axis++)
+        if (side[axis] <
+            0.25 * fmin(side[(axis + 1) % 3], side[(axis + 2) % 3]))
+            return axis;
+    return -1;
+}

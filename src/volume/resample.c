@@ -190,6 +190,8 @@ static snow_status resample(regrid *r, const snow_volume_info *box,
                     "the %s has another grid than the volume, and is resampled "
                     "to the volume's (%s)",
                     what, r->nearest ? "nearest voxels" : "linear");
+    r->to->masked = volume->masked;
+    r->to->had_negative = volume->had_negative;
     for (int64_t z = 0; z < dims[2]; z++)
         for (int64_t y = 0; y < dims[1]; y++)
             fill_row(r, y, z);

@@ -109,6 +109,7 @@ snow_status snow_stream_open(snow_context *context, const char *path,
     }
     volume->context = context;
     volume->info = info;
+    volume->masked = known.mask != NULL;
     stream->open = open;
     stream->print = snow_fingerprint_of(path).hash;
     volume->stream = stream;

@@ -34,6 +34,8 @@ struct snow_volume {
     snow_label
         *labels; /* what they say of them, values rising; NULL: nothing */
     size_t label_count;
+    bool masked;          /* a mask has left out voxels: their border is lit */
+    bool had_negative;    /* data values, before a mask or planes */
     bool emptied;         /* a mask or planes have left no voxel: */
     double mask_range[2]; /* the mask's values, NaN where there is none */
 };
@@ -55,6 +57,10 @@ int64_t snow_volume_run(const snow_volume *volume, int64_t first,
 snow_volume_info snow_volume_info_of_box(const snow_volume_info *whole,
                                          const int64_t first[3],
                                          const int64_t count[3]);
+
+/* The axis along which a volume is thinner than a quarter of the next wider
+ * side, and so is seen from its face; -1: none. */
+int snow_volume_thin_axis(const snow_volume_info *info);
 
 /* An info with one voxel's defaults: identity matrix, slope 1, one time step,
  * unit "", and the given format name. */

@@ -54,6 +54,7 @@ static void make_holes(reference_scene *s) {
                 if ((x < 9 && y < 8 && z < 10) || z == 14 ||
                     (x + 3 * y + 5 * z) % 61 == 0)
                     *voxel = NAN;
+    s->masked = true;
 }
 
 /* A scene for each number: slices along all axes from both sides, oblique, some
@@ -196,7 +197,8 @@ static void check_slabs(support_place *place, scene_fn *scene) {
         const snow_volume_options options = {
             .size = sizeof options,
             .clip = {{0.3, n % 5 - 2, 0.7, n % 5 ? 8 : 2}},
-            .crop = {{0, 0}, {2, 21}, {3, 28}}};
+            .crop = {{0, 0}, {2, 21}, {3, 28}},
+            .mask = s.masked ? path : NULL};
         compare_stream(place, &s, path, n % 3 ? NULL : &options, frame,
                        slices[(size_t)(n + n / 4) % COUNT(slices)]);
         free_numbered(&s);
@@ -218,6 +220,7 @@ static scenario scenario_of(const reference_scene *s, int n,
                             const snow_transfer *transfer) {
     return (scenario){.info = s->info,
                       .voxels = s->voxels,
+                      .masked = s->masked,
                       .transfer = transfer,
                       .view = s->view,
                       .settings = s->settings,

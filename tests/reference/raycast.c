@@ -239,7 +239,7 @@ static bool is_there(const void *of, const int64_t voxel[3]) {
 static void add_border(const reference_cast *cast, double range,
                        const double at[3], double gradient[3]) {
     double border[3];
-    if (cast->labels)
+    if (cast->labels || !cast->scene->masked)
         return;
     reference_membership_gradient(cast->scene->info.dims, 2, false, is_there,
                                   cast, at, border);

@@ -16,6 +16,7 @@
 typedef struct reference_scene {
     snow_volume_info info; /* dims, type, matrix, slope, intercept count */
     const void *voxels;    /* x fastest, of info.type */
+    bool masked;           /* NaN is what a mask has left out */
     const snow_color_point *colors;
     size_t color_count;
     const snow_opacity_point *opacities;

@@ -25,6 +25,7 @@ static snow_volume *open_cut(snow_context *context,
     assert_int_equal(snow_volume_wrap(context, &cast->scene->info,
                                       cast->scene->voxels, &volume),
                      SNOW_STATUS_OK);
+    volume->masked = cast->scene->masked;
     if (!cast->plane_count)
         return volume;
     assert_int_equal(snow_volume_clip(volume, cast->planes[0],
@@ -312,14 +313,16 @@ static void every_mode(void **state) {
 static void holes_have_no_value(void **state) {
     (void)state;
     model_stage stage = model_open();
-    for (int mode = SNOW_MODE_OVER; mode <= SNOW_MODE_ISO; mode++) {
+    for (int n = SNOW_MODE_OVER; n < 2 * (SNOW_MODE_ISO + 1); n++) {
+        const int mode = n % (SNOW_MODE_ISO + 1);
         reference_scene scene =
             scene_of(SNOW_TYPE_FLOAT32, false, MODEL_ANISOTROPIC);
         const reference_cast cast = {.scene = &scene, .planes = none};
         uint64_t seed = 7;
-        for (int n = 0; n < 14 * 11 * 9; n++)
+        scene.masked = n > SNOW_MODE_ISO;
+        for (int i = 0; i < 14 * 11 * 9; i++)
             if (support_uniform(&seed) < 0.1)
-                model_voxels(&scene)[n] = NAN;
+                model_voxels(&scene)[i] = NAN;
         scene.settings.mode = (snow_mode)mode;
         scene.settings.iso = 65;
         check_cast(&stage, &cast,

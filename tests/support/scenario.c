@@ -94,6 +94,7 @@ snow_status scenario_open_part(snow_context *context, const scenario *p,
             memcpy(to, (const char *)p->voxels + (size_t)at * size, line);
         }
     SNOW_TRY(snow_volume_wrap(context, &info, *voxels, volume));
+    (*volume)->masked = p->masked;
     snow_volume_freeze(*volume);
     return snow_volume_set_extent(*volume, &part);
 }
@@ -177,6 +178,7 @@ float *scenario_alone(snow_context *context, scenario *p, double *strongest) {
     snow_image *image = NULL;
     assert_int_equal(snow_volume_wrap(context, &p->info, p->voxels, &volume),
                      SNOW_STATUS_OK);
+    volume->masked = p->masked;
     assert_int_equal(scenario_copy_transfer(context, p->transfer, &transfer),
                      SNOW_STATUS_OK);
     assert_int_equal(snow_frame_new(context, &frame), SNOW_STATUS_OK);

@@ -27,6 +27,7 @@ typedef enum partitioning {
 typedef struct scenario {
     snow_volume_info info;
     const void *voxels;
+    bool masked;                   /* NaN is what a mask has left out */
     const snow_transfer *transfer; /* whose points every rank copies */
     const char *layer; /* file of another volume in the picture, or NULL: */
     const snow_transfer *layer_look;

@@ -2,6 +2,7 @@
 #include "values/pictures.h"
 
 #include "simd/isa.h"
+#include "volume/volume.h"
 
 #include <math.h>
 
@@ -246,6 +247,7 @@ void value_picture_punch(reference_scene *s, int n) {
                 if (hole)
                     *voxel = NAN;
             }
+    s->masked = n % 4 != 3;
 }
 
 /* How far a voxel is beyond the farthest of two planes. */
@@ -332,6 +334,7 @@ static snow_volume *open_volume(const model_stage *stage,
     assert_int_equal(
         snow_volume_wrap(stage->context, &s->info, s->voxels, &volume),
         SNOW_STATUS_OK);
+    volume->masked = s->masked;
     if (!scene->clip_count)
         return volume;
     assert_int_equal(

@@ -169,6 +169,7 @@ static bool is_there(const void *of, const int64_t voxel[3]) {
 
 void value_add_border(const value_field *field, const value_ray *ray, int slab,
                       int place, double gradient[3]) {
+    const value_scene *scene = field->plan->scene;
     double ends[2][3];
     for (int end = 0; end < 2; end++) {
         double at[3];
@@ -176,7 +177,7 @@ void value_add_border(const value_field *field, const value_ray *ray, int slab,
         reference_membership_gradient(field->plan->dims, 2, false, is_there,
                                       field, at, ends[end]);
     }
-    for (int a = 0; a < 3 && !field->plan->scene->labels; a++) {
+    for (int a = 0; a < 3 && scene->base.masked && !scene->labels; a++) {
         int twice[2];
         for (int end = 0; end < 2; end++)
             twice[end] = (int)floor(2 * VALUE_MOST * ends[end][a] + 0.5);

@@ -61,6 +61,7 @@ static void punch(reference_scene *s, int n) {
     for (int64_t i = 0; i < count; i++)
         if (support_uniform(&random) < (2 * i > count ? 0.8 : 0.05))
             voxels[i] = NAN;
+    s->masked = true;
 }
 
 static void holes_are_the_references(void **state) {

@@ -120,7 +120,10 @@ static void put_together(const range_job *job, int threads,
     bool any = all.low <= all.high;
     *out = (snow_data_range){any ? fmin(a + from, b + from) : INFINITY,
                              any ? fmax(a + from, b + from) : -INFINITY,
-                             job->log, all.holes, job->linear};
+                             job->log,
+                             all.holes,
+                             job->linear,
+                             job->volume->masked};
 }
 
 snow_status snow_data_range_measure(const snow_volume *volume, snow_scale scale,

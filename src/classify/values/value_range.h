@@ -18,6 +18,7 @@ typedef struct snow_data_range {
     bool log;
     bool holes;    /* some voxels are NaN, or have no logarithm */
     double linear; /* of a symmetric scale; 0: of none */
+    bool masked;   /* holes have a border that is lit */
 } snow_data_range;
 
 /* Whether a range is of a look's scale; NULL: of data values. */

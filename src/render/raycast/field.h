@@ -34,7 +34,7 @@ typedef struct snow_field {
     double linear;          /* above 0: they are places on such a scale */
     bool infinite_is_hole;  /* else infinities are the finite ends: */
     double least, most;     /* data values */
-    double border;          /* that values fall off by at holes; 0: none */
+    double border;          /* that values fall off by at a mask's; 0: none */
     double low[3], high[3]; /* where it is defined */
 } snow_field;
 

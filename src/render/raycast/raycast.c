@@ -186,11 +186,12 @@ static double longest_step(const snow_volume_info *info, snow_quality quality) {
                                                    : 4);
 }
 
-/* How much values fall off at the border of holes, by their range; of one value
+/* How much values fall off at a border of a mask, by their range; of one value
  * anything does.  Those of logarithms are decimal. */
 static void set_border(snow_raycast_pass *pass, double range) {
-    pass->field.border =
-        range > 0 ? range * (pass->field.log ? 3.3219280948873623 : 1) : 1;
+    if (pass->field.volume->masked)
+        pass->field.border =
+            range > 0 ? range * (pass->field.log ? 3.3219280948873623 : 1) : 1;
 }
 
 static void choose_cast(const snow_picture *p, snow_raycast_pass *pass) {
@@ -241,13 +242,12 @@ static void set_depth(snow_raycast_pass *pass) {
     pass->depth[3] = of[3];
 }
 
-/* In mode over: whether there are holes, and the range. */
+/* In mode over: whether a mask has left holes, and the range. */
 static snow_status find_border(snow_raycast_pass *pass) {
     const snow_volume *volume = pass->field.volume;
     const snow_scale scale = {pass->field.log, pass->field.linear};
     snow_data_range range;
-    if (!pass->shaded || pass->labels ||
-        (volume->info.type < SNOW_TYPE_FLOAT32 && !scale.log))
+    if (!pass->shaded || pass->labels || !volume->masked)
         return SNOW_STATUS_OK;
     SNOW_TRY(snow_data_range_measure(volume, scale, pass->job->settings.threads,
                                      &range));

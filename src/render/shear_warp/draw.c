@@ -139,13 +139,10 @@ static snow_status place_clips(snow_value_path *path,
     return SNOW_STATUS_OK;
 }
 
-/* Whether what is shaded has holes, in the volume or a layer; those of labels
- * are lit by their own gradients. */
-static bool has_borders(const snow_value_path *path) {
-    bool holes = path->made.store.holes && !path->has_labels;
-    for (int n = 0; n < path->layer_count; n++)
-        holes |= has_borders(path->layers[n]);
-    return holes;
+/* Whether a mask has left a border; those of labels are lit by their own
+ * gradients. */
+static bool has_border(const snow_value_path *path) {
+    return path->range.masked && path->made.store.holes && !path->has_labels;
 }
 
 static void describe(snow_value_drawing *job) {
@@ -172,7 +169,10 @@ static void describe(snow_value_drawing *job) {
                            .channels = params->channels,
                            .clips = (const double(*)[4])path->clips,
                            .labels = path->has_labels ? &path->labels : NULL};
-    job->splat.borders = shaded && has_borders(path);
+    job->splat.leans = shaded && has_border(path);
+    job->splat.borders = job->splat.leans;
+    for (int n = 0; n < path->layer_count; n++)
+        job->splat.borders |= shaded && has_border(path->layers[n]);
     job->splat.labels_nearest = params->settings->quality == SNOW_QUALITY_DRAFT;
     if (params->volume->clip)
         job->splat.clip_count = params->volume->clip->plane_count;

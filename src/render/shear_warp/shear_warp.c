@@ -107,7 +107,8 @@ snow_status snow_value_measure(snow_value_path *path, const snow_volume *volume,
         path->measured_of = 0;
         path->measured =
             (snow_data_range){.log = transfer && transfer->log,
-                              .linear = transfer ? transfer->linear : 0};
+                              .linear = transfer ? transfer->linear : 0,
+                              .masked = volume->masked};
         SNOW_TRY(measure_range(volume, threads, &path->measured));
         path->measured_of = volume->generation;
     }

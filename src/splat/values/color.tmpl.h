@@ -280,7 +280,7 @@ TARGET VALUE_INLINE void NAME(light_all)(const snow_value_splat *p,
             NAME(fade)(p, q, n, within, slopes, channels);
         if (p->light) {
             V(row) color, white;
-            for (int axis = 0; value_leans(p) && axis < 3; axis++)
+            for (int axis = 0; p->leans && axis < 3; axis++)
                 slopes[axis] = V(row_adds)(
                     slopes[axis],
                     NAME(mix)(V(row_load)(q->border[axis] + n),

@@ -230,7 +230,7 @@ TARGET VALUE_INLINE void NAME(end_queue)(const snow_value_splat *p, int n,
     const V(row) zero = V(row_set1)(0);
     V(row_store)(q->front + count, zero);
     V(row_store)(q->back + count, zero);
-    for (int way = 0; value_leans(p) && way < BORDERS; way++)
+    for (int way = 0; p->leans && way < BORDERS; way++)
         V(row_store)(q->border[way] + count, zero);
     if (!eye)
         return;
@@ -283,7 +283,7 @@ TARGET VALUE_INLINE int NAME(gather)(const snow_value_splat *p, int n,
         const int begin = count;
         count = NAME(collect)(p, f, b, beside, state, slab, &room->queue, count,
                               sloped, cuts, eye, plain);
-        if (sloped && value_leans(p)) {
+        if (sloped && p->leans) {
             const value_sample at = {p, n, phase, 0, 0, tile};
             const bool holes[2] = {f->holes, b->holes};
             snow_value_lean(&at, slab, holes, &room->queue, begin);

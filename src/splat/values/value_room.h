@@ -57,7 +57,7 @@ typedef struct value_queue {
     int16_t front[QUEUE], back[QUEUE];
     int16_t slopes[6][QUEUE]; /* u, v, p: of the front, of the back */
     int16_t (*border)[QUEUE]; /* [6]: the same of the border of holes, where
-                                 samples are lit by it (value_leans) */
+                                 samples are lit by it (leans) */
     int16_t from[QUEUE], part[QUEUE]; /* of a slab that is cut, of 32768 */
     int16_t color[4][QUEUE];
     int16_t place[QUEUE]; /* of the opacity in the slab, of 32768 */
@@ -311,12 +311,6 @@ void snow_value_bridge(const value_sides *sides, uint32_t lanes,
  * slab, from number `count` on; `holes`: a sheet has some near. */
 void snow_value_lean(const value_sample *first, const value_slab *slab,
                      const bool holes[2], value_queue *queue, int count);
-
-/* Whether samples are lit by it. */
-static inline bool value_leans(const snow_value_splat *splat) {
-    return splat->borders && splat->light && splat->store->holes &&
-           !splat->labels;
-}
 
 /* The alpha of `share` times the length; exact for the least alpha where the
  * table is faint. */

@@ -146,7 +146,8 @@ typedef struct snow_value_splat {
     double own[2][2];
     bool resumes; /* the planes hold what is in front; of over only */
     snow_value_reduction reduction;
-    bool borders; /* there is room for those of holes */
+    bool leans;   /* samples are lit by the border of a mask */
+    bool borders; /* there is room for such, of this or of layers */
     bool floats;  /* planes are of floats: the table is faint, or of sums, or
                      there are several layers */
 } snow_value_splat;

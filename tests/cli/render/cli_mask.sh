@@ -18,7 +18,8 @@ print(json.load(sys.stdin)['$1'])"; }
 "$TOOL" convert v.npy -o v.nrrd -q
 
 # Labels 0 to 3 in blocks; the volume masked here by hand, labels 2 and 3, and
-# all but 0; a mask of another size.
+# all but 0; a mask of all, with which the border of what is masked by hand is lit;
+# a mask of another size.
 python3 - <<'END'
 import array
 
@@ -41,6 +42,7 @@ def write(name, inside):
 write("two.npy", lambda m: m in (2, 3))
 write("any.npy", lambda m: m != 0)
 open("m.npy", "wb").write(head("|u1", (nz, ny, nx)) + labels)
+open("all.npy", "wb").write(head("|u1", (nz, ny, nx)) + b"\1" * len(labels))
 open("m.raw", "wb").write(labels)
 floats = array.array("d", (m if m else nan for m in labels))
 open("nan.npy", "wb").write(head("<f8", (nz, ny, nx)) + floats.tobytes())
@@ -62,13 +64,13 @@ for way in "" "--method footprint" "--method original" "--mode mip" \
     run 0 "labels 2 and 3 ${way:-as usual}" render v.npy $way -o a.npy -y \
         --mask m.npy --labels 2-3
     # shellcheck disable=SC2086
-    run 0 "masked by hand" render two.npy $way -o b.npy -y
+    run 0 "masked by hand" render two.npy --mask all.npy $way -o b.npy -y
     check "is the same picture" cmp -s a.npy b.npy
 done
 run 0 "the whole volume" render v.npy -o whole.npy
 check "is another" bash -c '! cmp -s whole.npy a.npy'
 run 0 "all but 0" render v.npy -o c.npy --mask m.npy --stats c.json
-run 0 "by hand" render any.npy -o d.npy --stats d.json
+run 0 "by hand" render any.npy --mask all.npy -o d.npy --stats d.json
 check "is the same picture" cmp -s c.npy d.npy
 run 0 "NaN in the mask is outside" render v.npy -o e.npy --mask nan.npy
 check "as 0 is" cmp -s c.npy e.npy
@@ -78,11 +80,11 @@ import json
 a, b = (json.load(open(n)) for n in ("c.json", "d.json"))
 assert a["sparse_ratio"] == b["sparse_ratio"] > 0.25, a
 assert a["volume"]["type"] == "float32", a'
-run 0 "a box of both" render v.npy -o f.npy --mask m.npy --labels 1,3 \
+run 0 "a box of both" render v.npy --shade none -o f.npy --mask m.npy --labels 1,3 \
     --crop 10:30,2:,:20
 run 0 "a converted mask" "$TOOL" convert v.npy -o box.npy -q --mask m.npy \
     --labels 1,3 --crop 10:30,2:,:20
-run 0 "is the same box" render box.npy -o g.npy
+run 0 "is the same box" render box.npy --shade none -o g.npy
 check "and picture, but for its place" cmp -s f.npy g.npy
 # Of voxels that are no cubes, neither of which has a place.
 for name in v m; do
@@ -138,12 +140,12 @@ check "and the look is chosen of them alone" test \
     "$(figure look v.npy --mask m.npy --labels 2,3)" = "$(figure look two.npy)"
 run 0 "a turntable" "$TOOL" turntable v.npy -q --no-labels -s 60x50 \
     --frames 2 -o 't_%d.png' --mask m.npy --labels 2-3
-run 0 "of the volume masked by hand" "$TOOL" turntable two.npy -q --no-labels \
+run 0 "of the volume masked by hand" "$TOOL" turntable two.npy --mask all.npy -q --no-labels \
     -s 60x50 --frames 2 -o 'u_%d.png'
 check "is the same" cmp -s t_1.png u_1.png
 run 0 "a movie of files" "$TOOL" movie v.npy v.nrrd -q --no-labels -s 60x50 \
     -o 'w_%d.png' --mask m.npy --labels 2-3
-run 0 "of files masked by hand" "$TOOL" movie two.npy two.npy -q --no-labels \
+run 0 "of files masked by hand" "$TOOL" movie two.npy two.npy -q --no-labels --mask all.npy \
     -s 60x50 -o 'x_%d.png'
 check "is the same" cmp -s w_1.png x_1.png
 
@@ -151,6 +153,7 @@ check "is the same" cmp -s w_1.png x_1.png
 # Matter of one value, and a ball of it: its middle faces a light at the eye, its
 # rim does not.
 python3 - <<'END'
+import array
 head = ("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 28 28 28\nencoding: raw\n\n")
 n = 28
 even = bytearray(b"\x64" * n ** 3)
@@ -159,6 +162,20 @@ ball = bytes((x - 13) ** 2 + (y - 14) ** 2 + (z - 13) ** 2 < 120
              for z in range(n) for y in range(n) for x in range(n))
 open("even.nrrd", "wb").write(head.encode() + even)
 open("ball.nrrd", "wb").write(head.encode() + ball)
+nan = float("nan")
+by_hand = array.array("f", (v if b else nan for v, b in zip(even, ball)))
+open("hand.nrrd", "wb").write(head.replace("uint8", "float").replace(
+    "encoding", "endian: little\nencoding").encode() + by_hand.tobytes())
+grad = bytes(102 + 3 * (i % n) + i % 7 for i in range(n ** 3))
+open("grad.nrrd", "wb").write(head.encode() + grad)
+slope = bytes(60 + 2 * (i % n + i // n % n + i // n ** 2) for i in range(n ** 3))
+open("slope.nrrd", "wb").write(head.encode() + slope)
+# CT numbers, and the same with an offset, all outside the ball air.
+for name, kind, offset in ("hu", "short", 0), ("offset", "ushort", 1024):
+    ct = array.array("h", (offset + (40 + i % 9 if b else -1000)
+                           for i, b in enumerate(ball)))
+    open(name + ".nrrd", "wb").write(head.replace("uint8", kind).replace(
+        "encoding", "endian: little\nencoding").encode() + ct.tobytes())
 END
 lit="even.nrrd --mask ball.nrrd --light head --range 0,200 -c light-grey"
 for method in shear-warp raycast; do
@@ -179,6 +196,32 @@ import sys
 assert float([l.split()[1] for l in sys.argv[1].splitlines()
               if "psnr" in l][0]) > 20' \
     "$("$TOOL" compare shear-warp.npy raycast.npy)"
+for method in shear-warp raycast; do
+    run 0 "missing values by $method" render hand.nrrd -o hand.npy -y --light head \
+        --range 0,200 -c light-grey --opacity 0:0.9,200:0.9 --method $method
+    check "have no border that is lit" python3 -c '
+import array
+a = array.array("f", open("hand.npy", "rb").read()[-90 * 80 * 4 * 4:])
+inside = [a[n] / a[n + 3] for n in range(4 * 90 * 40, 4 * 90 * 41, 4)
+          if a[n + 3] > 0.95]
+assert len(inside) > 20 and max(inside) < 1.1 * min(inside), inside'
+done
+for cut in "--mask ball.nrrd" "--clip 0,0,1,12"; do
+    # shellcheck disable=SC2086
+    run 0 "CT numbers with $cut" "$TOOL" render hu.nrrd $cut --preset ct-soft \
+        -s 40x40 -o hu.png -y
+    check "have no offset" bash -c "! grep -q 'have an offset' '$ERR'"
+    # shellcheck disable=SC2086
+    run 0 "those with an offset, with $cut" "$TOOL" render offset.nrrd $cut \
+        --preset ct-soft -s 40x40 -o hu.png -y
+    says 'if the values have an offset, give it as a shift'
+done
+run 0 "the look of what fills a mask" "$TOOL" render grad.nrrd --mask ball.nrrd \
+    -s 40x40 -o grad.png -y
+says 'light-grey'
+run 0 "and of what planes cut, whose faces are not lit" "$TOOL" render slope.nrrd \
+    --clip 1,0,0,14 -s 40x40 -o grad.png -y
+says 'not shaded'
 run 0 "the automatic look" "$TOOL" render even.nrrd --mask ball.nrrd -o auto.png
 run 0 "a preset of Hounsfield units" "$TOOL" render even.nrrd --mask ball.nrrd \
     --preset ct-soft --range -200,300 -o preset.png
