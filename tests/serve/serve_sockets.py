@@ -902,6 +902,8 @@ def streamed_slices():
     check("which is not read again", again is not None)
     page.say({"t": "ask", "what": "value", "at": [1, 3, 4]})
     check("another one is", page.hear_text("value")["value"] is None)
+    said = page.hear_text("said")
+    check("which is said to be gone", os.path.basename(big) in json.dumps(said), said)
     os.rename(big + "x", big)
     check("its voxels are not in memory", server.kilobytes("VmRSS") < 60000,
           server.kilobytes("VmRSS"))

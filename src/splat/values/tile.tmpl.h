@@ -232,9 +232,10 @@ TARGET VALUE_INLINE void NAME(end_queue)(const snow_value_splat *p, int n,
     V(row_store)(q->back + count, zero);
     for (int way = 0; p->leans && way < BORDERS; way++)
         V(row_store)(q->border[way] + count, zero);
+    V(row_store)(q->from + count, zero);
+    V(row_store)(q->part + count, zero);
     if (!eye)
         return;
-    V(row_store)(q->part + count, zero);
     for (int side = 0; side < 2; side++) {
         V(row_store)(q->ray[side] + count, zero);
         memcpy(q->stretch[side], p->rays->sheets[n + side].stretch,
