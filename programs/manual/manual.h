@@ -18,8 +18,8 @@
 const char *option_word(const option_row *row, size_t index,
                         char room[WORD_BYTES]);
 
-/* What an option's text says of one of its words, as "fast" of "low" in "quality.
- * low: fast; high: slow".  NULL: nothing. */
+/* What an option's text says of one of its words, as "fast" of "low" in
+ * "quality. low: fast; high: slow".  NULL: nothing. */
 const char *word_text(const char *text, const char *word);
 
 /* The same of the first operand of a verb, taken from its usage. */
