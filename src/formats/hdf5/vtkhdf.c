@@ -21,7 +21,7 @@ static bool is_in(const hdf5_set *set, const char *group) {
     return !strncmp(set->path, group, strlen(group));
 }
 
-/* -1: the data set is none of image data. */
+/* -1: the data set is not of image data. */
 static hid_t open_root(const hdf5_file *file, const hdf5_set *set) {
     char type[16];
     if (!is_in(set, ROOT "/PointData/") && !is_in(set, ROOT "/CellData/"))
@@ -59,7 +59,7 @@ bool snow_hdf5_place_image(const hdf5_file *file, const hdf5_set *set,
     return given;
 }
 
-/* Opens the times of the steps and counts them; -1: there are none. */
+/* Opens the times of the steps and counts them; -1 without them. */
 static hid_t open_times(hid_t root, hsize_t *count) {
     hid_t times = H5Lexists(root, "Steps", H5P_DEFAULT) > 0 &&
                           H5Lexists(root, "Steps/Values", H5P_DEFAULT) > 0
