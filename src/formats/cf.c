@@ -36,7 +36,7 @@ static bool is_any_of(const char *text, const char *const *list) {
     return false;
 }
 
-/* The metres of a unit of length, whose words may end in s; 0 for another word. */
+/* The metres of a unit of length, whose words may end in s; else 0. */
 static double metres(const char *unit) {
     static const struct {
         const char *name;
