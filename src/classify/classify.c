@@ -27,8 +27,8 @@ bool snow_classify_value(const snow_classifier *c, double native,
     if (!(opacity > 0))
         return false;
     bool interesting = snow_is_interesting(opacity, c->threshold);
-    if (!interesting && !c->keep_all)
-        return false;
+    if (c->only_counts || (!interesting && !c->keep_all))
+        return interesting;
     double rgb[3];
     snow_transfer_color(c->transfer, value, rgb);
     /* Along an axis of a cubic grid the exponent is 1. */
@@ -68,6 +68,8 @@ snow_status snow_classifier_make(snow_context *context,
     c->channels = transfer->grey ? 2 : 4;
     c->keep_all = options->keep_all;
     c->premultiply = options->premultiply;
+    c->only_counts =
+        options->only_counts && !snow_transfer_has_gradient_opacity(transfer);
     c->threshold = options->threshold;
     c->exponent = options->opacity_exponent;
     c->classify_row = type_rows[volume->info.type];

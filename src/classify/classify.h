@@ -47,6 +47,7 @@ struct snow_classifier {
     const snow_transfer *transfer;
     int channels;     /* 2 or 4 */
     bool keep_all;    /* also uninteresting voxels, as samples of 0 */
+    bool only_counts; /* which are interesting, without their samples */
     bool premultiply; /* colours are multiplied by opacity here */
     double threshold; /* opacity 0 to 255 */
     double exponent;  /* path length / reference length */
@@ -66,7 +67,8 @@ typedef struct snow_classify_options {
     double threshold;
     double opacity_exponent; /* a' = 1 - (1 - a)^exponent (model, point 6) */
     bool keep_all, premultiply;
-    snow_isa isa; /* resolved, or AUTO for the plain loops */
+    bool only_counts; /* no samples, but where tables have them anyway */
+    snow_isa isa;     /* resolved, or AUTO for the plain loops */
 } snow_classify_options;
 
 /* Makes a classifier. The record begins as zeros; a second call reuses the

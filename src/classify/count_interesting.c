@@ -93,6 +93,7 @@ snow_status snow_visit_interesting(const snow_interesting_walk *walk,
                   .user = user};
     const snow_classify_options options = {.threshold = walk->threshold,
                                            .opacity_exponent = walk->exponent,
+                                           .only_counts = walk->only_counts,
                                            .isa = walk->isa};
     SNOW_TRY(snow_volume_need_voxels(volume));
     snow_volume_find_extent(volume, &v.part);
@@ -264,6 +265,7 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
                                         .threshold = threshold,
                                         .exponent = 1,
                                         .isa = isa,
+                                        .only_counts = true,
                                         .threads = threads,
                                         .step = block_counts->step};
     counting *workers =
@@ -281,7 +283,7 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
 /* A single block holds the whole grid. */
 snow_status snow_count_interesting(const snow_volume *volume,
                                    const snow_transfer *transfer,
-                                   double threshold, snow_isa isa,
+                                   double threshold, snow_isa isa, int threads,
                                    int64_t *out) {
     int64_t count = 0;
     snow_extent part;
@@ -290,8 +292,8 @@ snow_status snow_count_interesting(const snow_volume *volume,
     for (int axis = 0; axis < 3; axis++)
         block_counts.grid.dims[axis] = block_counts.block[axis] =
             part.dims[axis];
-    SNOW_TRY(snow_count_interesting_blocks(volume, transfer, threshold, isa, 1,
-                                           &block_counts));
+    SNOW_TRY(snow_count_interesting_blocks(volume, transfer, threshold, isa,
+                                           threads, &block_counts));
     *out = count;
     return SNOW_STATUS_OK;
 }
@@ -304,7 +306,7 @@ snow_status snow_transfer_sparse_ratio(const snow_transfer *transfer,
     snow_extent part;
     snow_volume_find_extent(volume, &part);
     SNOW_TRY(snow_count_interesting(volume, transfer, threshold, SNOW_ISA_AUTO,
-                                    &interesting));
+                                    1, &interesting));
     double voxels =
         (double)part.count[0] * (double)part.count[1] * (double)part.count[2];
     *ratio = voxels > 0 ? 1 - (double)interesting / voxels : 1;

@@ -21,8 +21,9 @@ typedef struct snow_interesting_walk {
     const snow_transfer *transfer;
     double threshold, exponent; /* as snow_classify_options */
     snow_isa isa;
-    int threads;  /* 0: one, which visits rows in order */
-    int64_t step; /* of slices along z of the whole; 0: all are visited */
+    bool only_counts; /* opacities are not looked at */
+    int threads;      /* 0: one, which visits rows in order */
+    int64_t step;     /* of slices along z of the whole; 0: all are visited */
 } snow_interesting_walk;
 typedef void snow_interesting_fn(void *user, const snow_interesting_row *row);
 snow_status snow_visit_interesting(const snow_interesting_walk *walk,
@@ -42,7 +43,7 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
 /* The total number of interesting voxels. Errors: as above. */
 snow_status snow_count_interesting(const snow_volume *volume,
                                    const snow_transfer *transfer,
-                                   double threshold, snow_isa isa,
+                                   double threshold, snow_isa isa, int threads,
                                    int64_t *out);
 
 /* Native values first .. last. */

@@ -122,9 +122,9 @@ static snow_status count_own(snow_frame *frame, const snow_job *job) {
     if (job->settings.method == SNOW_METHOD_SHEAR_WARP ||
         job->volume->stream) /* what was counted serves, of slabs too */
         return SNOW_STATUS_OK;
-    SNOW_TRY(snow_count_interesting(job->volume, job->transfer,
-                                    job->settings.threshold, job->settings.isa,
-                                    &frame->own_interesting));
+    SNOW_TRY(snow_count_interesting(
+        job->volume, job->transfer, job->settings.threshold, job->settings.isa,
+        job->settings.threads, &frame->own_interesting));
     stats->interesting = frame->own_interesting;
     return SNOW_STATUS_OK;
 }

@@ -319,7 +319,7 @@ static snow_status find_figures(snow_picture *p, snow_job *job) {
     SNOW_TRY(snow_count_interesting(
         job->volume,
         s->mode == SNOW_MODE_OVER ? job->transfer : p->frame->identity.transfer,
-        s->mode == SNOW_MODE_OVER ? s->threshold : 0, s->isa,
+        s->mode == SNOW_MODE_OVER ? s->threshold : 0, s->isa, s->threads,
         &job->stats->interesting));
     job->stats->sparse_ratio =
         1 - (double)job->stats->interesting / (double)job->stats->voxels;

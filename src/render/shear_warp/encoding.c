@@ -174,7 +174,7 @@ static snow_status count_interesting(snow_value_path *path,
     if (store->counted_ranges)
         return SNOW_STATUS_OK;
     return snow_count_interesting(params->volume, params->counted, s->threshold,
-                                  s->isa, &path->made.interesting);
+                                  s->isa, s->threads, &path->made.interesting);
 }
 
 /* What is left of an encoding that serves; else all of it. */
