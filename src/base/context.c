@@ -1,5 +1,5 @@
 /* base/context.c - contexts and their messages. */
-#define _DEFAULT_SOURCE /* madvise */
+#define _DEFAULT_SOURCE 1 /* madvise */
 #include "base/base.h"
 #include "base/thread_pool.h"
 
