@@ -70,13 +70,15 @@ static void place_stored(snow_value_store *s,
     s->row_step = strides[p->v_axis];
 }
 
-/* Room for rows that are turned.  They are a cache line farther apart than they
- * are long: at steps of a power of 2 many would share a place in the cache. */
+/* Room for rows that are turned.  The same row of all slices lies together, so
+ * that a band, which is made at once, has pages of memory of its own.  Rows and
+ * slices are a cache line farther apart than they are long: at steps of a power
+ * of 2 many would share a place in the cache. */
 static snow_status reserve_turned(snow_value_store *s) {
     const int64_t size = s->kind == SNOW_VALUE_BYTES ? 1 : 2;
-    s->row_step = (s->columns * size + 127) / 64 * 64 / size;
-    s->slice_step = s->rows * s->row_step;
-    s->native_count = s->slices * s->slice_step;
+    s->slice_step = (s->columns * size + 127) / 64 * 64 / size;
+    s->row_step = s->slices * s->slice_step + 64 / size;
+    s->native_count = s->rows * s->row_step;
     SNOW_TRY(SNOW_RESERVE(s->context, s->copy, 0, s->native_count * size));
     s->stored = s->copy;
     return SNOW_STATUS_OK;
