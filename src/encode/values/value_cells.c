@@ -186,6 +186,23 @@ static void gather_rows(const uint32_t *masks, size_t rows, uint64_t *coarse) {
     }
 }
 
+/* Those of a word of some slices, and of all eight. */
+static void gather_slices(snow_value_store *s, int run, size_t word,
+                          int64_t first, int64_t end) {
+    uint64_t *coarse = s->coarse + snow_value_coarse_at(s, run, word, first);
+    uint64_t *all =
+        s->eights + snow_value_eight_at(s, run, word, first / SNOW_VALUE_EIGHT);
+    memset(all, 0, s->coarse_words * sizeof *all);
+    for (int64_t slice = first; slice < end; slice++) {
+        memset(coarse, 0, s->coarse_words * sizeof *coarse);
+        gather_rows(s->masks + snow_value_mask_at(s, run, slice) +
+                        word * s->mask_rows,
+                    s->mask_rows, coarse);
+        for (size_t n = 0; n < s->coarse_words; n++)
+            all[n] |= *coarse++;
+    }
+}
+
 /* Cells of 2x2 voxels to those of 4x4 around them. */
 static void widen_cells(const snow_value_store *s, uint32_t *masks) {
     for (size_t w = 0; w < s->mask_words; w++) {
@@ -209,23 +226,12 @@ static void widen_cells(const snow_value_store *s, uint32_t *masks) {
 }
 
 void snow_value_cells_coarse(snow_value_store *s, int64_t eight) {
-    const size_t size = s->mask_words * s->coarse_words;
     int64_t first = eight * SNOW_VALUE_EIGHT, end = first + SNOW_VALUE_EIGHT;
     end = end < s->slices ? end : s->slices;
     for (int n = 0; n < snow_value_planes(s); n++) {
-        uint64_t *all = s->eights + (size_t)(n * s->eight_count + eight) * size;
-        memset(all, 0, size * sizeof *all);
-        for (int64_t slice = first; slice < end; slice++) {
-            uint32_t *masks = s->masks + snow_value_mask_at(s, n, slice);
-            uint64_t *coarse = s->coarse + snow_value_coarse_at(s, n, slice);
-            if (s->cubic)
-                widen_cells(s, masks);
-            memset(coarse, 0, size * sizeof *coarse);
-            for (size_t w = 0; w < s->mask_words; w++)
-                gather_rows(masks + w * s->mask_rows, s->mask_rows,
-                            coarse + w * s->coarse_words);
-            for (size_t word = 0; word < size; word++)
-                all[word] |= coarse[word];
-        }
+        for (int64_t slice = first; s->cubic && slice < end; slice++)
+            widen_cells(s, s->masks + snow_value_mask_at(s, n, slice));
+        for (size_t word = 0; word < s->mask_words; word++)
+            gather_slices(s, n, word, first, end);
     }
 }

@@ -69,8 +69,9 @@ typedef struct snow_value_store {
     /* A word of 32 columns from column -32 - margin on; rows from that on. */
     uint32_t *masks; /* [run][slice][word][row] */
     size_t mask_words, mask_rows;
-    /* A bit for each SNOW_VALUE_COARSE rows of these. */
-    uint64_t *coarse; /* [run][slice][word][row / SNOW_VALUE_COARSE / 64] */
+    /* A bit for each SNOW_VALUE_COARSE rows of these; those of all slices lie
+     * together, for a tile looks at few words of them. */
+    uint64_t *coarse; /* [run][word][slice][row / SNOW_VALUE_COARSE / 64] */
     size_t coarse_words;
     uint64_t *eights; /* the same for each SNOW_VALUE_EIGHT slices */
     int64_t eight_count;
@@ -171,9 +172,19 @@ static inline size_t snow_value_mask_at(const snow_value_store *s, int run,
            s->mask_rows;
 }
 
+/* In `coarse`, where a word of columns of a slice begins. */
 static inline size_t snow_value_coarse_at(const snow_value_store *s, int run,
-                                          int64_t slice) {
-    return ((size_t)run * (size_t)s->slices + (size_t)slice) * s->mask_words *
+                                          size_t word, int64_t slice) {
+    return (((size_t)run * s->mask_words + word) * (size_t)s->slices +
+            (size_t)slice) *
+           s->coarse_words;
+}
+
+/* The same in `eights`. */
+static inline size_t snow_value_eight_at(const snow_value_store *s, int run,
+                                         size_t word, int64_t eight) {
+    return (((size_t)run * s->mask_words + word) * (size_t)s->eight_count +
+            (size_t)eight) *
            s->coarse_words;
 }
 

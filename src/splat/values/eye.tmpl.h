@@ -31,7 +31,6 @@ TARGET VALUE_INLINE void NAME(pick_cells)(const snow_value_store *s,
 static inline bool NAME(any_cells)(const snow_value_store *s, int run,
                                    int64_t slice, const snow_value_lanes *u,
                                    int64_t top, int64_t bottom) {
-    const uint64_t *coarse = s->coarse + snow_value_coarse_at(s, run, slice);
     int64_t low = u->word, high = low + (u->at[31] + 31) / 32 + 1;
     int64_t words = (int64_t)s->mask_words, rows = (int64_t)s->mask_rows;
     low = low < 0 ? 0 : low;
@@ -39,10 +38,12 @@ static inline bool NAME(any_cells)(const snow_value_store *s, int run,
     top = (top < 0 ? 0 : top) / SNOW_VALUE_COARSE;
     bottom = (bottom < rows ? bottom : rows - 1) / SNOW_VALUE_COARSE;
     uint64_t any = 0;
-    for (int64_t word = low; word <= high; word++)
+    for (int64_t word = low; word <= high; word++) {
+        const uint64_t *coarse =
+            s->coarse + snow_value_coarse_at(s, run, (size_t)word, slice);
         for (int64_t row = top; row <= bottom; row++)
-            any |=
-                coarse[word * (int64_t)s->coarse_words + row / 64] >> row % 64;
+            any |= coarse[row / 64] >> row % 64;
+    }
     return any & 1;
 }
 

@@ -200,19 +200,22 @@ TARGET VALUE_INLINE bool
 NAME(project_phases)(const snow_value_splat *p, int first, int end,
                      const int tile[2], void *planes, value_room *room,
                      const snow_value_reduction reduction, const bool eye) {
-    int32_t *list = value_slabs(p, room);
-    int count = value_list_slabs(p, first, end, tile, list);
+    value_list list =
+        value_list_begin(p, first, end, tile, value_slabs(p, room));
     bool drawn = false;
     for (int n = 0; n < ASKED_RING; n++)
         room->asked[n].sheet = -1;
-    for (int turn = 0, seen = 0; turn < count; turn++) {
-        for (; seen < count && seen <= turn + AHEAD; seen++)
+    for (int turn = 0, seen = 0;; turn++) {
+        value_list_find(&list, turn + AHEAD + 1);
+        if (turn >= list.count)
+            break;
+        for (; seen < list.count && seen <= turn + AHEAD; seen++)
             NAME(look_ahead)
-        (p, list[seen], first, end, tile, room, room->slab[seen % AHEAD_RING],
-         false, eye);
+        (p, list.slabs[seen], first, end, tile, room,
+         room->slab[seen % AHEAD_RING], false, eye);
         for (int phase = first; phase < end; phase++)
             drawn |= NAME(project)(
-                p, list[turn], phase, tile, planes, room,
+                p, list.slabs[turn], phase, tile, planes, room,
                 &room->slab[turn % AHEAD_RING][phase - first], reduction, eye);
         if (!NAME(alive)(room, first, end))
             break;

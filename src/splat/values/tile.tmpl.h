@@ -410,23 +410,27 @@ TARGET VALUE_INLINE bool NAME(phases)(const snow_value_splat *p, int first,
                                       snow_value_plane *planes,
                                       value_room *room, const int channels,
                                       const bool sloped, const bool eye) {
-    int32_t *list = value_slabs(p, room);
-    int count = value_list_slabs(p, first, end, tile, list);
+    value_list list =
+        value_list_begin(p, first, end, tile, value_slabs(p, room));
+    const int32_t *slabs = list.slabs;
     bool drawn = false;
     for (int n = 0; n < ASKED_RING; n++)
         room->asked[n].sheet = -1;
-    for (int turn = 0, seen = 0; turn < count; turn++) {
-        for (; seen < count && seen <= turn + AHEAD; seen++) {
-            if (seen + 2 < count && eye)
-                NAME(ask_masks_eye)(p, list[seen + 2], first, tile);
-            else if (seen + 2 < count)
-                NAME(ask_masks)(p, list[seen + 2], first, tile);
+    for (int turn = 0, seen = 0;; turn++) {
+        value_list_find(&list, turn + AHEAD + 3);
+        if (turn >= list.count)
+            break;
+        for (; seen < list.count && seen <= turn + AHEAD; seen++) {
+            if (seen + 2 < list.count && eye)
+                NAME(ask_masks_eye)(p, slabs[seen + 2], first, tile);
+            else if (seen + 2 < list.count)
+                NAME(ask_masks)(p, slabs[seen + 2], first, tile);
             NAME(look_ahead)
-            (p, list[seen], first, end, tile, room,
+            (p, slabs[seen], first, end, tile, room,
              room->slab[seen % AHEAD_RING], sloped, eye);
         }
         drawn |=
-            NAME(slab)(p, list[turn], first, end, tile, planes, room,
+            NAME(slab)(p, slabs[turn], first, end, tile, planes, room,
                        room->slab[turn % AHEAD_RING], channels, sloped, eye);
         if (!NAME(alive)(room, first, end))
             break;
@@ -441,21 +445,25 @@ TARGET VALUE_INLINE bool NAME(phases_eye)(const snow_value_splat *p,
                                           snow_value_plane *planes,
                                           value_room *room, const int channels,
                                           const bool sloped) {
-    int32_t *list = value_slabs(p, room);
-    int count = value_list_slabs(p, 0, p->phases, tile, list);
+    value_list list =
+        value_list_begin(p, 0, p->phases, tile, value_slabs(p, room));
     bool drawn = false;
-    for (int turn = 0; turn < count && NAME(alive)(room, 0, p->phases); turn++)
+    for (int turn = 0; NAME(alive)(room, 0, p->phases); turn++) {
+        value_list_find(&list, turn + 1);
+        if (turn >= list.count)
+            break;
         for (int first = 0; first < p->phases; first += TOGETHER) {
             int end =
                 first + TOGETHER < p->phases ? first + TOGETHER : p->phases;
             for (int n = 0; n < ASKED_RING; n++)
                 room->asked[n].sheet = -1;
             NAME(look_ahead)
-            (p, list[turn], first, end, tile, room, room->slab[0], sloped,
+            (p, list.slabs[turn], first, end, tile, room, room->slab[0], sloped,
              true);
-            drawn |= NAME(slab)(p, list[turn], first, end, tile, planes, room,
-                                room->slab[0], channels, sloped, true);
+            drawn |= NAME(slab)(p, list.slabs[turn], first, end, tile, planes,
+                                room, room->slab[0], channels, sloped, true);
         }
+    }
     return drawn;
 }
 

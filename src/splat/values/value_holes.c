@@ -135,28 +135,66 @@ void snow_value_bridge(const value_sides *s, uint32_t lanes, int16_t *across) {
 
 /* The bells of a border: as far as gradients of values, and what is stored. */
 #define BORDER_REACH 2
+#define TAPS (2 * BORDER_REACH)
 
-/* Columns around a row of samples, and of each what its holes weigh in the rows
- * and slices around, and how that grows along v and p. */
+/* Columns around the samples of a tile. */
 #define HOLE_COLUMNS (32 * SNOW_VALUE_SPREAD_MOST + 8)
+
+/* Of each column of some rows of voxels: whether there are holes, what they
+ * weigh, and how that grows along v and p. */
 typedef struct hole_columns {
-    int64_t first, count;
-    bool any, some[HOLE_COLUMNS]; /* there are holes; in a column */
+    int64_t row; /* -1: none */
+    bool any;
+    unsigned char some[HOLE_COLUMNS];
     double weight[HOLE_COLUMNS], along[HOLE_COLUMNS], across[HOLE_COLUMNS];
 } hole_columns;
+
+/* A bell along an axis, and the part of a voxel that it is for, of 32768. */
+typedef struct part_bell {
+    int part; /* -1: none */
+    value_bell bell;
+} part_bell;
+
+/* The holes around the samples of a phase on a sheet.  The bells' sums are
+ * products: those along p are made once for a row of voxels, those along v once
+ * for a row of samples. */
+typedef struct hole_sheet {
+    const snow_value_store *store;
+    int64_t first, count; /* columns */
+    value_bell slices;
+    part_bell u, v;
+    hole_columns rows[TAPS]; /* sums along p of voxels' rows, [row % TAPS] */
+    hole_columns sums;       /* along p and v, of a row of samples */
+} hole_sheet;
 
 static int64_t clamp(int64_t i, int64_t count) {
     return i < 0 ? 0 : i < count ? i : count - 1;
 }
 
-/* Adds those of a row of voxels. */
-static void add_holes(const snow_value_store *s, int64_t slice, int64_t row,
-                      const double by[3], hole_columns *out) {
-    const int64_t *at = snow_value_at(s, slice) + row;
+/* The bell around a place that is such a part of a voxel beyond voxel 0. */
+static const value_bell *bell_of(part_bell *kept, int part, int64_t count) {
+    if (kept->part != part)
+        *kept = (part_bell){part,
+                            value_bell_at(part / 32768.0, count, BORDER_REACH)};
+    return &kept->bell;
+}
+
+static void clear_columns(hole_columns *out, int64_t count) {
+    memset(out->some, 0, (size_t)count);
+    memset(out->weight, 0, (size_t)count * sizeof *out->weight);
+    memset(out->along, 0, (size_t)count * sizeof *out->along);
+    memset(out->across, 0, (size_t)count * sizeof *out->across);
+}
+
+/* Adds the holes of a slice's row, by their weight along p and its growth. */
+static void add_slice(const hole_sheet *sheet, int64_t slice, double weight,
+                      double slope, hole_columns *out) {
+    const snow_value_store *s = sheet->store;
+    const int64_t *at = snow_value_at(s, slice) + out->row;
     const int32_t *ends =
-        s->ends[slice * (s->rows + 2 * s->margin) + s->margin + row];
-    int64_t from = out->first > ends[0] ? out->first : ends[0];
-    int64_t end = out->first + out->count;
+        s->ends[slice * (s->rows + 2 * s->margin) + s->margin + out->row];
+    int64_t from = sheet->first > ends[0] ? sheet->first : ends[0];
+    int64_t end = sheet->first + sheet->count;
     end = end < ends[1] ? end : ends[1];
     const int16_t *values = s->values + *at;
     bool any = false;
@@ -165,99 +203,151 @@ static void add_holes(const snow_value_store *s, int64_t slice, int64_t row,
     if (!any)
         return;
     if (!out->any)
-        for (int64_t n = 0; n < out->count; n++)
-            out->weight[n] = out->along[n] = out->across[n] = out->some[n] = 0;
+        clear_columns(out, sheet->count);
     out->any = true;
-    for (int64_t i = from; i < end; i++)
-        if (values[i] == SNOW_VALUE_HOLE) {
-            out->some[i - out->first] = true;
-            out->weight[i - out->first] += by[0];
-            out->along[i - out->first] += by[1];
-            out->across[i - out->first] += by[2];
-        }
+    for (int64_t i = from, n = from - sheet->first; i < end; i++, n++) {
+        const bool hole = values[i] == SNOW_VALUE_HOLE;
+        out->some[n] |= hole;
+        out->weight[n] += hole ? weight : 0;
+        out->across[n] += hole ? slope : 0;
+    }
 }
 
-/* Those around the active samples of a row, from the first to the last.  Beyond
- * a side all is as the last voxels there. */
-static void find_holes(const snow_value_store *s, const value_spot *first,
-                       const value_spot *last, hole_columns *out) {
-    double place[3];
-    value_place_of(first, place);
-    const value_bell v = value_bell_at(place[1], s->rows, BORDER_REACH);
-    const value_bell w = value_bell_at(place[2], s->slices, BORDER_REACH);
+/* The sums along p of a row of voxels. */
+static const hole_columns *row_of(hole_sheet *sheet, int64_t row) {
+    const snow_value_store *s = sheet->store;
+    const value_bell *w = &sheet->slices;
+    hole_columns *out = &sheet->rows[row % TAPS];
+    if (out->row == row)
+        return out;
+    out->row = row;
     out->any = false;
-    out->first = clamp(first->i - BORDER_REACH + 1, s->columns);
-    out->count = clamp(last->i + BORDER_REACH, s->columns) - out->first + 1;
-    for (int z = 0; z < w.taps; z++)
-        for (int y = 0; y < v.taps; y++) {
-            const double by[3] = {w.weight[z] * v.weight[y],
-                                  w.weight[z] * v.slope[y],
-                                  w.slope[z] * v.weight[y]};
-            if (w.weight[z] != 0 || w.slope[z] != 0)
-                add_holes(s, clamp(w.at[z], s->slices), clamp(v.at[y], s->rows),
-                          by, out);
-        }
+    for (int z = 0; z < w->taps; z++)
+        if (w->weight[z] != 0 || w->slope[z] != 0)
+            add_slice(sheet, clamp(w->at[z], s->slices), w->weight[z],
+                      w->slope[z], out);
+    return out;
+}
+
+/* Adds a row of voxels to a row of samples, by its weight along v and its
+ * growth. */
+static void add_row(const hole_columns *row, int64_t count, double weight,
+                    double slope, hole_columns *out) {
+    if (!row->any)
+        return;
+    if (!out->any)
+        clear_columns(out, count);
+    out->any = true;
+    for (int64_t n = 0; n < count; n++) {
+        out->some[n] |= row->some[n];
+        out->weight[n] += weight * row->weight[n];
+        out->along[n] += slope * row->weight[n];
+        out->across[n] += weight * row->across[n];
+    }
+}
+
+/* The sums for the row of samples that a spot is of.  Beyond a side all is as
+ * the last voxels there. */
+static void sum_rows(hole_sheet *sheet, const value_spot *spot) {
+    const int64_t rows = sheet->store->rows;
+    const value_bell *v = bell_of(&sheet->v, spot->wv, rows);
+    sheet->sums.any = false;
+    for (int y = 0; y < v->taps; y++)
+        add_row(row_of(sheet, clamp(spot->j + v->at[y], rows)), sheet->count,
+                v->weight[y], v->slope[y], &sheet->sums);
 }
 
 /* Of a sample: twice the gradient of what is there, as numbers; zeros are
  * there. */
-static void lean_of(const snow_value_store *s, const hole_columns *holes,
-                    const value_spot *spot, int16_t out[3]) {
-    double place[3], sums[3] = {0, 0, 0};
+static void lean_of(hole_sheet *sheet, const value_spot *spot, int16_t out[3]) {
+    const hole_columns *holes = &sheet->sums;
+    const int64_t columns = sheet->store->columns;
+    double sums[3] = {0, 0, 0};
     bool near = false;
     for (int x = 1 - BORDER_REACH; x <= BORDER_REACH; x++)
-        near |= holes->some[clamp(spot->i + x, s->columns) - holes->first];
+        near |= holes->some[clamp(spot->i + x, columns) - sheet->first];
     if (!near)
         return;
-    value_place_of(spot, place);
-    const value_bell u = value_bell_at(place[0], s->columns, BORDER_REACH);
-    for (int x = 0; x < u.taps; x++) {
-        int64_t n = clamp(u.at[x], s->columns) - holes->first;
-        sums[0] += u.slope[x] * holes->weight[n];
-        sums[1] += u.weight[x] * holes->along[n];
-        sums[2] += u.weight[x] * holes->across[n];
+    const value_bell *u = bell_of(&sheet->u, spot->wu, columns);
+    for (int x = 0; x < u->taps; x++) {
+        int64_t n = clamp(spot->i + u->at[x], columns) - sheet->first;
+        sums[0] += u->slope[x] * holes->weight[n];
+        sums[1] += u->weight[x] * holes->along[n];
+        sums[2] += u->weight[x] * holes->across[n];
     }
     for (int axis = 0; axis < 3; axis++)
         out[axis] = (int16_t)floor(-2 * SNOW_VALUE_MOST * sums[axis] + 0.5);
 }
 
 /* A row of samples on an end of their slab. */
-static void lean_row(value_sample at, uint32_t active, int end,
-                     int16_t *const border[3]) {
-    const snow_value_store *s = at.splat->store;
-    hole_columns holes;
+static void lean_row(hole_sheet *sheet, value_sample at, uint32_t active,
+                     int end, int16_t *const border[3]) {
     at.lane = __builtin_ctz(active);
-    const value_spot first = value_spot_of(&at, end);
-    at.lane = 31 - __builtin_clz(active);
-    const value_spot last = value_spot_of(&at, end);
-    find_holes(s, &first, &last, &holes);
-    for (int n = 0; active; active &= active - 1, n++) {
+    value_spot spot = value_spot_of(&at, end);
+    sum_rows(sheet, &spot);
+    for (int n = 0; sheet->sums.any && active; active &= active - 1, n++) {
         int16_t lean[3] = {0, 0, 0};
         at.lane = __builtin_ctz(active);
-        const value_spot spot = value_spot_of(&at, end);
-        if (holes.any)
-            lean_of(s, &holes, &spot, lean);
+        spot = value_spot_of(&at, end);
+        lean_of(sheet, &spot, lean);
         for (int axis = 0; axis < 3; axis++)
             border[axis][n] = lean[axis];
     }
 }
 
-void snow_value_lean(const value_sample *first, const value_slab *slab,
-                     const bool holes[2], value_queue *q, int count) {
-    value_sample at = *first;
+/* Around the active samples of a phase on an end of its slab, of which there
+ * are some. */
+static void begin_sheet(value_sample at, const value_slab *slab, int end,
+                        hole_sheet *sheet) {
+    const snow_value_store *s = at.splat->store;
+    uint32_t lanes = 0;
+    for (uint32_t rows = slab->rows; rows; rows &= rows - 1)
+        lanes |= slab->active[__builtin_ctz(rows)];
+    at.lane = __builtin_ctz(lanes);
+    const value_spot first = value_spot_of(&at, end);
+    at.lane = 31 - __builtin_clz(lanes);
+    const value_spot last = value_spot_of(&at, end);
+    double place[3];
+    value_place_of(&first, place);
+    sheet->store = s;
+    sheet->first = clamp(first.i - BORDER_REACH + 1, s->columns);
+    sheet->count = clamp(last.i + BORDER_REACH, s->columns) - sheet->first + 1;
+    sheet->slices = value_bell_at(place[2], s->slices, BORDER_REACH);
+    sheet->u.part = sheet->v.part = -1;
+    for (int n = 0; n < TAPS; n++)
+        sheet->rows[n].row = -1;
+}
+
+/* One end of a slab. */
+static void lean_end(value_sample at, const value_slab *slab, int end,
+                     value_queue *q, int count) {
+    hole_sheet sheet;
+    bool begun = false;
     for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
         at.row = __builtin_ctz(rows);
         const uint32_t active = slab->active[at.row];
-        const int some = __builtin_popcount(active);
-        for (int end = 0; end < 2; end++) {
-            int16_t *border[3];
-            for (int axis = 0; axis < 3; axis++) {
-                border[axis] = q->border[3 * end + axis] + count;
-                memset(border[axis], 0, (size_t)some * sizeof **border);
-            }
-            if (active && holes[end])
-                lean_row(at, active, end, border);
-        }
-        count += some;
+        int16_t *border[3];
+        for (int axis = 0; axis < 3; axis++)
+            border[axis] = q->border[3 * end + axis] + count;
+        if (active && !begun)
+            begin_sheet(at, slab, end, &sheet);
+        begun |= active != 0;
+        if (active)
+            lean_row(&sheet, at, active, end, border);
+        count += __builtin_popcount(active);
+    }
+}
+
+void snow_value_lean(const value_sample *first, const value_slab *slab,
+                     const bool holes[2], value_queue *q, int count) {
+    int some = 0;
+    for (uint32_t rows = slab->rows; rows; rows &= rows - 1)
+        some += __builtin_popcount(slab->active[__builtin_ctz(rows)]);
+    for (int end = 0; end < 2; end++) {
+        for (int axis = 0; axis < 3; axis++)
+            memset(q->border[3 * end + axis] + count, 0,
+                   (size_t)some * sizeof **q->border);
+        if (some && holes[end])
+            lean_end(*first, slab, end, q, count);
     }
 }

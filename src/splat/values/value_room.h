@@ -232,24 +232,39 @@ static inline value_window value_window_of(const snow_value_store *s,
 }
 
 /* The slabs with cells that no run hides, for some phases of a tile: the
- * numbers of their front sheets, front to back; returns how many.  In
- * perspective all slabs. */
-int value_list_slabs(const snow_value_splat *splat, int first, int end,
-                     const int tile[2], int32_t *out);
+ * numbers of their front sheets, front to back.  They are found as far as they
+ * are needed, since rays may end before the last. */
+typedef struct value_list {
+    const snow_value_splat *splat;
+    int first, end; /* phases */
+    const int *tile;
+    int64_t begin[2]; /* cell of the masks that a place of 0 is in */
+    int64_t last[2];  /* cell of the masks */
+    int sheet;        /* the next one that is looked at */
+    unsigned before;  /* runs that do not hide the one before */
+    int count;
+    int32_t *slabs;
+} value_list;
+
+value_list value_list_begin(const snow_value_splat *splat, int first, int end,
+                            const int tile[2], int32_t *slabs);
+
+/* Finds so many of them, and up to eight more, or all. */
+void value_list_find(value_list *list, int count);
 
 /* Whether a window has cells with a hole, in all rows that gradients reach. */
 static inline bool value_has_holes(const snow_value_store *s, int64_t slice,
                                    value_window w) {
     if (slice >= s->slices) /* of another part, which gradients need */
         return false;
-    const uint64_t *coarse = s->coarse +
-                             snow_value_coarse_at(s, s->run_count, slice) +
-                             w.word * s->coarse_words;
+    const uint64_t *coarse =
+        s->coarse + snow_value_coarse_at(s, s->run_count, w.word, slice);
+    const size_t next = (size_t)s->slices * s->coarse_words;
     size_t first = (w.row - 1) / SNOW_VALUE_COARSE;
     size_t last = (w.row + SNOW_VALUE_ROWS) / SNOW_VALUE_COARSE;
     uint64_t any = 0;
     for (size_t n = first; n <= last; n++)
-        any |= (coarse[n / 64] | coarse[n / 64 + s->coarse_words]) >> n % 64;
+        any |= (coarse[n / 64] | coarse[n / 64 + next]) >> n % 64;
     return any & 1;
 }
 

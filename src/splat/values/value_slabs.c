@@ -2,78 +2,116 @@
  * coarse masks: of eight slices first, then of each. */
 #include "splat/values/value_room.h"
 
-/* Cells that the windows of some sheets cover. */
+/* Cells of the masks that the windows of some sheets cover. */
 typedef struct box {
     int64_t low[2], high[2];
 } box;
 
-/* Those of a phase along an axis of a sheet. */
-static void cover_axis(const snow_value_splat *p, int sheet, int phase,
-                       int axis, const int tile[2], int64_t ends[2]) {
-    if (p->rays) {
-        const snow_value_lanes *lanes =
-            value_lanes_of(p->rays, sheet, phase, axis, tile[axis]);
-        ends[0] = lanes->first + lanes->at[axis];
-        ends[1] = lanes->first + lanes->at[31 + axis];
-        return;
-    }
-    ends[0] = axis ? value_tile_row(p, tile[1]) : value_tile_column(p, tile[0]);
-    ends[0] += p->places[sheet * p->phases + phase].whole[axis];
-    ends[1] = ends[0] + 31;
-}
-
-/* Those of some phases on a sheet. */
-static void cover(const snow_value_splat *p, int sheet, int first, int end,
-                  const int tile[2], box *b) {
-    for (int phase = first; phase < end; phase++)
-        for (int axis = 0; axis < 2; axis++) {
-            int64_t at[2];
-            cover_axis(p, sheet, phase, axis, tile, at);
-            b->low[axis] = at[0] < b->low[axis] ? at[0] : b->low[axis];
-            b->high[axis] = at[1] > b->high[axis] ? at[1] : b->high[axis];
-        }
-}
-
-static const box nothing = {{INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN}};
-
-/* Whether a coarse mask has anything in a box. */
-static bool has_any(const snow_value_store *s, const uint64_t *coarse,
-                    const box *b) {
+value_list value_list_begin(const snow_value_splat *p, int first, int end,
+                            const int tile[2], int32_t *slabs) {
+    const snow_value_store *s = p->store;
     const int64_t zero = s->margin + 32; /* of cell 0 */
-    const int64_t end[2] = {(int64_t)s->mask_words * 32, (int64_t)s->mask_rows};
-    int64_t low[2], high[2];
+    return (value_list){
+        .splat = p,
+        .first = first,
+        .end = end,
+        .tile = tile,
+        .begin = {value_tile_column(p, tile[0]) + zero,
+                  value_tile_row(p, tile[1]) + zero},
+        .last = {(int64_t)s->mask_words * 32 - 1, (int64_t)s->mask_rows - 1},
+        .sheet = p->slabs[0],
+        .slabs = slabs};
+}
+
+/* Where the phases' windows of a sheet begin and end, in perspective. */
+static box cover_eye(const value_list *of, int sheet) {
+    const int64_t zero = of->splat->store->margin + 32;
+    box b = {{INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN}};
+    for (int phase = of->first; phase < of->end; phase++)
+        for (int axis = 0; axis < 2; axis++) {
+            const snow_value_lanes *lanes = value_lanes_of(
+                of->splat->rays, sheet, phase, axis, of->tile[axis]);
+            int64_t low = lanes->first + lanes->at[axis] + zero;
+            int64_t high = lanes->first + lanes->at[31 + axis] + zero;
+            b.low[axis] = low < b.low[axis] ? low : b.low[axis];
+            b.high[axis] = high > b.high[axis] ? high : b.high[axis];
+        }
+    return b;
+}
+
+static inline box cover(const value_list *of, int sheet) {
+    const snow_value_splat *p = of->splat;
+    if (p->rays)
+        return cover_eye(of, sheet);
+    const snow_value_place *at = p->places + sheet * p->phases;
+    box b;
     for (int axis = 0; axis < 2; axis++) {
-        low[axis] = b->low[axis] + zero > 0 ? b->low[axis] + zero : 0;
-        high[axis] = b->high[axis] + zero;
-        high[axis] = high[axis] < end[axis] ? high[axis] : end[axis] - 1;
-        if (low[axis] > high[axis])
-            return false;
+        int32_t low = at[of->first].whole[axis], high = low;
+        for (int phase = of->first + 1; phase < of->end; phase++) {
+            const int32_t whole = at[phase].whole[axis];
+            low = whole < low ? whole : low;
+            high = whole > high ? whole : high;
+        }
+        b.low[axis] = of->begin[axis] + low;
+        b.high[axis] = of->begin[axis] + high + 31;
     }
-    size_t top = (size_t)low[1] / SNOW_VALUE_COARSE;
-    size_t bottom = (size_t)high[1] / SNOW_VALUE_COARSE;
-    for (size_t n = top / 64; n <= bottom / 64; n++) {
-        uint64_t rows = n == top / 64 ? ~UINT64_C(0) << top % 64 : ~UINT64_C(0);
-        if (n == bottom / 64)
-            rows &= ~UINT64_C(0) >> (63 - bottom % 64);
-        for (size_t word = (size_t)low[0] / 32; word <= (size_t)high[0] / 32;
-             word++)
-            if (coarse[word * s->coarse_words + n] & rows)
-                return true;
+    return b;
+}
+
+/* The windows of two sheets and of those between them. */
+static box unite(box a, box b) {
+    for (int axis = 0; axis < 2; axis++) {
+        a.low[axis] = b.low[axis] < a.low[axis] ? b.low[axis] : a.low[axis];
+        a.high[axis] =
+            b.high[axis] > a.high[axis] ? b.high[axis] : a.high[axis];
     }
-    return false;
+    return a;
+}
+
+/* Leaves of a box what the masks have; false: nothing. */
+static inline bool fit(const value_list *of, box *b) {
+    for (int axis = 0; axis < 2; axis++) {
+        b->low[axis] = b->low[axis] > 0 ? b->low[axis] : 0;
+        b->high[axis] =
+            b->high[axis] < of->last[axis] ? b->high[axis] : of->last[axis];
+    }
+    return b->low[0] <= b->high[0] && b->low[1] <= b->high[1];
+}
+
+/* Whether a coarse mask has anything in a box; from each word to the next it is
+ * `apart`. */
+static inline bool has_any(const uint64_t *coarse, size_t apart, const box *b) {
+    const size_t row = (size_t)b->low[1] / SNOW_VALUE_COARSE;
+    const size_t last = (size_t)b->high[1] / SNOW_VALUE_COARSE;
+    const uint64_t from = ~UINT64_C(0) << row % 64;
+    const uint64_t to = ~UINT64_C(0) >> (63 - last % 64);
+    uint64_t any = 0;
+    for (int64_t word = b->low[0] / 32; word <= b->high[0] / 32; word++) {
+        for (size_t n = row / 64; n <= last / 64; n++)
+            any |= coarse[n] & (n == row / 64 ? from : ~UINT64_C(0)) &
+                   (n == last / 64 ? to : ~UINT64_C(0));
+        coarse += apart;
+    }
+    return any != 0;
 }
 
 /* A bit for each run with cells that it does not hide, in a slice (of every
  * slice, or of each eight) and, for sheets between, in the next one. */
-static unsigned runs_of(const snow_value_store *s, const uint64_t *coarse,
-                        int64_t slices, int64_t slice, bool between,
-                        const box *b) {
-    size_t size = s->mask_words * s->coarse_words;
+static inline unsigned runs_of(const value_list *of, const uint64_t *coarse,
+                               int64_t slices, int64_t slice, bool between,
+                               box b) {
+    const snow_value_store *s = of->splat->store;
+    const size_t apart = (size_t)slices * s->coarse_words;
     unsigned runs = 0;
-    for (int run = 0; run < s->run_count; run++)
+    if (!fit(of, &b))
+        return 0;
+    coarse += (size_t)b.low[0] / 32 * apart;
+    for (int run = 0; run < s->run_count; run++) {
         for (int64_t k = slice; k <= slice + between && k < slices; k++)
-            if (has_any(s, coarse + (size_t)(run * slices + k) * size, b))
+            if (has_any(coarse + (size_t)k * s->coarse_words, apart, &b))
                 runs |= 1U << run;
+        coarse += s->mask_words * apart;
+    }
     return runs;
 }
 
@@ -86,40 +124,39 @@ static int last_of_eight(const snow_value_splat *p, int sheet) {
     return sheet;
 }
 
-int value_list_slabs(const snow_value_splat *p, int first, int end,
-                     const int tile[2], int32_t *out) {
+/* Looks at the sheets of the next eight slices. */
+static void look_at_eight(value_list *list) {
+    const snow_value_splat *p = list->splat;
     const snow_value_store *s = p->store;
     const unsigned all = (1U << s->run_count) - 1;
-    unsigned before = 0;
-    int count = 0;
-    if (p->slabs[0] >= p->slabs[1])
-        return 0;
-    for (int n = p->slabs[0], last; n <= p->slabs[1]; n = last + 1) {
-        const snow_value_sheet *sheet = p->sheets + n;
-        box b = nothing;
-        last = last_of_eight(p, n);
-        cover(p, n, first, end, tile, &b);
-        cover(p, last, first, end, tile, &b);
-        bool some = runs_of(s, s->eights, s->eight_count,
-                            sheet->slice / SNOW_VALUE_EIGHT,
-                            sheet->between || p->sheets[last].between, &b) != 0;
-        for (int m = n; m <= last; m++, sheet++) {
-            unsigned here = 0;
-            if (some || !all) {
-                b = nothing;
-                cover(p, m, first, end, tile, &b);
-                here = runs_of(s, s->coarse, s->slices, sheet->slice,
-                               sheet->between, &b);
-            }
-            if (m > p->slabs[0] && (before | here) == all)
-                out[count++] = m - 1;
-            before = here;
-        }
+    const snow_value_sheet *sheet = p->sheets + list->sheet;
+    const int last = last_of_eight(p, list->sheet);
+    bool some =
+        runs_of(list, s->eights, s->eight_count,
+                sheet->slice / SNOW_VALUE_EIGHT,
+                sheet->between || p->sheets[last].between,
+                unite(cover(list, list->sheet), cover(list, last))) != 0;
+    for (; list->sheet <= last; list->sheet++, sheet++) {
+        unsigned here = 0;
+        if (some || !all)
+            here = runs_of(list, s->coarse, s->slices, sheet->slice,
+                           sheet->between, cover(list, list->sheet));
+        if (list->sheet > p->slabs[0] && (list->before | here) == all)
+            list->slabs[list->count++] = list->sheet - 1;
+        list->before = here;
     }
-    return count;
+}
+
+void value_list_find(value_list *list, int count) {
+    const int *slabs = list->splat->slabs;
+    while (list->count < count && list->sheet <= slabs[1] &&
+           slabs[0] < slabs[1])
+        look_at_eight(list);
 }
 
 int snow_value_list(const snow_value_splat *p, const int tile[2],
                     int32_t *out) {
-    return value_list_slabs(p, 0, p->phases, tile, out);
+    value_list list = value_list_begin(p, 0, p->phases, tile, out);
+    value_list_find(&list, INT32_MAX);
+    return list.count;
 }
