@@ -34,6 +34,7 @@ typedef struct snow_ranks_options {
     bool turns;     /* parts get ghost voxels for all directions at this zoom */
     bool scattered; /* each rank's image has its own pixels; they add up */
     const snow_transfer *transfer; /* for snow_ranks_open, instead of a look */
+    bool one_look; /* parts may lack what the look of opening does not show */
 } snow_ranks_options;
 SNOW_RECORD(snow_ranks_options);
 /* Opens this rank's part of a volume, with the ghost voxels that the view
@@ -57,7 +58,6 @@ SNOW_API snow_status snow_ranks_rebalance(snow_frame *frame, snow_comm *comm,
     const snow_transfer *transfer, const snow_view *view,
     const snow_settings *settings, const snow_ranks_options *how, int64_t left,
     snow_volume **volume);
-
 /* Of the whole, whose parts the ranks' volumes are. */
 SNOW_API snow_status snow_ranks_new_transfer(snow_comm *comm,
     const snow_volume *volume, const snow_look *look, snow_transfer **out);

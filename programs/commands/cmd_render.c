@@ -359,6 +359,7 @@ static int check_request(work *w, const options *opts) {
     done = process_agree(done);
     if (done == CONTINUE)
         done = render_state_new(opts, &w->state);
+    w->state.one_look = true;
     if (done != CONTINUE || !process_talks())
         return done;
     return check_picture_paths(w->state.context, opts);

@@ -13,7 +13,9 @@
 
 int shots_open(const options *opts, shot_renderer *out) {
     *out = (shot_renderer){.count = 0};
-    return render_state_new(opts, &out->state);
+    const int done = render_state_new(opts, &out->state);
+    out->state.one_look = true;
+    return done;
 }
 
 void shots_close(shot_renderer *shots) {

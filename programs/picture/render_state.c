@@ -364,7 +364,8 @@ static snow_ranks_options how_of(const render_state *s) {
         .radix = (int)opts->radix,
         .pixel_bits = coarse && !is_sum_of_channels(s) ? 8 : 0,
         .turns = s->turns,
-        .transfer = s->transfer};
+        .transfer = s->transfer,
+        .one_look = s->one_look && !opts->overlay && !s->channels.list.count};
 }
 
 /* The look of each channel by all ranks, which read equal parts of it.  Those

@@ -25,6 +25,7 @@ typedef struct render_state {
     bool each_time;   /* all time steps of the file are opened in turn */
     bool turns;       /* pictures from several sides are requested */
     bool steps;       /* or of several time steps */
+    bool one_look;    /* all pictures have the look of the first */
     bool framed;      /* the view below frames all pictures */
     int64_t left;     /* then: how many are left, including the next */
     memory_plan plan; /* the memory plan, if this process is alone */

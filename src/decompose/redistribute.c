@@ -61,6 +61,7 @@ struct snow_voxels {
     snow_message *messages; /* those received, then those sent */
     int rounds;             /* of a move, the same on all ranks */
     bool gives_up;          /* bricks that are moved */
+    bool has_gaps;          /* not all that is wanted is there */
     size_t ready; /* bytes of a value that buffers and messages fit; the same on
                      all ranks */
 };
@@ -217,7 +218,7 @@ static snow_status check_overlap(snow_voxels *voxels, const box_table *c) {
 static snow_status check_whole(const snow_voxels *voxels) {
     int64_t found = voxels->kept.voxels + voxels->received.voxels;
     int64_t wanted = snow_box_voxels(&voxels->wanted);
-    if (found == wanted)
+    if (found == wanted || voxels->has_gaps)
         return SNOW_STATUS_OK;
     const int64_t *first = voxels->wanted.first, *count = voxels->wanted.count;
     return snow_fail(
@@ -401,6 +402,10 @@ static snow_status finish_receiving(snow_voxels *voxels, int round,
 
 void snow_voxels_give_up(snow_voxels *voxels) {
     voxels->gives_up = true;
+}
+
+void snow_voxels_allow_gaps(snow_voxels *voxels) {
+    voxels->has_gaps = true;
 }
 
 static snow_status move_round(snow_voxels *voxels, const snow_brick *bricks,

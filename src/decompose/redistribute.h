@@ -10,6 +10,9 @@
  */
 void snow_voxels_give_up(snow_voxels *voxels);
 
+/* Some voxels of what is wanted are in no box: they stay as they are. */
+void snow_voxels_allow_gaps(snow_voxels *voxels);
+
 /* The slices of a box that move in one of some rounds; whole pages of a brick
  * that have moved go back to the system. */
 snow_box snow_box_slices(const snow_box *box, int round, int rounds);

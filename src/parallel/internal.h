@@ -35,6 +35,7 @@ typedef struct snow_in_flight {
     snow_volume *held; /* while it is drawn; or NULL */
     /* Copied from the volume, which may be freed before they are sent. */
     snow_extent part;
+    snow_left_out left_out;
     uint64_t generation;
     snow_local local;         /* what is exchanged of picture.local */
     snow_image_region region; /* of the combined image, this rank's */

@@ -152,15 +152,14 @@ static snow_load_balance_message own_word(const balancing *b,
                                           snow_status status) {
     const snow_load_balance *w = b->work;
     const int axis = b->order.grid.axis;
-    snow_extent part;
-    snow_volume_find_extent(*b->volume, &part);
+    const snow_box box = snow_part_box(*b->volume);
     if (status != SNOW_STATUS_OK)
         return (snow_load_balance_message){.fault = 2};
     return (snow_load_balance_message){
         .fault = !snow_part_serves(*b->volume, &b->order),
         .known = w->costs[axis] != NULL,
-        .first = part.first[axis],
-        .count = part.count[axis],
+        .first = box.first[axis],
+        .count = box.count[axis],
         .pictures = w->pictures,
         .seconds = snow_load_balance_seconds(w),
         .encoding = w->encoding};

@@ -43,7 +43,7 @@ snow_status snow_in_flight_agree_range(snow_in_flight *f) {
 /* Of the volume and of its layers.  A part without voxels of its own has none
  * that count. */
 static snow_status measure_values(snow_in_flight *f, snow_data_range *range) {
-    const snow_extent *part = &f->part;
+    snow_extent part;
     const snow_job *job = &f->picture.job;
     snow_frame *frame = f->picture.frame;
     const snow_transfer *look =
@@ -56,7 +56,8 @@ static snow_status measure_values(snow_in_flight *f, snow_data_range *range) {
                                      .linear = of ? of->linear : 0};
     }
     SNOW_TRY(snow_value_path_new(frame->context, &frame->value_path));
-    if (!part->count[0] || !part->count[1] || !part->count[2])
+    snow_volume_find_extent(job->volume, &part);
+    if (!part.count[0] || !part.count[1] || !part.count[2])
         return SNOW_STATUS_OK;
     for (int n = 0; n < job->layer_count; n++)
         SNOW_TRY(snow_value_measure_layer(frame->value_path, n, &job->layers[n],

@@ -2,6 +2,7 @@
 #include "parallel/part.h"
 
 #include "decompose/redistribute.h"
+#include "parallel/trim.h"
 #include "transfer/transfer.h"
 #include "volume/clip_planes.h"
 #include "volume/mask.h"
@@ -57,6 +58,17 @@ snow_status snow_part_new(snow_context *context, const snow_volume_info *whole,
     if (!snow_box_voxels(&p->owned))
         memset(volume->owned, 0, snow_type_size(info.type));
     return snow_part_set(volume, whole, p, out);
+}
+
+snow_box snow_part_box(const snow_volume *volume) {
+    snow_extent part;
+    snow_box box;
+    if (volume->left_out.any)
+        return volume->left_out.box;
+    snow_volume_find_extent(volume, &part);
+    memcpy(box.first, part.first, sizeof box.first);
+    memcpy(box.count, part.count, sizeof box.count);
+    return box;
 }
 
 /* --- voxels that change hands --------------------------------------------- */
@@ -117,6 +129,8 @@ static snow_status move_voxels(snow_comm *comm, const snow_volume *from,
     SNOW_TRY(agree_cuts(comm, from, &all, to));
     snow_status status =
         snow_comm_agree_status(comm, snow_voxels_new(comm, &voxels));
+    if (status == SNOW_STATUS_OK && from->left_out.any)
+        snow_voxels_allow_gaps(voxels);
     if (status == SNOW_STATUS_OK)
         status =
             snow_voxels_plan(voxels, &held.box, 1, any ? &p->stored : &nothing);
@@ -144,18 +158,38 @@ static snow_status open_again(snow_comm *comm, const snow_volume_info *whole,
         comm, snow_stream_open_part(held, &part, p->stored.count, out));
 }
 
+/* Room for a part, with a value in the place of voxels that nobody has. */
+static snow_status make_room(snow_context *context,
+                             const snow_volume_info *whole,
+                             const snow_part_place *p,
+                             const snow_left_out *left, bool fills,
+                             snow_volume **out) {
+    SNOW_TRY(snow_part_new(context, whole, p, out));
+    (*out)->left_out = *left;
+    if (fills)
+        snow_volume_fill(*out, left->fill);
+    return SNOW_STATUS_OK;
+}
+
 /* Collective.  Voxels that all ranks hold go where the boxes say. */
 static snow_status send_share(snow_comm *comm, const snow_volume_info *whole,
                               const snow_partition_params *order,
-                              const snow_box *boxes, const snow_volume *held,
-                              bool spent, snow_volume **out) {
+                              const snow_box *boxes,
+                              const snow_transfer *transfer,
+                              const snow_volume *held, bool spent,
+                              snow_volume **out) {
     snow_volume *volume = NULL;
-    snow_part_place p =
-        snow_part_place_of(whole, &boxes[snow_comm_rank(comm)], order->layers);
+    snow_left_out left = held->left_out;
+    snow_box own = left.box = boxes[snow_comm_rank(comm)];
+    if (!held->stream && (order->trims || left.any))
+        SNOW_TRY(
+            snow_ranks_trim(comm, order, boxes, held, transfer, &own, &left));
+    const snow_part_place p = snow_part_place_of(whole, &own, order->layers);
     if (held->stream)
         return open_again(comm, whole, &p, held, out);
     snow_status status = snow_comm_agree_status(
-        comm, snow_part_new(snow_comm_context(comm), whole, &p, &volume));
+        comm, make_room(snow_comm_context(comm), whole, &p, &left,
+                        held->left_out.any, &volume));
     if (status == SNOW_STATUS_OK)
         status = move_voxels(comm, held, spent, &p, volume);
     if (status == SNOW_STATUS_OK)
@@ -176,7 +210,8 @@ snow_status snow_part_cut(snow_comm *comm, const snow_volume_info *whole,
     if (status == SNOW_STATUS_OK)
         status = snow_partition_boxes(comm, order, held, transfer, boxes, NULL);
     if (status == SNOW_STATUS_OK)
-        status = send_share(comm, whole, order, boxes, held, spent, out);
+        status =
+            send_share(comm, whole, order, boxes, transfer, held, spent, out);
     snow_release(context, boxes);
     return status;
 }
@@ -194,6 +229,7 @@ bool snow_part_serves(const snow_volume *volume,
                       const snow_partition_params *order) {
     snow_extent part;
     snow_volume_find_extent(volume, &part);
+    const snow_box box = snow_part_box(volume);
     int axis = order->grid.axis;
     if (!part.count[0] || !part.count[1] || !part.count[2])
         return true;
@@ -204,11 +240,11 @@ bool snow_part_serves(const snow_volume *volume,
         if ((below < order->layers[i] && part.stored[i] > 0) ||
             (above < order->layers[i] && end + above < part.dims[i]))
             return false;
-        if (order->slabs_only && i != axis && part.count[i] != part.dims[i])
+        if (order->slabs_only && i != axis && box.count[i] != part.dims[i])
             return false;
     }
-    return is_border(order, part.first[axis]) &&
-           is_border(order, part.first[axis] + part.count[axis]);
+    return is_border(order, box.first[axis]) &&
+           is_border(order, box.first[axis] + box.count[axis]);
 }
 
 snow_status
@@ -216,10 +252,10 @@ snow_ranks_distribute(snow_comm *comm, const snow_volume_info *whole,
                       const snow_partition_params *order, const snow_box *boxes,
                       const snow_transfer *transfer, snow_volume **volume) {
     snow_volume *recut;
-    SNOW_TRY(boxes
-                 ? send_share(comm, whole, order, boxes, *volume, false, &recut)
-                 : snow_part_cut(comm, whole, order, *volume, false, transfer,
-                                 &recut));
+    SNOW_TRY(boxes ? send_share(comm, whole, order, boxes, transfer, *volume,
+                                false, &recut)
+                   : snow_part_cut(comm, whole, order, *volume, false, transfer,
+                                   &recut));
     snow_volume_close(*volume);
     *volume = recut;
     return SNOW_STATUS_OK;

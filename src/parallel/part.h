@@ -35,6 +35,9 @@ snow_status snow_part_cut(snow_comm *comm, const snow_volume_info *whole,
                           const snow_volume *held, bool spent,
                           const snow_transfer *transfer, snow_volume **out);
 
+/* What a part answers for, with what it lacks. */
+snow_box snow_part_box(const snow_volume *volume);
+
 /* Whether this rank's part gives its share of a picture. */
 bool snow_part_serves(const snow_volume *volume,
                       const snow_partition_params *order);

@@ -86,6 +86,9 @@ snow_partition_params_make(snow_context *context, const snow_volume_info *whole,
                       how.cut == SNOW_PARTITION_EQUAL ||
                       how.cut == SNOW_PARTITION_COUNTED;
     out->cut = chooses ? choose_partition(out, resolved.method) : how.cut;
+    /* In perspective what samples reach depends on the camera. */
+    out->trims = how.one_look && out->cut != SNOW_PARTITION_EQUAL &&
+                 !(known.fov > 0) && snow_can_lack_voxels(&resolved);
     if (out->cut == SNOW_PARTITION_BRICKS && resolved.deterministic) {
         snow_notify(context, "bricks cannot share a deterministic picture; "
                              "slabs are cut");

@@ -24,6 +24,7 @@
  * when it is their picture's turn. */
 #include "base/fingerprint.h"
 #include "parallel/internal.h"
+#include "parallel/part.h"
 #include "volume/stream_internal.h"
 
 #include <string.h>
@@ -71,6 +72,10 @@ static snow_status begin(snow_picture *p, snow_status status) {
     f->generation = p->job.volume->generation;
     f->ranks->apart = false;
     snow_volume_find_extent(p->job.volume, &f->part);
+    f->left_out = p->job.volume->left_out;
+    const snow_box box = snow_part_box(p->job.volume);
+    memcpy(f->part.first, box.first, sizeof box.first);
+    memcpy(f->part.count, box.count, sizeof box.count);
     p->ranks_stats.ranks = f->ranks->ranks;
     p->begin_at = f->ranks->begin_at;
     if (status == SNOW_STATUS_OK)
@@ -105,6 +110,7 @@ static int64_t terms_of(const snow_in_flight *p) {
     const snow_job *job = &p->picture.job;
     const snow_settings *s = &job->settings;
     const snow_placement *place = &job->placement;
+    const snow_left_out *left = &p->left_out;
     const int numbers[] = {
         job->channels,      (int)s->method,    (int)s->quality,
         (int)s->kernel,     s->footprint,      (int)s->shade,
@@ -112,7 +118,7 @@ static int64_t terms_of(const snow_in_flight *p) {
         (int)s->mode,       s->depth,          (int)p->how.combining,
         p->how.radix,       p->how.pixel_bits, place->slice_axis,
         place->perspective, p->how.scattered,  (int)s->light,
-        job->layer_count};
+        job->layer_count,   left->any};
     const double reals[] = {
         place->back[0],   place->back[1],     place->back[2],
         place->up[0],     place->up[1],       place->up[2],
@@ -122,7 +128,7 @@ static int64_t terms_of(const snow_in_flight *p) {
         place->eye.at[1], place->eye.at[2],   s->ambient,
         s->diffuse,       s->specular,        s->shininess,
         s->light_azimuth, s->light_elevation, s->depth_darkening,
-        s->occlusion};
+        s->occlusion,     left->low,          left->high};
     uint64_t hash = snow_hash_mix(SNOW_HASH_START, numbers, sizeof numbers);
     hash = snow_hash_mix(hash, reals, sizeof reals);
     hash = mix_layers(hash, p->picture.frame);

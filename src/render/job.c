@@ -2,6 +2,7 @@
 #include "render/job.h"
 
 #include "classify/count_interesting.h"
+#include "classify/hidden.h"
 #include "render/ghosts.h"
 
 #include <string.h>
@@ -29,6 +30,30 @@ static snow_status check_part(const snow_job *job) {
     return snow_ghosts_check(
         job->context, job->volume, job->view, &job->settings,
         snow_transfer_slopes(job->transfer, &job->volume->info));
+}
+
+bool snow_can_lack_voxels(const snow_settings *settings) {
+    return settings->mode == SNOW_MODE_OVER && !settings->depth &&
+           !settings->deterministic &&
+           settings->method == SNOW_METHOD_SHEAR_WARP;
+}
+
+/* Of a part that lacks what another look showed nothing of. */
+static snow_status check_left_out(const snow_job *job) {
+    const snow_volume_info *info = &job->volume->info;
+    const snow_left_out *left = &job->volume->left_out;
+    const double a = info->slope * left->low + info->intercept;
+    const double b = info->slope * left->high + info->intercept;
+    if (!left->any ||
+        (snow_can_lack_voxels(&job->settings) && !job->layer_count &&
+         snow_is_hidden(job->transfer, info, job->settings.threshold,
+                        left->spare, a < b ? a : b, a < b ? b : a)))
+        return SNOW_STATUS_OK;
+    return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
+                     "the volume was opened for one look, without the voxels "
+                     "of values %g to %g, which this picture needs; open it "
+                     "without one_look",
+                     a < b ? a : b, a < b ? b : a);
 }
 
 /* Rays are walked from end to end by one process; only surfaces are met by
@@ -80,6 +105,7 @@ snow_status snow_job_begin(snow_context *context, const snow_request *request,
     SNOW_TRY(
         snow_settings_resolve(context, &job->volume->info, &job->settings));
     SNOW_TRY(snow_placement_make(context, &whole, job->view, &job->placement));
+    SNOW_TRY(check_left_out(job));
     choose_method(job, &whole);
     place_slab(job);
     SNOW_TRY(check_raycast(job));
@@ -143,6 +169,8 @@ snow_status snow_job_finish(snow_frame *frame, const snow_job *job) {
         stats->encoded = true; /* for every picture */
     if (has_ghosts(&job->clip))
         SNOW_TRY(count_own(frame, job));
+    if (job->volume->left_out.any)
+        stats->voxels = snow_box_voxels(&job->volume->left_out.box);
     if (stats->voxels > 0)
         stats->sparse_ratio =
             1 - (double)stats->interesting / (double)stats->voxels;

@@ -76,6 +76,10 @@ snow_status snow_settings_resolve(snow_context *context,
                                   const snow_volume_info *info,
                                   snow_settings *settings);
 
+/* Whether pictures are made without voxels of which the look shows nothing, by
+ * resolved settings. */
+bool snow_can_lack_voxels(const snow_settings *settings);
+
 /* What a picture is to be made of. */
 typedef struct snow_request {
     const snow_volume *volume;

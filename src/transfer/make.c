@@ -404,6 +404,11 @@ static snow_status make_among(snow_comm *comm, const snow_volume *volume,
         status = check_look(volume->context, look);
     if (status == SNOW_STATUS_OK)
         status = begin_builder(volume->context, look, &builder);
+    if (status == SNOW_STATUS_OK && volume->left_out.any)
+        status = snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
+                           "the volume was opened for one look and lacks "
+                           "voxels that another depends on; open it without "
+                           "one_look");
     if (comm && status == SNOW_STATUS_OK && !volume->is_part)
         status = snow_volume_need_voxels(volume); /* all parts are alike */
     if (comm)

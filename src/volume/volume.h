@@ -9,6 +9,17 @@
 typedef struct snow_stream snow_stream;           /* volume/stream.h */
 typedef struct snow_clip_planes snow_clip_planes; /* volume/clip_planes.h */
 
+/* What a part lacks, since the look that it was opened for shows nothing of it
+ * (parallel/trim.c); the same on all ranks but for the box. */
+typedef struct snow_left_out {
+    bool any;
+    double low, high; /* stored values of the voxels are between these; */
+    double fill;      /* one of them has this */
+    double spare;     /* in data values: the look shows none that is nearer */
+    int64_t ring[3];  /* layers that are there around all other voxels */
+    snow_box box;     /* what the rank answers for, with them */
+} snow_left_out;
+
 struct snow_volume {
     snow_context *context;
     snow_volume_info info;
@@ -27,6 +38,7 @@ struct snow_volume {
     uint64_t generation;
     bool is_part;
     snow_extent part; /* where is_part */
+    snow_left_out left_out;
     bool knows_origin;
     double origin[3];  /* the last column of the whole's matrix, where known */
     char patient[256]; /* "" when unknown */
@@ -65,6 +77,9 @@ int snow_volume_thin_axis(const snow_volume_info *info);
 /* An info with one voxel's defaults: identity matrix, slope 1, one time step,
  * unit "", and the given format name. */
 snow_volume_info snow_volume_info_default(const char *format);
+
+/* Writes a stored value into all voxels, which the volume owns. */
+void snow_volume_fill(snow_volume *volume, double value);
 
 /* Fills spacing from the columns of the matrix. */
 void snow_volume_info_measure(snow_volume_info *info);

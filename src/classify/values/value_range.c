@@ -89,9 +89,16 @@ static void look_at_item(void *of, int64_t item, int worker) {
     }
 }
 
-/* Voxels beyond clip planes whose values are kept. */
-static void look_at_clipped(const range_job *job) {
+/* Voxels beyond clip planes whose values are kept, and the ends of what a part
+ * lacks. */
+static void look_at_missing(const range_job *job) {
     const snow_clip_planes *clip = job->volume->clip;
+    const snow_left_out *left = &job->volume->left_out;
+    double ends[2] = {left->low, left->high};
+    if (left->any) {
+        take_stored(job, ends, 2);
+        look_at(job->found, ends, 2);
+    }
     for (size_t n = 0; clip && n < clip->voxel_count; n++) {
         double native = clip->voxels[n].native;
         take_stored(job, &native, 1);
@@ -140,7 +147,7 @@ snow_status snow_data_range_measure(const snow_volume *volume, snow_scale scale,
         job.found[n] = (found_range){.low = INFINITY, .high = -INFINITY};
     snow_status status =
         snow_parallel(volume->context, threads, items, look_at_item, &job);
-    look_at_clipped(&job);
+    look_at_missing(&job);
     if (status == SNOW_STATUS_OK)
         put_together(&job, threads, out);
     snow_release(volume->context, job.found);

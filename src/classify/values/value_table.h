@@ -15,6 +15,10 @@
 /* Entries that are made at once. */
 #define SNOW_VALUE_ENTRIES 16
 
+/* The most numbers from one node of a table to the next (docs/model.md, The
+ * value model, point 5). */
+#define SNOW_VALUE_NODE_MOST 256
+
 /* Numbers of values whose slabs are all invisible. */
 typedef struct snow_value_run {
     int16_t first, last;

@@ -27,9 +27,7 @@ static bool is_cubic(const snow_value_path *path,
     return params->settings->kernel == SNOW_KERNEL_BSPLINE && !path->has_labels;
 }
 
-/* The most numbers from one node of a table to the next (docs/model.md, The
- * value model, point 5), and those by which ends of runs seldom move. */
-#define NODE_MOST 256
+/* Numbers by which ends of runs seldom move. */
 #define NODE_OFTEN 32
 
 /* Nodes that are placed by a look move with the length of rays, and with them
@@ -37,7 +35,9 @@ static bool is_cubic(const snow_value_path *path,
 static int store_runs(const snow_value_path *path, bool spare,
                       snow_value_run runs[SNOW_VALUE_RUNS]) {
     const snow_value_table *table = &path->table;
-    const int by = !table->nodes ? 0 : spare ? NODE_MOST : NODE_OFTEN;
+    const int by = !table->nodes ? 0
+                   : spare       ? SNOW_VALUE_NODE_MOST
+                                 : NODE_OFTEN;
     for (int n = 0; n < table->run_count; n++) {
         runs[n] = table->runs[n];
         if (runs[n].first > 0)

@@ -1,0 +1,359 @@
+/* parallel/trim.c - see trim.h.
+ *
+ *   what ranks are cut for       what they hold
+ *   +----------+----------+
+ *   | . . .  : | :  . . . |           +-+-+        . air
+ *   | . .  ::# | #::  . . |       +---+-+-+---+    : # what the look shows
+ *   | . .  ::# | #::  . . |       |  ::#|#::  |
+ *   | . . .  : | :  . . . |       +-----+-----+
+ *   +----------+----------+
+ *
+ * The outer slabs of a volume, which take as long to draw as the inner ones,
+ * are mostly air.  Voxels are left out whose values are in one range of which
+ * the look shows nothing, so that samples between two of them show nothing
+ * either, and which are farther from all others than a sample reaches.  Nothing
+ * else is known of them afterwards than the range, which counts for the scale
+ * of values: another look that shows some of it, another mode and parts that
+ * reach farther are refused. */
+#include "parallel/trim.h"
+
+#include "classify/hidden.h"
+#include "classify/values/value_table.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Parts stay whole unless so much of all voxels is left out. */
+#define LEAST_PART 16
+
+/* The scale of 14 bits may be an eighth longer than the range of the data. */
+#define SCALE_MOST 1.125
+
+/* Around the other voxels so many times as many layers are kept as a picture
+ * needs of ghosts: for parts that are cut anew for a view that needs more. */
+#define RINGS 2
+
+/* Voxels that are looked at together. */
+#define BLOCK 256
+
+/* No voxel, as the first one and as the one before the first. */
+#define NOWHERE (INT64_C(1) << 60)
+
+/* What is outside of the range, in a box: the first voxels, and the last. */
+typedef struct bounds {
+    int64_t first[3], last[3];
+} bounds;
+
+typedef struct trimming {
+    snow_comm *comm;
+    const snow_partition_params *order;
+    const snow_box *boxes;
+    const snow_volume *held;
+    const snow_transfer *transfer;
+    snow_box whole, mine; /* of the grid; owned by the volume held */
+    int64_t stored[3];    /* its first voxel */
+    snow_left_out *left;
+    bounds *bounds; /* of each rank */
+} trimming;
+
+/* --- the range ------------------------------------------------------------ */
+
+static double data_of(const trimming *t, double native) {
+    return t->held->info.slope * native + t->held->info.intercept;
+}
+
+static double native_of(const trimming *t, double data) {
+    return (data - t->held->info.intercept) / t->held->info.slope;
+}
+
+/* The place of a voxel among those stored. */
+static int64_t index_of(const trimming *t, int64_t x, int64_t y, int64_t z) {
+    const int64_t *dims = t->held->info.dims, *stored = t->stored;
+    return ((z - stored[2]) * dims[1] + y - stored[1]) * dims[0] + x -
+           stored[0];
+}
+
+/* Collective.  The range of all stored values; *can: voxels may be left out. */
+static snow_status find_stored(const trimming *t, snow_data_range *all,
+                               bool *can) {
+    enum { MINUS_LOW, HIGH, CANNOT, COUNT };
+    const snow_volume *held = t->held;
+    const int threads = t->order->threads > 1 ? t->order->threads : 1;
+    snow_data_range here = {.low = INFINITY, .high = -INFINITY};
+    snow_status status = SNOW_STATUS_OK;
+    snow_volume plain = *held; /* whose data values are those stored */
+    plain.info.slope = 1;
+    plain.info.intercept = 0;
+    if (snow_box_voxels(&t->mine))
+        status =
+            snow_data_range_measure(&plain, (snow_scale){0}, threads, &here);
+    SNOW_TRY(snow_comm_agree_status(t->comm, status));
+    double words[COUNT] = {-here.low, here.high,
+                           held->masked || held->clip || held->lost_clip ||
+                               held->info.type == SNOW_TYPE_INT64 ||
+                               held->info.type == SNOW_TYPE_UINT64};
+    SNOW_TRY(snow_comm_reduce_doubles(t->comm, words, COUNT, SNOW_REDUCE_MAX));
+    all->low = -words[MINUS_LOW];
+    all->high = words[HIGH];
+    *can = words[CANNOT] == 0 && all->low < all->high;
+    return SNOW_STATUS_OK;
+}
+
+/* How many rows begin with a value of each range, and the least such one. */
+static void count_rows(const trimming *t, const snow_hidden_range *ranges,
+                       int count, int64_t *rows, double *least) {
+    const snow_box *box = &t->mine;
+    const int64_t end[2] = {box->first[1] + box->count[1],
+                            box->first[2] + box->count[2]};
+    for (int64_t z = box->first[2]; z < end[1]; z++)
+        for (int64_t y = box->first[1]; y < end[0]; y++) {
+            const double native =
+                snow_volume_native(t->held, index_of(t, box->first[0], y, z));
+            const double value = data_of(t, native);
+            for (int n = 0; n < count; n++)
+                if (value >= ranges[n].low && value <= ranges[n].high) {
+                    rows[n]++;
+                    least[n] = fmin(least[n], native);
+                }
+        }
+}
+
+/* Collective.  Of the ranges that the look hides that in which most rows begin,
+ * as air does; none: *left stays as it is. */
+static snow_status choose_range(const trimming *t, const snow_data_range *all) {
+    snow_hidden_range ranges[SNOW_HIDDEN_MOST];
+    int64_t rows[SNOW_HIDDEN_MOST] = {0};
+    double least[SNOW_HIDDEN_MOST];
+    int most = 0;
+    const double range = data_of(t, all->high) - data_of(t, all->low);
+    const double spare =
+        SCALE_MOST * fabs(range) * SNOW_VALUE_NODE_MOST / SNOW_VALUE_MOST;
+    const int count = snow_hidden_ranges(t->transfer, &t->held->info,
+                                         t->order->threshold, spare, ranges);
+    for (int n = 0; n < SNOW_HIDDEN_MOST; n++)
+        least[n] = INFINITY;
+    if (snow_box_voxels(&t->mine))
+        count_rows(t, ranges, count, rows, least);
+    SNOW_TRY(snow_comm_reduce_ints(t->comm, rows, SNOW_HIDDEN_MOST,
+                                   SNOW_REDUCE_SUM));
+    SNOW_TRY(snow_comm_reduce_doubles(t->comm, least, SNOW_HIDDEN_MOST,
+                                      SNOW_REDUCE_MIN));
+    for (int n = 1; n < count; n++)
+        most = rows[n] > rows[most] ? n : most;
+    if (!count || !rows[most])
+        return SNOW_STATUS_OK;
+    const double a = native_of(t, ranges[most].low);
+    const double b = native_of(t, ranges[most].high);
+    t->left->any = true;
+    t->left->low = fmax(fmin(a, b), all->low);
+    t->left->high = fmin(fmax(a, b), all->high);
+    t->left->fill = least[most];
+    t->left->spare = spare * 0.999; /* ends are rounded */
+    return SNOW_STATUS_OK;
+}
+
+/* --- what is outside of it ------------------------------------------------ */
+
+/* The first or the last of some voxels of a row whose value is outside;
+ * `count`, or -1: none is. */
+static int64_t find_in_block(const trimming *t, int64_t at, int64_t count,
+                             bool last) {
+    double stored[BLOCK];
+    int32_t low, high;
+    const snow_left_out *left = t->left;
+    if (snow_volume_extremes(t->held, at, (size_t)count, &low, &high) &&
+        low >= left->low && high <= left->high)
+        return last ? -1 : count;
+    snow_volume_stored(t->held, at, (size_t)count, stored);
+    int64_t n = last ? count - 1 : 0;
+    while (n >= 0 && n < count && stored[n] >= left->low &&
+           stored[n] <= left->high) /* NaN is not */
+        n += last ? -1 : 1;
+    return n;
+}
+
+/* The same of voxels x .. end - 1 of a row, as a place in it; NOWHERE, or
+ * -NOWHERE: none is. */
+static int64_t find_first(const trimming *t, int64_t row, int64_t x,
+                          int64_t end) {
+    for (; x < end; x += BLOCK) {
+        const int64_t count = end - x < BLOCK ? end - x : BLOCK;
+        const int64_t n = find_in_block(t, row + x, count, false);
+        if (n < count)
+            return x + n;
+    }
+    return NOWHERE;
+}
+
+static int64_t find_last(const trimming *t, int64_t row, int64_t x,
+                         int64_t end) {
+    for (; x < end; end -= BLOCK) {
+        const int64_t count = end - x < BLOCK ? end - x : BLOCK;
+        const int64_t n = find_in_block(t, row + end - count, count, true);
+        if (n >= 0)
+            return end - count + n;
+    }
+    return -NOWHERE;
+}
+
+static int64_t less(int64_t a, int64_t b) {
+    return a < b ? a : b;
+}
+
+static int64_t more(int64_t a, int64_t b) {
+    return a > b ? a : b;
+}
+
+/* Widens bounds by voxels x .. end - 1 of a row.  Those within are not looked
+ * at. */
+static void add_row(const trimming *t, const int64_t at[3], int64_t end,
+                    bounds *b) {
+    const int64_t x = at[0], row = index_of(t, 0, at[1], at[2]);
+    const bool within = at[1] >= b->first[1] && at[1] <= b->last[1] &&
+                        at[2] >= b->first[2] && at[2] <= b->last[2];
+    const int64_t first =
+        find_first(t, row, x, within ? less(b->first[0], end) : end);
+    const int64_t last =
+        find_last(t, row, within ? more(b->last[0] + 1, x) : more(first, x),
+                  first == NOWHERE && !within ? x : end);
+    b->first[0] = less(b->first[0], first);
+    b->last[0] = more(b->last[0], last);
+    for (int i = 1; i < 3 && first != NOWHERE; i++) {
+        b->first[i] = less(b->first[i], at[i]);
+        b->last[i] = more(b->last[i], at[i]);
+    }
+}
+
+/* A box and layers around it, within another one. */
+static snow_box widen(const snow_box *box, const int64_t layers[3], int times,
+                      const snow_box *within) {
+    snow_box wide = *box, out = {{0, 0, 0}, {0, 0, 0}};
+    for (int i = 0; i < 3; i++) {
+        wide.first[i] -= times * layers[i];
+        wide.count[i] += 2 * times * layers[i];
+    }
+    (void)snow_box_intersect(&wide, within, &out);
+    return out;
+}
+
+/* What this rank holds for a box: all that samples of it reach. */
+static void find_bounds(const trimming *t, const snow_box *box, bounds *b) {
+    snow_box here;
+    *b = (bounds){{NOWHERE, NOWHERE, NOWHERE}, {-NOWHERE, -NOWHERE, -NOWHERE}};
+    if (!snow_box_voxels(box))
+        return;
+    const snow_box reached = widen(box, t->order->layers, 1, &t->whole);
+    if (!snow_box_intersect(&reached, &t->mine, &here))
+        return;
+    const int64_t end[3] = {here.first[0] + here.count[0],
+                            here.first[1] + here.count[1],
+                            here.first[2] + here.count[2]};
+    for (int64_t z = here.first[2]; z < end[2]; z++)
+        for (int64_t y = here.first[1]; y < end[1]; y++)
+            add_row(t, (int64_t[]){here.first[0], y, z}, end[0], b);
+}
+
+/* Collective.  The bounds of all boxes in what all ranks hold. */
+static snow_status share_bounds(trimming *t) {
+    const int ranks = t->order->ranks;
+    SNOW_TRY(snow_comm_agree_status(
+        t->comm, SNOW_RESERVE(t->held->context, t->bounds, 0, ranks)));
+    for (int n = 0; n < ranks; n++) {
+        find_bounds(t, &t->boxes[n], &t->bounds[n]);
+        for (int i = 0; i < 3; i++)
+            t->bounds[n].first[i] *= -1;
+    }
+    SNOW_TRY(snow_comm_reduce_ints(
+        t->comm, (int64_t *)t->bounds,
+        (size_t)ranks * sizeof *t->bounds / sizeof(int64_t), SNOW_REDUCE_MAX));
+    for (int n = 0; n < ranks; n++)
+        for (int i = 0; i < 3; i++)
+            t->bounds[n].first[i] *= -1;
+    return SNOW_STATUS_OK;
+}
+
+static snow_box trimmed(const trimming *t, int rank) {
+    const bounds *b = &t->bounds[rank];
+    snow_box box = {{0, 0, 0}, {0, 0, 0}};
+    for (int i = 0; i < 3 && b->last[0] >= b->first[0]; i++) {
+        box.first[i] = b->first[i];
+        box.count[i] = b->last[i] - b->first[i] + 1;
+    }
+    return snow_box_voxels(&box)
+               ? widen(&box, t->order->layers, RINGS, &t->boxes[rank])
+               : box;
+}
+
+/* Whether a part of all voxels is left out, and some are not. */
+static bool is_worthwhile(const trimming *t) {
+    int64_t kept = 0, all = snow_box_voxels(&t->whole);
+    for (int n = 0; n < t->order->ranks; n++) {
+        const snow_box box = trimmed(t, n);
+        kept += snow_box_voxels(&box);
+    }
+    return kept > 0 && kept <= all - all / LEAST_PART;
+}
+
+/* --- the parts ------------------------------------------------------------ */
+
+/* What was left out before is not to be had again. */
+static snow_status check_rings(const trimming *t) {
+    for (int i = 0; i < 3; i++)
+        if (t->order->layers[i] > t->left->ring[i])
+            return snow_fail(
+                t->held->context, SNOW_STATUS_BAD_USAGE,
+                "this view needs %lld voxels around what the look shows, but "
+                "only %lld were kept when the volume was opened for one look; "
+                "open it for this view, or without one_look",
+                (long long)t->order->layers[i], (long long)t->left->ring[i]);
+    return SNOW_STATUS_OK;
+}
+
+/* Collective.  The range that is left out, unless it is known. */
+static snow_status find_range(const trimming *t) {
+    snow_data_range all;
+    bool can;
+    if (t->left->any)
+        return check_rings(t);
+    SNOW_TRY(find_stored(t, &all, &can));
+    if (can)
+        SNOW_TRY(choose_range(t, &all));
+    for (int i = 0; i < 3; i++)
+        t->left->ring[i] = RINGS * t->order->layers[i];
+    return SNOW_STATUS_OK;
+}
+
+static snow_status trim(trimming *t, snow_box *own) {
+    const bool before = t->left->any;
+    SNOW_TRY(find_range(t));
+    if (!t->left->any)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(share_bounds(t));
+    if (before || is_worthwhile(t))
+        *own = trimmed(t, snow_comm_rank(t->comm));
+    else
+        *t->left = (snow_left_out){.any = false};
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_ranks_trim(snow_comm *comm, const snow_partition_params *order,
+                            const snow_box *boxes, const snow_volume *held,
+                            const snow_transfer *transfer, snow_box *own,
+                            snow_left_out *left) {
+    snow_extent part;
+    trimming t = {.comm = comm,
+                  .order = order,
+                  .boxes = boxes,
+                  .held = held,
+                  .transfer = transfer,
+                  .left = left};
+    snow_volume_find_extent(held, &part);
+    memcpy(t.whole.count, order->grid.dims, sizeof t.whole.count);
+    memcpy(t.mine.first, part.first, sizeof part.first);
+    memcpy(t.mine.count, part.count, sizeof part.count);
+    memcpy(t.stored, part.stored, sizeof part.stored);
+    left->box = *own = boxes[snow_comm_rank(comm)];
+    const snow_status status = trim(&t, own);
+    snow_release(held->context, t.bounds);
+    return status;
+}
