@@ -400,12 +400,9 @@ static snow_status finish_receiving(snow_voxels *voxels, int round,
     return SNOW_STATUS_OK;
 }
 
-void snow_voxels_give_up(snow_voxels *voxels) {
-    voxels->gives_up = true;
-}
-
-void snow_voxels_allow_gaps(snow_voxels *voxels) {
-    voxels->has_gaps = true;
+void snow_voxels_expect(snow_voxels *voxels, bool spent, bool gaps) {
+    voxels->gives_up = spent;
+    voxels->has_gaps = gaps;
 }
 
 static snow_status move_round(snow_voxels *voxels, const snow_brick *bricks,

@@ -5,13 +5,11 @@
 
 #include "comm/comm.h"
 
-/* The one brick, whose rows lie one after another, is needed no more once it is
- * moved: its pages go back to the system meanwhile, and what it holds is lost.
- */
-void snow_voxels_give_up(snow_voxels *voxels);
-
-/* Some voxels of what is wanted are in no box: they stay as they are. */
-void snow_voxels_allow_gaps(snow_voxels *voxels);
+/* Before the plan.  Spent: the one brick, whose rows lie one after another, is
+ * needed no more once it is moved: its pages go back to the system meanwhile,
+ * and what it holds is lost.  Gaps: some voxels of what is wanted are in no
+ * box; they stay as they are. */
+void snow_voxels_expect(snow_voxels *voxels, bool spent, bool gaps);
 
 /* The slices of a box that move in one of some rounds; whole pages of a brick
  * that have moved go back to the system. */

@@ -129,13 +129,11 @@ static snow_status move_voxels(snow_comm *comm, const snow_volume *from,
     SNOW_TRY(agree_cuts(comm, from, &all, to));
     snow_status status =
         snow_comm_agree_status(comm, snow_voxels_new(comm, &voxels));
-    if (status == SNOW_STATUS_OK && from->left_out.any)
-        snow_voxels_allow_gaps(voxels);
+    if (status == SNOW_STATUS_OK)
+        snow_voxels_expect(voxels, spent && from->owned, from->left_out.any);
     if (status == SNOW_STATUS_OK)
         status =
             snow_voxels_plan(voxels, &held.box, 1, any ? &p->stored : &nothing);
-    if (status == SNOW_STATUS_OK && spent && from->owned)
-        snow_voxels_give_up(voxels);
     if (all)
         snow_clip_planes_show(from->clip, from->info.type, true, from->owned);
     if (status == SNOW_STATUS_OK)

@@ -144,24 +144,6 @@ snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
     return SNOW_STATUS_OK;
 }
 
-void snow_volume_fill(snow_volume *volume, double value) {
-    const int64_t *dims = volume->info.dims;
-    const size_t count = (size_t)(dims[0] * dims[1] * dims[2]);
-    switch (volume->info.type) {
-#define FILL(name, c_type, text)              \
-    case SNOW_TYPE_##name: {                  \
-        c_type *to = (c_type *)volume->owned; \
-        for (size_t n = 0; n < count; n++)    \
-            to[n] = (c_type)value;            \
-        break;                                \
-    }
-        SNOW_TYPE_MAP(FILL)
-#undef FILL
-    case SNOW_TYPE_NONE:
-        break;
-    }
-}
-
 void snow_volume_freeze(snow_volume *volume) {
     volume->generation = ++volume->context->generations;
 }
