@@ -2,6 +2,7 @@
  * encodes voxels counts them too, so that both agree which are interesting. */
 #include "classify/count_interesting.h"
 #include "base/thread_pool.h"
+#include "decompose/ray_grid.h"
 #include "volume/stream.h"
 
 #include <string.h>
@@ -110,9 +111,6 @@ snow_status snow_visit_interesting(const snow_interesting_walk *walk,
 
 /* --- counts --------------------------------------------------------------- */
 
-/* A span in which nothing is drawn is looked at, for so much less. */
-#define SPARE 12
-
 /* Spans of the rows that are drawn at once: along x, or along y where the
  * slices lie along x.  A cell between voxels is drawn if any of them is
  * interesting: so a span costs if it, or that of the row before, has one. Those
@@ -130,6 +128,8 @@ typedef struct counting {
     int64_t *counts;        /* the first worker's are those of all at last */
     const int64_t *columns; /* of the whole: their blocks */
     span_rows spans;
+    int64_t *rays; /* sums of the cells of rays, as the counts; or NULL */
+    const int64_t *cells; /* of the columns of the whole */
 } counting;
 
 static int64_t *block_at(const counting *c, int64_t x, int64_t y, int64_t z) {
@@ -152,9 +152,8 @@ static void count_spans(counting *c, int64_t next) {
         int64_t middle = n % s->spans * SNOW_COST_SPAN + SNOW_COST_SPAN / 2;
         middle = middle < most ? middle : most;
         *block_at(c, s->along_y ? row : middle, s->along_y ? middle : row,
-                  s->slice) += s->seen[n] | s->seen[above]
-                                   ? c->block_counts->span
-                                   : c->block_counts->span / SPARE;
+                  s->slice) +=
+            s->seen[n] | s->seen[above] ? c->block_counts->span : 0;
     }
     memset(s->seen, 0, (size_t)all);
     s->slice = next;
@@ -172,6 +171,16 @@ static void see_spans(counting *c, const snow_interesting_row *row) {
     }
 }
 
+static void count_rays(counting *c, const snow_interesting_row *row) {
+    const snow_ray_grid *grid = c->block_counts->rays;
+    const int64_t *cells = c->cells + row->stored;
+    int64_t *sums = c->rays + snow_ray_grid_place(grid, 1, row->y) +
+                    snow_ray_grid_place(grid, 2, row->z);
+    for (size_t n = 0; n < row->count; n++)
+        sums[cells[row->columns[n]]] +=
+            snow_ray_grid_word(grid, row->opacities[n * row->stride]);
+}
+
 static void count_row(void *of, const snow_interesting_row *row) {
     counting *c = (counting *)of + row->worker;
     const int64_t *columns = c->columns + row->stored;
@@ -180,15 +189,33 @@ static void count_row(void *of, const snow_interesting_row *row) {
         counts[columns[row->columns[n]]]++;
     if (c->block_counts->span)
         see_spans(c, row);
+    if (c->rays)
+        count_rays(c, row);
 }
 
+/* Blocks of the columns of the whole, and behind them their cells. */
 static snow_status find_columns(snow_context *context,
                                 const snow_block_counts *block_counts,
                                 int64_t **out) {
     const int64_t count = block_counts->grid.dims[0];
-    SNOW_TRY(SNOW_RESERVE(context, *out, 0, count));
-    for (int64_t x = 0; x < count; x++)
+    const snow_ray_grid *rays = block_counts->rays;
+    SNOW_TRY(SNOW_RESERVE(context, *out, 0, 2 * count));
+    for (int64_t x = 0; x < count; x++) {
         (*out)[x] = snow_block_counts_find(block_counts, 0, x);
+        (*out)[count + x] = rays ? snow_ray_grid_place(rays, 0, x) : 0;
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Zeros for a worker's own counts; the first one's are those of all. */
+static snow_status make_counts(snow_context *context, bool first, size_t count,
+                               int64_t *of_all, int64_t **out) {
+    if (first) {
+        *out = of_all;
+        return SNOW_STATUS_OK;
+    }
+    SNOW_TRY(SNOW_RESERVE(context, *out, 0, count));
+    memset(*out, 0, count * sizeof **out);
     return SNOW_STATUS_OK;
 }
 
@@ -197,16 +224,16 @@ static snow_status prepare_worker(snow_context *context,
                                   const int64_t *columns, bool first,
                                   counting *c) {
     const int64_t *dims = block_counts->grid.dims;
-    const size_t blocks = snow_block_counts_blocks(block_counts);
+    const snow_ray_grid *rays = block_counts->rays;
     span_rows *s = &c->spans;
     c->block_counts = block_counts;
     c->columns = columns;
-    if (first)
-        c->counts = block_counts->counts;
-    else {
-        SNOW_TRY(SNOW_RESERVE(context, c->counts, 0, blocks));
-        memset(c->counts, 0, blocks * sizeof *c->counts);
-    }
+    c->cells = columns + dims[0];
+    SNOW_TRY(make_counts(context, first, snow_block_counts_blocks(block_counts),
+                         block_counts->counts, &c->counts));
+    if (rays)
+        SNOW_TRY(make_counts(context, first, snow_ray_grid_cells(rays),
+                             rays->sums, &c->rays));
     if (!block_counts->span)
         return SNOW_STATUS_OK;
     const bool along_y = block_counts->grid.axis == 0;
@@ -228,14 +255,20 @@ static void add_worker(counting *c) {
         count_spans(c, -1);
     for (size_t n = 0; n < blocks && c->counts != all->counts; n++)
         all->counts[n] += c->counts[n];
+    for (size_t n = 0; c->rays && c->rays != all->rays->sums &&
+                       n < snow_ray_grid_cells(all->rays);
+         n++)
+        all->rays->sums[n] += c->rays[n];
 }
 
 static void free_workers(snow_context *context, counting *workers,
                          int threads) {
     for (int n = 0; n < threads; n++) {
         snow_release(context, workers[n].spans.seen);
-        if (n > 0)
+        if (n > 0) {
             snow_release(context, workers[n].counts);
+            snow_release(context, workers[n].rays);
+        }
     }
     snow_release(context, workers);
 }

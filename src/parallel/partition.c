@@ -48,6 +48,19 @@ static void set_borders(snow_partition_params *order) {
     grid->borders = order->borders;
 }
 
+/* Pixels end only where colours are composited. */
+static void set_rays(const snow_placement *p, const snow_settings *resolved,
+                     snow_partition_params *out) {
+    out->hides = resolved->method == SNOW_METHOD_SHEAR_WARP &&
+                 resolved->mode == SNOW_MODE_OVER && !resolved->deterministic;
+    out->rays = (snow_ray_view){.axes = {p->u_axis, p->v_axis, p->slice_axis},
+                                .path = p->path / resolved->opacity_length,
+                                .nearest_first = p->nearest_first};
+    for (int n = 0; n < 2; n++)
+        out->rays.slope[n] = -p->inverse[n][0] * p->step_slice[0] -
+                             p->inverse[n][1] * p->step_slice[1];
+}
+
 snow_status
 snow_partition_params_make(snow_context *context, const snow_volume_info *whole,
                            const snow_view *view, const snow_settings *settings,
@@ -76,6 +89,7 @@ snow_partition_params_make(snow_context *context, const snow_volume_info *whole,
                                    .threads = resolved.threads};
     if (resolved.method == SNOW_METHOD_SHEAR_WARP)
         out->span = COST_OF_SPAN;
+    set_rays(&placement, &resolved, out);
     memcpy(out->grid.dims, whole->dims, sizeof out->grid.dims);
     SNOW_TRY(snow_ghosts_needed(context, whole, &known, &unresolved, slopes,
                                 how.turns, out->layers));
@@ -132,6 +146,31 @@ static void fill_steps(snow_block_counts *counts) {
     }
 }
 
+/* Zeros, which are counted up. */
+static snow_status clear_counts(snow_context *context,
+                                snow_block_counts *counts) {
+    const size_t blocks = snow_block_counts_blocks(counts);
+    SNOW_TRY(SNOW_RESERVE(context, counts->counts, 0, blocks));
+    memset(counts->counts, 0, blocks * sizeof *counts->counts);
+    if (!counts->rays)
+        return SNOW_STATUS_OK;
+    const size_t cells = snow_ray_grid_cells(counts->rays);
+    SNOW_TRY(SNOW_RESERVE(context, counts->rays->sums, 0, cells));
+    memset(counts->rays->sums, 0, cells * sizeof *counts->rays->sums);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status add_counts(snow_comm *comm, snow_block_counts *counts) {
+    SNOW_TRY(snow_comm_reduce_ints(comm, counts->counts,
+                                   snow_block_counts_blocks(counts),
+                                   SNOW_REDUCE_SUM));
+    return counts->rays
+               ? snow_comm_reduce_ints(comm, counts->rays->sums,
+                                       snow_ray_grid_cells(counts->rays),
+                                       SNOW_REDUCE_SUM)
+               : SNOW_STATUS_OK;
+}
+
 /* Collective.  Local counts become those of all ranks. */
 static snow_status count_all(snow_comm *comm,
                              const snow_partition_params *order,
@@ -141,19 +180,14 @@ static snow_status count_all(snow_comm *comm,
     const snow_slab_cut cut = {
         .ghosts = transfer && snow_transfer_has_gradient_opacity(transfer)};
     counting c = {order, transfer, counts};
-    size_t blocks = snow_block_counts_blocks(counts);
     counts->span = order->span;
     counts->emptiness = order->span ? SNOW_EMPTINESS : SNOW_EMPTINESS_ENCODED;
-    snow_status status =
-        SNOW_RESERVE(volume->context, counts->counts, 0, blocks);
-    if (status == SNOW_STATUS_OK) {
-        memset(counts->counts, 0, blocks * sizeof *counts->counts);
+    snow_status status = clear_counts(volume->context, counts);
+    if (status == SNOW_STATUS_OK)
         status = snow_slabs_visit(volume, &cut, count_slab, &c);
-    }
     if (comm) {
         SNOW_TRY(snow_comm_agree_status(comm, status));
-        status = snow_comm_reduce_ints(comm, counts->counts, blocks,
-                                       SNOW_REDUCE_SUM);
+        status = add_counts(comm, counts);
     }
     if (status == SNOW_STATUS_OK && counts->step > 1 && counts->grid.axis == 2)
         fill_steps(counts);
@@ -164,6 +198,8 @@ static snow_status count_for_partition(snow_context *context,
                                        const snow_partition_params *order,
                                        const snow_block_counts *counts,
                                        snow_box *boxes) {
+    if (order->cut == SNOW_PARTITION_COUNTED && counts->rays)
+        return snow_partition_by_rays(context, counts, order->ranks, boxes);
     if (order->cut == SNOW_PARTITION_COUNTED)
         return snow_partition_counted(context, counts, order->ranks, boxes);
     if (order->cut == SNOW_PARTITION_BRICKS)
@@ -186,9 +222,17 @@ snow_status snow_partition_boxes(snow_comm *comm,
             ? snow_block_counts_for_bricks(&order->grid, order->ranks)
             : snow_block_counts_for_slabs(&order->grid);
     counts.step = step_of(order);
+    snow_ray_grid rays;
+    if (order->hides && order->cut == SNOW_PARTITION_COUNTED) {
+        snow_ray_grid_make(&order->rays, order->grid.dims, counts.step, &rays);
+        counts.rays = &rays;
+    }
     snow_status status = count_all(comm, order, volume, transfer, &counts);
     if (status == SNOW_STATUS_OK)
         status = count_for_partition(volume->context, order, &counts, boxes);
+    if (counts.rays)
+        snow_release(volume->context, rays.sums);
+    counts.rays = NULL;
     if (loads && counts.step > 1) {
         counts.step = 1;
         if (comm)

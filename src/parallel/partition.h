@@ -5,7 +5,7 @@
 
 #include "comm/comm.h"
 #include "decompose/deterministic.h"
-#include "decompose/partition.h"
+#include "decompose/ray_grid.h"
 
 typedef struct snow_partition_params {
     snow_partition cut; /* EQUAL, COUNTED or BRICKS */
@@ -22,6 +22,8 @@ typedef struct snow_partition_params {
     snow_isa isa;
     int threads; /* that count; 0: one */
     int span; /* of the counts (decompose/partition.h); 0: voxels are counted */
+    bool hides; /* slices of a slab hide those behind them from the rays */
+    snow_ray_view rays;
 } snow_partition_params;
 
 /* What picture and ranks ask for; `slopes` as in render/ghosts.h.  Not to be

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #define COST 24
-#define LOOKED (COST / 12)
 
 static const int64_t dims[3] = {75, 41, 9};
 
@@ -40,23 +39,16 @@ static bool is_drawn(const unsigned char *voxels, bool along_y, int64_t span,
     return false;
 }
 
-/* Where slices of a file have nothing at all, nothing is looked at. */
-static bool is_empty(const unsigned char *voxels, int64_t z) {
-    return !memchr(voxels + z * dims[0] * dims[1], 1,
-                   (size_t)(dims[0] * dims[1]));
-}
-
 static int64_t all_costs(const unsigned char *voxels, int axis) {
     const bool along_y = axis == 0;
     int64_t sum = 0;
     for (int64_t n = 0; n < dims[0] * dims[1] * dims[2]; n++)
         sum += voxels[n];
     for (int64_t z = 0; z < dims[2]; z++)
-        for (int64_t row = 0; row < dims[!along_y] && !is_empty(voxels, z);
-             row++)
+        for (int64_t row = 0; row < dims[!along_y]; row++)
             for (int64_t span = 0; span * SNOW_COST_SPAN < dims[along_y];
                  span++)
-                sum += is_drawn(voxels, along_y, span, row, z) ? COST : LOOKED;
+                sum += is_drawn(voxels, along_y, span, row, z) ? COST : 0;
     return sum;
 }
 
