@@ -7,6 +7,8 @@
  *   raw ... | header { raw, bytes } pad | block, aligned to 64 ...
  */
 #include "base/base.h"
+#include "base/clear.h"
+#include "base/monitor.h"
 
 #include <assert.h>
 #include <string.h>
@@ -118,4 +120,20 @@ void snow_release(snow_context *context, void *block) {
     context->bytes -= header.bytes;
     context->allocator.release(context->allocator.user, header.raw);
     pthread_mutex_unlock(&context->lock);
+}
+
+/* --- clear.h -------------------------------------------------------------- */
+
+/* Bytes between two questions for a stop. */
+#define PIECE ((size_t)1 << 20)
+
+snow_status snow_clear(snow_context *context, void *block, size_t bytes) {
+    char *at = block;
+    while (bytes && !snow_monitor_look(context->monitor, 0)) {
+        const size_t piece = bytes < PIECE ? bytes : PIECE;
+        memset(at, 0, piece);
+        at += piece;
+        bytes -= piece;
+    }
+    return snow_monitor_status(context->monitor);
 }

@@ -4,6 +4,7 @@
  * A row's first and last interesting voxel bound the others of it, in
  * perspective too. Bounds are largest values, which do not depend on the order
  * of rows, threads and ranks. */
+#include "base/monitor.h"
 #include "base/vec3.h"
 #include "classify/count_interesting.h"
 #include "comm/comm.h"
@@ -257,6 +258,18 @@ static snow_status choose_transfer(fit *f, snow_transfer **own) {
     return SNOW_STATUS_OK;
 }
 
+/* The voxels are measured, which is no stage of a picture. */
+static snow_status fit_watched(fit *f, snow_comm *comm,
+                               const snow_volume *volume,
+                               const double *azimuths, snow_view *view) {
+    snow_monitor monitor;
+    snow_monitor_begin(f->context, &monitor, f->settings.stop,
+                       f->settings.stop_user);
+    monitor.last = SNOW_STAGE_READ;
+    return snow_monitor_end(&monitor,
+                            fit_view(f, comm, volume, azimuths, view));
+}
+
 snow_status snow_view_fit(snow_comm *comm, const snow_volume *volume,
                           const snow_transfer *transfer,
                           const snow_settings *settings, const double *azimuths,
@@ -277,7 +290,7 @@ snow_status snow_view_fit(snow_comm *comm, const snow_volume *volume,
     if (comm)
         status = snow_comm_agree_status(comm, status);
     if (status == SNOW_STATUS_OK)
-        status = fit_view(&f, comm, volume, azimuths, &fitted);
+        status = fit_watched(&f, comm, volume, azimuths, &fitted);
     snow_release(f.context, f.cameras);
     snow_release(f.context, f.margins);
     snow_release(f.context, f.bounds);

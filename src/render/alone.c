@@ -4,6 +4,8 @@
  * order. */
 #include "render/picture.h"
 
+#include "base/clear.h"
+
 #include <string.h>
 
 /* --- before the local image ----------------------------------------------- */
@@ -65,10 +67,9 @@ static snow_status synchronize(snow_picture *p, snow_status status) {
 static snow_status take_layer(snow_picture *p, size_t bytes, bool clear) {
     snow_frame *frame = p->frame;
     SNOW_TRY(snow_reserve(frame->context, &frame->layer, 0, 1, bytes));
-    if (clear)
-        memset(frame->layer, 0, bytes);
     p->local.pixels = frame->layer;
-    return SNOW_STATUS_OK;
+    return clear ? snow_clear(frame->context, frame->layer, bytes)
+                 : SNOW_STATUS_OK;
 }
 
 /* A shear-warp picture is written once, and whole. */
@@ -77,10 +78,13 @@ static snow_status make_image(snow_picture *p) {
     if (written && p->bytes && p->job.settings.depth_darkening == 0 &&
         p->job.settings.occlusion == 0)
         return SNOW_STATUS_OK;
-    return p->image ? SNOW_STATUS_OK
-                    : (written ? snow_image_make : snow_image_new)(
-                          p->job.context, p->view.width, p->view.height,
-                          p->job.channels, &p->image);
+    if (p->image)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_image_make(p->job.context, p->view.width, p->view.height,
+                             p->job.channels, &p->image));
+    return written ? SNOW_STATUS_OK
+                   : snow_clear(p->job.context, p->image->pixels,
+                                snow_job_bytes(&p->job));
 }
 
 static snow_status place_over(snow_picture *p) {

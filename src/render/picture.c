@@ -157,12 +157,14 @@ snow_status snow_picture_check_bytes(snow_context *context,
 }
 
 snow_status snow_picture_new_depths(snow_picture *p, snow_image **out) {
-    SNOW_TRY(
-        snow_image_new(p->job.context, p->view.width, p->view.height, 1, out));
-    for (int64_t n = 0; n < (int64_t)p->view.width * p->view.height; n++)
-        (*out)->pixels[n] = NAN;
-    p->local.depths = (*out)->pixels;
-    return SNOW_STATUS_OK;
+    snow_monitor *monitor = p->job.context->monitor;
+    const int width = p->view.width, height = p->view.height;
+    SNOW_TRY(snow_image_make(p->job.context, width, height, 1, out));
+    float *line = p->local.depths = (*out)->pixels;
+    for (int y = 0; y < height && !snow_monitor_look(monitor, 0); y++)
+        for (int x = 0; x < width; x++)
+            *line++ = NAN;
+    return snow_monitor_status(monitor);
 }
 
 /* --- the end -------------------------------------------------------------- */

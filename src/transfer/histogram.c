@@ -28,7 +28,7 @@ static void make_own_sample(snow_histogram *histogram) {
         (part.count[0] != part.dims[0] || part.count[1] != part.dims[1]))
         return;
     snow_voxel_walk w =
-        snow_voxel_walk_begin(volume, false, SNOW_HISTOGRAM_SAMPLED);
+        snow_voxel_walk_begin(histogram, volume, false, SNOW_HISTOGRAM_SAMPLED);
     uint64_t all = (uint64_t)(dims[0] * dims[1] * dims[2]);
     uint64_t rest =
         all % w.stride < SNOW_WALK_BLOCK ? all % w.stride : SNOW_WALK_BLOCK;
@@ -65,12 +65,13 @@ static snow_status make_sample(snow_histogram *histogram) {
 
 /* Adds to the sample what a sampled pass sees of a slab; it has `at` voxels
  * already. */
-static void keep_sample(const snow_volume *slab, const snow_volume *sample,
-                        uint64_t *at) {
+static void keep_sample(const snow_histogram *histogram,
+                        const snow_volume *slab, uint64_t *at) {
+    const snow_volume *sample = histogram->sample;
     size_t count, size = snow_type_size(slab->info.type);
     int64_t first = 0;
     snow_voxel_walk w =
-        snow_voxel_walk_begin(slab, false, SNOW_HISTOGRAM_SAMPLED);
+        snow_voxel_walk_begin(histogram, slab, false, SNOW_HISTOGRAM_SAMPLED);
     while ((count = snow_voxel_walk_next_voxels(&w, &first))) {
         memcpy((char *)sample->owned + *at * size,
                (const char *)slab->voxels + (uint64_t)first * size,
@@ -92,17 +93,13 @@ typedef struct measuring {
 static snow_status measure_values(const snow_volume *slab, void *user) {
     measuring *m = user;
     snow_histogram *histogram = m->histogram;
-    snow_monitor *monitor = histogram->volume->context->monitor;
     double values[SNOW_WALK_BLOCK];
     size_t count;
-    snow_voxel_walk w =
-        snow_voxel_walk_begin(slab, histogram->scale.log, SNOW_HISTOGRAM_EXACT);
+    snow_voxel_walk w = snow_voxel_walk_begin(
+        histogram, slab, histogram->scale.log, SNOW_HISTOGRAM_EXACT);
     if (histogram->sample)
-        keep_sample(slab, histogram->sample, &m->sampled);
+        keep_sample(histogram, slab, &m->sampled);
     while ((count = snow_voxel_walk_next_block(&w, values))) {
-        /* ranks end together, behind their passes */
-        if (!histogram->comm && snow_monitor_look(monitor, 0))
-            return snow_monitor_status(monitor);
         for (size_t i = 0; i < count; i++) {
             double value = values[i];
             if (!isfinite(value))
@@ -249,7 +246,7 @@ static int bin_of(snow_scale scale, double value, double low, double high,
 
 /* The state of counting bins. */
 typedef struct bin_count {
-    snow_scale scale;
+    const snow_histogram *histogram;
     double low, high;
     int bins;
     uint64_t *counts, all;
@@ -258,13 +255,14 @@ typedef struct bin_count {
 /* `user` points to a bin_count. */
 static snow_status count_sampled(const snow_volume *slab, void *user) {
     bin_count *b = user;
+    const snow_scale scale = b->histogram->scale;
     double values[SNOW_WALK_BLOCK];
     size_t got;
-    snow_voxel_walk w =
-        snow_voxel_walk_begin(slab, b->scale.log, SNOW_HISTOGRAM_SAMPLED);
+    snow_voxel_walk w = snow_voxel_walk_begin(b->histogram, slab, scale.log,
+                                              SNOW_HISTOGRAM_SAMPLED);
     while ((got = snow_voxel_walk_next_block(&w, values)))
         for (size_t i = 0; i < got; i++) {
-            int bin = bin_of(b->scale, values[i], b->low, b->high, b->bins);
+            int bin = bin_of(scale, values[i], b->low, b->high, b->bins);
             b->all += isfinite(values[i]) != 0;
             if (bin >= 0)
                 b->counts[bin]++;
@@ -277,7 +275,7 @@ snow_status snow_count_bins(const snow_histogram *histogram, double low,
                             uint64_t *all) {
     memset(counts, 0, (size_t)bins * sizeof *counts);
     if (!histogram->counts) {
-        bin_count b = {histogram->scale, low, high, bins, counts, 0};
+        bin_count b = {histogram, low, high, bins, counts, 0};
         SNOW_TRY(snow_histogram_visit(histogram, SNOW_HISTOGRAM_SAMPLED,
                                       count_sampled, &b));
         *all = b.all;

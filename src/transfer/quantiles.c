@@ -35,7 +35,7 @@ typedef struct search {
 
 /* The counts of one digit for several searches. */
 typedef struct digit_count {
-    bool log;
+    const snow_histogram *histogram;
     snow_histogram_mode histogram_mode;
     search *searches;
     size_t count;
@@ -53,7 +53,8 @@ static snow_status count_digits(const snow_volume *slab, void *user) {
                          ? ~UINT64_C(0) << (shift + SNOW_DIGIT_BITS)
                          : 0;
     size_t got;
-    snow_voxel_walk w = snow_voxel_walk_begin(slab, d->log, d->histogram_mode);
+    snow_voxel_walk w = snow_voxel_walk_begin(
+        d->histogram, slab, d->histogram->scale.log, d->histogram_mode);
     while ((got = snow_voxel_walk_next_block(&w, values))) {
         for (size_t i = 0; i < got; i++) {
             if (!isfinite(values[i]))
@@ -91,8 +92,7 @@ static snow_status select_digits(const snow_histogram *histogram,
     for (int shift = 64 - SNOW_DIGIT_BITS; shift >= 0;
          shift -= SNOW_DIGIT_BITS) {
         memset(counts, 0, count * SNOW_DIGITS * sizeof *counts);
-        digit_count d = {
-            histogram->scale.log, histogram_mode, searches, count, shift, 0};
+        digit_count d = {histogram, histogram_mode, searches, count, shift, 0};
         SNOW_TRY(
             snow_histogram_visit(histogram, histogram_mode, count_digits, &d));
         SNOW_TRY(snow_histogram_sum(histogram, &d.all, 1));

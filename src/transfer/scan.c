@@ -32,6 +32,7 @@
 
 /* The state of looking at the voxels. */
 typedef struct scan_look {
+    const snow_histogram *histogram;
     double low, scale, flat;
     uint64_t *bins, turns, slopes; /* of three voxels */
 } scan_look;
@@ -59,10 +60,11 @@ static void look_at(scan_look *s, const double *values, size_t count,
 static snow_status look_at_slab(const snow_volume *slab, void *user) {
     double values[SNOW_WALK_BLOCK];
     size_t count;
-    snow_voxel_walk w =
-        snow_voxel_walk_begin(slab, false, SNOW_HISTOGRAM_SAMPLED);
+    scan_look *s = user;
+    snow_voxel_walk w = snow_voxel_walk_begin(s->histogram, slab, false,
+                                              SNOW_HISTOGRAM_SAMPLED);
     while ((count = snow_voxel_walk_next_block(&w, values)))
-        look_at(user, values, count, w.at - count, (uint64_t)w.box.dims[0]);
+        look_at(s, values, count, w.at - count, (uint64_t)w.box.dims[0]);
     return SNOW_STATUS_OK;
 }
 
@@ -91,8 +93,10 @@ static snow_status look(const snow_histogram *histogram, scan_look *s) {
 
 snow_status snow_is_scan(const snow_histogram *histogram, double low,
                          double high, bool is_signed, bool *is_scan) {
-    scan_look s = {
-        .low = low, .scale = BINS / (high - low), .flat = FLAT * (high - low)};
+    scan_look s = {.histogram = histogram,
+                   .low = low,
+                   .scale = BINS / (high - low),
+                   .flat = FLAT * (high - low)};
     snow_status status = snow_histogram_new_tables(histogram, TABLES, &s.bins);
     if (status == SNOW_STATUS_OK)
         status = look(histogram, &s);

@@ -21,11 +21,14 @@ static bool is_even(const void *bytes, size_t size) {
     return !differ;
 }
 
-/* Of the run of a walk, the part that lies in memory without a gap; the walk
- * goes on behind it. */
+/* Voxels between two questions for a stop. */
+#define BLOCK 65536
+
+/* Of the run of a walk, what lies in memory without a gap, up to a block; the
+ * walk goes on behind it. */
 static const void *next_part(snow_voxel_walk *w, uint64_t *count) {
     const snow_volume *volume = w->volume;
-    *count = w->end - w->at;
+    *count = w->end - w->at < BLOCK ? w->end - w->at : BLOCK;
     const int64_t at =
         snow_volume_run(volume, (int64_t)w->at + w->ahead, count);
     w->at += *count;
@@ -33,15 +36,21 @@ static const void *next_part(snow_voxel_walk *w, uint64_t *count) {
            at * (int64_t)snow_type_size(volume->info.type);
 }
 
-/* `user` points to the counts. */
+static bool has_more(snow_voxel_walk *w) {
+    return (w->at < w->end || snow_voxel_walk_next_run(w)) &&
+           !snow_voxel_walk_is_stopped(w);
+}
+
+/* `user` points to a histogram with counts. */
 static snow_status count_stored(const snow_volume *volume, void *user) {
-    uint64_t *counts = user, count;
+    const snow_histogram *histogram = user;
+    uint64_t *counts = histogram->counts, count;
     snow_voxel_walk w =
-        snow_voxel_walk_begin(volume, false, SNOW_HISTOGRAM_EXACT);
+        snow_voxel_walk_begin(histogram, volume, false, SNOW_HISTOGRAM_EXACT);
 #define COUNT_TYPE(name, c_type, smallest)                                     \
     case name: {                                                               \
         const uint64_t some = EVEN / sizeof(c_type);                           \
-        while (w.at < w.end || snow_voxel_walk_next_run(&w)) {                 \
+        while (has_more(&w)) {                                                 \
             const c_type *at = next_part(&w, &count);                          \
             const c_type *end = at + count;                                    \
             while (at < end)                                                   \
@@ -99,7 +108,7 @@ static void measure_counts(snow_histogram *histogram) {
 snow_status snow_stored_values_count(snow_histogram *histogram) {
     SNOW_TRY(snow_histogram_new_tables(histogram, 1, &histogram->counts));
     SNOW_TRY(snow_histogram_visit(histogram, SNOW_HISTOGRAM_EXACT, count_stored,
-                                  histogram->counts));
+                                  histogram));
     SNOW_TRY(snow_histogram_sum_table(histogram, histogram->counts));
     measure_counts(histogram);
     return SNOW_STATUS_OK;
@@ -123,12 +132,11 @@ double snow_stored_values_quantile(const snow_histogram *histogram,
 
 /* The extremes of native values. */
 typedef struct extremes {
+    const snow_histogram *histogram;
     bool until_negative; /* data values below 0 end the search */
     bool any, negative;
     int low, high;
 } extremes;
-
-#define EXTREMES_BLOCK 65536
 
 static double data_value(const snow_volume *volume, int native) {
     return volume->info.slope * native + volume->info.intercept;
@@ -149,22 +157,20 @@ static void join_extremes(const snow_volume *volume, int64_t first,
 static snow_status find_extremes_of_part(const snow_volume *volume,
                                          void *user) {
     extremes *n = user;
-    snow_voxel_walk w =
-        snow_voxel_walk_begin(volume, false, SNOW_HISTOGRAM_EXACT);
-    while (snow_voxel_walk_next_run(&w))
-        for (uint64_t at = w.at; at < w.end; at += EXTREMES_BLOCK) {
-            uint64_t left = w.end - at;
-            if (n->until_negative && n->negative)
-                return SNOW_STATUS_OK;
-            join_extremes(volume, (int64_t)at + w.ahead,
-                          left < EXTREMES_BLOCK ? left : EXTREMES_BLOCK, n);
-        }
+    snow_voxel_walk w = snow_voxel_walk_begin(n->histogram, volume, false,
+                                              SNOW_HISTOGRAM_EXACT);
+    while (!(n->until_negative && n->negative) && has_more(&w)) {
+        const uint64_t left = w.end - w.at, count = left < BLOCK ? left : BLOCK;
+        join_extremes(volume, (int64_t)w.at + w.ahead, count, n);
+        w.at += count;
+    }
     return SNOW_STATUS_OK;
 }
 
 snow_status snow_stored_values_range(snow_histogram *histogram, bool *found) {
     const snow_volume *volume = histogram->volume;
-    extremes n = {.until_negative = histogram->need == SNOW_NEED_SIGN};
+    extremes n = {.histogram = histogram,
+                  .until_negative = histogram->need == SNOW_NEED_SIGN};
     *found = false;
     SNOW_TRY(snow_histogram_visit(histogram, SNOW_HISTOGRAM_EXACT,
                                   find_extremes_of_part, &n));

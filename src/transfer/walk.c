@@ -7,11 +7,16 @@
 /* The fewest voxels that a sampled pass reads, if there are as many. */
 #define SAMPLE (INT64_C(1) << 24)
 
-snow_voxel_walk snow_voxel_walk_begin(const snow_volume *volume, bool log,
+/* Blocks between two questions for a stop. */
+#define WATCHED 16
+
+snow_voxel_walk snow_voxel_walk_begin(const snow_histogram *histogram,
+                                      const snow_volume *slab, bool log,
                                       snow_histogram_mode histogram_mode) {
     snow_extent part;
-    snow_volume_find_extent(volume, &part);
-    snow_voxel_walk w = {.volume = volume, .log = log, .box = {.value = 1}};
+    snow_volume_find_extent(slab, &part);
+    snow_voxel_walk w = {.volume = slab, .log = log, .box = {.value = 1}};
+    w.monitor = histogram->comm ? NULL : histogram->volume->context->monitor;
     memcpy(w.stored, part.stored, sizeof w.stored);
     memcpy(w.box.dims, part.dims, sizeof w.box.dims);
     memcpy(w.box.first, part.first, sizeof w.box.first);
@@ -36,7 +41,13 @@ bool snow_voxel_walk_next_run(snow_voxel_walk *w) {
     return true;
 }
 
+bool snow_voxel_walk_is_stopped(snow_voxel_walk *w) {
+    return w->monitor && snow_monitor_look(w->monitor, 0);
+}
+
 size_t snow_voxel_walk_next_voxels(snow_voxel_walk *w, int64_t *first) {
+    if (w->blocks++ % WATCHED == 0 && snow_voxel_walk_is_stopped(w))
+        return 0;
     for (;;) {
         if (w->at >= w->end && !snow_voxel_walk_next_run(w))
             return 0;
@@ -72,13 +83,17 @@ snow_status snow_histogram_visit(const snow_histogram *histogram,
                                  snow_histogram_mode histogram_mode,
                                  snow_slab_fn *visit, void *user) {
     static const snow_slab_cut cut = {0};
-    if (histogram_mode == SNOW_HISTOGRAM_SAMPLED && histogram->sample)
-        return visit(histogram->sample, user);
-    const snow_status status =
-        snow_slabs_visit(histogram->volume, &cut, visit, user);
-    return histogram->comm && histogram->volume->stream
-               ? snow_comm_agree_status(histogram->comm, status)
-               : status;
+    const bool sampled =
+        histogram_mode == SNOW_HISTOGRAM_SAMPLED && histogram->sample;
+    snow_status status =
+        sampled ? visit(histogram->sample, user)
+                : snow_slabs_visit(histogram->volume, &cut, visit, user);
+    if (histogram->comm)
+        return histogram->volume->stream && !sampled
+                   ? snow_comm_agree_status(histogram->comm, status)
+                   : status;
+    SNOW_TRY(status);
+    return snow_monitor_status(histogram->volume->context->monitor);
 }
 
 snow_status snow_histogram_sum(const snow_histogram *histogram,

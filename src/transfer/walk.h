@@ -3,6 +3,7 @@
 #ifndef SNOW_TRANSFER_WALK_H
 #define SNOW_TRANSFER_WALK_H
 
+#include "base/monitor.h"
 #include "transfer/look.h"
 #include "volume/stream.h"
 
@@ -22,19 +23,28 @@ typedef struct snow_voxel_walk {
     int64_t runs, run; /* number of runs; index of the next one */
     uint64_t at, end;  /* of the current run: voxels of the whole volume */
     int64_t ahead; /* from a voxel of the whole volume to its place in memory */
-    uint64_t dropped; /* values that became NaN */
-    uint64_t stride;  /* distance of sampled blocks in the whole volume */
+    uint64_t dropped;      /* values that became NaN */
+    uint64_t stride;       /* distance of sampled blocks in the whole volume */
+    snow_monitor *monitor; /* that may end it; NULL: none, or of ranks */
+    unsigned blocks;       /* so far */
 } snow_voxel_walk;
 
-snow_voxel_walk snow_voxel_walk_begin(const snow_volume *volume, bool log,
+/* Of a slab of the histogram's volume, or of its sample. */
+snow_voxel_walk snow_voxel_walk_begin(const snow_histogram *histogram,
+                                      const snow_volume *slab, bool log,
                                       snow_histogram_mode histogram_mode);
 
 /* Finds the next run, from `at` to `end`; false if none is left.  Linear
  * indices of the voxels in memory follow one another, too. */
 bool snow_voxel_walk_next_run(snow_voxel_walk *walk);
 
+/* Whether the caller wants the pass to end, which snow_histogram_visit returns
+ * then.  Ranks end together, behind their passes. */
+bool snow_voxel_walk_is_stopped(snow_voxel_walk *walk);
+
 /* Finds the next voxels, up to SNOW_WALK_BLOCK, that a sampled block has in the
- * run: their number, 0 at the end, and the place in memory of the first. */
+ * run: their number, 0 at the end or where it is stopped, and the place in
+ * memory of the first. */
 size_t snow_voxel_walk_next_voxels(snow_voxel_walk *walk, int64_t *first);
 
 /* Their data values. */
@@ -43,7 +53,8 @@ size_t snow_voxel_walk_next_block(snow_voxel_walk *walk,
 
 /* Makes one pass over all slabs of a volume, each with a walk of its own, or
  * over the sample.  Ranks whose voxels stay in their file agree on the
- * status; in memory it cannot fail. */
+ * status; in memory it cannot fail but by a stop, which ends no pass of ranks.
+ */
 snow_status snow_histogram_visit(const snow_histogram *histogram,
                                  snow_histogram_mode histogram_mode,
                                  snow_slab_fn *visit, void *user);

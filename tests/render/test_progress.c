@@ -8,9 +8,11 @@
 #include "support/folder.h"
 #include "support/support.h"
 
+#include "base/clear.h"
 #include "base/monitor.h"
 
 #include <pthread.h>
+#include <snowglass/ranks.h>
 #include <snowglass/render.h>
 
 #define CALLS_MOST 5000
@@ -230,7 +232,124 @@ static void measuring_is_reported_and_can_be_stopped(void **state) {
     snow_context_free(context);
 }
 
+/* A volume over voxels of the caller. */
+static snow_volume *wrap(snow_context *context, snow_type type,
+                         const void *voxels) {
+    snow_volume_info info;
+    snow_volume *volume;
+    snow_volume_info_init(&info);
+    info.type = type;
+    for (int axis = 0; axis < 3; axis++)
+        info.dims[axis] = SIDE;
+    assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
+                     SNOW_STATUS_OK);
+    return volume;
+}
+
+/* Values of any type are counted in passes, each of which can be ended. */
+static void a_look_can_be_stopped_while_it_is_chosen(void **state) {
+    (void)state;
+    static const snow_type types[] = {SNOW_TYPE_UINT8, SNOW_TYPE_INT16,
+                                      SNOW_TYPE_FLOAT32};
+    static float voxels[SIDE * SIDE * SIDE];
+    for (int n = 0; n < SIDE * SIDE * SIDE; n++)
+        voxels[n] = (float)(n % 977) / 977;
+    for (size_t n = 0; n < sizeof types / sizeof *types; n++) {
+        snow_context *context = support_context();
+        snow_volume *volume = wrap(context, types[n], voxels);
+        snow_transfer *transfer = NULL;
+        listener l;
+        listen_to(context, &l, 0);
+        assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
+                         SNOW_STATUS_OK);
+        snow_transfer_free(transfer);
+        check_rate(&l);
+        const int calls = l.calls;
+        assert_true(calls >= 3);
+        for (int at = 1; at < calls; at += 1 + calls / 8) {
+            listen_to(context, &l, at);
+            assert_int_equal(
+                snow_transfer_new_for_volume(volume, NULL, &transfer),
+                SNOW_STATUS_STOPPED);
+            assert_int_equal(l.calls, at); /* nobody is asked again */
+        }
+        snow_volume_close(volume);
+        assert_int_equal(snow_context_bytes(context), 0);
+        snow_context_free(context);
+    }
+}
+
 /* --- pictures ------------------------------------------------------------- */
+
+static bool refuse(void *user) {
+    (*(int *)user)++;
+    return true;
+}
+
+static void a_view_can_be_stopped_while_it_is_fitted(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_volume *volume;
+    snow_transfer *transfer;
+    snow_view view;
+    snow_settings settings;
+    listener l;
+    int asked = 0;
+    snow_view_init(&view);
+    snow_settings_init(&settings);
+    assert_int_equal(snow_volume_open_phantom(context, "head",
+                                              (const int64_t[3]){48, 48, 48}, 0,
+                                              &volume),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
+                     SNOW_STATUS_OK);
+    const snow_view before = view;
+    listen_to(context, &l, 1);
+    assert_int_equal(
+        snow_view_fit(NULL, volume, transfer, &settings, NULL, 0, &view),
+        SNOW_STATUS_STOPPED);
+    assert_int_equal(l.calls, 1);
+    assert_int_equal(check_stage(&l, SNOW_STAGE_ENCODE), 0);
+    snow_context_set_progress(context, NULL, NULL);
+    settings.stop = refuse;
+    settings.stop_user = &asked;
+    assert_int_equal(
+        snow_view_fit(NULL, volume, transfer, &settings, NULL, 0, &view),
+        SNOW_STATUS_STOPPED);
+    assert_int_equal(asked, 1);
+    assert_memory_equal(&view, &before, sizeof view);
+    settings.stop = NULL;
+    assert_int_equal(
+        snow_view_fit(NULL, volume, transfer, &settings, NULL, 0, &view),
+        SNOW_STATUS_OK);
+    assert_true(view.has_target);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+}
+
+static void clearing_can_be_stopped(void **state) {
+    (void)state;
+    static unsigned char block[(5 << 20) + 3];
+    const size_t last = sizeof block - 1;
+    snow_context *context = support_context();
+    snow_monitor monitor;
+    listener l;
+    memset(block, 7, sizeof block);
+    assert_int_equal(snow_clear(context, block, last), SNOW_STATUS_OK);
+    for (size_t n = 0; n < last; n += 4093)
+        assert_int_equal(block[n], 0);
+    assert_int_equal(block[last - 1], 0);
+    assert_int_equal(block[last], 7);
+    listen_to(context, &l, 1);
+    snow_monitor_begin(context, &monitor, NULL, NULL);
+    assert_int_equal(snow_clear(context, block, sizeof block),
+                     SNOW_STATUS_STOPPED);
+    assert_int_equal(block[last], 7);
+    snow_monitor_leave(&monitor);
+    snow_context_free(context);
+}
 
 static void a_picture_is_reported(void **state) {
     (void)state;
@@ -374,6 +493,9 @@ int main(void) {
         TEST(reading_is_reported_and_can_be_stopped),
         TEST(saving_is_reported_and_can_be_stopped),
         TEST(measuring_is_reported_and_can_be_stopped),
+        TEST(a_look_can_be_stopped_while_it_is_chosen),
+        TEST(a_view_can_be_stopped_while_it_is_fitted),
+        TEST(clearing_can_be_stopped),
         TEST(a_picture_is_reported),
         TEST(a_long_item_can_be_stopped),
         TEST(a_look_reports_how_far_the_work_is),

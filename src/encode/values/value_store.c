@@ -1,6 +1,7 @@
 /* encode/values/value_store.c - see value_store.h. */
 #include "encode/values/value_store.h"
 
+#include "base/clear.h"
 #include "encode/values/value_encode.h"
 
 #include <string.h>
@@ -11,7 +12,8 @@ static snow_status reserve_masks(snow_value_store *s) {
     size_t slices = (size_t)snow_value_planes(s) * (size_t)s->slices;
     size_t masks = slices * s->mask_words * s->mask_rows;
     SNOW_TRY(SNOW_RESERVE(s->context, s->masks, 0, masks + SNOW_VALUE_ROWS));
-    memset(s->masks, 0, (masks + SNOW_VALUE_ROWS) * sizeof *s->masks);
+    SNOW_TRY(snow_clear(s->context, s->masks,
+                        (masks + SNOW_VALUE_ROWS) * sizeof *s->masks));
     size_t coarse = s->mask_words * s->coarse_words;
     SNOW_TRY(SNOW_RESERVE(s->context, s->eights, 0,
                           (size_t)snow_value_planes(s) *

@@ -1,5 +1,6 @@
 /* render/shear_warp/image.c - the image on the lattice: its memory, which is
  * kept from picture to picture, and what others see of it. */
+#include "base/clear.h"
 #include "render/shear_warp/layers.h"
 
 #include <string.h>
@@ -106,7 +107,7 @@ snow_status snow_value_reserve_image(snow_value_path *path,
     /* What is shared is cleared where it is asked for, but for tiles that
      * blocks of a quincunx have parts of. */
     if (!keep && (!grid.shared || grid.quincunx))
-        memset(image->plane, 0, planes * bytes);
+        SNOW_TRY(snow_clear(path->context, image->plane, planes * bytes));
     if (!keep)
         memset(image->drawn, 0, tiles);
     image->grid = grid;
