@@ -1,26 +1,36 @@
 #!/bin/bash
-# valgrind.sh PYTHON TOOL FOLDER [-k NAME...]: the first tests of the package in
-# FOLDER, or those named, under valgrind, which no build has to know of.  It finds
-# reads of what was freed or never written, also in what the sanitizers do not see,
-# as libpng and zlib, and blocks of the library that nobody frees.  What Python
-# itself keeps, its objects among it, valgrind.supp leaves out: test_snowglass.py
-# counts those.
+# valgrind.sh PYTHON TOOL FOLDER [FILE...]: the tests of the package in FOLDER,
+# those in test_*.py or in the files named, under valgrind, which no build has to
+# know of.  It finds reads of what was freed or never written, also in what the
+# sanitizers do not see, as libpng and zlib, and blocks of the library that nobody
+# frees.  What Python itself keeps, its objects among it, valgrind.supp leaves out:
+# test_snowglass.py counts those.
 set -eu
 python=$1 here=$(cd "$(dirname "$0")" && pwd)
 export SNOWGLASS=$2
 python_path=$3
 shift 3
+[ $# -gt 0 ] || set -- "$here"/test_*.py
 hidden=$(mktemp -d)
 trap 'rm -rf "$hidden"' EXIT
 # Valgrind computes long doubles in 64 bits, which these do not bear.
-for module in nibabel xarray; do
-    echo 'raise ImportError("hidden from valgrind")' >"$hidden/$module.py"
-done
+echo 'import sys; sys.modules.update(nibabel=None, xarray=None)' \
+    >"$hidden/sitecustomize.py"
 export PYTHONPATH=$hidden:$python_path
 # What measures time and memory is left out; each block is one of malloc, and no
 # thread of NumPy's waits for work.
 export SNOW_SANITIZED=valgrind PYTHONMALLOC=malloc OPENBLAS_NUM_THREADS=1
-valgrind --quiet --fair-sched=try --error-exitcode=9 --leak-check=full \
-    --show-leak-kinds=definite --errors-for-leak-kinds=definite \
-    --suppressions="$here/valgrind.supp" \
-    "$python" -B -m unittest discover -v -s "$here" -p test_snowglass.py "$@"
+failed=0
+for file in "$@"; do
+    echo "== $(basename "$file")"
+    # Other Pythons that a test starts are looked at too, other programs are not.
+    valgrind --quiet --fair-sched=try --error-exitcode=9 --leak-check=full \
+        --show-leak-kinds=definite --errors-for-leak-kinds=definite \
+        --trace-children=yes \
+        --trace-children-skip='*/snowglass,*/ffmpeg,*/node*,/usr/sbin/*' \
+        --trace-children-skip='*/cp,*/sh,*/bash,*/dash' \
+        --suppressions="$here/valgrind.supp" \
+        "$python" -B -m unittest discover -v -s "$here" \
+        -p "$(basename "$file")" || failed=1
+done
+exit $failed
