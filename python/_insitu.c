@@ -10,11 +10,12 @@
 #include <snowglass/mpi.h>
 #include <snowglass/recipe.h>
 
+#include <stdio.h>
 #include <string.h>
 
 #define NAME "snowglass.insitu"
 
-static PyObject *error_type, *warnings; /* of the package */
+static PyObject *core, *warnings; /* of the package */
 
 static void end_movie(PyObject *capsule) {
     snow_insitu_free(PyCapsule_GetPointer(capsule, NAME));
@@ -28,23 +29,56 @@ static snow_context *context_of(const snow_insitu *movie) {
     return snow_comm_context(snow_insitu_comm(movie));
 }
 
+/* What the library says to programs in C, and what it is in Python. */
+static const char *const words[][2] = {
+    {"call snow_insitu_set_output", "give output= to Movie"},
+    {"call snow_insitu_set_brick", "call Movie.brick"},
+    {"call snow_insitu_set_voxels", "call Movie.brick"},
+    {"correct first and count", "correct first= or the shape of the array"},
+    {"set width and height of the view", "give size= to Movie"},
+    {"set overwrite (of snow_image_options, or in the recipe)",
+     "give overwrite=True to Movie"},
+    {"invalid brick ", "invalid id="},
+    {"invalid spacing ", "invalid spacing="},
+};
+
+/* A message with the first of these replaced, a new text. */
+static PyObject *text_of(const char *message) {
+    char text[2048];
+    const char *at = NULL;
+    size_t n = 0;
+    while (n < sizeof words / sizeof *words &&
+           !(at = strstr(message, words[n][0])))
+        n++;
+    if (!at)
+        return PyUnicode_FromString(message);
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(at - message), message,
+             words[n][1], at + strlen(words[n][0]));
+    return PyUnicode_FromString(text);
+}
+
 static PyObject *answer(snow_status status, const char *message) {
     if (PyErr_Occurred())
         return NULL;
     if (status == SNOW_STATUS_OK)
         Py_RETURN_NONE;
-    return PyErr_Format(status == SNOW_STATUS_NO_MEMORY   ? PyExc_MemoryError
-                        : status == SNOW_STATUS_BAD_USAGE ? PyExc_ValueError
-                                                          : error_type,
-                        "%s", message);
+    PyObject *text = text_of(message);
+    if (text)
+        PyObject_CallMethod(core, "fail", "iO", (int)status, text);
+    Py_XDECREF(text);
+    return NULL;
 }
 
 /* Called by the thread that called the library, without Python's lock. */
-static void warn(void *user, const char *text) {
+static void warn(void *user, const char *message) {
     PyGILState_STATE state = PyGILState_Ensure();
     (void)user;
-    if (!PyErr_Occurred())
-        Py_XDECREF(PyObject_CallMethod(warnings, "warn", "s", text));
+    if (!PyErr_Occurred()) {
+        PyObject *text = PyObject_CallMethod(core, "text", "s", message);
+        if (text)
+            Py_XDECREF(PyObject_CallMethod(warnings, "warn", "O", text));
+        Py_XDECREF(text);
+    }
     PyGILState_Release(state);
 }
 
@@ -171,11 +205,7 @@ static struct PyModuleDef definition = {PyModuleDef_HEAD_INIT,
 
 PyMODINIT_FUNC PyInit__insitu(void);
 PyMODINIT_FUNC PyInit__insitu(void) {
-    PyObject *core = PyImport_ImportModule("snowglass._snowglass");
-    if (!core)
-        return NULL;
-    error_type = PyObject_GetAttrString(core, "Error");
-    Py_DECREF(core);
+    core = PyImport_ImportModule("snowglass._snowglass");
     warnings = PyImport_ImportModule("snowglass._warnings");
-    return error_type && warnings ? PyModule_Create(&definition) : NULL;
+    return core && warnings ? PyModule_Create(&definition) : NULL;
 }

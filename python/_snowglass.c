@@ -47,7 +47,25 @@ static PyObject *version(PyObject *module, PyObject *nothing) {
     return PyUnicode_FromString(snow_version());
 }
 
+/* fail(status, message): raises what that is; of _insitu.c, too */
+static PyObject *fail(PyObject *module, PyObject *args) {
+    int status;
+    const char *message;
+    (void)module;
+    if (PyArg_ParseTuple(args, "is", &status, &message))
+        context_set_error((snow_status)status, message);
+    return NULL;
+}
+
+static PyObject *text(PyObject *module, PyObject *message) {
+    const char *given = PyUnicode_AsUTF8AndSize(message, NULL);
+    (void)module;
+    return given ? message_text(given) : NULL;
+}
+
 static PyMethodDef functions[] = {
+    METHOD("fail", fail, METH_VARARGS, "raises a status with its message"),
+    METHOD("text", text, METH_O, "a message in words of Python"),
     METHOD("names", names_of, METH_O, "presets, colormaps, ..."),
     METHOD("version", version, METH_NOARGS, "of the library"),
     METHOD("colormap_color", look_colormap_color, METH_O, "of maps of one"),

@@ -7,6 +7,11 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
+
+/* Seconds between two looks for signals, for each of which other threads of
+ * Python may have to give way. */
+#define LOOK_INTERVAL 0.03
 
 void end_object(PyObject *self) {
     PyTypeObject *type = Py_TYPE(self);
@@ -46,15 +51,37 @@ void context_discard(context_object *c, free_fn *release, void *object) {
     }
 }
 
-/* Called by the thread that called the library. */
+static double seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* With the interpreter's lock. */
+static void look_for_signals(context_object *c) {
+    if (!c->raised)
+        c->raised = PyErr_CheckSignals() != 0;
+    c->looked = seconds();
+}
+
+/* Both are called by the thread that called the library. */
+bool context_is_stopped(void *user) {
+    context_object *c = user;
+    if (!c->saved || c->raised || seconds() - c->looked < LOOK_INTERVAL)
+        return c->raised;
+    PyEval_RestoreThread(c->saved);
+    look_for_signals(c);
+    c->saved = PyEval_SaveThread();
+    return c->raised;
+}
+
 static bool report(void *user, snow_stage stage, double fraction) {
     static const char *const names[] = {"read", "encode", "render", "write"};
     context_object *c = user;
     if (!c->saved)
         return false;
     PyEval_RestoreThread(c->saved);
-    if (!c->raised)
-        c->raised = PyErr_CheckSignals() != 0;
+    look_for_signals(c);
     if (!c->raised && c->progress) {
         PyObject *result =
             PyObject_CallFunction(c->progress, "sd", names[stage], fraction);
@@ -69,7 +96,7 @@ static bool report(void *user, snow_stage stage, double fraction) {
 static void keep_warning(void *user, const char *text) {
     context_object *c = user;
     PyGILState_STATE state = PyGILState_Ensure();
-    PyObject *one = record_text(text);
+    PyObject *one = message_text(text);
     if (!one || PyList_Append(c->warnings, one))
         PyErr_Clear();
     Py_XDECREF(one);
@@ -136,7 +163,7 @@ bool context_enter(context_object *c, PyObject *progress) {
 }
 
 void context_set_error(snow_status status, const char *message) {
-    PyObject *text = record_text(message), *number = PyLong_FromLong(status);
+    PyObject *text = message_text(message), *number = PyLong_FromLong(status);
     PyObject *type = status == SNOW_STATUS_NO_MEMORY   ? PyExc_MemoryError
                      : status == SNOW_STATUS_BAD_USAGE ? PyExc_ValueError
                                                        : error_type;

@@ -8,6 +8,7 @@
  *   context.c  Context: a snow_context and its lock; every other object holds
  *              one
  *   records.c  records of the library from dictionaries
+ *   messages.c messages of the library as Python's
  *   volume.c   Volume: a volume and the frame that draws it
  *   look.c     Transfer: a transfer function
  *   picture.c  pictures and slices of volumes
@@ -46,6 +47,7 @@ typedef struct context_object {
     PyThreadState *saved; /* of a call that is under way */
     PyObject *progress;   /* what it reports to, borrowed; or NULL */
     bool raised;          /* by a signal or by what it reports to */
+    double looked;        /* when signals were looked for last */
     PyObject *warnings;   /* texts of it */
     pending *garbage;
 } context_object;
@@ -59,6 +61,9 @@ bool context_enter(context_object *c, PyObject *progress);
 /* Gives the lock back; false with an exception, if the status is an error or a
  * warning is one. */
 bool context_leave(context_object *c, snow_status status);
+
+/* For settings.stop, with a context_object: whether a signal has raised. */
+bool context_is_stopped(void *context);
 
 /* A call of the library between the two, without the interpreter's lock. */
 #define CALL(c, status, call)             \
@@ -96,12 +101,15 @@ bool record_fill_look(PyObject *given, snow_look *look);
 bool record_numbers(const char *name, PyObject *value, Py_ssize_t count,
                     bool whole, void *to);
 
-/* A message of the library, in which options of the tool are arguments: crop=
- * for --crop, time=2 for --time 2. */
-PyObject *record_text(const char *message);
+/* Whether there is an argument of such a name. */
+bool record_is_argument(const char *name);
 
 /* Whether a dictionary has an item other than None. */
 bool record_has(PyObject *given, const char *name);
+
+/* A message of the library, in which options of the tool are arguments: crop=
+ * for --crop, time=2 for --time 2, dims=(4, 5, 6) for --dims 4x5x6. */
+PyObject *message_text(const char *message);
 
 /* --- objects -------------------------------------------------------------- */
 

@@ -247,6 +247,8 @@ PyObject *volume_render(PyObject *self, PyObject *args) {
         !record_fill_settings(settings, &r.settings) ||
         !read_azimuths(azimuths, &turns, &r.azimuth_count))
         return NULL;
+    r.settings.stop = context_is_stopped;
+    r.settings.stop_user = o->context;
     r.transfer = (transfer_object *)transfer;
     r.fit = fit;
     r.mixed = mixed;

@@ -324,7 +324,7 @@ bool record_fill_look(PyObject *given, snow_look *look) {
     return FILL(given, look_fields, look);
 }
 
-/* --- messages ------------------------------------------------------------- */
+/* --- names ---------------------------------------------------------------- */
 
 static bool has_name(const field *fields, size_t count, const char *name) {
     size_t n = 0;
@@ -336,54 +336,10 @@ static bool has_name(const field *fields, size_t count, const char *name) {
 #define HAS_NAME(fields, name) \
     has_name(fields, sizeof(fields) / sizeof *(fields), name)
 
-static bool is_argument(const char *name) {
+bool record_is_argument(const char *name) {
     static const field others[] = {
         {.name = "clip"}, {.name = "range"}, {.name = "size"}};
     return HAS_NAME(option_fields, name) || HAS_NAME(settings_fields, name) ||
            HAS_NAME(view_fields, name) || HAS_NAME(look_fields, name) ||
            HAS_NAME(others, name);
-}
-
-/* The argument that an option at `text` is; returns the option's length, 0
- * where there is none. */
-static size_t read_option(const char *text, char name[32]) {
-    size_t length = 0;
-    if (strncmp(text, "--", 2) == 0)
-        length = strspn(text + 2, "abcdefghijklmnopqrstuvwxyz-");
-    if (length == 0 || length > 31)
-        return 0;
-    for (size_t n = 0; n < length; n++)
-        name[n] = text[2 + n] == '-' ? '_' : text[2 + n];
-    name[length] = '\0';
-    return is_argument(name) ? length + 2 : 0;
-}
-
-/* Behind an option: whether its value follows, and not the sentence. */
-static bool is_value(const char *text, bool begins) {
-    return *text == ' ' && (begins || (text[1] >= '0' && text[1] <= '9') ||
-                            (text[1] >= 'A' && text[1] <= 'Z'));
-}
-
-PyObject *record_text(const char *message) {
-    char *copy = malloc(strlen(message) + 1), *to = copy, name[32];
-    if (!copy)
-        return PyErr_NoMemory();
-    for (const char *from = message; *from;) {
-        const bool begins =
-            from == message || (from >= message + 2 && from[-2] == ':');
-        size_t length = from == message || strchr(" (", from[-1])
-                            ? read_option(from, name)
-                            : 0;
-        if (!length) {
-            *to++ = *from++;
-            continue;
-        }
-        to += sprintf(to, "%s=", name); /* shorter than the option */
-        from += length;
-        from += is_value(from, begins);
-    }
-    *to = '\0';
-    PyObject *text = text_of(copy);
-    free(copy);
-    return text;
 }

@@ -13,6 +13,7 @@
 from __future__ import annotations
 
 import json
+import operator
 import weakref
 from typing import Any, Mapping, Optional, Sequence
 
@@ -22,6 +23,28 @@ except ImportError as missing:
     raise ImportError(f"pictures in situ for Python need a Snowglass with MPI "
                       f"(Debian: install python3-snowglass-mpi): {missing}"
                       ) from missing
+
+
+def _three(name: str, given: Any, kind: Any) -> tuple[Any, Any, Any]:
+    """Three numbers along x, y, z."""
+    try:
+        x, y, z = map(kind, given)
+    except (TypeError, ValueError):
+        what = "whole numbers" if kind is operator.index else "numbers"
+        raise TypeError(f"{name}: give three {what}, along x, y, z, not "
+                        f"{given!r}") from None
+    return x, y, z
+
+
+def _whole(name: str, given: Any, least: int = 0, bits: int = 31) -> int:
+    try:
+        number = operator.index(given)
+    except TypeError:
+        raise TypeError(f"{name}: must be a whole number, not {given!r}") from None
+    if not least <= number < 2 ** bits:
+        raise ValueError(f"{name}: {number} is out of range; give {least} to "
+                         f"{2 ** bits - 1}")
+    return number
 
 
 class Movie:
@@ -47,10 +70,15 @@ class Movie:
                                       for name, value in keys.items()}}
         given.pop("input", None)
         self._arrays: dict[int, Any] = {}
+        if not hasattr(comm, "py2f"):
+            raise TypeError(f"comm: give a communicator of mpi4py, such as "
+                            f"MPI.COMM_WORLD, not {type(comm).__name__}")
         self._held: list[Any] = [_insitu.new(comm.py2f())]
         # At the latest before MPI ends, which is after Python's own functions.
         weakref.finalize(self, self._held.clear)
-        _insitu.grid(self._movie, tuple(dims), tuple(origin), tuple(spacing))
+        _insitu.grid(self._movie, _three("dims", dims, operator.index),
+                     _three("origin", origin, float),
+                     _three("spacing", spacing, float))
         _insitu.recipe(self._movie, json.dumps(given, allow_nan=False))
 
     @property
@@ -71,18 +99,23 @@ class Movie:
         """
         import numpy
         voxels = numpy.asarray(array)
+        halo, id = _whole("halo", halo), _whole("id", id)
         if voxels.ndim != 3 or any(side <= 2 * halo for side in voxels.shape):
             raise ValueError(f"a brick must be an array of three dimensions with "
                              f"voxels within its halo, not {voxels.shape}")
         if any(step % voxels.itemsize or step <= 0 for step in voxels.strides):
             raise ValueError("a brick's steps in memory must be whole values, and "
                              "rise; copy the array")
+        if voxels.dtype.kind not in "iuf" or voxels.dtype.itemsize > 8 or \
+                voxels.dtype == numpy.float16:
+            raise TypeError(f"a brick of {voxels.dtype}: must be of integers, "
+                            f"float32 or float64; convert it")
         if not voxels.dtype.isnative:
             raise ValueError("a brick must have this machine's order of bytes")
         inner = voxels[halo:, halo:, halo:] if halo else voxels
         count = [side - 2 * halo for side in voxels.shape[::-1]]
         strides = [step // voxels.itemsize for step in voxels.strides[::-1]]
-        _insitu.brick(self._movie, id, tuple(first), tuple(count), halo,
+        _insitu.brick(self._movie, id, _three("first", first, operator.index), tuple(count), halo,
                       voxels.dtype.name, inner.ctypes.data, tuple(strides))
         self._arrays[id] = voxels  # as long as it is read
 
@@ -90,7 +123,8 @@ class Movie:
              unit: str = "") -> None:
         """Draws the fields as they are and writes a picture; collective.  With
         annotate="time" it shows the physical time, or else the number."""
-        _insitu.step(self._movie, number, time, unit)
+        _insitu.step(self._movie, _whole("number", number, -2 ** 63, 63),
+                     float(time), unit)
 
     def close(self) -> None:
         """Ends the movie; collective."""

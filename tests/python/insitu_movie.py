@@ -1,10 +1,12 @@
 """A simulation that makes a movie of itself: `insitu_movie.py FORM`, as the lines
 of docs/python.md do, over as many ranks as there are."""
+import contextlib
 import sys
 
 import numpy
 from mpi4py import MPI
 
+import snowglass as sg
 from snowglass import insitu
 
 comm = MPI.COMM_WORLD
@@ -37,13 +39,50 @@ with insitu.Movie(comm, dims, spacing=(1, 1, 1.5), output="f_%02d.png",
         movie.step(step)
 if comm.rank == 0:
     numpy.save("last.npy", whole(1))
+
+
+def refuses(wrong, text):
+    """An exception that has the text, and no name of C or of the tool."""
+    try:
+        wrong()
+    except (TypeError, ValueError, RuntimeError) as error:
+        assert text in str(error), error
+        assert "snow_" not in str(error) and "--" not in str(error), error
+    else:
+        raise AssertionError(text)
+
+
 for wrong, text in ((lambda: movie.step(3), "the movie is closed"),
                     (lambda: insitu.Movie(comm, dims, nonsense=1),
                      "nonsense"),
-                    (lambda: insitu.Movie(comm, (0, 1, 1)), "is empty")):
-    try:
-        wrong()
-    except (ValueError, RuntimeError) as error:
-        assert text in str(error), error
+                    (lambda: insitu.Movie(comm, (0, 1, 1)), "is empty"),
+                    (lambda: insitu.Movie(comm, (4, 5)), "dims: give three whole"),
+                    (lambda: insitu.Movie(comm, (4, 5, 6.5)), "not (4, 5, 6.5)"),
+                    (lambda: insitu.Movie("x", dims), "comm: give a communicator"),
+                    (lambda: insitu.Movie(comm, dims, spacing=(1, 1, -1)),
+                     "invalid spacing=-1")):
+    refuses(wrong, text)
+
+# Messages name what there is in Python.
+wide = numpy.zeros((4, 4, 4), numpy.float32)
+for wrong, text in (
+        (lambda movie: movie.step(0), "give output= to Movie"),
+        (lambda movie: movie.step("a"), "number: must be a whole number, not 'a'"),
+        (lambda movie: movie.brick(wide, first=(0, 0)), "first: give three whole"),
+        (lambda movie: movie.brick(wide, first=(2, 0, 0)),
+         "correct first= or the shape of the array"),
+        (lambda movie: movie.brick(wide, id=-1), "id: -1 is out of range"),
+        (lambda movie: movie.brick(wide, id=2 ** 20), "invalid id=1048576"),
+        (lambda movie: movie.brick(wide, halo=0.5), "halo: must be a whole number"),
+        (lambda movie: movie.brick(wide > 0), "a brick of bool")):
+    with insitu.Movie(comm, (4, 4, 4)) as movie:  # which keeps its first error
+        refuses(lambda: wrong(movie), text)
+with insitu.Movie(comm, (4, 4, 4), output="f_%02d.png") as movie:
+    refuses(lambda: movie.step(0), "no rank has a brick; call Movie.brick")
+    if comm.rank == 0:
+        movie.brick(wide)
+    if comm.rank == 0:  # who writes
+        refuses(lambda: movie.step(0), "give overwrite=True to Movie")
     else:
-        raise AssertionError(text)
+        with contextlib.suppress(sg.Error):
+            movie.step(0)

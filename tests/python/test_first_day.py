@@ -302,11 +302,16 @@ class Stumbles(InFolder):
         numpy.save("a.npy", ball())
         with open("a.bin", "wb") as file:
             file.write(bytes(3 * 4 * 5))
+        with self.assertWarnsRegex(sg.SnowglassWarning, r"dims=\(50, 40, 30\) "
+                                   r"type='int16' spacing=\(1, 1, 2\)$"):
+            sg.Volume(ball(), spacing=(1, 1, 2)).save("b.raw")
         for call, answer in (
                 (lambda: sg.Volume("a.npy", dataset="rho"), "^(.*: )?dataset=rho: "),
                 (lambda: sg.Volume("a.npy", dims=(1, 2, 3)),
                  "remove dims=, type=, endian= and offset="),
-                (lambda: sg.Volume("a.bin"), "give dims=XxYxZ and type= ")):
+                (lambda: sg.Volume("a.bin"), r"give dims=\(x, y, z\) and type= "),
+                (lambda: sg.Volume("a.npy", crop=((0, 9), (0, 99), (0, 9))),
+                 r"crop=\(\(0, 9\), \(0, 99\), \(0, 9\)\) is not inside")):
             with self.assertRaisesRegex((ValueError, sg.Error), answer) as caught:
                 call()
             self.assertNotIn("--", str(caught.exception))

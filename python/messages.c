@@ -1,0 +1,103 @@
+/* messages.c - messages of the library, which names options of the tool, for
+ * Python: crop=((0, 9), (0, 9), (0, 9)) for --crop 0:9,0:9,0:9. */
+#include "core.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The argument that an option at `text` is; returns the option's length, 0
+ * where there is none. */
+static size_t read_option(const char *text, char name[32]) {
+    size_t length = 0;
+    if (strncmp(text, "--", 2) == 0)
+        length = strspn(text + 2, "abcdefghijklmnopqrstuvwxyz-");
+    if (length == 0 || length > 31)
+        return 0;
+    for (size_t n = 0; n < length; n++)
+        name[n] = text[2 + n] == '-' ? '_' : text[2 + n];
+    name[length] = '\0';
+    return record_is_argument(name) ? length + 2 : 0;
+}
+
+/* Behind an option: whether its value follows, and not the sentence. */
+static bool is_value(const char *text, bool begins) {
+    return *text == ' ' && (begins || (text[1] >= '0' && text[1] <= '9') ||
+                            (text[1] >= 'A' && text[1] <= 'Z'));
+}
+
+/* Whether numbers are given as a tuple. */
+static bool is_tuple(const char *name) {
+    static const char *const names[] = {"dims", "spacing", "crop", "size"};
+    size_t n = 0;
+    while (n < sizeof names / sizeof *names && strcmp(names[n], name) != 0)
+        n++;
+    return n < sizeof names / sizeof *names;
+}
+
+/* Writes XxYxZ as (x, y, z), 64x64x32 as (64, 64, 32) and 0:64,0:64,0:32 as
+ * ((0, 64), (0, 64), (0, 32)); returns what was read. */
+static size_t write_tuple(const char *from, char **to) {
+    const size_t length = strspn(from, "0123456789.e+-xXYZWH:,");
+    /* What ends a sentence is not of the number. */
+    const size_t end =
+        length && strchr(".,:", from[length - 1]) ? length - 1 : length;
+    const bool pairs = memchr(from, ':', end) != NULL;
+    if (!memchr(from, 'x', end) && !pairs)
+        return 0;
+    *to += sprintf(*to, pairs ? "((" : "(");
+    for (size_t n = 0; n < end; n++)
+        if (from[n] == ',')
+            *to += sprintf(*to, "), (");
+        else if (from[n] == 'x' || from[n] == ':')
+            *to += sprintf(*to, ", ");
+        else if (from[n] >= 'A' && from[n] <= 'Z')
+            *(*to)++ = (char)(from[n] - 'A' + 'a');
+        else
+            *(*to)++ = from[n];
+    *to += sprintf(*to, pairs ? "))" : ")");
+    return end;
+}
+
+/* Writes a type as a text; returns what was read. */
+static size_t write_type(const char *from, char **to) {
+    const size_t blank = *from == ' ', length = strcspn(from + blank, " ,;:");
+    char word[16];
+    if (length >= sizeof word)
+        return 0;
+    memcpy(word, from + blank, length);
+    word[length] = '\0';
+    if (snow_type_from_name(word) == SNOW_TYPE_NONE)
+        return 0;
+    *to += sprintf(*to, "'%s'", word);
+    return blank + length;
+}
+
+PyObject *message_text(const char *message) {
+    /* "," becomes "), (", the longest of what is put in */
+    char *copy = malloc(4 * strlen(message) + 1), *to = copy, name[32];
+    if (!copy)
+        return PyErr_NoMemory();
+    for (const char *from = message; *from;) {
+        const bool begins =
+            from == message || (from >= message + 2 && from[-2] == ':');
+        size_t length = from == message || strchr(" (", from[-1])
+                            ? read_option(from, name)
+                            : 0;
+        if (!length) {
+            *to++ = *from++;
+            continue;
+        }
+        to += sprintf(to, "%s=", name); /* no longer than the option */
+        from += length;
+        from += is_value(from, begins);
+        if (is_tuple(name))
+            from += write_tuple(from, &to);
+        else if (strcmp(name, "type") == 0)
+            from += write_type(from, &to);
+    }
+    *to = '\0';
+    PyObject *text = text_of(copy);
+    free(copy);
+    return text;
+}
