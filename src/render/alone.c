@@ -111,8 +111,10 @@ static snow_status place(snow_picture *p, snow_status status) {
     if (job->settings.mode == SNOW_MODE_OVER ||
         job->settings.mode == SNOW_MODE_ISO)
         return place_over(p);
-    /* Pairs, which become the image when they are shown. */
-    return take_layer(p, snow_job_bytes(job), !p->pass->method->warps);
+    /* Pairs, which become the image when they are shown: also those of lines
+     * that are not drawn. */
+    return take_layer(p, snow_job_bytes(job),
+                      !p->pass->method->warps || p->frame->lines[1]);
 }
 
 /* --- combination ---------------------------------------------------------- */

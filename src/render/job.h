@@ -41,6 +41,12 @@ struct snow_frame {
     int layer_count;
     snow_ranks *ranks;       /* of pictures by many ranks; NULL until needed */
     snow_load_balance *work; /* of the same */
+    /* The first line of the picture that is drawn, and one past the last; {0,
+     * 0}: all.  Others are undefined.  `more`: of the last picture, whose tiles
+     * are there.  Of shear-warp in one process. */
+    int lines[2];
+    bool more;
+    uint64_t pictures; /* so far */
 };
 
 /* Frees a frame, but for what many ranks need (parallel/internal.h). */

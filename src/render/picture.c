@@ -181,6 +181,7 @@ static void leave_room_to_write(const snow_picture *p) {
 snow_status snow_picture_end(snow_picture *p, snow_status status,
                              snow_image **image) {
     snow_frame *frame = p->frame;
+    frame->pictures++;
     frame->stats = p->stats;
     frame->ranks_stats = p->ranks_stats;
     snow_image_free(p->near);

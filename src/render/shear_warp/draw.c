@@ -275,6 +275,18 @@ static void load_phase(const snow_value_drawing *job, void *planes, int phase,
     }
 }
 
+/* Whether lines of the picture that are drawn need a tile which lines of it
+ * before have not made.  Values that are finished have changed. */
+static bool is_wanted(const snow_value_drawing *job, int64_t item,
+                      int64_t column, int64_t row) {
+    snow_value_image *image = job->path->image;
+    if (!snow_value_strip_needs(&job->strip, &image->lattice, column, row) ||
+        (job->params.more && image->current[item] && !job->path->op->finish))
+        return false;
+    image->current[item] = 1;
+    return true;
+}
+
 /* Draws a tile, or clears what an earlier picture has drawn there. */
 static void draw_tile(void *of, int64_t item, int worker) {
     const snow_value_drawing *job = of;
@@ -284,6 +296,8 @@ static void draw_tile(void *of, int64_t item, int worker) {
     int y = (int)(item / image->grid.tiles[0]);
     int64_t column = (int64_t)x * SNOW_VALUE_COLUMNS;
     int64_t row = (int64_t)y * SNOW_VALUE_ROWS;
+    if (!is_wanted(job, item, column, row))
+        return;
     void *room = job->path->scratch + (size_t)worker * job->scratch_bytes;
     bool within = column < l->voxels[0] && row < l->voxels[1];
     snow_value_splat splat = job->splat;
@@ -420,6 +434,8 @@ snow_status snow_value_draw(snow_value_path *path,
                           path->drawing.scratch_bytes *
                               (size_t)params->settings->threads));
     SNOW_TRY(snow_value_describe_image(path, params, out));
+    path->drawing.strip = snow_value_strip_of(
+        &path->image->lattice, params->lines, params->view->height);
     snow_monitor_next(path->context->monitor, SNOW_STAGE_RENDER, 0, 0.9);
     if (batch) {
         SNOW_TRY(begin_batch(path, params));

@@ -104,6 +104,10 @@ snow_status snow_value_reserve_image(snow_value_path *path,
     size_t tiles = (size_t)grid.tiles[0] * (size_t)grid.tiles[1] * planes;
     SNOW_TRY(
         SNOW_RESERVE(path->context, image->drawn, keep ? tiles : 0, tiles));
+    SNOW_TRY(
+        SNOW_RESERVE(path->context, image->current, keep ? tiles : 0, tiles));
+    if (!keep || !params->more)
+        memset(image->current, 0, tiles);
     /* What is shared is cleared where it is asked for, but for tiles that
      * blocks of a quincunx have parts of. */
     if (!keep && (!grid.shared || grid.quincunx))

@@ -82,6 +82,7 @@ typedef struct snow_value_image {
     snow_group_node nodes[SNOW_NODES_MOST]; /* of the layers, deterministic */
     snow_value_grid grid;            /* of it; no tiles: anything is there */
     unsigned char *drawn;            /* its tiles */
+    unsigned char *current;          /* those that this picture has made */
     unsigned char *blocks;           /* its blocks, of a quincunx */
     snow_shear_warp_warping warping; /* of that */
     /* What means read: the same, or an image halved. */
@@ -89,11 +90,20 @@ typedef struct snow_value_image {
     float *halved; /* the image made smaller */
 } snow_value_image;
 
+/* Lines of the picture, as pixels (a, b) of the image: (line . (1, a, b)) /
+ * (depth . (1, a, b)) between low and high, where the depth is above 0. */
+typedef struct snow_value_strip {
+    bool whole; /* all lines */
+    double line[3], depth[3], low, high;
+    double border; /* pixels of the image that the warp reads around a place */
+} snow_value_strip;
+
 /* A part's image in the making. */
 typedef struct snow_value_drawing {
     snow_value_path *path;
     snow_value_params params; /* volume and transfer function may be gone */
     snow_value_splat splat;   /* but for its sheets */
+    snow_value_strip strip;   /* whose tiles are drawn */
     snow_value_tile_fn *tile;
     size_t scratch_bytes; /* of a worker */
 } snow_value_drawing;
@@ -250,6 +260,18 @@ size_t snow_value_node_floats(const snow_value_drawing *drawing);
 bool snow_value_node_tile(const snow_value_drawing *drawing,
                           snow_group_node node, int x, int y, void *room,
                           float *out);
+
+/* --- lines.c --- */
+
+/* The strip of lines[0] to lines[1] - 1, of a picture of so many. */
+snow_value_strip snow_value_strip_of(const snow_value_lattice *lattice,
+                                     const int lines[2], int height);
+
+/* Whether a tile, from a column and row of the lattice's voxels on, is needed
+ * for it. */
+bool snow_value_strip_needs(const snow_value_strip *strip,
+                            const snow_value_lattice *lattice, int64_t column,
+                            int64_t row);
 
 /* --- show.c --- */
 

@@ -5,24 +5,27 @@
 
 static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
     bool surface = job->settings.mode == SNOW_MODE_ISO;
-    return (snow_value_params){.volume = job->volume,
-                               .transfer = job->transfer,
-                               .counted = surface ? p->frame->identity.transfer
-                                                  : job->transfer,
-                               .view = job->view,
-                               .settings = &job->settings,
-                               .placement = &job->placement,
-                               .stored = &job->stored,
-                               .clip = &job->clip,
-                               .slab = job->slab,
-                               .channels = job->channels,
-                               .layers = job->layers,
-                               .layer_count = job->layer_count,
-                               .shared = p->combiner != &snow_combine_alone,
-                               .aside = p->aside,
-                               .resumes = p->local.image.layers > 0,
-                               .begin_at = p->begin_at,
-                               .bytes = p->local.pixels ? NULL : p->bytes};
+    const int *lines = p->frame->lines;
+    return (snow_value_params){
+        .volume = job->volume,
+        .transfer = job->transfer,
+        .counted = surface ? p->frame->identity.transfer : job->transfer,
+        .view = job->view,
+        .settings = &job->settings,
+        .placement = &job->placement,
+        .stored = &job->stored,
+        .clip = &job->clip,
+        .slab = job->slab,
+        .channels = job->channels,
+        .layers = job->layers,
+        .layer_count = job->layer_count,
+        .shared = p->combiner != &snow_combine_alone,
+        .aside = p->aside,
+        .resumes = p->local.image.layers > 0,
+        .begin_at = p->begin_at,
+        .bytes = p->local.pixels ? NULL : p->bytes,
+        .lines = {lines[0], lines[1] ? lines[1] : p->view.height},
+        .more = p->frame->more};
 }
 
 /* Once.  The image comes first, for the slabs of a file are cut to the memory

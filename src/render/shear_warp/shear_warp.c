@@ -37,6 +37,7 @@ void snow_value_path_free(snow_value_path *path) {
     for (int n = 0; n < 2; n++) {
         snow_release(context, path->images[n].plane);
         snow_release(context, path->images[n].drawn);
+        snow_release(context, path->images[n].current);
         snow_release(context, path->images[n].blocks);
         snow_release(context, path->images[n].halved);
     }

@@ -43,6 +43,8 @@ typedef struct snow_value_params {
     double begin_at; /* 0 to below 1: the share of the image's lines before the
                         one that is drawn first */
     const snow_bytes *bytes; /* what is shown goes there; NULL: to floats */
+    int lines[2]; /* of the picture that are drawn: the first, and an end */
+    bool more;    /* of the same picture as the last ones */
 } snow_value_params;
 
 /* The finite values of a volume, or their logarithms, of which those in a file

@@ -14,6 +14,7 @@
 typedef struct show_job {
     const snow_shear_warp_warping *warping;
     float *pixels, *lines;
+    int first, end;          /* lines of the picture */
     size_t line_floats;      /* of the lines of one worker */
     const snow_bytes *bytes; /* instead of pixels */
     snow_bytes_fn *convert;
@@ -195,9 +196,9 @@ static void show_lines(void *of, int64_t item, int worker) {
     const show_job *job = of;
     const snow_shear_warp_warping *w = job->warping;
     float *spare = job->lines + (size_t)worker * job->line_floats;
-    int first = (int)item * LINES, end = first + LINES;
+    int first = job->first + (int)item * LINES, end = first + LINES;
     const size_t floats = (size_t)(w->width * w->plane.channels);
-    for (int y = first; y < end && y < w->height; y++) {
+    for (int y = first; y < end && y < job->end; y++) {
         float *out = job->bytes ? spare + w->spare_floats
                                 : job->pixels + (size_t)y * floats;
         snow_shear_warp_warp(w, y, 0, w->width, spare, out);
@@ -213,6 +214,8 @@ snow_status snow_value_show(snow_value_path *path,
     show_job job = {.warping = w,
                     .pixels = pixels,
                     .line_floats = w->spare_floats,
+                    .first = params->lines[0],
+                    .end = params->lines[1],
                     .bytes = params->bytes,
                     .convert = snow_bytes_of(params->settings->isa)};
     size_t threads = (size_t)params->settings->threads;
@@ -225,5 +228,6 @@ snow_status snow_value_show(snow_value_path *path,
     job.lines = path->lines;
     snow_monitor_next(path->context->monitor, SNOW_STAGE_RENDER, 0.9, 1);
     return snow_parallel(path->context, params->settings->threads,
-                         (w->height + LINES - 1) / LINES, show_lines, &job);
+                         (job.end - job.first + LINES - 1) / LINES, show_lines,
+                         &job);
 }
