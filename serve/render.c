@@ -112,7 +112,7 @@ static int draw(renderer *r, int level) {
                        level ? is_stale : asks_for_end, r, &image, &overlay);
     if (done != CONTINUE)
         return done;
-    double took = seconds_now() - begin;
+    double took = seconds_now() - begin + r->drawing->elsewhere;
     adapt(r, level, took);
     if (level > 0)
         tell_empty(r, image);
@@ -289,7 +289,7 @@ static void serve_state(renderer *r, int level, json_t *recipe,
     r->drawing->look_is_new = false;
     bool stopped = o.done == EXIT_INTERRUPTED;
     r->drawn = revision;
-    r->level = o.done == CONTINUE ? level : stopped ? r->level : 2;
+    r->level = o.done == CONTINUE ? level : stopped ? level - 1 : 2;
 }
 
 void renderer_begin(drawing *d, viewer_state *s, outbox *box) {

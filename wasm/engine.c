@@ -7,6 +7,7 @@
 #include "answers.h"
 #include "message.h"
 #include "pack.h"
+#include "pieces.h"
 #include "render.h"
 
 #include "commands/commands.h"
@@ -82,6 +83,7 @@ EMSCRIPTEN_KEEPALIVE bool engine_open(const char *path, const char *recipe) {
     say_to(hear_line, NULL);
     if (!e.box || open_drawing(recipe) != CONTINUE)
         return false;
+    pieces_begin(&e.drawing);
     renderer_begin(&e.drawing, e.state, e.box);
     e.renderer = renderer_new(&e.drawing, e.state, e.box, packer_new(e.box));
     outbox_set_audience(e.box, 1, 0);

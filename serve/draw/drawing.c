@@ -566,7 +566,8 @@ static int draw(drawing *d, snow_image **image, paint_given *painted) {
     const int channels = s->channels.list.count;
     s->fault = 0;
     s->left = PICTURES_LEFT;
-    int done = render_state_draw(s, s->view.azimuth, image);
+    int done = d->draw ? d->draw(d, image)
+                       : render_state_draw(s, s->view.azimuth, image);
     d->look_is_new |= s->channels.list.count != channels; /* some gave way */
     if (done != CONTINUE)
         return done;

@@ -26,7 +26,12 @@ typedef struct shown_channels {
     int count;
 } shown_channels;
 
-typedef struct drawing {
+typedef struct drawing drawing;
+
+/* Makes the picture of a drawing's state. */
+typedef int draw_fn(drawing *d, snow_image **image);
+
+struct drawing {
     options first; /* as of the command line */
     options opts;  /* of the present recipe */
     json_t *tree;
@@ -53,7 +58,9 @@ typedef struct drawing {
                            volume that is not here */
     uint32_t followed;  /* the state that the last answer was made for */
     int followed_done;  /* and what came of it */
-} drawing;
+    draw_fn *draw;      /* instead of render_state_draw; or NULL */
+    double elsewhere;   /* seconds that the last picture took before */
+};
 
 /* By all ranks.  Opens the volume of the command line.  Returns CONTINUE or an
  * exit code, as all functions here do. */

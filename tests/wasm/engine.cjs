@@ -2,21 +2,23 @@
 //
 //   node engine.cjs WORKER ENGINE FOLDER JOBS
 //
-// JOBS is a JSON list of {name, path, files, recipe}, whose files are in FOLDER.  Of each there are then in
+// JOBS is a JSON list of {name, path, files, recipe, turn}, whose files are in FOLDER.  Of each there are then in
 // FOLDER too the pictures NAME-0.bin (draft), NAME-1.bin, NAME-2.bin, as they go to the
-// page, and NAME.json: what was said, and the command.
+// page, and NAME.json: what was said, the command, and
+// the qualities of all pictures.  A turn comes when the picture at rest was begun.
 const fs = require('fs');
 const [worker, engine, folder, jobs] = process.argv.slice(2);
 const {begin} = require(worker);
 
-async function run({name, path, files, recipe}) {
+async function run({name, path, files, recipe, turn}) {
     const made = await begin(fs.readFileSync(engine), files.map(name => ({
         name, bytes: new Uint8Array(fs.readFileSync(`${folder}/${name}`)).buffer})));
-    const out = {said: [], opened: made.open(path, recipe)};
+    const out = {said: [], levels: [], opened: made.open(path, recipe)};
     const take = () => {
         for (let each; (each = made.take()) !== null;) {
             if (typeof each !== 'string') {
                 const level = new DataView(each).getUint8(8);
+                out.levels.push(level);
                 fs.writeFileSync(`${folder}/${name}-${level}.bin`, new Uint8Array(each));
                 continue;
             }
@@ -28,7 +30,12 @@ async function run({name, path, files, recipe}) {
     };
     const rest = async () => {
         for (let wait; (wait = made.step()) >= 0;) {
+            const before = out.levels.length;
             take();
+            if (turn && wait === 0 && out.levels.length === before && out.levels.at(-1) === 1) {
+                made.hear(JSON.stringify({t: 'set', n: 1, recipe: turn}));
+                turn = null;
+            }
             if (wait)
                 await new Promise(done => setTimeout(done, wait));
         }

@@ -146,6 +146,8 @@ volumes = [
                                       "elevation": 10}),
     ("surface", "head.nrrd", "head.nrrd", {
         "size": [160, 160], "mode": "iso", "iso": 60}),
+    ("far", "phantom:engine", None, {
+        "size": [130, 101], "zoom": 0.2, "roll": -50, "mode": "mean"}),
     ("stack", "slices", stack, {"size": [100, 100], "tf": "points.json"}),
 ]
 strangers = [
@@ -161,6 +163,8 @@ strangers = [
 jobs = [{"name": name, "path": path, "recipe": recipe, "files":
          file if isinstance(file, list) else [file] if file else []}
         for name, path, file, recipe in volumes]
+jobs += [{"name": "turned", "path": "phantom:engine", "files": [], "recipe":
+          {"size": [120, 100]}, "turn": {"azimuth": 40}}]
 jobs += [{"name": name, "path": path, "files": [path], "recipe": {}}
          for name, path, _ in strangers]
 subprocess.run([node, os.path.join(HERE, "engine.cjs"),
@@ -168,6 +172,10 @@ subprocess.run([node, os.path.join(HERE, "engine.cjs"),
                 json.dumps(jobs)], check=True, timeout=500)
 for volume in volumes:
     compare(volume[0])
+with open(os.path.join(OUT, "turned.json")) as file:
+    levels_ = json.load(file)["levels"]
+check("a turn does not wait for the picture at rest", levels_ == [0, 1, 0, 1, 2],
+      levels_)
 for name, _, words in strangers:
     refused(name, *words)
 if wrong:
