@@ -21,6 +21,7 @@
 #define STRIP_COLORS 64
 #define POINTS_MOST 256 /* of a recipe */
 #define THUMBNAIL_SIDE 96
+#define LISTED_MOST 64 /* channels; more than can be mixed */
 
 /* Sends a tree, which it frees. */
 static void put(outbox *box, uint64_t client, parcel_topic about,
@@ -87,9 +88,24 @@ static json_t *channel_name(const snow_volume_info *info, int64_t index) {
 
 static json_t *channel_names(const snow_volume_info *info) {
     json_t *list = json_array();
-    for (int n = 0; n < info->channels && n < SNOW_CHANNELS_MAX; n++)
+    for (int n = 0; n < info->channels && n < LISTED_MOST; n++)
         json_array_append_new(list, channel_name(info, n));
     return list;
+}
+
+/* As the file has it: a mask and clip planes make voxels NaN, so of floats. */
+static const char *stored_type(const drawing *d) {
+    snow_volume_info info;
+    snow_volume_info_init(&info);
+    info.type = d->state.whole.type;
+    if (!d->live && (d->opts.mask || drawing_is_clipped(d))) {
+        snow_volume_options data = data_options(&d->opts);
+        memset(data.clip, 0, sizeof data.clip);
+        data.mask = NULL;
+        (void)snow_volume_inspect(d->state.context, d->opts.operands[0], &data,
+                                  &info);
+    }
+    return snow_type_name(info.type);
 }
 
 void answer_info(drawing *d, outbox *box) {
@@ -102,7 +118,7 @@ void answer_info(drawing *d, outbox *box) {
         "{s:s, s:s, s:o, s:o, s:s, s:s, s:b, s:I, s:o, s:o, s:o, s:f}", "t",
         "info", "name", base_of(d->first.operands[0]), "dims",
         json_sizes(info->dims, 3), "spacing", json_vector(info->spacing, 3),
-        "unit", info->unit, "type", snow_type_name(info->type), "medical",
+        "unit", info->unit, "type", stored_type(d), "medical",
         (int)info->medical, "times", (json_int_t)info->times, "min",
         json_number(ends[0]), "max", json_number(ends[1]), "middle",
         json_vector(middle, 3), "radius", radius);

@@ -25,7 +25,8 @@ export class Channels {
     /** The next change may come before the server's look. */
     set(channels) {
         const {look} = this.page, begins = mixed(look) ? {} : this.plain;
-        look.channels = channels;
+        if (channels.length < 9) // more are refused
+            look.channels = channels;
         this.recipe.set({...begins, ...listed(channels)});
     }
 

@@ -24,7 +24,7 @@ const page = {info: null, look: null, histogram: null, rest: null, clipping: fal
 
 const canvas = make('canvas', {tabIndex: 0, role: 'img', 'aria-label': 'The volume'});
 const paint = canvas.getContext('2d', {alpha: false});
-const said = make('p', {className: 'said', role: 'status'});
+const said = make('p', {className: 'said', role: 'status', tabIndex: 0});
 const title = make('span', {className: 'faint grow'});
 const level = make('span', {className: 'faint'});
 const figures = make('span', {className: 'faint grow'});
@@ -41,11 +41,12 @@ const views = make('div', {className: 'views'}, picture);
 let quiet;
 function say(line, stays = false) {
     said.textContent = line;
-    picture.onpointerdown = () => stays || say(''); // it covers what is touched
+    picture.onpointerdown = ({target}) => stays || target === said || say(''); // it covers what is touched
     clearTimeout(quiet);
     if (!stays)
         quiet = setTimeout(() => {
-            said.textContent = '';
+            if (document.activeElement !== said) // it is read
+                said.textContent = '';
         }, 6000);
 }
 

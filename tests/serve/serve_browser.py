@@ -115,6 +115,14 @@ def mixed():
         server = Server(place, *options)
         drive(server.url, shots, "begun")
         server.stop()
+    ten = os.path.join(shots, "ten.zarr")
+    shutil.rmtree(ten, ignore_errors=True)
+    write_channels(ten, True, 10)
+    server = Server(ten, "--tf", points)
+    drive(server.url, shots, "many")
+    same_bytes()
+    same_bytes("slice.txt", "slice.png")
+    server.stop()
 
 
 watch("short" if SHORT else "long", "phantom:head")

@@ -66,4 +66,11 @@ drag(page, 30, "under a shift", True, {"shift": 5, "range": [10, 200]},
 drag(page, 40, "the first range", False, {"azimuth": 3}, {"range": [30, 180]}, (30, 180))
 page.close()
 server.stop()
+for words in (["--clip", "1,0,0,3"], ["--mask", "phantom:head"]):
+    server = Server("phantom:head", "-q", *words)
+    page = Page(server)
+    info = page.hear_text("info")
+    check(f"with {words[0]} the type is the file's", info["type"] == "uint8", info["type"])
+    page.close()
+    server.stop()
 finish()

@@ -307,14 +307,16 @@ def brightness(c, z, y, x):
     return max(10 * c, 1000 - 12 * far) if far < 75 else 3 * ((x + y + z) % 4)
 
 
-def write_channels(name, windows):
-    """An OME-Zarr of three channels with names and colours, or ranges too."""
-    shape = [COUNT, DEEP, HIGH, WIDE]
+def write_channels(name, windows, count=COUNT):
+    """An OME-Zarr of channels with names and colours, or ranges too."""
+    shape = [count, DEEP, HIGH, WIDE]
     os.makedirs(f"{name}/0")
     channels = [{"label": label, "color": color, "active": True,
                  **({"window": {"start": 20, "end": 900}} if windows else {})}
                 for label, color in (("DAPI", "0000ff"), ("GFP", "00ff00"),
-                                     ("Cy5", "ff8000"))]
+                                     ("Cy5", "ff8000"),
+                                     *((f"dye {c}", f"{c:x}0{c:x}080")
+                                       for c in range(COUNT, count)))]
     axes = [{"name": "c", "type": "channel"}] + [
         {"name": axis, "type": "space", "unit": "micrometer"} for axis in "zyx"]
     scale = [{"type": "scale", "scale": [1, 0.9, 0.5, 0.5]}]
@@ -332,7 +334,7 @@ def write_channels(name, windows):
             json.dump(tree, out)
     with open(f"{name}/0/0.0.0.0", "wb") as out:
         out.write(b"".join(struct.pack("<H", brightness(c, z, y, x))
-                           for c in range(COUNT) for z in range(DEEP)
+                           for c in range(count) for z in range(DEEP)
                            for y in range(HIGH) for x in range(WIDE)))
 
 

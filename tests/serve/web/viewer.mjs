@@ -1019,7 +1019,38 @@ async function begun() {
     await page.context().close();
 }
 
-const alone = {points: manyPoints, mask: masked, overlay: overlaid, fused, channels: mixed, begun};
+/** Of more channels than are mixed, *All* takes the first ones. */
+async function many() {
+    const page = await open();
+    const section = page.locator('details', {has: page.locator('summary', {hasText: 'Channels'})});
+    const boxes = section.getByRole('checkbox');
+    const on = async () => Promise.all((await boxes.all()).map(async box => Number(await box.isChecked())));
+    check('each channel has a box', await boxes.count() === 10, await boxes.count());
+    await section.getByRole('button', {name: /^All channels/}).click();
+    await rest(page);
+    const list = (await keys(page)).channel;
+    check('eight are drawn', list === '0,1,2,3,4,5,6,7' && String(await on()) === '1,1,1,1,1,1,1,1,0,0',
+        `${list} ${await on()}`);
+    await section.getByLabel('channel 8', {exact: true}).click();
+    await page.waitForFunction(() => document.querySelector('.said').textContent);
+    await rest(page);
+    check('a ninth is refused with what to do', /8/.test(await page.locator('.said').textContent()),
+        await page.locator('.said').textContent());
+    check('and its box is as the picture', String(await on()) === '1,1,1,1,1,1,1,1,0,0', String(await on()));
+    await section.getByLabel('dye 3', {exact: true}).click();
+    await rest(page);
+    await section.getByLabel('channel 8', {exact: true}).click();
+    await rest(page);
+    check('but takes the place of another', String(await on()) === '1,1,1,0,1,1,1,1,1,0', String(await on()));
+    await page.locator('.picture canvas').first().focus();
+    await page.keyboard.press('x');
+    await page.getByLabel('in the colours of the look').evaluate(box => box.click());
+    await keepBoth(page);
+    await shot(page, 'many');
+    await page.context().close();
+}
+
+const alone = {points: manyPoints, mask: masked, overlay: overlaid, fused, channels: mixed, begun, many};
 if (alone[tier]) {
     await alone[tier]();
     check('nothing is on the console', said.length === 0, said.join(' | '));
