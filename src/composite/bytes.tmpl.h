@@ -21,15 +21,15 @@ NAME(some)(const float *row, int count, int channels, const double *background,
     }
 }
 
-#if LANES > 4
 typedef int32_t NAME(ints) __attribute__((vector_size(4 * LANES)));
 
 /* Levels of single channels, where none is NaN: else false.  The sum may be
- * rounded up to the next level; the sign of the fused difference is exact. */
+ * rounded up to the next level l.  Whether 255 v + 0.5 is below l is exact:
+ * 256 v + 0.5 - l is not rounded where it is near v. */
 TARGET static inline __attribute__((always_inline)) bool
 NAME(floats)(const float *row, int count, uint32_t *levels) {
     const V(vec) zero = V(set1)(0), one = V(set1)(1), half = V(set1)(0.5F);
-    const V(vec) most = V(set1)(255);
+    const V(vec) most = V(set1)(255), more = V(set1)(256);
     NAME(ints) missing = {0};
     int any = 0;
     for (int n = 0; n < count; n += LANES) {
@@ -39,7 +39,7 @@ NAME(floats)(const float *row, int count, uint32_t *levels) {
         NAME(ints)
         level = __builtin_convertvector(V(fma)(v, most, half), NAME(ints));
         V(vec) above = __builtin_convertvector(level, V(vec));
-        level += V(fma)(v, most, V(sub)(half, above)) < zero;
+        level += V(add)(V(mul)(v, more), V(sub)(half, above)) < v;
         memcpy(levels + n, &level, sizeof level);
     }
     for (int n = 0; n < LANES; n++)
@@ -62,20 +62,17 @@ NAME(black)(const float *row, int channels, unsigned char *rgba) {
     memcpy(rgba, words, sizeof words);
     return true;
 }
-#endif
 
 TARGET static void NAME(bytes)(const float *row, int width, int channels,
                                const double *background, unsigned char *rgba) {
     for (int x = 0; x < width; x += SOME) {
         int count = width - x < SOME ? width - x : SOME;
-#if LANES > 4
         const bool black = background && background[0] == 0 &&
                            background[1] == 0 && background[2] == 0;
         if (black && count == SOME &&
             (channels == 2 ? NAME(black)(row + 2 * x, 2, rgba + 4 * x)
                            : NAME(black)(row + 4 * x, 4, rgba + 4 * x)))
             continue;
-#endif
         if (channels == 2)
             NAME(some)(row + 2 * x, count, 2, background, rgba + 4 * x);
         else
