@@ -128,12 +128,12 @@ static void put_nearest(const regrid *r, const double at[3], bool within,
         memcpy(out, &value, size);
     } else {
         uint64_t one = 1;
-        const size_t at = (size_t)snow_volume_run(from, voxel, &one);
+        const size_t stored = (size_t)snow_volume_run(from, voxel, &one);
         const char *voxels = from->voxels;
         if (size == 1) /* most masks */
-            *out = voxels[at];
+            *out = voxels[stored];
         else
-            memcpy(out, voxels + at * size, size);
+            memcpy(out, voxels + stored * size, size);
     }
 }
 

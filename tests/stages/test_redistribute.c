@@ -251,7 +251,7 @@ static snow_status give_up(snow_comm *comm, void *user) {
     if (status == SNOW_STATUS_OK)
         status = snow_voxels_plan(voxels, b, 1, wanted);
     if (status == SNOW_STATUS_OK) {
-        snow_voxels_give_up(voxels);
+        snow_voxels_expect(voxels, true, false);
         status = snow_voxels_move(voxels, &brick, s->value, dense);
     }
     for (size_t n = 0; n < moved && status == SNOW_STATUS_OK; n++)

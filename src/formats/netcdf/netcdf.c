@@ -149,7 +149,7 @@ static bool read_coordinates(const netcdf_header *header,
     size_t part = step == size ? count * size : size;
     for (size_t i = 0; i < count * size / part; i++)
         if (snow_seekable_read(bytes, v->begin + i * step,
-                               line->owned + i * part, part) < part)
+                               (char *)line->owned + i * part, part) < part)
             return false;
     if (!snow_machine_big_endian())
         snow_swap_bytes(line->owned, count, size);
