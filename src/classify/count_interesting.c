@@ -313,6 +313,15 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
     return status;
 }
 
+/* Voxels for which a thread is worth the memory of its rows. */
+#define THREAD_VOXELS (INT64_C(1) << 22)
+
+static int useful_threads(const snow_extent *part, int threads) {
+    const int64_t *count = part->count;
+    const int64_t most = 1 + count[0] * count[1] * count[2] / THREAD_VOXELS;
+    return most < threads ? (int)most : threads;
+}
+
 /* A single block holds the whole grid. */
 snow_status snow_count_interesting(const snow_volume *volume,
                                    const snow_transfer *transfer,
@@ -326,7 +335,8 @@ snow_status snow_count_interesting(const snow_volume *volume,
         block_counts.grid.dims[axis] = block_counts.block[axis] =
             part.dims[axis];
     SNOW_TRY(snow_count_interesting_blocks(volume, transfer, threshold, isa,
-                                           threads, &block_counts));
+                                           useful_threads(&part, threads),
+                                           &block_counts));
     *out = count;
     return SNOW_STATUS_OK;
 }
