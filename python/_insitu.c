@@ -163,7 +163,10 @@ static PyObject *movie_brick(PyObject *module, PyObject *args) {
         status =
             snow_insitu_set_voxels(movie, id, snow_type_from_name(type),
                                    (const void *)(uintptr_t)address, strides);
-    return answer(status, snow_insitu_message(movie));
+    char text[2048]; /* the movie's own message is that of its first error */
+    snprintf(text, sizeof text, "%s; the next step raises this too",
+             snow_context_message(context_of(movie)));
+    return answer(status, text);
 }
 
 /* step(movie, number, time, unit): collective; NaN: without a time */

@@ -88,8 +88,9 @@ PyObject *message_text(const char *message) {
             *to++ = *from++;
             continue;
         }
-        to += sprintf(to, "%s=", name); /* no longer than the option */
         from += length;
+        /* no longer than the option; a list behind it explains its name */
+        to += sprintf(to, strncmp(from, " (", 2) == 0 ? "%s" : "%s=", name);
         from += is_value(from, begins);
         if (is_tuple(name))
             from += write_tuple(from, &to);

@@ -96,6 +96,9 @@ class Movie:
         halo   layers of other ranks' voxels around it, on all sides, that the
                array has too and that are up to date; `first` is behind them
         id     a number for each part of a rank that has several
+
+        What the library refuses here the next `step` raises too, so that all
+        ranks know of it. Later steps draw the brick that was corrected.
         """
         import numpy
         voxels = numpy.asarray(array)

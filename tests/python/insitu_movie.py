@@ -75,8 +75,17 @@ for wrong, text in (
         (lambda movie: movie.brick(wide, id=2 ** 20), "invalid id=1048576"),
         (lambda movie: movie.brick(wide, halo=0.5), "halo: must be a whole number"),
         (lambda movie: movie.brick(wide > 0), "a brick of bool")):
-    with insitu.Movie(comm, (4, 4, 4)) as movie:  # which keeps its first error
+    with insitu.Movie(comm, (4, 4, 4)) as movie:
         refuses(lambda: wrong(movie), text)
+# A wrong brick fails the next step on all ranks, and no more than that one.
+with insitu.Movie(comm, (4, 4, 4 * comm.size), output="f_%02d.png",
+                  overwrite=True, size=40) as movie:
+    refuses(lambda: movie.brick(wide, first=(2, 0, 0)),
+            "the next step raises this too")
+    refuses(lambda: movie.brick(wide, id=2 ** 20), "invalid id=1048576")
+    movie.brick(wide, first=(0, 0, 4 * comm.rank))
+    refuses(lambda: movie.step(0), "correct first=")
+    movie.step(0)
 with insitu.Movie(comm, (4, 4, 4), output="f_%02d.png") as movie:
     refuses(lambda: movie.step(0), "no rank has a brick; call Movie.brick")
     if comm.rank == 0:

@@ -309,7 +309,8 @@ class Stumbles(InFolder):
                 (lambda: sg.Volume("a.npy", dataset="rho"), "^(.*: )?dataset=rho: "),
                 (lambda: sg.Volume("a.npy", dims=(1, 2, 3)),
                  "remove dims=, type=, endian= and offset="),
-                (lambda: sg.Volume("a.bin"), r"give dims=\(x, y, z\) and type= "),
+                (lambda: sg.Volume("a.bin"), r"give dims=\(x, y, z\) and type "
+                 r"\(uint8, int16, float32, \.\.\.\)"),
                 (lambda: sg.Volume("a.npy", crop=((0, 9), (0, 99), (0, 9))),
                  r"crop=\(\(0, 9\), \(0, 99\), \(0, 9\)\) is not inside")):
             with self.assertRaisesRegex((ValueError, sg.Error), answer) as caught:
