@@ -6,10 +6,11 @@
  *
  * The local images are those of up to 32 neighbours of --ranks, and are scanned
  * whole, from memory, as the splat leaves them.  The region is that
- * of one rank; it is composited again and again, so that its messages are in
- * the cache, as what has just been received is.  Each thread has a part.
- * Seconds are processor time of the slowest thread over the pixels of all, the
- * least of all runs: other programs of the machine do not count. */
+ * of one rank, in the middle of the picture; it is composited again and again,
+ * so that its messages are in the cache, as what has just been received is.
+ * Each thread has a part. Seconds are processor time of the slowest thread over
+ * the pixels of all, the least of all runs: other programs of the machine do
+ * not count. */
 #include "combine.h"
 
 #include "base/thread_pool.h"
@@ -68,14 +69,18 @@ static int ranks_of(const bench_rates *rates) {
     return rates->options->ranks ? rates->options->ranks : RANKS_USUAL;
 }
 
-/* What a step is about: the picture, or the region in its middle. */
+/* What a step is about: the picture, or the region in its middle. A region of
+ * less than a row is in the middle of its row, for slabs do not reach the row's
+ * ends. */
 static void choose_pixels(bench_rates *rates, rates_step step) {
     const int64_t pixels = picture_pixels(rates);
     const bool all = step == SCAN || step == COPY;
     const int64_t some = all ? pixels : pixels / ranks_of(rates) / 64 * 64;
     const int64_t most = some / PIXELS_OF_THREAD;
     rates->step = step;
-    rates->first = (pixels - some) / 2 / 64 * 64;
+    const int64_t width = rates->options->width;
+    const int64_t middle = some < width ? width / 2 : 0;
+    rates->first = ((pixels - some) / 2 + middle) / 64 * 64;
     rates->last = rates->first + some;
     rates->threads = rates->options->threads;
     if (rates->threads > most)
