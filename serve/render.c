@@ -112,7 +112,7 @@ static int draw(renderer *r, int level) {
                        level ? is_stale : asks_for_end, r, &image, &overlay);
     if (done != CONTINUE)
         return done;
-    double took = seconds_now() - begin + r->drawing->elsewhere;
+    double took = seconds_now() - begin + r->drawing->earlier_seconds;
     adapt(r, level, took);
     if (level > 0)
         tell_empty(r, image);
@@ -289,6 +289,7 @@ static void serve_state(renderer *r, int level, json_t *recipe,
     r->drawing->look_is_new = false;
     bool stopped = o.done == EXIT_INTERRUPTED;
     r->drawn = revision;
+    /* The same level is drawn again where it was stopped. */
     r->level = o.done == CONTINUE ? level : stopped ? level - 1 : 2;
 }
 

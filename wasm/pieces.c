@@ -11,29 +11,36 @@
 
 /* The picture that is begun, with what it was begun for. */
 static struct {
-    json_t *tree; /* NULL: none */
+    json_t *tree; /* NULL: no picture is begun */
     int size[2];
-    snow_image *whole; /* as far as it is drawn */
-    int lines;         /* that are */
+    snow_image *whole; /* its first `lines` lines are drawn */
+    int lines;
     uint64_t pictures; /* of the frame, after the last piece */
     double seconds;
 } begun;
 
-/* Pixels of some depend on other lines, or on slabs of a file. */
+/* Returns whether a picture can be drawn in pieces.  Some have pixels that
+ * depend on other lines, or on slabs of a file.  A deterministic picture draws
+ * all its tiles each time, and a projection of channels is a sum of several
+ * pictures.
+ */
 static bool has_pieces(const drawing *d) {
     const snow_settings *settings = &d->state.settings;
     return settings->quality == SNOW_QUALITY_HIGH && d->state.frame &&
            !d->state.plan.streams && settings->occlusion == 0 &&
-           settings->depth_darkening == 0;
+           settings->depth_darkening == 0 && !settings->deterministic &&
+           !(d->state.channels.list.count &&
+             mode_is_projection(d->state.opts->mode));
 }
 
+/* Frees what is begun. */
 static void forget(void) {
     json_decref(begun.tree);
     snow_image_free(begun.whole);
     memset(&begun, 0, sizeof begun);
 }
 
-/* Unless it is begun already. */
+/* Begins the picture of the drawing, unless it is begun already. */
 static void begin(const drawing *d) {
     const snow_view *view = &d->state.view;
     if (begun.tree && begun.size[0] == view->width &&
@@ -45,7 +52,7 @@ static void begin(const drawing *d) {
     begun.size[1] = view->height;
 }
 
-/* Lines of a picture of the frame to the whole. */
+/* Copies the lines that `part` has up to `end` to the whole picture. */
 static int keep_lines(drawing *d, snow_image *part, int end) {
     const int channels = snow_image_channels(part);
     const size_t line = (size_t)begun.size[0] * (size_t)channels;
@@ -61,47 +68,55 @@ static int keep_lines(drawing *d, snow_image *part, int end) {
     return CONTINUE;
 }
 
-static int draw_piece(drawing *d) {
+/* Draws the next piece.  Where memory was too short for what the frame held,
+ * its successor, which knows no pieces, has drawn all lines: these are *image.
+ */
+static int draw_piece(drawing *d, snow_image **image) {
     render_state *state = &d->state;
     snow_frame *frame = state->frame;
     snow_image *part = NULL;
     const int height = begun.size[1];
-    const int end = begun.lines + (height + PIECES - 1) / PIECES;
+    const int next = begun.lines + (height + PIECES - 1) / PIECES;
+    const int end = next < height ? next : height;
+    const uint64_t dropped = state->frames_dropped;
     frame->lines[0] = begun.lines;
-    frame->lines[1] = end < height ? end : height;
+    frame->lines[1] = end;
     frame->more = begun.lines > 0 && frame->pictures == begun.pictures;
     int done = render_state_draw(state, state->view.azimuth, &part);
+    if (state->frames_dropped != dropped) {
+        *image = part;
+        return done;
+    }
     if (done == CONTINUE)
-        done = keep_lines(d, part, frame->lines[1]);
+        done = keep_lines(d, part, end);
     snow_image_free(part);
-    if (state->frame != frame) /* there was no room for both */
-        return done == CONTINUE ? SNOW_STATUS_NO_MEMORY : done;
     memset(frame->lines, 0, sizeof frame->lines);
     frame->more = false;
     begun.pictures = frame->pictures;
     return done;
 }
 
-/* As if stopped, until the last piece is drawn. */
+/* Draws one piece, and returns as if it was stopped until the last is drawn. */
 static int draw(drawing *d, snow_image **image) {
-    d->elsewhere = 0;
+    d->earlier_seconds = 0;
+    *image = NULL;
     if (!has_pieces(d)) {
         forget();
         return render_state_draw(&d->state, d->state.view.azimuth, image);
     }
     begin(d);
     const double start = seconds_now();
-    int done = draw_piece(d);
+    int done = draw_piece(d, image);
     const double took = seconds_now() - start;
-    if (done == CONTINUE && begun.lines < begun.size[1]) {
+    if (done == CONTINUE && !*image && begun.lines < begun.size[1]) {
         begun.seconds += took;
         return EXIT_INTERRUPTED;
     }
-    if (done == CONTINUE) {
+    if (done == CONTINUE && !*image) {
         *image = begun.whole;
         begun.whole = NULL;
-        d->elsewhere = begun.seconds;
     }
+    d->earlier_seconds = done == CONTINUE ? begun.seconds : 0;
     forget();
     return done;
 }

@@ -193,11 +193,16 @@ static int plan_memory(render_state *s, const options *step) {
     return CONTINUE;
 }
 
+static void drop_frame(render_state *s) {
+    snow_frame_free(s->frame);
+    s->frame = NULL;
+    s->frames_dropped++;
+}
+
 /* The volume is in memory, but what is computed from it does not fit beside it:
  * opens it again as a stream, and starts over. */
 static int leave_in_file(render_state *s, const options *step) {
-    snow_frame_free(s->frame);
-    s->frame = NULL;
+    drop_frame(s);
     snow_volume_close(s->volume);
     s->volume = NULL;
     channels_close_volumes(&s->channels);
@@ -222,8 +227,7 @@ static bool may_drop(const render_state *s, snow_status status) {
  * with the first one. */
 static int drop_channels(render_state *s, const options *step) {
     channels_note(s->opts, &s->whole, "several need more memory");
-    snow_frame_free(s->frame);
-    s->frame = NULL;
+    drop_frame(s);
     channels_close(&s->channels);
     snow_transfer_free(s->transfer);
     s->transfer = NULL;
@@ -623,8 +627,7 @@ static snow_status draw_alone(render_state *s) {
     double before = snow_volume_read_seconds(s->volume);
     snow_status status = draw_volume(s);
     if (status == SNOW_STATUS_NO_MEMORY && s->drawn.path) {
-        snow_frame_free(s->frame);
-        s->frame = NULL;
+        drop_frame(s);
         status = snow_frame_new(s->context, &s->frame);
         if (status == SNOW_STATUS_OK)
             status = draw_volume(s);

@@ -38,6 +38,7 @@ typedef struct render_state {
     layers layers;        /* drawn with it */
     channel_set channels; /* of its file, the first of which it is */
     snow_frame *frame;
+    uint64_t frames_dropped;  /* freed; where it rises, the frame is another */
     snow_view view, frame_of; /* the latter: as framed */
     snow_settings settings;
     render_times

@@ -42,11 +42,14 @@ struct snow_frame {
     snow_ranks *ranks;       /* of pictures by many ranks; NULL until needed */
     snow_load_balance *work; /* of the same */
     /* The first line of the picture that is drawn, and one past the last; {0,
-     * 0}: all.  Others are undefined.  `more`: of the last picture, whose tiles
-     * are there.  Of shear-warp in one process. */
+     * 0}: all.  Others are undefined.  `more`: the volume, the look, the view
+     * and the settings are those of the last picture, whose tiles are there; it
+     * is ignored where the volume is another.  Of shear-warp in one process. */
     int lines[2];
     bool more;
     uint64_t pictures; /* so far */
+    uint64_t
+        tiles_of; /* generation of the volume whose tiles are there; 0: none */
 };
 
 /* Frees a frame, but for what many ranks need (parallel/internal.h). */

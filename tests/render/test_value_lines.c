@@ -37,10 +37,32 @@ static reference_scene scene_of(int n, bool large) {
     return s;
 }
 
+static snow_volume *open_volume(const model_stage *stage,
+                                const reference_scene *s) {
+    snow_volume *volume = NULL;
+    assert_int_equal(
+        snow_volume_wrap(stage->context, &s->info, s->voxels, &volume),
+        SNOW_STATUS_OK);
+    return volume;
+}
+
+static snow_image *draw_volume(const model_stage *stage,
+                               const reference_scene *s,
+                               const snow_volume *volume) {
+    snow_transfer *transfer = model_transfer(stage->context, s);
+    snow_image *image = NULL;
+    assert_int_equal(snow_frame_render(stage->frame, volume, transfer, &s->view,
+                                       &s->settings, &image),
+                     SNOW_STATUS_OK);
+    snow_transfer_free(transfer);
+    return image;
+}
+
 static void check_lines(const model_stage *stage, int n,
                         const reference_scene *s, bool keeps) {
     static const int ends[] = {0, 5, 8, 31, 32, 64};
-    snow_image *whole = model_image(stage, s);
+    snow_volume *volume = open_volume(stage, s);
+    snow_image *whole = draw_volume(stage, s, volume);
     const float *all = snow_image_pixels(whole);
     const size_t line =
         (size_t)(s->view.width * snow_image_channels(whole)) * sizeof *all;
@@ -49,7 +71,7 @@ static void check_lines(const model_stage *stage, int n,
         stage->frame->lines[0] = first;
         stage->frame->lines[1] = end;
         stage->frame->more = keeps && first > 0;
-        snow_image *some = model_image(stage, s);
+        snow_image *some = draw_volume(stage, s, volume);
         const size_t from =
             (size_t)(first * s->view.width * snow_image_channels(whole));
         if (memcmp(snow_image_pixels(some) + from, all + from,
@@ -59,12 +81,13 @@ static void check_lines(const model_stage *stage, int n,
     }
     stage->frame->lines[0] = stage->frame->lines[1] = 0;
     stage->frame->more = false;
-    snow_image *again = model_image(stage, s);
+    snow_image *again = draw_volume(stage, s, volume);
     if (memcmp(snow_image_pixels(again), all, (size_t)s->view.height * line) !=
         0)
         fail_msg("scene %d: after its lines the whole has other bits", n);
     snow_image_free(again);
     snow_image_free(whole);
+    snow_volume_close(volume);
 }
 
 /* In a frame that has other pictures' tiles, and in a new one. */
@@ -80,6 +103,41 @@ static void lines_have_the_bits_of_the_whole(void **state) {
         value_picture_free(&s);
     }
     model_close(&used);
+}
+
+/* Two volumes that take turns in a frame, as the channels of a projection do:
+ * the tiles of one are not those of the other. */
+static void lines_of_two_volumes_are_their_own(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    reference_scene scenes[2] = {scene_of(1, false), scene_of(8, false)};
+    snow_volume *volumes[2];
+    snow_image *whole[2];
+    scenes[1].settings = scenes[0].settings;
+    scenes[1].view = scenes[0].view;
+    for (int n = 0; n < 2; n++) {
+        volumes[n] = open_volume(&stage, &scenes[n]);
+        whole[n] = draw_volume(&stage, &scenes[n], volumes[n]);
+    }
+    const size_t line = (size_t)(70 * snow_image_channels(whole[0]));
+    for (int first = 0; first < 64; first += 16)
+        for (int n = 0; n < 2; n++) {
+            stage.frame->lines[0] = first;
+            stage.frame->lines[1] = first + 16;
+            stage.frame->more = first > 0;
+            snow_image *some = draw_volume(&stage, &scenes[n], volumes[n]);
+            assert_memory_equal(snow_image_pixels(some) + (size_t)first * line,
+                                snow_image_pixels(whole[n]) +
+                                    (size_t)first * line,
+                                16 * line * sizeof(float));
+            snow_image_free(some);
+        }
+    for (int n = 0; n < 2; n++) {
+        snow_image_free(whole[n]);
+        snow_volume_close(volumes[n]);
+        value_picture_free(&scenes[n]);
+    }
+    model_close(&stage);
 }
 
 static int count_tiles(const model_stage *stage) {
@@ -123,13 +181,15 @@ static void lines_take_their_tiles(void **state) {
             together += count_tiles(&one);
             model_close(&one);
         }
+        snow_volume *volume = open_volume(&stage, &s);
         print_message("             %d tiles, %d by quarters\n", all, together);
         for (int quarter = 0; quarter < 4; quarter++) {
             stage.frame->lines[0] = 100 * quarter;
             stage.frame->lines[1] = 100 * (quarter + 1);
             stage.frame->more = quarter > 0;
-            free(model_picture(&stage, &s));
+            snow_image_free(draw_volume(&stage, &s, volume));
         }
+        snow_volume_close(volume);
         assert_true(is_current(&stage));
         assert_true(all > 40);
         assert_true(together >= all);
@@ -142,6 +202,7 @@ static void lines_take_their_tiles(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lines_have_the_bits_of_the_whole),
+        cmocka_unit_test(lines_of_two_volumes_are_their_own),
         cmocka_unit_test(lines_take_their_tiles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

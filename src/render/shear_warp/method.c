@@ -25,7 +25,8 @@ static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
         .begin_at = p->begin_at,
         .bytes = p->local.pixels ? NULL : p->bytes,
         .lines = {lines[0], lines[1] ? lines[1] : p->view.height},
-        .more = p->frame->more};
+        .more =
+            p->frame->more && p->frame->tiles_of == job->volume->generation};
 }
 
 /* Once.  The image comes first, for the slabs of a file are cut to the memory
@@ -55,8 +56,11 @@ static snow_status encode(snow_picture *p, snow_job *job) {
 static snow_status draw(snow_picture *p, snow_job *job) {
     const snow_value_params params = params_of(p, job);
     SNOW_TRY(snow_value_place_layers(p->frame->value_path, &params));
-    return snow_value_draw(p->frame->value_path, &params, job->stats,
-                           &p->local.image, p->ahead ? &p->drawing : NULL);
+    p->frame->tiles_of = 0;
+    SNOW_TRY(snow_value_draw(p->frame->value_path, &params, job->stats,
+                             &p->local.image, p->ahead ? &p->drawing : NULL));
+    p->frame->tiles_of = job->volume->generation;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status show(snow_picture *p, snow_job *job) {
