@@ -47,7 +47,8 @@ NAME(floats)(const float *row, int count, uint32_t *levels) {
     return !any;
 }
 
-/* On black, where nothing is added: pixels are whole words. */
+/* On black, where nothing is added: pixels are whole words, of machines whose
+ * least byte comes first. */
 TARGET static inline __attribute__((always_inline)) bool
 NAME(black)(const float *row, int channels, unsigned char *rgba) {
     uint32_t levels[4 * SOME], words[SOME];
@@ -67,7 +68,8 @@ TARGET static void NAME(bytes)(const float *row, int width, int channels,
                                const double *background, unsigned char *rgba) {
     for (int x = 0; x < width; x += SOME) {
         int count = width - x < SOME ? width - x : SOME;
-        const bool black = background && background[0] == 0 &&
+        const bool black = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ &&
+                           background && background[0] == 0 &&
                            background[1] == 0 && background[2] == 0;
         if (black && count == SOME &&
             (channels == 2 ? NAME(black)(row + 2 * x, 2, rgba + 4 * x)
