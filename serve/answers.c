@@ -102,8 +102,11 @@ static const char *stored_type(const drawing *d) {
         snow_volume_options data = data_options(&d->opts);
         memset(data.clip, 0, sizeof data.clip);
         data.mask = NULL;
+        /* What is said of the file was said when it was opened. */
+        hear_warnings(&d->opts, d->state.context, false);
         (void)snow_volume_inspect(d->state.context, d->opts.operands[0], &data,
                                   &info);
+        hear_warnings(&d->opts, d->state.context, true);
     }
     return snow_type_name(info.type);
 }
