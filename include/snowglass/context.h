@@ -33,7 +33,7 @@ typedef struct snow_allocator {
     void *user;
 } snow_allocator;
 
-/* `allocator` is copied; NULL: malloc and free. Free a context last. */
+/* `allocator` is copied; NULL: the C library's. Free a context last. */
 SNOW_API snow_status snow_context_new(
     const snow_allocator *allocator, snow_context **out);
 SNOW_API void snow_context_free(snow_context *context);
