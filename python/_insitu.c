@@ -10,7 +10,7 @@
 #include <snowglass/mpi.h>
 #include <snowglass/recipe.h>
 
-#include <stdio.h>
+#include <stdbool.h>
 #include <string.h>
 
 #define NAME "snowglass.insitu"
@@ -42,19 +42,38 @@ static const char *const words[][2] = {
     {"invalid spacing ", "invalid spacing="},
 };
 
+/* An argument takes the place of a name where its value follows. */
+static const char *find_words(const char *message, const char *const pair[2]) {
+    const char *at = strstr(message, pair[0]);
+    const char behind = at ? at[strlen(pair[0])] : 0;
+    const bool names =
+        strchr(pair[1], '=') && pair[0][strlen(pair[0]) - 1] == ' ';
+    return names && !(behind == '-' || (behind >= '0' && behind <= '9')) ? NULL
+                                                                         : at;
+}
+
+/* Bytes that are not UTF-8, as of paths, are replaced. */
+static PyObject *decode(const char *text, size_t bytes) {
+    return PyUnicode_DecodeUTF8(text, (Py_ssize_t)bytes, "replace");
+}
+
 /* A message with the first of these replaced, a new text. */
 static PyObject *text_of(const char *message) {
-    char text[2048];
     const char *at = NULL;
     size_t n = 0;
     while (n < sizeof words / sizeof *words &&
-           !(at = strstr(message, words[n][0])))
+           !(at = find_words(message, words[n])))
         n++;
     if (!at)
-        return PyUnicode_FromString(message);
-    snprintf(text, sizeof text, "%.*s%s%s", (int)(at - message), message,
-             words[n][1], at + strlen(words[n][0]));
-    return PyUnicode_FromString(text);
+        return decode(message, strlen(message));
+    const char *rest = at + strlen(words[n][0]);
+    PyObject *before = decode(message, (size_t)(at - message));
+    PyObject *after = decode(rest, strlen(rest)), *text = NULL;
+    if (before && after)
+        text = PyUnicode_FromFormat("%U%s%U", before, words[n][1], after);
+    Py_XDECREF(before);
+    Py_XDECREF(after);
+    return text;
 }
 
 static PyObject *answer(snow_status status, const char *message) {
@@ -209,6 +228,8 @@ static struct PyModuleDef definition = {PyModuleDef_HEAD_INIT,
 PyMODINIT_FUNC PyInit__insitu(void);
 PyMODINIT_FUNC PyInit__insitu(void) {
     core = PyImport_ImportModule("snowglass._snowglass");
+    if (!core)
+        return NULL;
     warnings = PyImport_ImportModule("snowglass._warnings");
-    return core && warnings ? PyModule_Create(&definition) : NULL;
+    return warnings ? PyModule_Create(&definition) : NULL;
 }

@@ -13,6 +13,7 @@
 from __future__ import annotations
 
 import json
+import math
 import operator
 import weakref
 from typing import Any, Mapping, Optional, Sequence
@@ -28,11 +29,19 @@ except ImportError as missing:
 def _three(name: str, given: Any, kind: Any) -> tuple[Any, Any, Any]:
     """Three numbers along x, y, z."""
     try:
+        if isinstance(given, (str, bytes)):
+            raise TypeError
         x, y, z = map(kind, given)
     except (TypeError, ValueError):
         what = "whole numbers" if kind is operator.index else "numbers"
         raise TypeError(f"{name}: give three {what}, along x, y, z, not "
                         f"{given!r}") from None
+    for number in (x, y, z):
+        if kind is operator.index and not -2 ** 63 <= number < 2 ** 63:
+            raise ValueError(f"{name}: {number} is out of range; give numbers of "
+                             f"64 bits")
+        if kind is float and not math.isfinite(number):
+            raise ValueError(f"{name}: {number} is not a finite number")
     return x, y, z
 
 
@@ -118,16 +127,23 @@ class Movie:
         inner = voxels[halo:, halo:, halo:] if halo else voxels
         count = [side - 2 * halo for side in voxels.shape[::-1]]
         strides = [step // voxels.itemsize for step in voxels.strides[::-1]]
-        _insitu.brick(self._movie, id, _three("first", first, operator.index), tuple(count), halo,
-                      voxels.dtype.name, inner.ctypes.data, tuple(strides))
+        _insitu.brick(self._movie, id, _three("first", first, operator.index),
+                      tuple(count), halo, voxels.dtype.name, inner.ctypes.data,
+                      tuple(strides))
         self._arrays[id] = voxels  # as long as it is read
 
     def step(self, number: int, time: float = float("nan"),
              unit: str = "") -> None:
         """Draws the fields as they are and writes a picture; collective.  With
         annotate="time" it shows the physical time, or else the number."""
+        try:
+            seconds = float(time)
+        except (TypeError, ValueError, OverflowError):
+            raise TypeError(f"time: must be a number, not {time!r}") from None
+        if math.isinf(seconds):
+            raise ValueError("time: must be finite, or NaN for none")
         _insitu.step(self._movie, _whole("number", number, -2 ** 63, 63),
-                     float(time), unit)
+                     seconds, unit)
 
     def close(self) -> None:
         """Ends the movie; collective."""

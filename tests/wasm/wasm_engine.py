@@ -176,6 +176,7 @@ with open(os.path.join(OUT, "turned.json")) as file:
     levels_ = json.load(file)["levels"]
 check("a turn does not wait for the picture at rest", levels_ == [0, 1, 0, 1, 2],
       levels_)
+compare("turned")
 for name, _, words in strangers:
     refused(name, *words)
 if wrong:

@@ -1031,10 +1031,11 @@ async function many() {
     const list = (await keys(page)).channel;
     check('eight are drawn', list === '0,1,2,3,4,5,6,7' && String(await on()) === '1,1,1,1,1,1,1,1,0,0',
         `${list} ${await on()}`);
+    await page.evaluate(() => { document.querySelector('.said').textContent = ''; });
     await section.getByLabel('channel 8', {exact: true}).click();
     await page.waitForFunction(() => document.querySelector('.said').textContent);
     await rest(page);
-    check('a ninth is refused with what to do', /8/.test(await page.locator('.said').textContent()),
+    check('a ninth is refused with what to do', /up to 8/.test(await page.locator('.said').textContent()),
         await page.locator('.said').textContent());
     check('and its box is as the picture', String(await on()) === '1,1,1,1,1,1,1,1,0,0', String(await on()));
     await section.getByLabel('dye 3', {exact: true}).click();
