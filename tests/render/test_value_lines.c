@@ -105,41 +105,6 @@ static void lines_have_the_bits_of_the_whole(void **state) {
     model_close(&used);
 }
 
-/* Two volumes that take turns in a frame, as the channels of a projection do:
- * the tiles of one are not those of the other. */
-static void lines_of_two_volumes_are_their_own(void **state) {
-    (void)state;
-    model_stage stage = model_open();
-    reference_scene scenes[2] = {scene_of(1, false), scene_of(8, false)};
-    snow_volume *volumes[2];
-    snow_image *whole[2];
-    scenes[1].settings = scenes[0].settings;
-    scenes[1].view = scenes[0].view;
-    for (int n = 0; n < 2; n++) {
-        volumes[n] = open_volume(&stage, &scenes[n]);
-        whole[n] = draw_volume(&stage, &scenes[n], volumes[n]);
-    }
-    const size_t line = (size_t)(70 * snow_image_channels(whole[0]));
-    for (int first = 0; first < 64; first += 16)
-        for (int n = 0; n < 2; n++) {
-            stage.frame->lines[0] = first;
-            stage.frame->lines[1] = first + 16;
-            stage.frame->more = first > 0;
-            snow_image *some = draw_volume(&stage, &scenes[n], volumes[n]);
-            assert_memory_equal(snow_image_pixels(some) + (size_t)first * line,
-                                snow_image_pixels(whole[n]) +
-                                    (size_t)first * line,
-                                16 * line * sizeof(float));
-            snow_image_free(some);
-        }
-    for (int n = 0; n < 2; n++) {
-        snow_image_free(whole[n]);
-        snow_volume_close(volumes[n]);
-        value_picture_free(&scenes[n]);
-    }
-    model_close(&stage);
-}
-
 static int count_tiles(const model_stage *stage) {
     const snow_value_image *image = stage->frame->value_path->image;
     int count = 0;
@@ -202,7 +167,6 @@ static void lines_take_their_tiles(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lines_have_the_bits_of_the_whole),
-        cmocka_unit_test(lines_of_two_volumes_are_their_own),
         cmocka_unit_test(lines_take_their_tiles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
