@@ -12,7 +12,7 @@
 typedef enum snow_partition { /* how the volume is partitioned */
     SNOW_PARTITION_AUTO = 0,  /* counted; bricks where slabs would be thin */
     SNOW_PARTITION_EQUAL,     /* the paper's slabs: as equal as can be */
-    SNOW_PARTITION_COUNTED, /* slabs of about equally many interesting voxels */
+    SNOW_PARTITION_COUNTED,   /* slabs of about equal cost */
     SNOW_PARTITION_BRICKS,  /* boxes of about equally many interesting voxels */
     SNOW_PARTITION_MEASURED /* auto, later by the time that pictures took */
 } snow_partition;

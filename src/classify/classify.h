@@ -67,7 +67,7 @@ typedef struct snow_classify_options {
     double threshold;
     double opacity_exponent; /* a' = 1 - (1 - a)^exponent (model, point 6) */
     bool keep_all, premultiply;
-    bool only_counts; /* no samples, but where tables have them anyway */
+    bool only_counts; /* samples are 0, but with a gradient opacity */
     snow_isa isa;     /* resolved, or AUTO for the plain loops */
 } snow_classify_options;
 

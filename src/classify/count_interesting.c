@@ -298,7 +298,7 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
                                         .threshold = threshold,
                                         .exponent = 1,
                                         .isa = isa,
-                                        .only_counts = true,
+                                        .only_counts = !block_counts->rays,
                                         .threads = threads,
                                         .step = block_counts->step};
     counting *workers =

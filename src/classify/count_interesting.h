@@ -21,7 +21,7 @@ typedef struct snow_interesting_walk {
     const snow_transfer *transfer;
     double threshold, exponent; /* as snow_classify_options */
     snow_isa isa;
-    bool only_counts; /* opacities are not looked at */
+    bool only_counts; /* opacities are not looked at, and may be 0 */
     int threads;      /* 0: one, which visits rows in order */
     int64_t step;     /* of slices along z of the whole; 0: all are visited */
 } snow_interesting_walk;

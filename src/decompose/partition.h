@@ -5,7 +5,8 @@
  * The boxes cover the grid and do not overlap; a rank's may be empty.
  * Partitions are computed from counts of interesting voxels in blocks of the
  * grid, summed over all ranks: no rank needs the whole volume. They depend on
- * the counts alone, so that every rank computes the same ones. */
+ * the counts alone, so that every rank computes the same ones; but where rays
+ * are followed (ray_grid.h), which is done in floating point. */
 #ifndef SNOW_DECOMPOSE_PARTITION_H
 #define SNOW_DECOMPOSE_PARTITION_H
 

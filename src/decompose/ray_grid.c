@@ -1,6 +1,7 @@
 /* decompose/ray_grid.c - see ray_grid.h. */
 #include "decompose/ray_grid.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -21,15 +22,30 @@
 /* Rows are drawn by so many voxels at a time. */
 #define SPAN 32
 
+/* Steps of what closes all rays: enough for faint voxels. */
+#define WHOLE_MOST (1 << 20)
+
 /* --- cells ---------------------------------------------------------------- */
 
+/* The sum of a cell whose voxels are all opaque stays below 2^32. */
+static void choose_whole(snow_ray_grid *g) {
+    int64_t voxels = g->cell[0] * g->cell[1] * g->cell[2];
+    for (int i = 0; i < 3; i++)
+        if (g->view.axes[i] == 2)
+            voxels = voxels / g->cell[i] * ((g->cell[i] - 1) / g->step + 1);
+    assert(voxels < INT32_MAX);
+    const int64_t most = UINT32_MAX / voxels;
+    g->whole = (uint32_t)(most < WHOLE_MOST ? most : WHOLE_MOST);
+}
+
 static void fill_closes(snow_ray_grid *g) {
-    const double whole = log(FAINT);
+    const double faint = log(FAINT);
+    choose_whole(g);
     for (int n = 0; n < SNOW_RAY_STEPS; n++) {
         const double through = 1 - (double)n / (SNOW_RAY_STEPS - 1);
         const double part =
-            through > 0 ? fmin(g->view.path * log(through) / whole, 1) : 1;
-        g->closes[n] = (uint32_t)(part / CLOSED * SNOW_RAY_WHOLE + 0.5);
+            through > 0 ? fmin(g->view.path * log(through) / faint, 1) : 1;
+        g->closes[n] = (uint32_t)(part / CLOSED * g->whole + 0.5);
     }
 }
 
@@ -83,23 +99,17 @@ static void average(snow_ray_walk *w) {
                 const double part = voxels > 0 ? 1 / voxels : 0;
                 *drawn++ = (float)((double)(*sum >> 32) * part);
                 *closing++ = (float)((double)(*sum & INT64_C(0xffffffff)) *
-                                     part / SNOW_RAY_WHOLE);
+                                     part / g->whole);
             }
 }
 
 snow_status snow_ray_walk_new(snow_context *context, const snow_ray_grid *g,
                               int span, snow_ray_walk *out) {
     *out = (snow_ray_walk){.grid = g, .span = (float)span};
-    for (int i = 0; i < 2; i++)
-        out->margin[i] =
-            1 + (int64_t)(fabs(g->view.slope[i]) * (double)g->dims[2] /
-                          (double)(2 * g->cell[i]));
-    out->width = g->cells[0] + 2 * out->margin[0];
-    out->pixels = (size_t)(out->width * (g->cells[1] + 2 * out->margin[1]));
     const size_t cells = snow_ray_grid_cells(g);
     SNOW_TRY(SNOW_RESERVE(context, out->drawn, 0, cells));
     SNOW_TRY(SNOW_RESERVE(context, out->closing, 0, cells));
-    SNOW_TRY(SNOW_RESERVE(context, out->closed, 0, out->pixels));
+    SNOW_TRY(SNOW_RESERVE(context, out->closed, 0, g->cells[0] * g->cells[1]));
     average(out);
     return SNOW_STATUS_OK;
 }
@@ -144,27 +154,63 @@ static void pass_cells(const snow_ray_walk *w, size_t at, float slices,
     sum->drawn += span * widest;
 }
 
-/* Where the pixels of a cell are in slice `at`. */
-static int64_t shift(const snow_ray_walk *w, int i, double at) {
+/* How far aside rays are in slice `at`, in cells. */
+static double side_of(const snow_ray_walk *w, int i, double at) {
     const snow_ray_grid *g = w->grid;
-    const double by = (at - (double)g->dims[2] / 2) * g->view.slope[i];
-    return w->margin[i] - (int64_t)floor(by / (double)g->cell[i] + 0.5);
+    return floor(at * g->view.slope[i] / (double)g->cell[i] + 0.5);
+}
+
+static void clear_closed(snow_ray_walk *w) {
+    const int64_t *cells = w->grid->cells;
+    memset(w->closed, 0, (size_t)(cells[0] * cells[1]) * sizeof *w->closed);
+}
+
+/* Rays move aside by (u, v) cells.  Those that leave the volume do not come
+ * back; others come in, open. */
+static void move_rays(snow_ray_walk *w, int64_t u, int64_t v) {
+    const int64_t columns = w->grid->cells[0], rows = w->grid->cells[1];
+    for (int64_t n = 0; n < rows; n++) {
+        const int64_t row = v > 0 ? rows - 1 - n : n, from = row - v;
+        float *to = w->closed + row * columns;
+        const bool inside = from >= 0 && from < rows;
+        const int64_t first = u > 0 ? u : 0, end = columns + (u < 0 ? u : 0);
+        if (inside)
+            memmove(to + first, w->closed + from * columns + first - u,
+                    (size_t)(end - first) * sizeof *to);
+        memset(to, 0, (size_t)(inside ? first : columns) * sizeof *to);
+        memset(to + end, 0, (size_t)(columns - end) * sizeof *to);
+    }
+}
+
+/* To the layer around slice `at`. */
+static void move_to(snow_ray_walk *w, double at) {
+    const int64_t *cells = w->grid->cells;
+    double by[2];
+    for (int i = 0; i < 2; i++) {
+        const double side = side_of(w, i, at);
+        by[i] = side - w->side[i];
+        w->side[i] = side;
+    }
+    /* Steep rays cross the whole volume between two layers. */
+    if (fabs(by[0]) < (double)cells[0] && fabs(by[1]) < (double)cells[1])
+        move_rays(w, (int64_t)by[0], (int64_t)by[1]);
+    else
+        clear_closed(w);
 }
 
 /* Slices of one layer of cells. */
 static double pass_layer(snow_ray_walk *w, int64_t first, int64_t count) {
     const snow_ray_grid *g = w->grid;
     const int64_t together = g->cell[0] < SPAN ? SPAN / g->cell[0] : 1;
-    const double middle = (double)first + (double)count / 2;
-    const int64_t u0 = shift(w, 0, middle), v0 = shift(w, 1, middle);
     size_t at = (size_t)(first / g->cell[2] * g->cells[1] * g->cells[0]);
     work sum = {0, 0};
+    move_to(w, (double)first + (double)count / 2);
     for (int64_t v = 0; v < g->cells[1]; v++, at += (size_t)g->cells[0])
         for (int64_t u = 0; u < g->cells[0]; u += together) {
             const int64_t left = g->cells[0] - u;
             pass_cells(w, at + (size_t)u, (float)count,
                        left < together ? left : together,
-                       w->closed + (v0 + v) * w->width + u0 + u, &sum);
+                       w->closed + v * g->cells[0] + u, &sum);
         }
     return sum.all > 0 ? sum.drawn / sum.all : 1;
 }
@@ -172,7 +218,7 @@ static double pass_layer(snow_ray_walk *w, int64_t first, int64_t count) {
 void snow_ray_walk_slab(snow_ray_walk *w, int64_t first, int64_t count,
                         double *shares) {
     const snow_ray_grid *g = w->grid;
-    memset(w->closed, 0, w->pixels * sizeof *w->closed);
+    clear_closed(w);
     for (int64_t n = 0, run; n < count; n += run) {
         int64_t at = first + n;
         run = g->cell[2] - at % g->cell[2];

@@ -32,12 +32,12 @@ typedef struct snow_ray_grid {
     snow_ray_view view;
     int64_t dims[3], cell[3], cells[3]; /* along u, v, slices: voxels, voxels of
                                            a cell, cells */
-    int64_t step; /* of the slices along z of the volume that are counted */
-    uint32_t closes[SNOW_RAY_STEPS]; /* of a pixel, of SNOW_RAY_WHOLE */
+    int64_t step;   /* of the slices along z of the volume that are counted */
+    uint32_t whole; /* of a cell's sum: what closes all rays */
+    uint32_t closes[SNOW_RAY_STEPS]; /* of a pixel, of `whole` */
     int64_t *sums; /* u fastest; of each cell interesting voxels in the upper,
                       what they close in the lower 32 bits.  The caller's */
 } snow_ray_grid;
-#define SNOW_RAY_WHOLE 255
 
 /* Cells for a volume; sums are not set. */
 void snow_ray_grid_make(const snow_ray_view *view, const int64_t dims[3],
@@ -58,12 +58,11 @@ static inline int64_t snow_ray_grid_word(const snow_ray_grid *grid,
 /* Predictions by a grid whose sums are known. */
 typedef struct snow_ray_walk {
     const snow_ray_grid *grid;
-    float span;               /* what one costs, in voxels */
-    float *drawn, *closing;   /* of each cell: the share of its voxels that is
+    float span;             /* what one costs, in voxels */
+    float *drawn, *closing; /* of each cell: the share of its voxels that is
                                  interesting; what a slice of it closes, of 1 */
-    float *closed;            /* of the pixels, by columns of cells */
-    int64_t margin[2], width; /* of `closed` beside the grid, in all */
-    size_t pixels;
+    float *closed;  /* of the rays that are in the layer, by its cells */
+    double side[2]; /* how far aside, in cells, they have moved there */
 } snow_ray_walk;
 
 /* Errors: SNOW_STATUS_NO_MEMORY.  Free in any case. */

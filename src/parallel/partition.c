@@ -208,6 +208,18 @@ static snow_status count_for_partition(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
+/* Collective.  Rays are followed in floating point, which may differ between
+ * machines: all ranks take the first one's boxes. */
+static snow_status share_boxes(snow_comm *comm,
+                               const snow_partition_params *order,
+                               snow_status status, snow_box *boxes) {
+    SNOW_TRY(snow_comm_agree_status(comm, status));
+    if (!order->hides || order->cut != SNOW_PARTITION_COUNTED)
+        return SNOW_STATUS_OK;
+    return snow_comm_broadcast(comm, boxes,
+                               (size_t)order->ranks * sizeof *boxes, 0);
+}
+
 snow_status snow_partition_boxes(snow_comm *comm,
                                  const snow_partition_params *order,
                                  const snow_volume *volume,
@@ -230,20 +242,20 @@ snow_status snow_partition_boxes(snow_comm *comm,
     snow_status status = count_all(comm, order, volume, transfer, &counts);
     if (status == SNOW_STATUS_OK)
         status = count_for_partition(volume->context, order, &counts, boxes);
+    if (comm)
+        status = share_boxes(comm, order, status, boxes);
     if (counts.rays)
         snow_release(volume->context, rays.sums);
     counts.rays = NULL;
     if (loads && counts.step > 1) {
         counts.step = 1;
-        if (comm)
-            status = snow_comm_agree_status(comm, status);
         if (status == SNOW_STATUS_OK)
             status = count_all(comm, order, volume, transfer, &counts);
     }
     if (status == SNOW_STATUS_OK && loads)
         snow_partition_loads(&counts, boxes, order->ranks, loads);
     snow_release(volume->context, counts.counts);
-    return comm ? snow_comm_agree_status(comm, status) : status;
+    return status;
 }
 
 int64_t snow_partition_slices(const snow_partition_params *order) {

@@ -185,6 +185,49 @@ static void cells_cover_large_volumes(void **state) {
     }
 }
 
+/* Slices 1000 times as far apart as voxels: rays leave the volume between two
+ * layers, so that a plate hides nothing.  A prediction needs no more memory
+ * than for any other view. */
+static void steep_rays_need_no_more_memory(void **state) {
+    (void)state;
+    double shares[SIDE];
+    for (int sign = -1; sign <= 1; sign += 2) {
+        walk(plate, sign * 1000.0, true, 0, SIDE, shares);
+        assert_true(shares[19] > 0.999 && shares[24] > 0.999);
+        walk(plate, sign * 1e300, true, 0, SIDE, shares);
+        assert_true(shares[SIDE - 1] > 0.999);
+    }
+}
+
+static void faint_voxels_close_rays(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    const snow_ray_grid grid = fill(context, plate, 0, true);
+    for (int n = 1; n < 8; n++)
+        assert_true(grid.closes[n] > grid.closes[n - 1]);
+    assert_true(grid.closes[2] > 1.9 * grid.closes[1]);
+    snow_release(context, grid.sums);
+    snow_context_free(context);
+}
+
+/* A cell full of opaque voxels; of large volumes not all slices count. */
+static void sums_of_large_cells_do_not_overflow(void **state) {
+    (void)state;
+    static const int64_t sides[] = {64, 1000, 4096, 20000};
+    for (size_t n = 0; n < 4; n++) {
+        const int64_t step = sides[n] / 256 > 1 ? sides[n] / 256 : 1;
+        const snow_ray_view view = {.axes = {1, 2, 0}, .path = 1};
+        const int64_t all[3] = {sides[n], sides[n], sides[n]};
+        snow_ray_grid grid;
+        snow_ray_grid_make(&view, all, step, &grid);
+        const int64_t voxels =
+            grid.cell[0] * grid.cell[2] * ((grid.cell[1] - 1) / step + 1);
+        const int64_t word = snow_ray_grid_word(&grid, 1);
+        assert_true(grid.whole > 0 && grid.closes[255] > 0);
+        assert_int_equal(voxels * word >> 32, voxels);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_behind_an_opaque_plate_is_not_drawn),
@@ -192,6 +235,9 @@ int main(void) {
         cmocka_unit_test(the_shear_moves_what_is_hidden),
         cmocka_unit_test(slabs_with_hidden_slices_are_thicker),
         cmocka_unit_test(cells_cover_large_volumes),
+        cmocka_unit_test(steep_rays_need_no_more_memory),
+        cmocka_unit_test(faint_voxels_close_rays),
+        cmocka_unit_test(sums_of_large_cells_do_not_overflow),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
