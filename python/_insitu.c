@@ -11,6 +11,7 @@
 #include <snowglass/recipe.h>
 
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
 #define NAME "snowglass.insitu"

@@ -17,7 +17,7 @@ typedef struct snow_partition_params {
     int64_t layers[3]; /* of ghost voxels */
     bool slabs_only;   /* along the slices' axis: boxes of another kind would
                           not give the same bits, or were not asked for */
-    bool trims;        /* of boxes only what the look shows is kept */
+    bool trims;        /* ranks keep only what the look shows of their boxes */
     double threshold;
     snow_isa isa;
     int threads; /* that count; 0: one */

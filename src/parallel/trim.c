@@ -9,12 +9,12 @@
  *   +----------+----------+
  *
  * The outer slabs of a volume, which take as long to draw as the inner ones,
- * are mostly air.  Voxels are left out whose values are in one range of which
- * the look shows nothing, so that samples between two of them show nothing
- * either, and which are farther from all others than a sample reaches.  Nothing
- * else is known of them afterwards than the range, which counts for the scale
- * of values: another look that shows some of it, another mode and parts that
- * reach farther are refused. */
+ * are mostly air.  The look shows nothing of the values in one range, so that
+ * samples between two such voxels are transparent too.  Each rank keeps the
+ * bounding box of the other voxels, and layers around it for what samples
+ * reach.  Of the voxels left out only the range is known afterwards; it counts
+ * for the scale of values.  Another look that shows some of it, another mode
+ * and views that need more layers are refused. */
 #include "parallel/trim.h"
 
 #include "classify/hidden.h"
@@ -39,7 +39,7 @@
 /* No voxel, as the first one and as the one before the first. */
 #define NOWHERE (INT64_C(1) << 60)
 
-/* What is outside of the range, in a box: the first voxels, and the last. */
+/* The bounding box of the voxels outside the hidden range. */
 typedef struct bounds {
     int64_t first[3], last[3];
 } bounds;
@@ -225,24 +225,25 @@ static void add_row(const trimming *t, const int64_t at[3], int64_t end,
 }
 
 /* A box and layers around it, within another one. */
-static snow_box widen(const snow_box *box, const int64_t layers[3], int times,
+static snow_box widen(const snow_box *box, const int64_t layers[3],
                       const snow_box *within) {
     snow_box wide = *box, out = {{0, 0, 0}, {0, 0, 0}};
     for (int i = 0; i < 3; i++) {
-        wide.first[i] -= times * layers[i];
-        wide.count[i] += 2 * times * layers[i];
+        wide.first[i] -= layers[i];
+        wide.count[i] += 2 * layers[i];
     }
     (void)snow_box_intersect(&wide, within, &out);
     return out;
 }
 
-/* What this rank holds for a box: all that samples of it reach. */
+/* What this rank holds within the kept layers of a box: a voxel of the box that
+ * is so near to one of these is kept. */
 static void find_bounds(const trimming *t, const snow_box *box, bounds *b) {
     snow_box here;
     *b = (bounds){{NOWHERE, NOWHERE, NOWHERE}, {-NOWHERE, -NOWHERE, -NOWHERE}};
     if (!snow_box_voxels(box))
         return;
-    const snow_box reached = widen(box, t->order->layers, 1, &t->whole);
+    const snow_box reached = widen(box, t->left->ring, &t->whole);
     if (!snow_box_intersect(&reached, &t->mine, &here))
         return;
     const int64_t end[3] = {here.first[0] + here.count[0],
@@ -279,9 +280,8 @@ static snow_box trimmed(const trimming *t, int rank) {
         box.first[i] = b->first[i];
         box.count[i] = b->last[i] - b->first[i] + 1;
     }
-    return snow_box_voxels(&box)
-               ? widen(&box, t->order->layers, RINGS, &t->boxes[rank])
-               : box;
+    return snow_box_voxels(&box) ? widen(&box, t->left->ring, &t->boxes[rank])
+                                 : box;
 }
 
 /* Whether a part of all voxels is left out, and some are not. */
@@ -309,12 +309,22 @@ static snow_status check_rings(const trimming *t) {
     return SNOW_STATUS_OK;
 }
 
-/* Collective.  The range that is left out, unless it is known. */
+/* Whether the look shows nothing of some range, however narrow. */
+static bool hides_any(const trimming *t) {
+    snow_hidden_range ranges[SNOW_HIDDEN_MOST];
+    return snow_hidden_ranges(t->transfer, &t->held->info, t->order->threshold,
+                              0, ranges) > 0;
+}
+
+/* Collective.  The range that is left out, and the layers that are kept, unless
+ * they are known.  Later cuts keep as many layers as the first one. */
 static snow_status find_range(const trimming *t) {
     snow_data_range all;
     bool can;
     if (t->left->any)
         return check_rings(t);
+    if (!hides_any(t)) /* on no rank */
+        return SNOW_STATUS_OK;
     SNOW_TRY(find_stored(t, &all, &can));
     if (can)
         SNOW_TRY(choose_range(t, &all));

@@ -46,6 +46,7 @@ static snow_status check_left_out(const snow_job *job) {
     const double b = info->slope * left->high + info->intercept;
     if (!left->any ||
         (snow_can_lack_voxels(&job->settings) && !job->layer_count &&
+         !(job->view->fov > 0) &&
          snow_is_hidden(job->transfer, info, job->settings.threshold,
                         left->spare, a < b ? a : b, a < b ? b : a)))
         return SNOW_STATUS_OK;

@@ -277,6 +277,12 @@ snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
     inside in = {.labels = by->labels, .count = by->label_count, .last = NAN};
     snow_volume_info info = volume->info;
     snow_volume *made;
+    if (volume->left_out.any)
+        return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
+                         "the volume was opened for one look and lacks voxels "
+                         "that a mask or clip planes may uncover; mask and "
+                         "clip it when it is opened, or open it without "
+                         "one_look");
     snow_mask_info(&info);
     SNOW_TRY(snow_volume_new(volume->context, &info, &made));
     made->is_part = volume->is_part;

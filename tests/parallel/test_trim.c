@@ -284,6 +284,18 @@ static snow_status try_others(snow_comm *comm, const request *r,
                                     &settings, &r->how,
                                     &image) == SNOW_STATUS_BAD_USAGE);
     settings.depth = false;
+    snow_view near = r->views[0];
+    near.fov = 20;
+    REQUIRE(comm,
+            snow_ranks_render(frame, comm, volume, transfer, &near, &settings,
+                              &r->how, &image) == SNOW_STATUS_BAD_USAGE);
+    REQUIRE(comm, strstr(snow_context_message(context), "without one_look"));
+    static const double plane[4] = {1, 0, 0, 30};
+    snow_volume *cut = NULL;
+    REQUIRE(comm,
+            snow_volume_clip(volume, plane, 1, &cut) == SNOW_STATUS_BAD_USAGE);
+    REQUIRE(comm, snow_volume_mask(volume, volume, NULL, 0, &cut) ==
+                      SNOW_STATUS_BAD_USAGE);
     SNOW_TRY(snow_ranks_render(frame, comm, volume, transfer, &r->views[0],
                                &settings, &r->how, &image));
     snow_image_free(image);
