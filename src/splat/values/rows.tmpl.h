@@ -39,7 +39,7 @@ static inline NAME(source)
 /* Where a row of stored values begins: of the slice, or of `after` where `end`
  * is 1, or of the next one of either where `on` is 1. */
 TARGET VALUE_LEAF int64_t NAME(place_of)(const NAME(source) * s, int end,
-                                           int on, int64_t row) {
+                                         int on, int64_t row) {
     const snow_value_store *store = s->store;
     if (store->in_place)
         return s->begin[end] + on * store->slice_step + row * store->row_step;
@@ -47,7 +47,7 @@ TARGET VALUE_LEAF int64_t NAME(place_of)(const NAME(source) * s, int end,
 }
 
 TARGET VALUE_LEAF V(row) NAME(load_stored)(const unsigned char *stored,
-                                             int64_t place, const int kind) {
+                                           int64_t place, const int kind) {
     if (kind == SNOW_VALUE_BYTES)
         return V(row_bytes)(stored + place);
     return V(row_load)((const int16_t *)(const void *)(stored + 2 * place));
@@ -106,8 +106,8 @@ TARGET VALUE_LEAF V(row)
 /* 32 numbers of a row of the volume from `column` on, and from the next one on;
  * columns may be beyond the sides. */
 TARGET VALUE_LEAF void NAME(pair_inside)(const snow_value_store *s,
-                                           int64_t place, int64_t column,
-                                           const int kind, V(row) out[2]) {
+                                         int64_t place, int64_t column,
+                                         const int kind, V(row) out[2]) {
     const int64_t behind = s->columns - 1, step = behind > 0;
     for (int n = 0; n < 2; n++)
         out[n] = NAME(row_inside)(s, place, column + n, kind);
@@ -152,8 +152,8 @@ TARGET static void NAME(pair_beyond)(const NAME(source) * from, int end, int on,
 /* 32 numbers of a row from `column` on, and from the next one on, wherever they
  * are; `sided`: some may be beyond a side. */
 TARGET VALUE_LEAF void NAME(pair)(const NAME(source) * s, int end, int on,
-                                    int64_t row, int64_t column, const int kind,
-                                    const bool sided, V(row) out[2]) {
+                                  int64_t row, int64_t column, const int kind,
+                                  const bool sided, V(row) out[2]) {
     if (kind == SNOW_VALUE_NUMBERS) {
         const int16_t *at = s->values +
                             (end ? s->after : s->slice)[row + on * s->next] +

@@ -5,8 +5,8 @@
 
 /* Ors the cells of a sheet under a tile that are not wholly within a run. */
 TARGET VALUE_LEAF void NAME(add_cells)(const snow_value_store *s, int run,
-                                         const snow_value_sheet *sheet,
-                                         value_window w, uint32_t *out) {
+                                       const snow_value_sheet *sheet,
+                                       value_window w, uint32_t *out) {
     const uint32_t *masks = s->masks +
                             snow_value_mask_at(s, run, sheet->slice) +
                             w.word * s->mask_rows + w.row;

@@ -56,9 +56,8 @@ TARGET VALUE_INLINE uint32_t NAME(clip)(const value_cut cut[2],
 }
 
 /* Differences of the neighbours on both sides. */
-TARGET VALUE_LEAF V(row)
-    NAME(slope)(const int16_t *before, const int16_t *here,
-                const int16_t *after, bool broken) {
+TARGET VALUE_LEAF V(row) NAME(slope)(const int16_t *before, const int16_t *here,
+                                     const int16_t *after, bool broken) {
     int16_t slopes[32];
     if (!broken)
         return V(row_subs)(V(row_load)(after), V(row_load)(before));
@@ -121,12 +120,13 @@ TARGET VALUE_INLINE void NAME(see_plain)(const snow_value_splat *p,
 
 /* Packs the visible samples of a phase, from number `count` on; of a `plain`
  * one (is_plain) those that are active. */
-TARGET VALUE_LEAF int
-NAME(collect_by)(const snow_value_splat *p, const value_rows *f,
-                 const value_rows *b, const value_beside beside[2],
-                 const value_phase *state, value_slab *slab, value_queue *q,
-                 int count, const bool sloped, bool cuts, const bool eye,
-                 const bool plain) {
+TARGET VALUE_LEAF int NAME(collect_by)(const snow_value_splat *p,
+                                       const value_rows *f, const value_rows *b,
+                                       const value_beside beside[2],
+                                       const value_phase *state,
+                                       value_slab *slab, value_queue *q,
+                                       int count, const bool sloped, bool cuts,
+                                       const bool eye, const bool plain) {
     const V(row) zero = V(row_set1)(0);
     for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
         int row = __builtin_ctz(rows);
