@@ -35,8 +35,8 @@ typedef struct snow_block_counts {
                           those at the far ends may be smaller */
     int64_t blocks[3]; /* along each axis */
     int64_t *counts;   /* x fastest; owned by the caller */
-    struct snow_ray_grid *rays; /* of slabs: counted as well, so that
-                          slices behind others cost less; NULL: they do not */
+    struct snow_ray_grid *rays; /* filled together with the counts of slabs:
+                          hidden slices then cost less; NULL: all cost alike */
 } snow_block_counts;
 
 /* Makes blocks for slabs, one for each slice of the axis; or for bricks of a

@@ -240,7 +240,8 @@ void snow_ray_walk_slab(snow_ray_walk *w, int64_t first, int64_t count,
 /* Cuts that are tried. */
 #define ROUNDS 6
 
-/* What all slices cost in their slabs; returns what the dearest slab does. */
+/* What all slices cost in their slabs; returns the cost of the most
+ * expensive slab. */
 static int64_t cost_slabs(snow_ray_walk *w, const snow_block_counts *counts,
                           const snow_box *boxes, int ranks, double *shares,
                           int64_t *costs) {

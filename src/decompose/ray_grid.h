@@ -55,7 +55,7 @@ static inline int64_t snow_ray_grid_word(const snow_ray_grid *grid,
     return (INT64_C(1) << 32) + grid->closes[step];
 }
 
-/* Predictions by a grid whose sums are known. */
+/* The state of a prediction; the sums of the grid are known by then. */
 typedef struct snow_ray_walk {
     const snow_ray_grid *grid;
     float span;             /* what one costs, in voxels */
@@ -77,7 +77,8 @@ void snow_ray_walk_slab(snow_ray_walk *walk, int64_t first, int64_t count,
                         double *shares);
 
 /* Slabs by counts with rays, which cost what is drawn of them: of several cuts
- * that with the cheapest dearest slab.  Errors: SNOW_STATUS_NO_MEMORY. */
+ * that whose most expensive slab costs least.  Errors: SNOW_STATUS_NO_MEMORY.
+ */
 snow_status snow_partition_by_rays(snow_context *context,
                                    const snow_block_counts *counts, int ranks,
                                    snow_box *boxes);
