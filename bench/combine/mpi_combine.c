@@ -4,7 +4,8 @@
  *
  * Nobody has memory for a thousand whole pictures: where sizes alone are asked
  * for and whole pictures travel, large blocks of all simulated ranks are one,
- * which SimGrid then does not copy either. */
+ * which SimGrid then does not copy either.  Other pictures of sizes alone take
+ * small pages, since a huge one is cleared whole for the few bytes in use. */
 #include "combine.h"
 
 #include <snowglass/mpi.h>
@@ -27,14 +28,26 @@ static void release_folded(void *user, void *block) {
     (void)user;
     (void)block;
 }
+
+static void *allocate_small_pages(void *user, size_t bytes) {
+    (void)user;
+    return malloc(bytes);
+}
+
+static void release_small_pages(void *user, void *block) {
+    (void)user;
+    free(block);
+}
 #endif
 
 static snow_status new_context(const combine_options *options,
                                snow_context **out) {
 #ifdef SMPI_H
     const snow_allocator folded = {allocate_folded, release_folded, NULL};
-    if (options->sizes_only && options->whole)
-        return snow_context_new(&folded, out);
+    const snow_allocator small_pages = {allocate_small_pages,
+                                        release_small_pages, NULL};
+    if (options->sizes_only)
+        return snow_context_new(options->whole ? &folded : &small_pages, out);
 #endif
     (void)options;
     return snow_context_new(NULL, out);
