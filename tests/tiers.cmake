@@ -45,7 +45,7 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     test_value_views
     test_phantom test_perspective test_camera_points
     cli_documents cli_bench cli_figures cli_frame cli_stream
-    cli_matrix cli_balance cli_order cli_turntable cli_modules cli_memory cli_progress
+    cli_again cli_matrix cli_balance cli_order cli_turntable cli_modules cli_memory cli_progress
     serve_browser serve_sockets cli_large oracle_zarr oracle_tiff oracle_vtk oracle_pictures)
 
 # Tenths of a second on one core in the short tier, of those that take more than
