@@ -49,6 +49,112 @@ static void a_reserved_block_keeps_its_bytes(void **state) {
     snow_context_free(context);
 }
 
+/* --- blocks of 2 MB and more, which ask for huge pages ----------------------
+ */
+
+#define LARGE ((size_t)2 << 20)
+
+static bool is_all(const unsigned char *block, size_t bytes, int value) {
+    for (size_t n = 0; n < bytes; n++)
+        if (block[n] != value)
+            return false;
+    return true;
+}
+
+/* Of every size near the bound: what one writes into a block stays there, and
+ * stays out of its neighbours. */
+static void large_blocks_are_aligned_and_apart(void **state) {
+    (void)state;
+    static const size_t sizes[] = {LARGE - 200, LARGE - 129,  LARGE - 128,
+                                   LARGE - 127, LARGE - 1,    LARGE,
+                                   LARGE + 1,   LARGE + 4095, 3 * LARGE + 7};
+    enum { COUNT = sizeof sizes / sizeof *sizes };
+    snow_context *context = support_context();
+    unsigned char *blocks[COUNT];
+    uint64_t sum = 0;
+    for (int n = 0; n < COUNT; n++) {
+        blocks[n] = snow_allocate(context, sizes[n]);
+        assert_non_null(blocks[n]);
+        assert_int_equal((uintptr_t)blocks[n] % SNOW_ALIGNMENT, 0);
+        assert_int_equal(snow_block_bytes(blocks[n]), sizes[n]);
+        memset(blocks[n], n + 1, sizes[n]);
+        sum += sizes[n];
+    }
+    assert_int_equal(snow_context_bytes(context), sum);
+    for (int n = 0; n < COUNT; n++) {
+        assert_true(is_all(blocks[n], sizes[n], n + 1));
+        snow_release(context, blocks[n]);
+    }
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+}
+
+/* Also where the memory was another block's before. */
+static void large_blocks_are_clear_where_that_is_asked(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    for (int n = 0; n < 4; n++) {
+        unsigned char *block = snow_allocate_clear(context, LARGE + 5);
+        assert_non_null(block);
+        assert_true(is_all(block, LARGE + 5, 0));
+        memset(block, 0xff, LARGE + 5);
+        snow_release(context, block);
+    }
+    snow_context_free(context);
+}
+
+/* From a small block to larger and larger ones. */
+static void large_blocks_grow_with_what_they_hold(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    unsigned char *block = NULL;
+    size_t held = 0;
+    for (size_t size = LARGE / 4; size < 8 * LARGE; size += size / 2 + 1) {
+        assert_int_equal(SNOW_RESERVE(context, block, held, size),
+                         SNOW_STATUS_OK);
+        assert_int_equal((uintptr_t)block % SNOW_ALIGNMENT, 0);
+        assert_true(is_all(block, held, 0x5a));
+        assert_true(snow_block_bytes(block) >= size);
+        assert_int_equal(snow_context_bytes(context), snow_block_bytes(block));
+        memset(block, 0x5a, size);
+        held = size;
+    }
+    snow_release(context, block);
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+}
+
+/* Pages of the process' memory; 0 where the system does not say. */
+static long resident(void) {
+    long all = 0, pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    if (file && fscanf(file, "%ld %ld", &all, &pages) != 2)
+        pages = 0;
+    if (file)
+        fclose(file);
+    return pages;
+}
+
+/* 64 blocks of 16 MB one after another; sanitizers keep what was freed for a
+ * while, and look for leaks themselves. */
+static void large_blocks_go_back_to_the_system(void **state) {
+    (void)state;
+#ifdef __SANITIZE_ADDRESS__
+    skip();
+#endif
+    snow_context *context = support_context();
+    const size_t bytes = 8 * LARGE;
+    const long before = resident();
+    for (int n = 0; n < 64; n++) {
+        unsigned char *block = snow_allocate(context, bytes);
+        assert_non_null(block);
+        memset(block, 1, bytes);
+        snow_release(context, block);
+    }
+    assert_true(resident() - before < (long)(4 * bytes / 4096));
+    snow_context_free(context);
+}
+
 static void numbers_are_whole_or_refused(void **state) {
     (void)state;
     int64_t i = 5;
@@ -125,6 +231,10 @@ int main(void) {
         cmocka_unit_test(blocks_are_aligned_and_counted),
         cmocka_unit_test(products_that_overflow_are_refused),
         cmocka_unit_test(a_reserved_block_keeps_its_bytes),
+        cmocka_unit_test(large_blocks_are_aligned_and_apart),
+        cmocka_unit_test(large_blocks_are_clear_where_that_is_asked),
+        cmocka_unit_test(large_blocks_grow_with_what_they_hold),
+        cmocka_unit_test(large_blocks_go_back_to_the_system),
         cmocka_unit_test(numbers_are_whole_or_refused),
         cmocka_unit_test(a_number_gets_the_sign_of_the_locale),
         cmocka_unit_test(a_host_with_a_comma_reads_the_same_numbers),
