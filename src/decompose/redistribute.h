@@ -7,8 +7,9 @@
 
 /* Before the plan.  Spent: the one brick, whose rows lie one after another, is
  * needed no more once it is moved: its pages go back to the system meanwhile,
- * and what it holds is lost.  Gaps: some voxels of what is wanted are in no
- * box; they stay as they are. */
+ * and what it holds is lost.  Gaps: some voxels of what is wanted may be in
+ * no box; they stay as they are, and that all others are there is for the
+ * caller to know (parallel/trim.c). */
 void snow_voxels_expect(snow_voxels *voxels, bool spent, bool gaps);
 
 /* The slices of a box that move in one of some rounds; whole pages of a brick

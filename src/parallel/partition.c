@@ -86,7 +86,9 @@ snow_partition_params_make(snow_context *context, const snow_volume_info *whole,
                                    .grid = {.axis = placement.slice_axis},
                                    .threshold = resolved.threshold,
                                    .isa = resolved.isa,
-                                   .threads = resolved.threads};
+                                   .threads = resolved.threads,
+                                   .stop = resolved.stop,
+                                   .stop_user = resolved.stop_user};
     if (resolved.method == SNOW_METHOD_SHEAR_WARP)
         out->span = COST_OF_SPAN;
     set_rays(&placement, &resolved, out);
@@ -109,6 +111,13 @@ snow_partition_params_make(snow_context *context, const snow_volume_info *whole,
         out->cut = SNOW_PARTITION_COUNTED;
     }
     return SNOW_STATUS_OK;
+}
+
+void snow_partition_watch(snow_context *context,
+                          const snow_partition_params *order,
+                          snow_monitor *monitor) {
+    snow_monitor_begin(context, monitor, order->stop, order->stop_user);
+    monitor->last = SNOW_STAGE_READ;
 }
 
 /* What is counted of slabs. */
@@ -171,20 +180,30 @@ static snow_status add_counts(snow_comm *comm, snow_block_counts *counts) {
                : SNOW_STATUS_OK;
 }
 
-/* Collective.  Local counts become those of all ranks. */
-static snow_status count_all(snow_comm *comm,
-                             const snow_partition_params *order,
+/* What the volume answers for. */
+static snow_status count_own(const snow_partition_params *order,
                              const snow_volume *volume,
                              const snow_transfer *transfer,
                              snow_block_counts *counts) {
     const snow_slab_cut cut = {
         .ghosts = transfer && snow_transfer_has_gradient_opacity(transfer)};
     counting c = {order, transfer, counts};
+    snow_monitor monitor;
+    SNOW_TRY(clear_counts(volume->context, counts));
+    snow_partition_watch(volume->context, order, &monitor);
+    return snow_monitor_end(&monitor,
+                            snow_slabs_visit(volume, &cut, count_slab, &c));
+}
+
+/* Collective.  Local counts become those of all ranks. */
+static snow_status count_all(snow_comm *comm,
+                             const snow_partition_params *order,
+                             const snow_volume *volume,
+                             const snow_transfer *transfer,
+                             snow_block_counts *counts) {
     counts->span = order->span;
     counts->emptiness = order->span ? SNOW_EMPTINESS : SNOW_EMPTINESS_ENCODED;
-    snow_status status = clear_counts(volume->context, counts);
-    if (status == SNOW_STATUS_OK)
-        status = snow_slabs_visit(volume, &cut, count_slab, &c);
+    snow_status status = count_own(order, volume, transfer, counts);
     if (comm) {
         SNOW_TRY(snow_comm_agree_status(comm, status));
         status = add_counts(comm, counts);

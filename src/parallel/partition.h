@@ -3,6 +3,7 @@
 #ifndef SNOW_PARALLEL_PARTITION_H
 #define SNOW_PARALLEL_PARTITION_H
 
+#include "base/monitor.h"
 #include "comm/comm.h"
 #include "decompose/deterministic.h"
 #include "decompose/ray_grid.h"
@@ -24,6 +25,8 @@ typedef struct snow_partition_params {
     int span; /* of the counts (decompose/partition.h); 0: voxels are counted */
     bool hides; /* slices of a slab hide those behind them from the rays */
     snow_ray_view rays;
+    snow_stop_fn *stop; /* ends what is counted, or NULL; on any rank */
+    void *stop_user;
 } snow_partition_params;
 
 /* What picture and ranks ask for; `slopes` as in render/ghosts.h.  Not to be
@@ -35,10 +38,16 @@ snow_partition_params_make(snow_context *context, const snow_volume_info *whole,
                            const snow_ranks_options *how, int slopes, int ranks,
                            snow_partition_params *out);
 
+/* Begins the monitor of what is counted or measured, which is no stage of a
+ * picture; snow_monitor_end ends it. */
+void snow_partition_watch(snow_context *context,
+                          const snow_partition_params *order,
+                          snow_monitor *monitor);
+
 /* The boxes of all ranks, and (unless NULL) their counts.  Counted are the
  * voxels that the volumes of all ranks of `comm` answer for; NULL: of this one.
- * Collective then. Errors: SNOW_STATUS_NO_MEMORY, those of the transport;
- * agreed on. */
+ * Collective then. Errors: SNOW_STATUS_NO_MEMORY, SNOW_STATUS_STOPPED, those
+ * of the transport; agreed on. */
 snow_status snow_partition_boxes(snow_comm *comm,
                                  const snow_partition_params *order,
                                  const snow_volume *volume,

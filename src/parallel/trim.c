@@ -33,27 +33,17 @@
  * needs of ghosts: for parts that are cut anew for a view that needs more. */
 #define RINGS 2
 
-/* Voxels that are looked at together. */
-#define BLOCK 256
-
-/* No voxel, as the first one and as the one before the first. */
-#define NOWHERE (INT64_C(1) << 60)
-
-/* The bounding box of the voxels outside the hidden range. */
-typedef struct bounds {
-    int64_t first[3], last[3];
-} bounds;
-
 typedef struct trimming {
     snow_comm *comm;
     const snow_partition_params *order;
     const snow_box *boxes;
     const snow_volume *held;
     const snow_transfer *transfer;
+    int threads;
     snow_box whole, mine; /* of the grid; owned by the volume held */
     int64_t stored[3];    /* its first voxel */
     snow_left_out *left;
-    bounds *bounds; /* of each rank */
+    snow_bounds *bounds; /* of each rank */
 } trimming;
 
 /* --- the range ------------------------------------------------------------ */
@@ -78,7 +68,6 @@ static snow_status find_stored(const trimming *t, snow_data_range *all,
                                bool *can) {
     enum { MINUS_LOW, HIGH, CANNOT, COUNT };
     const snow_volume *held = t->held;
-    const int threads = t->order->threads > 1 ? t->order->threads : 1;
     snow_data_range here = {.low = INFINITY, .high = -INFINITY};
     snow_status status = SNOW_STATUS_OK;
     snow_volume plain = *held; /* whose data values are those stored */
@@ -86,7 +75,7 @@ static snow_status find_stored(const trimming *t, snow_data_range *all,
     plain.info.intercept = 0;
     if (snow_box_voxels(&t->mine))
         status =
-            snow_data_range_measure(&plain, (snow_scale){0}, threads, &here);
+            snow_data_range_measure(&plain, (snow_scale){0}, t->threads, &here);
     SNOW_TRY(snow_comm_agree_status(t->comm, status));
     double words[COUNT] = {-here.low, here.high,
                            held->masked || held->clip || held->lost_clip ||
@@ -99,13 +88,16 @@ static snow_status find_stored(const trimming *t, snow_data_range *all,
     return SNOW_STATUS_OK;
 }
 
-/* How many rows begin with a value of each range, and the least such one. */
+/* How many rows begin with a value of each range, and the least such one.  A
+ * stop ends it, which the next pass reports. */
 static void count_rows(const trimming *t, const snow_hidden_range *ranges,
                        int count, int64_t *rows, double *least) {
     const snow_box *box = &t->mine;
     const int64_t end[2] = {box->first[1] + box->count[1],
                             box->first[2] + box->count[2]};
-    for (int64_t z = box->first[2]; z < end[1]; z++)
+    snow_monitor *monitor = t->held->context->monitor;
+    for (int64_t z = box->first[2];
+         z < end[1] && !snow_monitor_look(monitor, 0); z++)
         for (int64_t y = box->first[1]; y < end[0]; y++) {
             const double native =
                 snow_volume_native(t->held, index_of(t, box->first[0], y, z));
@@ -154,134 +146,39 @@ static snow_status choose_range(const trimming *t, const snow_data_range *all) {
 
 /* --- what is outside of it ------------------------------------------------ */
 
-/* The first or the last of some voxels of a row whose value is outside;
- * `count`, or -1: none is. */
-static int64_t find_in_block(const trimming *t, int64_t at, int64_t count,
-                             bool last) {
-    double stored[BLOCK];
-    int32_t low, high;
-    const snow_left_out *left = t->left;
-    if (snow_volume_extremes(t->held, at, (size_t)count, &low, &high) &&
-        low >= left->low && high <= left->high)
-        return last ? -1 : count;
-    snow_volume_stored(t->held, at, (size_t)count, stored);
-    int64_t n = last ? count - 1 : 0;
-    while (n >= 0 && n < count && stored[n] >= left->low &&
-           stored[n] <= left->high) /* NaN is not */
-        n += last ? -1 : 1;
-    return n;
-}
-
-/* The same of voxels x .. end - 1 of a row, as a place in it; NOWHERE, or
- * -NOWHERE: none is. */
-static int64_t find_first(const trimming *t, int64_t row, int64_t x,
-                          int64_t end) {
-    for (; x < end; x += BLOCK) {
-        const int64_t count = end - x < BLOCK ? end - x : BLOCK;
-        const int64_t n = find_in_block(t, row + x, count, false);
-        if (n < count)
-            return x + n;
-    }
-    return NOWHERE;
-}
-
-static int64_t find_last(const trimming *t, int64_t row, int64_t x,
-                         int64_t end) {
-    for (; x < end; end -= BLOCK) {
-        const int64_t count = end - x < BLOCK ? end - x : BLOCK;
-        const int64_t n = find_in_block(t, row + end - count, count, true);
-        if (n >= 0)
-            return end - count + n;
-    }
-    return -NOWHERE;
-}
-
-static int64_t less(int64_t a, int64_t b) {
-    return a < b ? a : b;
-}
-
-static int64_t more(int64_t a, int64_t b) {
-    return a > b ? a : b;
-}
-
-/* Widens bounds by voxels x .. end - 1 of a row.  Those within are not looked
- * at. */
-static void add_row(const trimming *t, const int64_t at[3], int64_t end,
-                    bounds *b) {
-    const int64_t x = at[0], row = index_of(t, 0, at[1], at[2]);
-    const bool within = at[1] >= b->first[1] && at[1] <= b->last[1] &&
-                        at[2] >= b->first[2] && at[2] <= b->last[2];
-    const int64_t first =
-        find_first(t, row, x, within ? less(b->first[0], end) : end);
-    const int64_t last =
-        find_last(t, row, within ? more(b->last[0] + 1, x) : more(first, x),
-                  first == NOWHERE && !within ? x : end);
-    b->first[0] = less(b->first[0], first);
-    b->last[0] = more(b->last[0], last);
-    for (int i = 1; i < 3 && first != NOWHERE; i++) {
-        b->first[i] = less(b->first[i], at[i]);
-        b->last[i] = more(b->last[i], at[i]);
-    }
-}
-
-/* A box and layers around it, within another one. */
-static snow_box widen(const snow_box *box, const int64_t layers[3],
-                      const snow_box *within) {
-    snow_box wide = *box, out = {{0, 0, 0}, {0, 0, 0}};
-    for (int i = 0; i < 3; i++) {
-        wide.first[i] -= layers[i];
-        wide.count[i] += 2 * layers[i];
-    }
-    (void)snow_box_intersect(&wide, within, &out);
-    return out;
-}
-
-/* What this rank holds within the kept layers of a box: a voxel of the box that
- * is so near to one of these is kept. */
-static void find_bounds(const trimming *t, const snow_box *box, bounds *b) {
-    snow_box here;
-    *b = (bounds){{NOWHERE, NOWHERE, NOWHERE}, {-NOWHERE, -NOWHERE, -NOWHERE}};
-    if (!snow_box_voxels(box))
-        return;
-    const snow_box reached = widen(box, t->left->ring, &t->whole);
-    if (!snow_box_intersect(&reached, &t->mine, &here))
-        return;
-    const int64_t end[3] = {here.first[0] + here.count[0],
-                            here.first[1] + here.count[1],
-                            here.first[2] + here.count[2]};
-    for (int64_t z = here.first[2]; z < end[2]; z++)
-        for (int64_t y = here.first[1]; y < end[1]; y++)
-            add_row(t, (int64_t[]){here.first[0], y, z}, end[0], b);
+/* What is least becomes most, and the other way round. */
+static void turn_firsts(const trimming *t) {
+    for (int n = 0; n < t->order->ranks; n++)
+        for (int i = 0; i < 3; i++)
+            t->bounds[n].first[i] *= -1;
 }
 
 /* Collective.  The bounds of all boxes in what all ranks hold. */
 static snow_status share_bounds(trimming *t) {
     const int ranks = t->order->ranks;
-    SNOW_TRY(snow_comm_agree_status(
-        t->comm, SNOW_RESERVE(t->held->context, t->bounds, 0, ranks)));
-    for (int n = 0; n < ranks; n++) {
-        find_bounds(t, &t->boxes[n], &t->bounds[n]);
-        for (int i = 0; i < 3; i++)
-            t->bounds[n].first[i] *= -1;
-    }
+    snow_status status = SNOW_RESERVE(t->held->context, t->bounds, 0, ranks);
+    if (status == SNOW_STATUS_OK)
+        status = snow_bounds_find(t->held, t->left, t->boxes, ranks, t->threads,
+                                  t->bounds);
+    SNOW_TRY(snow_comm_agree_status(t->comm, status));
+    turn_firsts(t);
     SNOW_TRY(snow_comm_reduce_ints(
         t->comm, (int64_t *)t->bounds,
         (size_t)ranks * sizeof *t->bounds / sizeof(int64_t), SNOW_REDUCE_MAX));
-    for (int n = 0; n < ranks; n++)
-        for (int i = 0; i < 3; i++)
-            t->bounds[n].first[i] *= -1;
+    turn_firsts(t);
     return SNOW_STATUS_OK;
 }
 
 static snow_box trimmed(const trimming *t, int rank) {
-    const bounds *b = &t->bounds[rank];
+    const snow_bounds *b = &t->bounds[rank];
     snow_box box = {{0, 0, 0}, {0, 0, 0}};
     for (int i = 0; i < 3 && b->last[0] >= b->first[0]; i++) {
         box.first[i] = b->first[i];
         box.count[i] = b->last[i] - b->first[i] + 1;
     }
-    return snow_box_voxels(&box) ? widen(&box, t->left->ring, &t->boxes[rank])
-                                 : box;
+    return snow_box_voxels(&box)
+               ? snow_box_widen(&box, t->left->ring, &t->boxes[rank])
+               : box;
 }
 
 /* Whether a part of all voxels is left out, and some are not. */
@@ -309,6 +206,22 @@ static snow_status check_rings(const trimming *t) {
     return SNOW_STATUS_OK;
 }
 
+/* Collective.  Voxels that were left out may be missing when parts change
+ * hands, so that no count of voxels shows whether all is there; but each of
+ * them has one rank that answers for it. */
+static snow_status check_boxes(const trimming *t) {
+    int64_t voxels = snow_box_voxels(&t->held->left_out.box);
+    const int64_t all = snow_box_voxels(&t->whole);
+    SNOW_TRY(snow_comm_reduce_ints(t->comm, &voxels, 1, SNOW_REDUCE_SUM));
+    if (voxels == all)
+        return SNOW_STATUS_OK;
+    return snow_fail(t->held->context, SNOW_STATUS_BAD_USAGE,
+                     "ranks answer for %lld voxels, but the volume has %lld: "
+                     "every voxel must belong to exactly one rank; open the "
+                     "volume on all ranks together",
+                     (long long)voxels, (long long)all);
+}
+
 /* Whether the look shows nothing of some range, however narrow. */
 static bool hides_any(const trimming *t) {
     snow_hidden_range ranges[SNOW_HIDDEN_MOST];
@@ -321,8 +234,10 @@ static bool hides_any(const trimming *t) {
 static snow_status find_range(const trimming *t) {
     snow_data_range all;
     bool can;
-    if (t->left->any)
+    if (t->left->any) {
+        SNOW_TRY(check_boxes(t));
         return check_rings(t);
+    }
     if (!hides_any(t)) /* on no rank */
         return SNOW_STATUS_OK;
     SNOW_TRY(find_stored(t, &all, &can));
@@ -351,11 +266,13 @@ snow_status snow_ranks_trim(snow_comm *comm, const snow_partition_params *order,
                             const snow_transfer *transfer, snow_box *own,
                             snow_left_out *left) {
     snow_extent part;
+    snow_monitor monitor;
     trimming t = {.comm = comm,
                   .order = order,
                   .boxes = boxes,
                   .held = held,
                   .transfer = transfer,
+                  .threads = order->threads > 1 ? order->threads : 1,
                   .left = left};
     snow_volume_find_extent(held, &part);
     memcpy(t.whole.count, order->grid.dims, sizeof t.whole.count);
@@ -363,7 +280,8 @@ snow_status snow_ranks_trim(snow_comm *comm, const snow_partition_params *order,
     memcpy(t.mine.count, part.count, sizeof part.count);
     memcpy(t.stored, part.stored, sizeof part.stored);
     left->box = *own = boxes[snow_comm_rank(comm)];
-    const snow_status status = trim(&t, own);
+    snow_partition_watch(held->context, order, &monitor);
+    const snow_status status = snow_monitor_end(&monitor, trim(&t, own));
     snow_release(held->context, t.bounds);
     return status;
 }

@@ -1,11 +1,14 @@
 /* tests/parallel/test_trim.c - parts that lack what the look of their opening
  * shows nothing of: pictures have the same bits, and other looks are refused.
  */
-#include "support/volumes.h"
+#include "support/ball.h"
 
 #include "classify/hidden.h"
+#include "decompose/partition.h"
+#include "parallel/part.h"
+#include "parallel/trim.h"
+#include "render/ghosts.h"
 #include "transfer/transfer.h"
-#include "volume/volume.h"
 
 #include <math.h>
 #include <snowglass/ranks.h>
@@ -13,62 +16,6 @@
 #define MOST_RANKS 8
 #define SIDE 40
 #define PICTURES 4
-
-/* A ball in air with noise. */
-static const int64_t dims[3] = {72, 60, 80};
-static const double middle[3] = {28, 33, 51};
-#define RADIUS 13
-
-/* Air is 20 to 40, the ball 90 to 230; of a hole in it nothing is known. */
-static double value_of(const int64_t at[3], uint64_t *seed, bool hole) {
-    double square = 0;
-    for (int i = 0; i < 3; i++)
-        square += ((double)at[i] - middle[i]) * ((double)at[i] - middle[i]);
-    const double depth = RADIUS - sqrt(square);
-    const double noise = support_uniform(seed);
-    if (depth < 0)
-        return floor(20 + 20 * noise);
-    return hole && depth > RADIUS - 2 ? (double)NAN
-                                      : floor(90 + 9 * depth + 20 * noise);
-}
-
-static const char *put_ball(support_place *place, snow_type type) {
-    const size_t size = snow_type_size(type);
-    char *voxels = malloc((size_t)(dims[0] * dims[1] * dims[2]) * size);
-    assert_non_null(voxels);
-    uint64_t seed = 5;
-    char *to = voxels;
-    int64_t at[3];
-    for (at[2] = 0; at[2] < dims[2]; at[2]++)
-        for (at[1] = 0; at[1] < dims[1]; at[1]++)
-            for (at[0] = 0; at[0] < dims[0]; at[0]++, to += size) {
-                const double value =
-                    value_of(at, &seed, type == SNOW_TYPE_FLOAT32);
-                const uint8_t byte = isnan(value) ? 0 : (uint8_t)value;
-                const int16_t word = (int16_t)(-10 * byte);
-                const float real = (float)(value / 7);
-                memcpy(to,
-                       type == SNOW_TYPE_UINT8   ? (const void *)&byte
-                       : type == SNOW_TYPE_INT16 ? (const void *)&word
-                                                 : (const void *)&real,
-                       size);
-            }
-    snow_volume_info info;
-    snow_volume_info_init(&info);
-    memcpy(info.dims, dims, sizeof dims);
-    info.type = type;
-    info.slope = type == SNOW_TYPE_INT16     ? -0.1
-                 : type == SNOW_TYPE_FLOAT32 ? 7
-                                             : 1;
-    snow_volume *volume;
-    assert_int_equal(snow_volume_wrap(place->context, &info, voxels, &volume),
-                     SNOW_STATUS_OK);
-    const char *path = support_place_path(place, "ball.nii");
-    assert_int_equal(snow_volume_save(volume, path, true), SNOW_STATUS_OK);
-    snow_volume_close(volume);
-    free(voxels);
-    return path;
-}
 
 static const snow_opacity_point ball_alone[] = {
     {70, 0}, {100, 0.1}, {160, 0.7}, {230, 0.9}};
@@ -83,9 +30,20 @@ typedef struct request {
     snow_view views[PICTURES];
     int pictures;
     float *made; /* all pictures */
+    bool trims;  /* parts lack what the look does not show: checked */
+    int64_t rings[MOST_RANKS][3];
+    int cuts[MOST_RANKS]; /* that gave a rank another part */
     int64_t stored[MOST_RANKS], owned[MOST_RANKS];
     int64_t voxels[MOST_RANKS], interesting[MOST_RANKS];
 } request;
+
+/* On threads of their own nothing can be asserted. */
+#define REQUIRE(comm, condition)                                             \
+    do {                                                                     \
+        if (!(condition))                                                    \
+            return snow_fail(snow_comm_context(comm), SNOW_STATUS_BAD_INPUT, \
+                             "line %d: not " #condition, __LINE__);          \
+    } while (0)
 
 static size_t floats_of(const request *r) {
     return (size_t)r->pictures * SIDE * SIDE * 4;
@@ -114,13 +72,51 @@ static void begin_request(support_place *place, const char *path, request *r) {
     }
 }
 
+static int64_t product(const int64_t n[3]) {
+    return n[0] * n[1] * n[2];
+}
+
+/* A part holds what it must by its box, the ring of the opening and the layers
+ * of its view, and nothing else. */
+static snow_status check_part(snow_comm *comm, request *r,
+                              const snow_view *view,
+                              const snow_transfer *transfer,
+                              const snow_volume *volume) {
+    const int rank = snow_comm_rank(comm);
+    int64_t layers[3], *ring = r->rings[rank];
+    snow_volume_info whole;
+    snow_extent part;
+    snow_extent_init(&part);
+    snow_volume_whole(volume, &whole);
+    r->stored[rank] = product(volume->info.dims);
+    r->cuts[rank]++;
+    if (!r->trims)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_volume_get_extent(volume, &part));
+    SNOW_TRY(snow_ghosts_needed(
+        snow_comm_context(comm), &whole, view, &r->settings,
+        snow_transfer_slopes(transfer, &whole), r->how.turns, layers));
+    for (int i = 0; i < 3 && r->cuts[rank] == 1; i++)
+        ring[i] = 2 * layers[i];
+    const snow_box wanted = support_ball_stored(volume, layers);
+    REQUIRE(comm, volume->left_out.any);
+    REQUIRE(comm, !memcmp(volume->left_out.ring, ring, 3 * sizeof *ring));
+    REQUIRE(comm, !memcmp(part.stored, wanted.first, sizeof wanted.first));
+    REQUIRE(comm,
+            !memcmp(volume->info.dims, wanted.count, sizeof wanted.count));
+    return SNOW_STATUS_OK;
+}
+
 static snow_status draw_all(snow_comm *comm, request *r,
                             const snow_transfer *transfer, snow_frame *frame,
                             snow_volume **volume) {
     for (int n = 0; n < r->pictures; n++) {
         snow_image *image = NULL;
+        const uint64_t before = (*volume)->generation;
         SNOW_TRY(snow_ranks_repartition(comm, transfer, &r->views[n],
                                         &r->settings, &r->how, volume));
+        if ((*volume)->generation != before)
+            SNOW_TRY(check_part(comm, r, &r->views[n], transfer, *volume));
         SNOW_TRY(snow_ranks_render(frame, comm, *volume, transfer, &r->views[n],
                                    &r->settings, &r->how, &image));
         if (image)
@@ -134,10 +130,6 @@ static snow_status draw_all(snow_comm *comm, request *r,
     return SNOW_STATUS_OK;
 }
 
-static int64_t product(const int64_t n[3]) {
-    return n[0] * n[1] * n[2];
-}
-
 static snow_status open_parts(snow_comm *comm, request *r, snow_volume **volume,
                               snow_transfer **transfer) {
     const int rank = snow_comm_rank(comm);
@@ -145,10 +137,9 @@ static snow_status open_parts(snow_comm *comm, request *r, snow_volume **volume,
     snow_extent_init(&part);
     SNOW_TRY(snow_ranks_open(comm, r->path, NULL, &r->look, &r->views[0],
                              &r->settings, &r->how, volume, transfer));
-    r->stored[rank] = product(snow_volume_get_info(*volume)->dims);
     SNOW_TRY(snow_volume_get_extent(*volume, &part));
     r->owned[rank] = product(part.count);
-    return SNOW_STATUS_OK;
+    return check_part(comm, r, &r->views[0], *transfer, *volume);
 }
 
 static snow_status draw(snow_comm *comm, void *user) {
@@ -181,45 +172,52 @@ static int64_t sum_of(const int64_t *of, int ranks) {
     return sum;
 }
 
-/* Draws with all voxels, and with those of the look; what is stored then. */
-static int64_t compare(support_place *place, const request *asked, int ranks) {
-    request all = *asked, one = *asked;
-    one.how.one_look = true;
-    draw_by(place, &all, ranks);
-    draw_by(place, &one, ranks);
+/* Draws with all voxels, and with those of the look. */
+typedef struct comparison {
+    request all, one;
+} comparison;
+
+static comparison compare(support_place *place, const request *asked,
+                          int ranks) {
+    comparison c = {*asked, *asked};
+    c.one.how.one_look = c.one.trims = true;
+    draw_by(place, &c.all, ranks);
+    draw_by(place, &c.one, ranks);
     double sum = 0;
-    for (size_t n = 0; n < floats_of(&all); n++)
-        sum += (double)all.made[n];
+    for (size_t n = 0; n < floats_of(asked); n++)
+        sum += (double)c.all.made[n];
     assert_true(sum > 10); /* something is seen */
-    assert_memory_equal(all.made, one.made, floats_of(&all) * sizeof(float));
-    assert_int_equal(sum_of(all.owned, ranks), product(dims));
-    assert_int_equal(sum_of(one.voxels, ranks), sum_of(all.voxels, ranks));
-    assert_int_equal(sum_of(one.interesting, ranks),
-                     sum_of(all.interesting, ranks));
-    free(all.made);
-    free(one.made);
-    return sum_of(one.stored, ranks);
+    assert_memory_equal(c.all.made, c.one.made,
+                        floats_of(asked) * sizeof(float));
+    assert_int_equal(sum_of(c.all.owned, ranks), product(support_ball_dims));
+    assert_true(2 * sum_of(c.one.stored, ranks) < sum_of(c.all.stored, ranks));
+    assert_int_equal(sum_of(c.one.voxels, ranks), sum_of(c.all.voxels, ranks));
+    assert_int_equal(sum_of(c.one.interesting, ranks),
+                     sum_of(c.all.interesting, ranks));
+    free(c.all.made);
+    free(c.one.made);
+    return c;
 }
 
+/* Each number of ranks meets each cut, and each type. */
 static void pictures_need_no_air(void **state) {
     support_place *place = *state;
     static const snow_type types[] = {SNOW_TYPE_UINT8, SNOW_TYPE_INT16,
                                       SNOW_TYPE_FLOAT32};
     static const char *const views[] = {"+z", "-x", "+y"};
+    static const snow_partition cuts[] = {
+        SNOW_PARTITION_AUTO, SNOW_PARTITION_COUNTED, SNOW_PARTITION_BRICKS};
     static const int ranks[] = {2, 3, 5, 8};
     for (int n = 0; n < 24; n++) {
         request r;
-        begin_request(place, put_ball(place, types[n % 3]), &r);
+        begin_request(place, support_ball_put(place, types[n % 3]), &r);
         set_view(place, views[n / 3 % 3], &r.views[0]);
         r.views[0].azimuth = n / 9 % 2 * 20.0;
-        r.how.cut = (snow_partition)(n % 4 == 1 ? 0 : n % 4);
+        r.how.cut = cuts[(n / 4 + n) % 3];
         r.settings.quality = (snow_quality)(n / 2 % 3);
         r.settings.kernel =
             n % 5 == 4 ? SNOW_KERNEL_BSPLINE : r.settings.kernel;
-        const int count = ranks[n % 4];
-        const int64_t stored = compare(place, &r, count);
-        /* Layers of both sides are kept around the ball. */
-        assert_true(count > 3 || stored < product(dims) / 2);
+        (void)compare(place, &r, ranks[n % 4]);
     }
 }
 
@@ -229,33 +227,27 @@ static void so_does_a_turntable(void **state) {
         SNOW_PARTITION_AUTO, SNOW_PARTITION_COUNTED, SNOW_PARTITION_BRICKS};
     for (int n = 0; n < 6; n++) {
         request r;
-        begin_request(place, put_ball(place, SNOW_TYPE_UINT8), &r);
+        begin_request(place, support_ball_put(place, SNOW_TYPE_UINT8), &r);
         r.pictures = PICTURES;
         r.how.cut = cuts[n % 3];
         r.how.turns = n > 2;
-        (void)compare(place, &r, 4);
+        const comparison c = compare(place, &r, 4);
+        /* Auto cuts bricks or slabs that serve all sides, with ghosts. */
+        assert_true(c.one.cuts[0] == (r.how.turns && n != 4 ? 1 : 3));
     }
 }
 
 static void a_look_that_shows_air_keeps_it(void **state) {
     support_place *place = *state;
     request r;
-    begin_request(place, put_ball(place, SNOW_TYPE_UINT8), &r);
+    begin_request(place, support_ball_put(place, SNOW_TYPE_UINT8), &r);
     r.look.opacities = all_seen;
     r.look.opacity_count = sizeof all_seen / sizeof *all_seen;
     r.how.one_look = true;
     draw_by(place, &r, 4);
-    assert_int_equal(sum_of(r.owned, 4), product(dims));
+    assert_int_equal(sum_of(r.owned, 4), product(support_ball_dims));
     free(r.made);
 }
-
-/* On threads of their own nothing can be asserted. */
-#define REQUIRE(comm, condition)                                             \
-    do {                                                                     \
-        if (!(condition))                                                    \
-            return snow_fail(snow_comm_context(comm), SNOW_STATUS_BAD_INPUT, \
-                             "line %d: not " #condition, __LINE__);          \
-    } while (0)
 
 static snow_status try_others(snow_comm *comm, const request *r,
                               const snow_transfer *transfer, snow_frame *frame,
@@ -320,12 +312,158 @@ static snow_status draw_others(snow_comm *comm, void *user) {
 static void what_needs_the_air_is_refused(void **state) {
     support_place *place = *state;
     request r;
-    begin_request(place, put_ball(place, SNOW_TYPE_UINT8), &r);
+    begin_request(place, support_ball_put(place, SNOW_TYPE_UINT8), &r);
     r.how.one_look = true;
     if (snow_comm_run_threads(place->context, 3, draw_others, &r) !=
         SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(place->context));
-    assert_true(sum_of(r.owned, 3) < product(dims));
+    assert_true(sum_of(r.owned, 3) < product(support_ball_dims));
+}
+
+/* Needs of the opening: 2, 2 and 1 layers of a ring of 4, 4 and 2; then of
+ * views along x, of a wider kernel, and of gradients with it, which reach too
+ * far. */
+static snow_status need_more(snow_comm *comm, request *r,
+                             const snow_transfer *transfer,
+                             snow_volume **volume) {
+    snow_settings *settings = &r->settings;
+    snow_ranks_options *how = &r->how;
+    const uint64_t before = (*volume)->generation;
+    SNOW_TRY(snow_ranks_repartition(comm, transfer, &r->views[1], settings, how,
+                                    volume));
+    REQUIRE(comm, (*volume)->generation != before);
+    SNOW_TRY(check_part(comm, r, &r->views[1], transfer, *volume));
+    settings->kernel = SNOW_KERNEL_BSPLINE;
+    SNOW_TRY(snow_ranks_repartition(comm, transfer, &r->views[0], settings, how,
+                                    volume));
+    SNOW_TRY(check_part(comm, r, &r->views[0], transfer, *volume));
+    const uint64_t last = (*volume)->generation;
+    settings->shade = SNOW_SHADE_PHONG;
+    REQUIRE(comm, snow_ranks_repartition(comm, transfer, &r->views[0], settings,
+                                         how, volume) == SNOW_STATUS_BAD_USAGE);
+    REQUIRE(comm,
+            strstr(snow_context_message(snow_comm_context(comm)),
+                   "needs 3 voxels around what the look shows, but only 2"));
+    REQUIRE(comm, (*volume)->generation == last);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status open_and_need_more(snow_comm *comm, void *user) {
+    request r = *(const request *)user; /* of this rank */
+    snow_volume *volume;
+    snow_transfer *transfer;
+    SNOW_TRY(open_parts(comm, &r, &volume, &transfer));
+    const snow_status status = need_more(comm, &r, transfer, &volume);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    return status;
+}
+
+static void more_than_the_first_ring_is_refused(void **state) {
+    support_place *place = *state;
+    for (int ranks = 2; ranks < 6; ranks++) {
+        request r;
+        begin_request(place, support_ball_put(place, SNOW_TYPE_UINT8), &r);
+        set_view(place, "-x", &r.views[1]);
+        r.settings.shade = SNOW_SHADE_NONE;
+        r.how.one_look = r.trims = true;
+        if (snow_comm_run_threads(place->context, ranks, open_and_need_more,
+                                  &r) != SNOW_STATUS_OK)
+            fail_msg("%s", snow_context_message(place->context));
+    }
+}
+
+/* --- stops, and parts that do not belong together --------------------------
+ */
+
+static bool stop_at_once(void *user) {
+    (void)user;
+    return true;
+}
+
+/* Opens parts, and then each rank's box of all. */
+static snow_status open_whole_parts(snow_comm *comm, request *r,
+                                    snow_volume **volume,
+                                    snow_transfer **transfer,
+                                    snow_box boxes[MOST_RANKS]) {
+    SNOW_TRY(open_parts(comm, r, volume, transfer));
+    const snow_box box = snow_part_box(*volume);
+    return snow_comm_allgather(comm, &box, sizeof box, boxes);
+}
+
+/* Each rank in turn is asked to stop, none at last. */
+static snow_status stop_trimming(snow_comm *comm, void *user) {
+    request *r = user;
+    const int rank = snow_comm_rank(comm), ranks = snow_comm_size(comm);
+    snow_volume *volume;
+    snow_transfer *transfer;
+    snow_box boxes[MOST_RANKS], own;
+    snow_partition_params order;
+    SNOW_TRY(open_whole_parts(comm, r, &volume, &transfer, boxes));
+    snow_volume_info whole;
+    snow_volume_whole(volume, &whole);
+    snow_status status = snow_partition_params_make(
+        snow_comm_context(comm), &whole, &r->views[0], &r->settings, &r->how, 0,
+        ranks, &order);
+    for (int n = 0; n <= ranks && status == SNOW_STATUS_OK; n++) {
+        snow_left_out left = volume->left_out;
+        order.stop = rank == n ? stop_at_once : NULL;
+        const snow_status found =
+            snow_ranks_trim(comm, &order, boxes, volume, transfer, &own, &left);
+        if (found != (n < ranks ? SNOW_STATUS_STOPPED : SNOW_STATUS_OK))
+            status = snow_fail(snow_comm_context(comm), SNOW_STATUS_BAD_INPUT,
+                               "stop of rank %d: status %d", n, found);
+        if (n == ranks)
+            r->stored[rank] = snow_box_voxels(&own);
+    }
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    return status;
+}
+
+/* However many threads look for the bounds, they find the same ones. */
+static void a_stop_of_any_rank_ends_trimming(void **state) {
+    support_place *place = *state;
+    int64_t stored = 0;
+    for (int n = 0; n < 12; n++) {
+        request r;
+        begin_request(place, support_ball_put(place, SNOW_TYPE_FLOAT32), &r);
+        r.settings.threads = 1 + n % 4;
+        if (snow_comm_run_threads(place->context, 3, stop_trimming, &r) !=
+            SNOW_STATUS_OK)
+            fail_msg("%s", snow_context_message(place->context));
+        stored = n ? stored : sum_of(r.stored, 3);
+        assert_int_equal(sum_of(r.stored, 3), stored);
+    }
+    assert_true(stored < product(support_ball_dims) / 2);
+}
+
+/* Rank 1 answers for a slice less than it was given. */
+static snow_status lose_a_slice(snow_comm *comm, void *user) {
+    request *r = user;
+    snow_volume *volume;
+    snow_transfer *transfer;
+    SNOW_TRY(open_parts(comm, r, &volume, &transfer));
+    volume->left_out.box.count[2] -= snow_comm_rank(comm) == 1;
+    const snow_status status = snow_ranks_repartition(
+        comm, transfer, &r->views[1], &r->settings, &r->how, &volume);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    REQUIRE(comm, status == SNOW_STATUS_BAD_USAGE);
+    REQUIRE(comm, strstr(snow_context_message(snow_comm_context(comm)),
+                         "every voxel must belong to exactly one rank"));
+    return SNOW_STATUS_OK;
+}
+
+static void a_voxel_without_a_rank_is_noticed(void **state) {
+    support_place *place = *state;
+    request r;
+    begin_request(place, support_ball_put(place, SNOW_TYPE_UINT8), &r);
+    set_view(place, "-x", &r.views[1]);
+    r.how.one_look = r.trims = true;
+    if (snow_comm_run_threads(place->context, 3, lose_a_slice, &r) !=
+        SNOW_STATUS_OK)
+        fail_msg("%s", snow_context_message(place->context));
 }
 
 static void hidden_values_are_some_way_from_seen_ones(void **state) {
@@ -361,6 +499,9 @@ int main(void) {
         TEST(so_does_a_turntable),
         TEST(a_look_that_shows_air_keeps_it),
         TEST(what_needs_the_air_is_refused),
+        TEST(more_than_the_first_ring_is_refused),
+        TEST(a_stop_of_any_rank_ends_trimming),
+        TEST(a_voxel_without_a_rank_is_noticed),
         TEST(hidden_values_are_some_way_from_seen_ones),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
