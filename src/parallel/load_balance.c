@@ -175,14 +175,19 @@ static snow_status ask_all(balancing *b, snow_status status) {
     return snow_comm_allgather(b->comm, &mine, sizeof mine, b->words);
 }
 
+/* Whether all ranks have costs of the axis. */
+static bool are_known(const balancing *b) {
+    bool known = true;
+    for (int rank = 0; rank < b->ranks; rank++)
+        known = known && b->words[rank].known;
+    return known;
+}
+
 /* Collective.  Costs of the slices, of counts where any rank has none. */
 static snow_status know_costs(balancing *b, double **out) {
     double **costs = &b->work->costs[b->order.grid.axis];
     int64_t slices = snow_partition_slices(&b->order);
-    bool known = true;
-    for (int rank = 0; rank < b->ranks; rank++)
-        known = known && b->words[rank].known;
-    if (!known) {
+    if (!are_known(b)) {
         snow_status status = snow_comm_agree_status(
             b->comm, SNOW_RESERVE(b->context, *costs, 0, slices));
         if (status == SNOW_STATUS_OK)
@@ -223,9 +228,10 @@ static snow_status cut_slabs(balancing *b, bool learns, double *dearest) {
     return SNOW_STATUS_OK;
 }
 
-/* Collective.  Some part does not serve the view. */
+/* Collective.  Some part does not serve the view.  Where no times are known of
+ * an axis, slabs are those of `auto`, which sees what is hidden. */
 static snow_status cut_for_view(balancing *b) {
-    bool slabs = b->order.cut == SNOW_PARTITION_COUNTED;
+    bool slabs = b->order.cut == SNOW_PARTITION_COUNTED && are_known(b);
     double dearest;
     b->work->cuts = 0;
     if (slabs)

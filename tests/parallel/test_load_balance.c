@@ -5,7 +5,7 @@
 
 #include "image/image.h"
 #include "parallel/load_balance.h"
-#include "parallel/partition.h"
+#include "parallel/part.h"
 #include "render/picture.h"
 #include "volume/volume.h"
 
@@ -347,6 +347,62 @@ static void a_whole_turn_is_that_of_one_process(void **state) {
     assert_true(t.cuts >= 4);
 }
 
+/* The parts of ranks that were opened along z and are wanted along x, or were
+ * opened so. */
+typedef struct new_axis {
+    bool opened;
+    snow_box boxes[RANKS_MOST];
+} new_axis;
+
+static snow_status change_axis(snow_comm *comm, void *user) {
+    new_axis *a = user;
+    snow_context *context = snow_comm_context(comm);
+    snow_volume_options options = {.size = sizeof options,
+                                   .dims = {64, 64, 64}};
+    snow_view along_z = {.size = sizeof along_z}, along_x = along_z;
+    SNOW_TRY(snow_view_from_name(context, "+z", &along_z));
+    SNOW_TRY(snow_view_from_name(context, "+x", &along_x));
+    snow_settings settings;
+    snow_settings_init(&settings);
+    snow_look look = {.size = sizeof look, .preset = "ct-bone"};
+    snow_ranks_options how = {.size = sizeof how};
+    snow_volume *volume = NULL;
+    snow_transfer *transfer = NULL;
+    snow_frame *frame = NULL;
+    SNOW_TRY(snow_frame_new(context, &frame));
+    snow_status status = snow_ranks_open(comm, "phantom:head", &options, &look,
+                                         a->opened ? &along_x : &along_z,
+                                         &settings, &how, &volume, &transfer);
+    how.cut = SNOW_PARTITION_MEASURED;
+    if (status == SNOW_STATUS_OK)
+        status = snow_ranks_rebalance(frame, comm, transfer, &along_x,
+                                      &settings, &how, 100, &volume);
+    if (status == SNOW_STATUS_OK)
+        a->boxes[snow_comm_rank(comm)] = snow_part_box(volume);
+    snow_frame_free(frame);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    return status;
+}
+
+static void a_new_axis_is_cut_as_if_it_were_the_first(void **state) {
+    (void)state;
+    for (int ranks = 2; ranks < 8; ranks++) {
+        snow_context *context = support_context();
+        static new_axis first, later;
+        first.opened = true;
+        assert_int_equal(
+            snow_comm_run_threads(context, ranks, change_axis, &first),
+            SNOW_STATUS_OK);
+        assert_int_equal(
+            snow_comm_run_threads(context, ranks, change_axis, &later),
+            SNOW_STATUS_OK);
+        assert_memory_equal(first.boxes, later.boxes,
+                            (size_t)ranks * sizeof *first.boxes);
+        snow_context_free(context);
+    }
+}
+
 static void nothing_is_cut_where_time_must_not_or_cannot_tell(void **state) {
     (void)state;
     const struct {
@@ -386,6 +442,7 @@ int main(void) {
         cmocka_unit_test(a_cut_pays_where_time_is_saved_in_the_end),
         cmocka_unit_test(parts_are_cut_anew_and_pictures_stay),
         cmocka_unit_test(a_whole_turn_is_that_of_one_process),
+        cmocka_unit_test(a_new_axis_is_cut_as_if_it_were_the_first),
         cmocka_unit_test(nothing_is_cut_where_time_must_not_or_cannot_tell),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
