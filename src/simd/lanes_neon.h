@@ -11,11 +11,19 @@
 #define snow_lanes_subs(a, b) (snow_scalar_eighth) vqsubq_s16(a, b)
 #define snow_lanes_mulhrs(a, b) (snow_scalar_eighth) vqrdmulhq_s16(a, b)
 #define snow_lanes_avg(a, b) (snow_scalar_eighth) vrhaddq_s16(a, b)
+#define snow_lanes_min(a, b) (snow_scalar_eighth) vminq_s16(a, b)
+#define snow_lanes_max(a, b) (snow_scalar_eighth) vmaxq_s16(a, b)
 
-/* A bit for each number that is not 0, whose bits are all set. */
-static inline uint32_t snow_lanes_bits(snow_scalar_eighth a) {
-    const uint16x8_t bits = {1, 2, 4, 8, 16, 32, 64, 128};
-    return vaddvq_u16(vandq_u16((uint16x8_t)a, bits));
+/* A bit for each number of both where a > b. */
+static inline uint32_t snow_lanes_gt(const snow_scalar_eighth a[2],
+                                     const snow_scalar_eighth b[2]) {
+    const uint8x16_t bits = {1, 2, 4, 8, 16, 32, 64, 128,
+                             1, 2, 4, 8, 16, 32, 64, 128};
+    const uint8x16_t set =
+        vandq_u8(bits, vcombine_u8(vmovn_u16(vcgtq_s16(a[0], b[0])),
+                                   vmovn_u16(vcgtq_s16(a[1], b[1]))));
+    return (uint32_t)vaddv_u8(vget_low_u8(set)) |
+           (uint32_t)vaddv_u8(vget_high_u8(set)) << 8;
 }
 
 /* Bytes `from` of a; 0 where there is none. */

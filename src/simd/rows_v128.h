@@ -30,14 +30,10 @@
 #define snow_v128_row_mul snow_scalar_row_mul
 #define snow_v128_row_and snow_scalar_row_and
 #define snow_v128_row_or snow_scalar_row_or
-#define snow_v128_row_min snow_scalar_row_min
-#define snow_v128_row_max snow_scalar_row_max
 #define snow_v128_row_srl snow_scalar_row_srl
 #define snow_v128_row_sll snow_scalar_row_sll
 #define snow_v128_row_pairs snow_scalar_row_pairs
 #define snow_v128_pick_bits snow_scalar_pick_bits
-#define snow_v128_row_floats snow_scalar_row_floats
-#define snow_v128_row_round snow_scalar_row_round
 #define snow_v128_row_rsqrt snow_scalar_row_rsqrt
 #define snow_v128_row_turn snow_scalar_row_turn
 
@@ -52,11 +48,13 @@ SNOW_V128_ROW_OF(adds, snow_lanes_adds(a.part[n], b.part[n]))
 SNOW_V128_ROW_OF(subs, snow_lanes_subs(a.part[n], b.part[n]))
 SNOW_V128_ROW_OF(mulhrs, snow_lanes_mulhrs(a.part[n], b.part[n]))
 SNOW_V128_ROW_OF(avg, snow_lanes_avg(a.part[n], b.part[n]))
+SNOW_V128_ROW_OF(min, snow_lanes_min(a.part[n], b.part[n]))
+SNOW_V128_ROW_OF(max, snow_lanes_max(a.part[n], b.part[n]))
 
 static inline uint32_t snow_v128_row_gt(snow_v128_row a, snow_v128_row b) {
     uint32_t mask = 0;
-    for (int n = 0; n < 4; n++)
-        mask |= snow_lanes_bits(a.part[n] > b.part[n]) << 8 * n;
+    for (int n = 0; n < 4; n += 2)
+        mask |= snow_lanes_gt(a.part + n, b.part + n) << 8 * n;
     return mask;
 }
 
@@ -97,7 +95,12 @@ static inline snow_v128_row snow_v128_row_expand(const int16_t *p,
 #define snow_v128_row_bytes snow_scalar_row_bytes
 #define snow_v128_rows_window snow_scalar_rows_window
 #define snow_v128_rows_and snow_scalar_rows_and
+#define snow_v128_row_floats snow_scalar_row_floats
+#define snow_v128_row_round snow_scalar_row_round
 #else
+#define snow_v128_row_floats snow_lanes_floats
+#define snow_v128_row_round snow_lanes_round
+
 static inline snow_v128_row snow_v128_row_bytes(const uint8_t *p) {
     snow_v128_row a;
     for (int n = 0; n < 4; n++)
