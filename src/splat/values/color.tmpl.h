@@ -93,9 +93,8 @@ TARGET VALUE_LEAF void NAME(add_light)(const snow_value_light *l, int n,
     const int16_t diffuse = (int16_t)(l->diffuse[n] * unit + 0.5F);
     const int16_t specular = (int16_t)(l->specular[n] * 32767 + 0.5F);
     V(row) to_light = V(row_max)(V(row_narrow)(light), zero);
-    V(row)
-    shine =
-        V(row_choose)(V(row_gt)(to_light, zero), NAME(shine)(l, half), zero);
+    const V(row) lit = V(row_min)(to_light, V(row_set1)(1));
+    V(row) shine = V(row_and)(NAME(shine)(l, half), V(row_subs)(zero, lit));
     *color = V(row_adds)(*color, V(row_mulhrs)(to_light, V(row_set1)(diffuse)));
     *white = V(row_adds)(*white, V(row_mulhrs)(shine, V(row_set1)(specular)));
 }
