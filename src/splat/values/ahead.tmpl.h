@@ -111,7 +111,7 @@ TARGET VALUE_INLINE void NAME(look_ahead)(const snow_value_splat *p, int n,
     uint64_t here = (uint64_t)any << 1;
     int beside =
         sloped ? 1 + (p->sheets[n].between | p->sheets[n + 1].between) : 0;
-    if (!any)
+    if (!any || !VALUE_ASKS)
         return;
     for (int m = n - beside; m <= n + 1 + beside; m++) {
         uint64_t rows = here;

@@ -105,9 +105,9 @@ TARGET VALUE_LEAF V(row)
 
 /* 32 numbers of a row of the volume from `column` on, and from the next one on;
  * columns may be beyond the sides. */
-TARGET VALUE_LEAF void NAME(pair_inside)(const snow_value_store *s,
-                                         int64_t place, int64_t column,
-                                         const int kind, V(row) out[2]) {
+TARGET VALUE_INLINE void NAME(pair_inside)(const snow_value_store *s,
+                                           int64_t place, int64_t column,
+                                           const int kind, V(row) out[2]) {
     const int64_t behind = s->columns - 1, step = behind > 0;
     for (int n = 0; n < 2; n++)
         out[n] = NAME(row_inside)(s, place, column + n, kind);

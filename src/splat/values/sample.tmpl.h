@@ -3,6 +3,18 @@
 
 /* --- masks ---------------------------------------------------------------- */
 
+/* Masks of 32 rows are 32 words: two rows of numbers. */
+TARGET VALUE_LEAF void NAME(set_masks)(uint32_t *to, V(row) low, V(row) high) {
+    V(row_store)((int16_t *)(void *)to, low);
+    V(row_store)((int16_t *)(void *)(to + 16), high);
+}
+
+TARGET VALUE_LEAF void NAME(copy_masks)(uint32_t *to, const uint32_t *from) {
+    NAME(set_masks)
+    (to, V(row_load)((const int16_t *)(const void *)from),
+     V(row_load)((const int16_t *)(const void *)(from + 16)));
+}
+
 /* Ors the cells of a sheet under a tile that are not wholly within a run. */
 TARGET VALUE_LEAF void NAME(add_cells)(const snow_value_store *s, int run,
                                        const snow_value_sheet *sheet,
@@ -36,9 +48,11 @@ TARGET static uint32_t NAME(activate_all)(const snow_value_splat *p, int n,
     front = value_window_of(s, column + place->whole[0], row + place->whole[1]);
     back = value_window_of(s, column + next->whole[0], row + next->whole[1]);
     uint32_t rows = ~UINT32_C(0);
-    memcpy(slab->active, state->open, sizeof slab->active);
+    const V(row) zero = V(row_set1)(0);
+    NAME(copy_masks)(slab->active, state->open);
     for (int run = 0; run < s->run_count; run++) {
-        uint32_t cells[SNOW_VALUE_ROWS] = {0};
+        uint32_t cells[SNOW_VALUE_ROWS];
+        NAME(set_masks)(cells, zero, zero);
         NAME(add_cells)(s, run, sheet, front, cells);
         NAME(add_cells)(s, run, sheet + 1, back, cells);
         rows &= V(rows_and)(slab->active, cells, ~UINT32_C(0));
@@ -116,12 +130,11 @@ TARGET VALUE_LEAF V(row)
     return NAME(mix)(ends[0][0], ends[0][1], weight);
 }
 
-TARGET VALUE_INLINE void NAME(fill_rows)(const NAME(source) * from,
-                                         int64_t first, uint64_t rows,
-                                         const snow_value_place *place,
-                                         int16_t (*out)[32], const bool between,
-                                         const bool difference, const int kind,
-                                         const bool sided) {
+TARGET VALUE_LEAF void
+NAME(fill_rows_of)(const NAME(source) * from, int64_t first, uint64_t rows,
+                   const snow_value_place *place, int16_t (*out)[32],
+                   const bool between, const bool difference, const int kind,
+                   const bool sided) {
     const NAME(source) s = *from;
     const V(row) u = V(row_set1)(place->weight[0]);
     const V(row) v = V(row_set1)(place->weight[1]);
@@ -139,6 +152,17 @@ TARGET VALUE_INLINE void NAME(fill_rows)(const NAME(source) * from,
             rows &= rows - 1;
         }
     }
+}
+
+/* The same as a function of its own, where all kinds would be a lot of code. */
+TARGET VALUE_INLINE void NAME(fill_rows)(const NAME(source) * from,
+                                         int64_t first, uint64_t rows,
+                                         const snow_value_place *place,
+                                         int16_t (*out)[32], const bool between,
+                                         const bool difference, const int kind,
+                                         const bool sided) {
+    NAME(fill_rows_of)
+    (from, first, rows, place, out, between, difference, kind, sided);
 }
 
 /* Rows of bytes in place, and which lanes are beyond their ends: of the 32
@@ -264,27 +288,27 @@ static inline bool NAME(readable)(const NAME(source) * s, int64_t first,
                store->native_count;
 }
 
-/* Of each kind of rows. */
-#define VALUE_FILL(word, kind, sides)                                        \
-    TARGET static void NAME(fill_##word)(                                    \
-        const NAME(source) * s, int64_t first, uint64_t rows,                \
-        const snow_value_place *place, int16_t(*out)[32], bool between,      \
-        bool difference) {                                                   \
-        if (between && difference)                                           \
-            NAME(fill_rows)                                                  \
-        (s, first, rows, place, out, true, true, kind, sides);               \
-        else if (between) NAME(fill_rows)(s, first, rows, place, out, true,  \
-                                          false, kind, sides);               \
-        else if (difference) NAME(fill_rows)(s, first, rows, place, out,     \
-                                             false, true, kind, sides);      \
-        else NAME(fill_rows)(s, first, rows, place, out, false, false, kind, \
-                             sides);                                         \
+/* Of each kind of rows; those of most volumes of bytes are the fastest. */
+#define VALUE_FILL(word, rows_by, kind, sides)                                \
+    TARGET static void NAME(fill_##word)(                                     \
+        const NAME(source) * s, int64_t first, uint64_t rows,                 \
+        const snow_value_place *place, int16_t(*out)[32], bool between,       \
+        bool difference) {                                                    \
+        if (between && difference)                                            \
+            NAME(rows_by)                                                     \
+        (s, first, rows, place, out, true, true, kind, sides);                \
+        else if (between) NAME(rows_by)(s, first, rows, place, out, true,     \
+                                        false, kind, sides);                  \
+        else if (difference) NAME(rows_by)(s, first, rows, place, out, false, \
+                                           true, kind, sides);                \
+        else NAME(rows_by)(s, first, rows, place, out, false, false, kind,    \
+                           sides);                                            \
     }
-VALUE_FILL(numbers, SNOW_VALUE_NUMBERS, false)
-VALUE_FILL(any_bytes, SNOW_VALUE_BYTES, false)
-VALUE_FILL(sided_bytes, SNOW_VALUE_BYTES, true)
-VALUE_FILL(words, SNOW_VALUE_WORDS, false)
-VALUE_FILL(sided_words, SNOW_VALUE_WORDS, true)
+VALUE_FILL(numbers, fill_rows, SNOW_VALUE_NUMBERS, false)
+VALUE_FILL(any_bytes, fill_rows_of, SNOW_VALUE_BYTES, false)
+VALUE_FILL(sided_bytes, fill_rows, SNOW_VALUE_BYTES, true)
+VALUE_FILL(words, fill_rows, SNOW_VALUE_WORDS, false)
+VALUE_FILL(sided_words, fill_rows, SNOW_VALUE_WORDS, true)
 #undef VALUE_FILL
 
 /* Rows of a sheet, a bit each from row `first` on, into `out`. */

@@ -423,9 +423,10 @@ TARGET VALUE_INLINE bool NAME(phases)(const snow_value_splat *p, int first,
         if (turn >= list.count)
             break;
         for (; seen < list.count && seen <= turn + AHEAD; seen++) {
-            if (seen + 2 < list.count && eye)
+            const bool asks = VALUE_ASKS && seen + 2 < list.count;
+            if (asks && eye)
                 NAME(ask_masks_eye)(p, slabs[seen + 2], first, tile);
-            else if (seen + 2 < list.count)
+            else if (asks)
                 NAME(ask_masks)(p, slabs[seen + 2], first, tile);
             NAME(look_ahead)
             (p, slabs[seen], first, end, tile, room,

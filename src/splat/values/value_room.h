@@ -26,6 +26,13 @@
 #define VALUE_LEAF VALUE_INLINE
 #endif
 
+/* WebAssembly has no instruction that asks the cache for memory. */
+#if defined(__wasm__)
+#define VALUE_ASKS 0
+#else
+#define VALUE_ASKS 1
+#endif
+
 /* Rows of a sheet's tile: one more on each side, for gradients. */
 #define SHEET_ROWS (SNOW_VALUE_ROWS + 2)
 
