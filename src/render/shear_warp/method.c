@@ -6,6 +6,7 @@
 static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
     bool surface = job->settings.mode == SNOW_MODE_ISO;
     const int *lines = p->frame->lines;
+    const uint64_t of = job->volume->generation; /* 0: of no other picture */
     return (snow_value_params){
         .volume = job->volume,
         .transfer = job->transfer,
@@ -25,8 +26,7 @@ static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
         .begin_at = p->begin_at,
         .bytes = p->local.pixels ? NULL : p->bytes,
         .lines = {lines[0], lines[1] ? lines[1] : p->view.height},
-        .more =
-            p->frame->more && p->frame->tiles_of == job->volume->generation};
+        .more = p->frame->more && of && p->frame->tiles_of == of};
 }
 
 /* Once.  The image comes first, for the slabs of a file are cut to the memory
