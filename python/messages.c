@@ -59,18 +59,37 @@ static size_t write_tuple(const char *from, char **to) {
     return end;
 }
 
-/* Writes a type as a text; returns what was read. */
-static size_t write_type(const char *from, char **to) {
-    const size_t blank = *from == ' ', length = strcspn(from + blank, " ,;:");
+/* Writes a type as a text, where it follows `before`, which is written too;
+ * returns what was read. */
+static size_t write_type(const char *from, const char *before, char **to) {
+    const size_t begin = strlen(before);
     char word[16];
+    if (strncmp(from, before, begin) != 0)
+        return 0;
+    const size_t length = strcspn(from + begin, " ,;:");
     if (length >= sizeof word)
         return 0;
-    memcpy(word, from + blank, length);
+    memcpy(word, from + begin, length);
     word[length] = '\0';
     if (snow_type_from_name(word) == SNOW_TYPE_NONE)
         return 0;
-    *to += sprintf(*to, "'%s'", word);
-    return blank + length;
+    *to += sprintf(*to, "%s'%s'", before, word);
+    return begin + length;
+}
+
+/* Writes types, one or as in "int32, uint32 or float32"; returns what was
+ * read. */
+static size_t write_types(const char *from, char **to) {
+    const size_t blank = *from == ' ';
+    size_t next = write_type(from + blank, "", to);
+    size_t length = next ? blank : 0;
+    while (next) {
+        length += next;
+        next = write_type(from + length, ", ", to);
+        if (!next)
+            next = write_type(from + length, " or ", to);
+    }
+    return length;
 }
 
 PyObject *message_text(const char *message) {
@@ -95,7 +114,7 @@ PyObject *message_text(const char *message) {
         if (is_tuple(name))
             from += write_tuple(from, &to);
         else if (strcmp(name, "type") == 0)
-            from += write_type(from, &to);
+            from += write_types(from, &to);
     }
     *to = '\0';
     PyObject *text = text_of(copy);

@@ -300,8 +300,9 @@ class Stumbles(InFolder):
 
     def test_messages_name_arguments_and_not_options(self):
         numpy.save("a.npy", ball())
-        with open("a.bin", "wb") as file:
-            file.write(bytes(3 * 4 * 5))
+        for name in "a.bin", "a_3x2x5_16bit.bin", "a_3x1x5_32bit.bin":
+            with open(name, "wb") as file:
+                file.write(bytes(3 * 4 * 5))
         with self.assertWarnsRegex(sg.SnowglassWarning, r"dims=\(50, 40, 30\) "
                                    r"type='int16' spacing=\(1, 1, 2\)$"):
             sg.Volume(ball(), spacing=(1, 1, 2)).save("b.raw")
@@ -311,6 +312,10 @@ class Stumbles(InFolder):
                  "remove dims=, type=, endian= and offset="),
                 (lambda: sg.Volume("a.bin"), r"give dims=\(x, y, z\) and type "
                  r"\(uint8, int16, float32, \.\.\.\)"),
+                (lambda: sg.Volume("a_3x2x5_16bit.bin"), r"dims=\(3, 2, 5\) "
+                 r"type='uint16' or 'int16', which fits$"),
+                (lambda: sg.Volume("a_3x1x5_32bit.bin"),
+                 "type='float32', 'int32' or 'uint32', which fits$"),
                 (lambda: sg.Volume("a.npy", crop=((0, 9), (0, 99), (0, 9))),
                  r"crop=\(\(0, 9\), \(0, 99\), \(0, 9\)\) is not inside")):
             with self.assertRaisesRegex((ValueError, sg.Error), answer) as caught:
