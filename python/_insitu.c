@@ -11,7 +11,6 @@
 #include <snowglass/recipe.h>
 
 #include <stdbool.h>
-#include <stdio.h>
 #include <string.h>
 
 #define NAME "snowglass.insitu"
@@ -77,16 +76,25 @@ static PyObject *text_of(const char *message) {
     return text;
 }
 
-static PyObject *answer(snow_status status, const char *message) {
+/* Raises what the status is, with the message and what follows it. */
+static PyObject *answer_and(snow_status status, const char *message,
+                            const char *more) {
     if (PyErr_Occurred())
         return NULL;
     if (status == SNOW_STATUS_OK)
         Py_RETURN_NONE;
-    PyObject *text = text_of(message);
+    PyObject *text = text_of(message), *whole = NULL;
     if (text)
-        PyObject_CallMethod(core, "fail", "iO", (int)status, text);
+        whole = PyUnicode_FromFormat("%U%s", text, more);
+    if (whole)
+        PyObject_CallMethod(core, "fail", "iO", (int)status, whole);
+    Py_XDECREF(whole);
     Py_XDECREF(text);
     return NULL;
+}
+
+static PyObject *answer(snow_status status, const char *message) {
+    return answer_and(status, message, "");
 }
 
 /* Called by the thread that called the library, without Python's lock. */
@@ -183,10 +191,9 @@ static PyObject *movie_brick(PyObject *module, PyObject *args) {
         status =
             snow_insitu_set_voxels(movie, id, snow_type_from_name(type),
                                    (const void *)(uintptr_t)address, strides);
-    char text[2048]; /* the movie's own message is that of its first error */
-    snprintf(text, sizeof text, "%s; the next step raises this too",
-             snow_context_message(context_of(movie)));
-    return answer(status, text);
+    /* The movie's own message is that of its first error. */
+    return answer_and(status, snow_context_message(context_of(movie)),
+                      "; the next step raises this too");
 }
 
 /* step(movie, number, time, unit): collective; NaN: without a time */

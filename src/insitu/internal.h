@@ -17,7 +17,7 @@
 #include <snowglass/insitu.h>
 #include <snowglass/snowglass.h>
 
-#define SNOW_INSITU_MESSAGE 512
+#define SNOW_INSITU_MESSAGE 4608 /* of a path of PATH_BYTES, and text */
 #define TEXT_BYTES 256
 #define SNOW_INSITU_BINS 256
 

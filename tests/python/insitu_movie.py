@@ -1,6 +1,6 @@
 """A simulation that makes a movie of itself: `insitu_movie.py FORM`, as the lines
 of docs/python.md do, over as many ranks as there are."""
-import contextlib
+import os
 import sys
 
 import numpy
@@ -41,13 +41,16 @@ if comm.rank == 0:
     numpy.save("last.npy", whole(1))
 
 
-def refuses(wrong, text):
-    """An exception that has the text, and no name of C or of the tool."""
+def refuses(wrong, text, status=None):
+    """An exception that has the text, and no name of C or of the tool, on all ranks;
+    with a status it is snowglass.Error.  A recipe that is wrong has status 3."""
     try:
         wrong()
     except (TypeError, ValueError, RuntimeError) as error:
         assert text in str(error), error
         assert "snow_" not in str(error) and "--" not in str(error), error
+        assert isinstance(error, sg.Error) or status is None, type(error)
+        assert getattr(error, "status", 3) == (status or 3), error.status
     else:
         raise AssertionError(text)
 
@@ -97,8 +100,17 @@ with insitu.Movie(comm, (4, 4, 4), output="f_%02d.png") as movie:
     refuses(lambda: movie.step(0), "no rank has a brick; call Movie.brick")
     if comm.rank == 0:
         movie.brick(wide)
-    if comm.rank == 0:  # who writes
-        refuses(lambda: movie.step(0), "give overwrite=True to Movie")
-    else:
-        with contextlib.suppress(sg.Error):
-            movie.step(0)
+    # Rank 0 writes; the others know why it does not.
+    refuses(lambda: movie.step(0), "give overwrite=True to Movie", status=4)
+
+# No message is cut, however long the path in it is.
+deep = "/".join(["folder" * 30] * 12)
+if comm.rank == 0:
+    os.makedirs(deep, exist_ok=True)
+    with open(f"{deep}/f_00.png", "wb"):
+        pass
+with insitu.Movie(comm, (4, 4, 4), output=f"{deep}/f_%02d.png") as movie:
+    if comm.rank == 0:
+        movie.brick(wide)
+    refuses(lambda: movie.step(0), f"{deep}/f_00.png: exists; remove it, choose "
+            "another output, or give overwrite=True to Movie", status=4)
