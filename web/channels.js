@@ -1,8 +1,10 @@
 // channels.js - the channels of a file: which are mixed, in which colour, range
-// and opacity.  A channel is what the look tells of it: [0, 'DAPI', 'blue', '#0000ff',
+// and opacity.  A channel is as the look has it: [0, 'DAPI', 'blue', '#0000ff',
 // 10, 200, 1], without a colour where it is drawn alone.
 
 import {apart, button, check, make, number, section, show, slider} from './controls.js';
+
+const CHANNELS_MOST = 8; // SNOW_CHANNELS_MAX of volume.h
 
 export const mixed = look => Boolean(look?.channels?.[0]?.[2]);
 
@@ -19,13 +21,13 @@ export class Channels {
         this.list = make('div', {});
         this.element = section('Channels', true, this.list, button('All',
             'All channels as the file shows them', () => recipe.set({...plain, // else as --tf has them
-                channel: page.info.tf ? [...page.info.channels.keys()].slice(0, 8).join() : null})));
+                channel: page.info.tf ? [...page.info.channels.keys()].slice(0, CHANNELS_MOST).join() : null})));
     }
 
     /** The next change may come before the server's look. */
     set(channels) {
         const {look} = this.page, begins = mixed(look) ? {} : this.plain;
-        if (channels.length < 9) // more are refused
+        if (channels.length <= CHANNELS_MOST) // more are refused
             look.channels = channels;
         this.recipe.set({...begins, ...listed(channels)});
     }

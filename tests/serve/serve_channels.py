@@ -1,6 +1,7 @@
 """Channels in the viewer: pictures and slices are those of their commands."""
 import json
 import os
+import re
 import sys
 import tempfile
 
@@ -168,6 +169,19 @@ def refused():
     server.stop()
 
 
+def limits():
+    """The page has the limits of the library."""
+    top = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+    for limit, module, name in (("SNOW_CHANNELS_MAX", "channels.js", "CHANNELS_MOST"),
+                                ("SNOW_CLIPS_MAX", "clip.js", "PLANES_MOST")):
+        with open(os.path.join(top, "include", "snowglass", "volume.h")) as header, \
+                open(os.path.join(top, "web", module)) as page:
+            known = re.findall(rf"#define {limit} (\d+)", header.read())
+            used = re.findall(rf"const {name} = (\d+);", page.read())
+        check(f"{name} is {limit}", known == used and len(used) == 1, (known, used))
+
+
+limits()
 write_channels("plain.zarr", False)
 write_channels("told.zarr", True)
 switched("plain.zarr")
