@@ -55,7 +55,7 @@ typedef enum snow_stage {
     SNOW_STAGE_READ = 0, /* a volume is opened, made or measured */
     SNOW_STAGE_ENCODE,   /* of a picture: classify, shade and encode */
     SNOW_STAGE_RENDER,   /* of a picture: all else */
-    SNOW_STAGE_WRITE     /* a volume is saved */
+    SNOW_STAGE_WRITE     /* a volume or a picture is saved */
 } snow_stage;
 
 /* Receives the progress of a long stage, rising to 1; true ends the call with

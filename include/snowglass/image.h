@@ -35,8 +35,8 @@ typedef struct snow_image_options {
 SNOW_RECORD(snow_image_options);
 /* Writes .png, .webp, .jpg, .jpeg (levels; JPEG on black without `flatten`),
  * .npy, .pfm, .exr, .tif, .tiff (floats), or "-", a PNG to standard output,
- * whole or not at all. `options` may be NULL. Errors: BAD_OUTPUT (an existing
- * file, unless options->overwrite), BAD_USAGE (what the format cannot hold). */
+ * whole or not at all. `options` may be NULL. Errors: BAD_OUTPUT (it exists,
+ * without `overwrite`), BAD_USAGE (what the format cannot hold), STOPPED. */
 SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
     const snow_image_options *options);
 

@@ -362,7 +362,8 @@ bool progress_hear(void *unused, snow_stage stage, double fraction) {
             report_stage();
     }
     pthread_mutex_unlock(&clock_of_stage.lock);
-    return interrupt_asked(NULL);
+    /* What is being written is let go (interrupt.h). */
+    return stage != SNOW_STAGE_WRITE && interrupt_asked(NULL);
 }
 
 /* printf only fills a buffer: a full disk or a reader that went away shows

@@ -184,7 +184,10 @@ static exr_result_t write_lines(exr_file *file, const exr_content *content,
     for (int y = 0; y < height && code == EXR_ERR_SUCCESS; y += at_once) {
         int rest = height - y;
         fill_lines(content, y, rest < at_once ? rest : at_once, lines);
-        code = write_chunk(file, y, lines, content, &pipe);
+        file->status = snow_image_report(content->image, y);
+        code = file->status == SNOW_STATUS_OK
+                   ? write_chunk(file, y, lines, content, &pipe)
+                   : EXR_ERR_UNKNOWN;
     }
     exr_encoding_destroy(file->exr, &pipe);
     return code;

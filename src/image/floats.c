@@ -122,6 +122,8 @@ snow_status snow_image_write_floats(const snow_image *image, int channels,
         int y = bottom_up ? image->height - 1 - i : i;
         encode_row(image, y, channels, bytes);
         status = snow_writer_write(writer, bytes, row_bytes);
+        if (status == SNOW_STATUS_OK)
+            status = snow_image_report(image, i);
     }
     snow_release(image->context, bytes);
     return status;

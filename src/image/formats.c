@@ -6,6 +6,7 @@
 #include "image/image.h"
 
 #include "base/module.h"
+#include "base/monitor.h"
 #include "image/overlay.h"
 
 #include <string.h>
@@ -185,7 +186,11 @@ snow_status snow_image_save(const snow_image *image, const char *path,
     snow_writer *writer = NULL;
     SNOW_TRY(
         snow_writer_open(image->context, path, options.overwrite, &writer));
-    snow_status status = format->write(image, &options, writer);
+    snow_monitor monitor;
+    snow_monitor_begin(image->context, &monitor, NULL, NULL);
+    monitor.last = SNOW_STAGE_WRITE;
+    snow_status status =
+        snow_monitor_end(&monitor, format->write(image, &options, writer));
     if (status != SNOW_STATUS_OK) {
         snow_writer_abandon(writer);
         return name_file(image->context, status, path);

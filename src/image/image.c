@@ -6,6 +6,8 @@
  * not depend on the machine. */
 #include "image/image.h"
 
+#include "base/monitor.h"
+
 #include <string.h>
 
 SNOW_RECORD_OF_ZEROS(snow_image_options);
@@ -53,6 +55,12 @@ snow_status snow_image_new(snow_context *context, int width, int height,
     memset(image->pixels, 0, count_samples(image) * sizeof(float));
     *out = image;
     return SNOW_STATUS_OK;
+}
+
+snow_status snow_image_report(const snow_image *image, int line) {
+    snow_monitor *monitor = image->context->monitor;
+    snow_monitor_report(monitor, SNOW_STAGE_WRITE, line, image->height);
+    return snow_monitor_status(monitor);
 }
 
 void snow_image_free(snow_image *image) {

@@ -22,6 +22,10 @@ struct snow_image {
 snow_status snow_image_make(snow_context *context, int width, int height,
                             int channels, snow_image **out);
 
+/* For writers, before each line: how far the file is. Errors:
+ * SNOW_STATUS_STOPPED. */
+snow_status snow_image_report(const snow_image *image, int line);
+
 /* Pixel `index` (y * width + x) as red, green, blue, alpha.  Grey pixels and
  * values give r = g = b; values have alpha 1. */
 static inline void snow_image_rgba(const snow_image *image, size_t index,

@@ -46,7 +46,9 @@ static void end_target(j_compress_ptr info) {
                                                target->base.free_in_buffer);
 }
 
-static void compress(snow_levels *levels, struct jpeg_compress_struct *info) {
+/* Ends early with the target's status. */
+static void compress(snow_levels *levels, struct jpeg_compress_struct *info,
+                     jpeg_target *target) {
     info->image_width = (JDIMENSION)levels->image->width;
     info->image_height = (JDIMENSION)levels->image->height;
     info->input_components = levels->samples;
@@ -59,6 +61,10 @@ static void compress(snow_levels *levels, struct jpeg_compress_struct *info) {
     for (int y = 0; y < levels->image->height; y++) {
         JSAMPROW row = (JSAMPROW)snow_levels_row(levels, y);
         jpeg_write_scanlines(info, &row, 1);
+        if (target->status == SNOW_STATUS_OK)
+            target->status = snow_image_report(levels->image, y);
+        if (target->status != SNOW_STATUS_OK)
+            return;
     }
     jpeg_finish_compress(info);
 }
@@ -92,7 +98,7 @@ static snow_status write_jpeg(const snow_image *image,
         target->status = SNOW_STATUS_OK;
         jpeg_create_compress(&info);
         info.dest = &target->base;
-        compress(&levels, &info);
+        compress(&levels, &info, target);
     }
     if (status == SNOW_STATUS_OK)
         status = target->status;

@@ -64,7 +64,9 @@ static snow_status fill_file(snow_tiff *file, const snow_image *image) {
             snow_image_rgba(image, first + (size_t)x, rgba);
             memcpy(line + samples * x, rgba, (size_t)samples * sizeof *line);
         }
-        good = TIFFWriteScanline(file->tiff, line, (uint32_t)y, 0) == 1;
+        file->status = snow_image_report(image, y);
+        good = file->status == SNOW_STATUS_OK &&
+               TIFFWriteScanline(file->tiff, line, (uint32_t)y, 0) == 1;
     }
     snow_release(file->context, line);
     good = good && TIFFWriteDirectory(file->tiff) == 1 &&

@@ -24,6 +24,7 @@ static bool probe_webp(const unsigned char *bytes, size_t size) {
 
 /* The state for libwebp's writer. */
 typedef struct webp_job {
+    const snow_image *image;
     snow_writer *writer;
     snow_status status;
 } webp_job;
@@ -32,6 +33,13 @@ static int write_bytes(const uint8_t *bytes, size_t size,
                        const WebPPicture *picture) {
     webp_job *job = picture->custom_ptr;
     job->status = snow_writer_write(job->writer, bytes, size);
+    return job->status == SNOW_STATUS_OK;
+}
+
+static int report(int percent, const WebPPicture *picture) {
+    webp_job *job = picture->custom_ptr;
+    job->status =
+        snow_image_report(job->image, picture->height * percent / 100);
     return job->status == SNOW_STATUS_OK;
 }
 
@@ -56,15 +64,18 @@ static snow_status encode(snow_levels *levels, webp_job *job,
     picture->width = levels->image->width;
     picture->height = levels->image->height;
     picture->writer = write_bytes;
+    picture->progress_hook = report;
     picture->custom_ptr = job;
     if (good && !WebPPictureAlloc(picture))
         return snow_fail(context, SNOW_STATUS_NO_MEMORY,
                          "out of memory to compress %d x %d pixels as WebP; "
                          "use a smaller picture",
                          picture->width, picture->height);
-    for (int y = 0; y < picture->height && good; y++)
+    for (int y = 0; y < picture->height && good; y++) {
         fill_line(levels, snow_levels_row(levels, y),
                   picture->argb + (size_t)y * (size_t)picture->argb_stride);
+        good = report(0, picture);
+    }
     if (good && WebPEncode(&config, picture))
         return SNOW_STATUS_OK;
     if (job->status != SNOW_STATUS_OK)
@@ -82,7 +93,7 @@ static snow_status write_webp(const snow_image *image,
                               const snow_image_options *options,
                               snow_writer *writer) {
     snow_levels levels;
-    webp_job job = {writer, SNOW_STATUS_OK};
+    webp_job job = {image, writer, SNOW_STATUS_OK};
     WebPPicture picture;
     if (!WebPPictureInit(&picture))
         return snow_fail(image->context, SNOW_STATUS_FAILED,
