@@ -49,7 +49,7 @@ static snow_status complete(snow_picture *p, snow_status status) {
             (n + 1 == p->pass_count || next->depth))
             status = snow_method_figures(p->pass->method, p, &p->pass->job);
     }
-    return p->ahead ? status : snow_occlude(p, p->combiner->agree(p, status));
+    return p->ahead ? status : snow_darken(p, p->combiner->agree(p, status));
 }
 
 /* --- a picture of one process --------------------------------------------- */

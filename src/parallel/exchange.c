@@ -1,5 +1,6 @@
 /* parallel/exchange.c - local images to pieces of the picture, and these to
  * rank 0: lines 14 to 20 of figure 8, for any boxes in the place of slabs. */
+#include "base/clear.h"
 #include "parallel/internal.h"
 
 #include <string.h>
@@ -96,9 +97,8 @@ snow_status snow_in_flight_room(snow_in_flight *f, const snow_job *job,
     size_t bytes = snow_job_bytes(job);
     SNOW_TRY(
         snow_reserve(job->context, &r->images, 0, (uint64_t)layers, bytes));
-    memset(r->images, 0, (size_t)layers * bytes);
     f->picture.local.pixels = r->images;
-    return SNOW_STATUS_OK;
+    return snow_clear(job->context, r->images, (size_t)layers * bytes);
 }
 
 static const snow_placement *placement_of(const snow_in_flight *p,

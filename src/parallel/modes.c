@@ -15,6 +15,7 @@
  * images are, on the slices' lattice where that is how they were made, warped
  * or copied piece by piece, and brought to rank 0, which makes colours or
  * values of them. */
+#include "base/clear.h"
 #include "parallel/internal.h"
 
 #include <math.h>
@@ -221,7 +222,7 @@ static snow_status prepare_turn(snow_in_flight *f) {
     SNOW_TRY(
         snow_reserve(job->context, &frame->layer, 0, 1, snow_job_bytes(job)));
     SNOW_TRY(snow_picture_new_depths(p, &p->near));
-    memset(frame->layer, 0, snow_job_bytes(job));
+    SNOW_TRY(snow_clear(job->context, frame->layer, snow_job_bytes(job)));
     p->local.pixels = frame->layer;
     return snow_ranks_put_in_order(f->ranks, &job->placement);
 }

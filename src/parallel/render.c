@@ -22,6 +22,7 @@
  * Every rank begins behind its own piece, so that nobody gets all messages at
  * once, and what is drawn last need not be sent.  Other local images are made
  * when it is their picture's turn. */
+#include "base/clear.h"
 #include "base/fingerprint.h"
 #include "parallel/internal.h"
 #include "parallel/part.h"
@@ -48,6 +49,14 @@ static bool is_sum(snow_mode mode) {
     return mode != SNOW_MODE_OVER && mode != SNOW_MODE_ISO;
 }
 
+/* An image of zeros; one that is there already is cleared. */
+static snow_status make_clear(const snow_job *job, snow_image **image) {
+    if (!*image)
+        SNOW_TRY(snow_image_make(job->context, job->view->width,
+                                 job->view->height, job->channels, image));
+    return snow_clear(job->context, (*image)->pixels, snow_job_bytes(job));
+}
+
 /* What the picture is gathered in; pairs have an image of their own. */
 static snow_status make_images(snow_in_flight *f) {
     snow_picture *p = &f->picture;
@@ -58,13 +67,13 @@ static snow_status make_images(snow_in_flight *f) {
                          f->how.pixel_bits);
     if (is_sum(p->job.settings.mode) || !snow_in_flight_keeps(f))
         return SNOW_STATUS_OK;
-    SNOW_TRY(snow_image_new(context, p->view.width, p->view.height,
-                            p->job.channels, &p->image));
+    SNOW_TRY(make_clear(&p->job, &p->image));
     if (f->how.pixel_bits != 8 || f->how.scattered)
         return SNOW_STATUS_OK;
-    f->bytes =
-        snow_allocate_clear(context, snow_job_bytes(&p->job) / sizeof(float));
-    return f->bytes ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+    const size_t bytes = snow_job_bytes(&p->job) / sizeof(float);
+    f->bytes = snow_allocate(context, bytes);
+    return f->bytes ? snow_clear(context, f->bytes, bytes)
+                    : SNOW_STATUS_NO_MEMORY;
 }
 
 static snow_status begin(snow_picture *p, snow_status status) {
@@ -241,12 +250,7 @@ static snow_status place_gathered(snow_in_flight *f) {
     const snow_job *job = &f->picture.pass->job;
     if (!snow_in_flight_keeps(f) || !is_sum(job->settings.mode))
         return SNOW_STATUS_OK;
-    if (f->gathered)
-        memset(f->gathered->pixels, 0, snow_job_bytes(job));
-    return f->gathered
-               ? SNOW_STATUS_OK
-               : snow_image_new(job->context, job->view->width,
-                                job->view->height, job->channels, &f->gathered);
+    return make_clear(job, &f->gathered);
 }
 
 /* A layer, or in deterministic pictures of the exact methods one for each

@@ -1,9 +1,8 @@
 /* render/groups.c - deterministic pictures of the exact methods: each group of
  * slices is drawn by itself, and groups are composited by one binary
  * tree (decompose/deterministic.h). */
+#include "base/clear.h"
 #include "render/picture.h"
-
-#include <string.h>
 
 /* Lines 02 to 13. */
 static snow_status draw(snow_picture *p, snow_job *job) {
@@ -46,7 +45,7 @@ static snow_status render_node(snow_picture *p, const snow_job *job,
         return render_group(p, job, first, pixels);
     float **spare = &frame->spare[node.rank - 1];
     SNOW_TRY(snow_reserve(frame->context, spare, 0, 1, bytes));
-    memset(*spare, 0, bytes);
+    SNOW_TRY(snow_clear(frame->context, *spare, bytes));
     bool rises = snow_group_rises(&job->placement, node);
     snow_group_node near = {node.rank - 1, 2 * node.index + !rises};
     snow_group_node far = {node.rank - 1, 2 * node.index + rises};

@@ -154,9 +154,12 @@ snow_status snow_exact_count(snow_exact *exact, const snow_job *job);
 /* Of one process. */
 extern const snow_combine_ops snow_combine_alone;
 
-/* Collective (render/modes/occlusion.c).  Darkens a picture that has its depths
- * by settings.occlusion.  Errors: `status`; no memory; of reading slabs. */
-snow_status snow_occlude(snow_picture *picture, snow_status status);
+/* Collective.  Darkens a picture that has its depths, by settings.occlusion and
+ * depth_darkening.  Errors: `status`; no memory; a stop; of reading slabs. */
+snow_status snow_darken(snow_picture *picture, snow_status status);
+
+/* The part of settings.occlusion (modes/occlusion.c). */
+snow_status snow_occlude(snow_picture *picture);
 
 /* Ends a picture, whatever became of it: the frame gets its figures and depths,
  * and the caller its image; where it failed, its images are freed. */

@@ -194,6 +194,41 @@ static void saving_is_reported_and_can_be_stopped(void **state) {
     support_folder_remove(folder);
 }
 
+/* In each format that is built. */
+static void saving_a_picture_is_reported_and_can_be_stopped(void **state) {
+    char folder[SUPPORT_FOLDER_BYTES], name[32];
+    const char *suffix;
+    bool built;
+    (void)state;
+    support_folder_make(folder);
+    for (size_t n = 0; (suffix = snow_image_format_suffix(n, &built)); n++) {
+        snow_context *context = support_context();
+        snow_image *image;
+        listener l;
+        if (!built)
+            continue;
+        snprintf(name, sizeof name, "p%s", suffix);
+        const char *path = support_folder_path(folder, name);
+        assert_int_equal(snow_image_new(context, 40, 200, 4, &image),
+                         SNOW_STATUS_OK);
+        for (int i = 0; i < 4 * 40 * 200; i++)
+            snow_image_pixels(image)[i] = (float)(i * 7919 % 1001) / 1000;
+        listen_to(context, &l, 2);
+        assert_int_equal(snow_image_save(image, path, NULL),
+                         SNOW_STATUS_STOPPED);
+        assert_int_equal(l.calls, 2);
+        listen_to(context, &l, 0); /* no file is in the way */
+        assert_int_equal(snow_image_save(image, path, NULL), SNOW_STATUS_OK);
+        check_rate(&l);
+        assert_true(check_stage(&l, SNOW_STAGE_WRITE) >= 3);
+        assert_int_equal(check_stage(&l, SNOW_STAGE_WRITE), l.calls);
+        snow_image_free(image);
+        assert_int_equal(snow_context_bytes(context), 0);
+        snow_context_free(context);
+    }
+    support_folder_remove(folder);
+}
+
 static snow_status measure(const snow_volume *volume, int what) {
     uint64_t counts[16];
     snow_volume_statistics figures = {.size = sizeof figures};
@@ -405,6 +440,65 @@ static void a_picture_is_reported(void **state) {
     snow_context_free(context);
 }
 
+/* Calls of one thread for a picture that is darkened so much; it is stopped at
+ * call `stop_at`. */
+static int darken(snow_context *context, const snow_volume *volume,
+                  const snow_transfer *transfer, double occlusion,
+                  double depth_darkening, int stop_at) {
+    snow_view view = {.size = sizeof view};
+    snow_settings settings;
+    snow_frame *frame;
+    snow_image *image = NULL;
+    listener l;
+    snow_view_default(volume, &view);
+    view.width = view.height = 100;
+    snow_settings_init(&settings);
+    settings.threads = 1;
+    settings.depth = true;
+    settings.occlusion = occlusion;
+    settings.depth_darkening = depth_darkening;
+    assert_int_equal(snow_frame_new(context, &frame), SNOW_STATUS_OK);
+    listen_to(context, &l, stop_at);
+    assert_int_equal(
+        snow_frame_render(frame, volume, transfer, &view, &settings, &image),
+        stop_at ? SNOW_STATUS_STOPPED : SNOW_STATUS_OK);
+    assert_int_equal(image != NULL, !stop_at);
+    snow_context_set_progress(context, NULL, NULL);
+    snow_image_free(image);
+    snow_frame_free(frame);
+    return l.calls;
+}
+
+/* Line by line, once the picture is there. */
+static void darkening_can_be_stopped(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_volume *volume;
+    snow_transfer *transfer;
+    assert_int_equal(snow_volume_open_phantom(context, "head",
+                                              (const int64_t[3]){48, 48, 48}, 0,
+                                              &volume),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
+                     SNOW_STATUS_OK);
+    const int plain = darken(context, volume, transfer, 0, 0, 0);
+    for (int way = 0; way < 2; way++) {
+        const int all = darken(context, volume, transfer, way, 1 - way, 0);
+        print_message("             %d calls, %d of them darken\n", all,
+                      all - plain);
+        assert_true(all - plain > 100);
+        for (int n = 1; n <= 4; n++) {
+            const int at = plain + (all - plain) * n / 5;
+            assert_int_equal(
+                darken(context, volume, transfer, way, 1 - way, at), at);
+        }
+    }
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+}
+
 /* Work of one long item, or before the first batch, can be ended, too. */
 static void a_long_item_can_be_stopped(void **state) {
     (void)state;
@@ -492,11 +586,13 @@ int main(void) {
         TEST(a_phantom_is_reported_while_it_is_made),
         TEST(reading_is_reported_and_can_be_stopped),
         TEST(saving_is_reported_and_can_be_stopped),
+        TEST(saving_a_picture_is_reported_and_can_be_stopped),
         TEST(measuring_is_reported_and_can_be_stopped),
         TEST(a_look_can_be_stopped_while_it_is_chosen),
         TEST(a_view_can_be_stopped_while_it_is_fitted),
         TEST(clearing_can_be_stopped),
         TEST(a_picture_is_reported),
+        TEST(darkening_can_be_stopped),
         TEST(a_long_item_can_be_stopped),
         TEST(a_look_reports_how_far_the_work_is),
         TEST(many_calls_are_not_reported_more_often),

@@ -27,6 +27,7 @@ typedef struct way {
     double gradient; /* opacity depends on gradients up to this */
     double zoom;     /* 0: 1 */
     bool alone;      /* by one process, in memory */
+    double darkened; /* by depths, and by occlusion */
 } way;
 
 #define SHEAR_WARP .method = SNOW_METHOD_SHEAR_WARP
@@ -50,6 +51,7 @@ static const way ways[] = {
     {"iso, perspective", SHEAR_WARP, .mode = SNOW_MODE_ISO, .fov = 30},
     {"depth of iso", SHEAR_WARP, .mode = SNOW_MODE_ISO, .depth = 1,
      .alone = true},
+    {"darkened", SHEAR_WARP, .darkened = 0.7},
     {"original", .method = SNOW_METHOD_ORIGINAL},
     {"tested", .method = SNOW_METHOD_TESTED},
     {"footprint", .method = SNOW_METHOD_FOOTPRINT},
@@ -93,6 +95,7 @@ static void fill_settings(const way *w, int threads, scene *s) {
     s->settings.deterministic = w->deterministic;
     s->settings.threads = threads;
     s->settings.iso = 60;
+    s->settings.depth_darkening = s->settings.occlusion = w->darkened;
     s->view.fov = w->fov;
     s->view.zoom *= w->zoom > 0 ? w->zoom : 1;
 }

@@ -1,6 +1,8 @@
 /* render/modes/darken.c - an unsharp mask of the depths (Luft, Colditz and
  * Deussen 2006, Image Enhancement by Unsharp Masking the Depth Buffer), at two
  * radii. */
+#include "base/clear.h"
+#include "base/monitor.h"
 #include "render/modes/depth.h"
 
 #include <math.h>
@@ -36,16 +38,18 @@ static void mean_line(const float *in, float *out, int count, size_t step,
 }
 
 /* Three boxes are close to a Gaussian of their deviation. */
-void snow_blur_plane(float *plane, float *spare, int width, int height,
-                     double deviation) {
+snow_status snow_blur_plane(snow_context *context, float *plane, float *spare,
+                            int width, int height, double deviation) {
+    snow_monitor *monitor = context->monitor;
     int reach = (int)lround((sqrt(4 * deviation * deviation + 1) - 1) / 2);
     for (int pass = 0; pass < 3 && reach > 0; pass++) {
-        for (int y = 0; y < height; y++)
+        for (int y = 0; y < height && !snow_monitor_look(monitor, 0); y++)
             mean_line(plane + (size_t)y * (size_t)width,
                       spare + (size_t)y * (size_t)width, width, 1, reach);
-        for (int x = 0; x < width; x++)
+        for (int x = 0; x < width && !snow_monitor_look(monitor, 0); x++)
             mean_line(spare + x, plane + x, height, (size_t)width, reach);
     }
+    return snow_monitor_status(monitor);
 }
 
 /* Where nothing is, it is as far as the farthest that is there: outlines stay
@@ -59,16 +63,19 @@ static void fill_behind(size_t count, const float *depth, float *filled) {
 }
 
 /* Adds how far each pixel lies behind the mean of what is beside it. */
-static void add_behind(const blur *b, const float *depth, double deviation,
-                       double unit) {
+static snow_status add_behind(snow_context *context, const blur *b,
+                              const float *depth, double deviation,
+                              double unit) {
     size_t count = (size_t)b->width * (size_t)b->height;
     fill_behind(count, depth, b->mean);
-    snow_blur_plane(b->mean, b->line, b->width, b->height, deviation);
+    SNOW_TRY(snow_blur_plane(context, b->mean, b->line, b->width, b->height,
+                             deviation));
     for (size_t n = 0; n < count; n++)
         if (!isnan(depth[n])) {
             double behind = ((double)depth[n] - (double)b->mean[n]) / unit;
             b->dark[n] += (float)fmin(fmax(behind, 0), MOST);
         }
+    return SNOW_STATUS_OK;
 }
 
 static void darken(const blur *b, double strength, snow_image *image) {
@@ -83,22 +90,22 @@ static void darken(const blur *b, double strength, snow_image *image) {
 }
 
 snow_status snow_depth_darken(const snow_job *job, const snow_image *depth,
-                              snow_image *image, snow_stats *stats) {
-    const double mark = snow_seconds(), mark_cpu = snow_cpu_seconds();
+                              snow_image *image) {
+    snow_context *context = job->context;
     blur b = {.width = depth->width, .height = depth->height};
     size_t count = (size_t)b.width * (size_t)b.height;
     int side = b.width < b.height ? b.width : b.height;
-    b.mean = snow_allocate_clear(job->context, 3 * count * sizeof *b.mean);
+    b.mean = snow_allocate(context, 3 * count * sizeof *b.mean);
     if (!b.mean)
         return SNOW_STATUS_NO_MEMORY;
     b.line = b.mean + count;
     b.dark = b.line + count;
-    for (int n = 0; n < 2; n++)
-        add_behind(&b, depth->pixels, deviations[n] * side,
-                   UNIT * side * job->placement.pitch);
-    darken(&b, job->settings.depth_darkening, image);
-    snow_release(job->context, b.mean);
-    stats->seconds_frame += snow_seconds() - mark;
-    stats->cpu_frame += snow_cpu_seconds() - mark_cpu;
-    return SNOW_STATUS_OK;
+    snow_status status = snow_clear(context, b.dark, count * sizeof *b.dark);
+    for (int n = 0; n < 2 && status == SNOW_STATUS_OK; n++)
+        status = add_behind(context, &b, depth->pixels, deviations[n] * side,
+                            UNIT * side * job->placement.pitch);
+    if (status == SNOW_STATUS_OK)
+        darken(&b, job->settings.depth_darkening, image);
+    snow_release(context, b.mean);
+    return status;
 }

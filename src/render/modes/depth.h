@@ -26,13 +26,14 @@ void snow_depth_find(const snow_placement *placement, const double of[4], int x,
 /* --- darken.c: what lies behind that beside it is darker (docs/model.md) ---
 
  * Darkens the colours of `image` by settings.depth_darkening; `depth` is of its
- * size, NaN where there is nothing; the time is added to `stats`. Errors: no
- * memory; then `image` is as before. */
+ * size, NaN where there is nothing. Errors: no memory, a stop; then `image` is
+ * as before. */
 snow_status snow_depth_darken(const snow_job *job, const snow_image *depth,
-                              snow_image *image, snow_stats *stats);
+                              snow_image *image);
 
-/* Blurs a plane in its place; what is at its borders goes on beyond them. */
-void snow_blur_plane(float *plane, float *spare, int width, int height,
-                     double deviation);
+/* Blurs a plane in its place; what is at its borders goes on beyond them.
+ * Errors: a stop, with the plane half blurred. */
+snow_status snow_blur_plane(snow_context *context, float *plane, float *spare,
+                            int width, int height, double deviation);
 
 #endif

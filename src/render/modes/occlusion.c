@@ -5,6 +5,8 @@
  *            that slabs of a file and ranks change no bit
  *   fields   the means of cells, blurred at two radii
  *   pixels   the fields in front of where each one's depth lies */
+#include "base/clear.h"
+#include "base/monitor.h"
 #include "base/vec3.h"
 #include "classify/count_interesting.h"
 #include "render/modes/depth.h"
@@ -131,6 +133,14 @@ static void spread(const occlusion *o, int i, float **field, float **spare) {
     }
 }
 
+/* All passes of blur i. */
+static void blur(const occlusion *o, int i, float **field, float **spare) {
+    snow_monitor *monitor = o->job->context->monitor;
+    for (int n = 0; n < o->passes[i] && !snow_monitor_look(monitor, 0); n++)
+        spread(o, i, field, spare);
+}
+
+/* `field` and `spare` are zeros. */
 static void make_fields(occlusion *o, float *field, float *spare,
                         float *second) {
     const int64_t *d = o->dims, *sum = o->sums;
@@ -140,13 +150,11 @@ static void make_fields(occlusion *o, float *field, float *spare,
             for (int64_t x = o->reach; x < d[0] - o->reach; x++)
                 field[(z * d[1] + y) * d[0] + x] =
                     (float)((double)*sum++ / unit);
-    for (int n = 0; n < o->passes[0]; n++)
-        spread(o, 0, &field, &spare);
+    blur(o, 0, &field, &spare);
     memcpy(second, field, (size_t)(d[0] * d[1] * d[2]) * sizeof *field);
     o->fields[0] = field;
     field = second;
-    for (int n = 0; n < o->passes[1]; n++)
-        spread(o, 1, &field, &spare);
+    blur(o, 1, &field, &spare);
     o->fields[1] = field;
 }
 
@@ -249,6 +257,12 @@ static void darken_pixels(const occlusion *o, snow_image *image) {
     }
 }
 
+/* How many pixels wide a voxel is. */
+static double voxel_pixels(const occlusion *o) {
+    return fmin(o->spacing[0], fmin(o->spacing[1], o->spacing[2])) /
+           o->job->placement.pitch;
+}
+
 static snow_status darken(const snow_picture *p, occlusion *o) {
     snow_context *context = o->job->context;
     const int width = p->view.width, height = p->view.height;
@@ -257,21 +271,23 @@ static snow_status darken(const snow_picture *p, occlusion *o) {
     if (!p->image || !p->depth)
         return SNOW_STATUS_OK;
     float *room =
-        snow_allocate_clear(context, (3 * count + 2 * pixels) * sizeof *room);
+        snow_allocate(context, (3 * count + 2 * pixels) * sizeof *room);
     if (!room)
         return SNOW_STATUS_NO_MEMORY;
-    make_fields(o, room, room + count, room + 2 * count);
     o->depth = p->depth;
     o->open = room + 3 * count;
     snow_depth_place(o->job, o->of);
-    snow_status status = snow_parallel(context, o->job->settings.threads,
-                                       height, find_open_line, o);
+    snow_status status = snow_clear(context, room, 2 * count * sizeof *room);
     if (status == SNOW_STATUS_OK) {
-        double voxel = fmin(o->spacing[0], fmin(o->spacing[1], o->spacing[2]));
-        snow_blur_plane(o->open, o->open + pixels, width, height,
-                        voxel / o->job->placement.pitch);
-        darken_pixels(o, p->image);
+        make_fields(o, room, room + count, room + 2 * count);
+        status = snow_parallel(context, o->job->settings.threads, height,
+                               find_open_line, o);
     }
+    if (status == SNOW_STATUS_OK)
+        status = snow_blur_plane(context, o->open, o->open + pixels, width,
+                                 height, voxel_pixels(o));
+    if (status == SNOW_STATUS_OK)
+        darken_pixels(o, p->image);
     snow_release(context, room);
     return status;
 }
@@ -291,13 +307,11 @@ static snow_status occlude(snow_picture *p, occlusion *o) {
     return p->combiner->agree(p, darken(p, o));
 }
 
-snow_status snow_occlude(snow_picture *p, snow_status status) {
-    const double mark = snow_seconds(), mark_cpu = snow_cpu_seconds();
+snow_status snow_occlude(snow_picture *p) {
     const bool iso = p->job.settings.mode == SNOW_MODE_ISO;
     snow_volume_info whole;
     occlusion o = {.job = &p->job};
-    if (status != SNOW_STATUS_OK || p->job.settings.occlusion == 0)
-        return status;
+    snow_status status = SNOW_STATUS_OK;
     if (iso)
         status = snow_identity_transfer_above(&p->job, &p->frame->identity);
     SNOW_TRY(p->combiner->agree(p, status));
@@ -311,9 +325,5 @@ snow_status snow_occlude(snow_picture *p, snow_status status) {
         .isa = p->job.settings.isa};
     status = occlude(p, &o);
     snow_release(p->job.context, o.sums);
-    if (p->combiner == &snow_combine_alone) { /* others count their calls */
-        p->stats.seconds_frame += snow_seconds() - mark;
-        p->stats.cpu_frame += snow_cpu_seconds() - mark_cpu;
-    }
     return status;
 }
