@@ -178,7 +178,7 @@ snow_status snow_image_save(const snow_image *image, const char *path,
     SNOW_TRY(choose_format(image->context, path, &format));
     if (format->bits && image->channels == 1)
         return snow_fail(image->context, SNOW_STATUS_BAD_USAGE,
-                         "%s: %s holds colours, not values in data units; "
+                         "%s: %s holds colours, not data values; "
                          "write .npy, .exr, .tif or .pfm, or paint them first",
                          path, format->name);
     SNOW_TRY(check_options(image->context, path, image->width, image->height,
@@ -188,7 +188,6 @@ snow_status snow_image_save(const snow_image *image, const char *path,
         snow_writer_open(image->context, path, options.overwrite, &writer));
     snow_monitor monitor;
     snow_monitor_begin(image->context, &monitor, NULL, NULL);
-    monitor.last = SNOW_STAGE_WRITE;
     snow_status status =
         snow_monitor_end(&monitor, format->write(image, &options, writer));
     if (status != SNOW_STATUS_OK) {

@@ -155,9 +155,7 @@ static snow_status run_writer(png_job *job, snow_levels *levels) {
         return refuse_library(job);
     write_header(job, levels);
     for (int y = 0; y < levels->image->height; y++) {
-        const snow_status status = snow_image_report(levels->image, y);
-        if (status != SNOW_STATUS_OK)
-            return status;
+        SNOW_TRY(snow_image_report(levels->image, y));
         png_write_row(job->png, snow_levels_row(levels, y));
     }
     png_write_end(job->png, job->info);

@@ -42,11 +42,13 @@ snow_status snow_blur_plane(snow_context *context, float *plane, float *spare,
                             int width, int height, double deviation) {
     snow_monitor *monitor = context->monitor;
     int reach = (int)lround((sqrt(4 * deviation * deviation + 1) - 1) / 2);
-    for (int pass = 0; pass < 3 && reach > 0; pass++) {
-        for (int y = 0; y < height && !snow_monitor_look(monitor, 0); y++)
-            mean_line(plane + (size_t)y * (size_t)width,
-                      spare + (size_t)y * (size_t)width, width, 1, reach);
-        for (int x = 0; x < width && !snow_monitor_look(monitor, 0); x++)
+    const int lines = reach > 0 ? height + width : 0; /* of a pass */
+    for (int n = 0; n < 3 * lines && !snow_monitor_look(monitor, 0); n++) {
+        const int x = n % lines - height;
+        const size_t row = (size_t)(n % lines) * (size_t)width;
+        if (x < 0)
+            mean_line(plane + row, spare + row, width, 1, reach);
+        else
             mean_line(spare + x, plane + x, height, (size_t)width, reach);
     }
     return snow_monitor_status(monitor);

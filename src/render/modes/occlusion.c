@@ -120,8 +120,10 @@ static void lay_out(occlusion *o) {
  * read across a border is 0. */
 static void spread(const occlusion *o, int i, float **field, float **spare) {
     const int64_t count = o->dims[0] * o->dims[1] * o->dims[2];
+    snow_monitor *monitor = o->job->context->monitor;
     int64_t step = i + 1;
-    for (int axis = 0; axis < 3; step *= o->dims[axis++]) {
+    for (int axis = 0; axis < 3 && !snow_monitor_look(monitor, 0);
+         step *= o->dims[axis++]) {
         const float w = (float)(o->variance[i][axis] /
                                 (2 * o->passes[i] * (i + 1) * (i + 1)));
         const float *in = *field;
@@ -131,13 +133,6 @@ static void spread(const occlusion *o, int i, float **field, float **spare) {
         *spare = *field;
         *field = out;
     }
-}
-
-/* All passes of blur i. */
-static void blur(const occlusion *o, int i, float **field, float **spare) {
-    snow_monitor *monitor = o->job->context->monitor;
-    for (int n = 0; n < o->passes[i] && !snow_monitor_look(monitor, 0); n++)
-        spread(o, i, field, spare);
 }
 
 /* `field` and `spare` are zeros. */
@@ -150,11 +145,13 @@ static void make_fields(occlusion *o, float *field, float *spare,
             for (int64_t x = o->reach; x < d[0] - o->reach; x++)
                 field[(z * d[1] + y) * d[0] + x] =
                     (float)((double)*sum++ / unit);
-    blur(o, 0, &field, &spare);
+    for (int n = 0; n < o->passes[0]; n++)
+        spread(o, 0, &field, &spare);
     memcpy(second, field, (size_t)(d[0] * d[1] * d[2]) * sizeof *field);
     o->fields[0] = field;
     field = second;
-    blur(o, 1, &field, &spare);
+    for (int n = 0; n < o->passes[1]; n++)
+        spread(o, 1, &field, &spare);
     o->fields[1] = field;
 }
 
