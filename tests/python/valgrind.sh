@@ -14,7 +14,7 @@ shift 3
 hidden=$(mktemp -d)
 trap 'rm -rf "$hidden"' EXIT
 # Valgrind computes long doubles in 64 bits, which these do not bear.
-echo 'import sys; sys.modules.update(nibabel=None, xarray=None)' \
+echo 'import sys; sys.modules.update(h5py=None, nibabel=None, xarray=None)' \
     >"$hidden/sitecustomize.py"
 export PYTHONPATH=$hidden:$python_path
 # What measures time and memory is left out; each block is one of malloc, and no
