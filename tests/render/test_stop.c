@@ -52,6 +52,7 @@ static const way ways[] = {
     {"depth of iso", SHEAR_WARP, .mode = SNOW_MODE_ISO, .depth = 1,
      .alone = true},
     {"darkened", SHEAR_WARP, .darkened = 0.7},
+    {"ray cast", .method = SNOW_METHOD_RAYCAST, .alone = true},
     {"original", .method = SNOW_METHOD_ORIGINAL},
     {"tested", .method = SNOW_METHOD_TESTED},
     {"footprint", .method = SNOW_METHOD_FOOTPRINT},
