@@ -234,6 +234,8 @@ TARGET VALUE_INLINE void NAME(end_queue)(const snow_value_splat *p, int n,
         V(row_store)(q->border[way] + count, zero);
     for (int way = 0; p->fade && way < 6; way++)
         V(row_store)(q->slopes[way] + count, zero);
+    if (p->fade && p->labels) /* not of a table */
+        V(row_store)(q->color[3] + count, zero);
     V(row_store)(q->from + count, zero);
     V(row_store)(q->part + count, zero);
     if (!eye)
