@@ -178,7 +178,7 @@ snow_status snow_image_save(const snow_image *image, const char *path,
     SNOW_TRY(choose_format(image->context, path, &format));
     if (format->bits && image->channels == 1)
         return snow_fail(image->context, SNOW_STATUS_BAD_USAGE,
-                         "%s: %s holds colours, not data values; "
+                         "%s: %s holds colours, not values in data units; "
                          "write .npy, .exr, .tif or .pfm, or paint them first",
                          path, format->name);
     SNOW_TRY(check_options(image->context, path, image->width, image->height,

@@ -25,7 +25,7 @@ snow_status snow_image_make(snow_context *context, int width, int height,
         return snow_fail(
             context, SNOW_STATUS_BAD_USAGE,
             "a picture of %d channels is not possible; use 1 (values), 2 "
-            "(grey, alpha) or 4 (colour, alpha)",
+            "(grey, alpha) or 4 (red, green, blue, alpha)",
             channels);
     snow_image *image = snow_allocate(context, sizeof *image);
     if (!image)
