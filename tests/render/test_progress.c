@@ -87,6 +87,13 @@ static int check_stage(const listener *l, snow_stage stage) {
     return calls;
 }
 
+/* No other stage was reported, and this one so often at least. */
+static void check_alone(const listener *l, snow_stage stage, int least) {
+    check_rate(l);
+    assert_true(l->calls >= least);
+    assert_int_equal(check_stage(l, stage), l->calls);
+}
+
 /* --- volumes -------------------------------------------------------------- */
 
 #define SIDE 96
@@ -115,9 +122,7 @@ static void a_phantom_is_reported_while_it_is_made(void **state) {
                                               (const int64_t[3]){64, 64, 64}, 0,
                                               &volume),
                      SNOW_STATUS_OK);
-    check_rate(&l);
-    assert_true(check_stage(&l, SNOW_STAGE_READ) >= 2);
-    assert_int_equal(check_stage(&l, SNOW_STAGE_READ), l.calls);
+    check_alone(&l, SNOW_STAGE_READ, 2);
     assert_true(l.fractions[0] < 1);
     snow_volume_close(volume);
     assert_int_equal(snow_context_bytes(context), 0);
@@ -185,9 +190,7 @@ static void saving_is_reported_and_can_be_stopped(void **state) {
         assert_int_equal(l.calls, 1);
         listen_to(context, &l, 0); /* no file is in the way */
         assert_int_equal(snow_volume_save(volume, path, false), SNOW_STATUS_OK);
-        check_rate(&l);
-        assert_true(check_stage(&l, SNOW_STAGE_WRITE) >= 3);
-        assert_int_equal(check_stage(&l, SNOW_STAGE_WRITE), l.calls);
+        check_alone(&l, SNOW_STAGE_WRITE, 3);
         snow_volume_close(volume);
         snow_context_free(context);
     }
@@ -219,9 +222,7 @@ static void saving_a_picture_is_reported_and_can_be_stopped(void **state) {
         assert_int_equal(l.calls, 2);
         listen_to(context, &l, 0); /* no file is in the way */
         assert_int_equal(snow_image_save(image, path, NULL), SNOW_STATUS_OK);
-        check_rate(&l);
-        assert_true(check_stage(&l, SNOW_STAGE_WRITE) >= 3);
-        assert_int_equal(check_stage(&l, SNOW_STAGE_WRITE), l.calls);
+        check_alone(&l, SNOW_STAGE_WRITE, 3);
         snow_image_free(image);
         assert_int_equal(snow_context_bytes(context), 0);
         snow_context_free(context);
@@ -258,9 +259,7 @@ static void measuring_is_reported_and_can_be_stopped(void **state) {
         assert_int_equal(l.calls, 1);
         listen_to(context, &l, 0);
         assert_int_equal(measure(volume, what), SNOW_STATUS_OK);
-        check_rate(&l);
-        assert_true(check_stage(&l, SNOW_STAGE_READ) >= 3);
-        assert_int_equal(check_stage(&l, SNOW_STAGE_READ), l.calls);
+        check_alone(&l, SNOW_STAGE_READ, 3);
     }
     snow_volume_close(volume);
     assert_int_equal(snow_context_bytes(context), 0);
