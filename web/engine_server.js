@@ -19,7 +19,7 @@ export class ServerEngine {
         this.n = 0;
         this.sentAt = new Map();
         this.unheard = new Map(); // changes that no state or picture has yet
-        this.waiting = null; // changes of the next frame of the screen
+        this.waiting = null; // changes that are not sent yet
         this.painting = Promise.resolve();
         this.wait = 500;
         this.flushed = 0;
@@ -79,14 +79,11 @@ export class ServerEngine {
     }
 
     /** Changes of a recipe; null takes a key out.  Sent at once, but not more often
-     * than the screen has frames. */
+     * than each FRAME.  One that waited does not make those of all later frames wait. */
     set(changes) {
         if (!this.waiting) {
             this.since = performance.now();
-            if (this.since - this.flushed > FRAME)
-                queueMicrotask(() => this.flush());
-            else
-                requestAnimationFrame(() => this.flush());
+            setTimeout(() => this.flush(), this.flushed + FRAME - this.since);
         }
         this.waiting = {...this.waiting, ...changes};
     }

@@ -28,12 +28,13 @@ HERE = pathlib.Path(__file__).resolve().parent
 # Why a snippet is not run: of the document, and of the text.
 REASONS = [
     (r"model\.md|snowglass\.7", r".*", "a formula"),
-    (r".*", r"\./dev |scripts/|(?s:SNOW_[A-Z_]+=.*(build/|ctest|\./dev))|perf |"
+    (r".*", r"\./dev |scripts/|node tests/|(?s:SNOW_[A-Z_]+=.*(build/|ctest|\./dev))|perf |"
      r"mpicc .* bench/",
      "for the source tree, which users of packages have not"),
     (r".*", r"(module load .*\n)?cmake (-S \. )?-B|add_subdirectory",
      "builds the sources: as ./dev package debs does, and tests of them"),
     (r".*", r"ssh |srun --pty|https://", "needs other machines"),
+    (r".*", r"valgrind ", "needs valgrind"),
     (r".*", r"mpirun\.mpich", "needs MPICH; the package is of Open MPI"),
     (r"looks\.md", r"light-grey 173", "what the tool prints"),
     (r"README\.md", r"\s*(SD|base|head\.nrrd)\s", "a figure"),
