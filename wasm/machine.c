@@ -1,5 +1,5 @@
-/* machine.c - in the place of what a page has not: processors, signals, movies
- * (of base/processors.c, base/affinity.c, run/free_memory.c, run/interrupt.c),
+/* machine.c - in the place of what a page has not: threads kept on processors,
+ * signals, movies (of base/affinity.c, run/free_memory.c, run/interrupt.c),
  * methods other than shear-warp (of render/exact/, render/raycast/), and levels
  * of refinement (of formats/amr/). */
 #include "base/affinity.h"
@@ -10,10 +10,6 @@
 #include "movie/movie_encoder.h"
 #include "run/free_memory.h"
 #include "run/interrupt.h"
-
-int snow_processors(void) {
-    return 1;
-}
 
 /* What a page may take; the engine's limit is lower (engine.c). */
 uint64_t free_memory(void) {

@@ -2,17 +2,26 @@
 //
 //   node engine.cjs WORKER ENGINE FOLDER JOBS
 //
-// JOBS is a JSON list of {name, path, files, recipe, turn}, whose files are in FOLDER.  Of each there are then in
-// FOLDER too the pictures NAME-0.bin (draft), NAME-1.bin, NAME-2.bin, as they go to the
-// page, and NAME.json: what was said, the command, and
-// the qualities of all pictures.  A turn comes when the picture at rest was begun.
+// JOBS is a JSON list of {name, path, files, recipe, turn, threads}, whose files are in
+// FOLDER.  Of each there are then in FOLDER too the pictures NAME-0.bin (draft),
+// NAME-1.bin, NAME-2.bin, as they go to the page, and NAME.json: what was said, the
+// command, the qualities of all pictures, and the processor's milliseconds of each helper.
+// A turn comes when the picture at rest was begun.
 const fs = require('fs');
-const [worker, engine, folder, jobs] = process.argv.slice(2);
+const {helpers} = require('./helpers.cjs');
+const [script, engine, folder, jobs] = process.argv.slice(2);
+const worker = require('path').resolve(script);
 const {begin} = require(worker);
 
-async function run({name, path, files, recipe, turn}) {
+/** Of the processor, of a thread of this process. */
+const milliseconds = task =>
+    Number(fs.readFileSync(`/proc/self/task/${task}/schedstat`, 'latin1').split(' ')[0]) / 1e6;
+
+async function run({name, path, files, recipe, turn, threads = 1}) {
+    const others = helpers(worker);
     const made = await begin(fs.readFileSync(engine), files.map(name => ({
-        name, bytes: new Uint8Array(fs.readFileSync(`${folder}/${name}`)).buffer})));
+        name, bytes: new Uint8Array(fs.readFileSync(`${folder}/${name}`)).buffer})), threads, threads > 1 && others.share);
+    const numbers = await others.numbers(), begun = numbers.map(milliseconds);
     const out = {said: [], levels: [], opened: made.open(path, recipe)};
     const take = () => {
         for (let each; (each = made.take()) !== null;) {
@@ -47,16 +56,20 @@ async function run({name, path, files, recipe, turn}) {
         await rest();
         take();
     }
+    out.helped = numbers.map((number, i) => milliseconds(number) - begun[i]);
+    await others.end();
     fs.writeFileSync(`${folder}/${name}.json`, JSON.stringify(out));
 }
 
-// What the engine lacks: the page's part, the system's, and what is of many processes.
-const lacks = /^(host|invoke|ranks|snow_(comm|combiner|group|part|partition|pipeline|ranks))_|^(__syscall|_?emscripten|fd|environ|clock)_|^(proc_exit|[gs]etTempRet0)$/;
-for (const {name} of WebAssembly.Module.imports(new WebAssembly.Module(fs.readFileSync(engine))))
-    if (!lacks.test(name))
-        throw new Error(`${name} is called, and not in the engine`);
+// What the engine lacks: the page's part, and the system's.
+const lacks = /^(host|invoke)_|^(__syscall|_?emscripten|fd|environ|clock)_|^(proc_exit|[gs]etTempRet0)$/;
 
-(async () => {
+async function all() {
+    for (const {name, kind} of WebAssembly.Module.imports(new WebAssembly.Module(fs.readFileSync(engine))))
+        if (kind === 'function' && !lacks.test(name))
+            throw new Error(`${name} is called, and not in the engine`);
     for (const job of JSON.parse(jobs))
         await run(job);
-})();
+}
+
+all();

@@ -80,6 +80,11 @@ const picture = await page.evaluate(async () =>
 writeFileSync(`${folder}/${name}-rest.png`, Buffer.from(picture));
 await page.locator('button', {hasText: 'Command'}).first().click();
 writeFileSync(`${folder}/${name}.txt`, await page.locator('dialog textarea').inputValue());
+const {helpers, threads} = await page.evaluate(() => ({
+    helpers: window.snowglass.engine.helpers.length,
+    threads: crossOriginIsolated ? Math.min(navigator.hardwareConcurrency, 16) : 1}));
+check('each processor has a thread, where memory may be shared', helpers + 1 === threads, helpers);
+check('memory may be shared', (threads > 1) === /^http:/.test(url), threads);
 check('nothing is said on the console', !said.length, said.join('; '));
 const far = asked.filter(each => each !== url && !/^(blob|data):/.test(each));
 check('nothing else is asked for', !far.length, far.join());

@@ -1,18 +1,31 @@
 // speed.cjs - how fast the engine of the page without a server is in Node.
 //
-//   node speed.cjs WORKER ENGINE PATH SIDE TURNS
+//   node speed.cjs WORKER ENGINE PATH SIDE TURNS [THREADS]
 //
 // Prints the least milliseconds of the processor for a draft, a normal picture and one
-// at rest: its clock is that of this thread, and what is waited for.
+// at rest: its clock is that of this thread, and what is waited for.  With THREADS they
+// are milliseconds that pass.
 const fs = require('fs');
-const [worker, engine, path, side, turns] = process.argv.slice(2);
+const {helpers} = require('./helpers.cjs');
+const [script, engine, path, side, turns, threads] = process.argv.slice(2);
+const worker = require('path').resolve(script);
 const {begin} = require(worker);
 
 let waited = 0;
-performance.now = () => waited + Number(fs.readFileSync('/proc/thread-self/schedstat', 'latin1').split(' ')[0]) / 1e6;
+if (!threads)
+    performance.now = () => waited + Number(fs.readFileSync('/proc/thread-self/schedstat', 'latin1').split(' ')[0]) / 1e6;
+
+/** Waits, or takes it for done. */
+async function pause(milliseconds) {
+    waited += milliseconds;
+    if (threads && milliseconds)
+        await new Promise(good => setTimeout(good, milliseconds));
+}
 
 (async () => {
-    const made = await begin(fs.readFileSync(engine), []);
+    const others = helpers(worker);
+    const made = await begin(fs.readFileSync(engine), [], threads, threads > 1 && others.share);
+    await others.numbers();
     const least = [Infinity, Infinity, Infinity];
     const take = () => {
         for (let each; (each = made.take()) !== null;) {
@@ -25,9 +38,10 @@ performance.now = () => waited + Number(fs.readFileSync('/proc/thread-self/sched
     made.open(path, {size: [+side, +side]});
     for (let turn = 0; turn < +turns; turn++) {
         made.hear(JSON.stringify({t: 'set', n: turn + 1, recipe: {azimuth: 30 + turn / 8}}));
-        for (let wait; (wait = made.step()) >= 0; waited += wait)
+        for (let wait; (wait = made.step()) >= 0; await pause(wait))
             take();
         take();
     }
+    await others.end();
     console.log(JSON.stringify(least));
 })();

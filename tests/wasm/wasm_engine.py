@@ -163,6 +163,9 @@ strangers = [
 jobs = [{"name": name, "path": path, "recipe": recipe, "files":
          file if isinstance(file, list) else [file] if file else []}
         for name, path, file, recipe in volumes]
+THREADS = 3
+jobs += [{**job, "name": f"{job['name']}-threads", "threads": THREADS}
+         for job in jobs]
 jobs += [{"name": "turned", "path": "phantom:engine", "files": [], "recipe":
           {"size": [120, 100]}, "turn": {"azimuth": 40}}]
 jobs += [{"name": name, "path": path, "files": [path], "recipe": {}}
@@ -172,6 +175,10 @@ subprocess.run([node, os.path.join(HERE, "engine.cjs"),
                 json.dumps(jobs)], check=True, timeout=500)
 for volume in volumes:
     compare(volume[0])
+    compare(f"{volume[0]}-threads")
+with open(os.path.join(OUT, "engine-threads.json")) as file:
+    helped = json.load(file)["helped"]
+check("all threads draw", len(helped) == THREADS - 1 and min(helped) > 20, helped)
 with open(os.path.join(OUT, "turned.json")) as file:
     levels_ = json.load(file)["levels"]
 check("a turn does not wait for the picture at rest", levels_ == [0, 1, 0, 1, 2],

@@ -1,10 +1,13 @@
-"""The page without a server in Chromium: a phantom, dropped files, and a page that
-`snowglass export` made."""
+"""The page without a server in Chromium: a phantom, dropped files, a page that
+`snowglass export` made, and one that a server sends so that it may share memory."""
+import functools
+import http.server
 import os
 import shlex
 import shutil
 import subprocess
 import sys
+import threading
 
 TOOL, OUT, TOP = map(os.path.abspath, sys.argv[1:4])
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -47,7 +50,7 @@ def watch(page, name, *files):
     """Looks at a page, and runs its command where the volume is."""
     done = subprocess.run(
         [node, os.path.join(HERE, "page.mjs"), PLAYWRIGHT, chromium,
-         "file://" + page, OUT, name, *files], timeout=300)
+         page, OUT, name, *files], timeout=300)
     check(f"{name}: the page", done.returncode == 0, done.returncode)
     if done.returncode:
         return
@@ -67,12 +70,13 @@ tool("convert", "head.nrrd", "-o", "head.raw")
 with open(os.path.join(OUT, "apart.nhdr"), "w") as file:
     file.write("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 64 64 48\n"
                "spacings: 4 4 4.7\nencoding: raw\ndata file: head.raw\n")
-watch(PAGE, "phantom")
-watch(PAGE, "dropped", os.path.join(OUT, "head.nrrd"))
-watch(PAGE, "apart", os.path.join(OUT, "apart.nhdr"),
+FILE = "file://" + PAGE
+watch(FILE, "phantom")
+watch(FILE, "dropped", os.path.join(OUT, "head.nrrd"))
+watch(FILE, "apart", os.path.join(OUT, "apart.nhdr"),
       os.path.join(OUT, "head.raw"))
 
-watch(PAGE, "raw", os.path.join(OUT, "head.raw"))
+watch(FILE, "raw", os.path.join(OUT, "head.raw"))
 
 with open(os.path.join(OUT, "points.json"), "w") as file:
     file.write('{"snowglass-tf": 1, "values": "data", "opacities": '
@@ -80,7 +84,27 @@ with open(os.path.join(OUT, "points.json"), "w") as file:
 made = tool("export", "made.html", "head.nrrd", "--tf", "points.json",
             "--azimuth", "30", "--legend")
 check("a page is made", made.returncode == 0, made.stderr)
-watch(os.path.join(OUT, "made.html"), "made")
+watch("file://" + os.path.join(OUT, "made.html"), "made")
+
+
+class Isolating(http.server.SimpleHTTPRequestHandler):
+    """Sends what a browser asks of pages that share memory."""
+    def end_headers(self):
+        self.send_header("Cross-Origin-Opener-Policy", "same-origin")
+        self.send_header("Cross-Origin-Embedder-Policy", "require-corp")
+        super().end_headers()
+
+    def log_message(self, *words):
+        pass
+
+
+with http.server.ThreadingHTTPServer(
+        ("127.0.0.1", 0), functools.partial(Isolating, directory=OUT)) as server:
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    watch(f"http://127.0.0.1:{server.server_port}/made.html", "shared")
+    watch(f"http://127.0.0.1:{server.server_port}/made.html", "shared-dropped",
+          os.path.join(OUT, "head.nrrd"))
+    server.shutdown()
 again = tool("export", "made.html", "head.nrrd")
 check("a page is not replaced", again.returncode == 4 and
       "made.html: exists" in again.stderr, again)

@@ -14,10 +14,16 @@ export class ServerEngine extends SocketEngine {
         });
     }
 
+    work() {
+        const worker = host.work();
+        worker.onerror = event => this.tell('closed', event.message);
+        return worker;
+    }
+
     open() {
-        this.worker = host.work();
+        this.worker = this.work();
+        this.helpers = [];
         this.worker.onmessage = ({data}) => this.receive(data);
-        this.worker.onerror = event => this.tell('closed', event.message);
         this.worker.postMessage({t: 'open', ...host.volume},
             host.volume.files.flatMap(({bytes}) => bytes ?? []));
         this.tell('open');
@@ -26,7 +32,8 @@ export class ServerEngine extends SocketEngine {
 
     close() {
         clearTimeout(this.reading);
-        this.worker.terminate();
+        for (const worker of [this.worker, ...this.helpers])
+            worker.terminate();
     }
 
     say(message) {
@@ -35,6 +42,12 @@ export class ServerEngine extends SocketEngine {
     }
 
     receive(data) {
+        if (data.t === 'help') {
+            const helper = this.work();
+            helper.postMessage(data);
+            this.helpers.push(helper);
+            return;
+        }
         if (this.reading) {
             clearTimeout(this.reading);
             this.reading = null;

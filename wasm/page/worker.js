@@ -3,10 +3,13 @@
 //
 // From the page: {t: 'open', wasm, files: [{name, bytes or file}], path, recipe},
 // then {t: 'hear', text} and {t: 'painted'}.  To the page: texts, pictures as
-// ArrayBuffers (serve/message.h), and {t: 'refused', text}.
+// ArrayBuffers (serve/message.h), {t: 'refused', text}, and, where pages may share
+// memory, {t: 'help', ...} for each thread: the page hands it to one more worker.
 'use strict';
 
 const UNDER_WAY = 2; // pictures that the page has not painted yet
+const MEMORY = {initial: 256, maximum: 32768}; // as the engine declares it
+const THREADS_MOST = 16;
 
 /** The files by their paths, and what the engine asks of them. */
 class Files {
@@ -44,9 +47,9 @@ class Files {
     }
 }
 
-/** What the engine imports.  `of` gets its exports once they are there. */
+/** What the engine imports.  `of` has its memory, and its exports once they are there. */
 function host(of, files) {
-    const bytes = () => new Uint8Array(of.exports.memory.buffer);
+    const bytes = () => new Uint8Array(of.memory.buffer);
     const text = at => {
         const all = bytes();
         return new TextDecoder().decode(all.slice(at, all.indexOf(0, at)));
@@ -81,8 +84,8 @@ function host(of, files) {
         }};
     const wasi = {
         clock_time_get(clock, precision, to) {
-            const now = clock ? performance.now() : Date.now();
-            new DataView(of.exports.memory.buffer).setBigUint64(to, BigInt(Math.round(1e6 * now)), true);
+            const now = clock ? performance.timeOrigin + performance.now() : Date.now();
+            new DataView(of.memory.buffer).setBigUint64(to, BigInt(Math.round(1e6 * now)), true);
             return 0;
         },
         proc_exit(code) {
@@ -116,20 +119,61 @@ function host(of, files) {
     return {env: new Proxy(env, others), wasi_snapshot_preview1: new Proxy(wasi, others)};
 }
 
-/** The engine with its files open, as functions of texts and bytes. */
-async function begin(wasm, list) {
-    const of = {}, module = await WebAssembly.compile(wasm);
+/** The engine for a page that cannot share memory: the flags of its memory, which
+ * follow its name and its kind, say so. */
+function unshared(wasm) {
+    const bytes = new Uint8Array(wasm).slice();
+    const head = String.fromCharCode(...bytes.subarray(0, 1 << 14));
+    bytes[head.indexOf('\x06memory\x02\x03') + 8] = 1;
+    return bytes;
+}
+
+/** The same files, whose bytes all threads have. */
+function shared(list) {
+    return list.map(({name, file, bytes}) => {
+        const copy = bytes && new SharedArrayBuffer(bytes.byteLength);
+        if (bytes)
+            new Uint8Array(copy).set(new Uint8Array(bytes));
+        return {name, file, bytes: copy};
+    });
+}
+
+/** The module with a memory, as `exports`. */
+function instance(module, memory, list) {
+    const of = {memory};
     const {env, wasi_snapshot_preview1: wasi} = host(of, new Files(list));
     const imports = {env: {}, wasi_snapshot_preview1: {}};
-    for (const {module: from, name} of WebAssembly.Module.imports(module))
-        imports[from][name] = (from === 'env' ? env : wasi)[name];
-    of.exports = (await WebAssembly.instantiate(module, imports)).exports;
+    for (const {module: from, name, kind} of WebAssembly.Module.imports(module))
+        imports[from][name] = kind === 'memory' ? memory : (from === 'env' ? env : wasi)[name];
+    of.exports = new WebAssembly.Instance(module, imports).exports;
     of.table = of.exports.__indirect_function_table;
-    of.exports._initialize?.();
+    return of;
+}
+
+/** A thread of the engine: never returns. */
+function help({module, memory, files, stack, number}) {
+    const {exports} = instance(module, memory, files);
+    exports.stackRestore(stack);
+    exports.engine_help(number);
+}
+
+/** The engine with its files open, as functions of texts and bytes.  `share` gets what
+ * each thread but this one begins with; without it there are no others. */
+async function begin(wasm, list, threads = 1, share = null) {
+    const files = share ? shared(list) : list;
+    const module = await WebAssembly.compile(share ? wasm : unshared(wasm));
+    const memory = new WebAssembly.Memory({...MEMORY, shared: !!share});
+    const of = instance(module, memory, files);
+    of.exports._initialize();
+    for (let number = 0; share && number < threads - 1; number++) {
+        const stack = of.exports.engine_add_helper();
+        if (stack)
+            share({t: 'help', module, memory, files, stack, number});
+    }
     const put = text => {
         const encoded = new TextEncoder().encode(text);
         const at = of.exports.engine_room(encoded.length + 1);
-        const all = new Uint8Array(of.exports.memory.buffer);
+        const all = new Uint8Array(memory.buffer);
         all.set(encoded, at);
         all[at + encoded.length] = 0;
         return [at, encoded.length];
@@ -153,8 +197,8 @@ async function begin(wasm, list) {
             const at = of.exports.engine_take();
             if (!at)
                 return null;
-            const copy = of.exports.memory.buffer.slice(at, at + of.exports.engine_length());
-            return of.exports.engine_is_text() ? new TextDecoder().decode(copy) : copy;
+            const copy = new Uint8Array(memory.buffer, at, of.exports.engine_length()).slice();
+            return of.exports.engine_is_text() ? new TextDecoder().decode(copy) : copy.buffer;
         }};
 }
 
@@ -194,7 +238,8 @@ function serve(scope) {
     channel.port1.onmessage = work;
     const open = async ({wasm, files, path, recipe}) => {
         try {
-            const made = await begin(wasm, files);
+            const made = await begin(wasm, files, Math.min(navigator.hardwareConcurrency, THREADS_MOST),
+                scope.crossOriginIsolated && (what => scope.postMessage(what)));
             const good = made.open(path, recipe);
             engine = made;
             deliver();
@@ -211,6 +256,10 @@ function serve(scope) {
             open(data);
             return;
         }
+        if (data.t === 'help') {
+            help(data);
+            return;
+        }
         if (!engine || dead)
             return;
         if (data.t === 'hear')
@@ -223,6 +272,6 @@ function serve(scope) {
 }
 
 if (typeof module !== 'undefined')
-    module.exports = {begin};
+    module.exports = {begin, help};
 else
     serve(self);
