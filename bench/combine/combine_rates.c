@@ -1,8 +1,9 @@
 /* bench/combine/combine_rates.c - what the threads of one rank take to look at
  * a pixel of their local image and write it into a message, to read one of a
  * message and lay it over another, and to round one, beside copies of the same
- * bytes: what --scan, --blend, --round and --move should be for a simulated
- * machine of this kind.
+ * bytes, and what one takes to move 16 bytes of regions that it has gathered to
+ * the picture: what --scan, --blend, --round and --move should be for a
+ * simulated machine of this kind.
  *
  * The local images are those of up to 32 neighbours of --ranks, and are scanned
  * whole, from memory, as the splat leaves them.  The region is that
@@ -26,12 +27,14 @@
 #define PIXELS_OF_THREAD 16384 /* as in src/combine/parts.c */
 #define PIXELS_OF_RUN 262144   /* at least so many are timed together */
 
+/* Seconds are of a pixel, of MOVE those of 16 bytes. */
 typedef enum rates_step {
     SCAN,    /* of the picture, as all below of the region */
     COPY,    /* of the picture */
     BLEND,   /* messages to the region */
-    MOVE,    /* a copy of the messages */
+    MESSAGE, /* a copy of the messages */
     ROUNDED, /* to 8 bits */
+    MOVE,    /* regions of all ranks, rounded, to the picture */
     STEPS
 } rates_step;
 
@@ -74,7 +77,7 @@ static int ranks_of(const bench_rates *rates) {
  * ends. */
 static void choose_pixels(bench_rates *rates, rates_step step) {
     const int64_t pixels = picture_pixels(rates);
-    const bool all = step == SCAN || step == COPY;
+    const bool all = step == SCAN || step == COPY || step == MOVE;
     const int64_t some = all ? pixels : pixels / ranks_of(rates) / 64 * 64;
     const int64_t most = some / PIXELS_OF_THREAD;
     rates->step = step;
@@ -82,7 +85,7 @@ static void choose_pixels(bench_rates *rates, rates_step step) {
     const int64_t middle = some < width ? width / 2 : 0;
     rates->first = ((pixels - some) / 2 + middle) / 64 * 64;
     rates->last = rates->first + some;
-    rates->threads = rates->options->threads;
+    rates->threads = step == MOVE ? 1 : rates->options->threads;
     if (rates->threads > most)
         rates->threads = most > 1 ? (int)most : 1;
     rates->repeats =
@@ -192,6 +195,20 @@ static void round_region(bench_rates *rates, int64_t item, int64_t first,
     rates->pixels[item] += last - first;
 }
 
+/* As the root of a gather does, row by row: one region stands for all. */
+static void move_regions(bench_rates *rates, int64_t item, int64_t first,
+                         int64_t last) {
+    const int64_t region = picture_pixels(rates) / ranks_of(rates);
+    const int64_t row = rates->options->width;
+    const size_t each =
+        (size_t)(region < row ? region : row) * (size_t)rates->order.channels;
+    const size_t bytes = (size_t)(last - first) * (size_t)rates->order.channels;
+    unsigned char *out = (unsigned char *)rates->out;
+    for (size_t at = 0; each && at + each <= bytes; at += each)
+        memcpy(out + at, rates->messages[0], each);
+    rates->pixels[item] += (int64_t)(bytes / 16);
+}
+
 static void copy(bench_rates *rates, int64_t item, int64_t first,
                  int64_t last) {
     const size_t channels = (size_t)rates->order.channels;
@@ -203,8 +220,8 @@ static void copy(bench_rates *rates, int64_t item, int64_t first,
 
 static void do_step(void *of, int64_t item, int worker) {
     static void (*const steps[STEPS])(bench_rates *, int64_t, int64_t,
-                                      int64_t) = {scan, copy, blend,
-                                                  copy_messages, round_region};
+                                      int64_t) = {
+        scan, copy, blend, copy_messages, round_region, move_regions};
     bench_rates *rates = of;
     const double start = cpu_seconds();
     (void)worker;
@@ -264,8 +281,8 @@ static void scan_layer(snow_context *context, bench_rates *rates, int layer) {
 
 /* `laid`: pixels of all messages of a region. */
 static void print_rates(const bench_rates *rates, double laid) {
-    static const char *const names[STEPS] = {"scan_ns", "copy_ns", "blend_ns",
-                                             "move_ns", "round_ns"};
+    static const char *const names[STEPS] = {
+        "scan_ns", "copy_ns", "blend_ns", "message_ns", "round_ns", "move_ns"};
     const combine_options *options = rates->options;
     const double *seconds = rates->seconds;
     const double scanned = (double)rates->scanned;
@@ -280,9 +297,10 @@ static void print_rates(const bench_rates *rates, double laid) {
     for (int i = 0; i < STEPS; i++)
         bench_line_number(&out, names[i], seconds[i] * 1e9);
     /* Of a direct send: all that is read, and a copy of it. */
-    bench_line_number(&out, "over_copy",
-                      (seconds[SCAN] * scanned + seconds[BLEND] * received) /
-                          (seconds[COPY] * scanned + seconds[MOVE] * received));
+    bench_line_number(
+        &out, "over_copy",
+        (seconds[SCAN] * scanned + seconds[BLEND] * received) /
+            (seconds[COPY] * scanned + seconds[MESSAGE] * received));
     bench_line_end(&out);
 }
 
@@ -308,11 +326,13 @@ int combine_rates(const combine_options *options) {
             scan_layer(context, &rates, i);
         for (int run = 0; run <= options->runs; run++) {
             laid = run_step(context, &rates, BLEND);
-            run_step(context, &rates, MOVE);
+            run_step(context, &rates, MESSAGE);
             run_step(context, &rates, COPY);
         }
         for (int run = 0; run <= options->runs; run++)
             run_step(context, &rates, ROUNDED);
+        for (int run = 0; run <= options->runs; run++)
+            run_step(context, &rates, MOVE);
         choose_pixels(&rates, BLEND);
         print_rates(&rates, (double)laid / rates.repeats);
     } else {

@@ -2,11 +2,12 @@
 //
 //   node engine.cjs WORKER ENGINE FOLDER JOBS
 //
-// JOBS is a JSON list of {name, path, files, recipe, turn, threads}, whose files are in
-// FOLDER.  Of each there are then in FOLDER too the pictures NAME-0.bin (draft),
+// JOBS is a JSON list of {name, path, files, recipe, turn, threads, narrow}, whose files
+// are in FOLDER.  Of each there are then in FOLDER too the pictures NAME-0.bin (draft),
 // NAME-1.bin, NAME-2.bin, as they go to the page, and NAME.json: what was said, the
 // command, the qualities of all pictures, and the processor's milliseconds of each helper.
-// A turn comes when the picture at rest was begun.
+// A turn comes when the picture at rest was begun.  Where it is narrow, there is no room
+// for memory that threads share.
 const fs = require('fs');
 const {helpers} = require('./helpers.cjs');
 const [script, engine, folder, jobs] = process.argv.slice(2);
@@ -17,8 +18,17 @@ const {begin} = require(worker);
 const milliseconds = task =>
     Number(fs.readFileSync(`/proc/self/task/${task}/schedstat`, 'latin1').split(' ')[0]) / 1e6;
 
-async function run({name, path, files, recipe, turn, threads = 1}) {
+const Memory = WebAssembly.Memory;
+
+function narrowMemory(how) {
+    if (how.shared)
+        throw new RangeError('there is no room');
+    return new Memory(how);
+}
+
+async function run({name, path, files, recipe, turn, threads = 1, narrow}) {
     const others = helpers(worker);
+    WebAssembly.Memory = narrow ? narrowMemory : Memory;
     const made = await begin(fs.readFileSync(engine), files.map(name => ({
         name, bytes: new Uint8Array(fs.readFileSync(`${folder}/${name}`)).buffer})), threads, threads > 1 && others.share);
     const numbers = await others.numbers(), begun = numbers.map(milliseconds);

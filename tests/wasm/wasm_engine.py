@@ -166,6 +166,7 @@ jobs = [{"name": name, "path": path, "recipe": recipe, "files":
 THREADS = 3
 jobs += [{**job, "name": f"{job['name']}-threads", "threads": THREADS}
          for job in jobs]
+jobs += [{**jobs[0], "name": "narrow", "threads": THREADS, "narrow": True}]
 jobs += [{"name": "turned", "path": "phantom:engine", "files": [], "recipe":
           {"size": [120, 100]}, "turn": {"azimuth": 40}}]
 jobs += [{"name": name, "path": path, "files": [path], "recipe": {}}
@@ -176,9 +177,18 @@ subprocess.run([node, os.path.join(HERE, "engine.cjs"),
 for volume in volumes:
     compare(volume[0])
     compare(f"{volume[0]}-threads")
-with open(os.path.join(OUT, "engine-threads.json")) as file:
-    helped = json.load(file)["helped"]
-check("all threads draw", len(helped) == THREADS - 1 and min(helped) > 20, helped)
+compare("narrow")
+
+
+def helped(name):
+    """The processor's milliseconds of all threads but the first."""
+    with open(os.path.join(OUT, f"{name}.json")) as file:
+        return json.load(file)["helped"]
+
+
+some = helped("engine-threads")
+check("all threads draw", len(some) == THREADS - 1 and min(some) > 20, some)
+check("without room to share it is one thread", not helped("narrow"))
 with open(os.path.join(OUT, "turned.json")) as file:
     levels_ = json.load(file)["levels"]
 check("a turn does not wait for the picture at rest", levels_ == [0, 1, 0, 1, 2],

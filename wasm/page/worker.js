@@ -128,6 +128,16 @@ function unshared(wasm) {
     return bytes;
 }
 
+/** Memory, which threads share where that is asked for and a browser has room for all
+ * that it may grow to. */
+function room(share) {
+    try {
+        return new WebAssembly.Memory({...MEMORY, shared: !!share});
+    } catch {
+        return new WebAssembly.Memory(MEMORY);
+    }
+}
+
 /** The same files, whose bytes all threads have. */
 function shared(list) {
     return list.map(({name, file, bytes}) => {
@@ -160,15 +170,16 @@ function help({module, memory, files, stack, number}) {
 /** The engine with its files open, as functions of texts and bytes.  `share` gets what
  * each thread but this one begins with; without it there are no others. */
 async function begin(wasm, list, threads = 1, share = null) {
-    const files = share ? shared(list) : list;
-    const module = await WebAssembly.compile(share ? wasm : unshared(wasm));
-    const memory = new WebAssembly.Memory({...MEMORY, shared: !!share});
+    const memory = room(share);
+    const among = memory.buffer instanceof ArrayBuffer ? null : share;
+    const files = among ? shared(list) : list;
+    const module = await WebAssembly.compile(among ? wasm : unshared(wasm));
     const of = instance(module, memory, files);
     of.exports._initialize();
-    for (let number = 0; share && number < threads - 1; number++) {
+    for (let number = 0; among && number < threads - 1; number++) {
         const stack = of.exports.engine_add_helper();
         if (stack)
-            share({t: 'help', module, memory, files, stack, number});
+            among({t: 'help', module, memory, files, stack, number});
     }
     const put = text => {
         const encoded = new TextEncoder().encode(text);
