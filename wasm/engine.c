@@ -1,5 +1,5 @@
 /* engine.c - the viewer behind a page without a server: its state, its drawing
- * and its answers in one thread, which the page's worker (worker.js) calls.
+ * and its answers, by calls of the page's worker (worker.js).
  *
  * The worker hands in the texts that go to a server elsewhere (message.h),
  * calls engine_step while there is work, and takes out what goes to the page.

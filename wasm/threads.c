@@ -34,7 +34,14 @@ int snow_processors(void) {
     return count + 1;
 }
 
+/* A thread that can be cancelled wakes now and then to look whether it was. */
+static void wait_in_one_go(void) {
+    pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, NULL);
+}
+
+/* The top of one more helper's stack, or NULL. */
 EMSCRIPTEN_KEEPALIVE void *engine_add_helper(void) {
+    wait_in_one_go();
     char *stack = count < HELPERS_MOST ? malloc(STACK_BYTES) : NULL;
     if (!stack)
         return NULL;
@@ -53,8 +60,7 @@ int emscripten_builtin_pthread_create(pthread_t *thread,
                                       const pthread_attr_t *attributes,
                                       void *(*run)(void *), void *argument);
 
-/* --- a helper ---------------------------------------------------------------
- */
+/* --- a helper ------------------------------------------------------------- */
 
 EMSCRIPTEN_KEEPALIVE void engine_help(int number) {
     struct helper *self = &helpers[number];
@@ -66,13 +72,14 @@ EMSCRIPTEN_KEEPALIVE void engine_help(int number) {
         }
         emscripten_tls_init();
         __set_thread_state(self->thread, 0, 0, 1);
+        wait_in_one_go();
         _emscripten_thread_exit(self->run(self->argument));
         atomic_store(&self->state, FREE);
+        __builtin_wasm_memory_atomic_notify((int *)&self->state, 1);
     }
 }
 
-/* --- what the C library asks for
- * ---------------------------------------------- */
+/* --- what the C library asks for ------------------------------------------ */
 
 static bool has_free_helper(void) {
     for (int n = 0; n < count; n++)
@@ -112,13 +119,19 @@ int _emscripten_default_pthread_stack_size(void) {
     return STACK_ALIGN;
 }
 
+/* Of one that was joined: its helper is free for another then. */
 void __emscripten_thread_cleanup(pthread_t thread) {
+    for (int n = 0; n < count; n++)
+        while (helpers[n].thread == thread &&
+               atomic_load(&helpers[n].state) == READY)
+            __builtin_wasm_memory_atomic_wait32((int *)&helpers[n].state, READY,
+                                                -1);
     _emscripten_thread_free_data(thread);
 }
 
 /* The page's worker may wait, as its helpers may. */
 void __emscripten_init_main_thread_js(pthread_t thread) {
-    __set_thread_state(thread, 0, 1, 1);
+    __set_thread_state(thread, 0, 0, 1);
 }
 
 void emscripten_check_blocking_allowed(void) {

@@ -195,7 +195,8 @@ static void round_region(bench_rates *rates, int64_t item, int64_t first,
     rates->pixels[item] += last - first;
 }
 
-/* As the root of a gather does, row by row: one region stands for all. */
+/* As the root of a gather does, row by row; floats stand for what it has
+ * received. */
 static void move_regions(bench_rates *rates, int64_t item, int64_t first,
                          int64_t last) {
     const int64_t region = picture_pixels(rates) / ranks_of(rates);
@@ -203,9 +204,10 @@ static void move_regions(bench_rates *rates, int64_t item, int64_t first,
     const size_t each =
         (size_t)(region < row ? region : row) * (size_t)rates->order.channels;
     const size_t bytes = (size_t)(last - first) * (size_t)rates->order.channels;
+    const unsigned char *in = (const unsigned char *)rates->picture;
     unsigned char *out = (unsigned char *)rates->out;
     for (size_t at = 0; each && at + each <= bytes; at += each)
-        memcpy(out + at, rates->messages[0], each);
+        memcpy(out + at, in + at, each);
     rates->pixels[item] += (int64_t)(bytes / 16);
 }
 

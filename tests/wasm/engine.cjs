@@ -5,7 +5,7 @@
 // JOBS is a JSON list of {name, path, files, recipe, turn, threads, narrow}, whose files
 // are in FOLDER.  Of each there are then in FOLDER too the pictures NAME-0.bin (draft),
 // NAME-1.bin, NAME-2.bin, as they go to the page, and NAME.json: what was said, the
-// command, the qualities of all pictures, and the processor's milliseconds of each helper.
+// command, the qualities of all pictures, and the processor's milliseconds of each thread.
 // A turn comes when the picture at rest was begun.  Where it is narrow, there is no room
 // for memory that threads share.
 const fs = require('fs');
@@ -15,8 +15,8 @@ const worker = require('path').resolve(script);
 const {begin} = require(worker);
 
 /** Of the processor, of a thread of this process. */
-const milliseconds = task =>
-    Number(fs.readFileSync(`/proc/self/task/${task}/schedstat`, 'latin1').split(' ')[0]) / 1e6;
+const milliseconds = folder =>
+    Number(fs.readFileSync(`/proc/${folder}/schedstat`, 'latin1').split(' ')[0]) / 1e6;
 
 const Memory = WebAssembly.Memory;
 
@@ -31,7 +31,7 @@ async function run({name, path, files, recipe, turn, threads = 1, narrow}) {
     WebAssembly.Memory = narrow ? narrowMemory : Memory;
     const made = await begin(fs.readFileSync(engine), files.map(name => ({
         name, bytes: new Uint8Array(fs.readFileSync(`${folder}/${name}`)).buffer})), threads, threads > 1 && others.share);
-    const numbers = await others.numbers(), begun = numbers.map(milliseconds);
+    const folders = ['thread-self', ...await others.folders()], begun = folders.map(milliseconds);
     const out = {said: [], levels: [], opened: made.open(path, recipe)};
     const take = () => {
         for (let each; (each = made.take()) !== null;) {
@@ -66,7 +66,7 @@ async function run({name, path, files, recipe, turn, threads = 1, narrow}) {
         await rest();
         take();
     }
-    out.helped = numbers.map((number, i) => milliseconds(number) - begun[i]);
+    out.took = folders.map((folder, i) => milliseconds(folder) - begun[i]);
     await others.end();
     fs.writeFileSync(`${folder}/${name}.json`, JSON.stringify(out));
 }

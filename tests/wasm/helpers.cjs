@@ -11,14 +11,14 @@ function helpers(worker) {
             all.push(helper);
             ready.push(new Promise(good => helper.once('message', good)));
         },
-        /** Their numbers in /proc, once they have begun. */
-        numbers: () => Promise.all(ready),
+        /** Their folders in /proc, once they have begun. */
+        folders: () => Promise.all(ready),
         end: () => Promise.all(all.map(helper => helper.terminate()))};
 }
 
 if (isMainThread) {
     module.exports = {helpers};
 } else {
-    parentPort.postMessage(fs.readlinkSync('/proc/thread-self').split('/').at(-1));
+    parentPort.postMessage(fs.readlinkSync('/proc/thread-self'));
     require(workerData.worker).help(workerData.data);
 }

@@ -80,13 +80,20 @@ const picture = await page.evaluate(async () =>
 writeFileSync(`${folder}/${name}-rest.png`, Buffer.from(picture));
 await page.locator('button', {hasText: 'Command'}).first().click();
 writeFileSync(`${folder}/${name}.txt`, await page.locator('dialog textarea').inputValue());
-const {helpers, threads} = await page.evaluate(() => ({
+const {helpers, threads, isolated} = await page.evaluate(() => ({
+    isolated: crossOriginIsolated,
     helpers: window.snowglass.engine.helpers.length,
     threads: crossOriginIsolated ? Math.min(navigator.hardwareConcurrency, 16) : 1}));
 check('each processor has a thread, where memory may be shared', helpers + 1 === threads, helpers);
-check('memory may be shared', (threads > 1) === /^http:/.test(url), threads);
+check('memory may be shared', isolated === /^http:/.test(url), isolated);
 check('nothing is said on the console', !said.length, said.join('; '));
 const far = asked.filter(each => each !== url && !/^(blob|data):/.test(each));
 check('nothing else is asked for', !far.length, far.join());
+const lost = await page.evaluate(() => new Promise(good => {
+    const {engine} = window.snowglass;
+    engine.on('closed', good);
+    engine.help({t: 'help'}); // with nothing that a thread needs
+}));
+check('a lost thread ends the engine', /stopped.*open the file again/.test(lost), lost);
 await browser.close();
 process.exit(wrong ? 1 : 0);

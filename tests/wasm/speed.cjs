@@ -25,7 +25,7 @@ async function pause(milliseconds) {
 (async () => {
     const others = helpers(worker);
     const made = await begin(fs.readFileSync(engine), [], threads, threads > 1 && others.share);
-    await others.numbers();
+    await others.folders();
     const least = [Infinity, Infinity, Infinity];
     const take = () => {
         for (let each; (each = made.take()) !== null;) {

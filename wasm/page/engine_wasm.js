@@ -14,16 +14,11 @@ export class ServerEngine extends SocketEngine {
         });
     }
 
-    work() {
-        const worker = host.work();
-        worker.onerror = event => this.tell('closed', event.message);
-        return worker;
-    }
-
     open() {
-        this.worker = this.work();
+        this.worker = host.work();
         this.helpers = [];
         this.worker.onmessage = ({data}) => this.receive(data);
+        this.worker.onerror = event => this.tell('closed', event.message);
         this.worker.postMessage({t: 'open', ...host.volume},
             host.volume.files.flatMap(({bytes}) => bytes ?? []));
         this.tell('open');
@@ -41,11 +36,22 @@ export class ServerEngine extends SocketEngine {
             : {t: 'hear', text: JSON.stringify(message)});
     }
 
+    /** A thread that ends, or cannot begin, would be waited for. */
+    help(data) {
+        const helper = host.work();
+        const lost = text => {
+            this.close();
+            this.receive({t: 'refused', text});
+        };
+        helper.onmessage = event => lost(event.data.text);
+        helper.onerror = () => lost('A thread of the engine cannot begin: load the page again.');
+        helper.postMessage(data);
+        this.helpers.push(helper);
+    }
+
     receive(data) {
         if (data.t === 'help') {
-            const helper = this.work();
-            helper.postMessage(data);
-            this.helpers.push(helper);
+            this.help(data);
             return;
         }
         if (this.reading) {

@@ -140,11 +140,12 @@ function room(share) {
 
 /** The same files, whose bytes all threads have. */
 function shared(list) {
-    return list.map(({name, file, bytes}) => {
-        const copy = bytes && new SharedArrayBuffer(bytes.byteLength);
-        if (bytes)
-            new Uint8Array(copy).set(new Uint8Array(bytes));
-        return {name, file, bytes: copy};
+    return list.map(each => {
+        const copy = each.bytes && new SharedArrayBuffer(each.bytes.byteLength);
+        if (copy)
+            new Uint8Array(copy).set(new Uint8Array(each.bytes));
+        each.bytes = null; // the room of one is enough
+        return {...each, bytes: copy};
     });
 }
 
@@ -178,8 +179,9 @@ async function begin(wasm, list, threads = 1, share = null) {
     of.exports._initialize();
     for (let number = 0; among && number < threads - 1; number++) {
         const stack = of.exports.engine_add_helper();
-        if (stack)
-            among({t: 'help', module, memory, files, stack, number});
+        if (!stack)
+            break;
+        among({t: 'help', module, memory, files, stack, number});
     }
     const put = text => {
         const encoded = new TextEncoder().encode(text);
@@ -268,7 +270,11 @@ function serve(scope) {
             return;
         }
         if (data.t === 'help') {
-            help(data);
+            try {
+                help(data);
+            } catch (error) {
+                fail(error);
+            }
             return;
         }
         if (!engine || dead)
