@@ -22,6 +22,7 @@
 
 /* Waits of these seconds get a line. */
 #define TELL_SECONDS 20
+#define TELL_SECONDS_LEAST 8
 
 /* The most notes in flight from a rank. Beyond that notes are not sent;
  * questions are asked again. */
@@ -320,11 +321,12 @@ static snow_status give_verdict(const mpi_watchdog *watchdog) {
                : SNOW_STATUS_OK;
 }
 
-/* Once a job, long before the timeout. */
+/* Once a job, long before the timeout, unless that comes soon. */
 static void tell_wait(mpi_watchdog *watchdog, double now) {
     const place *there = &watchdog->places[watchdog->waits_for];
-    if (watchdog->told || now - watchdog->since < TELL_SECONDS ||
-        watchdog->limit < 2 * TELL_SECONDS)
+    const double half = watchdog->limit / 2;
+    if (watchdog->told || half < TELL_SECONDS_LEAST ||
+        now - watchdog->since < (half < TELL_SECONDS ? half : TELL_SECONDS))
         return;
     watchdog->told = true;
     snow_context_warn(watchdog->context,

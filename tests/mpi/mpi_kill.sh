@@ -6,8 +6,9 @@
 need_proc
 LIMIT=60
 
-# ended SIGNAL NAME WHEN COMMAND...: sends rank 2 a signal once WHEN is true, and
+# ended SIGNAL NAME WHEN COMMAND...: sends rank $RANK a signal once WHEN is true, and
 # looks how long the others go on.
+RANK=2
 ended() {
     local signal=$1 name=$2 when=$3 job victim="" tries=0 begin code
     shift 3
@@ -17,9 +18,9 @@ ended() {
         sleep 0.1
         tries=$((tries + 1))
         eval "$when" || continue
-        victim=$(process_of_rank 2)
+        victim=$(process_of_rank $RANK)
     done
-    check "$name: there is a rank 2" [ -n "$victim" ]
+    check "$name: there is a rank $RANK" [ -n "$victim" ]
     [ -n "$victim" ] && kill "-$signal" "$victim"
     begin=$(date +%s)
     wait "$job"
@@ -42,8 +43,10 @@ for signal in KILL TERM; do
     ended $signal "a picture, $signal" 'sleep 1' "$MPI_TOOL" phantom:head \
         --dims 600x600x600 -o out.png -q
 done
+RANK=0 # which writes
 ended TERM "a movie that is to end" '[ -e g_000003.png ]' "$MPI_TOOL" turntable \
     phantom:head --dims 40x40x40 -s 64x64 --frames 100000 -q -o g_%06d.png
+RANK=2
 ended KILL "a movie" '[ -e f_000003.png ]' "$MPI_TOOL" turntable phantom:head \
     --dims 40x40x40 -s 64x64 --frames 100000 -q -o f_%06d.png
 for frame in f_*.png g_*.png; do

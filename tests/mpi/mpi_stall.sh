@@ -58,10 +58,12 @@ for timeout in 20 0; do
     NAME="a rank that goes on, timeout $timeout" RANK=2
     rm -f f_*
     begin '[ -e f_000003.png ]' "$MPI_TOOL" turntable phantom:head \
-        --dims 40x40x40 -s 64x64 --frames 400 -q -y -o f_%06d.png \
+        --dims 40x40x40 -s 64x64 --frames 400 -y -o f_%06d.png \
         --timeout $timeout
-    sleep 5
+    sleep $((timeout ? 11 : 5))
     check "$NAME: the others wait" [ ! -e f_000399.png ]
+    [ $timeout -eq 0 ] || check "$NAME: a line says how long they do" \
+        grep -q "waits for rank 2 .*ends after 20 s (--timeout)" "$ERR"
     [ -n "$victim" ] && kill -CONT "$victim"
     wait "$job"
     check "$NAME: the job succeeds" [ $? -eq 0 ]
