@@ -34,7 +34,7 @@ def by_hand(source, work):
     settings = project["tool"]["scikit-build"]
     assert set(settings) == KNOWN, settings
     run("cmake", "-S", source, "-B", work / "built",
-        "-DCMAKE_BUILD_TYPE=Release", *settings["cmake"]["args"])
+        "-DCMAKE_BUILD_TYPE=None", *settings["cmake"]["args"])
     run("cmake", "--build", work / "built", "--parallel", 2, "--target",
         *settings["build"]["targets"])
     stage = work / "stage"

@@ -49,6 +49,11 @@ int64_t support_sweep(int64_t full, int64_t brief) {
     return is_short() ? brief : full;
 }
 
+bool support_is_release(void) {
+    const char *tier = getenv("SNOW_TIER");
+    return tier && strcmp(tier, "release") == 0;
+}
+
 uint64_t support_seed(void) {
     const char *seed = getenv("SNOW_SEED");
     return seed ? strtoull(seed, NULL, 10) : 0;

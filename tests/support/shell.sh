@@ -108,6 +108,7 @@ refused() {
 
 # Whether what takes long is done too: not in the short tier (docs/testing.md).
 long_tier() { [ "${SNOW_TIER:-short}" != short ]; }
+release_tier() { [ "${SNOW_TIER:-short}" = release ]; }
 
 # skipped WHAT WHY: a part of a script that is left out, with the reason.
 skipped() { echo "skip   $1: $2"; }

@@ -46,6 +46,9 @@ size_t support_start(size_t outer, size_t stride);
 /* `full`, or `brief` in the short tier: a count of repetitions, or a size. */
 int64_t support_sweep(int64_t full, int64_t brief);
 
+/* Whether what takes hours in all is done too. */
+bool support_is_release(void);
+
 /* Added to the seeds of scenes: the environment variable SNOW_SEED, 0 where it
  * is not set.  The release tier runs sweeps with several. */
 uint64_t support_seed(void);

@@ -30,7 +30,8 @@ static bool is_smooth(const value_case *what) {
 static int stride_of_tier(const value_case *what) {
     const char *stride = getenv("SNOW_STRIDE");
     bool edges = is_small(what) && !is_smooth(what);
-    return stride ? atoi(stride) : (int)support_sweep(edges ? 5 : 17, 41);
+    int hard = support_is_release() ? 5 : 8;
+    return stride ? atoi(stride) : (int)support_sweep(edges ? hard : 17, 41);
 }
 
 static double *truth_of(const value_case_scene *open, int fine, int stride) {
@@ -234,10 +235,12 @@ static void a_soft_ball_has_no_rings(void **state) {
         snow_context_free(context);
         skip();
     }
+    bool more = true;
     for (size_t n = 0; n < value_case_count; n++) {
         value_case_scene open;
-        if (value_cases[n].volume != VALUE_CASE_BALL)
+        if (value_cases[n].volume != VALUE_CASE_BALL || !more)
             continue;
+        more = support_is_release();
         assert_true(value_case_open(&value_cases[n], context, &open));
         double *truth = truth_of(&open, 8, 1), *pixels = model_of(&open, 1);
         double found = rings(pixels, truth, 512);

@@ -25,7 +25,7 @@ prints '^ranks=3 image=64 .*threads=2 scan_ns=[0-9.]+ .*move_ns=[0-9.]+ .*over_c
 # A region of less than a row is where the local images have pixels.
 run 0 "rates of many" "$TOOL" bench combine --rates --ranks 2048 --size 512 \
     --runs 1
-prints ' blend_ns=[0-9.]*[1-9][0-9.e-]* move_ns=[0-9.]*[1-9]'
+prints ' blend_ns=[0-9.]*[1-9][0-9.e-]* message_ns=[0-9.]*[1-9].* move_ns=[0-9.]*[1-9]'
 run 0 "threads of ranks" "$TOOL" bench combine --ranks 3 --size 192 --runs 1 \
     --threads 3 --check
 prints '^ranks=3 .*threads=3 .* check=ok'

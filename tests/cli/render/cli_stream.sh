@@ -1,5 +1,6 @@
 #!/bin/bash
-# Volumes larger than memory: a sparse file of 3 GB is rendered within 300 MB,
+# Volumes larger than memory: a sparse file of 1.5 GB (3 GB before a release) is
+# rendered within 300 MB,
 # as raw and as NRRD, and pictures are those of the volume in memory, bit for
 # bit; packed files, slices in files of their own, turntables, movies; and what
 # cannot be done so, or does not fit even then, ends with one line.
@@ -207,7 +208,8 @@ done_here() {
 }
 long_tier || done_here "left to the long tier"
 grep -aq __asan_init "$TOOL" && done_here "the sanitizer needs more memory"
-x=1024 y=1024 z=1500
+x=1024 y=1024 z=750
+release_tier && z=1500
 truncate -s $((2 * x * y * z)) big.raw || done_here "no sparse files"
 python3 - <<EOF
 import array
@@ -216,7 +218,7 @@ rows = [[array.array("H", [max(0, min(4000, int((40 - ((i - 40)**2 +
          (j - 40)**2 + (k - 40)**2)**0.5) * 120))) for i in range(side)])
          .tobytes() for j in range(side)] for k in range(side)]
 with open("big.raw", "r+b") as file:
-    for a, b, c in ((100, 100, 100), (700, 150, 600), (400, 700, 1250)):
+    for a, b, c in ((100, 100, 100), (700, 150, 300), (400, 700, 630)):
         for k in range(side):
             for j in range(side):
                 file.seek(2 * (((c + k) * $y + b + j) * $x + a))
@@ -228,11 +230,11 @@ printf 'NRRD0004\ntype: uint16\ndimension: 3\nsizes: %d %d %d\n' \
 printf 'encoding: raw\nendian: little\ndata file: big.raw\n' >>big.nhdr
 raw=(--dims ${x}x${y}x${z} --type uint16)
 
-run 0 "3 GB of raw data" peak "$TOOL" render big.raw "${raw[@]}" --view iso \
+run 0 "raw data" peak "$TOOL" render big.raw "${raw[@]}" --view iso \
     -s 256x256 -q -o raw.png --memory 300M --stats raw.json
 check "within the limit, $(cat kilobytes) KB of the process" \
     test "$(cat kilobytes)" -lt $((300 * 1024))
-run 0 "3 GB of NRRD" peak "$TOOL" render big.nhdr --view +y -s 256x256 -q \
+run 0 "NRRD" peak "$TOOL" render big.nhdr --view +y -s 256x256 -q \
     -o nrrd.png --memory 300M --stats nrrd.json
 check "within the limit, $(cat kilobytes) KB of the process" \
     test "$(cat kilobytes)" -lt $((300 * 1024))
@@ -265,7 +267,7 @@ same "by itself" raw.png itself.png
 if [ "$(free_gigabytes)" -ge 5 ]; then
     run 0 "the same in memory" "$TOOL" render big.nhdr --view iso -s 256x256 \
         -q -o memory.png
-    same "3 GB" raw.png memory.png
+    same "all in memory" raw.png memory.png
 fi
 # Pipes can be read once only: they are not looked at beforehand.
 run 0 "a volume of a file" "$TOOL" phantom head --dims 48x48x48 -o pipe.nrrd
