@@ -32,7 +32,8 @@ static PyObject *names_of(PyObject *module, PyObject *what) {
                  {"colormaps", snow_colormap_name},
                  {"phantoms", snow_phantom_name},
                  {"formats", snow_format_name},
-                 {"views", snow_view_name}};
+                 {"views", snow_view_name},
+                 {"settings", record_setting_name}};
     const char *name = PyUnicode_AsUTF8AndSize(what, NULL);
     (void)module;
     for (size_t n = 0; name && n < sizeof lists / sizeof *lists; n++)
@@ -60,7 +61,7 @@ static PyObject *fail(PyObject *module, PyObject *args) {
 static PyObject *text(PyObject *module, PyObject *message) {
     const char *given = PyUnicode_AsUTF8AndSize(message, NULL);
     (void)module;
-    return given ? message_text(given) : NULL;
+    return given ? message_text(given, false) : NULL;
 }
 
 static PyMethodDef functions[] = {

@@ -101,6 +101,9 @@ bool record_fill_look(PyObject *given, snow_look *look);
 bool record_numbers(const char *name, PyObject *value, Py_ssize_t count,
                     bool whole, void *to);
 
+/* The names of settings, by numbers; NULL behind the last. */
+const char *record_setting_name(size_t n);
+
 /* Whether there is an argument of such a name. */
 bool record_is_argument(const char *name);
 
@@ -108,8 +111,9 @@ bool record_is_argument(const char *name);
 bool record_has(PyObject *given, const char *name);
 
 /* A message of the library, in which options of the tool are arguments: crop=
- * for --crop, time=2 for --time 2, dims=(4, 5, 6) for --dims 4x5x6. */
-PyObject *message_text(const char *message);
+ * for --crop, time=2 for --time 2, dims=(4, 5, 6) for --dims 4x5x6. That of a
+ * volume says intercept=-1024 for --shift 1024, which movies in situ have. */
+PyObject *message_text(const char *message, bool of_volume);
 
 /* --- objects -------------------------------------------------------------- */
 

@@ -142,18 +142,8 @@ bool record_has(PyObject *given, const char *name) {
     return item && item != Py_None;
 }
 
-static bool refuse_name(const char *name, const field *fields, size_t count) {
-    char known[1024];
-    int used = 0;
-    for (size_t n = 0; n < count && used < (int)sizeof known; n++)
-        used += snprintf(known + used, sizeof known - (size_t)used, ", %s",
-                         fields[n].name);
-    PyErr_Format(PyExc_TypeError, "there is no option '%s'; take one of %s",
-                 name, known + 2);
-    return false;
-}
-
-/* Fields of a record from a dictionary's items; None leaves the default. */
+/* Fields of a record from a dictionary's items; None leaves the default.
+ * Python has checked the names, as it has some of its own. */
 static bool fill(PyObject *given, const field *fields, size_t count,
                  void *record) {
     PyObject *key, *value;
@@ -167,8 +157,10 @@ static bool fill(PyObject *given, const field *fields, size_t count,
             return false;
         while (n < count && strcmp(fields[n].name, name) != 0)
             n++;
-        if (n == count)
-            return refuse_name(name, fields, count);
+        if (n == count) {
+            PyErr_Format(PyExc_TypeError, "there is no option '%s'", name);
+            return false;
+        }
         if (value != Py_None && !set_field(&fields[n], value, record))
             return false;
     }
@@ -257,10 +249,11 @@ static const field settings_fields[] = {
 
 #define VIEW(name, kind) FIELD(snow_view, name, kind)
 static const field view_fields[] = {
-    VIEW(width, 'i'),     VIEW(height, 'i'),   VIEW(azimuth, 'd'),
-    VIEW(elevation, 'd'), VIEW(roll, 'd'),     VIEW(zoom, 'd'),
-    VIEW(fov, 'd'),       VIEW(position, '3'), VIEW(target, '3'),
-    VIEW(upward, '3'),
+    VIEW(width, 'i'),   VIEW(height, 'i'),
+    VIEW(azimuth, 'd'), VIEW(elevation, 'd'),
+    VIEW(roll, 'd'),    VIEW(zoom, 'd'),
+    VIEW(fov, 'd'),     VIEW(position, '3'),
+    VIEW(target, '3'),  {"up", '3', offsetof(snow_view, upward), NULL, NULL},
 };
 
 #define OPTION(name, kind) FIELD(snow_volume_options, name, kind)
@@ -310,7 +303,7 @@ bool record_fill_view(PyObject *given, snow_view *view) {
         return false;
     view->has_position = record_has(given, "position");
     view->has_target = record_has(given, "target");
-    view->has_up = record_has(given, "upward");
+    view->has_up = record_has(given, "up");
     return true;
 }
 
@@ -335,6 +328,12 @@ static bool has_name(const field *fields, size_t count, const char *name) {
 
 #define HAS_NAME(fields, name) \
     has_name(fields, sizeof(fields) / sizeof *(fields), name)
+
+const char *record_setting_name(size_t n) {
+    return n < sizeof settings_fields / sizeof *settings_fields
+               ? settings_fields[n].name
+               : NULL;
+}
 
 bool record_is_argument(const char *name) {
     static const field others[] = {

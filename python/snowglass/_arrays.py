@@ -5,7 +5,7 @@ import math
 import os
 from typing import Any, Mapping, NamedTuple, Optional, Sequence
 
-from . import _recipes
+from . import _checks, _recipes
 from ._warnings import warn
 
 
@@ -27,6 +27,17 @@ class Wrapped(NamedTuple):
 OPTIONS = ("spacing", "affine", "axes", "unit", "medical", "slope", "intercept",
            "copy", "frozen")
 
+#: The least determinant of the three directions, as in src/volume/matrix.c.
+FLATTEST = 1e-6
+
+#: Where arrays are, in words of DLPack.
+PROCESSOR = (1, 0)
+
+#: What else to give.
+SLOPE = "a finite number other than 0; 1 leaves the values as they are"
+UNIT = "the name of a length, such as 'mm'"
+AXES = "the order of the dimensions, such as 'zyx' or 'xyz'"
+AFFINE = "a 4x4 matrix of finite numbers whose last row is 0, 0, 0, 1"
 
 #: Units of coordinates that grow downward, as in src/formats/cf.c.
 PRESSURES = ("pa", "hpa", "kpa", "bar", "mbar", "mb", "millibar", "millibars",
@@ -85,9 +96,8 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
         axes, unit = "xyz", "mm" if unit is None else unit
         medical = True if medical is None else medical
     axes = axes or "zyx"
-    if sorted(axes) != ["x", "y", "z"]:
-        raise ValueError(f"axes '{axes}': give the order of the dimensions, "
-                         f"such as 'zyx' or 'xyz'")
+    if sorted(_checks.text("axes", axes, AXES) or "") != ["x", "y", "z"]:
+        raise _checks.fault("axes", AXES, axes, ValueError)
     array = _without_ones(array, axes)
     if array.ndim != 3:
         part = "make it one slice, such as array[None]" if array.ndim < 3 else \
@@ -100,13 +110,21 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
                         f"dimensions [{', '.join(axes)}]; {part}")
     if 0 in array.shape:
         raise ValueError(f"an array of shape {array.shape} has no voxels")
+    given = array
     array, order = _contiguous(_plain_type(array, copy), copy)
-    matrix = _matrix(spacing, affine)
+    if copy and numpy.may_share_memory(array, given):
+        array = array.copy()
+    matrix = _matrix(spacing, affine, "affine" if given_place else
+                     "affine of the image")
+    slope = _checks.number("slope", slope, SLOPE)
+    if slope == 0:
+        raise _checks.fault("slope", SLOPE, slope, ValueError)
     # Column n of the matrix belongs to dimension n of the voxels, x first.
     placed = matrix[:, columns_of(order, axes) + [3]]
     return Wrapped(array, order, axes, [float(each) for each in placed.ravel()],
-                   float(slope), float(intercept), bool(medical),
-                   _cut(unit or ""), frozen, values)
+                   slope, _checks.number("intercept", intercept, "a finite number"),
+                   bool(medical), _cut(_checks.text("unit", unit, UNIT) or ""),
+                   frozen, values)
 
 
 def _is_fortran(array: Any) -> bool:
@@ -174,6 +192,15 @@ def _stored_values(data: Any) -> tuple[Any, float, float]:
 
 def _is_nibabel(source: Any) -> bool:
     return hasattr(source, "dataobj") and hasattr(source, "affine")
+
+
+def file_of(image: Any) -> Optional[str]:
+    """The path of an image of nibabel that was loaded and has the voxels of its file
+    still."""
+    if not _is_nibabel(image) or not getattr(image.dataobj, "is_proxy", False):
+        return None
+    path = getattr(image, "get_filename", lambda: None)()
+    return None if path is None else os.fspath(path)
 
 
 def _is_xarray(source: Any) -> bool:
@@ -288,7 +315,12 @@ def _to_array(source: Any) -> Any:
                         f"such as {kind.lower()}[{_first_path(source)!r}] "
                         f"(there are {', '.join(names[:9]) or 'none'})")
     if hasattr(source, "__dlpack__") and not hasattr(source, "__array__"):
-        return numpy.from_dlpack(source)
+        try:
+            return numpy.from_dlpack(source)
+        except (BufferError, RuntimeError) as error:
+            raise TypeError(f"a {kind} cannot be read by DLPack ({error}): give a copy "
+                            f"that may be written to, in memory of this machine"
+                            ) from None
     if hasattr(source, "__array__") or hasattr(source, "__array_interface__") \
             or hasattr(source, "__dlpack__"):
         return numpy.asarray(source)
@@ -345,21 +377,48 @@ def _refuse_copy(copy: Optional[bool], why: str) -> None:
         warn(f"the array is copied: {why}")
 
 
-def _matrix(spacing: Any, affine: Any) -> Any:
+def _affine(affine: Any, name: str) -> Any:
+    import numpy
+    try:
+        matrix = numpy.array(affine, float)
+    except (TypeError, ValueError):
+        raise _checks.fault(name, AFFINE, affine) from None
+    if matrix.shape != (4, 4):
+        raise ValueError(f"affine of shape {matrix.shape}: it must be 4x4")
+    if not numpy.isfinite(matrix).all() or matrix[3].tolist() != [0, 0, 0, 1]:
+        raise _checks.fault(name, AFFINE, matrix.tolist(), ValueError)
+    lengths = numpy.linalg.norm(matrix[:3, :3], axis=0)
+    if not lengths.all() or \
+            abs(numpy.linalg.det(matrix[:3, :3] / lengths)) < FLATTEST:
+        raise ValueError(f"{name}: it is singular: each of its first three columns is "
+                         f"the step of an axis, not zero, and the three are not in "
+                         f"one plane; correct it, or give spacing")
+    return matrix
+
+
+def _matrix(spacing: Any, affine: Any, name: str) -> Any:
     import numpy
     if affine is not None:
         if spacing is not None:
             raise TypeError("give spacing or affine, not both")
-        matrix = numpy.array(affine, float)
-        if matrix.shape != (4, 4):
-            raise ValueError(f"affine of shape {matrix.shape}: it must be 4x4")
-        return matrix
+        return _affine(affine, name)
     try:
         steps = numpy.broadcast_to(
             numpy.asarray(1 if spacing is None else spacing, float), 3)
     except (TypeError, ValueError):
         steps = numpy.zeros(3)
-    if not (steps > 0).all():
+    if not (steps > 0).all() or not numpy.isfinite(steps).all():
         raise ValueError(f"spacing {spacing!r}: give three lengths above 0, "
                          f"along x, y, z")
     return numpy.diag([*steps, 1.0])
+
+
+def converted(array: Any, dtype: Any, copy: Optional[bool]) -> Any:
+    """What `__array__` returns of its own array."""
+    if dtype is None or array.dtype == dtype:
+        return array.copy() if copy else array
+    if copy is False:
+        import numpy
+        raise ValueError(f"dtype {numpy.dtype(dtype)}: it needs a copy of the "
+                         f"{array.dtype} that is there; leave out copy=False")
+    return array.astype(dtype)

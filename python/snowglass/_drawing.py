@@ -57,7 +57,9 @@ def cropped(volume: Volume, crop: Sequence[Sequence[int]]) -> Volume:
     matrix[:, 3] += matrix[:, :3] @ [low for low, _ in ends]
     part = array[tuple(slice(*ends["xyz".index(axis)])
                        for axis in volume.axes)]
-    return Volume(part, affine=matrix, axes=volume.axes, copy=True,
+    if not part.flags.f_contiguous:
+        part = numpy.ascontiguousarray(part)
+    return Volume(part, affine=matrix, axes=volume.axes,
                   **{name: info[name] for name in
                      ("slope", "intercept", "medical", "unit")})
 

@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING, Any, Iterator, Mapping, NamedTuple, \
     Optional, Sequence, Union
 
-from . import _recipes, _snowglass
+from . import _arrays, _checks, _recipes, _snowglass
 
 if TYPE_CHECKING:
     import numpy.typing
@@ -77,8 +77,8 @@ class Image(_snowglass.Image):
     @property
     def command(self) -> str:
         """The command that makes the same picture, NAME.png unless -o is added.
-        Raises ValueError where there is none, as for a volume that is an
-        array."""
+        Of an array it draws VOLUME.nrrd, which `volume.save` writes.  Raises
+        ValueError where there is none, as `recipe` does."""
         return _recipes.command(self.recipe)
 
     def save(self, path: Path, *, background: Color = "auto", bits: int = 0,
@@ -95,7 +95,7 @@ class Image(_snowglass.Image):
         """
         name = os.fsencode(path)
         picture, marks = self, dict[str, Any]()
-        if title is not None:
+        if _checks.text("title", title, "a line of text") is not None:
             marks["title"] = title
         if _snowglass.format_bits(name) > 0:
             picture, drawn = self._drawn()
@@ -164,9 +164,15 @@ class Image(_snowglass.Image):
         import numpy
         array: Any = numpy.frombuffer(self, "f4")  # type: ignore[call-overload]
         array = array.reshape(self.shape)
-        if dtype is not None and array.dtype != dtype:
-            return array.astype(dtype)
-        return array.copy() if copy else array
+        return _arrays.converted(array, dtype, copy)
+
+    def __dlpack__(self, **options: Any) -> Any:
+        """The same for other libraries: torch.from_dlpack(image)."""
+        import numpy
+        return numpy.asarray(self).__dlpack__(**options)
+
+    def __dlpack_device__(self) -> tuple[int, int]:
+        return _arrays.PROCESSOR
 
     def __iter__(self) -> Iterator["Image"]:
         """rgba, depth = volume.render(depth=True)"""
@@ -209,6 +215,9 @@ def compare(a: Union[Image, Path], b: Union[Image, Path]) -> Difference:
 
     Raises snowglass.Error when their sizes differ.
     """
+    for name, each in (("a", a), ("b", b)):
+        if not isinstance(each, (Image, str, os.PathLike)):
+            raise _checks.fault(name, "an Image or the path of a picture", each)
     if isinstance(a, Image) and not isinstance(b, Image):
         a = _as_in(b, a)
     elif isinstance(b, Image) and not isinstance(a, Image):
@@ -231,7 +240,10 @@ def color_of(given: Color) -> Optional[Sequence[float]]:
     if given is None or given == "none":
         return None
     if not isinstance(given, str):
-        return tuple(float(part) for part in given)
+        give = "a colour's name, '#rrggbb', or three numbers 0 to 1"
+        if not hasattr(given, "__iter__"):
+            raise _checks.fault("background", give, given)
+        return tuple(_checks.number("background", part, give) for part in given)
     digits = NAMED.get(given.lower(), "")
     if given.startswith("#"):
         digits = given[1:]

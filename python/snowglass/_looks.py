@@ -5,6 +5,8 @@ import dataclasses
 import math
 from typing import Any, Optional, Sequence, Tuple, Union
 
+from . import _checks
+
 Range = Union[str, Tuple[float, float]]
 
 
@@ -50,6 +52,11 @@ class Look:
             if getattr(self, name) is not None:
                 raise TypeError(f"give {name} or {other}, not both")
             object.__setattr__(self, name, value)
+        for name, which in (("preset", "presets"), ("colormap", "colormaps")):
+            _checks.text(name, getattr(self, name),
+                         f"a name of snowglass.{which}()")
+        _parse_range(self.range)
+        object.__setattr__(self, "colors", _colors(self.colors))
         for name in ("opacity", "gradient_opacity"):
             object.__setattr__(self, name, _points(name, getattr(self, name)))
         object.__setattr__(self, "symlog", _magnitude(self.symlog))
@@ -72,12 +79,34 @@ def _points(name: str, given: Any) -> Optional[Tuple[Any, ...]]:
     names of ramps, and lists of opacities alone."""
     if given is None:
         return None
+    give = f"points (value, {name}), such as [(100, 0), (700, 0.8)]"
     points = tuple(given) if hasattr(given, "__iter__") else (given,)
-    if isinstance(given, str) or not all(
-            hasattr(point, "__len__") and len(point) == 2 for point in points):
-        raise TypeError(f"{name} {given!r}: give points (value, {name}), such as "
-                        f"[(100, 0), (700, 0.8)]")
+    shown = given if isinstance(given, str) or len(points) < 2 else points
+    try:
+        for value, part in points:
+            _checks.number(name, value), _checks.number(name, part)
+    except (TypeError, ValueError):
+        raise _checks.fault(name, give, shown) from None
     return points
+
+
+def _colors(given: Any) -> Optional[Tuple[Any, ...]]:
+    give = "points (value, (red, green, blue)) of numbers 0 to 1, such as " \
+           "[(0, (0, 0, 1)), (700, (1, 1, 0))]"
+    if given is None:
+        return None
+    if not hasattr(given, "__iter__"):
+        raise _checks.fault("colors", give, given)
+    points = tuple(given)
+    try:
+        made = tuple((_checks.number("colors", value),
+                      tuple(_checks.number("colors", part) for part in color))
+                     for value, color in points)
+    except (TypeError, ValueError):
+        raise _checks.fault("colors", give, list(points)) from None
+    if any(len(color) != 3 for _, color in made):
+        raise _checks.fault("colors", give, list(points), ValueError)
+    return made
 
 
 def _magnitude(symlog: Any) -> Any:
@@ -127,19 +156,20 @@ def colors_are_open(look: Look) -> bool:
 
 
 def _parse_range(given: Optional[Range]) -> tuple[str, float, float]:
-    if given is None or given == "auto":
+    if given is None:
         return "auto", 0.0, 0.0
-    if given in ("full", "robust"):
-        return str(given), 0.0, 0.0
     kind = "values"
+    ends: Any = given
     if isinstance(given, str):
-        words = given.split(",")
-        if all(word.strip().endswith("%") for word in words):
+        if given in ("auto", "full", "robust"):
+            return given, 0.0, 0.0
+        words = [word.strip() for word in given.split(",")]
+        if all(word.endswith("%") for word in words):
             kind = "percentiles"
-        ends = [float(word.strip().rstrip("%")) for word in words]
-    else:
-        ends = [float(end) for end in given]
-    if len(ends) != 2:
-        raise ValueError(f"range {given!r}: give (low, high), 'full', "
-                         f"'robust' or '1%,99%'")
-    return kind, ends[0], ends[1]
+        ends = [word.rstrip("%") for word in words]
+    try:
+        low, high = (float(end) for end in ends)
+    except (TypeError, ValueError) as error:
+        raise _checks.fault("range", "(low, high), 'full', 'robust' or '1%,99%'",
+                            given, type(error)) from None
+    return kind, low, high

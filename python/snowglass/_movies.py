@@ -1,10 +1,12 @@
 """Turntables."""
 from __future__ import annotations
 
+import operator
 import os
 import re
 from typing import Any, Callable, Optional
 
+from . import _checks, _snowglass
 from ._images import Color
 from ._looks import is_ranged
 from ._overlays import overlaid
@@ -25,12 +27,14 @@ ENCODERS = {
              "reserve_transparent=0[p];[b][p]paletteuse=new=1:dither=bayer:"
              "bayer_scale=4", "-loop", "0", "-f", "gif"]}
 
+RATE = "a number of frames a second above 0"
+CANNOT_WRITE = 4  # of the statuses of the library
+
 
 def turntable(volume: Any, path: str, look: Any, frames: int, fps: float,
               progress: Optional[Callable[[str, float], Any]],
               options: dict[str, Any]) -> None:
-    if frames < 1:
-        raise ValueError(f"{frames} frames: give at least 1")
+    frames, fps = _counts(frames, fps)
     start = float(options.pop("azimuth", 0))
     angles = [start + 360 * n / frames for n in range(frames)]
     mode = options.get("mode") or "over"
@@ -44,6 +48,7 @@ def turntable(volume: Any, path: str, look: Any, frames: int, fps: float,
     background = options.pop("background", "auto")
     suffix = os.path.splitext(path)[1].lower()
     if re.search(r"%0?\d*d", path):
+        _check_pattern(path)
         save = _save_by(path, background)
     elif suffix in ENCODERS:
         save = _Encoder(path, suffix, fps, background)
@@ -69,6 +74,27 @@ def turntable(volume: Any, path: str, look: Any, frames: int, fps: float,
     getattr(save, "finish", lambda: None)()
 
 
+def _counts(frames: Any, fps: Any) -> tuple[int, float]:
+    try:
+        frames = operator.index(frames)
+    except TypeError:
+        raise _checks.fault("frames", "a whole number from 1", frames) from None
+    if frames < 1:
+        raise _checks.fault("frames", "a whole number from 1", frames, ValueError)
+    rate = _checks.number("fps", fps, RATE)
+    if rate <= 0:
+        raise _checks.fault("fps", RATE, fps, ValueError)
+    return frames, rate
+
+
+def _check_pattern(path: str) -> None:
+    try:
+        path % 0
+    except (TypeError, ValueError):
+        raise ValueError(f"{path}: give a pattern with one number, such as "
+                         f"turn_%04d.png, and %% for a percent sign") from None
+
+
 def _save_by(pattern: str, background: Color) -> Callable[[int, Any], None]:
     def save(n: int, image: Any) -> None:
         image.save(pattern % n, background=background)
@@ -85,6 +111,9 @@ class _Encoder:
         if not self.program:
             raise RuntimeError(f"{path}: movies need the program ffmpeg; "
                                f"install it, or write turn_%04d.png")
+        if not os.path.isdir(os.path.dirname(path) or "."):
+            _snowglass.fail(CANNOT_WRITE, f"{path}: there is no such folder; make it "
+                                          f"first, or correct the name")
         self.path, self.suffix, self.fps = path, suffix, fps
         self.background = background
         root, ext = os.path.splitext(path)
@@ -114,8 +143,8 @@ class _Encoder:
         _, text = self.process.communicate()
         if self.process.returncode:
             self._remove()
-            raise RuntimeError(f"{self.path}: ffmpeg failed: "
-                               f"{text.decode(errors='replace').strip()}")
+            said = " ".join(text.decode(errors="replace").split())
+            raise RuntimeError(f"{self.path}: ffmpeg failed: {said}")
         os.replace(self.partial, self.path)
 
     def abandon(self) -> None:

@@ -6,6 +6,7 @@ import os
 import shlex
 from typing import Any, Mapping, Optional
 
+from . import _checks
 from ._looks import Look, look_of
 
 #: Keys of the data, as options of Volume.
@@ -15,8 +16,12 @@ DATA = ("dims", "type", "endian", "spacing", "offset", "time", "channel",
 #: Keys of the look.
 LOOK = ("preset", "colormap", "range", "opacity", "gradient_opacity", "log",
         "symlog")
-#: Other names of some, as of matplotlib and PyVista.
-ALSO = ("cmap", "clim")
+#: Other names of some, as of matplotlib and PyVista, and what no recipe has.
+ALSO = ("cmap", "clim", "colors")
+#: All that make a look beside a Look.
+LOOKS = (*LOOK, *ALSO, "window", "level")
+#: Options of Volume for arrays alone.
+ARRAY = ("affine", "medical", "slope", "intercept", "copy", "frozen", "memory")
 #: Those that an overlay has, too.
 OVERLAY = ("preset", "colormap", "range", "opacity")
 #: Keys of the file of a picture and of other verbs, which are left out.
@@ -41,9 +46,11 @@ def _range_key(given: Any) -> Any:
 
 
 def _range_look(given: Any) -> Any:
-    if not isinstance(given, str) and isinstance(given[0], str):
-        return ",".join(word[1:] + "%" for word in given)
-    return given if isinstance(given, str) else tuple(given)
+    if isinstance(given, list):
+        if given and all(isinstance(word, str) for word in given):
+            return ",".join(word[1:] + "%" for word in given)
+        return tuple(given)
+    return given
 
 
 def _plain(value: Any) -> Any:
@@ -140,10 +147,33 @@ def make(data: Optional[Mapping[str, Any]], unit: str, look: Look,
             for name, value in keys.items() if value is not False}
 
 
+def _of_window(window: Any, level: Any) -> tuple[float, float]:
+    """The range that a window's width and its middle are."""
+    if window is None:
+        raise TypeError("level: give window= too, the width of the range around it")
+    give = "its width above 0, and level=, its middle, or both as (width, level)"
+    if level is None:
+        try:
+            window, level = window
+        except (TypeError, ValueError):
+            raise _checks.fault("window", give, window) from None
+    width, middle = _checks.number("window", window, give), \
+        _checks.number("level", level)
+    if width <= 0:
+        raise _checks.fault("window", give, window, ValueError)
+    return middle - width / 2, middle + width / 2
+
+
 def take_look(options: dict[str, Any]) -> dict[str, Any]:
     """Takes the keys of a look out of options."""
-    given = {name: options.pop(name) for name in LOOK + ALSO if name in options}
-    return {name: value for name, value in given.items() if value is not None}
+    given = {name: options.pop(name) for name in LOOKS if name in options}
+    given = {name: value for name, value in given.items() if value is not None}
+    window, level = given.pop("window", None), given.pop("level", None)
+    if window is None and level is None:
+        return given
+    if "range" in given or "clim" in given:
+        raise TypeError("give range, or window and level, not both")
+    return {**given, "range": _of_window(window, level)}
 
 
 def split(options: Mapping[str, Any]) -> tuple[
@@ -151,7 +181,9 @@ def split(options: Mapping[str, Any]) -> tuple[
     """Options of Volume, the look and options of Volume.render of the keys of a
     recipe, and of any options that have these names."""
     given = {name.replace("-", "_"): value for name, value in options.items()}
-    data = {name: given.pop(name) for name in DATA if name in given}
+    data = {name: given.pop(name) for name in DATA + ARRAY if name in given}
+    if isinstance(given.get("axes"), str):  # and not the axes of a picture
+        data["axes"] = given.pop("axes")
     colors = take_look(given)
     if isinstance(data.get("time"), str):
         raise ValueError(f"a recipe of steps by a text (time {data['time']}) cannot "
@@ -183,11 +215,6 @@ def split(options: Mapping[str, Any]) -> tuple[
     for name in OTHERS:
         given.pop(name, None)
     given.update(data_depth)
-    window, level = given.pop("window", None), given.pop("level", None)
-    if window is not None:
-        if level is None:
-            window, level = window
-        colors["range"] = [level - window / 2, level + window / 2]
     if "range" in colors:
         colors["range"] = _range_look(colors["range"])
     if "no_labels" in given:
@@ -233,11 +260,9 @@ def _word(key: str, value: Any) -> str:
 
 
 def command(recipe: Mapping[str, Any]) -> str:
-    """The command that makes the picture of a recipe."""
-    if "input" not in recipe:
-        raise ValueError("the volume is an array, which no command can open: "
-                         "write it by Volume.save, and draw the file")
-    path = recipe["input"]
+    """The command that makes the picture of a recipe; of an array, of the file that
+    it would be saved as."""
+    path = recipe.get("input", "VOLUME.nrrd")
     if path.startswith("-") and path != "-":
         path = os.path.join(".", path)  # no option
     words = ["snowglass", recipe.get("verb", "render"), path]

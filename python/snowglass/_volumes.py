@@ -5,29 +5,15 @@ import dataclasses
 import operator
 import os
 import re
-import sys
-from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, Optional, \
-    Sequence, Union
+from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Sequence, Union
 
-from . import _arrays, _channels, _movies, _overlays, _recipes, _snowglass
+from . import _arrays, _channels, _checks, _movies, _overlays, _recipes, _snowglass
 from ._images import Image, Path
 from ._looks import Look, colors_are_open, is_ranged, look_of
+from ._progress import Progress, progress_of
 
 if TYPE_CHECKING:
     import numpy.typing
-
-Progress = Union[Callable[[str, float], Any], bool, None]
-
-
-def _print_progress(stage: str, fraction: float) -> None:
-    end = "\n" if fraction >= 1 else "\r"
-    print(f"{stage} {100 * fraction:3.0f} %", end=end, file=sys.stderr)
-
-
-def _progress_of(given: Progress) -> Optional[Callable[[str, float], Any]]:
-    if given is True:
-        return _print_progress
-    return given or None
 
 
 class Volume(_snowglass.Volume):
@@ -51,13 +37,14 @@ class Volume(_snowglass.Volume):
     unit        of lengths: "mm", "um", ...
     medical     whether the world is a patient's right, anterior, superior
     slope, intercept   data value = slope * stored value + intercept
-    copy        False: an array that cannot be used in place is refused
+    copy        True: the array is copied, and may change then; False: an array
+                that cannot be used in place is refused; None: it is copied,
+                with a warning, where it must be
     frozen      whether the array stays as it is: encodings are kept from
                 picture to picture then.  True by default; give False for an
                 array that changes between pictures.
-    memory      the most bytes that the library may hold; 0: no limit
 
-    For files: dims, type ("uint8", "int16", ...), endian, offset (raw data),
+    For files: memory (the most bytes that the library may hold), dims, type ("uint8", "int16", ...), endian, offset (raw data),
     time, channel (below), component ("x", "magnitude", or a number from 0), crop
     ((x0, x1), (y0, y1), (z0, z1)), dataset, series, allow_gaps (a DICOM folder
     in which slices are missing is opened), levels (of refinement that are read,
@@ -93,6 +80,9 @@ class Volume(_snowglass.Volume):
         made._frozen = given.frozen
         if given.frozen:
             made._freeze()
+        path = _arrays.file_of(source)
+        if path is not None and made._is_as(path):
+            made._source = {"input": path}
         return made
 
     def __init__(self, source: Any, **options: Any) -> None:
@@ -108,6 +98,10 @@ class Volume(_snowglass.Volume):
     @classmethod
     def _open(cls, path: Path, memory: int, progress: Progress,
               options: Mapping[str, Any]) -> "Volume":
+        _checks.names(options.keys() - {"each_time"}, (*_recipes.DATA, "memory", "progress"), {
+            name: "counts for arrays only: give numpy.asarray(volume) of the file "
+                  "to Volume, with it" for name in _arrays.OPTIONS})
+        memory = _whole("memory", memory, "the most bytes, or 0: no limit")
         fields = dict(options)
         clip = fields.pop("clip", None)
         spacing = fields.get("spacing")
@@ -124,7 +118,7 @@ class Volume(_snowglass.Volume):
         if fields.get("channel") is None:  # told when a picture is made
             fields["each_channel"] = True
         made = _snowglass.open(cls, os.fsencode(path), fields, clip, memory,
-                               _progress_of(progress))
+                               progress_of(progress))
         made._memory, made._planes = memory, clip
         made._mixed = _channels.of_volume(made, path, fields, clip, picks,
                                           numbers)
@@ -135,6 +129,16 @@ class Volume(_snowglass.Volume):
             name: value for name, value in given.items()
             if value is not None and name not in ("each_time", "each_channel")}}
         return made
+
+    def _is_as(self, path: str) -> bool:
+        """Whether a file says the same of itself: an image of nibabel may have been
+        given another place since it was loaded."""
+        try:
+            file, own = _snowglass.inspect(os.fsencode(path), {}), self.info
+        except (RuntimeError, ValueError):
+            return False
+        return all(file[name] == own[name] for name in file
+                   if name not in ("format", "time_value"))
 
     @classmethod
     def channels(cls, arrays: Sequence[Any], *,
@@ -235,18 +239,33 @@ class Volume(_snowglass.Volume):
             range = (known["min"], known["max"])
             if not range[0] < range[1]:
                 range = (range[0] - 0.5, range[1] + 0.5)
-        counts = self._histogram(float(range[0]), float(range[1]), bins)
+        try:
+            low, high = (float(end) for end in range)
+        except (TypeError, ValueError) as error:
+            raise _checks.fault("range", "(low, high)", range, type(error)) from None
+        counts = self._histogram(low, high, _whole(
+            "bins", bins, "a whole number from 1"))
         return numpy.array(counts, numpy.int64), \
-            numpy.linspace(range[0], range[1], bins + 1)
+            numpy.linspace(low, high, bins + 1)
 
     def __array__(self, dtype: Any = None, copy: Any = None) -> "numpy.typing.NDArray[Any]":
         """The stored values, in the shape that was given; of files (z, y, x).
         Not writeable."""
         import numpy
         array: Any = numpy.asarray(memoryview(self))  # type: ignore[arg-type]
-        if dtype is not None and array.dtype != dtype:
-            return array.astype(dtype)
-        return array.copy() if copy else array
+        return _arrays.converted(array, dtype, copy)
+
+    def __dlpack__(self, **options: Any) -> Any:
+        """The same for other libraries, which must know of read-only memory."""
+        import numpy
+        try:
+            return numpy.asarray(self).__dlpack__(**options)
+        except BufferError as error:
+            raise BufferError(f"the voxels cannot be given by DLPack ({error}): give a "
+                              f"copy, numpy.array(volume)") from None
+
+    def __dlpack_device__(self) -> tuple[int, int]:
+        return _arrays.PROCESSOR
 
     def __str__(self) -> str:
         info, known = self.info, self._statistics()
@@ -257,6 +276,10 @@ class Volume(_snowglass.Volume):
                f"{known['min']:g}..{known['max']:g}"
 
     def __repr__(self) -> str:
+        try:
+            self._info
+        except ValueError:
+            return "<snowglass.Volume, closed>"
         dims = "x".join(str(each) for each in self.dims)
         return f"<snowglass.Volume {dims} {self._info['type']}>"
 
@@ -276,13 +299,13 @@ class Volume(_snowglass.Volume):
         volume._save(os.fsencode(path), overwrite)
         return self
 
-    def masked(self, mask: Any, labels: Union[str, Sequence[int], None] = None
+    def masked(self, mask: Any, labels: Union[str, int, Sequence[int], None] = None
                ) -> "Volume":
         """A volume without the voxels where the mask, an array of the same
-        shape, has none of the labels (by default: where it is 0)."""
+        shape, has none of the labels: a number, several, or "1,4-7" (by default:
+        where it is 0)."""
         voxels = _arrays.like(mask, self.shape, self._order)
-        picked = labels if labels is None or isinstance(labels, str) else \
-            ",".join(str(int(each)) for each in labels)
+        picked = _labels(labels)
         info = self._info
         matrix = [part for row in info["matrix"] for part in row]
         other = _snowglass.wrap(Volume, voxels, (0, 1, 2), matrix, 1.0, 0.0,
@@ -334,7 +357,8 @@ class Volume(_snowglass.Volume):
         """A picture.
 
         look          a Look, the name of a preset, or None: chosen, but for the
-                      options of Look that are given here: cmap="bone", ...
+                      options of Look that are given here: cmap="bone", ...;
+                      window and level are the width and the middle of a range
         view          a side: "anterior", "left", "+z", "iso", ...; None: chosen
         size          (width, height) in pixels, or one number for both
         azimuth, elevation, roll   degrees that the camera moves to its right
@@ -350,7 +374,8 @@ class Volume(_snowglass.Volume):
         overlay_look  its look; None: labels, else hot colours
         legend, scale_bar, letters   what is drawn when the picture is saved as
                       PNG, WebP or TIFF of 8 bits; `unit` is that of the values
-        progress      called as progress(stage, fraction), or True: printed
+        progress      called as progress(stage, fraction), or True: printed,
+                      by tqdm where that is installed
 
         Settings: quality ("draft", "normal", "high"), mode ("over", "mip",
         "minip", "mean", "sum", "iso"), iso, method, threshold, shade (True or
@@ -367,6 +392,8 @@ class Volume(_snowglass.Volume):
             raise TypeError("background is an option of save: pictures are "
                             "transparent until then")
         look = _given_look(look, settings)
+        azimuths = settings.pop("_azimuths", None)
+        _check_render(settings, view, unit)
         shade: Any = settings.get("shade")
         if hasattr(shade, "tolist"):  # a truth of NumPy
             shade = shade.tolist()
@@ -387,8 +414,9 @@ class Volume(_snowglass.Volume):
                  **settings}
         fields = {"width": width, "height": height, "azimuth": azimuth,
                   "elevation": elevation, "roll": roll, "zoom": zoom,
-                  "fov": 30.0 if perspective is True else float(perspective),
-                  "position": position, "target": target, "upward": up}
+                  "fov": 30.0 if perspective is True else _checks.number(
+                      "perspective", perspective, "True or degrees"),
+                  "position": position, "target": target, "up": up}
         _set_light(light, settings)
         layer = _overlays.overlaid(self, overlay, overlay_look)
         if mixture and settings.get("shade") is None:
@@ -397,13 +425,12 @@ class Volume(_snowglass.Volume):
                 and settings.get("shade") is None and \
                 settings.get("mode") != "iso":
             settings["shade"] = "none"
-        azimuths = settings.pop("_azimuths", None)
         layers = mixture.layers() if mixture else ()
         if layer is not None:
             layers += ((layer.volume, layer.transfer, False, 1.0),)
         image, depth, target, zoom, stats = first._render(
             Image, transfer, view, fields, settings, fit == "visible", azimuths,
-            _progress_of(progress), layers, mixture is not None,
+            progress_of(progress), layers, mixture is not None,
             mixture.shares[0] if mixture else 1.0)
         image.stats, image.depth, image._view = stats, depth, (target, zoom)
         if azimuths is None and not isinstance(
@@ -450,6 +477,10 @@ class Volume(_snowglass.Volume):
         their sum times length ("sum"), in data units: float32 of shape (height,
         width), NaN where a ray meets no voxel.  Options are those of render."""
         import numpy
+        for name in ("look", *_recipes.LOOKS):
+            if options.get(name) is not None:
+                raise TypeError(f"{name}: project gives data values, which have no "
+                                f"look; remove it, or render with mode={mode!r}")
         options.setdefault("fit", "volume")
         if mode in ("mean", "sum"):
             return numpy.asarray(self.render(self._transfer(None, mode), view=view,
@@ -468,7 +499,7 @@ class Volume(_snowglass.Volume):
             values = pixels[..., 0] / pixels[..., -1]
         return (low + (high - low) * values).astype(numpy.float32)
 
-    def slice(self, axis: str = "axial", at: Union[int, str, None] = None,
+    def slice(self, axis: Union[str, int] = "axial", at: Union[int, str, None] = None,
               look: Union[Look, str, None] = None, *,
               size: Union[int, Sequence[int], None] = None,
               kernel: Optional[str] = None, legend: bool = False,
@@ -477,7 +508,8 @@ class Volume(_snowglass.Volume):
         """A picture of one slice, in the colours of a look, opaque.
 
         axis    "axial", "coronal" or "sagittal": the axis of the grid that is
-                nearest to that of the patient; "x", "y", "z": of the grid
+                nearest to that of the patient; "x", "y", "z": of the grid; a
+                number: that dimension of `numpy.asarray(volume)`
         at      the slice's number, or a position in the world with its unit,
                 "12.5mm"; None: the middle one
         look    what it leaves open is chosen from the slice's values; None: grey
@@ -492,6 +524,8 @@ class Volume(_snowglass.Volume):
         Without a patient, y or z is up.  `stats` of the picture has axis, index
         and position.
         """
+        axis = self._axis_name(axis)
+        _checks.text("unit", unit, UNIT)
         along, index, position = self._find_slice(axis, at)
         alone = self._slice_alone(along, index)
         mixture = None
@@ -517,7 +551,7 @@ class Volume(_snowglass.Volume):
             "scale_bar": scale_bar}, mixture)
         return image
 
-    def slice_values(self, axis: str = "axial",
+    def slice_values(self, axis: Union[str, int] = "axial",
                      at: Union[int, str, None] = None, *,
                      size: Union[int, Sequence[int], None] = None,
                      kernel: Optional[str] = None, threads: int = 0
@@ -525,7 +559,7 @@ class Volume(_snowglass.Volume):
         """The same in data units: float32 of shape (height, width), NaN where
         there is no value."""
         import numpy
-        along, index, _ = self._find_slice(axis, at)
+        along, index, _ = self._find_slice(self._axis_name(axis), at)
         return numpy.asarray(self._draw_slice(
             along, index, None, size, {"kernel": kernel, "threads": threads}))
 
@@ -569,6 +603,17 @@ class Volume(_snowglass.Volume):
         made._values = self._values
         return made
 
+    def _axis_name(self, axis: Union[str, int]) -> str:
+        if isinstance(axis, str):
+            return axis
+        try:
+            return self._axes[operator.index(axis)]
+        except (TypeError, IndexError) as error:
+            raise _checks.fault(
+                "axis", "'axial', 'coronal', 'sagittal', 'x', 'y', 'z', or 0 to 2 for "
+                "a dimension of the array (at= is the slice's number)", axis,
+                TypeError if isinstance(error, TypeError) else ValueError) from None
+
     def _find_slice(self, axis: str, at: Union[int, str, None]
                     ) -> tuple[int, int, float]:
         """The grid's axis, the slice's number, and where its middle lies along
@@ -593,7 +638,8 @@ class Volume(_snowglass.Volume):
             if placed and index == index:
                 index = round((index - first) / row[along]) if row[along] else -1
         elif at is not None:
-            index = operator.index(at)
+            index = _whole("at", at, f"a slice's number, 0 to {dims[along] - 1}, or a "
+                                     f"position with its unit, such as '12.5{unit}'")
         if not 0 <= index < dims[along] or index != int(index):
             last = first + row[along] * (dims[along] - 1)
             raise ValueError(
@@ -610,13 +656,53 @@ class Volume(_snowglass.Volume):
         which ffmpeg must be installed.  Options are those of render."""
         look = _given_look(look, options)
         _movies.turntable(self, os.fspath(path), look, frames, fps,
-                          _progress_of(progress), options)
+                          progress_of(progress), options)
 
     def view(self, look: Union[Look, str, None] = None, **options: Any) -> Any:
         """A snowglass.Viewer: the volume to turn, cut and colour in a notebook;
         a picture where the package anywidget is not installed."""
         from .viewer import Viewer
         return Viewer(self, look, **options)
+
+
+#: What else to give.
+UNIT = "the unit of the values, such as 'HU'"
+VIEW = "a name of snowglass.views(), such as 'anterior', or a camera by position, " \
+       "target and up"
+
+
+def _whole(name: str, value: Any, give: str) -> int:
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise _checks.fault(name, give, value) from None
+
+
+def _labels(given: Any) -> Optional[str]:
+    """Labels as the command line has them."""
+    if given is None or isinstance(given, str):
+        return given
+    each = list(given) if hasattr(given, "__iter__") else [given]
+    try:
+        if all(int(label) == label for label in each):
+            return ",".join(str(int(label)) for label in each)
+    except (TypeError, ValueError):
+        pass
+    raise _checks.fault("labels", "a whole number, several, or a text such as '1,4-7'",
+                        given)
+
+
+def _check_render(settings: Mapping[str, Any], view: Any, unit: Any) -> None:
+    """What the core of a picture would refuse without a name."""
+    settable = _snowglass.names("settings")
+    if not settings.keys() <= set(settable):
+        code = Volume.render.__code__
+        own = code.co_varnames[1:code.co_argcount + code.co_kwonlyargcount]
+        _checks.names(settings, (*own, *_recipes.LOOKS, *settable), {
+            name: "is an option of Volume: give it when the volume is opened"
+            for name in (*_recipes.DATA, *_arrays.OPTIONS, "memory")})
+    _checks.text("view", view, VIEW)
+    _checks.text("unit", unit, UNIT)
 
 
 def _given_look(look: Union[Look, str, None], options: dict[str, Any]
@@ -661,8 +747,14 @@ def _set_light(light: Union[str, Sequence[float], None],
     if isinstance(light, str):
         settings["light"] = light
         return
+    give = "'key', 'head' or (azimuth, elevation) in degrees"
+    try:
+        azimuth, elevation = light
+    except (TypeError, ValueError) as error:
+        raise _checks.fault("light", give, light, type(error)) from None
     settings["light"] = "direction"
-    settings["light_azimuth"], settings["light_elevation"] = light
+    settings["light_azimuth"] = _checks.number("light", azimuth, give)
+    settings["light_elevation"] = _checks.number("light", elevation, give)
 
 
 def open(source: Path, **options: Any) -> Volume:
@@ -674,7 +766,7 @@ def render(source: Any = None, look: Union[Look, str, None] = None, *,
            input: Any = None, open: Optional[Mapping[str, Any]] = None,
            **options: Any) -> Image:
     """A picture of a file, an array or a Volume; `open` holds options of Volume,
-    the others are those of Volume.render, or keys of a recipe: what
+    which may be given beside it, but for `unit`; the others are those of Volume.render, or keys of a recipe: what
     `Image.recipe` gives and the command line saves, `render(**recipe)` draws,
     with the same bits.  What such a file says of its output is left out.  Of a
     Volume clip, crop, time, channel, component and labels are taken, as its
@@ -685,7 +777,8 @@ def render(source: Any = None, look: Union[Look, str, None] = None, *,
     if sliced:
         _recipes.check_slice(options)
     if (source is None) == (input is None):
-        raise TypeError("give a volume, or input: the path of one")
+        raise TypeError("give a volume, as in snowglass.render(volume, **recipe) of an "
+                        "array's recipe, or input: the path of one")
     if look is not None and colors is not None:
         raise TypeError("give a look, or keys of one, not both")
     volume = source if source is not None else input
@@ -711,8 +804,9 @@ class Step(Volume):
 def series(pattern: Union[Path, Sequence[Path]], **options: Any
            ) -> Iterator[Step]:
     """The volumes of a series, one after the other: files by a pattern such as
-    "run_%04d.h5", a list of files, or the time steps of one file.  Options are
-    those of Volume.  A step is closed when the next one is asked for, so that no
+    "run_%04d.h5" or "run_*.h5", a list of files, or the time steps of one file.
+    Options are those of Volume.  `index` of a step is the number in its name, or
+    its place among the files.  A step is closed when the next one is asked for, so that no
     more than one is in memory, unless arrays of its voxels are in use."""
     if not isinstance(pattern, (str, os.PathLike)):
         paths = [(n, os.fspath(each)) for n, each in enumerate(pattern)]
@@ -746,6 +840,8 @@ def _step(index: int, path: str, options: Mapping[str, Any]) -> Step:
 
 def _files_of(pattern: str) -> list[tuple[int, str]]:
     number = re.search(r"%(0?)(\d*)d", pattern)
+    if not number and re.search(r"[*?[]", pattern) and not os.path.exists(pattern):
+        return _files_like(pattern)
     if not number:
         return [(0, pattern)]
     folder = os.path.dirname(pattern) or "."
@@ -755,7 +851,7 @@ def _files_of(pattern: str) -> list[tuple[int, str]]:
     name = re.compile(re.escape(os.path.basename(before)) + r"(\d+)" +
                       re.escape(after) + "$")
     found = []
-    for each in os.listdir(folder):
+    for each in os.listdir(folder) if os.path.isdir(folder) else ():
         match = name.match(each)
         if match:
             index = int(match.group(1))
@@ -765,3 +861,17 @@ def _files_of(pattern: str) -> list[tuple[int, str]]:
     if not found:
         raise FileNotFoundError(f"{pattern}: there is no such file")
     return sorted(found)
+
+
+def _files_like(pattern: str) -> list[tuple[int, str]]:
+    """Those of a pattern with *, ? or [...], by the numbers in their names."""
+    import glob
+
+    def order(path: str) -> list[Any]:
+        parts = re.split(r"(\d+)", path)  # each second one is digits
+        return [(int(part), part) if n % 2 else part
+                for n, part in enumerate(parts)]
+    found = sorted(glob.glob(pattern), key=order)
+    if not found:
+        raise FileNotFoundError(f"{pattern}: there is no such file")
+    return list(enumerate(found))

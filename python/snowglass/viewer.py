@@ -12,6 +12,7 @@ from __future__ import annotations
 import json
 import pathlib
 import re
+import shlex
 from typing import Any, Mapping, Optional, Union
 
 from . import _recipes
@@ -139,6 +140,13 @@ class Viewer(_Base):  # type: ignore[misc]
         drawing.apply(recipe)
         recipe.pop("quality")
         return drawing.render(recipe, "high")
+
+    def __repr__(self) -> str:
+        source = self.volume._source
+        file = shlex.quote(source["input"]) if source else \
+            "FILE, as volume.save() writes it"
+        return f"<snowglass.Viewer: it shows itself in a notebook; elsewhere run " \
+               f"snowglass serve {file}>"
 
     def close(self) -> None:
         """Ends the widget and its thread."""

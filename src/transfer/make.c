@@ -170,8 +170,7 @@ static snow_status fit_values(const snow_histogram *histogram,
         histogram->max > 255) {
         snow_notify(context,
                     "%s is for Hounsfield units, but the smallest value is %g: "
-                    "if the values have an offset, give it as a shift, such as "
-                    "1024",
+                    "if the values have an offset, give it by --shift 1024",
                     look->preset, histogram->min);
         return SNOW_STATUS_OK;
     }

@@ -1,8 +1,9 @@
-"""What a new user types: the fifteen lines that the package was designed by, as
-they stand, and the first picture of five kinds of data in three lines."""
+"""What a new user types: the fifteen lines that the package was designed by, and the first picture of five kinds of data in three lines."""
 import importlib.util
 import os
+import shlex
 import shutil
+import subprocess
 import tempfile
 import unittest
 import warnings
@@ -67,9 +68,11 @@ class Lines(InFolder):
         lines = LINES.replace("frames=120", "frames=4")
         known = {"ct": ct}
         for number, line in enumerate(self.statements(lines)):
-            if "recipe = fig.recipe" in line:
-                # Of an array a recipe has no input; that of a file has.
-                known["fig"] = sg.Volume("head.nii.gz").render(known["look"])
+            if "sg.render(**recipe)" in line:
+                # Of an array a recipe has no input, and says so.
+                with self.assertRaisesRegex(TypeError, r"render\(volume, \*\*recipe\)"):
+                    exec(line, known)
+                line = line.replace("(**recipe)", "(vol, **recipe)")
             if "baseline.png" in line:
                 known["fig"].save("baseline.png")
             with self.subTest(line), warnings.catch_warnings():
@@ -82,7 +85,32 @@ class Lines(InFolder):
         self.assertTrue(os.path.exists("rho_0002.png"))
         self.assertGreater(os.path.getsize("turn.mp4"), 500)
         self.assertIn("--preset ct-bone", known["fig"].command)
+        self.runs_as_a_command(known["vol"], known["fig"])
         self.assertGreater(sg.compare(known["fig"], "baseline.png").psnr, 45)
+
+    def runs_as_a_command(self, volume, picture):
+        volume.save("VOLUME.nrrd")
+        words = shlex.split(picture.command)
+        self.assertEqual(words[:3], ["snowglass", "render", "VOLUME.nrrd"])
+        if "SNOWGLASS" in os.environ:
+            subprocess.run([os.environ["SNOWGLASS"], *words[1:], "-q", "-o", "c.png"],
+                           check=True)
+            self.assertEqual(sg.compare("c.png", picture).largest, 0)
+
+    def test_an_image_of_nibabel_is_its_file(self):
+        import nibabel
+        nibabel.save(nibabel.Nifti1Image(ball().T, numpy.diag([1, 2, 3, 1])), "a.nii")
+        load = lambda: nibabel.load("a.nii")
+        picture = sg.Volume(load()).render("ct-bone", size=40)
+        self.assertEqual(picture.recipe["input"], "a.nii")
+        self.assertEqual(sg.compare(sg.render(**picture.recipe), picture).largest, 0)
+        moved, other = load(), nibabel.Nifti1Image(ball().T, numpy.eye(4))
+        moved.affine[0, 3] = 5
+        for each in (sg.Volume(moved), sg.Volume(other),
+                     sg.Volume(load(), spacing=(1, 1, 2)),
+                     sg.Volume(load(), intercept=5),
+                     sg.Volume(load().slicer[:, :, 5:])):
+            self.assertNotIn("input", each.render("ct-bone", size=40).recipe)
 
     def statements(self, text):
         import ast
@@ -263,13 +291,14 @@ class Stumbles(InFolder):
         for call, answer in (
                 (lambda: sg.Volume(ball(), voxel_size=1), "take one of spacing"),
                 (lambda: sg.Volume(ball(), dims=(1, 2, 3)), "for files only"),
-                (lambda: volume.render(color="red"), "take one of threshold"),
+                (lambda: volume.render(color="red"),
+                 "take one of look, view, size, .*, cmap, .*, threshold"),
                 (lambda: volume.render(background="white"), "option of save"),
                 (lambda: volume.render(zoom="2"), "^zoom: must be"),
                 (lambda: volume.render(mode=3), "^mode: there is no 3; take one of"),
-                (lambda: volume.render(opacity="sigmoid"), r"'sigmoid': give points"),
-                (lambda: volume.render(opacity=[0, 0.5, 1]), "opacity .*give points"),
-                (lambda: sg.Look(opacity=0.5), "^opacity 0.5: give points"),
+                (lambda: volume.render(opacity="sigmoid"), r"give points .*'sigmoid'$"),
+                (lambda: volume.render(opacity=[0, 0.5, 1]), "^opacity: give points"),
+                (lambda: sg.Look(opacity=0.5), "^opacity: give points .*, not 0.5$"),
                 (lambda: sg.Look(symlog="a"), "^symlog 'a': must be a magnitude"),
                 (lambda: volume.render(threads="2"),
                  "^threads: must be a whole number, not '2'"),
@@ -297,6 +326,135 @@ class Stumbles(InFolder):
                 (lambda: sg.Volume(ball(), spacing=(1, 1, -1)), "three lengths")):
             with self.assertRaisesRegex(ValueError, answer):
                 call()
+
+    def test_each_argument_says_what_to_give(self):
+        ct, volume = ball(), sg.Volume(ball())
+        image = volume.render(size=16)
+        axis, label, light = "'axial', .*, or 0 to 2", "whole number", "'key', 'head'"
+        number, color = "must be 3 numbers$", r"points \(value, \(red, green, blue\)\)"
+        for name, give, wrong, call in (
+                ("axis", axis, (50, -4, 1.5, None), volume.slice),
+                ("at", "a slice's number, 0 to 29, .*'12.5mm'", (0.5, (1,)),
+                 lambda at: volume.slice("axial", at)),
+                ("labels", label, (3.5, [1, "a"], 1j),
+                 lambda labels: volume.masked(ct, labels=labels)),
+                ("light", light, ((30,), (30, 40, 50), 5, (1, "a")), None),
+                ("window", "its width above 0, and level=", (400, "ab", (0, 40)), None),
+                ("view", "a name of snowglass.views", ((1, 0, 0), 5), None),
+                ("perspective", "True or degrees", ("yes", float("nan")), None),
+                ("unit", "unit of the values", (5,), None),
+                ("range", r"\(low, high\), 'full'", (
+                    5, "foo", "5%-95%", ("a", "b"), (1, 2, 3), ct), None),
+                ("colors", color, (["red", "blue"], [(0, "red")], 5, [(0, (1, 0))],
+                                   "red", [0, 1]), None),
+                ("opacity", "points .value, opacity", ([(0, "a")], [1, 2]), None),
+                ("colormap", "a name of snowglass.colormaps", (["red"], 5), None),
+                ("preset", "a name of snowglass.presets", (5,), None),
+                ("unit", "the name of a length", (5,), lambda x: sg.Volume(ct, unit=x)),
+                ("axes", "the order", (5, "zy"), lambda x: sg.Volume(ct, axes=x)),
+                ("slope", "a finite number other than 0", (0, float("nan"), "a"),
+                 lambda x: sg.Volume(ct, slope=x)),
+                ("intercept", "a finite number", (float("inf"), "a"),
+                 lambda x: sg.Volume(ct, intercept=x)),
+                ("affine", "a 4x4 matrix", (numpy.zeros((4, 4)), "a"),
+                 lambda x: sg.Volume(ct, affine=x)),
+                ("memory", "the most bytes", ("a",), lambda x: sg.Volume(
+                    "phantom:head", memory=x)),
+                ("title", "a line of text", (5,), lambda x: image.save(
+                    "a.png", title=x)),
+                ("background", "a colour's name", (5, (1, 2, "a")), lambda x:
+                 image.save("a.png", background=x)),
+                ("fps", "frames a second above 0", (0, -1, "a", float("inf")),
+                 lambda x: volume.turntable("t.mp4", fps=x, frames=2)),
+                ("frames", "a whole number from 1", (0, "a", 1.5),
+                 lambda x: volume.turntable("t_%d.png", frames=x)),
+                ("b", "an Image or the path", (numpy.asarray(image), 5),
+                 lambda x: sg.compare(image, x)),
+                ("bins", "a whole number", ("a",), volume.histogram),
+                ("range", r"\(low, high\)", (5, (1,)), lambda x: volume.histogram(
+                    9, x))):
+            for each in wrong:
+                line = f"^{name}: give [^\n]*{give}[^\n]*, not [^\n]*$"
+                with self.subTest(name=name, value=each), \
+                        self.assertRaisesRegex((TypeError, ValueError), line):
+                    call(each) if call else volume.render(size=16, **{name: each})
+
+    def test_other_lines_of_arguments(self):
+        ct, volume = ball(), sg.Volume(ball())
+        flat = numpy.diag([1.0, 0, 1, 1])
+        turn = lambda path: lambda: volume.turntable(path, frames=2, size=16)
+        for kind, answer, call in (
+                (TypeError, "^up must be 3 numbers$", lambda: volume.render(up="z")),
+                (TypeError, "^level: give window=", lambda: volume.render(level=4)),
+                (TypeError, "^give range, or window and level", lambda: volume.render(
+                    clim=(0, 1), window=4, level=4)),
+                (TypeError, "^clim: project gives data values", lambda: volume.project(
+                    "mip", clim=(0, 1))),
+                (ValueError, "^affine: it is singular: .*, or give spacing$",
+                 lambda: sg.Volume(ct, affine=flat)),
+                (ValueError, "^spacing .*three lengths", lambda: sg.Volume(
+                    ct, spacing=(1, 1, float("inf")))),
+                (sg.Error, "^no/t.mp4: .*make it first", turn("no/t.mp4")),
+                (ValueError, "a pattern with one number", turn("a_%d_%d.png")),
+                (ValueError, "a pattern with one number", turn("a_100%_%d.png")),
+                (TypeError, "^affine counts for arrays only", lambda: sg.render(
+                    "phantom:head", affine=numpy.eye(4))),
+                (TypeError, "^affine is an option of Volume", lambda: volume.render(
+                    affine=numpy.eye(4))),
+                (ValueError, "^affine: the volume is open", lambda: sg.render(
+                    volume, affine=numpy.eye(4))),
+                (TypeError, "take one of dims, .*, clip, memory, progress$",
+                 lambda: sg.Volume("phantom:head", nope=1)),
+                (FileNotFoundError, "there is no such file", lambda: next(
+                    sg.series("no*/run_*.h5")))):
+            with self.subTest(answer):
+                with self.assertRaisesRegex(kind, answer) as caught:
+                    call()
+                self.assertNotRegex(str(caught.exception), "each_|header")
+
+    @unittest.skipUnless(has("nibabel"), "nibabel is missing")
+    def test_a_singular_image_of_nibabel(self):
+        import nibabel
+        image = nibabel.Nifti1Image(ball().T, numpy.eye(4))
+        image.affine[1, 1] = 0
+        with self.assertRaisesRegex(ValueError, "^affine of the image: .*give spacing"):
+            sg.Volume(image)
+        self.assertEqual(sg.Volume(image, spacing=(1, 2, 3)).spacing, (1, 2, 3))
+
+    def test_what_may_be_given_otherwise(self):
+        ct, volume = ball(), sg.Volume(ball(), spacing=(1, 2, 3))
+        colors = [(0, (0, 0, 1)), (900, (1, 0, 0))]
+        affine = numpy.diag([1.0, 2, 3, 1])
+        same = lambda a, b: self.assertEqual(sg.compare(a, b).largest, 0)
+        for n, axis in enumerate("zyx"):
+            same(volume.slice(n), volume.slice(axis))
+            self.assertEqual(volume.slice(n - 3).recipe, volume.slice(axis).recipe)
+            numpy.testing.assert_array_equal(volume.slice_values(n),
+                                             volume.slice_values(axis))
+        for label in 900, numpy.int16(900), [900], numpy.array([900.0]), "900":
+            same(volume.masked(ct, label).render(), volume.masked(ct, "900").render())
+        for one, other in (
+                ({"window": 400, "level": 40}, {"range": (-160, 240)}),
+                ({"window": (400, 40)}, {"range": (-160, 240)}),
+                ({"colors": colors}, {"look": sg.Look(colors=iter(colors))})):
+            same(volume.render(size=32, **one), volume.render(size=32, **other))
+            same(sg.render(volume, size=32, **one), volume.render(size=32, **other))
+        same(sg.render(ct, affine=affine, medical=True, slope=2, memory=None),
+             sg.Volume(ct, affine=affine, medical=True, slope=2).render())
+        same(sg.render(ct, axes="xyz"), sg.Volume(ct, axes="xyz").render())
+        same(sg.render("phantom:head", dims=(32, 32, 32), memory=2 ** 30, axes=True),
+             sg.render("phantom:head", dims=(32, 32, 32)))
+        with self.assertRaises(MemoryError):
+            sg.render("phantom:head", memory=1000)
+
+    def test_an_offset_is_an_intercept(self):
+        ct = numpy.maximum(ball() + 1024, 0).astype(numpy.uint16)
+        with self.assertWarnsRegex(sg.SnowglassWarning,
+                                   "have an offset, give it by intercept=-1024$"):
+            sg.Volume(ct).render("ct-bone", size=16)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            sg.Volume(ct, intercept=-1024).render("ct-bone", size=16)
 
     def test_messages_name_arguments_and_not_options(self):
         numpy.save("a.npy", ball())

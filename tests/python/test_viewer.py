@@ -330,6 +330,16 @@ class Viewers(unittest.TestCase):
                                             lambda stage, part: None))
         self.assertLess(sg.compare(*images).largest, 1e-3)
 
+    def test_outside_of_a_notebook_it_says_what_to_run(self):
+        array = numpy.zeros((8, 8, 8), numpy.int16)
+        for volume, words in ((sg.Volume("phantom:head", dims=(32, 32, 32)),
+                               "snowglass serve phantom:head>"),
+                              (sg.Volume(array), "snowglass serve FILE, as volume.save")):
+            widget = volume.view("linear")
+            self.addCleanup(widget.close)
+            self.assertIn("notebook", repr(widget))
+            self.assertIn(words, repr(widget))
+
     def test_a_look_of_its_own_is_edited(self):
         colors = [(0, (1, 0, 0)), (700, (1, 1, 0))]
         array = numpy.zeros((24, 28, 32), numpy.int16)
