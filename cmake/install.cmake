@@ -133,5 +133,6 @@ install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT snowglass_doc)
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
-        COMPONENT snowglass_doc PATTERN "CMakeLists.txt" EXCLUDE
+        COMPONENT snowglass_doc
+        REGEX "/examples/(insitu/)?CMakeLists[.]txt$" EXCLUDE
         PATTERN "run.cmake" EXCLUDE)

@@ -3,7 +3,7 @@
 # built by pkg-config against the installed, moved library, shared and static.
 . "$(dirname "$0")/../support/shell.sh"
 . "$HERE/package/stranger.sh"
-hide_project examples
+hide_project examples tests/package/snippets/frames/picture.c
 program=examples/minimal.c
 
 # What pkg-config says of ours, where it finds no package but ours.
@@ -34,6 +34,44 @@ check "shared: builds" compile $program shared alone --cflags --libs snowglass
 check "shared: draws" draws "$LIB" ./shared shared
 check "shared: links ours alone" grep -Eqx -- '-L[^ ]* -lsnowglass *' \
     <(alone --libs snowglass)
+
+# The program in the comment of snowglass.h, in the frame that has its main.
+commented() {
+    sed -n '/^ \*\//q;s/^ \*   //p' "$PREFIX/include/snowglass/snowglass.h" >text
+    sed -e '/SNIPPET/{r text' -e 'd;}' picture.c >commented.c
+    compile commented.c commented alone --cflags --libs snowglass
+}
+check "the program in snowglass.h: builds" commented
+check "the program in snowglass.h: draws" draws "$LIB" ./commented commented
+
+# Headers without a warning: $1 is the compiler, of the lines that are read.
+strictly() {
+    $1 -Wall -Wextra -Wpedantic -Wconversion -Werror -fsyntax-only \
+        -I"$PREFIX/include" -
+}
+mapfile -t headers < <(cd "$PREFIX/include" && find snowglass -name '*.h' \
+    ! -name mpi.h | sort)
+included() { printf '#include <%s>\n' "$@"; }
+alone_and_twice() {
+    local header
+    for header in "${headers[@]}"; do
+        included "$header" "$header" | strictly "$1" || return 1
+    done
+}
+in_both_orders() { # of each two headers
+    included "${headers[@]}" | strictly "$1" &&
+        included "${headers[@]}" | tac | strictly "$1"
+}
+check "there are headers" [ ${#headers[@]} -gt 12 ]
+CXX=${CXX:-c++}
+for compiler in "$CC -xc -std=c11" "$CC -xc -std=c17" "$CXX -xc++ -std=c++17"; do
+    if ! command -v ${compiler%% *} >/dev/null; then
+        skipped "headers by $compiler" "there is no such compiler"
+        continue
+    fi
+    check "${compiler##*=}: each header alone" alone_and_twice "$compiler"
+    check "${compiler##*=}: headers in any order" in_both_orders "$compiler"
+done
 
 check "static: builds" compile $program static \
     alone --cflags --libs snowglass-static

@@ -1,5 +1,7 @@
 """The blocks of docs/python.md run, one after the other; one that needs what is
-not there says so in its first line.  So does the program that it names."""
+not there says so in its first line.  So does the program that it names, and so do the
+examples in the modules' own texts, with stand-ins for what they name."""
+import ast
 import os
 import pathlib
 import re
@@ -39,6 +41,46 @@ class Documents(unittest.TestCase):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             exec(compile(block, "python.md", "exec"), known)
+
+    def test_examples_of_modules_run(self):
+        import numpy
+        import snowglass as sg
+        package, here = pathlib.Path(sg.__file__).parent, os.getcwd()
+        array = numpy.zeros((24, 28, 32), numpy.int16)
+        array[6:18, 8:20, 10:22] = 700
+        ran = {}
+        for path in (package / f"{name}.py" for name in (
+                "__init__", "viewer", "insitu", "pytest_plugin")):
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            text = ast.get_docstring(tree, clean=False)
+            example = "\n".join(line[4:] for line in (text or "").splitlines()
+                                if line.startswith("    "))
+            code = compile(example, path.name, "exec")
+            if path.stem not in ("__init__", "viewer"):  # others need MPI or pytest
+                continue
+            ran[path.stem] = {"array": array, "snowglass": sg,
+                              "volume": sg.Volume(array)}
+            with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                os.chdir(folder)
+                self.addCleanup(os.chdir, here)
+                sg.Volume(array).save("head.nii.gz")
+                exec(code, ran[path.stem])
+                os.chdir(here)
+        self.assertEqual(ran["__init__"]["picture"].shape[:2], (600, 800))
+        self.assertIsInstance(ran["viewer"]["viewer"], sg.Viewer)
+        ran["viewer"]["viewer"].close()
+
+    def test_the_example_draws(self):
+        program = DOCUMENT.parents[1] / "examples" / "picture.py"
+        import numpy
+        import snowglass as sg
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "blob.png")
+            subprocess.run([sys.executable, "-B", program, path], check=True)
+            pixels = numpy.asarray(sg.Image.load(path))
+        self.assertEqual(pixels.shape[:2], (512, 512))
+        self.assertGreater(numpy.ptp(pixels[200:300, 200:300, 1]), 0.05)
 
     @unittest.skipIf(os.environ.get("SNOW_SANITIZED"), "memory is not its own")
     def test_overhead_is_measured(self):

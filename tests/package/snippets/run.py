@@ -66,6 +66,8 @@ def kind_of(snippet):
                  "cmake": programs.cmake, "json": programs.json_file,
                  "python": programs.python}
         return named.get(snippet.language, shells.run)
+    if re.search(r"(?m)^snow_status status = ", snippet.text):
+        return programs.c
     if snippet.place.split(":")[0].endswith((".3", ".3.gz")) and \
             find.plain(snippet.text) in installed_text():
         return programs.declaration
