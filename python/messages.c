@@ -8,7 +8,7 @@
 
 /* The argument that an option at `text` is; returns the option's length, 0
  * where there is none. */
-static size_t read_option(const char *text, bool of_volume, char name[32]) {
+static size_t read_option(const char *text, char name[32]) {
     size_t length = 0;
     if (strncmp(text, "--", 2) == 0)
         length = strspn(text + 2, "abcdefghijklmnopqrstuvwxyz-");
@@ -17,8 +17,6 @@ static size_t read_option(const char *text, bool of_volume, char name[32]) {
     for (size_t n = 0; n < length; n++)
         name[n] = text[2 + n] == '-' ? '_' : text[2 + n];
     name[length] = '\0';
-    if (of_volume && strcmp(name, "shift") == 0)
-        return length + 2;
     return record_is_argument(name) ? length + 2 : 0;
 }
 
@@ -95,8 +93,9 @@ static size_t write_types(const char *from, char **to) {
 }
 
 /* An offset that values have is an intercept that is taken from them. */
-static void write_option(const char *name, bool is_list, char **to) {
-    if (strcmp(name, "shift") == 0)
+static void write_option(const char *name, bool of_volume, bool is_list,
+                         char **to) {
+    if (of_volume && strcmp(name, "shift") == 0)
         *to += sprintf(*to, "intercept=-");
     else /* a list behind it explains its name */
         *to += sprintf(*to, is_list ? "%s" : "%s=", name);
@@ -111,14 +110,14 @@ PyObject *message_text(const char *message, bool of_volume) {
         const bool begins =
             from == message || (from >= message + 2 && from[-2] == ':');
         size_t length = from == message || strchr(" (", from[-1])
-                            ? read_option(from, of_volume, name)
+                            ? read_option(from, name)
                             : 0;
         if (!length) {
             *to++ = *from++;
             continue;
         }
         from += length;
-        write_option(name, strncmp(from, " (", 2) == 0, &to);
+        write_option(name, of_volume, strncmp(from, " (", 2) == 0, &to);
         from += is_value(from, begins);
         if (is_tuple(name))
             from += write_tuple(from, &to);

@@ -6,7 +6,8 @@
 Of each case (those whose name has all words) a run on one thread is interrupted at
 moments spread over its time.  A line says how long the run takes, how long the longest
 answer took, and at which moment that was.  The answer is the end of the program, or
-the exception in Python.  Ends with 1 where one took more than 100 ms.  All is processor time, which other programs do not change
+the exception in Python.  Ends with 1 where one took more than 100 ms (500 ms while a
+WebP of 4096x4096 is written: libwebp compresses it in one step).  All is processor time, which other programs do not change
 much: on an idle machine it passes as wall time does."""
 import os
 import signal
@@ -17,7 +18,12 @@ import time
 
 TOOL = os.path.abspath(os.environ.get("SNOWGLASS", "snowglass"))
 MOMENTS = 12  # a third of them for runs of more than 3 seconds
-SECONDS_MOST = 0.1
+
+
+def most(name):
+    """Seconds that an answer may take."""
+    return 0.5 if "webp" in name else 0.1
+
 
 #: What Python does first; what is interrupted is `work()`.
 BEFORE = """
@@ -168,9 +174,9 @@ def main():
     signal.signal(signal.SIGINT, signal.default_int_handler)
     folder = os.environ.get("SNOW_INTERRUPT") or tempfile.mkdtemp()
     print("case                         whole, ms  longest answer, ms, at")
-    longest = [measure(name, work) for name, work in cases(folder)
-               if all(word in name for word in sys.argv[1:])]
-    return 0 if longest and max(longest) <= SECONDS_MOST else 1
+    late = [measure(name, work) > most(name) for name, work in cases(folder)
+            if all(word in name for word in sys.argv[1:])]
+    return 1 if any(late) or not late else 0
 
 
 if __name__ == "__main__":

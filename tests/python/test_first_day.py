@@ -452,6 +452,9 @@ class Stumbles(InFolder):
         with self.assertWarnsRegex(sg.SnowglassWarning,
                                    "have an offset, give it by intercept=-1024$"):
             sg.Volume(ct).render("ct-bone", size=16)
+        # A movie in situ, whose recipe has a shift, takes the other text.
+        self.assertEqual(sg._snowglass.text("give it by --shift 1024"),
+                         "give it by shift=1024")
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             sg.Volume(ct, intercept=-1024).render("ct-bone", size=16)
