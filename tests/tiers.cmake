@@ -39,7 +39,7 @@ set(SNOW_LABEL_surface ${formats} test_base test_compare test_convert test_image
 set(SNOW_LABEL_threads test_affinity test_combine test_comm test_early
     test_pipeline test_frames test_insitu test_insitu_levels test_insitu_marks test_modes
     test_raycast test_value test_value_layer_parts test_value_parts test_value_perspective test_simulated test_stop test_progress test_ranks test_ranks_open test_redistribute
-    test_load_balance test_shares)
+    test_load_balance test_shares serve_sockets)
 set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     test_model_raycast test_model_reference test_model_rules test_model_slabs
     test_value_field test_value_model test_value_truth
@@ -47,7 +47,7 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     test_phantom test_perspective test_camera_points
     cli_documents cli_bench cli_figures cli_frame cli_stream
     cli_again cli_matrix cli_balance cli_order cli_turntable cli_modules cli_memory cli_progress
-    serve_browser serve_sockets cli_large oracle_zarr oracle_tiff oracle_vtk oracle_pictures)
+    serve_browser cli_large oracle_zarr oracle_tiff oracle_vtk oracle_pictures)
 
 # Tenths of a second on one core in the short tier, of those that take more than
 # one second (scripts/test_costs); before them what takes longest in the long
@@ -86,13 +86,15 @@ foreach(label long late surface threads plain)
 endforeach()
 
 # Targets surface_tests and threads_tests: the programs of these labels, for
-# builds that run no others.
+# builds that run no others; a script needs the tool.
 file(GLOB fuzzers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fuzz/fuzz_*.c)
 foreach(label surface threads)
   add_custom_target(${label}_tests)
   foreach(test ${SNOW_LABEL_${label}})
     if(TARGET ${test})
       add_dependencies(${label}_tests ${test})
+    elseif(test IN_LIST tests)
+      add_dependencies(${label}_tests snowglass_tool)
     endif()
   endforeach()
 endforeach()

@@ -12,6 +12,7 @@
 
 #include "base/affinity.h"
 
+#include <signal.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -132,6 +133,22 @@ static snow_pool *pool_of(snow_context *context) {
     return pool;
 }
 
+/* Signals that are sent to the process are for the program's own threads: a
+ * handler here could still run when the program has freed what it uses.  What a
+ * thread's own fault raises is handled as everywhere. */
+static bool start_thread(pool_thread *thread) {
+    static const int faults[] = {SIGSEGV, SIGBUS,  SIGFPE, SIGILL,
+                                 SIGABRT, SIGTRAP, SIGPROF};
+    sigset_t others, before;
+    sigfillset(&others);
+    for (size_t i = 0; i < sizeof faults / sizeof *faults; i++)
+        sigdelset(&others, faults[i]);
+    pthread_sigmask(SIG_BLOCK, &others, &before);
+    bool made = pthread_create(&thread->id, NULL, run_thread, thread) == 0;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return made;
+}
+
 /* Makes threads until there are `count`, as far as the system permits. */
 static void add_threads(snow_context *context, snow_pool *pool, int count) {
     if (count > pool->capacity) {
@@ -151,7 +168,7 @@ static void add_threads(snow_context *context, snow_pool *pool, int count) {
     for (; pool->count < count; pool->count++) {
         pool_thread *thread = &pool->threads[pool->count];
         *thread = (pool_thread){.pool = pool, .worker = pool->count + 1};
-        if (pthread_create(&thread->id, NULL, run_thread, thread))
+        if (!start_thread(thread))
             return;
     }
 }

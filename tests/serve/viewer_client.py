@@ -19,6 +19,7 @@ import time
 TOOL = os.path.abspath(sys.argv[1])
 DATA = sys.argv[2] if len(sys.argv) > 2 else ""
 SANITIZED = "SNOW_SANITIZED" in os.environ
+THREADS = os.environ.get("SNOW_SANITIZED") == "thread"  # by far the slowest
 PATIENCE = 120 if SANITIZED else 20  # seconds
 SHORT = os.environ.get("SNOW_TIER", "short") == "short"  # docs/testing.md
 HELLO = ["jpeg", "png"]
