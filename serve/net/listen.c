@@ -245,7 +245,10 @@ static void distribute(listener *l) {
         parcel_release(l->box, p);
     }
     for (client *c = l->clients; c; c = c->next)
-        if (client_has_more(c))
+        if (c->too_slow) /* whose socket may never take anything again */
+            lws_set_timeout(c->wsi, PENDING_TIMEOUT_CLOSE_SEND,
+                            LWS_TO_KILL_ASYNC);
+        else if (client_has_more(c))
             lws_callback_on_writable(c->wsi);
 }
 

@@ -141,6 +141,30 @@ static bool is_stale(const struct sockaddr_un *at) {
     return stale;
 }
 
+/* Who may rename in the folder could put a socket of their own in the place of
+ * ours, and would be told the secret.  Where there is no folder, bind says so.
+ */
+static int check_folder(const char *path) {
+    char folder[sizeof(struct sockaddr_un)] = ".";
+    struct stat what;
+    const char *slash = strrchr(path, '/');
+    if (slash) /* the path is short enough for a socket */
+        snprintf(folder, sizeof folder, "%.*s",
+                 slash > path ? (int)(slash - path) : 1, path);
+    if (stat(folder, &what) != 0)
+        return CONTINUE;
+    bool foreign = what.st_uid != geteuid() && what.st_uid != 0;
+    bool shared = what.st_mode & (S_IWGRP | S_IWOTH);
+    if (!foreign && (!shared || what.st_mode & S_ISVTX))
+        return CONTINUE;
+    return fail_usage("--socket: others could replace %s, since its folder %s; "
+                      "name a file in a folder that only you can write to, "
+                      "such as $XDG_RUNTIME_DIR",
+                      path,
+                      foreign ? "belongs to another user"
+                              : "can be written to by others");
+}
+
 static int open_path(const options *opts, guard *g, sockets *out) {
     struct sockaddr_un at = {.sun_family = AF_UNIX};
     if (strlen(opts->socket) >= sizeof at.sun_path)
@@ -148,6 +172,9 @@ static int open_path(const options *opts, guard *g, sockets *out) {
                           "path",
                           opts->socket, sizeof at.sun_path - 1);
     memcpy(at.sun_path, opts->socket, strlen(opts->socket) + 1);
+    int done = check_folder(opts->socket);
+    if (done != CONTINUE)
+        return done;
     if (is_stale(&at))
         unlink(at.sun_path);
     mode_t before = umask(0177); /* before it has a name */
