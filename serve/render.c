@@ -1,6 +1,7 @@
 /* render.c - implements render.h. */
 #include "render.h"
 #include "answers.h"
+#include "draw/draft.h"
 
 #include "commands/commands.h"
 #include "picture/warnings.h"
@@ -11,14 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A draft that takes longer gets half the side; one that takes less gets it
- * back.  With a quarter of the pixels it takes at least a quarter of the time,
- * so the two do not alternate.  One for which voxels were encoded anew does not
- * count. */
-#define SECONDS_MOST 0.040
-#define SECONDS_LEAST 0.009
-#define SHRINK_MOST 3
 
 struct renderer {
     drawing *drawing;
@@ -58,17 +51,6 @@ static void free_pictures(picture *made) {
 
 static void tell_state(renderer *r) {
     outbox_put(r->box, state_parcel(r->state, 0, 0));
-}
-
-static void adapt(renderer *r, int level, double took) {
-    if (level == 1 && took <= SECONDS_MOST)
-        r->shrink = 0;
-    if (level > 0 || snow_frame_stats(r->drawing->state.frame)->encoded)
-        return;
-    if (took > SECONDS_MOST && r->shrink < SHRINK_MOST)
-        r->shrink++;
-    else if (took < SECONDS_LEAST && r->shrink > 0)
-        r->shrink--;
 }
 
 /* A new range or preset that shows nothing is reported once, until something is
@@ -113,7 +95,9 @@ static int draw(renderer *r, int level) {
     if (done != CONTINUE)
         return done;
     double took = seconds_now() - begin + r->drawing->earlier_seconds;
-    adapt(r, level, took);
+    r->shrink =
+        draft_shrink(r->shrink, level, took,
+                     snow_frame_stats(r->drawing->state.frame)->encoded);
     if (level > 0)
         tell_empty(r, image);
     hand_over(r, image, overlay, level, took);

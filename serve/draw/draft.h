@@ -1,0 +1,19 @@
+/* draft.h - how small drafts are: by what the last pictures took. */
+#ifndef DRAFT_H
+#define DRAFT_H
+
+#include <stdbool.h>
+
+/* A draft that takes longer gets half the side; one that takes less gets it
+ * back.  With a quarter of the pixels it takes at least a quarter of the time,
+ * so the two do not alternate. */
+#define DRAFT_SECONDS_MOST 0.040
+#define DRAFT_SECONDS_LEAST 0.009
+#define DRAFT_SHRINK_MOST 3
+
+/* The next draft's side is 1 / 2^shrink of the window's.  A draft for which
+ * voxels were encoded anew does not count; a picture of level 1 that is as
+ * quick as a draft shows that all of the window is. */
+int draft_shrink(int shrink, int level, double took, bool encoded);
+
+#endif
