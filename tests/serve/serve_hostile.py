@@ -74,7 +74,7 @@ def closes(server, say):
     def strike():
         page = Page(server)
         say(page)
-        closed = page.closed_code(PATIENCE) is not None
+        closed = page.closed_code() is not None
         page.close()
         return closed
 

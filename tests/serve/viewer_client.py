@@ -311,10 +311,10 @@ class Page:
                 return message
             self.say({"t": "ack", "n": 0})
 
-    def closed_code(self, seconds=20):
+    def closed_code(self):
         """Waits for the close, whatever is said before; None: none came."""
-        end = time.monotonic() + seconds
-        self.socket.settimeout(seconds)
+        end = time.monotonic() + PATIENCE
+        self.socket.settimeout(PATIENCE)
         while time.monotonic() < end:
             try:
                 what, code = self.hear()
