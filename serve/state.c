@@ -12,7 +12,9 @@
 #include <string.h>
 #include <time.h>
 
-#define QUESTIONS_MOST 128
+/* Of all pages, and of one, so that another one has room too. */
+#define QUESTIONS_MOST 192
+#define QUESTIONS_OF_PAGE 128
 
 struct viewer_state {
     pthread_mutex_t lock;
@@ -224,11 +226,19 @@ void state_set_watchers(viewer_state *s, int count) {
     pthread_mutex_unlock(&s->lock);
 }
 
+static int questions_of(const viewer_state *s, uint64_t client) {
+    int count = 0;
+    for (int i = 0; i < s->count; i++)
+        count += s->questions[(s->first + i) % QUESTIONS_MOST].client == client;
+    return count;
+}
+
 bool state_ask(viewer_state *s, uint64_t client, json_t *tree) {
     const char *what = json_string_value(json_object_get(tree, "what"));
     bool waits = what && strcmp(what, "thumbnail") == 0;
     pthread_mutex_lock(&s->lock);
-    bool room = s->count < QUESTIONS_MOST;
+    bool room = s->count < QUESTIONS_MOST &&
+                questions_of(s, client) < QUESTIONS_OF_PAGE;
     if (room)
         s->questions[(s->first + s->count++) % QUESTIONS_MOST] =
             (viewer_question){client, tree, waits};

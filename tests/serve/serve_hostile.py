@@ -180,19 +180,16 @@ def deaf_page(server):
 
 
 def is_answered(page):
-    """Asks again while the questions of others leave no room."""
-    heard = "said"
-    while heard == "said":
-        page.say({"t": "ask", "what": "command"})
-        heard = None
-        while heard not in ("said", "command"):
-            what, message = page.hear()
-            if what == "closed":
-                return False
-            if what == "picture":
-                page.say({"t": "ack", "n": 0})
-            heard = message["t"] if what == "text" else None
-    return True
+    """Also where the questions of others wait."""
+    page.say({"t": "ask", "what": "command"})
+    while True:
+        what, message = page.hear()
+        if what == "closed" or what == "text" and message["t"] == "said":
+            return False
+        if what == "text" and message["t"] == "command":
+            return True
+        if what == "picture":
+            page.say({"t": "ack", "n": 0})
 
 
 def deaf(server):

@@ -246,9 +246,12 @@ static void questions_have_a_limit(void **state) {
     (void)state;
     viewer_state *s = state_of("{}");
     for (int round = 0; round < 3; round++) { /* of a ring, each begins later */
-        for (int i = 0; i < QUESTIONS_MOST; i++)
+        for (int i = 0; i < QUESTIONS_OF_PAGE; i++)
             ask(s, i % 2 ? "thumbnail" : "command");
         assert_false(state_ask(s, 1, json_object()));
+        for (int i = QUESTIONS_OF_PAGE; i < QUESTIONS_MOST; i++)
+            assert_true(state_ask(s, 2, json_object())); /* another page */
+        assert_false(state_ask(s, 2, json_object()));
         for (int i = 0; i < QUESTIONS_MOST; i++)
             assert_next(s, 0, -1, WORK_ANSWER, 0);
         assert_next(s, 0, -1, WORK_NONE, 0);
