@@ -11,7 +11,7 @@ struct outbox {
     void *user;
     parcel *first, **end;
     parcel *newest[PARCEL_TOPICS];
-    int fast, thin;
+    int fast, thin, quality;
 };
 
 outbox *outbox_new(void (*wake)(void *user), void *user) {
@@ -112,10 +112,12 @@ void outbox_put_text(outbox *box, uint64_t client, parcel_topic topic,
     outbox_put(box, p);
 }
 
-void outbox_set_audience(outbox *box, int fast, int thin) {
+void outbox_set_audience(outbox *box, int fast, int thin, int quality) {
     pthread_mutex_lock(&box->lock);
     box->fast = fast;
     box->thin = thin;
+    if (fast)
+        box->quality = quality;
     pthread_mutex_unlock(&box->lock);
 }
 
@@ -124,6 +126,13 @@ bool outbox_has_audience(outbox *box, parcel_topic about) {
     bool has = about == PARCEL_THIN_PICTURE ? box->thin > 0 : box->fast > 0;
     pthread_mutex_unlock(&box->lock);
     return has;
+}
+
+int outbox_quality(outbox *box) {
+    pthread_mutex_lock(&box->lock);
+    int quality = box->quality;
+    pthread_mutex_unlock(&box->lock);
+    return quality;
 }
 
 parcel *outbox_take(outbox *box) {

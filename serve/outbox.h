@@ -55,10 +55,11 @@ void outbox_put(outbox *box, parcel *p);
 void outbox_put_text(outbox *box, uint64_t client, parcel_topic topic,
                      const char *text);
 
-/* How many pages are on fast and on thin links: for whom pictures are packed.
- */
-void outbox_set_audience(outbox *box, int fast, int thin);
+/* How many pages are on fast and on thin links: for whom pictures are packed;
+ * and in what quality those for fast links, while they move. */
+void outbox_set_audience(outbox *box, int fast, int thin, int quality);
 bool outbox_has_audience(outbox *box, parcel_topic about);
+int outbox_quality(outbox *box);
 
 /* All that waits, in order, which the caller then owns; NULL: nothing. */
 parcel *outbox_take(outbox *box);

@@ -14,12 +14,14 @@
 #include <webp/encode.h>
 #endif
 
-/* Quality of what moves, and of the first picture at rest. */
-#define QUALITY_DRAFT 75
+/* Quality of the first picture at rest, also where pictures that move have less
+ * than QUALITY_GOOD. */
 #define QUALITY_NORMAL 90
+#define QUALITY_NORMAL_LOW 75
+#define QUALITY_GOOD 75
 
-/* The same on thin links; WebP, which takes three times as long, needs a third
- * fewer bytes. */
+/* On thin links both are WebP, which takes three times as long and needs a
+ * third fewer bytes; where it was not built they are JPEGs of QUALITY_THIN. */
 #define QUALITY_THIN 50
 #define QUALITY_WEBP 60
 
@@ -77,7 +79,7 @@ static parcel *compress_jpeg(const unsigned char *rgb, int quality,
                              frame_head *head, double begin) {
     unsigned char *bytes = NULL;
     unsigned long length = 0;
-    bool fine = quality >= QUALITY_NORMAL;
+    bool fine = head->level > 0 && quality >= QUALITY_NORMAL;
     parcel *made = NULL;
     tjhandle jpeg = tjInitCompress();
     if (jpeg &&
@@ -118,26 +120,28 @@ static parcel *compress_webp(const unsigned char *rgb, frame_head *head,
 }
 #endif
 
-static parcel *compress(const unsigned char *rgb, bool thin, frame_head *head,
+/* `quality` is that of pictures that move; 0: on a thin link. */
+static parcel *compress(const unsigned char *rgb, int quality, frame_head *head,
                         double begin) {
 #if SNOW_HAVE_WEBP
-    if (thin)
+    if (!quality)
         return compress_webp(rgb, head, begin);
 #endif
-    int quality = head->level == 0 ? thin ? QUALITY_THIN : QUALITY_DRAFT
-                  : thin           ? QUALITY_DRAFT
-                                   : QUALITY_NORMAL;
+    if (!quality)
+        quality = QUALITY_THIN;
+    if (head->level > 0)
+        quality = quality < QUALITY_GOOD ? QUALITY_NORMAL_LOW : QUALITY_NORMAL;
     return compress_jpeg(rgb, quality, head, begin);
 }
 
 static parcel *pack_lossy(const snow_image *image,
-                          const snow_image_options *form, bool thin,
+                          const snow_image_options *form, int quality,
                           frame_head *head) {
     double begin = seconds();
     unsigned char *rgb = malloc(3 * (size_t)head->width * head->height);
     parcel *made = NULL;
     if (rgb && snow_image_to_rgb8_with(image, form, rgb) == SNOW_STATUS_OK)
-        made = compress(rgb, thin, head, begin);
+        made = compress(rgb, quality, head, begin);
     free(rgb);
     return made;
 }
@@ -201,7 +205,7 @@ parcel *pack_small(const snow_image *image, const snow_image_options *form,
                        .width = (uint32_t)snow_image_width(image),
                        .height = (uint32_t)snow_image_height(image)};
     return exact ? write_png(image, form, &head, seconds())
-                 : pack_lossy(image, form, false, &head);
+                 : pack_lossy(image, form, QUALITY_GOOD, &head);
 }
 
 /* --- the thread ------------------------------------------------------------
@@ -230,10 +234,11 @@ static void pack(packer *p, const picture *made) {
         return;
     }
     if (outbox_has_audience(p->box, PARCEL_PICTURE))
-        put(p, made, pack_lossy(made->image, &form, false, &head),
+        put(p, made,
+            pack_lossy(made->image, &form, outbox_quality(p->box), &head),
             PARCEL_PICTURE);
     if (outbox_has_audience(p->box, PARCEL_THIN_PICTURE))
-        put(p, made, pack_lossy(made->image, &form, true, &head),
+        put(p, made, pack_lossy(made->image, &form, 0, &head),
             PARCEL_THIN_PICTURE);
 }
 

@@ -7,6 +7,26 @@
 /* Bytes of a piece: what a socket takes at once. */
 #define PIECE_BYTES 65536
 
+/* Qualities of pictures that move.  One is left for the next lower one when a
+ * trip takes more than `slow` seconds, and for the next higher one when it
+ * takes less than `quick`; between the two it stays. */
+static const struct {
+    int quality;
+    double quick, slow;
+} steps[] = {{50, 0.12, 1e9},
+             {62, 0.12, 0.25},
+             {75, 0.05, 0.25},
+             {85, 0.05, 0.1},
+             {90, 0, 0.1}};
+#define STEP_FIRST 2 /* what all begin with */
+
+/* A step is kept for so many trips, until they are its own. */
+#define TRIPS_LEAST 8
+
+/* Only pictures of fewer bytes have more than the first step; each step adds up
+ * to a third. */
+#define PICTURE_BYTES 60000
+
 void client_free(client *c, outbox *box) {
     for (int i = 0; i < c->count; i++)
         parcel_release(box, c->queue[i]);
@@ -66,15 +86,63 @@ static bool has_picture(const client *c) {
     return false;
 }
 
+int client_quality(const client *c) {
+    return steps[STEP_FIRST + c->step].quality;
+}
+
+/* The step that follows from the trips, and from the length of a picture. */
+static int step_after(const client *c, size_t length) {
+    int now = STEP_FIRST + c->step;
+    bool long_one = c->step > 0 && length > PICTURE_BYTES;
+    bool short_one = c->step < 0 || length < PICTURE_BYTES * 2 / 3;
+    if (c->trip > steps[now].slow || long_one)
+        return c->step - 1;
+    return c->trip < steps[now].quick && short_one ? c->step + 1 : c->step;
+}
+
+static void note_trip(client *c, const sent_picture *sent) {
+    double seconds = 1e-6 * (double)(lws_now_usecs() - sent->at);
+    c->trip += (c->trip > 0 ? 0.2 : 1) * (seconds - c->trip);
+    if (++c->trips < TRIPS_LEAST)
+        return;
+    int step = step_after(c, sent->length);
+    if (step != c->step)
+        c->trips = 0;
+    c->step = step;
+}
+
+/* A picture at rest tells nothing of those that move, nor does one that waits
+ * behind it. */
+static void note_sent(client *c, const parcel *p) {
+    bool at_rest = p->bytes[8] > 0;
+    bool waits = c->under_way > 0 && c->sent_pictures[0].at_rest;
+    c->sent_pictures[c->under_way++] =
+        (sent_picture){.at = lws_now_usecs(),
+                       .length = p->length,
+                       .at_rest = at_rest,
+                       .counts = !at_rest && !waits};
+}
+
+static void note_painted(client *c) {
+    if (c->under_way == 0)
+        return;
+    sent_picture oldest = c->sent_pictures[0];
+    c->under_way--;
+    memmove(c->sent_pictures, c->sent_pictures + 1,
+            (size_t)c->under_way * sizeof *c->sent_pictures);
+    if (oldest.counts)
+        note_trip(c, &oldest);
+}
+
 /* A link is thin where most pictures wait until another has arrived, and no
  * more when hardly any does. */
 bool client_acknowledge(client *c) {
-    bool before = c->thin;
-    if (c->under_way > 0)
-        c->under_way--;
+    bool thin = c->thin;
+    int quality = client_quality(c);
+    note_painted(c);
     c->blocked += 0.2 * ((has_picture(c) ? 1 : 0) - c->blocked);
     c->thin = c->webp && c->blocked > (c->thin ? 0.02 : 0.6);
-    return c->thin != before;
+    return c->thin != thin || client_quality(c) != quality;
 }
 
 /* The index of the next parcel that may be sent, or -1. */
@@ -98,7 +166,8 @@ static void begin(client *c) {
     memmove(c->queue + index, c->queue + index + 1,
             (size_t)(c->count - index - 1) * sizeof *c->queue);
     c->count--;
-    c->under_way += is_picture(c->sending);
+    if (is_picture(c->sending))
+        note_sent(c, c->sending);
 }
 
 /* lws writes into the bytes before a piece, and others read the parcel: so it

@@ -14,6 +14,14 @@
 #define CLIENT_QUEUE_MOST 96
 #define CLIENT_UNDER_WAY 2
 
+/* A picture that is under way. */
+typedef struct sent_picture {
+    lws_usec_t at;
+    size_t length;
+    bool at_rest; /* it was made when nothing moved */
+    bool counts;  /* for the time of trips */
+} sent_picture;
+
 /* lws allocates it, zeroed, for each WebSocket. */
 typedef struct client {
     struct lws *wsi;
@@ -30,9 +38,13 @@ typedef struct client {
     size_t sent;
     bool thin;      /* the link, since pictures wait for it: */
     double blocked; /* the share of them, of late */
-    int under_way;  /* pictures that were sent and not acknowledged */
-    uint32_t n;     /* the newest that the page counted */
-    set_log sets;   /* of its own */
+    int under_way;  /* pictures that were sent and not acknowledged: */
+    sent_picture sent_pictures[CLIENT_UNDER_WAY]; /* the oldest first */
+    double trip;  /* seconds from a picture to its acknowledgement, of late */
+    int step;     /* of quality, from that which all begin with */
+    int trips;    /* that were measured since it changed */
+    uint32_t n;   /* the newest that the page counted */
+    set_log sets; /* of its own */
 } client;
 
 void client_free(client *c, outbox *box);
@@ -40,8 +52,12 @@ void client_free(client *c, outbox *box);
 /* Queues a parcel, which it shares. */
 void client_queue(client *c, outbox *box, parcel *p);
 
-/* A picture was painted.  Whether the link counts as another kind now. */
+/* A picture was painted.  Whether pictures are to be packed in another way
+ * for this page from now on. */
 bool client_acknowledge(client *c);
+
+/* The quality of pictures that move, from 50 to 90. */
+int client_quality(const client *c);
 
 /* Sends a piece of the next parcel; called when the socket can take one. False
  * for an error. */

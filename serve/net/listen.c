@@ -87,11 +87,18 @@ static void end_when_idle(lws_sorted_usec_list_t *timer) {
     listener_stop(lws_container_of(timer, listener, idle_timer));
 }
 
+/* Pages whose links are not thin share one picture, which suits the slowest of
+ * them: a third and a fourth would take the processor from the drawing.  The
+ * picture at rest is without loss for all. */
 static void count_links(listener *l) {
-    int thin = 0;
-    for (const client *c = l->clients; c; c = c->next)
+    int thin = 0, quality = 0;
+    for (const client *c = l->clients; c; c = c->next) {
+        int own = client_quality(c);
         thin += c->thin;
-    outbox_set_audience(l->box, l->count - thin, thin);
+        if (!c->thin && (!quality || own < quality))
+            quality = own;
+    }
+    outbox_set_audience(l->box, l->count - thin, thin, quality);
 }
 
 /* The clock of idleness runs while there is no page. */

@@ -979,6 +979,75 @@ def thin_links():
     server.stop()
 
 
+def drafts(page, count, azimuth=0):
+    """Bytes of drafts, each of a turn of its own."""
+    got, azimuth = [], azimuth or count
+    page.say({"t": "moving", "on": True})
+    while len(got) < count:
+        page.say({"t": "set", "n": azimuth, "recipe": {"azimuth": azimuth % 360}})
+        head = b""
+        while not (head and head[8] == 0 and
+                   struct.unpack("<I", head[4:8])[0] == azimuth):
+            what, head = page.hear()
+            if what == "closed":
+                return got
+            if what != "picture" or head[10]:
+                head = b""
+                continue
+            page.say({"t": "ack", "n": 0})
+        got.append(head[32:])
+        azimuth += 1
+    return got
+
+
+def quality_of(jpeg):
+    """By the first number of its first table: 16 at 50, as the standard has it."""
+    first = jpeg[jpeg.index(b"\xff\xdb") + 5]
+    return {16: 50, 12: 62, 8: 75, 5: 85, 3: 90}.get(first, -first)
+
+
+def quality_of_links():
+    """Through 1 Mbit/s a page that wants no WebP gets less and less in a picture,
+    and those beside it too while it is there."""
+    server = Server("phantom:engine", "--preset", "ct-bone")
+    link = ThinLink(server, 1e6, 0.04)
+    slow = Page(server, port=link.port)
+    slow.say({"t": "set", "n": 1, "recipe": {"size": [1024, 1024]}})
+    slow.hear_picture(2, 1)
+    got = drafts(slow, 20, 100)
+    qualities = [quality_of(jpeg) for jpeg in got]
+    print(f"       1 Mbit/s, 80 ms: quality {qualities[0]} to {qualities[-1]}, "
+          f"{len(got[0]) / 1000:.0f} to {len(got[-1]) / 1000:.0f} kB")
+    check("a slow link begins with 75", qualities[0] == 75, qualities)
+    check("and goes down to 50, step by step",
+          qualities == sorted(qualities, reverse=True) and
+          set(qualities) == {75, 62, 50} and qualities[-1] == 50, qualities)
+    beside = Page(server)
+    got = drafts(beside, 2, 200)
+    check("a page beside it has the same pictures",
+          [quality_of(jpeg) for jpeg in got] == [50, 50],
+          [quality_of(jpeg) for jpeg in got])
+    beside.close()
+    slow.close()
+    server.stop()
+
+
+def quality_here():
+    """On this machine alone; a busy one may have less, so nothing is asked but the
+    first ones."""
+    server = Server("phantom:engine", "--preset", "ct-bone")
+    page = Page(server)
+    page.say({"t": "set", "n": 1, "recipe": {"size": [1024, 1024]}})
+    page.hear_picture(2, 1)
+    got = drafts(page, 40, 100)
+    qualities = [quality_of(jpeg) for jpeg in got]
+    sizes = [len(jpeg) // 1000 for jpeg in got]
+    print(f"       loopback: quality {min(qualities)} to {max(qualities)}, "
+          f"{min(sizes)} to {max(sizes)} kB")
+    check("a page begins with 75", set(qualities[:8]) == {75}, qualities)
+    server.stop()
+
+
 def endings():
     for arguments, code, words in (
             (["no-such-file.nrrd"], 3, "no-such-file"),
@@ -1103,6 +1172,8 @@ if not SHORT:
     too_many_slices()
     values_and_depths()
     thin_links()
+    quality_of_links()
+    quality_here()
 if not (SHORT or SANITIZED):
     streamed_slices()
 endings()

@@ -24,18 +24,132 @@ int lws_write(struct lws *wsi, unsigned char *bytes, size_t length,
     return (int)length;
 }
 
+/* A clock that the test moves. */
+static lws_usec_t now = 1000000;
+
+lws_usec_t lws_now_usecs(void) {
+    return now;
+}
+
 static void wake_nobody(void *user) {
     (void)user;
 }
 
-static void queue(client *c, outbox *box, parcel_topic topic, int level) {
-    parcel *p = parcel_new(FRAME_HEAD_BYTES);
+static void queue_long(client *c, outbox *box, parcel_topic topic, int level,
+                       size_t length) {
+    parcel *p = parcel_new(length);
     assert_non_null(p);
-    memset(p->bytes, 0, FRAME_HEAD_BYTES);
+    memset(p->bytes, 0, length);
     p->topic = topic;
     p->bytes[8] = (unsigned char)level;
     client_queue(c, box, p);
     parcel_release(box, p);
+}
+
+static void queue(client *c, outbox *box, parcel_topic topic, int level) {
+    queue_long(c, box, topic, level, FRAME_HEAD_BYTES);
+}
+
+/* Sends what waits. */
+static void send_all(client *c, outbox *box) {
+    while (client_has_more(c))
+        assert_true(client_send(c, box));
+}
+
+/* The quality after pictures of a length, each of which takes a time. */
+static int quality_after(client *c, int pictures, size_t length, int ms) {
+    outbox *box = outbox_new(wake_nobody, NULL);
+    for (int i = 0; i < pictures; i++) {
+        queue_long(c, box, PARCEL_PICTURE, 0, length);
+        send_all(c, box);
+        now += 1000 * ms;
+        client_acknowledge(c);
+    }
+    outbox_free(box);
+    return client_quality(c);
+}
+
+static void quality_follows_the_trips(void **state) {
+    (void)state;
+    static const struct {
+        size_t length;
+        int ms, quality;
+    } rows[] = {
+        {20000, 10, 90},  /* this machine */
+        {50000, 10, 75},  /* more would have more than 60 kB */
+        {35000, 10, 90},  /* until the pictures are larger */
+        {90000, 10, 75},  /* as those of a large window are */
+        {20000, 60, 75},  /* a link of some length */
+        {20000, 200, 75}, /* between two steps: none is taken */
+        {20000, 300, 50}, /* a slow one */
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        client c = {.id = 1};
+        assert_int_equal(client_quality(&c), 75);
+        assert_int_equal(quality_after(&c, 100, rows[i].length, rows[i].ms),
+                         rows[i].quality);
+    }
+}
+
+static void quality_goes_step_by_step_and_stays(void **state) {
+    (void)state;
+    static const struct {
+        int pictures, ms, quality;
+    } rows[] = {
+        {7, 400, 75},  {1, 400, 62},  {7, 400, 62}, {1, 400, 50},
+        {40, 200, 50}, {40, 130, 50}, /* not quick enough for more */
+        {40, 100, 75}, {40, 240, 75}, /* as between all steps */
+        {1, 2000, 62}, /* very late */
+        {60, 20, 90},  {40, 90, 90},  {8, 200, 85},
+    };
+    client c = {.id = 1};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        assert_int_equal(quality_after(&c, rows[i].pictures, 20000, rows[i].ms),
+                         rows[i].quality);
+    quality_after(&c, 40, 20000, 10);
+    assert_int_equal(quality_after(&c, 8, 70000, 10), 85);
+    assert_int_equal(quality_after(&c, 40, 70000, 10), 75);
+}
+
+/* The picture at rest is large, and what waits behind it is late. */
+static void pictures_at_rest_do_not_count(void **state) {
+    (void)state;
+    outbox *box = outbox_new(wake_nobody, NULL);
+    client c = {.id = 1};
+    for (int i = 0; i < 40; i++) {
+        queue(&c, box, PARCEL_PICTURE, 2);
+        send_all(&c, box);
+        queue(&c, box, PARCEL_PICTURE, 0);
+        send_all(&c, box);
+        now += 900000;
+        client_acknowledge(&c);
+        queue(&c, box, PARCEL_PICTURE,
+              0); /* counts, behind one that does not */
+        send_all(&c, box);
+        client_acknowledge(&c);
+        now += 60000;
+        client_acknowledge(&c);
+        client_acknowledge(&c); /* of nothing */
+    }
+    assert_int_equal(client_quality(&c), 75);
+    assert_true(c.trip > 0.059 && c.trip < 0.061);
+    assert_int_equal(c.under_way, 0);
+    client_free(&c, box);
+    outbox_free(box);
+}
+
+/* Whether pictures have to be packed in another way is known at once. */
+static void a_change_of_quality_is_told(void **state) {
+    (void)state;
+    outbox *box = outbox_new(wake_nobody, NULL);
+    client c = {.id = 1};
+    for (int i = 1; i <= 16; i++) {
+        queue(&c, box, PARCEL_PICTURE, 0);
+        send_all(&c, box);
+        now += 400000;
+        assert_int_equal(client_acknowledge(&c), i % 8 == 0);
+    }
+    outbox_free(box);
 }
 
 static void of_pictures_the_newest_waits(void **state) {
@@ -212,6 +326,10 @@ int main(void) {
         cmocka_unit_test(a_link_is_thin_while_pictures_wait),
         cmocka_unit_test(too_much_that_waits_is_noted),
         cmocka_unit_test(a_message_in_pieces_has_a_limit),
+        cmocka_unit_test(quality_follows_the_trips),
+        cmocka_unit_test(quality_goes_step_by_step_and_stays),
+        cmocka_unit_test(pictures_at_rest_do_not_count),
+        cmocka_unit_test(a_change_of_quality_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
