@@ -421,6 +421,11 @@ const option_row option_table[] = {
      FIELD(allow_host), 0, 0, "",
      "names, with their ports, under which a proxy or a tunnel shows the "
      "viewer; pages under other names are refused"},
+    {"embed", 0, "ORIGIN,...", TOPIC_MORE, SERVE, read_text, FIELD(embed), 0, 0,
+     "",
+     "origins, such as https://hub.example.org, whose pages may show the viewer "
+     "in a frame; of frames in frames, those of all that are around it "
+     "(default: none)"},
     {"token-file", 0, "FILE", TOPIC_MORE, SERVE, read_text, FIELD(token_file),
      0, 0, "",
      "take the secret of the URL from a file that only its owner can read; "

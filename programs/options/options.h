@@ -133,6 +133,7 @@ typedef struct options {
     const char *socket;     /* NULL: a port */
     const char *listen;     /* address; NULL: this machine alone */
     const char *allow_host; /* names, separated by commas; NULL: none */
+    const char *embed;      /* origins, separated by commas; NULL: none */
     const char *token_file; /* NULL: none */
     const char *live;       /* a simulation's recipe; NULL: none */
     double idle;            /* seconds without a page; 0: no end */

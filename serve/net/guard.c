@@ -41,6 +41,42 @@ bool guard_allow(guard *g, const char *list) {
     }
 }
 
+#define LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+#define DIGITS "0123456789"
+
+/* What a content security policy takes as an origin, and never more than one
+ * word of it. */
+static bool is_origin(const char *text) {
+    size_t scheme = strspn(text, LETTERS DIGITS "+-.");
+    const char *host = text + scheme + 3;
+    if (!scheme || !strspn(text, LETTERS) ||
+        strncmp(text + scheme, "://", 3) != 0)
+        return false;
+    size_t length = strspn(host, LETTERS DIGITS "-.");
+    const char *port = host + length;
+    if (!length || !*port)
+        return length > 0;
+    size_t digits = strspn(port + 1, DIGITS);
+    return *port == ':' && digits > 0 && digits < 6 && !port[1 + digits];
+}
+
+bool guard_embed(guard *g, const char *list) {
+    char *at = g->around, *end = at + sizeof g->around;
+    for (;;) {
+        size_t length = strcspn(list, ",");
+        if (length + 2 > (size_t)(end - at))
+            return false;
+        snprintf(at, length + 1, "%s", list);
+        if (!is_origin(at))
+            return false;
+        at += length;
+        if (!list[length])
+            return true;
+        *at++ = ' ';
+        list += length + 1;
+    }
+}
+
 /* The length of a name without ":8000". */
 static size_t name_length(const char *host) {
     const char *colon = strrchr(host, ':');

@@ -13,6 +13,7 @@
 
 #define GUARD_HOSTS_MOST 16
 #define GUARD_HOST_BYTES 256
+#define GUARD_AROUND_BYTES 512
 
 /* A secret has 128 random bits, as hexadecimal digits; one from a file may be
  * longer. */
@@ -26,6 +27,8 @@ typedef struct guard {
     int own;       /* the first of them, which are this machine's */
     bool any_port; /* of a Unix socket: the tunnel chooses the port */
     char token[GUARD_TOKEN_MOST + 1];
+    char around[GUARD_AROUND_BYTES]; /* origins of frames, with blanks between;
+                                        "": none */
 } guard;
 
 /* Allows the names of this machine at a port; 0: at any port. */
@@ -34,6 +37,10 @@ void guard_allow_own(guard *g, int port);
 /* Allows the names of a list that commas separate; false for no list of names,
  * or too many. */
 bool guard_allow(guard *g, const char *list);
+
+/* Allows frames in pages of a list of origins, scheme://host[:port], that
+ * commas separate; false for no such list, or too long a one. */
+bool guard_embed(guard *g, const char *list);
 
 /* Whether a Host header is one of the names. */
 bool guard_host(const guard *g, const char *host);

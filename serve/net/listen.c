@@ -387,6 +387,7 @@ listener *listener_new(const sockets *s, const guard *g, double idle) {
         return NULL;
     lws_set_log_level(0, NULL);
     l->guard = *g;
+    pages_embed(l->guard.around);
     l->idle = idle;
     l->context = lws_create_context(&info);
     if (l->context)

@@ -2,6 +2,7 @@
  * table or nothing. */
 #include "net/pages.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -11,25 +12,44 @@
 static const struct {
     const char *name, *value;
 } headers[] = {
-    {"content-security-policy:",
-     "default-src 'none'; script-src 'self'; style-src 'self'; "
-     "img-src 'self' blob: data:; connect-src 'self'; base-uri 'none'; "
-     "form-action 'none'; frame-ancestors 'none'"},
     {"x-content-type-options:", "nosniff"},
-    {"x-frame-options:", "DENY"},
     {"referrer-policy:", "no-referrer"},
     {"permissions-policy:", "camera=(), microphone=(), geolocation=()"},
-    {"cross-origin-opener-policy:", "same-origin"},
     {"cross-origin-embedder-policy:", "require-corp"},
-    {"cross-origin-resource-policy:", "same-origin"},
     {"vary:", "accept-encoding"},
 };
+
+#define POLICY                                                          \
+    "default-src 'none'; script-src 'self'; style-src 'self'; "         \
+    "img-src 'self' blob: data:; connect-src 'self'; base-uri 'none'; " \
+    "form-action 'none'; frame-ancestors "
+
+static const char *embedding = "";
+
+void pages_embed(const char *origins) {
+    embedding = origins;
+}
 
 static bool add(struct lws *wsi, const char *name, const char *value,
                 unsigned char **at, unsigned char *end) {
     return lws_add_http_header_by_name(wsi, (const unsigned char *)name,
                                        (const unsigned char *)value,
                                        (int)strlen(value), at, end) == 0;
+}
+
+/* In a frame of a page that takes only what is meant for others, the page has
+ * to say that it is.  x-frame-options cannot name an origin. */
+static bool add_policies(struct lws *wsi, unsigned char **at,
+                         unsigned char *end) {
+    char policy[sizeof POLICY + GUARD_AROUND_BYTES];
+    bool alone = !*embedding;
+    snprintf(policy, sizeof policy, POLICY "%s", alone ? "'none'" : embedding);
+    return add(wsi, "content-security-policy:", policy, at, end) &&
+           add(wsi, "cross-origin-resource-policy:",
+               alone ? "same-origin" : "cross-origin", at, end) &&
+           (!alone ||
+            (add(wsi, "x-frame-options:", "DENY", at, end) &&
+             add(wsi, "cross-origin-opener-policy:", "same-origin", at, end)));
 }
 
 /* A page is asked for each time, its modules only whether they have changed. */
@@ -40,7 +60,7 @@ static bool write_head(struct lws *wsi, unsigned status, const page_file *file,
                   *end = room + sizeof room - 1;
     if (lws_add_http_common_headers(wsi, status, type, length, &at, end))
         return false;
-    bool good = true;
+    bool good = add_policies(wsi, &at, end);
     for (size_t i = 0; i < sizeof headers / sizeof *headers; i++)
         good = good && add(wsi, headers[i].name, headers[i].value, &at, end);
     good = good && add(wsi, "cache-control:",

@@ -19,6 +19,10 @@ typedef struct page_file {
 /* Ends with a row without a name. */
 extern const page_file page_files[];
 
+/* Origins whose pages may show the page in a frame, with blanks between; "":
+ * none.  The text stays the caller's, and is called for before any request. */
+void pages_embed(const char *origins);
+
 /* Answers a request.  Returns what a callback of lws does. */
 int pages_answer(struct lws *wsi, const guard *g, const char *path);
 

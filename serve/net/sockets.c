@@ -211,6 +211,13 @@ int sockets_open(const options *opts, guard *g, sockets *out) {
                           "give NAME or NAME:PORT, with commas between",
                           opts->allow_host, GUARD_HOSTS_MOST - 5);
     }
+    if (opts->embed && !guard_embed(g, opts->embed)) {
+        sockets_close(out);
+        return fail_usage("--embed: '%s' is no list of origins; give "
+                          "SCHEME://HOST or SCHEME://HOST:PORT, with commas "
+                          "between",
+                          opts->embed);
+    }
     return CONTINUE;
 }
 

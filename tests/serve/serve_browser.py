@@ -1,10 +1,13 @@
 """The viewer's page in Chromium, and the command that it copies."""
+import http.server
 import json
 import os
 import shlex
 import shutil
 import subprocess
 import sys
+import threading
+import urllib.parse
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -125,8 +128,36 @@ def mixed():
     server.stop()
 
 
+class Around(http.server.BaseHTTPRequestHandler):
+    """A page with nothing but the viewer in a frame, which stands behind its ?."""
+
+    def do_GET(self):
+        shown = urllib.parse.unquote(self.path.partition("?")[2])
+        body = f'<iframe src="{shown}" width=900 height=600></iframe>'.encode()
+        self.send_response(200)
+        self.send_header("content-type", "text/html")
+        self.end_headers()
+        self.wfile.write(body)
+
+    def log_message(self, *said):
+        pass
+
+
+def embedded():
+    """In a frame of one page, and not of another."""
+    pages = [http.server.ThreadingHTTPServer(("127.0.0.1", 0), Around)
+             for _ in range(2)]
+    for page in pages:
+        threading.Thread(target=page.serve_forever, daemon=True).start()
+    origins = [f"http://127.0.0.1:{page.server_port}" for page in pages]
+    server = Server("phantom:head", "--embed", origins[0])
+    drive(server.url, shots, "embed", *origins)
+    server.stop()
+
+
 watch("short" if SHORT else "long", "phantom:head")
 if not SHORT:
+    embedded()
     many_points()
     masked()
     overlaid()

@@ -49,6 +49,7 @@ def pages(server):
         check(f"the policy has {word}", word in policy, policy)
     check("nothing unsafe is in the policy", "unsafe" not in policy, policy)
     for name, value in (("x-content-type-options", "nosniff"),
+                        ("x-frame-options", "DENY"),
                         ("referrer-policy", "no-referrer"),
                         ("cross-origin-opener-policy", "same-origin"),
                         ("cross-origin-embedder-policy", "require-corp"),
@@ -68,6 +69,29 @@ def pages(server):
     status = server.get("/viewer.js", If_None_Match=headers["etag"])[0]
     check("it is not sent again", status == 304, status)
     check("HEAD has no body", server.get("/", method="HEAD")[2] == b"")
+
+
+def embedded():
+    """Frames are for the pages of one origin, and of two."""
+    for origins in ("https://hub.example.org", "http://a:8888,https://b.org"):
+        server = Server(SMALL, "--embed", origins)
+        for path in ("/", "/viewer.js", "/no-such-page"):
+            headers = server.get(path)[1]
+            policy = headers.get("content-security-policy", "")
+            check(f"with --embed {origins} {path} has them alone as ancestors",
+                  policy.endswith("; frame-ancestors " +
+                                  origins.replace(",", " ")) and
+                  "script-src 'self'" in policy and "'none'" in policy, policy)
+            check("and no other header forbids a frame",
+                  "x-frame-options" not in headers and
+                  "cross-origin-opener-policy" not in headers and
+                  headers["cross-origin-resource-policy"] == "cross-origin",
+                  headers)
+        for origin in origins.split(","):
+            check(f"a page of {origin} itself opens no WebSocket",
+                  not Page(server, origin=origin).is_open)
+        check("the viewer's own page does", Page(server).is_open)
+        server.stop()
 
 
 def strangers(server):
@@ -1055,6 +1079,9 @@ def endings():
             ([SMALL, "--port", "99999"], 2, "out of range"),
             ([SMALL, "--listen", "nowhere"], 2, "--listen"),
             ([SMALL, "--allow-host", "a b"], 2, "--allow-host"),
+            ([SMALL, "--embed", "hub.example.org"], 2, "--embed"),
+            ([SMALL, "--embed", "*"], 2, "--embed"),
+            ([SMALL, "--embed", "https://a.org/; script-src *"], 2, "--embed"),
             ([SMALL, "--idle", "soon"], 2, "--idle"),
             ([SMALL, "--socket", "/no/such/folder/x"], 4, "--socket"),
             ([SMALL, "--socket", "x", "--port", "8000"], 2, "conflicts"),
@@ -1176,6 +1203,7 @@ if not SHORT:
     quality_here()
 if not (SHORT or SANITIZED):
     streamed_slices()
+embedded()
 endings()
 secrets()
 unix_socket()

@@ -151,6 +151,65 @@ static void lists_of_names_are_names(void **state) {
     assert_false(guard_allow(&g, "x"));
 }
 
+static void origins_of_frames_are_origins(void **state) {
+    (void)state;
+    static const char *const good[] = {"https://hub.example.org",
+                                       "http://127.0.0.1:8888",
+                                       "vscode-webview://0abc-1"};
+    static const char *const bad[] = {"",
+                                      "*",
+                                      "https:",
+                                      "https://",
+                                      "//a.org",
+                                      "a.org",
+                                      "https://a.org/",
+                                      "https://a.org/x",
+                                      "https://*",
+                                      "https://a b",
+                                      "https://a;b",
+                                      "https://a:",
+                                      "https://a:x",
+                                      "https://a:123456",
+                                      "'self'",
+                                      "https://a@b",
+                                      "https://a\r\nb",
+                                      "1s://a",
+                                      "https://a,",
+                                      "https://a,,https://b",
+                                      "https://a,*",
+                                      "https://a:80/",
+                                      "http s://a",
+                                      "https://[::1]:80"};
+    guard g;
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+        g = guard_of(8000, NULL);
+        assert_true(guard_embed(&g, good[i]));
+        assert_string_equal(g.around, good[i]);
+    }
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        g = guard_of(8000, NULL);
+        if (guard_embed(&g, bad[i]))
+            fail_msg("%s", bad[i]);
+    }
+    assert_true(guard_embed(&g, "https://a.org,http://b:1"));
+    assert_string_equal(g.around, "https://a.org http://b:1");
+}
+
+static void a_list_of_origins_has_an_end(void **state) {
+    (void)state;
+    guard g = guard_of(8000, NULL);
+    char list[GUARD_AROUND_BYTES + 1];
+    memset(list, 'a', sizeof list - 1);
+    memcpy(list, "https://", 8);
+    list[GUARD_AROUND_BYTES] = '\0';
+    assert_false(guard_embed(&g, list));
+    list[GUARD_AROUND_BYTES - 1] = '\0';
+    assert_false(guard_embed(&g, list));
+    list[GUARD_AROUND_BYTES - 2] = '\0';
+    assert_true(guard_embed(&g, list));
+    assert_string_equal(g.around, list);
+}
+
 static void a_page_is_the_last_part_of_a_path(void **state) {
     (void)state;
     assert_string_equal(guard_page("/"), "");
@@ -171,6 +230,8 @@ int main(void) {
         cmocka_unit_test(only_the_whole_secret_opens),
         cmocka_unit_test(a_secret_is_long_and_plain),
         cmocka_unit_test(lists_of_names_are_names),
+        cmocka_unit_test(origins_of_frames_are_origins),
+        cmocka_unit_test(a_list_of_origins_has_an_end),
         cmocka_unit_test(a_page_is_the_last_part_of_a_path),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

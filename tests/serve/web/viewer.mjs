@@ -7,7 +7,7 @@ import {createServer, request} from 'node:http';
 import {connect} from 'node:net';
 import {writeFileSync} from 'node:fs';
 
-const [playwright, chromium, url, folder, tier] = process.argv.slice(2);
+const [playwright, chromium, url, folder, tier, ...words] = process.argv.slice(2);
 const {chromium: browsers} = await import(playwright);
 const long = tier !== 'short';
 const PATIENCE = 600000; // ms: other programs may have the machine
@@ -788,6 +788,24 @@ async function unready() {
     await context.close();
 }
 
+/** In a frame of the origin that may, the viewer works; in another's it is not shown. */
+async function embedded() {
+    const context = await browser.newContext(), page = await context.newPage();
+    page.setDefaultTimeout(PATIENCE);
+    const [may, mayNot] = words;
+    await page.goto(`${may}/?${encodeURIComponent(url)}`);
+    const frame = page.frames()[1];
+    await frame.waitForFunction(() => window.snowglass?.page.rest);
+    await frame.getByRole('button', {name: /^View from/}).first().click();
+    await frame.waitForFunction(() => window.snowglass.page.rest && window.snowglass.recipe.keys.view);
+    check('in a frame of one origin the viewer works', true);
+    const refused = page.waitForEvent('console', line => /frame-ancestors/.test(line.text()));
+    await page.goto(`${mayNot}/?${encodeURIComponent(url)}`);
+    check('another may not show it', (await refused).text().includes(may), (await refused).text());
+    check('and does not', !await page.frames()[1].evaluate(() => Boolean(window.snowglass)).catch(() => false));
+    await context.close();
+}
+
 /** A look of more points than a recipe holds is shown, and not changed. */
 async function manyPoints() {
     const page = await open();
@@ -1050,7 +1068,7 @@ async function many() {
     await page.context().close();
 }
 
-const alone = {points: manyPoints, mask: masked, overlay: overlaid, fused, channels: mixed, begun, many};
+const alone = {embed: embedded, points: manyPoints, mask: masked, overlay: overlaid, fused, channels: mixed, begun, many};
 if (alone[tier]) {
     await alone[tier]();
     check('nothing is on the console', said.length === 0, said.join(' | '));
