@@ -5,6 +5,7 @@
 #include "base/affinity.h"
 #include "formats/amr/amr.h"
 #include "formats/format.h"
+#include "formats/vtk/vtk.h"
 #include "render/picture.h"
 
 #include "movie/movie_encoder.h"
@@ -67,6 +68,12 @@ void snow_exact_free(snow_exact *exact) {
     (void)exact;
 }
 
+/* Before VTI, which takes all other XML of VTK. */
+static bool is_vth(const unsigned char *bytes, size_t size) {
+    return snow_vtk_probe_xml(bytes, size, "vtkOverlappingAMR") ||
+           snow_vtk_probe_xml(bytes, size, "vtkHierarchicalBoxDataSet");
+}
+
 static bool is_no_level(const unsigned char *bytes, size_t size) {
     (void)bytes;
     (void)size;
@@ -98,5 +105,5 @@ const snow_format snow_format_amrex = {
     .name = "amrex", .probe = is_no_level, .read = refuse_levels};
 const snow_format snow_format_vth = {.name = "vth",
                                      .suffixes = {".vth", ".vthb"},
-                                     .probe = is_no_level,
+                                     .probe = is_vth,
                                      .read = refuse_levels};

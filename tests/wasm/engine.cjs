@@ -2,10 +2,12 @@
 //
 //   node engine.cjs WORKER ENGINE FOLDER JOBS
 //
-// JOBS is a JSON list of {name, path, files, recipe, turn, threads, narrow}, whose files
-// are in FOLDER.  Of each there are then in FOLDER too the pictures NAME-0.bin (draft),
-// NAME-1.bin, NAME-2.bin, as they go to the page, and NAME.json: what was said, the
-// command, the qualities of all pictures, and the processor's milliseconds of each thread.
+// JOBS is a JSON list of {name, path, files, kept, recipe, turn, threads, narrow, first},
+// whose files are in FOLDER; those that are kept are read by the part, as a page reads a
+// File; the first picture may be all.  Of each there are then in FOLDER too the pictures
+// NAME-0.bin (draft), NAME-1.bin, NAME-2.bin, as they go to the page, and NAME.json: what
+// was said, the command, the qualities of all pictures, and the processor's milliseconds of each thread.
+// `reads` has the bytes of the longest read and of all.
 // A turn comes when the picture at rest was begun.  Where it is narrow, there is no room
 // for memory that threads share.
 const fs = require('fs');
@@ -20,19 +22,46 @@ const milliseconds = folder =>
 
 const Memory = WebAssembly.Memory;
 
+/** As much of a browser's File as the worker uses. */
+class Kept {
+    constructor(path) {
+        this.path = path;
+        this.size = fs.statSync(path).size;
+    }
+
+    slice(begin, end) {
+        return {path: this.path, begin, end: Math.min(end, this.size)};
+    }
+}
+
+let reads;
+
+/** A browser's, which reads at once. */
+globalThis.FileReaderSync = class {
+    readAsArrayBuffer({path, begin, end}) {
+        const bytes = new Uint8Array(end - begin), file = fs.openSync(path);
+        const got = fs.readSync(file, bytes, 0, bytes.length, begin);
+        fs.closeSync(file);
+        reads = {most: Math.max(reads.most, got), all: reads.all + got};
+        return bytes.buffer;
+    }
+};
+
 function narrowMemory(how) {
     if (how.shared)
         throw new RangeError('there is no room');
     return new Memory(how);
 }
 
-async function run({name, path, files, recipe, turn, threads = 1, narrow}) {
+async function run({name, path, files, kept, recipe, turn, threads = 1, narrow, first}) {
+    reads = {most: 0, all: 0};
     const others = helpers(worker);
     WebAssembly.Memory = narrow ? narrowMemory : Memory;
-    const made = await begin(fs.readFileSync(engine), files.map(name => ({
-        name, bytes: new Uint8Array(fs.readFileSync(`${folder}/${name}`)).buffer})), threads, threads > 1 && others.share);
+    const list = files.map(each => kept ? {name: each, file: new Kept(`${folder}/${each}`)} : {
+        name: each, bytes: new Uint8Array(fs.readFileSync(`${folder}/${each}`)).buffer});
+    const made = await begin(fs.readFileSync(engine), list, threads, threads > 1 && others.share);
     const folders = ['thread-self', ...await others.folders()], begun = folders.map(milliseconds);
-    const out = {said: [], levels: [], opened: made.open(path, recipe)};
+    const out = {path, said: [], levels: [], opened: made.open(path, recipe)};
     const take = () => {
         for (let each; (each = made.take()) !== null;) {
             if (typeof each !== 'string') {
@@ -51,6 +80,8 @@ async function run({name, path, files, recipe, turn, threads = 1, narrow}) {
         for (let wait; (wait = made.step()) >= 0;) {
             const before = out.levels.length;
             take();
+            if (first && out.levels.length)
+                return;
             if (turn && wait === 0 && out.levels.length === before && out.levels.at(-1) === 1) {
                 made.hear(JSON.stringify({t: 'set', n: 1, recipe: turn}));
                 turn = null;
@@ -60,12 +91,15 @@ async function run({name, path, files, recipe, turn, threads = 1, narrow}) {
         }
     };
     take();
-    if (out.opened) {
+    if (out.opened && first) {
+        await rest();
+    } else if (out.opened) {
         await rest();
         made.hear(JSON.stringify({t: 'ask', what: 'command'}));
         await rest();
         take();
     }
+    out.reads = reads;
     out.took = folders.map((folder, i) => milliseconds(folder) - begun[i]);
     await others.end();
     fs.writeFileSync(`${folder}/${name}.json`, JSON.stringify(out));

@@ -2,10 +2,10 @@
 //
 //   node page.mjs PLAYWRIGHT CHROMIUM URL FOLDER NAME [FILE...]
 //
-// Drops the files on the page, if there are any, turns the volume, and leaves in
+// Drops the files, or a folder, on the page, if there are any, turns the volume, and leaves in
 // FOLDER a screenshot, the picture at rest and the command: NAME.png, NAME-rest.png,
 // NAME.txt.
-import {readFileSync, writeFileSync} from 'node:fs';
+import {writeFileSync} from 'node:fs';
 
 const [playwright, chromium, url, folder, name, ...files] = process.argv.slice(2);
 const {chromium: browsers} = await import(playwright);
@@ -33,17 +33,18 @@ const rest = () => page.waitForFunction(() => {
 }, null, {timeout: 60000});
 const title = () => page.locator('.top .grow').textContent();
 
+/** As from the desktop: an event that a page makes has no folders. */
+async function drop() {
+    const session = await page.context().newCDPSession(page);
+    for (const type of ['dragEnter', 'dragOver', 'drop'])
+        await session.send('Input.dispatchDragEvent', {type, x: 300, y: 300,
+            data: {items: [], files, dragOperationsMask: 1}});
+}
+
 await rest();
 if (files.length) {
     const before = await title();
-    const data = files.map(file => [file.split('/').at(-1), readFileSync(file).toString('base64')]);
-    const dropped = await page.evaluateHandle(list => {
-        const transfer = new DataTransfer();
-        for (const [name, text] of list)
-            transfer.items.add(new File([Uint8Array.from(atob(text), c => c.charCodeAt(0))], name));
-        return transfer;
-    }, data);
-    await page.dispatchEvent('body', 'drop', {dataTransfer: dropped});
+    await drop();
     if (name === 'raw') { // what the file does not say
         await page.locator('dialog[open]').waitFor();
         await page.screenshot({path: `${folder}/${name}-form.png`});

@@ -11,6 +11,9 @@ import zlib
 
 TOOL, OUT, TOP = map(os.path.abspath, sys.argv[1:4])
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, HERE)
+from dicom_slice import dicom  # noqa: E402
+
 ENGINE = os.path.join(TOP, "build-web", "engine.wasm")
 QUALITIES = "draft", "normal", "high"
 RAW, PNG = 4, 2
@@ -124,6 +127,23 @@ def write(name, data):
     return name
 
 
+LARGE = 1024, 1024, 1500  # bytes; a page keeps 1,400 MiB
+
+
+def write_large():
+    """A box in nothing, which has no room on the disk."""
+    with open(os.path.join(OUT, "large.nrrd"), "wb") as file:
+        head = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: %d %d %d\n" \
+            "encoding: raw\n\n" % LARGE
+        file.write(head.encode())
+        file.truncate(len(head) + LARGE[0] * LARGE[1] * LARGE[2])
+        for z in range(700, 740):
+            for y in range(500, 540):
+                file.seek(len(head) + (z * LARGE[1] + y) * LARGE[0] + 480)
+                file.write(bytes(100 + (x + y + z) % 100 for x in range(60)))
+    return "large.nrrd"
+
+
 make("head.nrrd", "phantom", "head", "--dims", "64x64x48")
 os.makedirs(os.path.join(OUT, "slices"))
 stack = ["points.json", *(make(
@@ -132,6 +152,14 @@ stack = ["points.json", *(make(
 write("points.json", json.dumps({
     "snowglass-tf": 1, "values": "data",
     "opacities": [[20, 0], [90, 0.2], [200, 0.9]]}).encode())
+# Names do not tell the order.
+os.makedirs(os.path.join(OUT, "series"))
+series = [write(f"series/{7 * z % 11}.dcm", dicom(z)) for z in range(11)]
+os.makedirs(os.path.join(OUT, "packed.zarr", "0"))
+packed = [write("packed.zarr/.zarray", json.dumps({
+    "zarr_format": 2, "shape": [4, 4, 4], "chunks": [4, 4, 4], "dtype": "|u1",
+    "compressor": {"id": "zstd", "level": 1}, "fill_value": 0, "order": "C",
+    "filters": None}).encode()), write("packed.zarr/0.0.0", bytes(40))]
 volumes = [
     ("engine", "phantom:engine", None, {"size": [240, 200], "azimuth": 30,
                                         "elevation": 25}),
@@ -148,6 +176,11 @@ volumes = [
         "size": [160, 160], "mode": "iso", "iso": 60}),
     ("far", "phantom:engine", None, {
         "size": [130, 101], "zoom": 0.2, "roll": -50, "mode": "mean"}),
+    ("series", "series", series, {"size": [120, 90], "azimuth": 20,
+                                  "elevation": 20}),
+    ("slabs", "slabs.nrrd", make("slabs.nrrd", "phantom", "head", "--dims",
+                                 "224x224x200"), {
+        "size": [120, 100], "azimuth": 30, "memory": "12M"}),
     ("stack", "slices", stack, {"size": [100, 100], "tf": "points.json"}),
 ]
 strangers = [
@@ -158,6 +191,17 @@ strangers = [
      ("a.h5", "lacks HDF5")),
     ("tiff", write("a.tif", b"II*\0\x08\0\0\0" + bytes(300)),
      ("a.tif", "lacks TIFF")),
+    ("jpeg", write("a.jpg", b"\xff\xd8\xff\xe0\0\x10JFIF\0" + bytes(300)),
+     ("a.jpg", "lacks", "JPEG")),
+    ("vti", write("a.vti", b'<?xml version="1.0"?>\n<VTKFile type="ImageData" '
+                  b'version="1.0"><ImageData WholeExtent="0 1 0 1 0 1"/></VTKFile>'),
+     ("a.vti", "lacks", "VTI")),
+    ("dicom", write("a.dcm", dicom(0, "1.2.840.10008.1.2.4.70")),
+     ("a.dcm", "compressed DICOM", "1.2.840.10008.1.2.4.70")),
+    ("zarr", ["packed.zarr", *packed], ("packed.zarr", "lacks", "zstd")),
+    ("refinement", write("a.vth", b'<?xml version="1.0"?>\n<VTKFile '
+                         b'type="vtkOverlappingAMR" version="1.1"/>'),
+     ("a.vth", "levels of refinement")),
     ("unknown", write("a.dat", bytes(5000)), ("a.dat",)),
 ]
 jobs = [{"name": name, "path": path, "recipe": recipe, "files":
@@ -166,11 +210,20 @@ jobs = [{"name": name, "path": path, "recipe": recipe, "files":
 THREADS = 3
 jobs += [{**job, "name": f"{job['name']}-threads", "threads": THREADS}
          for job in jobs]
+# Where threads share it, a file of Node is read whole before.
+for job in jobs:
+    job["kept"] = job["name"] == "slabs"
+jobs += [{"name": "whole", "path": "slabs.nrrd", "files": ["slabs.nrrd"],
+          "kept": True, "recipe": {"size": [120, 100]}},
+         {"name": "large", "path": "large.nrrd", "files": [write_large()],
+          "kept": True, "first": True, "recipe": {"size": [120, 100],
+                                                  "range": [20, 200]}}]
 jobs += [{**jobs[0], "name": "narrow", "threads": THREADS, "narrow": True}]
 jobs += [{"name": "turned", "path": "phantom:engine", "files": [], "recipe":
           {"size": [120, 100]}, "turn": {"azimuth": 40}}]
-jobs += [{"name": name, "path": path, "files": [path], "recipe": {}}
-         for name, path, _ in strangers]
+jobs += [{"name": name, "path": given[0] if isinstance(given, list) else given,
+          "files": given[1:] if isinstance(given, list) else [given], "recipe": {}}
+         for name, given, _ in strangers]
 subprocess.run([node, os.path.join(HERE, "engine.cjs"),
                 os.path.join(TOP, "wasm", "page", "worker.js"), ENGINE, OUT,
                 json.dumps(jobs)], check=True, timeout=500)
@@ -190,6 +243,28 @@ first, *others = took("engine-threads")
 check("other threads draw too", len(others) == THREADS - 1 and
       sum(others) > 0.04 * first, (first, others))
 check("without room to share it is one thread", len(took("narrow")) == 1)
+
+
+def read_of(name):
+    """Of a file: the longest read and all of them, as shares of it."""
+    with open(os.path.join(OUT, f"{name}.json")) as file:
+        said = json.load(file)
+    size = os.path.getsize(os.path.join(OUT, said["path"]))
+    return said, said["reads"]["most"] / size, said["reads"]["all"] / size
+
+
+said, most, all_of_it = read_of("whole")
+check("what fits is read once", 0.99 < all_of_it < 1.05, all_of_it)
+said, most, all_of_it = read_of("slabs")
+check("what does not stays in its file, which is read for each picture",
+      most < 0.2 and all_of_it > 3, (most, all_of_it))
+said, most, all_of_it = read_of("large")
+check("a file larger than the page's memory is drawn, in pieces of 1 MiB",
+      said["levels"] == [0] and said["reads"]["most"] <= 1 << 20 and
+      all_of_it >= 1, (said, most, all_of_it))
+with open(os.path.join(OUT, "large-0.bin"), "rb") as file:
+    check("and there is something to see", len(set(file.read()[32::4])) > 9)
+os.remove(os.path.join(OUT, "large.nrrd"))
 with open(os.path.join(OUT, "turned.json")) as file:
     levels_ = json.load(file)["levels"]
 check("a turn does not wait for the picture at rest", levels_ == [0, 1, 0, 1, 2],

@@ -11,6 +11,9 @@ import threading
 
 TOOL, OUT, TOP = map(os.path.abspath, sys.argv[1:4])
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, HERE)
+from dicom_slice import dicom  # noqa: E402
+
 PLAYWRIGHT = os.path.join(os.path.dirname(TOOL), "web", "node_modules",
                           "playwright-core", "index.mjs")
 PAGE = os.path.join(TOP, "build-web", "viewer.html")
@@ -76,6 +79,11 @@ watch(FILE, "dropped", os.path.join(OUT, "head.nrrd"))
 watch(FILE, "apart", os.path.join(OUT, "apart.nhdr"),
       os.path.join(OUT, "head.raw"))
 
+os.makedirs(os.path.join(OUT, "series"))
+for z in range(11):  # names do not tell the order
+    with open(os.path.join(OUT, "series", f"{7 * z % 11}.dcm"), "wb") as file:
+        file.write(dicom(z))
+watch(FILE, "folder", os.path.join(OUT, "series"))
 watch(FILE, "raw", os.path.join(OUT, "head.raw"))
 
 with open(os.path.join(OUT, "points.json"), "w") as file:

@@ -142,12 +142,34 @@ async function filesOf(entry) {
 }
 
 body.addEventListener('dragover', event => event.preventDefault());
+/** The same of a handle, which Chromium has. */
+async function filesOfHandle(handle, name) {
+    if (handle.kind === 'file')
+        return [{name, file: await handle.getFile()}];
+    const found = [];
+    for await (const each of handle.values())
+        found.push(filesOfHandle(each, `${name}/${each.name}`));
+    return (await Promise.all(found)).flat();
+}
+
+/** Of what was dropped.  On a page from the disk Chromium opens no entry, but handles of
+ * folders; what a file is, is known without either. */
+async function filesOfItem(entry, file, handle) {
+    if (!entry?.isDirectory)
+        return file ? [{name: file.name, file}] : [];
+    const folder = await handle?.catch(() => null);
+    return folder ? filesOfHandle(folder, folder.name) : filesOf(entry);
+}
+
 body.addEventListener('drop', async event => {
     event.preventDefault();
-    const {items} = event.dataTransfer;
-    const dropped = [...items].map(item => [item.webkitGetAsEntry(), item.getAsFile()]);
-    showFiles((await Promise.all(dropped.map(([entry, file]) =>
-        entry ? filesOf(entry) : file ? [{name: file.name, file}] : []))).flat());
+    const dropped = [...event.dataTransfer.items].map(item => filesOfItem(item.webkitGetAsEntry(),
+        item.getAsFile(), item.getAsFileSystemHandle?.()));
+    try {
+        showFiles((await Promise.all(dropped)).flat());
+    } catch {
+        page.page.say('The browser cannot read this folder: drop its files, or choose them with Open.');
+    }
 });
 
 // --- at the beginning ----------------------------------------------------------

@@ -123,7 +123,7 @@ snow_status snow_index_parse(snow_source *source, const index_xml *handlers,
                              void *user) {
     (void)handlers;
     (void)user;
-    return snow_fail_unbuilt(snow_source_context(source), "reader of XML",
+    return snow_fail_unbuilt(snow_source_context(source), "a reader of XML",
                              "libexpat1-dev");
 }
 

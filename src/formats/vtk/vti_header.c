@@ -395,7 +395,8 @@ snow_status snow_vti_read_header(snow_source *source,
                                  vti_header *header) {
     (void)options;
     (void)header;
-    return snow_fail_unbuilt(snow_source_context(source), "reader of XML",
+    return snow_fail_unbuilt(snow_source_context(source),
+                             "VTI and VTR, which need a reader of XML",
                              "libexpat1-dev");
 }
 
