@@ -6,6 +6,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tarfile
 import threading
 import urllib.parse
 import time
@@ -155,6 +156,25 @@ def embedded():
     server.stop()
 
 
+def filmed():
+    """A radiologist's way, with a finger in a narrow window, with a mouse in a wide
+    one, on DICOM slices of a chest."""
+    packed = os.path.join(DATA, "dicom", "ct_abdomen_20of275.tar.gz")
+    if not os.path.exists(packed):
+        print("skip   the film: there is no", packed)
+        return
+    place = os.path.join(shots, "film")
+    shutil.rmtree(place, ignore_errors=True)
+    with tarfile.open(packed) as scan:
+        scan.extractall(place)
+    server = Server(os.path.join(place, "ct_abdomen"))
+    drive(server.url, shots, "film")
+    for name in ("film_narrow", "film_wide"):
+        same_bytes(f"{name}_command.txt", f"{name}_rest.png")
+        same_bytes(f"{name}_slice.txt", f"{name}_slice.png")
+    server.stop()
+
+
 watch("short" if SHORT else "long", "phantom:head")
 if not SHORT:
     embedded()
@@ -162,8 +182,6 @@ if not SHORT:
     masked()
     overlaid()
     mixed()
-scan = os.path.join(DATA, "classic", "CThead_256x256x113_u16be.raw.gz")
-if not SHORT and os.path.exists(scan):
-    watch("film", scan, "--dims", "256x256x113", "--type", "uint16", "--endian",
-          "big", "--spacing", "1x1x2")
+if not SHORT:
+    filmed()
 finish()

@@ -681,81 +681,232 @@ async function prefixed() {
     proxy.close();
 }
 
-/** A radiologist's way: bone, window and level, a joint, slices, the command. */
+/** What a user does, with a finger where there is one, and how many times: each click,
+ * drag, turn of the wheel, key, and each scrolling of a window that is too small. */
+class Hand {
+    constructor(page, session) {
+        this.page = page;
+        this.session = session; // NULL: a mouse
+        this.count = 0;
+    }
+
+    send(type, points) {
+        return this.session.send('Input.dispatchTouchEvent', {type,
+            touchPoints: points.map(([x, y], id) => ({x, y, id}))});
+    }
+
+    /** Brings an element into the window. */
+    async reach(locator) {
+        const box = await locator.boundingBox(), {height} = this.page.viewportSize();
+        const beyond = Math.max(-box.y, box.y + Math.min(box.height, height) - height, 0);
+        this.count += Math.ceil(beyond / (0.8 * height));
+        await locator.scrollIntoViewIfNeeded();
+    }
+
+    async press(locator) {
+        await this.reach(locator);
+        this.count++;
+        if (this.session) {
+            await locator.tap({trial: true}); // it can be tapped
+            const {x, y, width, height} = await locator.boundingBox();
+            await this.tap('click', 1, x + width / 2, y + height / 2);
+        } else {
+            await locator.click();
+        }
+        await rest(this.page);
+    }
+
+    /** Taps until the page has its event: on a busy machine Chromium may take a tap for a
+     * long one, or two for single ones.  Its end and the next begin wait for no answer. */
+    async tap(name, times, x, y) {
+        for (let came = false; !came;) {
+            await this.page.evaluate(event => {
+                window.tapped = new Promise(done => {
+                    addEventListener('pointerup', () => setTimeout(() => done(false), 2000), {once: true, capture: true});
+                    addEventListener(event, () => done(true), {once: true, capture: true});
+                });
+            }, name);
+            await Promise.all(Array.from({length: 2 * times}, (_, i) =>
+                i % 2 ? this.send('touchEnd', []) : this.send('touchStart', [[x, y]])));
+            came = await this.page.evaluate(() => window.tapped);
+        }
+    }
+
+    async enter(label, value) {
+        await this.press(this.page.getByLabel(label));
+        await this.page.keyboard.press('Control+a');
+        await this.page.keyboard.type(value);
+        await this.page.keyboard.press('Enter');
+        this.count += 3;
+        await rest(this.page);
+    }
+
+    async choose(label, value) {
+        const list = this.page.getByLabel(label);
+        await this.reach(list);
+        this.count += 2;
+        await list.selectOption(value);
+        await rest(this.page);
+    }
+
+    async key(name) {
+        this.count++;
+        await this.page.keyboard.press(name);
+        await rest(this.page);
+    }
+
+    async drag([x, y], [toX, toY]) {
+        this.count++;
+        const at = i => [x + (toX - x) * i / 8, y + (toY - y) * i / 8];
+        const steps = [1, 2, 3, 4, 5, 6, 7, 8].map(at), {mouse} = this.page;
+        await after(this.page, 'pointerup', 1, async () => {
+            if (this.session) {
+                await this.send('touchStart', [[x, y]]);
+                for (const place of steps)
+                    await this.send('touchMove', [place]);
+                await this.send('touchEnd', []);
+            } else {
+                await mouse.move(x, y);
+                await mouse.down();
+                for (const place of steps)
+                    await mouse.move(...place);
+                await mouse.up();
+            }
+        });
+        await rest(this.page);
+    }
+
+    async twice(x, y) {
+        this.count++;
+        await (this.session ? this.tap('dblclick', 2, x, y)
+            : after(this.page, 'dblclick', 1, () => this.page.mouse.dblclick(x, y)));
+        await rest(this.page);
+    }
+
+    /** About twice as near: fingers go apart, or the wheel is turned. */
+    async zoom(x, y) {
+        this.count++;
+        if (!this.session) {
+            await this.page.mouse.move(x, y);
+            await wheel(this.page, -500);
+        } else {
+            await after(this.page, 'pointerup', 2, async () => {
+                await this.send('touchStart', [[x - 30, y], [x + 30, y]]);
+                for (let i = 1; i <= 8; i++)
+                    await this.send('touchMove', [[x - 30 - 5 * i, y], [x + 30 + 5 * i, y]]);
+                await this.send('touchEnd', []);
+            });
+        }
+        await rest(this.page);
+    }
+}
+
+/** A practised user needs about a second for an action, and 10 s for a step at most. */
+const ACTIONS_MOST = 8;
+
+/** A radiologist's way: bone, a joint, window and level, a cut, slices, the command. */
 async function film(name, options) {
-    const page = await open(options), press = async button => {
-        await (options.hasTouch ? button.tap() : button.click());
-        await rest(page);
-    };
+    const page = await open(options);
+    const hand = new Hand(page, options.hasTouch ? await page.context().newCDPSession(page) : null);
     const canvas = page.locator('.picture canvas').first();
-    const seen = async step => {
+    const step = async what => {
+        await shot(page, `film_${name}_${what}`);
+        console.log(`       ${name} ${what}: ${hand.count} actions`);
+        check(`${name} ${what} takes few actions`, hand.count <= ACTIONS_MOST, hand.count);
+        hand.count = 0;
+    };
+    const seen = async what => {
         await rest(page);
-        await canvas.scrollIntoViewIfNeeded();
-        await shot(page, `film_${name}_${step}`);
+        await hand.reach(canvas);
+        await step(what);
+    };
+    const at = async (right, down) => { // shares of the shorter side, from the middle
+        const box = await canvas.boundingBox(), side = Math.min(box.width, box.height);
+        return [box.x + box.width / 2 + right * side, box.y + box.height / 2 + down * side];
+    };
+    const keep = async (file, button) => {
+        await hand.press(button);
+        await page.waitForSelector('dialog[open] textarea');
+        writeFileSync(`${folder}/film_${name}_${file}.txt`, await page.locator('dialog textarea').inputValue());
     };
     await seen('1_opened');
     const presets = page.locator('summary', {hasText: 'Presets'});
-    await press(presets);
+    await hand.press(presets);
     await page.waitForFunction(() => [...document.querySelectorAll('.presets img')]
         .every(image => !image.hidden));
-    await shot(page, `film_${name}_2_presets`);
-    await press(page.locator('.presets button', {hasText: 'ct-bone'}).first());
+    await step('2_presets');
+    await hand.press(page.locator('.presets button', {hasText: 'ct-bone'}).first());
     check('bone is seen', (await keys(page)).preset === 'ct-bone');
-    await press(presets);
-    const enter = async (label, value) => {
-        await page.getByLabel(label).fill(value);
-        await page.keyboard.press('Enter');
-        await rest(page);
-    };
-    await enter('shift of the look', '1024'); // as the note says
-    await press(page.getByRole('button', {name: 'View from +x', exact: true}));
-    await enter('roll in degrees', '180');
+    await hand.press(presets);
     await seen('3_bone');
-    await page.getByLabel('Drag').selectOption('window');
-    await drag(page, 40, -20);
-    const {low, high} = await page.evaluate(() => window.snowglass.page.look);
-    check('a drag sets window and level', (await keys(page)).range?.length === 2 &&
-        high - low > 1400 && high - low < 1800 && Math.abs((low + high) / 2 - 1849) < 150, `${low} ${high}`);
-    await seen('4_window');
-    await page.getByLabel('Drag').selectOption('turn');
-    await drag(page, 90, 20);
     const clips = page.locator('summary', {hasText: 'Clip'});
-    await press(clips);
-    const grip = page.locator('.handle:visible').nth(1), box = await grip.boundingBox();
-    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-    await page.mouse.down();
-    const [x, y] = await middle(page);
-    await page.mouse.move((2 * box.x + 3 * x) / 5, (2 * box.y + 3 * y) / 5, {steps: 8});
-    await page.mouse.up();
-    await rest(page);
-    check('it is cut', (await keys(page)).clip?.length === 1);
-    await seen('5_clipped');
-    await press(clips);
-    const whole = await canvas.boundingBox(), side = Math.min(whole.width, whole.height);
-    await answered(page, 'depth', () => canvas.dblclick(
-        {position: {x: whole.width / 2 + 0.13 * side, y: whole.height / 2 + 0.06 * side}}));
-    await press(page.getByRole('button', {name: 'Three slices beside the picture (x)'}));
+    await hand.press(clips);
+    await hand.reach(canvas);
+    const boxes = await Promise.all((await page.locator('.handle:visible').all()).map(one => one.boundingBox()));
+    const low = boxes.reduce((a, b) => a.y > b.y ? a : b); // behind the table
+    const from = [low.x + low.width / 2, low.y + low.height / 2];
+    await hand.drag(from, [from[0], (await at(0, 0.22))[1]]);
+    check('the table is cut away', (await keys(page)).clip?.length === 1);
+    await seen('4_cut');
+    await hand.press(clips);
+    await hand.reach(canvas);
+    const whole = await keys(page);
+    await answered(page, 'depth', async () => hand.twice(...await at(0, 0.13)));
+    await hand.zoom(...await at(0, 0));
+    await hand.zoom(...await at(0, 0));
+    const near = await keys(page);
+    check('a joint is in the middle, and near', near.zoom > 3 * whole.zoom &&
+        String(near.target) !== String(whole.target), near.zoom);
+    await seen('5_joint');
+    const range = () => page.evaluate(() => [window.snowglass.page.look.low, window.snowglass.page.look.high]);
+    const before = await range();
+    await hand.choose('Drag', 'window');
+    await hand.reach(canvas);
+    const [x, y] = await at(0, 0);
+    await hand.drag([x, y], [x + 40, y - 20]);
+    const now = await range();
+    check('a drag sets window and level', now[1] - now[0] > 1.1 * (before[1] - before[0]) &&
+        now[0] + now[1] > before[0] + before[1], `${before} ${now}`);
+    await seen('6_window');
+    await hand.choose('Drag', 'turn');
+    await hand.reach(canvas);
+    await hand.drag(await at(0, 0), await at(0.1, 0.15));
+    check('it is turned', (await keys(page)).elevation !== near.elevation);
+    await seen('7_turned');
+    await hand.press(page.getByRole('button', {name: 'Three slices beside the picture (x)'}));
     await slicesRest(page);
-    await seen('6_slices');
-    await press(page.getByRole('button', {name: 'This slice alone, or all (Enter)'}).first());
+    const begin = await crossing(page);
+    await hand.reach(canvas);
+    await answered(page, 'depth', async () => hand.twice(...await at(0, 0)));
     await slicesRest(page);
-    await shot(page, `film_${name}_7_alone`);
-    await press(page.getByRole('button', {name: 'This slice alone, or all (Enter)'}).first());
-    await rest(page);
-    await press(page.getByRole('button', {name: /^Copy the command that makes this/}));
-    await page.waitForSelector('dialog[open] textarea');
-    writeFileSync(`${folder}/command.txt`, await page.locator('dialog textarea').inputValue());
-    await shot(page, `film_${name}_8_command`);
-    await page.keyboard.press('Escape');
+    check('slices go to the joint', String(await crossing(page)) !== String(begin), begin);
+    await seen('8_slices');
+    const more = page.locator('summary', {hasText: 'Slices'});
+    await hand.press(more);
+    await hand.choose(/^Window/, 'bone');
+    await slicesRest(page);
+    check('slices have the window of bone', String(await page.evaluate(() =>
+        window.snowglass.slices.keys.range)) === '-500,1300');
+    const one = page.getByRole('button', {name: 'This slice alone, or all (Enter)'}).first();
+    await hand.press(one);
+    await slicesRest(page);
+    await step('9_alone');
+    await hand.press(one);
+    await slicesRest(page);
+    writeFileSync(`${folder}/film_${name}_slice.png`,
+        Buffer.from(await bytesOf(page, 'page.slices.panes[0].file')));
+    await keep('slice', page.getByRole('button', {name: /^The command that makes the slice/}).first());
+    await step('10_slice_command');
+    await hand.key('Escape');
+    await hand.press(more);
+    await keep('command', page.getByRole('button', {name: /^Copy the command that makes this/}));
+    await step('11_command');
+    await hand.key('Escape');
     const coming = page.waitForEvent('download');
-    await press(page.getByRole('button', {name: /^Save the picture/}));
-    await (await coming).saveAs(`${folder}/rest.png`);
-    writeFileSync(`${folder}/slice.png`, Buffer.from(await bytesOf(page, 'page.slices.panes[2].file')));
-    await page.evaluate(() => window.snowglass.slices.command(window.snowglass.slices.panes[2]));
-    await page.waitForSelector('dialog[open] textarea');
-    writeFileSync(`${folder}/slice.txt`, await page.locator('dialog textarea').inputValue());
-    await page.keyboard.press('Escape');
-    await press(page.getByRole('button', {name: /^All as it was/}));
+    await hand.press(page.getByRole('button', {name: /^Save the picture/}));
+    await (await coming).saveAs(`${folder}/film_${name}_rest.png`);
+    await hand.press(page.getByRole('button', {name: /^All as it was/}));
+    await seen('12_reset');
     await page.context().close();
 }
 
