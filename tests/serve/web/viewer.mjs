@@ -686,7 +686,7 @@ async function prefixed() {
 class Hand {
     constructor(page, session) {
         this.page = page;
-        this.session = session; // NULL: a mouse
+        this.session = session; // of fingers; null: a mouse
         this.count = 0;
     }
 
@@ -730,15 +730,6 @@ class Hand {
                 i % 2 ? this.send('touchEnd', []) : this.send('touchStart', [[x, y]])));
             came = await this.page.evaluate(() => window.tapped);
         }
-    }
-
-    async enter(label, value) {
-        await this.press(this.page.getByLabel(label));
-        await this.page.keyboard.press('Control+a');
-        await this.page.keyboard.type(value);
-        await this.page.keyboard.press('Enter');
-        this.count += 3;
-        await rest(this.page);
     }
 
     async choose(label, value) {
