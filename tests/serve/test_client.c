@@ -99,7 +99,7 @@ static void quality_goes_step_by_step_and_stays(void **state) {
         {7, 400, 75},  {1, 400, 62},  {7, 400, 62}, {1, 400, 50},
         {40, 200, 50}, {40, 130, 50}, /* not quick enough for more */
         {40, 100, 75}, {40, 240, 75}, /* as between all steps */
-        {1, 2000, 62}, /* very late */
+        {1, 2000, 62},                /* very late */
         {60, 20, 90},  {40, 90, 90},  {8, 200, 85},
     };
     client c = {.id = 1};
