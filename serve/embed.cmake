@@ -78,6 +78,9 @@ string(REPLACE "try {" "try{" text "${text}")
 string(REGEX REPLACE "} catch ?" "}catch" text "${text}")
 string(REPLACE "' +\n'" "" text "${text}")
 string(REPLACE "` +\n`" "" text "${text}")
+foreach(again 1 2 3 4 5 6) # constants of one line each
+  string(REGEX REPLACE "\n(const|let) ([^\n;]*);\n(const|let) ?" "\n\\1 \\2," text "${text}")
+endforeach()
 string(REGEX REPLACE "([;{,(])\n" "\\1" text "${text}") # no newline is needed there
 string(REGEX REPLACE "\n([})])" "\\1" text "${text}")
 string(REGEX REPLACE "([])}])\n" "\\1" text "${text}") # statements end in semicolons
@@ -85,6 +88,21 @@ string(REGEX REPLACE "([?:&|+]|,)\n" "\\1" text "${text}")
 string(REGEX REPLACE "\n([.?:&|+])" "\\1" text "${text}")
 string(REGEX REPLACE "([];{}(\n])const([ [{])" "\\1let\\2" text "${text}") # nothing sets one
 string(REPLACE ";}" "}" text "${text}") # no statement is empty
+string(REGEX REPLACE "([{,][A-Za-z]+): ([[{('`A-Za-z0-9-])" "\\1:\\2" text "${text}") # lines are joined
+string(REGEX REPLACE "else if [(]" "else if(" text "${text}")
+string(REGEX REPLACE "([;}]class [A-Za-z]+) {" "\\1{" text "${text}")
+string(REGEX REPLACE "([A-Za-z0-9_)}]), ([-+])" "\\1,\\2" text "${text}")
+string(REGEX REPLACE "([])}]) ([?:]) ?([[{(])" "\\1\\2\\3" text "${text}")
+# Names of modules with capitals inside are no words of texts, nor of properties.
+get_property(names GLOBAL PROPERTY names)
+list(FILTER names INCLUDE REGEX "^[A-Z_]+[A-Z]$|[a-z][A-Z]")
+set(count 0)
+foreach(one ${names})
+  foreach(again 1 2)
+    string(REGEX REPLACE "([^A-Za-z0-9_])${one}([^A-Za-z0-9_])" "\\1$${count}\\2" text "${text}")
+  endforeach()
+  math(EXPR count "${count} + 1")
+endforeach()
 string(REPLACE "${blank}" " " text "${text}")
 add_file(2 viewer.js "text/javascript; charset=utf-8")
 file(REMOVE ${OUT}.gz)

@@ -37,8 +37,6 @@ export class ServerEngine {
     open() {
         const url = new URL('ws', location.href);
         url.protocol = url.protocol.replace('http', 'ws');
-        url.hash = '';
-        url.search = '';
         this.socket = new WebSocket(url, 'snowglass.1');
         this.socket.binaryType = 'arraybuffer';
         this.socket.onopen = () => {
