@@ -233,13 +233,38 @@ static int questions_of(const viewer_state *s, uint64_t client) {
     return count;
 }
 
+/* The thumbnail of the same pane that a client waits for, or NULL. */
+static viewer_question *same_pane(viewer_state *s, uint64_t client,
+                                  const json_t *tree) {
+    const json_t *pane = json_object_get(tree, "pane");
+    for (int i = 0; i < s->count; i++) {
+        viewer_question *q = &s->questions[(s->first + i) % QUESTIONS_MOST];
+        if (q->waits && q->client == client &&
+            json_equal(json_object_get(q->tree, "pane"), pane))
+            return q;
+    }
+    return NULL;
+}
+
+/* The newer one of two thumbnails of a pane is made; one that is asked again is
+ * the older. */
+static void keep_newer(viewer_question *waiting, json_t *tree) {
+    bool older = json_is_true(json_object_get(tree, "again"));
+    json_decref(older ? tree : waiting->tree);
+    if (!older)
+        waiting->tree = tree;
+}
+
 bool state_ask(viewer_state *s, uint64_t client, json_t *tree) {
     const char *what = json_string_value(json_object_get(tree, "what"));
     bool waits = what && strcmp(what, "thumbnail") == 0;
     pthread_mutex_lock(&s->lock);
-    bool room = s->count < QUESTIONS_MOST &&
-                questions_of(s, client) < QUESTIONS_OF_PAGE;
-    if (room)
+    viewer_question *same = waits ? same_pane(s, client, tree) : NULL;
+    bool room = same || (s->count < QUESTIONS_MOST &&
+                         questions_of(s, client) < QUESTIONS_OF_PAGE);
+    if (same)
+        keep_newer(same, tree);
+    else if (room)
         s->questions[(s->first + s->count++) % QUESTIONS_MOST] =
             (viewer_question){client, tree, waits};
     s->urgent += room && !waits;

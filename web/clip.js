@@ -6,7 +6,7 @@ import {add, axes, cross, dot} from './camera.js';
 export const PLANES_MOST = 6;
 
 /** The corners of the volume in the world, lowest and highest. */
-export function bounds(info) {
+function bounds(info) {
     return info.matrix.map((line, i) => {
         let low = line[3], high = line[3];
         line.slice(0, 3).forEach((step, k) => {
@@ -21,10 +21,13 @@ export function bounds(info) {
 const digits = value => +value.toPrecision(6);
 const isTilted = plane => plane.slice(0, 3).filter(x => x !== 0).length > 1;
 
+/** No plane can be added: ends that cut nothing stay. */
+export const isFull = keys => keys.clip?.length >= PLANES_MOST;
+
 export const tilted = keys => (keys.clip ?? []).filter(isTilted);
 
 /** The lowest and highest visible place along each axis. */
-export function ends(box, keys) {
+function ends(box, keys) {
     const all = box.map(pair => [...pair]);
     for (const [a, b, c, d] of (keys.clip ?? []).filter(plane => !isTilted(plane))) {
         const axis = [a, b, c].findIndex(x => x !== 0), sign = [a, b, c][axis];
@@ -34,7 +37,7 @@ export function ends(box, keys) {
 }
 
 /** Changes of the recipe that move one end. */
-export function moved(box, keys, axis, end, value) {
+function moved(box, keys, axis, end, value) {
     const all = ends(box, keys), margin = (box[axis][1] - box[axis][0]) / 200;
     all[axis][end] = end ? Math.max(value, all[axis][0] + margin)
         : Math.min(value, all[axis][1] - margin);
@@ -76,7 +79,7 @@ export function grips(keys, info, names) {
     const list = all.flatMap((pair, axis) => pair.map((value, end) => ({
         place: middle.map((x, i) => i === axis ? value : x), axis,
         way: middle.map((_, i) => i === axis ? 1 : 0), value, low: box[axis][0], high: box[axis][1],
-        name: `clip ${names[axis]}, ${end ? 'highest' : 'lowest'}`,
+        fixed: value === box[axis][end] && isFull(keys), name: `clip ${names[axis]}, ${end ? 'highest' : 'lowest'}`,
         move: (now, to) => moved(box, now, axis, end, Math.max(box[axis][0], Math.min(box[axis][1], to)))})));
     return list.concat(tilted(keys).map((plane, index) => {
         const way = plane.slice(0, 3), square = dot(way, way), from = keys.target ?? info.middle;

@@ -37,6 +37,7 @@ export class Editor {
     }
 
     get element() {
+        const {recipe} = this;
         const scale = button('Log', 'Logarithmic counts of the histogram', () => {
             this.log = !this.log;
             scale.setAttribute('aria-pressed', this.log);
@@ -51,9 +52,10 @@ export class Editor {
                 button('Remove', 'Remove the chosen point', () => this.remove()),
                 ...this.kind === BY_VALUE ? [scale,
                     button('Automatic', 'Opacity of the preset, or made from the histogram',
-                        () => this.recipe.set({opacity: null, range: null, shift: null}))]
+                        () => recipe.set({opacity: null, range: null,
+                            shift: recipe.keys.preset && recipe.keys.shift || null}))]
                     : [button('None', 'The gradient does not matter',
-                        () => this.recipe.set({[this.kind.key]: null}))]));
+                        () => recipe.set({[this.kind.key]: null}))]));
     }
 
     listen() {

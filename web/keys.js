@@ -1,6 +1,6 @@
 // keys.js - the keyboard, where no field takes it.
 
-import {round, zoomed} from './camera.js';
+import {zoomed} from './camera.js';
 import {make} from './controls.js';
 
 export const VIEWS = ['anterior', 'posterior', 'left', 'right', 'superior', 'inferior'];
@@ -12,7 +12,7 @@ const TEXTS = [['Drag', 'turn'], ['Shift or middle drag', 'move'], ['Wheel', 'zo
     ['x', 'three slices'], ['k', 'handles of clip planes'],
     ['On a slice', 'drag: where they cross; wheel: next slice; right drag: window and level; ' +
         'Ctrl wheel: zoom; double click: alone'],
-    ['Two fingers', 'move and zoom'], ['Arrows', 'turn 5 degrees, with Shift 1'],
+    ['Two fingers', 'move and zoom'], ['Arrows', 'what a drag does: 5 degrees, with Shift 1'], ['d', 'next that a drag does'],
     ['+ -', 'zoom'], ['r', 'frame all'],
     ['1 - 6', 'front, back, left, right, top, bottom'], ['m', 'next mode'],
     ['p', 'parallel or perspective'], ['l', 'letters'], ['Space', 'play time steps'],
@@ -24,34 +24,32 @@ export function helpTable() {
         make('td', {}, make('kbd', {textContent: key})), make('td', {textContent: text}))));
 }
 
-const TURNS = {ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
+const STEPS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
 
 /** `actions` has what the buttons do, by name. */
-export function listenToKeys(recipe, page, actions) {
+export function listenToKeys(recipe, page, actions, pointer) {
     document.addEventListener('keydown', event => {
         const field = event.target.closest?.('input, select, textarea, dialog, summary');
         if (field || event.ctrlKey || event.metaKey || event.altKey || !page.info || !page.look)
             return;
-        if (press(event, recipe, page, actions))
+        if (press(event, recipe, page, actions, pointer))
             event.preventDefault();
     });
 }
 
-function press(event, recipe, page, actions) {
-    const {key} = event, keys = recipe.keys;
+function press(event, recipe, page, actions, pointer) {
+    const {key} = event;
     if (key === ' ' && event.target.closest?.('button'))
         return false;
-    if (TURNS[key]) {
-        const [a, e] = TURNS[key], step = event.shiftKey ? 1 : 5;
-        recipe.set({azimuth: round(((keys.azimuth ?? 0) + a * step) % 360),
-            elevation: round(Math.max(-90, Math.min(90, (keys.elevation ?? 0) + e * step)))});
+    if (STEPS[key]) {
+        pointer.step(...STEPS[key].map(way => way * (event.shiftKey ? 1 : 5)));
     } else if (key === '+' || key === '=' || key === '-') {
-        recipe.set(zoomed(keys, page.info, key === '-' ? 1 / 1.15 : 1.15, 0, 0, 1));
+        recipe.set(zoomed(recipe.keys, page.info, key === '-' ? 1 / 1.15 : 1.15, 0, 0, 1));
     } else if (key >= '1' && key <= '6') {
         actions.view(VIEWS[key - 1]);
     } else {
         const named = {r: 'fit', m: 'mode', p: 'perspective', l: 'letters', ' ': 'play',
-            c: 'command', v: 'movie', s: 'save', x: 'slices', k: 'handles', z: 'undo', Z: 'redo', '?': 'help'}[key];
+            c: 'command', v: 'movie', s: 'save', x: 'slices', k: 'handles', d: 'drag', z: 'undo', Z: 'redo', '?': 'help'}[key];
         actions[named]?.();
         return Boolean(named);
     }

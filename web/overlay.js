@@ -80,6 +80,7 @@ export class Overlay {
             onpointerdown: event => this.down(event, i), onpointermove: event => this.move(event),
             onpointerup: event => this.up(event), onpointercancel: event => this.up(event),
             onlostpointercapture: event => this.up(event),
+            onwheel: event => this.pointer.wheel(event),
             oncontextmenu: event => event.preventDefault(), onkeydown: event => {
                 const by = {ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1}[event.key];
                 if (!by)
@@ -96,7 +97,7 @@ export class Overlay {
         const {info, clipping} = this.page;
         this.grips = clipping ? grips(this.recipe.keys, info, axisNames(info)) : [];
         this.handles.forEach((button, i) => {
-            const grip = this.grips[i], seen = grip && this.see(grip.place);
+            const grip = this.grips[i], seen = grip && !grip.fixed && this.see(grip.place);
             button.hidden = !seen;
             if (!seen)
                 return;

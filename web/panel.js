@@ -1,6 +1,6 @@
 // panel.js - the controls beside the picture.
 
-import {bounds, ends, facing, grips, moved, PLANES_MOST, tilted, tiltedTo} from './clip.js';
+import {facing, grips, isFull, PLANES_MOST, tilted, tiltedTo} from './clip.js';
 import {Channels, mixed} from './channels.js';
 import {Colors, ownColors, ranged} from './colors.js';
 import {button, check, fill, line, make, number, row, section, select, short, show, slider}
@@ -70,7 +70,10 @@ export class Panel {
         const high = number('highest value of the range', value => this.setRange(null, value));
         const percent = button('1-99 %', 'Range of the 1st to the 99th percentile',
             () => recipe.set({range: ['p1', 'p99']}));
-        const shift = number('shift of the look in data units', value => recipe.set({shift: value || null}));
+        const shift = number('shift of the look in data units', value => {
+            this.shift = value;
+            recipe.set({shift: value || null});
+        });
         const log = check('logarithmic values', on => recipe.set({log: on || null, symlog: null}));
         const symlog = check('on both sides of 0', on => recipe.set({symlog: on || null, log: null}));
         const alone = make('div', {}, this.editor.element, row('Range', low, high, percent), row('Shift', shift),
@@ -90,6 +93,11 @@ export class Panel {
         return section('Look', true, alone, row('Mode', modes), isoRow, log.label, symlog.label);
     }
 
+    /** Presets of a CT are in its unit; what is made from the histogram is of the volume. */
+    shiftOf(preset) {
+        return (preset ? preset.startsWith('ct-') : this.page.info.tf) && this.shift || null;
+    }
+
     setRange(low, high) {
         const {look} = this.page, range = [low ?? look.low, high ?? look.high];
         if (range[0] < range[1])
@@ -102,12 +110,13 @@ export class Panel {
         const names = [['', page.info.tf ? 'of the file of --tf' : 'made from the histogram'], 
             ...page.info.presets];
         const grid = make('div', {className: 'presets'});
+        let asked;
         this.images = names.map(([name, text]) => {
             const image = make('img', {alt: '', hidden: true});
             const choose = make('button', {type: 'button', title: text,
                 'aria-label': `Preset ${name || none}: ${text}`,
                 onclick: () => this.recipe.set({...NO_SHAPE, preset: name || null,
-                    ...mixed(page.look) && {channel: `${page.look.channels[0][0]}`}})},
+                    shift: this.shiftOf(name), ...mixed(page.look) && {channel: `${page.look.channels[0][0]}`}})},
             image, name || none);
             this.follow(keys => choose.setAttribute('aria-pressed',
                 (keys.preset ?? '') === name));
@@ -115,10 +124,14 @@ export class Panel {
             return image;
         });
         const list = section('Presets', false, grid);
-        list.addEventListener('toggle', () => {
-            if (list.open)
-                names.forEach(([preset], i) => this.engine.ask('thumbnail',
-                    {preset, pane: FIRST_PANE + i}));
+        const ask = () => list.open && names.forEach(([preset], i) => this.engine.ask('thumbnail',
+            {preset, shift: this.shiftOf(preset), pane: FIRST_PANE + i}));
+        list.addEventListener('toggle', ask);
+        this.follow(({shift = this.shift}) => {
+            this.shift = shift;
+            if (asked !== shift)
+                ask();
+            asked = shift;
         });
         return list;
     }
@@ -200,21 +213,23 @@ export class Panel {
     /** Two planes across each axis of the world, tilted ones, and the box that is
      * read.  While it is open handles are on the picture. */
     clipping() {
-        const {page, recipe} = this, box = bounds(page.info);
-        const rows = axisNames(page.info).map((name, axis) => {
-            const [low, high] = box[axis];
-            const inputs = [0, 1].map(end => slider(
-                `clip ${name}, ${end ? 'highest' : 'lowest'}`, low, high, (high - low) / 200,
-                recipe, value => recipe.set(moved(box, recipe.keys, axis, end, value))));
-            this.follow(keys => inputs.forEach((input, end) => {
-                input.value = ends(box, keys)[axis][end];
-            }));
-            return row(name, ...inputs);
-        });
+        const {page, recipe} = this;
+        const end = i => {
+            const {name, low, high} = this.grip(i);
+            const input = slider(name, low, high, (high - low) / 200, recipe,
+                value => recipe.set(this.grip(i).move(recipe.keys, value)));
+            this.follow(() => {
+                const {value, fixed} = this.grip(i);
+                input.value = value;
+                input.disabled = fixed;
+            });
+            return input;
+        };
+        const rows = axisNames(page.info).map((name, i) => row(name, end(2 * i), end(2 * i + 1)));
         const cut = button('Cut here', 'A plane that faces the viewer, through the point that is ' +
             'turned around', () => recipe.set(facing(recipe.keys, page.info)));
         this.follow(keys => {
-            cut.disabled = (keys.clip?.length ?? 0) >= PLANES_MOST;
+            cut.disabled = isFull(keys);
         });
         this.clips = section('Clip', false, ...rows, ...this.tilted(), make('div', {className: 'row'}, cut,
             button('Remove all', 'Remove all clip planes', () => recipe.set({clip: null}))),
@@ -226,11 +241,16 @@ export class Panel {
         return this.clips;
     }
 
+    /** An end or, from 6 on, a tilted plane. */
+    grip(i) {
+        return grips(this.recipe.keys, this.page.info, axisNames(this.page.info))[i];
+    }
+
     tilted() {
-        const {page, recipe} = this, grip = i => grips(recipe.keys, page.info, axisNames(page.info))[6 + i];
+        const {recipe} = this;
         return Array.from({length: PLANES_MOST}, (_, i) => {
             const input = slider(`tilted clip plane ${i + 1}`, -1, 1, 0.01, recipe, value => {
-                const {low, high, move} = grip(i);
+                const {low, high, move} = this.grip(6 + i);
                 recipe.set(move(recipe.keys, low + (value + 1) / 2 * (high - low)));
             });
             const line = row(`Tilted ${i + 1}`, input, button('Remove', `Remove tilted plane ${i + 1}`,
@@ -239,7 +259,7 @@ export class Panel {
                 line.hidden = i >= tilted(keys).length;
                 if (line.hidden)
                     return;
-                const {value, low, high} = grip(i);
+                const {value, low, high} = this.grip(6 + i);
                 input.value = 2 * (value - low) / (high - low) - 1;
             });
             return line;

@@ -75,10 +75,26 @@ export class Pointer {
         this.canvas.focus();
         this.canvas.setPointerCapture(event.pointerId);
         this.fingers.set(event.pointerId, this.at(event));
+        this.take();
+        this.recipe.begin();
+    }
+
+    /** What a drag begins with. */
+    take() {
         this.start = this.page.look;
         this.map = this.recipe.keys.colormap;
         this.total = [0, 0];
-        this.recipe.begin();
+    }
+
+    /** What keys do in the place of a drag, by degrees of a turn.  Steps without other
+     * changes between them are one drag: the look that they change comes late. */
+    step(...degrees) {
+        const {recipe, page: {tool}} = this;
+        if (this.stepped !== tool || this.last !== recipe.keys)
+            this.take();
+        this.stepped = tool;
+        this.drag(...degrees.map(x => x * this.box[1] / 180), tool);
+        this.last = recipe.keys;
     }
 
     move(event) {
@@ -93,17 +109,17 @@ export class Pointer {
         this.fingers.set(event.pointerId, now);
     }
 
-    drag(dx, dy) {
+    drag(dx, dy, kind = this.kind) {
         const keys = this.recipe.keys, info = this.page.info;
         this.total = [this.total[0] + dx, this.total[1] + dy];
-        if (this.kind === 'turn')
+        if (kind === 'turn')
             this.recipe.set(turned(keys, dx, dy, this.box[1]));
-        else if (this.kind === 'pan')
+        else if (kind === 'pan')
             this.recipe.set(panned(keys, info, dx, dy, this.side));
-        else if (this.kind === 'light')
+        else if (kind === 'light')
             this.recipe.set(lit(keys, dx, dy, this.side));
         else
-            this.recipe.set(this.kind === 'window' ? this.windowed() : this.faded());
+            this.recipe.set(kind === 'window' ? this.windowed() : this.faded());
     }
 
     /** To the right: wider; up: a higher level. */

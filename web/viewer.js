@@ -16,6 +16,7 @@ const FEW = 8; // drafts whose figures nobody could read
 const LEVELS = ['draft', 'normal', 'high: final'];
 
 const given = new URLSearchParams(location.hash.slice(1));
+window.onhashchange = () => location.reload(); // another secret, another link
 const engine = new ServerEngine(given.get('token') ?? '');
 const recipe = new Recipe(engine);
 const page = {info: null, look: null, histogram: null, rest: null, clipping: false, tool: 'turn'};
@@ -111,6 +112,11 @@ const actions = {
         }
         player = setInterval(() => recipe.set(
             {time: ((recipe.keys.time ?? 0) + 1) % page.info.times}), 200);
+    },
+    drag() {
+        tool.selectedIndex = (tool.selectedIndex + 1) % TOOLS.length;
+        page.tool = tool.value;
+        say(`A drag ${tool.selectedOptions[0].text}`);
     },
     slices: () => slices.toggle(),
     handles() {
@@ -304,7 +310,7 @@ document.getElementById('viewer').append(
         views,
         make('div', {className: 'bottom'}, figures, buttons)),
     panel.element, dialog);
-listenToKeys(recipe, page, actions);
+listenToKeys(recipe, page, actions, pointer);
 new ResizeObserver(() => {
     overlay.draw();
     if (!first)

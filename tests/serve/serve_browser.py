@@ -1,4 +1,5 @@
 """The viewer's page in Chromium, and the command that it copies."""
+import array
 import http.server
 import json
 import os
@@ -175,9 +176,33 @@ def filmed():
     server.stop()
 
 
+def everyday():
+    """A CT of four steps, and one whose values are 1024 too large."""
+    base = os.path.join(shots, "base.nrrd")
+    subprocess.run([TOOL, "convert", "phantom:head", "--dims", "48x40x36", "-o", base,
+                    "-y", "-q"], check=True)
+    voxels = open(base, "rb").read().split(b"\n\n", 1)[1]
+    for what, shift, steps in ("steps", -1000, 4), ("offset", 24, 1):
+        name = os.path.join(shots, what + ".nrrd")
+        with open(name, "wb") as out:
+            out.write(b"NRRD0004\ntype: int16\ndimension: 4\nendian: little\n"
+                      b"encoding: raw\nspace: right-anterior-superior\n"
+                      b"space directions: (4,0,0) (0,4,0) (0,0,4) none\n"
+                      b"kinds: domain domain domain time\n"
+                      b"sizes: 48 40 36 %d\n\n" % steps)
+            out.write(array.array("h", (
+                8 * value + shift + 60 * step * (value > 0)
+                for step in range(steps) for value in voxels)).tobytes())
+        server = Server(name)
+        drive(server.url, shots, what)
+        server.stop()
+    drive(TOOL, shots, "restarted")
+
+
 watch("short" if SHORT else "long", "phantom:head")
 if not SHORT:
     embedded()
+    everyday()
     many_points()
     masked()
     overlaid()

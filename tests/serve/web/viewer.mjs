@@ -1,11 +1,13 @@
 // tests/serve/web/viewer.mjs - the page in Chromium, without a GPU.
 //
-//   node viewer.mjs PLAYWRIGHT CHROMIUM URL FOLDER short|long
+//   node viewer.mjs PLAYWRIGHT CHROMIUM URL FOLDER short|long|...
 //
+// The URL is the program's path where the test starts viewers of its own.
 // Screenshots, the picture at rest and the command are left in FOLDER.
 import {createServer, request} from 'node:http';
 import {connect} from 'node:net';
 import {writeFileSync} from 'node:fs';
+import {offset, restarted, steps} from './everyday.mjs';
 
 const [playwright, chromium, url, folder, tier, ...words] = process.argv.slice(2);
 const {chromium: browsers} = await import(playwright);
@@ -1210,7 +1212,9 @@ async function many() {
     await page.context().close();
 }
 
-const alone = {embed: embedded, points: manyPoints, mask: masked, overlay: overlaid, fused, channels: mixed, begun, many};
+const tools = {answered, check, folder, keys, open, rest, said, slicesRest, wheel};
+const alone = {steps: () => steps(tools), offset: () => offset(tools),
+    restarted: () => restarted(tools, url), embed: embedded, points: manyPoints, mask: masked, overlay: overlaid, fused, channels: mixed, begun, many};
 if (alone[tier]) {
     await alone[tier]();
     check('nothing is on the console', said.length === 0, said.join(' | '));
