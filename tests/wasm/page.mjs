@@ -76,6 +76,14 @@ await page.screenshot({path: `${folder}/${name}.png`});
 await page.keyboard.press('x');
 await page.waitForTimeout(300);
 await rest();
+const named = await title(), link = await page.evaluate(() => JSON.stringify(
+    {...window.snowglass.recipe.keys, mode: 'mean'}));
+await page.evaluate(recipe => { location.hash = new URLSearchParams({recipe}); }, link);
+await page.waitForFunction(() => window.snowglass?.recipe.keys.mode === 'mean', null, {timeout: 60000});
+await rest();
+check('a link is taken in the same tab', await title() === named, await title());
+await page.evaluate(() => window.snowglass.recipe.set({mode: null}));
+await rest();
 const picture = await page.evaluate(async () =>
     [...new Uint8Array(await window.snowglass.page.rest.arrayBuffer())]);
 writeFileSync(`${folder}/${name}-rest.png`, Buffer.from(picture));

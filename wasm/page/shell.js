@@ -23,11 +23,12 @@ function bytesOf(script) {
 const engine = new Response(new Blob([bytesOf(from('engine'))]).stream()
     .pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
 
-let page, stop;
+let page, stop, shown;
 
 /** Shows a volume in the place of the one before. */
 async function show(volume) {
     const wasm = await engine;
+    shown = volume;
     stop?.abort();
     page?.engine.close();
     stop = new AbortController();
@@ -171,6 +172,9 @@ body.addEventListener('drop', async event => {
         page.page.say('The browser cannot read this folder: drop its files, or choose them with Open.');
     }
 });
+
+/** Another link: files of this machine cannot be loaded again. */
+addEventListener('hashchange', () => shown?.files[0]?.file ? show(shown) : location.reload());
 
 // --- at the beginning ----------------------------------------------------------
 
