@@ -63,7 +63,7 @@ def pages(server):
     check("a module is packed", headers.get("content-encoding") == "gzip")
     plain = server.get("/a/prefix/viewer.js")[2]
     check("and is the same under a prefix", len(plain) > len(packed) and
-          b"class ServerEngine" in plain)
+          b"snowglass.1" in plain)
     missing = [text for text in texts_of_web() if text not in plain.decode()]
     check("its texts are those of the modules", not missing, missing)
     status = server.get("/viewer.js", If_None_Match=headers["etag"])[0]
