@@ -269,12 +269,12 @@ void answer_look(drawing *d, outbox *box) {
             channels_of(d)));
 }
 
-void answer_figures(drawing *d, outbox *box) {
+void answer_figures(drawing *d, double hidden, outbox *box) {
     const snow_stats *stats = &d->state.stats;
     put(box, 0, PARCEL_FIGURES,
-        json_pack("{s:s, s:f, s:I, s:s}", "t", "figures", "sparse",
-                  stats->sparse_ratio, "interesting",
-                  (json_int_t)stats->interesting, "method",
+        json_pack("{s:s, s:o, s:I, s:s}", "t", "figures", "sparse",
+                  isnan(hidden) ? json_null() : json_real(hidden),
+                  "interesting", (json_int_t)stats->interesting, "method",
                   snow_method_name(stats->method)));
 }
 

@@ -11,7 +11,7 @@
  * picture. */
 void answer_info(drawing *d, outbox *box);
 void answer_look(drawing *d, outbox *box);
-void answer_figures(drawing *d, outbox *box);
+void answer_figures(drawing *d, double hidden, outbox *box);
 
 /* The step that a simulation has drawn; a recipe, as a text. */
 void answer_step(outbox *box, int64_t step);

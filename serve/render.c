@@ -2,6 +2,7 @@
 #include "render.h"
 #include "answers.h"
 #include "draw/draft.h"
+#include "draw/share.h"
 
 #include "commands/commands.h"
 #include "picture/warnings.h"
@@ -101,8 +102,9 @@ static int draw(renderer *r, int level) {
     if (level > 0)
         tell_empty(r, image);
     hand_over(r, image, overlay, level, took);
+    double hidden = share_hidden(r->drawing, level == 2);
     if (level > 0)
-        answer_figures(r->drawing, r->box);
+        answer_figures(r->drawing, hidden, r->box);
     return CONTINUE;
 }
 

@@ -168,8 +168,9 @@ export class Panel {
         const ways = row('Right, up', ...way);
         const sparse = make('output', {className: 'faint'});
         this.engine.on('figures', figures => {
-            sparse.textContent = `${(100 * figures.sparse).toFixed(1)} % of the voxels are ` +
-                `not visible; method ${figures.method}`;
+            const share = figures.sparse === null ? '' :
+                `${(100 * figures.sparse).toFixed(1)} % of the voxels are not visible; `;
+            sparse.textContent = `${share}method ${figures.method}`;
         });
         this.follow(keys => {
             shade.box.checked = keys.shade ? keys.shade === 'phong' : this.page.look?.shaded ?? true;

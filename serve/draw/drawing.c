@@ -360,10 +360,11 @@ static void forget(drawing *d) {
     free(d->plain_key);
     free(d->overlay_key);
     free(d->overlay_look_key);
+    free(d->share_key);
     mixed_forget(d);
     d->shown.count = 0;
     d->data_key = d->look_key = d->color_key = d->spread_key = NULL;
-    d->plain_key = NULL;
+    d->plain_key = d->share_key = NULL;
     d->overlay_key = d->overlay_look_key = NULL;
 }
 

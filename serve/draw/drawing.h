@@ -54,10 +54,12 @@ struct drawing {
     char *slice_key;                      /* what they were made of */
     char *overlay_key, *overlay_look_key; /* of the overlay: file; look */
     layers slice_layers;                  /* the overlay where slices lie */
-    kept_slice kept[3];     /* the last slice across each axis of the grid, of a
-                               volume that is not here */
-    uint32_t followed;      /* the state that the last answer was made for */
-    int followed_done;      /* and what came of it */
+    kept_slice kept[3]; /* the last slice across each axis of the grid, of a
+                           volume that is not here */
+    uint32_t followed;  /* the state that the last answer was made for */
+    int followed_done;  /* and what came of it */
+    char *share_key;    /* what the share is of (share.h) */
+    double share;
     draw_fn *draw;          /* instead of render_state_draw; or NULL */
     double earlier_seconds; /* that pieces of the last picture took before */
 };

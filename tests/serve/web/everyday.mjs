@@ -84,7 +84,7 @@ async function time({check, rest}, page, its) {
     await slider.fill('0');
 }
 
-async function looks({check, rest}, page, its) {
+async function looks({check}, page, its) {
     const drawn = () => page.evaluate(() => document.querySelector('.editor').toDataURL());
     const bars = await drawn(), log = page.getByRole('button', {name: /^Logarithmic counts/}).first();
     await log.click();
@@ -98,11 +98,14 @@ async function looks({check, rest}, page, its) {
         .click(), {range: undefined});
     const part = async () => parseFloat(await page.getByText(/not visible; method/).textContent());
     const before = await part();
-    await its('a threshold is set', () => page.getByLabel('Threshold', {exact: true}).fill('250'),
-        {threshold: 250});
-    check('the share of voxels that are not visible is told', before > 0 && before < 100, before);
-    await page.getByLabel('Threshold', {exact: true}).fill('0');
-    await rest(page);
+    const threshold = page.getByLabel('Threshold', {exact: true});
+    const told = share => page.getByText(`${share.toFixed(1)} % of the voxels are not visible`).waitFor();
+    await its('a threshold is set', () => threshold.fill('250'), {threshold: 250});
+    await told(100); // after the picture
+    check('which hides all voxels', before < 100, before);
+    await its('or none more', () => threshold.fill('0'), {threshold: 0});
+    await told(before);
+    check('and they are seen again', await part() === before, await part());
     for (const [name, key] of [['colour bar', 'legend'], ['scale bar', 'scale-bar'],
         ["edges of the volume's box", 'outline']]) {
         const plain = await pixels(page);
