@@ -76,7 +76,8 @@ export class Panel {
         });
         const log = check('logarithmic values', on => recipe.set({log: on || null, symlog: null}));
         const symlog = check('on both sides of 0', on => recipe.set({symlog: on || null, log: null}));
-        const alone = make('div', {}, this.editor.element, row('Range', low, high, percent), row('Shift', shift),
+        const alone = make('div', {}, this.editor.element, row('Range', low, high, percent),
+            page.info.mask === undefined ? '' : row('Shift', shift), // the kernel of a notebook has none
             row('Colours', maps));
         this.follow(keys => {
             alone.hidden = mixed(page.look);
