@@ -405,6 +405,21 @@ def thumbnails_wait(server):
             break
         smalls += what == "picture" and message[10] > 0
     check("a command does not wait for thumbnails", smalls < 4, smalls)
+    page.say({"t": "set", "n": 2, "recipe": {"azimuth": 4}})
+    for shift in range(300):  # the newest one of a pane is made
+        page.say({"t": "ask", "what": "thumbnail", "preset": "ct-bone",
+                  "shift": shift, "pane": 4})
+    page.say({"t": "ask", "what": "command"})
+    texts = []
+    while not texts or texts[-1]["t"] not in ("closed", "command"):
+        what, message = page.hear()
+        if what == "closed":
+            texts.append({"t": what})
+        elif what == "text":
+            texts.append(message)
+    check("thumbnails of a pane that change do not add up", not [
+        each for each in texts if "too many" in each.get("text", "")],
+        texts[-1])
     page.close()
 
 
