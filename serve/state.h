@@ -54,7 +54,8 @@ void state_set_moving(viewer_state *s, bool moving);
 void state_set_watchers(viewer_state *s, int count);
 
 /* Takes over the tree.  False, and the tree is freed, where too many wait, of
- * all pages or of this one. */
+ * all pages or of this one.  A thumbnail takes the place of an older one of its
+ * pane. */
 bool state_ask(viewer_state *s, uint64_t client, json_t *tree);
 
 void state_end(viewer_state *s);
