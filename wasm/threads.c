@@ -4,7 +4,7 @@
  * A helper waits in engine_help until there is a thread, and runs it.  A page
  * without shared memory has no helpers, so that no thread begins there.  Below
  * this is emscripten's C library; what it asks of a script is here instead. */
-#include "base/affinity.h"
+#include <snowglass/snowglass.h>
 
 #include <emscripten.h>
 #include <errno.h>

@@ -12,7 +12,7 @@ const TEXTS = [['Drag', 'turn'], ['Shift or middle drag', 'move'], ['Wheel', 'zo
     ['x', 'three slices'], ['k', 'handles of clip planes'],
     ['On a slice', 'drag: where they cross; wheel: next slice; right drag: window and level; ' +
         'Ctrl wheel: zoom; double click: alone'],
-    ['Two fingers', 'move and zoom'], ['Arrows', 'what a drag does: 5 degrees, with Shift 1'], ['d', 'next that a drag does'],
+    ['Two fingers', 'move and zoom'], ['Arrows', 'as Drag: 5 degrees, with Shift 1'], ['d', 'next kind of drag'],
     ['+ -', 'zoom'], ['r', 'frame all'],
     ['1 - 6', 'front, back, left, right, top, bottom'], ['m', 'next mode'],
     ['p', 'parallel or perspective'], ['l', 'letters'], ['Space', 'play time steps'],

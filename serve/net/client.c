@@ -111,7 +111,7 @@ static void note_trip(client *c, const sent_picture *sent) {
     c->step = step;
 }
 
-/* A picture at rest tells nothing of those that move, nor does one that waits
+/* A picture at rest does not count for those that move, nor does one that waits
  * behind it. */
 static void note_sent(client *c, const parcel *p) {
     bool at_rest = p->bytes[8] > 0;

@@ -142,7 +142,7 @@ static bool is_stale(const struct sockaddr_un *at) {
 }
 
 /* Who may rename in the folder could put a socket of their own in the place of
- * ours, and would be told the secret.  Where there is no folder, bind says so.
+ * ours, and would get the secret.  Where there is no folder, bind says so.
  */
 static int check_folder(const char *path) {
     char folder[sizeof(struct sockaddr_un)] = ".";

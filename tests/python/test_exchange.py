@@ -1,5 +1,5 @@
 """Arrays of other libraries as volumes, volumes and pictures as theirs, copies that
-are made and refused, and what tells of progress."""
+are made and refused, and how progress is shown."""
 import contextlib
 import io
 import os

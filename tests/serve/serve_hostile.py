@@ -132,7 +132,7 @@ class Silent:
 
 def die_in_a_frame(server, reads):
     """In another process, which is killed: half a message, or half a picture."""
-    ready, tell = os.pipe()
+    ready, begun = os.pipe()
     child = os.fork()
     if child == 0:
         try:
@@ -141,11 +141,11 @@ def die_in_a_frame(server, reads):
                 page.need(9000)
             else:
                 page.send_frame(0x81, b'{"t":"set","n":1,"recipe":', length=60000)
-            os.write(tell, b".")
+            os.write(begun, b".")
             time.sleep(600)
         finally:
             os._exit(1)
-    os.close(tell)
+    os.close(begun)
     began = os.read(ready, 1)
     os.kill(child, signal.SIGKILL)
     os.waitpid(child, 0)

@@ -145,7 +145,7 @@ def own_addresses():
         check("refuses another name",
               server.get("/", host=f"evil.org:{server.port}")[0] == 421)
         code, said = server.stop()
-        check("and has told what is unsafe", code == 0 and said.count("\n") == 1 and
+        check("and says what is unsafe", code == 0 and said.count("\n") == 1 and
               said.startswith(f"snowglass: note: --listen {address}: ") and
               f"ssh -L 8000:127.0.0.1:{server.port}" in said, said)
 
@@ -198,7 +198,7 @@ def element(group, number, kind, value):
 
 
 def write_scan(folder):
-    """Slices with all that tells of whom they are."""
+    """Slices with all that says whose they are."""
     kind = "1.2.840.10008.5.1.4.1.1.4"
     os.mkdir(folder)
     for z in range(8):
@@ -253,7 +253,7 @@ def no_patient():
     page = Page(server)
     heard = ask_all(page)
     kinds = {json.loads(each)["t"] for each in heard if each.startswith(b"{")}
-    check("a scan is shown, and all is told of it", {
+    check("a scan is shown, with its figures", {
         "info", "state", "look", "said", "recipe", "command"} <= kinds, kinds)
     heard += [texts_of(each[32:]) for each in heard if each[32:36] == b"\x89PNG"]
     heard += [server.get(path)[2] for path in ("/", "/viewer.js", "/viewer.css")]

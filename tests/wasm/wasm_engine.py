@@ -152,7 +152,7 @@ stack = ["points.json", *(make(
 write("points.json", json.dumps({
     "snowglass-tf": 1, "values": "data",
     "opacities": [[20, 0], [90, 0.2], [200, 0.9]]}).encode())
-# Names do not tell the order.
+# The order is not that of the names.
 os.makedirs(os.path.join(OUT, "series"))
 series = [write(f"series/{7 * z % 11}.dcm", dicom(z)) for z in range(11)]
 os.makedirs(os.path.join(OUT, "packed.zarr", "0"))

@@ -80,7 +80,7 @@ watch(FILE, "apart", os.path.join(OUT, "apart.nhdr"),
       os.path.join(OUT, "head.raw"))
 
 os.makedirs(os.path.join(OUT, "series"))
-for z in range(11):  # names do not tell the order
+for z in range(11):  # the order is not that of the names
     with open(os.path.join(OUT, "series", f"{7 * z % 11}.dcm"), "wb") as file:
         file.write(dicom(z))
 watch(FILE, "folder", os.path.join(OUT, "series"))

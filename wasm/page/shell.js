@@ -142,7 +142,6 @@ async function filesOf(entry) {
     }
 }
 
-body.addEventListener('dragover', event => event.preventDefault());
 /** The same of a handle, which Chromium has. */
 async function filesOfHandle(handle, name) {
     if (handle.kind === 'file')
@@ -162,6 +161,7 @@ async function filesOfItem(entry, file, handle) {
     return folder ? filesOfHandle(folder, folder.name) : filesOf(entry);
 }
 
+body.addEventListener('dragover', event => event.preventDefault());
 body.addEventListener('drop', async event => {
     event.preventDefault();
     const dropped = [...event.dataTransfer.items].map(item => filesOfItem(item.webkitGetAsEntry(),

@@ -61,7 +61,7 @@ async function time({check, rest}, page, its) {
     await its('the slider goes to a step', () => slider.fill('3'), {time: 3});
     const last = await pixels(page);
     check('which is another picture', last !== first);
-    check('and is told', /3 \/ 3/.test(await slider.locator('..').textContent()));
+    check('and is written beside it', /3 \/ 3/.test(await slider.locator('..').textContent()));
     await its('and back', () => slider.fill('0'), {time: 0});
     check('to the same picture', await pixels(page) === first);
     const played = () => page.evaluate(() => new Promise(done => {
@@ -99,12 +99,12 @@ async function looks({check}, page, its) {
     const part = async () => parseFloat(await page.getByText(/not visible; method/).textContent());
     const before = await part();
     const threshold = page.getByLabel('Threshold', {exact: true});
-    const told = share => page.getByText(`${share.toFixed(1)} % of the voxels are not visible`).waitFor();
+    const written = share => page.getByText(`${share.toFixed(1)} % of the voxels are not visible`).waitFor();
     await its('a threshold is set', () => threshold.fill('250'), {threshold: 250});
-    await told(100); // after the picture
+    await written(100); // after the picture
     check('which hides all voxels', before < 100, before);
     await its('or none more', () => threshold.fill('0'), {threshold: 0});
-    await told(before);
+    await written(before);
     check('and they are seen again', await part() === before, await part());
     for (const [name, key] of [['colour bar', 'legend'], ['scale bar', 'scale-bar'],
         ["edges of the volume's box", 'outline']]) {
@@ -202,7 +202,7 @@ async function texts({check, keys, folder}, page) {
         await page.keyboard.press('Escape');
     }
     await press(page, '?');
-    check('? tells all keys', await dialog.locator('kbd').count() > 20);
+    check('? lists all keys', await dialog.locator('kbd').count() > 20);
     await page.keyboard.press('Escape');
     check('and goes away', await dialog.count() === 0);
 }
@@ -307,7 +307,7 @@ export async function restarted({check, open, rest, folder, said}, tool) {
         .includes(text), words);
     await end(server);
     await hears('start snowglass serve again');
-    check('it is told that the viewer does not answer', true);
+    check('the page says that the viewer does not answer', true);
     await page.evaluate(() => { window.snowglass.page.rest = null; });
     [server] = await start(tool, '--token-file', file, '--port', port);
     await rest(page);
@@ -317,7 +317,7 @@ export async function restarted({check, open, rest, folder, said}, tool) {
     await hears('start snowglass serve again');
     [server, url] = await start(tool, '--port', port);
     await hears('open the printed URL');
-    check('another secret is told', true);
+    check('the page says that the secret is another', true);
     await page.evaluate(() => { window.snowglass.old = true; });
     await page.goto(url); // another fragment alone
     await page.waitForFunction(() => window.snowglass && !window.snowglass.old);
