@@ -67,7 +67,7 @@ static void size_plane(snow_value_lattice *l, const snow_value_grid *grid,
         width = height = width + height + 1;
         l->width = l->height = (int)width;
     }
-    if (l->quincunx && grid->shared) /* whole blocks are cleared */
+    if (l->quincunx && grid->shared) /* whole blocks are cleared there */
         width = (size_t)blocks_of(l) * BLOCK;
     image->stride = width * (size_t)grid->channels;
     image->layer_floats = image->stride * (height + 1);
@@ -108,9 +108,8 @@ snow_status snow_value_reserve_image(snow_value_path *path,
         SNOW_RESERVE(path->context, image->current, keep ? tiles : 0, tiles));
     if (!keep || !params->more)
         memset(image->current, 0, tiles);
-    /* What is shared is cleared where it is asked for, but for tiles that
-     * blocks of a quincunx have parts of. */
-    if (!keep && (!grid.shared || grid.quincunx))
+    /* What is shared is cleared where it is asked for. */
+    if (!keep && !grid.shared)
         SNOW_TRY(snow_clear(path->context, image->plane, planes * bytes));
     if (!keep)
         memset(image->drawn, 0, tiles);
@@ -120,33 +119,83 @@ snow_status snow_value_reserve_image(snow_value_path *path,
 
 /* --- blocks of a quincunx ------------------------------------------------- */
 
-/* The tiles along an axis that have samples low .. high, of `cells` a voxel. */
-static void tiles_of(int64_t low, int64_t high, int cells, int side, int tiles,
-                     int range[2]) {
-    int64_t first = low < 0 ? 0 : low / cells / side;
-    int64_t last = high < 0 ? -1 : high / cells / side;
-    range[0] = (int)(first < tiles ? first : tiles);
-    range[1] = (int)(last < tiles ? last : tiles - 1);
+/* The tiles along an axis that have samples low .. high, of so many a tile;
+ * whether some of these samples are in none. */
+static bool tiles_of(int low, int high, int samples, int tiles, int range[2]) {
+    const int first = low < 0 ? 0 : low / samples;
+    const int last = high < 0 ? -1 : high / samples;
+    range[0] = first < tiles ? first : tiles;
+    range[1] = last < tiles ? last : tiles - 1;
+    return low < 0 || last >= tiles;
 }
 
+typedef enum block_state { UNTOUCHED, TOUCHED, COVERED } block_state;
+
 /* Whether the block from pixel (a, b) on has pixels of a tile that a layer has
- * drawn.  Pixel (a, b) is sample ((a + b - top) / 2, (a - b + top) / 2) of the
- * lattice. */
-static bool is_drawn(const snow_value_image *image, const unsigned char *drawn,
-                     int64_t a, int64_t b) {
+ * drawn, or no others.  Pixel (a, b) is sample ((a + b - top) / 2, (a - b +
+ * top) / 2) of the lattice. */
+static block_state state_of(const snow_value_image *image,
+                            const unsigned char *drawn, int a, int b) {
     const snow_value_lattice *l = &image->lattice;
     const snow_value_grid *grid = &image->grid;
-    const int64_t sum = a + b - l->top, difference = a - b + l->top;
+    const int sum = a + b - l->top, difference = a - b + l->top;
     int x[2], y[2];
-    tiles_of((sum - 1) / 2 - 1, (sum + 2 * BLOCK) / 2 + 1, l->cells[0],
-             SNOW_VALUE_COLUMNS, grid->tiles[0], x);
-    tiles_of((difference - BLOCK) / 2 - 1, (difference + BLOCK) / 2 + 1,
-             l->cells[1], SNOW_VALUE_ROWS, grid->tiles[1], y);
+    bool any = false, all = true;
+    all &= !tiles_of((sum - 1) / 2 - 1, (sum + 2 * BLOCK) / 2 + 1,
+                     l->cells[0] * SNOW_VALUE_COLUMNS, grid->tiles[0], x);
+    all &= !tiles_of((difference - BLOCK) / 2 - 1, (difference + BLOCK) / 2 + 1,
+                     l->cells[1] * SNOW_VALUE_ROWS, grid->tiles[1], y);
     for (int row = y[0]; row <= y[1]; row++)
-        for (int column = x[0]; column <= x[1]; column++)
-            if (drawn[row * grid->tiles[0] + column])
-                return true;
-    return false;
+        for (int column = x[0]; column <= x[1]; column++) {
+            const bool is = drawn[row * grid->tiles[0] + column];
+            any |= is;
+            all &= is;
+        }
+    return !any ? UNTOUCHED : all ? COVERED : TOUCHED;
+}
+
+/* Where the pixels of a block are among the tiles, of all layers alike: pixel
+ * (x, y) of it is in column columns[x + y] and line lines[x - y + BLOCK - 1] of
+ * tiles; -1: beyond all. */
+typedef struct block_tiles {
+    int columns[2 * BLOCK - 1], lines[2 * BLOCK - 1];
+} block_tiles;
+
+static int tile_of(int twice, int samples, int tiles) {
+    const int tile = twice / 2 / samples;
+    return twice < 0 || tile >= tiles ? -1 : tile;
+}
+
+static block_tiles tiles_under(const snow_value_image *image, int a, int b) {
+    const snow_value_lattice *l = &image->lattice;
+    const int *tiles = image->grid.tiles;
+    block_tiles under;
+    for (int n = 0; n < 2 * BLOCK - 1; n++) {
+        under.columns[n] = tile_of(a + b - l->top + n,
+                                   SNOW_VALUE_COLUMNS * l->cells[0], tiles[0]);
+        under.lines[n] = tile_of(a - b + l->top + n - (BLOCK - 1),
+                                 SNOW_VALUE_ROWS * l->cells[1], tiles[1]);
+    }
+    return under;
+}
+
+/* Clears the pixels of a block from (a, b) on that no drawn tile of a layer
+ * has. */
+static void clear_beside(const snow_value_image *image, size_t layer,
+                         const unsigned char *drawn, int a, int b) {
+    const block_tiles under = tiles_under(image, a, b);
+    const int channels = image->grid.channels;
+    const int left = image->lattice.height - b;
+    float *line = image->plane + layer * image->layer_floats +
+                  (size_t)b * image->stride + (size_t)a * (size_t)channels;
+    for (int y = 0; y < BLOCK && y < left; y++, line += image->stride)
+        for (int x = 0; x < BLOCK; x++) {
+            const int column = under.columns[x + y];
+            const int row = under.lines[x - y + BLOCK - 1];
+            if (column < 0 || row < 0 ||
+                !drawn[row * image->grid.tiles[0] + column])
+                memset(line + x * channels, 0, (size_t)channels * sizeof *line);
+        }
 }
 
 static size_t count_blocks(const snow_value_image *image) {
@@ -155,7 +204,8 @@ static size_t count_blocks(const snow_value_image *image) {
     return (size_t)layers * blocks * blocks;
 }
 
-/* The blocks of all layers. */
+/* The blocks of all layers; of those that have pixels of drawn tiles all others
+ * are cleared, where the image was not before. */
 static void find_blocks(snow_value_image *image) {
     const int blocks = blocks_of(&image->lattice);
     const size_t layers =
@@ -164,9 +214,13 @@ static void find_blocks(snow_value_image *image) {
     for (size_t n = 0; n < layers; n++) {
         const unsigned char *drawn = image->drawn + n * snow_value_tiles(image);
         for (int b = 0; b < blocks; b++)
-            for (int a = 0; a < blocks; a++)
-                *block++ = is_drawn(image, drawn, (int64_t)a * BLOCK,
-                                    (int64_t)b * BLOCK);
+            for (int a = 0; a < blocks; a++) {
+                const block_state state =
+                    state_of(image, drawn, a * BLOCK, b * BLOCK);
+                *block++ = state != UNTOUCHED;
+                if (state == TOUCHED && image->grid.shared)
+                    clear_beside(image, n, drawn, a * BLOCK, b * BLOCK);
+            }
     }
 }
 
