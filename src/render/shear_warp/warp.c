@@ -103,11 +103,29 @@ static void seeing_pixels(const snow_shear_warp_warping *w, int y,
         range[1]--;
 }
 
+/* Narrows low .. high, around the pixel at which line `line` begins, to a few:
+ * where lines are those of a map without perspective they are even. */
+static void narrow(const snow_shear_warp_warping *w, int y, bool rising,
+                   int line, int *low, int *high) {
+    const double along = w->shear.along_x[1];
+    const double at =
+        (line - w->shear.start[1] - y * w->shear.along_y[1]) / along;
+    if (w->perspective || w->line || !(at > *low && at < *high))
+        return;
+    const int middle = (int)at, before = middle > *low ? middle - 1 : *low;
+    const int behind = middle + 2 < *high ? middle + 2 : *high - 1;
+    if ((line_of_pixel(w, before, y) >= line) != rising)
+        *low = before + 1;
+    if ((line_of_pixel(w, behind, y) >= line) == rising)
+        *high = behind;
+}
+
 /* The first pixel of `seen` that falls on line `line` or beyond, where lines
  * rise; where they fall, on one before it. */
 static int first_pixel(const snow_shear_warp_warping *w, int y,
                        const int seen[2], bool rising, int line) {
     int low = seen[0], high = seen[1];
+    narrow(w, y, rising, line, &low, &high);
     while (low < high) {
         int middle = low + (high - low) / 2;
         if ((line_of_pixel(w, middle, y) >= line) == rising)
