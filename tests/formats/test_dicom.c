@@ -83,6 +83,27 @@ static void slices_are_ordered_along_their_normal(void **state) {
     snow_context_free(context);
 }
 
+static void
+frames_without_a_position_have_their_first_row_on_top(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    dicom_frame frames[3];
+    for (int i = 0; i < 3; i++) {
+        frames[i] = frame_at(0, 0, 0);
+        frames[i].placed = false;
+        frames[i].number = i;
+        frames[i].depth = 2;
+    }
+    dicom_stack stack = stacked(context, frames, 3);
+    const double turned[3] = {1, -1, -2};
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            assert_true(stack.matrix[i][k] == (i == k ? turned[i] : 0));
+    assert_true(stack.frames[0].number == 0);
+    snow_dicom_stack_free(&stack);
+    snow_context_free(context);
+}
+
 static void a_tilt_is_a_shear_in_the_matrix(void **state) {
     (void)state;
     snow_context *context = support_context();
@@ -680,6 +701,7 @@ static void a_deflated_bomb_before_the_pixels_is_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slices_are_ordered_along_their_normal),
+        cmocka_unit_test(frames_without_a_position_have_their_first_row_on_top),
         cmocka_unit_test(a_tilt_is_a_shear_in_the_matrix),
         cmocka_unit_test(a_missing_slice_is_named),
         cmocka_unit_test(a_missing_slice_is_a_gap_where_it_may_be),

@@ -396,7 +396,7 @@ static void read_place(dicom_reader *reader, const dicom_image *image,
         move_along(frame, offset_of(reader, image, frame));
     if (frame->placed)
         return;
-    /* without a position the frame is at the origin, as an array */
+    /* without a position the frame is at the origin, as an image */
     memset(frame->position, 0, sizeof frame->position);
     memcpy(frame->row, (double[3]){1, 0, 0}, sizeof frame->row);
     memcpy(frame->column, (double[3]){0, 1, 0}, sizeof frame->column);

@@ -92,7 +92,8 @@ static snow_status share_places(dicom_stack *s, ranked *all, size_t count) {
 
 /* --- the matrix ----------------------------------------------------------- */
 
-/* Columns along a row, down a column, from slice to slice; LPS becomes RAS. */
+/* Columns along a row, down a column, from slice to slice; LPS becomes RAS.
+ * Frames without a position are images, whose first row is the top. */
 static void fill_matrix(dicom_stack *s, const double step[3]) {
     const dicom_frame *frame = s->frames;
     for (int i = 0; i < 3; i++) {
@@ -107,6 +108,8 @@ static void fill_matrix(dicom_stack *s, const double step[3]) {
             s->matrix[i][k] += 0.0;
     }
     s->matrix[3][3] = 1;
+    if (!s->placed)
+        snow_image_turn(s->matrix);
 }
 
 /* A single slice has its given depth: there is no other to measure from. */
