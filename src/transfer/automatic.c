@@ -169,9 +169,12 @@ static void read_counts(const uint64_t *counts, uint64_t all, double there,
  * background. */
 #define LEFT_OUT 0.02
 
-/* The share of the voxels that have values. */
+/* The share of the voxels that have values; 1 where only clip planes have left
+ * out others: these cut the object and its background alike. */
 static double share_there(const snow_histogram *histogram) {
     snow_extent part;
+    if (histogram->clipped && !histogram->masked)
+        return 1;
     snow_volume_find_extent(histogram->volume, &part);
     double all =
         (double)part.dims[0] * (double)part.dims[1] * (double)part.dims[2];

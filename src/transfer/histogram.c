@@ -119,6 +119,7 @@ static snow_status measure_values(const snow_volume *slab, void *user) {
     }
     histogram->dropped += w.dropped;
     histogram->masked |= slab->masked;
+    histogram->clipped |= slab->clip || slab->lost_clip;
     histogram->had_negative |= slab->had_negative;
     return SNOW_STATUS_OK;
 }
@@ -134,16 +135,18 @@ static snow_status join_measures(snow_histogram *histogram) {
     }
     SNOW_TRY(
         snow_comm_reduce_doubles(histogram->comm, ends, 2, SNOW_REDUCE_MIN));
-    uint64_t counts[6] = {histogram->finite,  0,
+    uint64_t counts[7] = {histogram->finite,  0,
                           histogram->dropped, histogram->fractions,
-                          histogram->masked,  histogram->had_negative};
+                          histogram->masked,  histogram->had_negative,
+                          histogram->clipped};
     if (histogram->finite && histogram->min == ends[0])
         counts[1] = histogram->at_min;
-    SNOW_TRY(snow_histogram_sum(histogram, counts, 6));
+    SNOW_TRY(snow_histogram_sum(histogram, counts, 7));
     histogram->dropped = counts[2];
     histogram->fractions = counts[3] > 0;
     histogram->masked = counts[4] > 0;
     histogram->had_negative = counts[5] > 0;
+    histogram->clipped = counts[6] > 0;
     if (counts[0]) {
         histogram->min = ends[0];
         histogram->max = -ends[1];

@@ -64,6 +64,7 @@ typedef struct snow_histogram {
     uint64_t dropped;  /* voxels that these ignore, where all are counted */
     bool fractions;    /* values of floats that are no whole numbers */
     bool masked;       /* a mask has left out voxels */
+    bool clipped;      /* clip planes have */
     bool had_negative; /* values, before a mask or planes */
 } snow_histogram;
 

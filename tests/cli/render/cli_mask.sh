@@ -128,6 +128,13 @@ prints '^finite  *13440 of 26880'
 run 0 "of a box lie where they were" "$TOOL" info v.npy --clip 1,0,0,15 \
     --crop 10:,0:7,0:5
 prints '^finite  *210 of'
+# A plane cuts the object and the background alike, as a crop does.
+for cut in "--clip 0,0,1,0" "--crop :,:,:57"; do
+    # shellcheck disable=SC2086
+    run 0 "a look with $cut" "$TOOL" info phantom:head $cut
+    grep '^look' "$OUT" >>looks
+done
+check "is the same" test "$(sort -u looks | wc -l)" = 1
 run 7 "planes that leave nothing" "$TOOL" render v.npy -o p.png --clip 1,0,0,-1
 says 'clip: no voxel is left'
 
