@@ -188,14 +188,30 @@ int fail_volume(const snow_context *context, snow_status status,
     return (int)status;
 }
 
-/* All steps of a file cause the same note; it is printed once. */
+/* So many notes are remembered, as many bytes of each. */
+#define NOTES 16
+#define NOTE_BYTES 256
+
+/* All steps of a file cause the same notes, one after another; each is printed
+ * once.  Threads read steps at the same time. */
+static bool is_new_note(const char *text) {
+    static pthread_mutex_t reading = PTHREAD_MUTEX_INITIALIZER;
+    static char notes[NOTES][NOTE_BYTES];
+    static size_t count;
+    bool found = false;
+    pthread_mutex_lock(&reading);
+    for (size_t n = 0; n < NOTES && n < count; n++)
+        found |= strncmp(notes[n], text, NOTE_BYTES - 1) == 0;
+    if (!found)
+        snprintf(notes[count++ % NOTES], NOTE_BYTES, "%s", text);
+    pthread_mutex_unlock(&reading);
+    return !found;
+}
+
 static void hear_warning(void *user, const char *text) {
-    static char last[256];
     (void)user;
-    if (strncmp(last, text, sizeof last - 1) == 0)
-        return;
-    snprintf(last, sizeof last, "%s", text);
-    say("note: %s", text);
+    if (is_new_note(text))
+        say("note: %s", text);
 }
 
 int open_context(const options *opts, snow_context **out) {

@@ -86,6 +86,18 @@ check "is that frame" same_bytes "$(echo u*.png)" "f_02.png"
 # shellcheck disable=SC2086
 run 0 "one of them, aloud" "$TOOL" movie times.nrrd --time 1 -o 'alone%d.png' -s 9x9
 says 'note: this is one time step, so the movie is a still; .* turntable'
+# Each step has two notes, one after the other.
+for i in 1 2 3; do
+    {
+        printf '# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\n'
+        printf 'DIMENSIONS 3 2 3\nX_COORDINATES 3 float\n0 1 3\n'
+        printf 'Y_COORDINATES 2 float\n0 1\nZ_COORDINATES 3 float\n0 1 4\n'
+        printf 'POINT_DATA 18\nSCALARS v float\nLOOKUP_TABLE default\n'
+        seq "$i" $((i + 17))
+    } >"uneven$i.vtk"
+done
+run 0 "steps with several notes" "$TOOL" movie uneven%d.vtk -o 'uneven%d.png' -s 9x9
+check "each is said once" test "$(grep -c 'not evenly spaced' "$ERR")" = 2
 run 0 "two steps" "$TOOL" movie run/s_0000.nrrd run/s_0020.nrrd -o 'pair%d.png' -s 9x9
 check "are none" bash -c "! grep -q still '$ERR'"
 run 0 "several volumes of one step, quietly" "$TOOL" movie -q run/s_0000.nrrd \
