@@ -269,7 +269,11 @@ bool read_window(const option_row *row, const char *text, void *field,
                  char wrong[WRONG_BYTES]) {
     options *out = (options *)(void *)((char *)field - row->field);
     double pair[2];
-    if (!value_reals(text, ',', 2, pair))
+    const bool both = value_reals(text, ',', 2, pair);
+    if (!both && strchr(text, ','))
+        return refuse(wrong, "is not a window; give its width, or width and "
+                             "level such as 400,40");
+    if (!both)
         return read_real(row, text, field, wrong);
     if (!is_within(row, pair[0]))
         return refuse_number(row, "a width", wrong);

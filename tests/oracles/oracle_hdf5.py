@@ -268,7 +268,7 @@ for size in (20, 600, len(whole) // 2, len(whole) - 1):
     oracle.refuse("i.h5", "get or write it again")
 with h5py.File("k.h5", "w") as file:
     file.create_dataset("only", data=a, compression="lzf")
-oracle.refuse("k.h5", "filter 32000")
+oracle.refuse("k.h5", "filter 32000 (LZF)")
 with h5py.File("j.h5", "w") as file:
     file.create_dataset("huge", (10**6, 10**6, 10**5), "f8",
                         chunks=(8, 8, 8))

@@ -50,6 +50,28 @@ static hid_t native_type(snow_type type) {
     }
 }
 
+/* Filters that are usual (the HDF Group's list of registered ones). */
+static const char *filter_name(int filter) {
+    switch (filter) {
+    case 32000:
+        return " (LZF)";
+    case 32001:
+        return " (Blosc)";
+    case 32004:
+        return " (LZ4)";
+    case 32008:
+        return " (Bitshuffle)";
+    case 32013:
+        return " (ZFP)";
+    case 32015:
+        return " (Zstandard)";
+    case 32026:
+        return " (Blosc2)";
+    default:
+        return "";
+    }
+}
+
 /* Data in other files would be missing, or could be read from anywhere; data
  * with a filter that is not installed cannot be read. */
 static snow_status check_storage(snow_context *context, hid_t set) {
@@ -75,9 +97,10 @@ static snow_status check_storage(snow_context *context, hid_t set) {
     if (missing)
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,
-            "its voxels are compressed by filter %d, which libhdf5 lacks; "
-            "install its plugin, or copy the file with h5repack -f GZIP=1",
-            missing);
+            "its voxels are compressed by filter %d%s, which libhdf5 lacks; "
+            "install its plugin, or write them again with gzip by a program "
+            "that has the filter, such as h5py",
+            missing, filter_name(missing));
     return SNOW_STATUS_OK;
 }
 

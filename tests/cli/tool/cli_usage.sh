@@ -149,9 +149,9 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
 --range p1,p101 x|is not a range
 --window 0 x|out of range
 --window 0,40 x|out of range
---window 400, x|out of range
---window 400,40,1 x|out of range
---window 400,nan x|out of range
+--window 400, x|is not a window
+--window 400,40,1 x|is not a window
+--window 400,nan x|is not a window
 --shade flat x|choose from: phong, none
 --light 30 x|give key, head, or AZIMUTH,ELEVATION
 --ambient 2 x|from 0 to 1
@@ -192,6 +192,7 @@ while IFS='|' read -r arguments pattern; do
         "$TOOL" phantom:cube --dims 8x8x8 -o z.png "$@"
 done <<'END'
 --window 3|needs --level too
+--window 400,abc|is not a window; give its width, or width and level
 --level 3|needs --window too
 --window 3 --level 3 --range 1,2|conflicts with --range
 --type uint8|type
