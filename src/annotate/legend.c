@@ -33,22 +33,39 @@ snow_status snow_overlay_text(snow_overlay *overlay, double x, double y,
                           text);
 }
 
-snow_status snow_overlay_title(snow_overlay *overlay, const char *text) {
+/* Adds lines, of which those that are wider end with "...". */
+static snow_status add_lines(snow_overlay *overlay, double width,
+                             const char *text) {
     double height = snow_overlay_text_height(overlay);
-    if (snow_shorter_side(overlay) < NOTE_SIDE_LEAST)
-        return SNOW_STATUS_OK;
-    size_t first = overlay->shape_count;
     for (double y = 0.8; *text; y += 1.7) {
         char line[256];
         size_t length = strcspn(text, "\n");
         snprintf(line, sizeof line, "%.*s", (int)fmin((double)length, 255),
                  text);
-        snow_font_shorten(overlay->width / height - 1.6, line);
+        snow_font_shorten(width / height - 1.6, line);
         SNOW_TRY(snow_overlay_text(overlay, 0.8 * height, y * height, 0, 0,
                                    height, line));
         text += length + (text[length] == '\n');
     }
-    snow_overlay_settle_mirrored(overlay, first, true);
+    return SNOW_STATUS_OK;
+}
+
+/* Where a whole line has no room beside what is there, less of it may have. */
+snow_status snow_overlay_title(snow_overlay *overlay, const char *text) {
+    static const double shares[] = {1, 0.6, 0.4};
+    const size_t first = overlay->shape_count;
+    if (snow_shorter_side(overlay) < NOTE_SIDE_LEAST || !*text)
+        return SNOW_STATUS_OK;
+    for (int n = 0; n < 3 && overlay->shape_count == first; n++) {
+        SNOW_TRY(add_lines(overlay, shares[n] * overlay->width, text));
+        snow_overlay_settle_mirrored(overlay, first, true);
+    }
+    if (overlay->shape_count == first)
+        snow_notify(overlay->context, "the picture has no room for the title");
+    if (!snow_font_has(text))
+        snow_notify(overlay->context,
+                    "the title has letters that the font lacks, which are "
+                    "drawn as boxes; it has those of Western Europe");
     return SNOW_STATUS_OK;
 }
 
@@ -99,5 +116,7 @@ snow_status snow_overlay_scale_bar(snow_overlay *overlay,
     SNOW_TRY(snow_overlay_text(overlay, fmax((left + right) / 2, left + half),
                                y - 0.8 * height, 0.5, 1, height, text));
     snow_overlay_settle_mirrored(overlay, first, true);
+    if (overlay->shape_count == first)
+        snow_notify(context, "the picture has no room for the scale bar");
     return SNOW_STATUS_OK;
 }

@@ -177,6 +177,15 @@ double snow_font_width(const char *text) {
     return fmax(width - SPACE, 0) / CAPITAL;
 }
 
+bool snow_font_has(const char *text) {
+    while (*text)
+        if (*text == '\n')
+            text++;
+        else if (next_letter(&text).glyph == box)
+            return false;
+    return true;
+}
+
 void snow_font_shorten(double width, char *text) {
     size_t end = strlen(text), length = end;
     while (end > 0 && snow_font_width(text) > width) {

@@ -214,6 +214,8 @@ static void letters_of_latin_1_have_their_marks(void **state) {
     /* one box for what the font lacks, not one for each byte */
     assert_true(fabs(snow_font_width("\xe6\x97\xa5") -
                      snow_font_width("\x7f")) < 1e-12);
+    assert_false(snow_font_has("run \xe6\x97\xa5"));
+    assert_true(snow_font_has("\xc3\xa9 7.5 \xc2\xb5m\nbelow"));
 }
 
 static void long_texts_are_shortened(void **state) {

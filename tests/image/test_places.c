@@ -153,6 +153,31 @@ static void without_room_they_stay(void **state) {
     snow_image_free(image);
 }
 
+static void count_note(void *user, const char *text) {
+    *(int *)user += strstr(text, "no room for the title") != NULL;
+}
+
+/* A title as wide as the picture, with a bar in each corner. */
+static void a_long_title_is_shortened_before_it_is_left_out(void **state) {
+    image_fixture *f = *state;
+    snow_volume_info info = patient();
+    snow_view view = view_of(f->context, "anterior");
+    const char *title = "A title that is much too long for such a picture";
+    int notes = 0;
+    snow_context_set_warning(f->context, count_note, &notes);
+    view.width = view.height = 300;
+    for (int bars = 1; bars <= 4; bars++) {
+        snow_overlay *overlay = overlay_of(f->context, 300, 300);
+        for (int n = 0; n < bars; n++)
+            snow_overlay_scale_bar(overlay, &info, &view);
+        size_t before = overlay->shape_count;
+        assert_int_equal(snow_overlay_title(overlay, title), SNOW_STATUS_OK);
+        assert_true((overlay->shape_count > before) == (bars < 4));
+        snow_overlay_free(overlay);
+    }
+    assert_int_equal(notes, 1);
+}
+
 #define HERE(test)                                             \
     cmocka_unit_test_setup_teardown(test, support_image_setup, \
                                     support_image_teardown)
@@ -162,6 +187,7 @@ int main(void) {
         HERE(nothing_covers_another),
         HERE(all_keep_off_the_object),
         HERE(without_room_they_stay),
+        HERE(a_long_title_is_shortened_before_it_is_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
