@@ -102,10 +102,26 @@ static double nearest_axis(const double normal[3], int *axis) {
     return acos(fmin(fabs(normal[*axis]), 1)) * 180 / acos(-1);
 }
 
+/* Of a volume that is a single slice, the cut that shows its face. */
+static void choose_axis(slice_work *w) {
+    static const char *const names[] = {"axial", "coronal", "sagittal"};
+    const int64_t *dims = w->whole.dims;
+    if (w->opts.axis || (dims[0] == 1) + (dims[1] == 1) + (dims[2] == 1) != 1)
+        return;
+    for (int n = 0; n < 3 && !w->opts.axis; n++) {
+        snow_view view = w->view;
+        int axis;
+        if (!snow_slice_view(w->context, &w->whole, names[n], &view, &axis) &&
+            dims[axis] == 1)
+            w->opts.axis = names[n];
+    }
+}
+
 static int find_slice(slice_work *w) {
     snow_view_init(&w->view);
     w->view.width = (int)w->opts.size[0];
     w->view.height = (int)w->opts.size[1];
+    choose_axis(w);
     snow_status status = snow_slice_view(w->context, &w->whole, axis_name(w),
                                          &w->view, &w->axis);
     if (status != SNOW_STATUS_OK)

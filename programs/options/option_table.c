@@ -378,7 +378,7 @@ const option_row option_table[] = {
      FIELD(axis), 0, 0, "",
      "axis that the slice lies across: x, y or z of the grid; or axial, coronal "
      "or sagittal, the axis of the grid that is nearest to that of the patient "
-     "(default axial)"},
+     "(default axial; of a single slice, its face)"},
     {"at", 0, "INDEX|POSITION", TOPIC_MORE, SLICE, read_text, FIELD(at), 0, 0,
      "",
      "slice: its number from 0, or a position in the world with its unit, such "

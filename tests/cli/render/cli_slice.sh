@@ -13,6 +13,10 @@ run 0 "by number" "$TOOL" slice $head -o b.png --axis axial --at 15 -q
 check "is the middle one" cmp -s a.png b.png
 refused 4 "a file is not replaced" 'exists' "$TOOL" slice $head -o a.png
 run 0 "unless told" "$TOOL" slice $head -o a.png -y -q
+for cut in 12:13,:,:=sagittal :,7:8,:=coronal :,:,3:4=axial 1:2,2:3,:=axial; do
+    run 0 "of the box ${cut%=*}" "$TOOL" slice $head --crop "${cut%=*}" -o face.png -y
+    says "${cut#*=} slice "
+done
 run 0 "names of axes may be capital" "$TOOL" slice $head -o c.png -q --axis AXIAL
 check "of the same bytes" cmp -s a.png c.png
 run 0 "a name after the input" "$TOOL" slice $head
