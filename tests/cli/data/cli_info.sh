@@ -246,4 +246,10 @@ mkdir empty
 run 3 "a folder without volumes is refused as it was" "$TOOL" info empty
 run 2 "no input" "$TOOL" info
 says 'info: an operand is missing; give snowglass info INPUT'
+# A note about a raw file's name says what came from it.
+head -c 48 /dev/zero >raw_4x3x2_u16be.raw
+run 0 "a raw file by its name" "$TOOL" info raw_4x3x2_u16be.raw
+says '4x3x2 uint16, big endian; its name gives the sizes and the type$'
+run 0 "with other sizes" "$TOOL" info raw_4x3x2_u16be.raw --dims 4x2x3
+says '4x2x3 uint16, big endian; its name gives the type$'
 finish
