@@ -321,13 +321,24 @@ static snow_status hounsfield_preset(const snow_histogram *histogram,
     return SNOW_STATUS_OK;
 }
 
+/* Floats that reach so far cannot have fractions there, as densities in SI
+ * units; no scanner counts so far. */
+static bool is_beyond_fractions(const snow_histogram *histogram) {
+    const snow_type type = histogram->volume->info.type;
+    double reach = fmax(fabs(histogram->min), fabs(histogram->max));
+    return type == SNOW_TYPE_FLOAT32   ? reach >= 0x1p24
+           : type == SNOW_TYPE_FLOAT64 ? reach >= 0x1p53
+                                       : false;
+}
+
 /* Whether values may be those of a computed field rather than of a scan:
  * numbers with fractions, in no patient and no format of microscopes. */
 static bool is_field(const snow_histogram *histogram) {
     static const char *const images[] = {"mrc", "tiff", "zarr"};
     const snow_volume_info *info = &histogram->volume->info;
-    bool found = histogram->fractions && !info->whole && !info->eight_bits &&
-                 !info->medical && !*info->modality;
+    bool found = (histogram->fractions || is_beyond_fractions(histogram)) &&
+                 !info->whole && !info->eight_bits && !info->medical &&
+                 !*info->modality;
     for (size_t n = 0; n < sizeof images / sizeof *images; n++)
         found = found && strcmp(info->format, images[n]) != 0;
     return found;

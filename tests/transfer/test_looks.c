@@ -322,6 +322,39 @@ static void a_scan_in_floats_is_grey_and_shaded(void **state) {
     snow_context_free(context);
 }
 
+static double dense_blob(double x, double y, double z) {
+    return 1e24 * (0.1 + blob(x, y, z));
+}
+
+static double strong_wave(double x, double y, double z) {
+    return 1e24 * wave(x, y, z);
+}
+
+static double far_blob(double x, double y, double z) {
+    return rint(1e6 * blob(x, y, z));
+}
+
+/* A unit does not make a scan of a field: floats this large have no fractions.
+ */
+static void a_field_of_large_values_is_one(void **state) {
+    (void)state;
+    static const struct {
+        double (*f)(double x, double y, double z);
+        bool field;
+    } cases[] = {{dense_blob, true}, {strong_wave, true}, {far_blob, false}};
+    static float values[SIDE * SIDE * SIDE];
+    snow_context *context = support_context();
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        snow_volume *volume = field_of(context, values, cases[n].f);
+        snow_transfer *transfer =
+            support_look(volume, (snow_look){.size = sizeof(snow_look)});
+        assert_int_equal(snow_transfer_is_grey(transfer), !cases[n].field);
+        snow_transfer_free(transfer);
+        snow_volume_close(volume);
+    }
+    snow_context_free(context);
+}
+
 static void a_field_is_a_veil_in_colours(void **state) {
     (void)state;
     static float values[SIDE * SIDE * SIDE];
@@ -897,6 +930,7 @@ int main(void) {
         cmocka_unit_test(a_range_is_spread_by_decades),
         cmocka_unit_test(a_field_of_both_signs_is_diverging_around_0),
         cmocka_unit_test(a_scan_in_floats_is_grey_and_shaded),
+        cmocka_unit_test(a_field_of_large_values_is_one),
         cmocka_unit_test(a_field_is_a_veil_in_colours),
         cmocka_unit_test(maps_agree_with_their_definitions),
         cmocka_unit_test(a_symmetric_logarithm_is_linear_around_0),
