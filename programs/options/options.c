@@ -319,9 +319,14 @@ static int refuse_words(const options *out, const verb_row *verb, bool named) {
                           first, other->name, other->usage);
     if (plain && !named)
         return refuse_verb(first);
+    const char *extra = out->operands[verb->operands];
+    /* a shell has made a list of a pattern */
+    if (verb->operands == 1 && !access(first, F_OK) && !access(extra, F_OK))
+        return fail_usage("%s: is one word too many for %s; give one file or, "
+                          "of slices, their folder or a pattern in quotes",
+                          extra, verb->name);
     return fail_usage("%s: is one word too many for %s; give snowglass %s %s",
-                      out->operands[verb->operands], verb->name, verb->name,
-                      verb->usage);
+                      extra, verb->name, verb->name, verb->usage);
 }
 
 /* Checks the number of operands: a file may be missing, or a name with blanks

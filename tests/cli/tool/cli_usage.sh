@@ -26,6 +26,7 @@ trun-table x -o y.mp4|trun-table: is not a verb; did you mean turntable\?
 Inof x|Inof: is not a verb; did you mean info\?
 render view F|F: is one word too many for render
 x.nii y -o z.png|y: is one word too many for render
+"$TOOL" "$TOOL" -o z.png|too many for render; give one file or, of slices, their folder
 render -o z.png|give snowglass render INPUT \[-o OUT\]
 compare a.png|give snowglass compare A B
 phantom cube|no output file given
