@@ -88,10 +88,13 @@ static void report_legend(shot_renderer *shots, const snow_image *image) {
     snow_context *context = NULL;
     snow_overlay *overlay = NULL;
     picture_annotations made;
-    if (!opts->legend || !image || open_context(opts, &context) != CONTINUE)
+    const bool any =
+        opts->legend || opts->scale_bar || opts->title || opts->annotate;
+    if (!any || !image || open_context(opts, &context) != CONTINUE)
         return;
     annotations(shots, &made);
-    (void)annotations_make(&made, 0, -1, image, context, &overlay);
+    (void)annotations_make(&made, 0, shots->state.steps ? 0 : -1, image,
+                           context, &overlay);
     snow_overlay_free(overlay);
     snow_context_free(context);
 }

@@ -187,17 +187,30 @@ static snow_status add_legend(const picture_annotations *annotations,
                                   slice && !labels ? range : NULL);
 }
 
+/* The time of the picture, or the number of its step; "" where there is
+ * neither. */
+static void write_time(const picture_annotations *annotations, int64_t step,
+                       char time[TITLE_BYTES]) {
+    const options *opts = annotations->opts;
+    const snow_volume_info *info = &annotations->info;
+    *time = 0;
+    if (!opts->time_label && opts->annotate &&
+        strcmp(opts->annotate, "time") == 0 &&
+        snow_time_text(info, opts->time_format, time, TITLE_BYTES))
+        return;
+    if (step < 0 && info->times > 1)
+        step = info->time;
+    *time = 0;
+    if ((opts->time_label || opts->annotate) && step >= 0)
+        snprintf(time, TITLE_BYTES, "step %" PRId64, step);
+}
+
 /* The title, and below it the time of the picture. */
 static snow_status add_title(const picture_annotations *annotations,
                              int64_t step, snow_overlay *overlay) {
     const options *opts = annotations->opts;
-    char text[2 * TITLE_BYTES], time[TITLE_BYTES] = "";
-    bool dated = !opts->time_label && opts->annotate &&
-                 strcmp(opts->annotate, "time") == 0 &&
-                 snow_time_text(&annotations->info, opts->time_format, time,
-                                sizeof time);
-    if (!dated && (opts->time_label || opts->annotate) && step >= 0)
-        snprintf(time, sizeof time, "step %" PRId64, step);
+    char text[2 * TITLE_BYTES], time[TITLE_BYTES];
+    write_time(annotations, step, time);
     snprintf(text, sizeof text, "%.250s%s%s", opts->title ? opts->title : "",
              opts->title && *time ? "\n" : "", time);
     return snow_overlay_title(overlay, text);
@@ -239,6 +252,11 @@ snow_status annotations_make(const picture_annotations *annotations,
         !opts->title && !opts->annotate && !opts->outline && !opts->axes)
         return SNOW_STATUS_OK;
     view.azimuth = azimuth;
+    char time[TITLE_BYTES];
+    write_time(annotations, step, time);
+    if (opts->annotate && !*time)
+        snow_context_warn(context, "--annotate draws nothing: the file has "
+                                   "neither a time nor several steps");
     snow_status status =
         snow_overlay_new(context, view.width, view.height, &overlay);
     if (status == SNOW_STATUS_OK) {

@@ -84,6 +84,15 @@ check "are frames" same_bytes "$(echo t*.png)" "$(echo f_00.png f_02.png f_04.pn
 run 0 "one of them" movie times.nrrd --time 1 -o 'u%d.png' $look
 check "is that frame" same_bytes "$(echo u*.png)" "f_02.png"
 # shellcheck disable=SC2086
+run 0 "one of them as a picture" "$TOOL" render times.nrrd --time 1 -s 99x99 -o plain.png
+run 0 "with its number" "$TOOL" render times.nrrd --time 1 -s 99x99 -o numbered.png \
+    --annotate step
+run 6 "is another picture" "$TOOL" compare plain.png numbered.png
+run 0 "by its time, which it lacks" "$TOOL" render times.nrrd --time 1 -s 99x99 \
+    -o timed.png --annotate time
+check "is the same" cmp -s timed.png numbered.png
+run 0 "a file of one step" "$TOOL" render run/s_0000.nrrd -s 99x99 -o lone.png --annotate step
+says 'note: --annotate draws nothing: the file has neither a time nor several steps'
 run 0 "one of them, aloud" "$TOOL" movie times.nrrd --time 1 -o 'alone%d.png' -s 9x9
 says 'note: this is one time step, so the movie is a still; .* turntable'
 # Each step has two notes, one after the other.
