@@ -30,7 +30,9 @@ function(snow_public_library target name)
   endif()
   get_target_property(type ${target} TYPE)
   if(type STREQUAL SHARED_LIBRARY AND NOT APPLE)
-    target_link_options(${target} PRIVATE
+    # A library calls its own functions, also where the process has another one
+    # of that series, which a program links and a plug-in brings.
+    target_link_options(${target} PRIVATE LINKER:-Bsymbolic-functions
       "LINKER:--version-script=${PROJECT_BINARY_DIR}/snowglass.map")
     set_target_properties(${target} PROPERTIES
                           LINK_DEPENDS ${PROJECT_BINARY_DIR}/snowglass.map)
