@@ -9,7 +9,6 @@ import itertools
 import os
 import resource
 import signal
-import struct
 import subprocess
 import sys
 import tempfile
@@ -21,6 +20,10 @@ import warnings
 import numpy
 
 import snowglass as sg
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)),
+                                "..", "support"))
+from dicom import dicom_slice  # noqa: E402
 
 TOOL = os.environ.get("SNOWGLASS", "snowglass")
 # A sanitizer keeps what is freed, and takes its time.
@@ -34,35 +37,6 @@ PICTURES = {"short": 60, "long": 300, "release": 10000}[
 
 def head(**options):
     return sg.Volume("phantom:head", dims=(64, 64, 48), **options)
-
-
-def dicom_slice(z):
-    """A slice of 3 x 3 voxels of value z, at z mm."""
-    def element(group, number, kind, value):
-        if isinstance(value, str):
-            pad = b"\0" if kind == "UI" else b" "
-            value = value.encode() + pad * (len(value) % 2)
-        elif isinstance(value, int):
-            value = struct.pack("<H", value)
-        head = struct.pack("<HH", group, number) + kind.encode()
-        size = "<HI" if kind == "OW" else "<H"
-        return head + struct.pack(size, *(0, len(value))[-len(size) + 1:]) + \
-            value
-    meta = element(2, 0x10, "UI", "1.2.840.10008.1.2.1")
-    meta = element(2, 0, "UL", struct.pack("<I", len(meta))) + meta
-    return bytes(128) + b"DICM" + meta + b"".join([
-        element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.4"),
-        element(8, 0x18, "UI", f"1.2.3.{z + 1}"),
-        element(8, 0x60, "CS", "MR"), element(0x20, 0x0E, "UI", "1.2.3"),
-        element(0x20, 0x13, "IS", str(z + 1)),
-        element(0x20, 0x32, "DS", f"0\\0\\{z}"),
-        element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0"),
-        element(0x28, 2, "US", 1), element(0x28, 4, "CS", "MONOCHROME2"),
-        element(0x28, 0x10, "US", 3), element(0x28, 0x11, "US", 3),
-        element(0x28, 0x30, "DS", "1\\1"), element(0x28, 0x100, "US", 16),
-        element(0x28, 0x101, "US", 16), element(0x28, 0x102, "US", 15),
-        element(0x28, 0x103, "US", 0),
-        element(0x7FE0, 0x10, "OW", struct.pack("<9H", *[z] * 9))])
 
 
 def resident():
@@ -511,7 +485,7 @@ class Arrays(InFolder):
         os.mkdir(self.path("gap"))
         for z in (0, 1, 2, 4, 5):
             with open(self.path(f"gap/{z}.dcm"), "wb") as file:
-                file.write(dicom_slice(z))
+                file.write(dicom_slice(z, [z] * 9, height=z))
         with self.assertRaisesRegex(sg.Error, "slices is missing"):
             sg.Volume(self.path("gap"))
         with self.assertRaisesRegex(sg.Error, "slices is missing"):

@@ -7,25 +7,16 @@ command -v python3 >/dev/null || {
     skipped all "there is no python3"
     exit 77
 }
+export PYTHONPATH=$HERE/support PYTHONDONTWRITEBYTECODE=1
 cat >tools.py <<'END'
 import math
 import os
 import struct
 import sys
 
+from dicom import dicom_slice
+
 SIDE, COUNT = 5, 9
-
-
-def element(group, number, kind, value):
-    if isinstance(value, str):
-        value = value.encode() + (b"" if len(value) % 2 == 0 else
-                                  b"\0" if kind == "UI" else b" ")
-    elif isinstance(value, int):
-        value = struct.pack("<H", value)
-    head = struct.pack("<HH", group, number) + kind.encode()
-    if kind == "OW":
-        return head + struct.pack("<HI", 0, len(value)) + value
-    return head + struct.pack("<H", len(value)) + value
 
 
 def voxel(z, i):
@@ -33,26 +24,8 @@ def voxel(z, i):
 
 
 def slice_file(z, intercept=None):
-    pixels = struct.pack("<25H", *(voxel(z, i) for i in range(SIDE * SIDE)))
-    meta = element(2, 0x10, "UI", "1.2.840.10008.1.2.1")
-    meta = element(2, 0, "UL", struct.pack("<I", len(meta))) + meta
-    return bytes(128) + b"DICM" + meta + b"".join([
-        element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.2"),
-        element(8, 0x18, "UI", f"1.2.3.{z + 1}"),
-        element(8, 0x60, "CS", "CT"), element(0x10, 0x10, "PN", "Doe^Jane"),
-        element(0x20, 0x0E, "UI", "1.2.3"),
-        element(0x20, 0x13, "IS", str(z + 1)),
-        element(0x20, 0x32, "DS", f"0\\0\\{2 * z - 6}"),
-        element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0"),
-        element(0x28, 2, "US", 1), element(0x28, 4, "CS", "MONOCHROME2"),
-        element(0x28, 0x10, "US", SIDE), element(0x28, 0x11, "US", SIDE),
-        element(0x28, 0x30, "DS", "2\\2"), element(0x28, 0x100, "US", 16),
-        element(0x28, 0x101, "US", 16), element(0x28, 0x102, "US", 15),
-        element(0x28, 0x103, "US", 0),
-        b"" if intercept is None else
-        element(0x28, 0x1052, "DS", intercept) +
-        element(0x28, 0x1053, "DS", "1"),
-        element(0x7FE0, 0x10, "OW", pixels)])
+    voxels = [voxel(z, i) for i in range(SIDE * SIDE)]
+    return dicom_slice(z, voxels, 2 * z - 6, spacing=2, intercept=intercept)
 
 
 def folder(name, left_out=(), cut=(), intercept=None):
