@@ -48,6 +48,8 @@ def by_hand(source, work):
     tag = (f"{settings['wheel']['py-api']}-abi3-"
            f"{sysconfig.get_platform().replace('-', '_').replace('.', '_')}")
     about = f"Metadata-Version: 2.1\nName: snowglass\nVersion: {number}\n"
+    scripts = "".join(f"{command} = {place}\n" for command, place
+                      in project["project"]["scripts"].items())
     kind = f"Wheel-Version: 1.0\nRoot-Is-Purelib: false\nTag: {tag}\n"
     with zipfile.ZipFile(work / f"{name}-{tag}.whl", "w",
                          zipfile.ZIP_DEFLATED) as wheel:
@@ -56,6 +58,8 @@ def by_hand(source, work):
                 wheel.write(file, file.relative_to(stage))
         wheel.writestr(f"{name}.dist-info/METADATA", about)
         wheel.writestr(f"{name}.dist-info/WHEEL", kind)
+        wheel.writestr(f"{name}.dist-info/entry_points.txt",
+                       f"[console_scripts]\n{scripts}")
         wheel.writestr(f"{name}.dist-info/RECORD", "")
     return f"{name}-{tag}.whl"
 
