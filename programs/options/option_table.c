@@ -117,8 +117,9 @@ const option_row option_table[] = {
      "a built-in transfer function (default: made from the histogram)"},
     {"colormap", 'c', "NAME|LIST", TOPIC_LOOK, LOOKED, read_colormap,
      FIELD(colormap), 0, 0, "",
-     "colours along the range, or at data values, such as 60:#000000,255:#ff8800 "
-     "(default grey, or the preset's)"},
+     "colours along the range, or at data values, such as 60:#000000,255:#ff8800; "
+     "with --preset labels those of single labels (default grey, or the "
+     "preset's)"},
     {"opacity", 0, "V:O,V:O", TOPIC_LOOK, LOOKED & ~SLICE, read_points,
      FIELD(opacities), 0, 0, "", "opacity from 0 to 1 at data values, linear in between"},
     {"gradient-opacity", 0, "G:O,G:O", TOPIC_LOOK, LOOKED & ~SLICE, read_gradient_points,
@@ -323,7 +324,7 @@ const option_row option_table[] = {
     {"overlay-preset", 0, "NAME", TOPIC_DATA, OVERLAID, read_preset,
      FIELD(overlay_preset), 0, 0, "",
      "as --preset, of the overlay (default: from its histogram, or labels)"},
-    {"overlay-colormap", 0, "NAME", TOPIC_DATA, OVERLAID, read_colormap,
+    {"overlay-colormap", 0, "NAME|LIST", TOPIC_DATA, OVERLAID, read_colormap,
      FIELD(overlay_colormap), 0, 0, "", "as --colormap (default hot)"},
     {"overlay-range", 0, "LO,HI|pLO,pHI|full", TOPIC_DATA, OVERLAID, read_range,
      FIELD(overlay_range), 0, 0, "", "as --range (default: from its histogram)"},

@@ -140,9 +140,8 @@ const char *snow_colormap_name(size_t index) {
     return index < map_count ? maps[index].names[0] : NULL;
 }
 
-/* "60:#000000,255:#ff8800": colours at data values that rise, as many as a map
- * may have.  Their number; 0: it is something else. */
-static size_t read_points(const char *text, snow_color_point *points) {
+/* "60:#000000,255:#ff8800", where values rise. */
+size_t snow_colormap_list(const char *text, snow_color_point *points) {
     for (size_t count = 0; count < SNOW_COLORMAP_POINTS_MAX;) {
         const size_t length = strcspn(text, ":");
         char number[32], *end;
@@ -179,7 +178,7 @@ int snow_colormap_from_name(const char *name) {
     for (size_t i = 0; i < 2 * map_count; i++)
         if (snow_same_name(name, maps[i % map_count].names[i / map_count]))
             return (int)i;
-    return read_points(name, points) ? (int)(2 * map_count) : -1;
+    return snow_colormap_list(name, points) ? (int)(2 * map_count) : -1;
 }
 
 size_t snow_colormap_points(size_t index, snow_color_point *points,
@@ -204,7 +203,7 @@ void snow_transfer_builder_colormap(snow_transfer_builder *builder,
     const size_t found = (size_t)snow_colormap_from_name(name);
     if (found >= 2 * map_count) { /* where they are */
         builder->name = "own colours";
-        builder->color_count = read_points(name, builder->colors);
+        builder->color_count = snow_colormap_list(name, builder->colors);
         builder->low = builder->colors[0].value;
         builder->high = builder->colors[builder->color_count - 1].value;
         return;

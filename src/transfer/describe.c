@@ -1,9 +1,33 @@
-/* transfer/describe.c - what a look is, in a line of text. */
+/* transfer/describe.c - what a look is: of labels or not, and in a line of
+ * text. */
 #include "transfer/look.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* --- whether it is of labels ---------------------------------------------- */
+
+bool snow_look_is_of_labels(const snow_look *look) {
+    return look->preset && snow_same_name(look->preset, "labels");
+}
+
+static bool is_unranged(const snow_look *look) {
+    return look->range == SNOW_RANGE_AUTO && !look->log && look->symlog == 0 &&
+           !(look->shift < 0) && !(look->shift > 0);
+}
+
+bool snow_look_is_free(const snow_look *look) {
+    return !look->colormap && is_unranged(look);
+}
+
+bool snow_look_suits_labels(const snow_look *look) {
+    snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
+    return is_unranged(look) &&
+           (!look->colormap || snow_colormap_list(look->colormap, points));
+}
+
+/* --- a line of text ------------------------------------------------------- */
 
 /* The source of the look: only what was not requested was chosen. */
 static void set_reason(const snow_transfer_builder *builder,

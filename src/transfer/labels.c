@@ -39,17 +39,6 @@ typedef struct label_scan {
     size_t label_count;
 } label_scan;
 
-/* --- which looks ---------------------------------------------------------- */
-
-bool snow_look_is_of_labels(const snow_look *look) {
-    return look->preset && snow_same_name(look->preset, "labels");
-}
-
-bool snow_look_is_free(const snow_look *look) {
-    return !look->colormap && look->range == SNOW_RANGE_AUTO && !look->log &&
-           look->symlog == 0 && !(look->shift < 0) && !(look->shift > 0);
-}
-
 /* --- which volumes -------------------------------------------------------- */
 
 static size_t place_of(const double *values, size_t count, double value) {
@@ -328,6 +317,21 @@ static double asked_opacity(const snow_look *look, const snow_label *label) {
            share * (points[n].opacity - points[n - 1].opacity);
 }
 
+/* Those of a list have its colours. */
+static void set_colors(const snow_look *look, snow_label *labels,
+                       size_t count) {
+    snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
+    size_t listed =
+        look->colormap ? snow_colormap_list(look->colormap, points) : 0;
+    for (size_t n = 0; n < count; n++)
+        for (size_t i = 0; i < listed; i++)
+            if (points[i].value == labels[n].value) {
+                labels[n].color[0] = points[i].red;
+                labels[n].color[1] = points[i].green;
+                labels[n].color[2] = points[i].blue;
+            }
+}
+
 /* Steps half-way between labels. */
 static void place_points(snow_transfer_builder *b) {
     const snow_label *labels = b->labels;
@@ -353,6 +357,7 @@ static snow_status build(snow_context *context, const label_scan *s,
         b->labels[n] = label_of(s, n);
         b->labels[n].color[3] = asked_opacity(look, &b->labels[n]);
     }
+    set_colors(look, b->labels, s->count);
     SNOW_TRY(snow_transfer_builder_reserve(context, 2 * s->count, 2 * s->count,
                                            0, b));
     place_points(b);

@@ -168,6 +168,10 @@ void snow_full_range(const snow_histogram *histogram, double *low,
 bool snow_look_is_of_labels(const snow_look *look);
 bool snow_look_is_free(const snow_look *look);
 
+/* Whether labels can have what it asks for: opacities, those of gradients, and
+ * a list of colours. */
+bool snow_look_suits_labels(const snow_look *look);
+
 /* The slopes that a look may have on a volume (transfer.h); NULL: on one that
  * has no labels. */
 int snow_look_slopes(const snow_look *look, const snow_volume_info *info);
@@ -194,6 +198,10 @@ void snow_transfer_builder_describe(const snow_transfer_builder *builder,
 void snow_transfer_builder_symlog(snow_histogram *histogram,
                                   const snow_look *look,
                                   snow_transfer_builder *builder);
+
+/* Points of a list of colours at data values, of which there are at most
+ * SNOW_COLORMAP_POINTS_MAX.  Their number; 0: the text is something else. */
+size_t snow_colormap_list(const char *text, snow_color_point *points);
 
 /* Replaces the colours by a map over low..high. */
 void snow_transfer_builder_colormap(snow_transfer_builder *builder,

@@ -33,10 +33,11 @@ static snow_status check_look(snow_context *context, const snow_look *look) {
     if (look->colormap && snow_colormap_from_name(look->colormap) < 0)
         return refuse_name(context, "colour map", look->colormap,
                            snow_colormap_name);
-    if (snow_look_is_of_labels(look) && !snow_look_is_free(look))
+    if (snow_look_is_of_labels(look) && !snow_look_suits_labels(look))
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "labels have a colour each, and no range; leave out "
-                         "the colour map, range, shift and log");
+                         "range, shift and log, and give colours by a list "
+                         "such as 3:#ff8800, not by the name of a map");
     if ((look->log && look->symlog != 0) || !isfinite(look->symlog))
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "logarithms and symmetric ones from %g on exclude one "
@@ -284,7 +285,7 @@ static snow_status build_look(const snow_histogram *histogram,
     }
     snow_transfer_builder_shift(builder, look->shift);
     const char *map = look->colormap ? look->colormap : builder->colormap;
-    if (map)
+    if (map && !builder->labels) /* which have taken theirs */
         snow_transfer_builder_colormap(builder, map, builder->low,
                                        builder->high);
     keep_rising(builder);

@@ -129,6 +129,39 @@ static void names_colours_and_opacities_are_taken(void **state) {
     snow_context_free(context);
 }
 
+static void a_list_has_colours_of_single_labels(void **state) {
+    (void)state;
+    static int32_t voxels[ALL];
+    const snow_look plain = {.size = sizeof plain, .preset = "labels"};
+    const snow_look listed = {.size = sizeof listed,
+                              .preset = "labels",
+                              .colormap = "8:#00ff00,1000:#ff0033"};
+    const snow_look map = {
+        .size = sizeof map, .preset = "labels", .colormap = "hot"};
+    snow_context *context = support_context();
+    fill(voxels, 0, 0);
+    snow_volume *volume = wrapped(context, SNOW_TYPE_INT32, voxels);
+    snow_transfer *before = support_look(volume, plain);
+    snow_transfer *after = support_look(volume, listed), *none = NULL;
+    double a[4], b[4];
+    for (int n = 0; n < 3; n++) {
+        snow_transfer_evaluate(before, three[n], a);
+        snow_transfer_evaluate(after, three[n], b);
+        for (int c = 0; c < 4; c++)
+            assert_true((a[c] == b[c]) == (n != 1 || c == 3));
+    }
+    snow_transfer_evaluate(after, 1000, b);
+    assert_true(b[0] == 1 && b[1] == 0 && b[2] == 0.2);
+    assert_true(snow_transfer_label(after, 2)->color[2] == 0.2);
+    assert_int_equal(snow_transfer_new_for_volume(volume, &map, &none),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_non_null(strstr(snow_context_message(context), "3:#ff8800"));
+    snow_transfer_free(before);
+    snow_transfer_free(after);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
 static void the_preset_is_for_any_whole_numbers(void **state) {
     (void)state;
     static int32_t voxels[ALL];
@@ -352,6 +385,7 @@ int main(void) {
         cmocka_unit_test(regions_of_few_whole_numbers_are),
         cmocka_unit_test(each_has_a_colour_of_its_own),
         cmocka_unit_test(names_colours_and_opacities_are_taken),
+        cmocka_unit_test(a_list_has_colours_of_single_labels),
         cmocka_unit_test(the_preset_is_for_any_whole_numbers),
         cmocka_unit_test(labels_may_be_floats),
         cmocka_unit_test(what_is_not_labelled_is_hidden),
