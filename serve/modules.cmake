@@ -24,7 +24,7 @@ macro(wrap_module name)
                         "${text}return {${exported}};\n})();\n")
 endmacro()
 
-# Modules without functions around them share their names.
+# Modules without functions around them share their names; `module_NAME` is one.
 macro(unwrap_module)
   string(REGEX REPLACE "\nimport [{][^}]*[}][ \n]*from '[.]/[a-z_]+[.]js';" "" text "${text}")
   string(REGEX REPLACE "\nexport " "\n" text "${text}")
@@ -37,7 +37,7 @@ macro(unwrap_module)
     endif()
   endforeach()
   set_property(GLOBAL APPEND PROPERTY names ${defined})
-  string(APPEND modules "${text}")
+  set_property(GLOBAL PROPERTY module_${name} "${text}")
 endmacro()
 
 # Appends a module to `modules`, after those that it imports.  The last names of

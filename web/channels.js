@@ -2,7 +2,7 @@
 // and opacity.  A channel is as the look has it: [0, 'DAPI', 'blue', '#0000ff',
 // 10, 200, 1], without a colour where it is drawn alone.
 
-import {apart, button, check, make, number, section, show, slider} from './controls.js';
+import {apart, button, check, ink, make, number, section, show, slider} from './controls.js';
 
 const CHANNELS_MOST = 8; // SNOW_CHANNELS_MAX of volume.h
 
@@ -47,14 +47,13 @@ export class Channels {
 
     row(index, name) {
         const box = check(name, on => this.turn(index, on));
-        const ink = make('input', {type: 'color', 'aria-label': `colour of ${name}`,
-            oninput: () => this.put(index, {2: ink.value, 3: ink.value})});
+        const color = ink(`colour of ${name}`, value => this.put(index, {2: value, 3: value}));
         const ends = ['lowest', 'highest'].map((word, i) => number(`${word} value of the range of ${name}`,
             value => (i ? this.known[index][4] < value : value < this.known[index][5]) &&
                 this.put(index, {[4 + i]: value})));
         const opacity = slider(`opacity of ${name}`, 0, 1, 0.02, this.recipe, value => this.put(index, {6: value}));
-        const more = make('div', {className: 'row'}, ink, ...ends, opacity);
-        return {box: box.box, ink, ends, opacity, more, element: make('div', {}, box.label, more)};
+        const more = make('div', {className: 'row'}, color, ...ends, opacity);
+        return {box: box.box, color, ends, opacity, more, element: make('div', {}, box.label, more)};
     }
 
     update() {
@@ -65,14 +64,14 @@ export class Channels {
                 this.rows[one[0]] = this.row(one[0], one[1] || `channel ${one[0]}`);
                 this.list.append(this.rows[one[0]].element);
             }
-        this.rows.forEach(({box, ink, ends, opacity, more}, index) => {
+        this.rows.forEach(({box, color, ends, opacity, more}, index) => {
             const one = drawn.find(([k]) => k === index);
             box.checked = Boolean(one);
             more.hidden = !one?.[2];
             if (more.hidden)
                 return;
             this.known[index] = one;
-            ink.value = one[3];
+            color.value = one[3];
             apart(one.slice(4, 6), 5).forEach((value, i) => show(ends[i], value));
             opacity.value = one[6];
         });

@@ -2,15 +2,19 @@
 // recipe's colormap is then "60:#000000,255:#ff8800".
 
 import {mixed} from './channels.js';
-import {apart, button, fill, make, near, number, row, section, show} from './controls.js';
+import {apart, button, fill, ink, make, near, number, row, section, show} from './controls.js';
 
 const FIRST = 5; // points that are taken of a map
 
-const text = points => points.map(point => point.join(':')).join();
+export const text = points => points.sort(([a], [b]) => a - b).map(point => point.join(':')).join();
 
 /** [[60, '#000000'], ...]; null of a name. */
 export const ownColors = map => map?.includes(':')
     ? map.split(',').map(part => part.split(':')).map(([value, color]) => [+value, color]) : null;
+
+/** A list of colours of labels with another one. */
+export const painted = (map, value, color) => text([
+    ...ownColors(map)?.filter(([label]) => label !== value) ?? [], [value, color]]);
 
 /** Another range, with which one's own colours go, as those of a map do.  Both are of
  * the data: the shift of the keys is added to a range, but not to colours. */
@@ -43,7 +47,7 @@ export class Colors {
     }
 
     set(points) {
-        this.recipe.set({colormap: text(points.sort(([a], [b]) => a - b))});
+        this.recipe.set({colormap: text(points)});
     }
 
     put(i, value, color) {
@@ -56,10 +60,9 @@ export class Colors {
     }
 
     row(i) {
-        const ink = make('input', {type: 'color', 'aria-label': `colour ${i + 1}`,
-            oninput: () => this.put(i, null, ink.value)});
+        const color = ink(`colour ${i + 1}`, to => this.put(i, null, to));
         const value = number(`value of colour ${i + 1}`, to => this.put(i, to, null));
-        return {ink, value, element: row(`Colour ${i + 1}`, ink, value, button('Remove',
+        return {color, value, element: row(`Colour ${i + 1}`, color, value, button('Remove',
             `Remove colour ${i + 1}`, () => this.points.length > 1 &&
                 this.set(this.points.filter((_, k) => k !== i))))};
     }
@@ -73,7 +76,7 @@ export class Colors {
         while (this.rows.length < points.length)
             this.rows.push(this.row(this.rows.length));
         points.forEach(([at, color], i) => {
-            this.rows[i].ink.value = color;
+            this.rows[i].color.value = color;
             show(this.rows[i].value, ...near([at], look.high - look.low, 5));
         });
         fill(this.list, this.rows.slice(0, points.length).map(({element}) => element));

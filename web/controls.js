@@ -47,9 +47,15 @@ export function check(name, change) {
 export function number(name, change, step = 'any') {
     const field = make('input', {type: 'number', step, 'aria-label': name,
         onchange: () => {
-            if (field.value !== '' && Number.isFinite(field.valueAsNumber))
+            if (Number.isFinite(field.valueAsNumber))
                 change(field.valueAsNumber);
         }});
+    return field;
+}
+
+export function ink(name, change) {
+    const field = make('input', {type: 'color', 'aria-label': name,
+        oninput: () => change(field.value)});
     return field;
 }
 
@@ -65,12 +71,43 @@ export function slider(name, low, high, step, recipe, change) {
     const input = make('input', {type: 'range', min: low, max: high, step,
         'aria-label': name,
         oninput: () => change(input.valueAsNumber),
-        onpointerdown: () => recipe.begin(),
-        onpointerup: () => recipe.end(),
-        onpointercancel: () => recipe.end(),
-        onchange: () => recipe.end(), // let go elsewhere
-        onlostpointercapture: () => recipe.end()});
+        onchange: () => recipe.end()}); // let go elsewhere
+    listen(input, {down: () => recipe.begin(), up: () => recipe.end()});
     return input;
+}
+
+const METHODS = {pointerdown: 'down', pointermove: 'move', pointerup: 'up', pointercancel: 'up',
+    lostpointercapture: 'up', wheel: 'wheel', dblclick: 'doubled', keydown: 'key'};
+
+/** Calls the methods of these names, as far as there are such; one that returns true has
+ * done all.  Where the wheel means something, so do all buttons of the mouse. */
+export function listen(element, hearer) {
+    for (const [name, method] of Object.entries(METHODS))
+        if (hearer[method])
+            element.addEventListener(name, event => hearer[method](event) && event.preventDefault(),
+                {passive: false});
+    if (hearer.wheel)
+        element.oncontextmenu = element.onauxclick = event => event.preventDefault();
+}
+
+/** A canvas to draw on in pixels of the page, with as many as the screen has; nothing
+ * where it is not seen. */
+export function surface(canvas, options) {
+    const {clientWidth: width, clientHeight: height} = canvas, dense = devicePixelRatio || 1;
+    if (!width)
+        return {};
+    canvas.width = Math.round(width * dense);
+    canvas.height = Math.round(height * dense);
+    const g = canvas.getContext('2d', options);
+    g.scale(dense, dense);
+    return {g, width, height};
+}
+
+/** What two fingers do, of which one has moved: the distance's factor, and the middle. */
+export function pinched(fingers, id, now) {
+    const [, [x, y]] = [...fingers].find(([other]) => other !== id);
+    const far = ([a, b]) => Math.hypot(a - x, b - y) || 1;
+    return [far(now) / far(fingers.get(id)), (now[0] + x) / 2, (now[1] + y) / 2];
 }
 
 export function section(name, open, ...children) {

@@ -1,7 +1,8 @@
 // editor.js - the transfer function over the histogram: points are dragged,
 // added, removed, or set as numbers.  The same for the opacity by gradient.
 
-import {button, make, number, row, short, show} from './controls.js';
+import {button, listen, make, number, row, short, show, surface} from './controls.js';
+import {STEPS} from './keys.js';
 
 const NEAR = 12; // pixels
 const EDGE = 8;
@@ -19,11 +20,7 @@ export const BY_GRADIENT = {key: 'gradient-opacity', name: 'gradient', usual: ()
 
 export class Editor {
     constructor(recipe, page, kind = BY_VALUE) {
-        this.recipe = recipe;
-        this.page = page;
-        this.kind = kind;
-        this.log = true;
-        this.chosen = -1;
+        Object.assign(this, {recipe, page, kind, log: true, chosen: -1});
         this.canvas = make('canvas', {className: 'editor', tabIndex: 0,
             role: 'img', 'aria-label': `Opacity by ${kind.name}, over the histogram. ` +
             'Arrow keys move the chosen point, Page keys choose another, Insert ' +
@@ -33,7 +30,8 @@ export class Editor {
             value => this.put(null, Math.max(0, Math.min(1, value))), 0.01);
         this.opacity.min = 0;
         this.opacity.max = 1;
-        this.listen();
+        listen(this.canvas, this);
+        new ResizeObserver(() => this.draw()).observe(this.canvas);
     }
 
     get element() {
@@ -56,17 +54,6 @@ export class Editor {
                             shift: recipe.keys.preset && recipe.keys.shift || null}))]
                     : [button('None', 'The gradient does not matter',
                         () => recipe.set({[this.kind.key]: null}))]));
-    }
-
-    listen() {
-        const canvas = this.canvas;
-        canvas.addEventListener('pointerdown', event => this.down(event));
-        canvas.addEventListener('pointermove', event => this.move(event));
-        for (const name of ['pointerup', 'pointercancel', 'lostpointercapture'])
-            canvas.addEventListener(name, () => this.up());
-        canvas.addEventListener('dblclick', event => this.doubled(event));
-        canvas.addEventListener('keydown', event => this.key(event));
-        new ResizeObserver(() => this.draw()).observe(canvas);
     }
 
     /** The points in use: those of the recipe, else of the look. */
@@ -107,11 +94,9 @@ export class Editor {
 
     /** Value and opacity at a place of the canvas. */
     at(event) {
-        const box = this.canvas.getBoundingClientRect();
-        const x = event.clientX - box.left, y = event.clientY - box.top;
-        const [low, high] = this.span;
+        const {offsetX: x, offsetY: y} = event, [low, high] = this.span;
         return {x, y,
-            value: low + (x - EDGE) / (box.width - 2 * EDGE) * (high - low),
+            value: low + (x - EDGE) / (this.canvas.clientWidth - 2 * EDGE) * (high - low),
             opacity: Math.max(0, Math.min(1, (this.bottom - y) / (this.bottom - EDGE)))};
     }
 
@@ -217,26 +202,23 @@ export class Editor {
         this.remove();
     }
 
-    key(event) {
-        const [low, high] = this.span, step = event.shiftKey ? 0.002 : 0.01;
-        const point = this.points[this.chosen];
-        const moves = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
-        const by = moves[event.key];
+    key({key, shiftKey}) {
+        const [low, high] = this.span, step = shiftKey ? 0.002 : 0.01;
+        const point = this.points[this.chosen], by = STEPS[key];
         if (by && point)
             this.put(point[0] + by[0] * step * (high - low),
-                Math.max(0, Math.min(1, point[1] + by[1] * step)));
-        else if (event.key === 'PageDown' || event.key === 'PageUp')
+                Math.max(0, Math.min(1, point[1] - by[1] * step)));
+        else if (key === 'PageDown' || key === 'PageUp')
             this.chosen = Math.max(0, Math.min(this.points.length - 1,
-                this.chosen + (event.key === 'PageDown' ? 1 : -1)));
-        else if (event.key === 'Insert')
+                this.chosen + (key === 'PageDown' ? 1 : -1)));
+        else if (key === 'Insert')
             this.insert();
-        else if (event.key === 'Delete')
+        else if (key === 'Delete')
             this.remove();
         else
-            return;
-        event.preventDefault();
-        event.stopPropagation();
+            return false;
         this.draw();
+        return true;
     }
 
     /** After a change of the page: most change nothing here. */
@@ -250,14 +232,10 @@ export class Editor {
     }
 
     draw() {
-        const canvas = this.canvas, scale = devicePixelRatio || 1;
-        const width = canvas.clientWidth, height = canvas.clientHeight;
-        if (!width)
+        const {g} = surface(this.canvas);
+        if (!g)
             return;
-        canvas.width = Math.round(width * scale);
-        canvas.height = Math.round(height * scale);
-        const g = canvas.getContext('2d'), style = getComputedStyle(canvas);
-        g.scale(scale, scale);
+        const style = getComputedStyle(this.canvas);
         this.drawHistogram(g, style.getPropertyValue('--line'));
         this.drawStrip(g);
         this.drawPoints(g, style.getPropertyValue('--text'), style.getPropertyValue('--accent'));

@@ -128,17 +128,14 @@ export class ServerEngine {
     }
 
     async paint(data) {
-        const head = new DataView(data);
-        if (head.getUint32(0, true) !== MAGIC)
+        const [magic, n, , , width, height, render, pack] = new Uint32Array(data, 0, 8);
+        const [level, kind, pane] = new Uint8Array(data, 8);
+        if (magic !== MAGIC) // as machines have it that browsers are on: little endian
             return;
-        const n = head.getUint32(4, true);
-        const frame = {
-            n, level: head.getUint8(8), kind: head.getUint8(9), pane: head.getUint8(10),
-            width: head.getUint32(16, true), height: head.getUint32(20, true),
-            render: head.getUint32(24, true) / 1000, pack: head.getUint32(28, true) / 1000,
+        const frame = {n, level, kind, pane, width, height, render: render / 1000, pack: pack / 1000,
             data, bytes: data.byteLength,
-            blob: new Blob([new Uint8Array(data, 32)], {type: TYPES[head.getUint8(9)]})};
-        if (frame.pane) {
+            blob: new Blob([new Uint8Array(data, 32)], {type: TYPES[kind]})};
+        if (pane) {
             this.tell('small', frame);
             return;
         }

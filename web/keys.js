@@ -24,13 +24,13 @@ export function helpTable() {
         make('td', {}, make('kbd', {textContent: key})), make('td', {textContent: text}))));
 }
 
-const STEPS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
+export const STEPS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
 
 /** `actions` has what the buttons do, by name. */
 export function listenToKeys(recipe, page, actions, pointer) {
     document.addEventListener('keydown', event => {
         const field = event.target.closest?.('input, select, textarea, dialog, summary');
-        if (field || event.ctrlKey || event.metaKey || event.altKey || !page.info || !page.look)
+        if (field || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || !page.info || !page.look)
             return;
         if (press(event, recipe, page, actions, pointer))
             event.preventDefault();

@@ -3,7 +3,8 @@
 
 import {pixel, project} from './camera.js';
 import {grips} from './clip.js';
-import {make} from './controls.js';
+import {listen, make, surface} from './controls.js';
+import {STEPS} from './keys.js';
 import {COLORS, world} from './slices.js';
 
 const HANDLES = 12; // six ends and six tilted planes
@@ -39,15 +40,13 @@ export class Overlay {
     draw() {
         const {width: across, height: down, clientWidth: width, clientHeight: height} = this.pointer.canvas;
         this.size = `${across} ${down}`;
-        const {canvas, page} = this, dense = devicePixelRatio || 1;
+        const {canvas, page} = this;
         if (!page.info || !width)
             return;
         canvas.hidden = !(this.slices.keys && page.info.slices); // empty, it costs as much
         if (!canvas.hidden) {
-            canvas.width = Math.round(width * dense);
-            canvas.height = Math.round(height * dense);
-            const g = canvas.getContext('2d');
-            g.setTransform(dense, 0, 0, dense, canvas.width / 2, canvas.height / 2);
+            const {g} = surface(canvas);
+            g.translate(width / 2, height / 2);
             [0, 1, 2].forEach(k => this.outline(g, k));
         }
         this.place(width, height);
@@ -74,21 +73,14 @@ export class Overlay {
     // --- handles ---------------------------------------------------------------
 
     handle(i) {
-        const {recipe} = this;
-        const button = make('button', {type: 'button', className: 'handle', hidden: true,
-            role: 'slider', 'aria-label': 'clip plane',
-            onpointerdown: event => this.down(event, i), onpointermove: event => this.move(event),
-            onpointerup: event => this.up(event), onpointercancel: event => this.up(event),
-            onlostpointercapture: event => this.up(event),
-            onwheel: event => this.pointer.wheel(event),
-            oncontextmenu: event => event.preventDefault(), onkeydown: event => {
-                const by = {ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1}[event.key];
-                if (!by)
-                    return;
-                event.preventDefault();
-                event.stopPropagation();
-                const grip = this.grips[i];
-                recipe.set(grip.move(recipe.keys, grip.value + by * (grip.high - grip.low) / 100));
+        const {pointer} = this, button = make('button', {type: 'button', className: 'handle',
+            hidden: true, role: 'slider', 'aria-label': 'clip plane'});
+        listen(button, {down: event => this.down(event, i), move: event => this.move(event),
+            up: event => this.up(event), wheel: event => pointer.wheel(event), key: ({key}) => {
+                const by = STEPS[key], {move, value, low, high} = this.grips[i];
+                if (by)
+                    this.recipe.set(move(this.recipe.keys, value + (by[0] - by[1]) * (high - low) / 100));
+                return by;
             }});
         return button;
     }
@@ -114,9 +106,8 @@ export class Overlay {
     }
 
     down(event, i) {
-        event.preventDefault();
         if (event.button || this.held)
-            return;
+            return true;
         const {keys} = this.recipe, {info} = this.page, grip = this.grips[i];
         const unit = info.radius / 100, from = this.see(grip.place);
         const to = this.see(grip.place.map((x, k) => x + unit * grip.way[k])) ?? from;
@@ -126,6 +117,7 @@ export class Overlay {
             way: [(to[0] - from[0]) / unit, (to[1] - from[1]) / unit],
             length: pixel(keys, info, this.pointer.side)};
         this.recipe.begin();
+        return true;
     }
 
     /** The plane stays under the pointer; one that is seen edge-on follows up and

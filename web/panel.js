@@ -2,8 +2,8 @@
 
 import {facing, grips, isFull, PLANES_MOST, tilted, tiltedTo} from './clip.js';
 import {Channels, mixed} from './channels.js';
-import {Colors, ownColors, ranged} from './colors.js';
-import {button, check, fill, line, make, number, row, section, select, short, show, slider}
+import {Colors, ownColors, painted, ranged, text} from './colors.js';
+import {button, check, fill, ink, line, make, number, row, section, select, short, show, slider}
     from './controls.js';
 import {BY_GRADIENT, Editor} from './editor.js';
 import {MODES, VIEWS} from './keys.js';
@@ -65,7 +65,8 @@ export class Panel {
         const iso = number('iso value', value => recipe.set({iso: value}));
         const isoRow = row('Iso value', iso);
         const maps = select([['', 'of the preset'], ...page.info.colormaps, [':', 'own']],
-            name => name === ':' ? this.colors.set(this.colors.points) : recipe.set({colormap: name || null}));
+            name => recipe.set({colormap: name === ':' ? text(this.colors.points) : name || null,
+                ...name && page.look.labels?.length && {preset: null}})); // these are of values
         const low = number('lowest value of the range', value => this.setRange(value, null));
         const high = number('highest value of the range', value => this.setRange(null, value));
         const percent = button('1-99 %', 'Range of the 1st to the 99th percentile',
@@ -311,9 +312,9 @@ export class Panel {
         if (!page.info.overlay)
             return '';
         const on = check(page.info.overlay, value => recipe.set({overlay: value || null}));
-        const labels = () => this.opacities('overlay-opacity', page.look?.overlay?.labels);
+        const labels = () => this.labelled('overlay-', page.look?.overlay?.labels);
         // Half, as in slices where nothing is asked.
-        const list = this.switches('overlay-opacity', labels, 0.5);
+        const list = this.switches('overlay-', labels, 0.5);
         const maps = select(['hot', ...page.info.colormaps.filter(name => name !== 'hot')],
             name => recipe.set({'overlay-colormap': name}));
         const ends = ['lowest', 'highest'].map((name, i) => number(`${name} value of the range of the overlay`, value => {
@@ -351,7 +352,7 @@ export class Panel {
 
     /** Labels of the volume itself. */
     named() {
-        const list = this.switches('opacity', () => this.opacities('opacity', this.page.look?.labels));
+        const list = this.switches('', () => this.labelled('', this.page.look?.labels));
         const made = section('Labels', true, list);
         this.follow(() => {
             made.hidden = !list.childElementCount;
@@ -364,34 +365,39 @@ export class Panel {
         return Math.max(0, ...(this.recipe.keys[key] ?? []).map(point => point[1]));
     }
 
-    /** Labels with the opacities of the recipe, which may be newer than the look. */
-    opacities(key, labels = []) {
-        const points = new Map(this.recipe.keys[key]);
+    /** Labels with the colours and opacities of the recipe, which may be newer than the
+     * look. */
+    labelled(of, labels = []) {
+        const {keys} = this.recipe, points = new Map(keys[`${of}opacity`]);
+        const colors = new Map(ownColors(keys[`${of}colormap`]));
         return labels.map(([value, name, color, opacity]) =>
-            [value, name, color, points.get(value) ?? opacity]);
+            [value, name, colors.get(value) ?? color, points.get(value) ?? opacity]);
     }
 
-    /** A box for each label, that sets its opacity to 0 and back. */
-    switches(key, labels, usual = 1) {
-        const list = make('div', {className: 'labels'}), boxes = [];
+    /** A box for each label, that sets its opacity to 0 and back, and its colour. */
+    switches(of, labels, usual = 1) {
+        const list = make('div', {}), boxes = [], {recipe} = this, key = `${of}opacity`, map = `${of}colormap`;
         const put = (i, on) => {
             const full = this.most(key) || usual;
-            this.recipe.set({[key]: labels().map(([value, , , opacity], k) =>
+            recipe.set({[key]: labels().map(([value, , , opacity], k) =>
                 [value, (k === i ? on : opacity) ? full : 0])});
         };
         this.follow(() => {
             const now = labels();
             for (let i = boxes.length; i < now.length; i++) {
-                const ink = make('i', {}), name = make('span', {}), made = check('', on => put(i, on));
-                made.label.append(ink, name);
-                boxes.push({...made, ink, name});
+                const name = make('span', {}), made = check('', on => put(i, on));
+                const color = ink('', to => recipe.set({[`${of}preset`]: 'labels',
+                    [map]: painted(recipe.keys[map], labels()[i][0], to)}));
+                made.label.append(name);
+                boxes.push({...made, color, name, line: make('div', {className: 'row'}, color, made.label)});
             }
             now.forEach(([value, name, color, opacity], i) => {
                 boxes[i].box.checked = opacity;
-                boxes[i].ink.style.background = color;
+                boxes[i].color.value = color;
+                boxes[i].color.setAttribute('aria-label', `colour of ${name || value}`);
                 boxes[i].name.textContent = name || value;
             });
-            fill(list, boxes.slice(0, now.length).map(({label}) => label));
+            fill(list, boxes.slice(0, now.length).map(({line}) => line));
         });
         return list;
     }

@@ -3,7 +3,7 @@
 import {panned, round, turned, zoomed} from './camera.js';
 import {listed, mixed} from './channels.js';
 import {ranged} from './colors.js';
-import {apart} from './controls.js';
+import {apart, listen, pinched} from './controls.js';
 
 /** What a drag does, by button and key; otherwise what was chosen, as a finger has
  * neither. */
@@ -30,21 +30,13 @@ export class Pointer {
     /** `page.look` has the present range and points; `aim` gets a place that was
      * double-clicked, as shares of the picture's sides. */
     constructor(canvas, recipe, page, aim) {
-        this.canvas = canvas;
-        this.recipe = recipe;
-        this.page = page;
-        this.fingers = new Map();
-        canvas.addEventListener('pointerdown', event => this.down(event));
-        canvas.addEventListener('pointermove', event => this.move(event));
-        for (const name of ['pointerup', 'pointercancel', 'lostpointercapture'])
-            canvas.addEventListener(name, event => this.up(event));
-        canvas.addEventListener('wheel', event => this.wheel(event), {passive: false});
-        canvas.addEventListener('dblclick', event => {
-            const [x, y] = this.at(event), [width, height] = this.box;
-            aim(x / width + 0.5, y / height + 0.5);
-        });
-        canvas.addEventListener('contextmenu', event => event.preventDefault());
-        canvas.addEventListener('auxclick', event => event.preventDefault());
+        Object.assign(this, {canvas, recipe, page, aim, fingers: new Map()});
+        listen(canvas, this);
+    }
+
+    doubled(event) {
+        const [x, y] = this.at(event), [width, height] = this.box;
+        this.aim(x / width + 0.5, y / height + 0.5);
     }
 
     /** The box in which the picture is drawn: another page may have another window. */
@@ -66,17 +58,16 @@ export class Pointer {
     }
 
     down(event) {
-        if (!this.page.info || !this.page.look)
-            return;
-        this.kind ??= kindOf(event, this.page.tool);
+        if (this.page.info && this.page.look)
+            this.kind ??= kindOf(event, this.page.tool);
         if (!this.kind)
-            return;
-        event.preventDefault();
+            return false;
         this.canvas.focus();
         this.canvas.setPointerCapture(event.pointerId);
         this.fingers.set(event.pointerId, this.at(event));
         this.take();
         this.recipe.begin();
+        return true;
     }
 
     /** What a drag begins with. */
@@ -151,14 +142,9 @@ export class Pointer {
 
     /** Two fingers: the middle moves, the distance zooms. */
     pinch(id, before, now) {
-        const other = [...this.fingers].find(([key]) => key !== id)[1];
-        const far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) || 1;
-        const factor = far(now, other) / far(before, other);
-        const x = (now[0] + other[0]) / 2, y = (now[1] + other[1]) / 2;
-        const info = this.page.info;
-        this.recipe.set(panned(this.recipe.keys, info, (now[0] - before[0]) / 2,
-            (now[1] - before[1]) / 2, this.side));
-        this.recipe.set(zoomed(this.recipe.keys, info, factor, x, y, this.side));
+        const {recipe, page: {info}, side} = this, zoom = pinched(this.fingers, id, now);
+        recipe.set(panned(recipe.keys, info, (now[0] - before[0]) / 2, (now[1] - before[1]) / 2, side));
+        recipe.set(zoomed(recipe.keys, info, ...zoom, side));
     }
 
     up(event) {
@@ -169,12 +155,11 @@ export class Pointer {
     }
 
     wheel(event) {
-        event.preventDefault();
-        if (!this.page.info)
-            return;
         const lines = event.deltaMode ? 30 : 1;
-        const [x, y] = this.at(event);
-        this.recipe.set(zoomed(this.recipe.keys, this.page.info,
-            Math.exp(-event.deltaY * lines / 600), x, y, this.side));
+        const [x, y] = this.at(event), {info} = this.page;
+        if (info)
+            this.recipe.set(zoomed(this.recipe.keys, info,
+                Math.exp(-event.deltaY * lines / 600), x, y, this.side));
+        return true;
     }
 }

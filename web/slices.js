@@ -4,8 +4,9 @@
 // that no server gets, so that undo and links have it.
 
 import {add, cross, dot} from './camera.js';
-import {apart, button, check, make, number, row, section, select, short, show, slider}
-    from './controls.js';
+import {apart, button, check, listen, make, number, pinched, row, section, select, short, show,
+    slider, surface} from './controls.js';
+import {STEPS} from './keys.js';
 import {kindOf} from './pointer.js';
 
 export const COLORS = ['#ff7b72', '#56d364', '#6db1ff', '#e3b341']; // across x, y, z of the grid
@@ -49,39 +50,29 @@ function placeText(info, k, at) {
 
 class Pane {
     constructor(owner, number_) {
-        this.owner = owner;
-        this.number = number_;
-        this.zoom = 1;
-        this.middle = [0, 0]; // of the pane, in pixels from that of the slice
-        this.fingers = new Map();
-        this.turned = 0;
+        Object.assign(this, {owner, number: number_, zoom: 1, turned: 0, fingers: new Map(),
+            middle: [0, 0]}); // of the pane, in pixels from that of the slice
         this.canvas = make('canvas', {tabIndex: 0, role: 'img'});
         this.caption = make('figcaption', {});
         this.slider = slider('slice', 0, 1, 1, owner.recipe,
             value => owner.step(this, value - owner.index[this.along]));
         this.element = make('figure', {className: 'pane'}, this.canvas, this.caption,
             button('\u2922', 'This slice alone, or all (Enter)', () => owner.alone(this)), this.slider);
-        this.listen();
+        listen(this.canvas, this);
+        new ResizeObserver(() => this.draw()).observe(this.canvas);
     }
 
     get along() {
         return this.info.along;
     }
 
-    listen() {
-        const {canvas} = this, {recipe} = this.owner;
-        canvas.addEventListener('pointerdown', event => this.down(event));
-        canvas.addEventListener('pointermove', event => this.move(event));
-        for (const name of ['pointerup', 'pointercancel', 'lostpointercapture'])
-            canvas.addEventListener(name, event => {
-                if (this.fingers.delete(event.pointerId) && !this.fingers.size)
-                    recipe.end();
-            });
-        canvas.addEventListener('wheel', event => this.wheel(event), {passive: false});
-        canvas.addEventListener('contextmenu', event => event.preventDefault());
-        canvas.addEventListener('dblclick', () => this.owner.alone(this));
-        canvas.addEventListener('keydown', event => this.key(event));
-        new ResizeObserver(() => this.draw()).observe(canvas);
+    doubled() {
+        this.owner.alone(this);
+    }
+
+    up(event) {
+        if (this.fingers.delete(event.pointerId) && !this.fingers.size)
+            this.owner.recipe.end();
     }
 
     /** Where the slice lies in the pane: its corner, and the length of a pixel. */
@@ -113,13 +104,11 @@ class Pane {
         return index;
     }
 
-    at(event) {
-        const box = this.canvas.getBoundingClientRect();
-        return [event.clientX - box.left, event.clientY - box.top];
+    at({offsetX, offsetY}) {
+        return [offsetX, offsetY];
     }
 
     down(event) {
-        event.preventDefault();
         this.canvas.focus();
         this.canvas.setPointerCapture(event.pointerId);
         this.fingers.set(event.pointerId, this.at(event));
@@ -127,6 +116,7 @@ class Pane {
         this.owner.recipe.begin();
         if (this.fingers.size === 1 && !['pan', 'window'].includes(this.kind))
             this.owner.goTo(this.voxelAt(this.at(event)));
+        return true;
     }
 
     move(event) {
@@ -134,11 +124,9 @@ class Pane {
         if (!before)
             return;
         const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
-        this.fingers.set(event.pointerId, now);
         if (this.fingers.size === 2) {
-            const other = [...this.fingers].find(([id]) => id !== event.pointerId)[1];
-            const far = to => Math.hypot(to[0] - other[0], to[1] - other[1]) || 1;
-            this.zoomAt(far(now) / far(before), [(now[0] + other[0]) / 2, (now[1] + other[1]) / 2]);
+            const [factor, ...at] = pinched(this.fingers, event.pointerId, now);
+            this.zoomAt(factor, at);
             this.pan(dx / 2, dy / 2);
         } else if (this.kind === 'pan') {
             this.pan(dx, dy);
@@ -147,6 +135,7 @@ class Pane {
         } else {
             this.owner.goTo(this.voxelAt(now));
         }
+        this.fingers.set(event.pointerId, now);
     }
 
     pan(dx, dy) {
@@ -167,40 +156,40 @@ class Pane {
     }
 
     wheel(event) {
-        event.preventDefault();
         const by = event.deltaY * (event.deltaMode ? 30 : 1);
         if (event.ctrlKey) {
             this.zoomAt(Math.exp(-by / 300), this.at(event));
-            return;
+        } else {
+            this.turned += by;
+            const steps = Math.trunc(this.turned / STEP);
+            this.turned -= steps * STEP;
+            this.owner.step(this, steps);
         }
-        this.turned += by;
-        const steps = Math.trunc(this.turned / STEP);
-        this.turned -= steps * STEP;
-        this.owner.step(this, steps);
+        return true;
     }
 
-    key(event) {
-        if (event.ctrlKey || event.metaKey || event.altKey)
-            return;
-        const {owner, info} = this, {right, down} = info;
-        const by = {ArrowRight: [right, 1], ArrowLeft: [right, -1], ArrowDown: [down, 1],
-            ArrowUp: [down, -1], PageUp: [[this.along, 1], 1], PageDown: [[this.along, 1], -1]}[event.key];
-        const middle = [this.canvas.clientWidth / 2, this.canvas.clientHeight / 2];
-        if (by) {
-            const index = [...owner.index];
-            index[by[0][0]] += by[0][1] * by[1];
+    key({key, ctrlKey, metaKey, altKey}) {
+        const {owner, info: {right, down}, canvas} = this, by = STEPS[key];
+        const page = key === 'PageUp' ? 1 : key === 'PageDown' ? -1 : 0;
+        if (ctrlKey || metaKey || altKey)
+            return false;
+        if (page) {
+            owner.step(this, page);
+        } else if (by) {
+            const {index} = owner;
+            index[right[0]] += right[1] * by[0];
+            index[down[0]] += down[1] * by[1];
             owner.goTo(index);
-        } else if (event.key === 'Enter') {
+        } else if (key === 'Enter') {
             owner.alone(this);
-        } else if (event.key === '+' || event.key === '=' || event.key === '-') {
-            this.zoomAt(event.key === '-' ? 1 / 1.25 : 1.25, middle);
-        } else if (event.key === 'c') {
+        } else if (key === '+' || key === '=' || key === '-') {
+            this.zoomAt(key === '-' ? 1 / 1.25 : 1.25, [canvas.clientWidth / 2, canvas.clientHeight / 2]);
+        } else if (key === 'c') {
             owner.command(this);
         } else {
-            return;
+            return false;
         }
-        event.preventDefault();
-        event.stopPropagation();
+        return true;
     }
 
     /** What the server is to draw. */
@@ -260,14 +249,11 @@ class Pane {
     }
 
     draw() {
-        const {canvas, bitmap, info} = this, dense = devicePixelRatio || 1;
-        const width = canvas.clientWidth, height = canvas.clientHeight;
-        if (!width || !bitmap)
+        const {canvas, bitmap, info} = this;
+        const {g, width, height} = bitmap ? surface(canvas, {alpha: false}) : {};
+        if (!g)
             return;
-        canvas.width = Math.round(width * dense);
-        canvas.height = Math.round(height * dense);
-        const g = canvas.getContext('2d', {alpha: false}), {x, y, scale} = this.place;
-        g.scale(dense, dense);
+        const {x, y, scale} = this.place;
         g.imageSmoothingQuality = 'high';
         g.drawImage(bitmap, x, y, info.width * scale, info.height * scale);
         const [px, py] = this.cross.map((at, i) => [x, y][i] + at * scale);

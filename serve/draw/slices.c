@@ -114,8 +114,12 @@ static json_t *slice_tree(const drawing *d, const slice_asked *asked) {
     for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
         if (!asked->colored || (i == 1 && json_object_get(tree, "preset")))
             json_object_del(tree, colors[i]);
-    json_object_set_new(tree, "range",
-                        json_pack("[f,f]", asked->low, asked->high));
+    const char *preset = json_string_value(json_object_get(tree, "preset"));
+    if (preset && strcmp(preset, "labels") == 0) /* which have no range */
+        json_object_del(tree, "range");
+    else
+        json_object_set_new(tree, "range",
+                            json_pack("[f,f]", asked->low, asked->high));
     json_object_set_new(tree, "no-labels", json_true());
     take_channels(d, asked, tree);
     return tree;

@@ -94,8 +94,9 @@ def overlaid():
                   b"\nSegment1_LabelValue:=2\nSegment1_Name:=right\n\n" +
                   bytes((1 + (i % 48 >= 24)) * (value > 60)
                         for i, value in enumerate(voxels)))
-    for overlay, what in ((seg, "overlay"), (dose, "fused")):
-        server = Server(base, "--overlay", overlay)
+    for what, *volume in (("overlay", base, "--overlay", seg), ("fused", base, "--overlay", dose),
+                          ("labels", seg)):
+        server = Server(*volume)
         drive(server.url, shots, what)
         same_bytes()
         same_bytes("slice.txt", "slice.png")

@@ -1022,24 +1022,75 @@ async function overlaid() {
     check('a label is switched off', now.overlay === true &&
         String(now['overlay-opacity']) === '1,0.5,2,0', String(now['overlay-opacity']));
     check('in slices too', one !== both);
+    await page.getByLabel('colour of left').fill('#00ff00');
+    await rest(page);
+    now = await keys(page);
+    check('a label of an overlay has a colour', now['overlay-preset'] === 'labels' &&
+        now['overlay-colormap'] === '1:#00ff00', JSON.stringify(now));
     await shot(page, 'overlay');
+    const green = await sliced();
+    check('and in slices', green !== one);
+    await page.locator('.picture canvas').first().focus();
+    await page.keyboard.press('z');
+    await rest(page);
+    check('that is undone', await sliced() === one);
+    await page.keyboard.press('Z');
+    await rest(page);
+    check('and done again', await sliced() === green);
     await page.evaluate(() => window.snowglass.recipe.set({clip: [[1, 0, 0, 0]]}));
     await rest(page);
-    check('slices show what clip planes cut', await sliced() === one);
+    check('slices show what clip planes cut', await sliced() === green);
     const command = await keepBoth(page);
     check('the command has the overlay', command.includes('--overlay-opacity'), command);
     await page.evaluate(() => window.snowglass.recipe.set({clip: null, mode: 'mip'}));
     await rest(page);
-    check('a projection has slices with it', await sliced() === one);
+    check('a projection has slices with it', await sliced() === green);
     await page.evaluate(() => window.snowglass.recipe.set({mode: null}));
     await page.getByLabel('seg.nrrd').uncheck();
     await rest(page);
     const none = await sliced();
-    check('the overlay is switched off', !(await keys(page)).overlay && none !== one && none !== both);
+    check('the overlay is switched off', !(await keys(page)).overlay && none !== green && none !== both);
     await page.getByLabel('seg.nrrd').check();
     await rest(page);
-    check('and on again', await sliced() === one);
+    check('and on again', await sliced() === green);
     await page.context().close();
+}
+
+/** A segmentation alone: its labels take colours, which command and link have. */
+async function labelled() {
+    const page = await open();
+    await page.getByLabel('colour of right').fill('#2040ff');
+    await rest(page);
+    await page.getByLabel('colour of left').fill('#ffee00');
+    await rest(page);
+    const now = await keys(page);
+    check('labels have colours', now.preset === 'labels' && now.colormap === '1:#ffee00,2:#2040ff',
+        JSON.stringify(now));
+    check('which the look has', await page.evaluate(() => String(window.snowglass.page.look.labels
+        .map(([, , color]) => color))) === '#ffee00,#2040ff');
+    await page.locator('.picture canvas').first().focus();
+    await page.keyboard.press('x');
+    await slicesRest(page);
+    await page.getByLabel('in the colours of the look').evaluate(box => box.click());
+    await keepBoth(page);
+    await shot(page, 'labels');
+    await page.getByRole('button', {name: /^Copy a link/}).click();
+    const link = await page.locator('dialog textarea').inputValue();
+    await page.keyboard.press('Escape');
+    const painted = String(await bytesOf(page, 'page.page.rest'));
+    await page.getByLabel('Colours', {exact: true}).first().selectOption('viridis');
+    await rest(page);
+    check('a map is of values', await page.evaluate(() => window.snowglass.page.look.labels.length === 0));
+    await page.getByRole('button', {name: /^All as it was/}).click();
+    await rest(page);
+    check('their own colours come back', !(await keys(page)).colormap &&
+        String(await bytesOf(page, 'page.page.rest')) !== painted);
+    await page.context().close();
+    const linked = await open({}, link);
+    await slicesRest(linked);
+    await rest(linked);
+    check('a link has them', String(await bytesOf(linked, 'page.page.rest')) === painted);
+    await linked.context().close();
 }
 
 /** A volume of values over another: its colours, range and opacity. */
@@ -1214,7 +1265,7 @@ async function many() {
 
 const tools = {answered, check, folder, keys, open, rest, said, slicesRest, wheel};
 const alone = {steps: () => steps(tools), offset: () => offset(tools),
-    restarted: () => restarted(tools, url), embed: embedded, points: manyPoints, mask: masked, overlay: overlaid, fused, channels: mixed, begun, many};
+    restarted: () => restarted(tools, url), embed: embedded, points: manyPoints, mask: masked, overlay: overlaid, labels: labelled, fused, channels: mixed, begun, many};
 if (alone[tier]) {
     await alone[tier]();
     check('nothing is on the console', said.length === 0, said.join(' | '));
