@@ -136,6 +136,7 @@ void answer_info(drawing *d, outbox *box) {
     json_object_set_new(tree, "colormaps", names_of(snow_colormap_name));
     json_object_set_new(tree, "channels", channel_names(info));
     json_object_set_new(tree, "tf", json_boolean(d->first.tf != NULL));
+    json_object_set_new(tree, "keys", names_of(message_key));
     json_object_set_new(tree, "mask", json_boolean(d->first.mask != NULL));
     json_object_set_new(tree, "overlay",
                         d->first.overlay

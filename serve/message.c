@@ -70,9 +70,13 @@ const char *message_switches(size_t index) {
     return names[index];
 }
 
+const char *message_key(size_t index) {
+    return index < sizeof keys / sizeof *keys ? keys[index] : NULL;
+}
+
 bool message_may_set(const char *key) {
-    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
-        if (strcmp(keys[i], key) == 0)
+    for (size_t i = 0; message_key(i); i++)
+        if (strcmp(message_key(i), key) == 0)
             return true;
     return false;
 }

@@ -47,6 +47,9 @@ void message_free(message *m);
 /* Whether a page may set a key of the recipe: no value names a file. */
 bool message_may_set(const char *key);
 
+/* These keys; NULL: no more. */
+const char *message_key(size_t index);
+
 /* The keys that a page sets to null or true alone, which stands for the file of
  * the command line; NULL: no more. */
 const char *message_switches(size_t index);

@@ -3,7 +3,7 @@
 import {facing, grips, isFull, PLANES_MOST, tilted, tiltedTo} from './clip.js';
 import {Channels, mixed} from './channels.js';
 import {Colors, ownColors, painted, ranged, text} from './colors.js';
-import {button, check, fill, ink, line, make, number, row, section, select, short, show, slider}
+import {button, check, ink, line, make, number, row, section, select, short, show, slider}
     from './controls.js';
 import {BY_GRADIENT, Editor} from './editor.js';
 import {MODES, VIEWS} from './keys.js';
@@ -53,46 +53,52 @@ export class Panel {
         this.updates.push(each);
     }
 
-    value(key, otherwise) {
-        return this.recipe.keys[key] ?? otherwise;
+    /** A box that is ticked as the recipe says. */
+    box(name, of, change) {
+        const {box, label} = check(name, change);
+        this.follow(keys => {
+            box.checked = of(keys);
+        });
+        return label;
+    }
+
+    /** A field or a list that has a value of the recipe. */
+    kept(field, of) {
+        this.follow(keys => show(field, of(keys)));
+        return field;
     }
 
     look() {
         const {recipe, page} = this;
-        const modes = select(MODES, mode => recipe.set(mode === 'iso'
-            ? {mode, iso: this.value('iso', +short((page.look.low + page.look.high) / 2))}
-            : {mode, iso: null}));
-        const iso = number('iso value', value => recipe.set({iso: value}));
-        const isoRow = row('Iso value', iso);
-        const maps = select([['', 'of the preset'], ...page.info.colormaps, [':', 'own']],
+        const modes = this.kept(select(MODES, mode => recipe.set(mode === 'iso'
+            ? {mode, iso: recipe.keys.iso ?? +short((page.look.low + page.look.high) / 2)}
+            : {mode, iso: null})), ({mode = 'over'}) => mode);
+        const isoRow = row('Iso value', this.kept(number('iso value', value => recipe.set({iso: value})),
+            ({iso = ''}) => iso));
+        const maps = this.kept(select([['', 'of the preset'], ...page.info.colormaps, [':', 'own']],
             name => recipe.set({colormap: name === ':' ? text(this.colors.points) : name || null,
-                ...name && page.look.labels?.length && {preset: null}})); // these are of values
-        const low = number('lowest value of the range', value => this.setRange(value, null));
-        const high = number('highest value of the range', value => this.setRange(null, value));
+                ...name && page.look.labels?.length && {preset: null}})), // these are of values
+        ({colormap = ''}) => ownColors(colormap) ? ':' : colormap);
+        const ends = ['low', 'high'].map((end, i) => this.kept(number(`${end}est value of the range`,
+            value => this.setRange(...i ? [null, value] : [value, null])),
+        () => page.look ? short(page.look[end]) : ''));
         const percent = button('1-99 %', 'Range of the 1st to the 99th percentile',
             () => recipe.set({range: ['p1', 'p99']}));
-        const shift = number('shift of the look in data units', value => {
+        const shift = this.kept(number('shift of the look in data units', value => {
             this.shift = value;
             recipe.set({shift: value || null});
-        });
-        const log = check('logarithmic values', on => recipe.set({log: on || null, symlog: null}));
-        const symlog = check('on both sides of 0', on => recipe.set({symlog: on || null, log: null}));
-        const alone = make('div', {}, this.editor.element, row('Range', low, high, percent),
+        }), ({shift: now = 0}) => short(now));
+        const alone = make('div', {}, this.editor.element, row('Range', ...ends, percent),
             page.info.mask === undefined ? '' : row('Shift', shift), // the kernel of a notebook has none
             row('Colours', maps));
         this.follow(keys => {
             alone.hidden = mixed(page.look);
-            show(modes, keys.mode ?? 'over');
             isoRow.hidden = keys.mode !== 'iso';
-            show(iso, keys.iso ?? '');
-            show(maps, ownColors(keys.colormap) ? ':' : keys.colormap ?? '');
-            show(low, page.look ? short(page.look.low) : '');
-            show(high, page.look ? short(page.look.high) : '');
-            show(shift, short(keys.shift ?? 0));
-            log.box.checked = Boolean(keys.log);
-            symlog.box.checked = Boolean(keys.symlog);
         });
-        return section('Look', true, alone, row('Mode', modes), isoRow, log.label, symlog.label);
+        return section('Look', true, alone, row('Mode', modes), isoRow,
+            this.box('logarithmic values', ({log}) => log, on => recipe.set({log: on || null, symlog: null})),
+            this.box('on both sides of 0', ({symlog}) => symlog,
+                on => recipe.set({symlog: on || null, log: null})));
     }
 
     /** Presets of a CT are in its unit; what is made from the histogram is of the volume. */
@@ -161,7 +167,8 @@ export class Panel {
 
     shading() {
         const {recipe} = this;
-        const shade = check('shaded', on => recipe.set({shade: on ? 'phong' : 'none'}));
+        const shade = this.box('shaded', keys => keys.shade ? keys.shade === 'phong'
+            : this.page.look?.shaded ?? true, on => recipe.set({shade: on ? 'phong' : 'none'}));
         const light = select([['key', 'from the upper left'], ['head', 'from the viewer'],
             ['direction', 'from a direction']],
         value => recipe.set({light: value === 'direction' ? [-25, 35] : value}));
@@ -175,14 +182,13 @@ export class Panel {
             sparse.textContent = `${share}method ${figures.method}`;
         });
         this.follow(keys => {
-            shade.box.checked = keys.shade ? keys.shade === 'phong' : this.page.look?.shaded ?? true;
             ways.hidden = !Array.isArray(keys.light);
             show(light, ways.hidden ? keys.light ?? 'key' : 'direction');
             way.forEach((input, i) => {
                 input.value = ways.hidden ? 0 : keys.light[i];
             });
         });
-        return section('Light and detail', false, shade.label, row('Light', light), ways,
+        return section('Light and detail', false, shade, row('Light', light), ways,
             this.strength('Ambient', 'ambient', 0, 1, 0.01, 0.2),
             this.strength('Diffuse', 'diffuse', 0, 1, 0.01, 0.7),
             this.strength('Specular', 'specular', 0, 1, 0.01, 0.2),
@@ -197,20 +203,14 @@ export class Panel {
         const views = make('div', {className: 'row'}, ...[...names, 'iso'].map(name =>
             button(page.info.medical ? name[0].toUpperCase() + name.slice(1) : name,
                 `View from ${name}`, () => actions.view(name))));
-        const angles = ['azimuth', 'elevation', 'roll'].map(key => {
-            const field = number(`${key} in degrees`, value => recipe.set({[key]: value}));
-            this.follow(keys => show(field, short(keys[key] ?? 0)));
-            return field;
-        });
-        const zoom = number('zoom', value => value > 0 && recipe.set({zoom: value}));
-        const perspective = check('perspective', () => actions.perspective());
-        this.follow(keys => {
-            show(zoom, short(keys.zoom ?? 1));
-            perspective.box.checked = (keys.perspective ?? 0) > 0;
-        });
+        const angles = ['azimuth', 'elevation', 'roll'].map(key => this.kept(
+            number(`${key} in degrees`, value => recipe.set({[key]: value})),
+            keys => short(keys[key] ?? 0)));
+        const zoom = this.kept(number('zoom', value => value > 0 && recipe.set({zoom: value})),
+            keys => short(keys.zoom ?? 1));
         return section('Camera', true, views, row('Angles', ...angles),
             row('Zoom', zoom, button('Frame all', 'Frame what the look shows', actions.fit)),
-            perspective.label);
+            this.box('perspective', keys => keys.perspective > 0, actions.perspective));
     }
 
     /** Two planes across each axis of the world, tilted ones, and the box that is
@@ -274,23 +274,18 @@ export class Panel {
         const {page, recipe} = this;
         if (!page.info.mask)
             return [];
-        const mask = check('only what the mask keeps', on => recipe.set({mask: on || null,
-            labels: on ? page.info.labels : null}));
-        this.follow(keys => {
-            mask.box.checked = Boolean(keys.mask);
-        });
-        return [mask.label];
+        return [this.box('only what the mask keeps', ({mask}) => mask, on => recipe.set({mask: on || null,
+            labels: on ? page.info.labels : null}))];
     }
 
     cropping() {
         const {recipe} = this, full = this.page.whole ?? this.page.info.dims;
         return [make('p', {className: 'faint', textContent: 'Crop: first voxel, and one past the last'}),
             ...AXES.map((name, axis) => {
-                const fields = [0, 1].map(end => number(
+                const fields = [0, 1].map(end => this.kept(number(
                     `crop ${name}, ${end ? 'one past the last' : 'first'} voxel`,
-                    value => this.setCrop(full, axis, end, Math.round(value)), 1));
-                this.follow(keys => fields.forEach((field, end) => show(field,
-                    keys.crop?.[axis][end] || (end ? full[axis] : 0))));
+                    value => this.setCrop(full, axis, end, Math.round(value)), 1),
+                ({crop}) => crop?.[axis][end] || (end ? full[axis] : 0)));
                 return row(name, ...fields);
             })];
     }
@@ -311,12 +306,12 @@ export class Panel {
         const {recipe, page} = this;
         if (!page.info.overlay)
             return '';
-        const on = check(page.info.overlay, value => recipe.set({overlay: value || null}));
+        const on = this.box(page.info.overlay, keys => keys.overlay, value => recipe.set({overlay: value || null}));
         const labels = () => this.labelled('overlay-', page.look?.overlay?.labels);
         // Half, as in slices where nothing is asked.
         const list = this.switches('overlay-', labels, 0.5);
-        const maps = select(['hot', ...page.info.colormaps.filter(name => name !== 'hot')],
-            name => recipe.set({'overlay-colormap': name}));
+        const maps = this.kept(select(['hot', ...page.info.colormaps.filter(name => name !== 'hot')],
+            name => recipe.set({'overlay-colormap': name})), keys => keys['overlay-colormap'] ?? 'hot');
         const ends = ['lowest', 'highest'].map((name, i) => number(`${name} value of the range of the overlay`, value => {
             const {low, high} = page.look.overlay;
             this.setOverlay(i ? low : value, i ? value : high);
@@ -332,13 +327,11 @@ export class Panel {
                 {'overlay-range': null, 'overlay-opacity': null})));
         this.follow(keys => {
             const overlay = page.look?.overlay;
-            on.box.checked = Boolean(keys.overlay);
             values.hidden = !overlay || labels().length > 0;
-            show(maps, keys['overlay-colormap'] ?? 'hot');
             ends.forEach((field, i) => show(field, overlay ? short(i ? overlay.high : overlay.low) : ''));
             opacity.value = this.most('overlay-opacity') || 0.5;
         });
-        return section('Overlay', true, on.label, list, row('Opacity', opacity), values);
+        return section('Overlay', true, on, list, row('Opacity', opacity), values);
     }
 
     /** From nothing at the low end of a range on.  The next change may come before the
@@ -376,28 +369,26 @@ export class Panel {
 
     /** A box for each label, that sets its opacity to 0 and back, and its colour. */
     switches(of, labels, usual = 1) {
-        const list = make('div', {}), boxes = [], {recipe} = this, key = `${of}opacity`, map = `${of}colormap`;
+        const list = make('div', {}), {recipe} = this, key = `${of}opacity`, map = `${of}colormap`;
         const put = (i, on) => {
             const full = this.most(key) || usual;
             recipe.set({[key]: labels().map(([value, , , opacity], k) =>
                 [value, (k === i ? on : opacity) ? full : 0])});
         };
+        let names, boxes;
         this.follow(() => {
-            const now = labels();
-            for (let i = boxes.length; i < now.length; i++) {
-                const name = make('span', {}), made = check('', on => put(i, on));
-                const color = ink('', to => recipe.set({[`${of}preset`]: 'labels',
-                    [map]: painted(recipe.keys[map], labels()[i][0], to)}));
-                made.label.append(name);
-                boxes.push({...made, color, name, line: make('div', {className: 'row'}, color, made.label)});
+            const now = labels(), called = now.map(([value, name]) => name || value);
+            if (String(called) !== names) {
+                boxes = called.map((name, i) => ({...check(name, on => put(i, on)),
+                    color: ink(`colour of ${name}`, to => recipe.set({[`${of}preset`]: 'labels',
+                        [map]: painted(recipe.keys[map], labels()[i][0], to)}))}));
+                list.replaceChildren(...boxes.map(({color, label}) => make('div', {className: 'row'}, color, label)));
             }
-            now.forEach(([value, name, color, opacity], i) => {
+            names = String(called);
+            now.forEach(([, , color, opacity], i) => {
                 boxes[i].box.checked = opacity;
                 boxes[i].color.value = color;
-                boxes[i].color.setAttribute('aria-label', `colour of ${name || value}`);
-                boxes[i].name.textContent = name || value;
             });
-            fill(list, boxes.slice(0, now.length).map(({line}) => line));
         });
         return list;
     }
@@ -418,25 +409,18 @@ export class Panel {
 
     labels() {
         const {recipe, page} = this;
-        const title = line('title of the picture', value => recipe.set({title: value || null}));
-        const time = select([['', 'nothing'], ['time', 'time'], ['step', 'number of the step']],
-            annotate => recipe.set({annotate: annotate || null}));
-        this.follow(keys => {
-            show(title, keys.title ?? '');
-            show(time, keys.annotate ?? '');
-        });
+        const title = this.kept(line('title of the picture', value => recipe.set({title: value || null})),
+            keys => keys.title ?? '');
+        const time = this.kept(select([['', 'nothing'], ['time', 'time'], ['step', 'number of the step']],
+            annotate => recipe.set({annotate: annotate || null})), keys => keys.annotate ?? '');
         const boxes = [['letters of the sides', 'no-labels', true], ['colour bar', 'legend', false],
             ['scale bar', 'scale-bar', false], ["edges of the volume's box", 'outline', false],
             ['its axes, with numbers', 'axes', false]].map(([name, key, inverse]) => {
-            const made = check(name, on => {
+            return make('div', {}, this.box(name, keys => Boolean(keys[key]) !== inverse, on => {
                 recipe.set({[key]: on !== inverse || null});
                 if (key === 'outline' || key === 'axes')
                     this.actions.fit(); // the box is larger
-            });
-            this.follow(keys => {
-                made.box.checked = Boolean(keys[key]) !== inverse;
-            });
-            return make('div', {}, made.label);
+            }));
         });
         const drawn = page.info.mask === undefined ? boxes.slice(0, 3) // by the kernel of a notebook
             : [...boxes, row('Title', title), row('Time', time)];

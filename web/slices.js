@@ -384,22 +384,22 @@ export class Slices {
     renew() {
         for (const pane of this.panes)
             pane.busy = pane.exact = pane.asked = null;
-        this.at = this.valueIsAsked = null;
+        this.at = this.waits = null;
         this.update();
     }
 
     /** At most one value is under way. */
     askValue() {
         const at = String([this.index, this.data]);
-        if (this.valueIsAsked || at === this.at)
+        if (this.waits || at === this.at)
             return;
         this.at = at;
-        this.valueIsAsked = true;
+        this.waits = true;
         this.engine.ask('value', {at: this.index});
     }
 
     hearValue({at, value}) {
-        this.valueIsAsked = false;
+        this.waits = false;
         if (!this.keys || !this.page.info?.slices)
             return;
         if (String(at) === String(this.index)) {

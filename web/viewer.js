@@ -157,7 +157,7 @@ function fitWindow() {
         return;
     const size = [picture.clientWidth, picture.clientHeight].map(
         side => Math.max(16, Math.min(SIDE_MOST, Math.round(side * scale))));
-    if (JSON.stringify(recipe.keys.size) !== JSON.stringify(size))
+    if (`${recipe.keys.size}` !== `${size}`)
         recipe.apply({size});
 }
 
@@ -198,6 +198,30 @@ function describe() {
     redo.disabled = !recipe.after.length;
 }
 
+// --- recipes of files -----------------------------------------------------------------
+
+const lastOf = path => `${path}`.split('/').at(-1);
+
+/** Takes the state of a file; what a page cannot change stays as it is. */
+async function take([file]) {
+    const {info} = page, taken = {};
+    try {
+        const keys = JSON.parse(await file.text()), name = lastOf(keys.input ?? info.name);
+        for (const [key, value] of Object.entries(keys)) {
+            const switched = key === 'mask' || key === 'overlay';
+            if (switched ? [true, lastOf(value)].includes(info[key]) : info.keys.includes(key))
+                taken[key] = switched || value;
+        }
+        if (!Object.keys(taken).length)
+            throw 0;
+        recipe.remember('');
+        recipe.replace({slices: recipe.keys.slices, ...taken});
+        say(name === info.name ? '' : `The recipe is of ${name}, and taken.`);
+    } catch {
+        say(`${file.name} is no recipe, as Recipe and --save-config write them.`);
+    }
+}
+
 // --- the server ----------------------------------------------------------------------
 
 /** Buttons work when the volume and its look are known; what a notebook's kernel does
@@ -208,6 +232,7 @@ function ready() {
             each.disabled = false;
     sliced.hidden = filmed.hidden = !page.info?.slices;
     commanded.hidden = page.info?.live;
+    chooser.hidden = !page.info?.keys;
     describe();
 }
 
@@ -292,6 +317,11 @@ const tool = select(TOOLS, name => {
     page.tool = name;
 });
 const sliced = button('Slices', 'Three slices beside the picture (x)', actions.slices);
+const file = make('input', {type: 'file', onchange: () => shared.take(file.files)});
+const chooser = button('Open', 'Open a recipe, or drop it on the page', () => {
+    file.value = ''; // the same one may be chosen again
+    file.click();
+});
 const commanded = button('Command', 'Copy the command that makes this picture (c)', actions.command);
 const filmed = button('Movie', 'Copy the command that makes a movie of a turn (v)',
     actions.movie);
@@ -305,7 +335,7 @@ for (const each of buttons.querySelectorAll('button'))
     each.disabled = true;
 document.getElementById('viewer').append(
     make('section', {className: 'stage', 'aria-label': 'Picture'},
-        make('div', {className: 'top'}, make('h1', {textContent: 'snowglass'}), title, level,
+        make('div', {className: 'top'}, make('h1', {textContent: 'snowglass'}), title, level, chooser,
             button('Help', 'Mouse, fingers and keys (?)', actions.help)),
         views,
         make('div', {className: 'bottom'}, figures, buttons)),
@@ -317,4 +347,10 @@ new ResizeObserver(() => {
         fitWindow();
 }).observe(picture);
 engine.open();
-window.snowglass = {engine, recipe, page, slices, overlay}; // for the console, and for tests
+document.addEventListener('dragover', event => event.preventDefault());
+document.addEventListener('drop', event => {
+    event.preventDefault();
+    shared.take(event.dataTransfer.files);
+});
+const shared = {engine, recipe, page, slices, overlay, take, file}; // for the console, for tests,
+window.snowglass = shared; // and for a page that opens volumes

@@ -80,6 +80,12 @@ def masked():
     server.stop()
 
 
+def opened():
+    server = Server("phantom:head")
+    drive(server.url, shots, "recipes")
+    server.stop()
+
+
 def overlaid():
     """A head; its bright voxels as labels, left and right; values on half the grid."""
     base, seg, dose = (os.path.join(shots, name) for name in
@@ -206,6 +212,7 @@ if not SHORT:
     everyday()
     many_points()
     masked()
+    opened()
     overlaid()
     mixed()
 if not SHORT:

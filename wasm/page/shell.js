@@ -23,7 +23,7 @@ function bytesOf(script) {
 const engine = new Response(new Blob([bytesOf(from('engine'))]).stream()
     .pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
 
-let page, stop, shown;
+let page, stop, shown, takeRecipe;
 
 /** Shows a volume in the place of the one before. */
 async function show(volume) {
@@ -46,7 +46,11 @@ async function show(volume) {
     page = begin({volume: {wasm, recipe: {}, ...volume}, work: () => new Worker(WORKER),
         ask: volume.files[0]?.file && (text => askRaw(volume, text)), document: mine, window: {}, location});
     window.snowglass = page; // for the console, and for tests
-    main.querySelector('.top').append(opener());
+    takeRecipe = page.take;
+    page.take = files => showFiles([...files].map(file => ({name: file.name, file})));
+    page.file.multiple = true;
+    main.querySelector('[title^="Open a recipe"]').title = 'Open a volume of this machine, or a recipe; ' +
+        'or drop it, a folder of DICOM too, on the page';
 }
 
 // --- raw data ------------------------------------------------------------------
@@ -105,26 +109,18 @@ function askRaw(volume, text) {
 
 const HEADER = /\.(nhdr|mhd|hdr|bov|xdmf|xmf|pvti|pvd|vtm|vth|visit)$/i;
 
-/** Several files are a header with its data, or a folder of slices. */
+/** Several files are a header with its data, or a folder of slices; one of JSON is the
+ * recipe of what is shown. */
 function showFiles(files) {
     const [first] = files, header = files.find(({name}) => HEADER.test(name));
     if (!first)
         return;
-    if (first.name.includes('/') || header || files.length === 1)
+    if (files.length === 1 && first.file && /^[^/]*\.json$/i.test(first.name))
+        takeRecipe([first.file]);
+    else if (first.name.includes('/') || header || files.length === 1)
         show({files, path: header?.name ?? first.name.split('/')[0]});
     else
         show({files: files.map(({name, file}) => ({name: `files/${name}`, file})), path: 'files'});
-}
-
-function opener() {
-    const input = document.createElement('input'), button = document.createElement('button');
-    Object.assign(input, {type: 'file', multiple: true, hidden: true});
-    Object.assign(button, {type: 'button', textContent: 'Open', title:
-        'Open a volume of this machine; or drop it, a folder of DICOM too, on the page'});
-    input.onchange = () => showFiles([...input.files].map(file => ({name: file.name, file})));
-    button.onclick = () => input.click();
-    button.append(input);
-    return button;
 }
 
 /** All files of a dropped file or folder. */
@@ -164,6 +160,7 @@ async function filesOfItem(entry, file, handle) {
 body.addEventListener('dragover', event => event.preventDefault());
 body.addEventListener('drop', async event => {
     event.preventDefault();
+    event.stopPropagation(); // the viewer takes recipes alone
     const dropped = [...event.dataTransfer.items].map(item => filesOfItem(item.webkitGetAsEntry(),
         item.getAsFile(), item.getAsFileSystemHandle?.()));
     try {

@@ -6,7 +6,7 @@
 // Screenshots, the picture at rest and the command are left in FOLDER.
 import {createServer, request} from 'node:http';
 import {connect} from 'node:net';
-import {writeFileSync} from 'node:fs';
+import {readFileSync, writeFileSync} from 'node:fs';
 import {offset, restarted, steps} from './everyday.mjs';
 
 const [playwright, chromium, url, folder, tier, ...words] = process.argv.slice(2);
@@ -1056,6 +1056,57 @@ async function overlaid() {
     await page.context().close();
 }
 
+/** Chooses a file with *Open*. */
+async function choose(page, name, text) {
+    const coming = page.waitForEvent('filechooser');
+    await page.getByRole('button', {name: /^Open a recipe/}).click();
+    await (await coming).setFiles({name, mimeType: 'application/json', buffer: Buffer.from(text)});
+}
+
+/** A recipe's file, as *Recipe* saves it, is the state again; others are refused by a line. */
+async function recipes() {
+    const page = await open();
+    const line = async name => {
+        await page.waitForFunction(text => document.querySelector('.said').textContent.includes(text), name);
+        return page.locator('.said').textContent();
+    };
+    await page.evaluate(() => window.snowglass.recipe.set({azimuth: 30, preset: 'ct-bone', legend: true}));
+    await rest(page);
+    const picture = String(await bytesOf(page, 'page.page.rest'));
+    const coming = page.waitForEvent('download');
+    await page.getByRole('button', {name: /^Save the recipe/}).click();
+    const text = readFileSync(await (await coming).path(), 'utf8');
+    await page.getByRole('button', {name: /^All as it was/}).click();
+    await rest(page);
+    const before = await keys(page);
+    await choose(page, 'state.json', text);
+    await page.waitForFunction(() => window.snowglass.recipe.keys.azimuth === 30);
+    await rest(page);
+    check('a recipe that was saved is opened', String(await bytesOf(page, 'page.page.rest')) === picture,
+        JSON.stringify(await keys(page)));
+    await page.keyboard.press('z');
+    await rest(page);
+    check('which is one step', JSON.stringify((await keys(page)).azimuth) === JSON.stringify(before.azimuth) &&
+        !(await keys(page)).legend, JSON.stringify(await keys(page)));
+    await page.evaluate(recipe => {
+        const data = new DataTransfer();
+        data.items.add(new File([recipe], 'other.json'));
+        document.body.dispatchEvent(new DragEvent('drop', {dataTransfer: data, bubbles: true, cancelable: true}));
+    }, '{"input": "far/away.nii", "roll": 20, "method": "raycast"}');
+    const said = await line('away.nii');
+    await rest(page);
+    check('one of another volume is dropped, and says so', (await keys(page)).roll === 20, said);
+    await shot(page, 'recipe');
+    await choose(page, 'points.json', '{"snowglass-tf": 1}');
+    check('what is no recipe is refused', /points\.json is no recipe/.test(await line('points.json')));
+    await choose(page, 'cut.json', '{"roll": 2');
+    check('and what is no JSON', /cut\.json is no recipe/.test(await line('cut.json')));
+    await choose(page, 'wrong.json', '{"roll": 7, "preset": "bone"}');
+    check('a wrong value is named', /preset/.test(await line('preset')));
+    await page.waitForFunction(() => window.snowglass.recipe.keys.roll === 20); // nothing is changed
+    await page.context().close();
+}
+
 /** A segmentation alone: its labels take colours, which command and link have. */
 async function labelled() {
     const page = await open();
@@ -1265,7 +1316,7 @@ async function many() {
 
 const tools = {answered, check, folder, keys, open, rest, said, slicesRest, wheel};
 const alone = {steps: () => steps(tools), offset: () => offset(tools),
-    restarted: () => restarted(tools, url), embed: embedded, points: manyPoints, mask: masked, overlay: overlaid, labels: labelled, fused, channels: mixed, begun, many};
+    restarted: () => restarted(tools, url), embed: embedded, points: manyPoints, mask: masked, overlay: overlaid, labels: labelled, recipes, fused, channels: mixed, begun, many};
 if (alone[tier]) {
     await alone[tier]();
     check('nothing is on the console', said.length === 0, said.join(' | '));
