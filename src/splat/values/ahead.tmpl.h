@@ -97,10 +97,10 @@ static inline void NAME(ask_masks)(const snow_value_splat *p, int n, int phase,
 }
 
 /* Finds what some phases of slab `n` will need, and asks the cache for it. */
-TARGET VALUE_INLINE void NAME(look_ahead)(const snow_value_splat *p, int n,
-                                          int first, int end, const int tile[2],
-                                          value_room *room, value_slab *slabs,
-                                          const bool sloped, const bool eye) {
+TARGET VALUE_STAGE void NAME(look_ahead)(const snow_value_splat *p, int n,
+                                         int first, int end, const int tile[2],
+                                         value_room *room, value_slab *slabs,
+                                         const bool sloped, const bool eye) {
     uint32_t any = 0;
     for (int phase = first; phase < end; phase++) {
         value_slab *slab = &slabs[phase - first];

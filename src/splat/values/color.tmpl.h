@@ -230,9 +230,9 @@ TARGET static void NAME(fade)(const snow_value_splat *p, value_queue *q, int n,
  */
 
 /* Colours, and places of the opacity in a slab, or in what is left of it. */
-TARGET VALUE_INLINE void NAME(look_up)(const snow_value_splat *p,
-                                       value_queue *q, int count,
-                                       const int channels, const bool sloped) {
+TARGET VALUE_STAGE void NAME(look_up)(const snow_value_splat *p, value_queue *q,
+                                      int count, const int channels,
+                                      const bool sloped) {
     for (int n = 0; n < count; n += 32) {
         V(row) color[4], place = V(row_set1)(0);
         if (p->surface)
@@ -256,10 +256,10 @@ TARGET VALUE_INLINE void NAME(look_up)(const snow_value_splat *p,
 }
 
 /* Factors of light, of the colour and of white; gradient opacity. */
-TARGET VALUE_INLINE void NAME(light_all)(const snow_value_splat *p,
-                                         float slope[2][2], value_queue *q,
-                                         int count, const int channels,
-                                         bool cuts, const bool eye) {
+TARGET VALUE_STAGE void NAME(light_all)(const snow_value_splat *p,
+                                        float slope[2][2], value_queue *q,
+                                        int count, const int channels,
+                                        bool cuts, const bool eye) {
     const snow_value_light none = {0}; /* copied: stores do not change it */
     const snow_value_light light = p->light ? *p->light : none;
     for (int n = 0; n < count; n += 32) {
@@ -293,8 +293,8 @@ TARGET VALUE_INLINE void NAME(light_all)(const snow_value_splat *p,
 }
 
 /* Colours by these factors. */
-TARGET VALUE_INLINE void NAME(shade)(const snow_value_light *l, value_queue *q,
-                                     int count, const int channels) {
+TARGET VALUE_STAGE void NAME(shade)(const snow_value_light *l, value_queue *q,
+                                    int count, const int channels) {
     for (int n = 0; n < count; n += 32) {
         V(row) light = V(row_load)(q->light + n);
         V(row) alpha = V(row_load)(q->color[3] + n);

@@ -377,10 +377,10 @@ TARGET VALUE_INLINE void NAME(begin_across)(const snow_value_sheet *sheet,
 
 /* The values of a sheet in some rows of a tile, and the differences across it
  * in others, unless they are there. */
-TARGET VALUE_INLINE void NAME(sample_all)(const snow_value_splat *p, int n,
-                                          int phase, const int tile[2],
-                                          uint64_t rows, uint32_t across,
-                                          value_rows *out) {
+TARGET VALUE_STAGE void NAME(sample_all)(const snow_value_splat *p, int n,
+                                         int phase, const int tile[2],
+                                         uint64_t rows, uint32_t across,
+                                         value_rows *out) {
     const snow_value_store *s = p->store;
     const snow_value_sheet *sheet = p->sheets + n;
     const snow_value_place *place = p->places + n * p->phases + phase;

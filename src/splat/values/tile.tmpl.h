@@ -177,13 +177,13 @@ TARGET VALUE_LEAF int NAME(collect_by)(const snow_value_splat *p,
     return count;
 }
 
-TARGET VALUE_INLINE int NAME(collect)(const snow_value_splat *p,
-                                      const value_rows *f, const value_rows *b,
-                                      const value_beside beside[2],
-                                      const value_phase *state,
-                                      value_slab *slab, value_queue *q,
-                                      int count, const bool sloped, bool cuts,
-                                      const bool eye, bool plain) {
+TARGET VALUE_STAGE int NAME(collect)(const snow_value_splat *p,
+                                     const value_rows *f, const value_rows *b,
+                                     const value_beside beside[2],
+                                     const value_phase *state, value_slab *slab,
+                                     value_queue *q, int count,
+                                     const bool sloped, bool cuts,
+                                     const bool eye, bool plain) {
     if (plain)
         return NAME(collect_by)(p, f, b, beside, state, slab, q, count, sloped,
                                 false, false, true);
@@ -192,10 +192,9 @@ TARGET VALUE_INLINE int NAME(collect)(const snow_value_splat *p,
 }
 
 /* Behind what is in the planes; closes pixels that nothing shines through. */
-TARGET VALUE_INLINE int NAME(blend)(snow_value_plane *plane, value_phase *state,
-                                    const value_slab *slab,
-                                    const value_queue *q, int count,
-                                    int16_t end, const int channels) {
+TARGET VALUE_STAGE int NAME(blend)(snow_value_plane *plane, value_phase *state,
+                                   const value_slab *slab, const value_queue *q,
+                                   int count, int16_t end, const int channels) {
     const V(row) one = V(row_set1)(INT16_MAX);
     const V(row) closed = V(row_set1)(end);
     for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
@@ -248,11 +247,11 @@ TARGET VALUE_INLINE void NAME(end_queue)(const snow_value_splat *p, int n,
 }
 
 /* Samples of some phases of slab `n`, packed; returns how many. */
-TARGET VALUE_INLINE int NAME(gather)(const snow_value_splat *p, int n,
-                                     int first, int end, const int tile[2],
-                                     value_room *room, value_slab *slabs,
-                                     bool cuts, const bool sloped,
-                                     const bool eye) {
+TARGET VALUE_STAGE int NAME(gather)(const snow_value_splat *p, int n, int first,
+                                    int end, const int tile[2],
+                                    value_room *room, value_slab *slabs,
+                                    bool cuts, const bool sloped,
+                                    const bool eye) {
     int count = 0;
     for (int phase = first; phase < end; phase++) {
         const value_phase *state = &room->phase[phase];

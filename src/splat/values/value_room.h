@@ -26,6 +26,15 @@
 #define VALUE_LEAF VALUE_INLINE
 #endif
 
+/* What goes over the samples or rows of slabs: there functions of their own,
+ * since V8, which compiles for Node and Chromium, keeps the numbers of huge
+ * functions on the stack. */
+#if defined(__wasm__) && !defined(SNOW_SANITIZED)
+#define VALUE_STAGE static __attribute__((noinline, unused))
+#else
+#define VALUE_STAGE VALUE_INLINE
+#endif
+
 /* WebAssembly has no instruction that asks the cache for memory. */
 #if defined(__wasm__)
 #define VALUE_ASKS 0
