@@ -34,7 +34,7 @@ const rest = () => page.waitForFunction(() => {
 const title = () => page.locator('.top .grow').textContent();
 
 /** As from the desktop: an event that a page makes has no folders. */
-async function drop() {
+async function drop(files) {
     const session = await page.context().newCDPSession(page);
     for (const type of ['dragEnter', 'dragOver', 'drop'])
         await session.send('Input.dispatchDragEvent', {type, x: 300, y: 300,
@@ -44,7 +44,7 @@ async function drop() {
 await rest();
 if (files.length) {
     const before = await title();
-    await drop();
+    await drop(files);
     if (name === 'raw') { // what the file does not say
         await page.locator('dialog[open]').waitFor();
         await page.screenshot({path: `${folder}/${name}-form.png`});
@@ -82,8 +82,16 @@ await page.evaluate(recipe => { location.hash = new URLSearchParams({recipe}); }
 await page.waitForFunction(() => window.snowglass?.recipe.keys.mode === 'mean', null, {timeout: 60000});
 await rest();
 check('a link is taken in the same tab', await title() === named, await title());
-await page.evaluate(() => window.snowglass.recipe.set({mode: null}));
+const state = `${folder}/${name}.json`;
+writeFileSync(state, JSON.stringify({azimuth: 40, roll: 15}));
+await drop([state]);
+await page.waitForFunction(() => window.snowglass.recipe.keys.roll === 15);
 await rest();
+check('the file of a recipe is dropped as the state', await page.evaluate(() => {
+    const {azimuth, mode} = window.snowglass.recipe.keys;
+    return azimuth === 40 && !mode;
+}), await page.locator('.said').textContent());
+check('which keeps the volume', await title() === named, await title());
 const picture = await page.evaluate(async () =>
     [...new Uint8Array(await window.snowglass.page.rest.arrayBuffer())]);
 writeFileSync(`${folder}/${name}-rest.png`, Buffer.from(picture));
