@@ -110,8 +110,10 @@ with http.server.ThreadingHTTPServer(
         ("127.0.0.1", 0), functools.partial(Isolating, directory=OUT)) as server:
     threading.Thread(target=server.serve_forever, daemon=True).start()
     watch(f"http://127.0.0.1:{server.server_port}/made.html", "shared")
+    other = os.path.join(OUT, "other.nrrd")  # whose title is not the page's
+    shutil.copy(os.path.join(OUT, "head.nrrd"), other)
     watch(f"http://127.0.0.1:{server.server_port}/made.html", "shared-dropped",
-          os.path.join(OUT, "head.nrrd"))
+          other)
     server.shutdown()
 again = tool("export", "made.html", "head.nrrd")
 check("a page is not replaced", again.returncode == 4 and
