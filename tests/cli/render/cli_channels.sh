@@ -212,9 +212,10 @@ run 0 "in a small picture" "$TOOL" render ome.tif --channel 0,1,2,0:grey --legen
 check "says that it does not" grep -q 'has no room for the names of the labels' "$ERR"
 run 0 "one of many" "$TOOL" render plain.tif -o legend3.png -s 300x300 --legend --channel 0,1,2,0:grey,1:cyan
 says 'note: the picture has no room for the colour bar of channel 1$'
-check "and says it once" [ "$(grep -c note "$ERR")" = 1 ]
+says 'note: the picture has no room for the scale bar$'
+check "and says each once" [ "$(grep -c note "$ERR")" = 2 ]
 run 0 "frames of many" "$TOOL" turntable plain.tif -o n_%d.png -s 300x300 --frames 3 --legend --channel 0,1,2,0:grey,1:cyan,2:hot
-check "say it once" [ "$(grep -c note "$ERR")" = 2 ]
+check "say each once" [ "$(grep -c note "$ERR")" = 3 ]
 "$TOOL" convert ome.tif --channel 2 -q -o third.nrrd
 cat >npy.py <<'END'
 import struct
