@@ -321,20 +321,22 @@ static snow_status give_verdict(const mpi_watchdog *watchdog) {
                : SNOW_STATUS_OK;
 }
 
-/* Once a job, long before the timeout, unless that comes soon. */
+/* Once a job, long before the timeout, unless that comes soon.  The rank that
+ * is waited for may wait itself, for one that is stopped. */
 static void tell_wait(mpi_watchdog *watchdog, double now) {
-    const place *there = &watchdog->places[watchdog->waits_for];
     const double half = watchdog->limit / 2;
     if (watchdog->told || half < TELL_SECONDS_LEAST ||
         now - watchdog->since < (half < TELL_SECONDS ? half : TELL_SECONDS))
         return;
     watchdog->told = true;
+    const int reason = find_reason(watchdog, watchdog->waits_for);
+    const place *there = &watchdog->places[reason];
     snow_context_warn(watchdog->context,
                       "rank %d waits for rank %d (process %d on %s), as others "
                       "may; if that does not answer, the job ends after %.3g s "
                       "(--timeout)",
-                      watchdog->rank, watchdog->waits_for, there->process,
-                      there->host, watchdog->limit);
+                      watchdog->rank, reason, there->process, there->host,
+                      watchdog->limit);
 }
 
 /* A rank that never waits long is asked too, and looks for notes at times. */
