@@ -204,6 +204,8 @@ const lastOf = path => `${path}`.split('/').at(-1);
 
 /** Takes the state of a file; what a page cannot change stays as it is. */
 async function take([file]) {
+    if (!file) // a text was dropped
+        return;
     const {info} = page, taken = {};
     try {
         const keys = JSON.parse(await file.text()), name = lastOf(keys.input ?? info.name);

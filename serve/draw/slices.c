@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #define PANES 3
 
@@ -115,7 +116,7 @@ static json_t *slice_tree(const drawing *d, const slice_asked *asked) {
         if (!asked->colored || (i == 1 && json_object_get(tree, "preset")))
             json_object_del(tree, colors[i]);
     const char *preset = json_string_value(json_object_get(tree, "preset"));
-    if (preset && strcmp(preset, "labels") == 0) /* which have no range */
+    if (preset && strcasecmp(preset, "labels") == 0) /* which have no range */
         json_object_del(tree, "range");
     else
         json_object_set_new(tree, "range",

@@ -21,8 +21,8 @@
 #define SLEEP_SECONDS 0.004
 
 /* Waits of these seconds get a line. */
-#define TELL_SECONDS 20
-#define TELL_SECONDS_LEAST 8
+#define REPORT_SECONDS 20
+#define REPORT_SECONDS_LEAST 8
 
 /* The most notes in flight from a rank. Beyond that notes are not sent;
  * questions are asked again. */
@@ -59,7 +59,7 @@ struct mpi_watchdog {
     double began, since, round, asked, given;
     double looked; /* last check for notes */
     double turned; /* time of the last turn */
-    bool told;     /* that a rank is waited for */
+    bool reported; /* that a rank is waited for */
     int64_t turns;
     int waits_for; /* a rank */
     char verdict[TEXT_BYTES];
@@ -323,12 +323,12 @@ static snow_status give_verdict(const mpi_watchdog *watchdog) {
 
 /* Once a job, long before the timeout, unless that comes soon.  The rank that
  * is waited for may wait itself, for one that is stopped. */
-static void tell_wait(mpi_watchdog *watchdog, double now) {
+static void report_wait(mpi_watchdog *watchdog, double now) {
     const double half = watchdog->limit / 2;
-    if (watchdog->told || half < TELL_SECONDS_LEAST ||
-        now - watchdog->since < (half < TELL_SECONDS ? half : TELL_SECONDS))
+    if (watchdog->reported || half < REPORT_SECONDS_LEAST ||
+        now - watchdog->since < (half < REPORT_SECONDS ? half : REPORT_SECONDS))
         return;
-    watchdog->told = true;
+    watchdog->reported = true;
     const int reason = find_reason(watchdog, watchdog->waits_for);
     const place *there = &watchdog->places[reason];
     snow_context_warn(watchdog->context,
@@ -377,7 +377,7 @@ snow_status snow_watchdog_turn(mpi_watchdog *watchdog, const int *peers,
     if (now - watchdog->turned > limit / 8) /* this rank itself was stopped */
         watchdog->since = watchdog->round = now;
     watchdog->turned = now;
-    tell_wait(watchdog, now);
+    report_wait(watchdog, now);
     if (now - watchdog->looked > (limit < 6.4 ? limit / 64 : 0.1))
         read_notes(watchdog, now);
     if (watchdog->given > 0) {

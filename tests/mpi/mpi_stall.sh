@@ -53,9 +53,9 @@ for RANK in 2 0 3; do
     stalled '[ -e f_000003.png ]' "$MPI_TOOL" $movie -o f_%06d.png
 done
 
-# told SECONDS: waits for the line that says how long the others wait. It comes
+# line_comes SECONDS: waits for the line that says how long the others wait. It comes
 # after half of the timeout, later where the machine itself stands still.
-told() {
+line_comes() {
     local tries=0
     while [ $tries -lt $(($1 * 10)) ]; do
         grep -q "waits for rank 2 .*ends after 24 s (--timeout)" "$ERR" &&
@@ -76,7 +76,7 @@ for timeout in 24 0; do
     if [ $timeout -eq 0 ]; then
         sleep 5
     else
-        check "$NAME: a line says how long they do" told 20
+        check "$NAME: a line says how long they do" line_comes 20
     fi
     check "$NAME: the others wait" [ ! -e f_000399.png ]
     [ -n "$victim" ] && kill -CONT "$victim"

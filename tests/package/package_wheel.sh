@@ -71,7 +71,7 @@ check "the same picture" cmp tool.png command.png
 run 2 "which refuses what the tool refuses" there/bin/snowglass head.nrrd --nonsense
 plain_error
 chmod a-x "$(find there -path '*/bin/snowglass' -path '*/site-packages/*')"
-run 1 "a damaged package is told of" there/bin/snowglass --version
+run 1 "a damaged package is reported" there/bin/snowglass --version
 says "^snowglass: .*cannot be started .*; install the package again$"
 run 0 "it draws" there/bin/python draw.py
 prints "there/.*/snowglass/__init__.py"

@@ -67,7 +67,7 @@ static void size_plane(snow_value_lattice *l, const snow_value_grid *grid,
         width = height = width + height + 1;
         l->width = l->height = (int)width;
     }
-    if (l->quincunx && grid->shared) /* whole blocks are cleared there */
+    if (l->quincunx && grid->shared) /* whole blocks are cleared */
         width = (size_t)blocks_of(l) * BLOCK;
     image->stride = width * (size_t)grid->channels;
     image->layer_floats = image->stride * (height + 1);
@@ -131,9 +131,9 @@ static bool tiles_of(int low, int high, int samples, int tiles, int range[2]) {
 
 typedef enum block_state { UNTOUCHED, TOUCHED, COVERED } block_state;
 
-/* Whether the block from pixel (a, b) on has pixels of a tile that a layer has
- * drawn, or no others.  Pixel (a, b) is sample ((a + b - top) / 2, (a - b +
- * top) / 2) of the lattice. */
+/* Whether none, some or all pixels of the block from pixel (a, b) on are of
+ * tiles that a layer has drawn.  Pixel (a, b) is sample ((a + b - top) / 2, (a
+ * - b + top) / 2) of the lattice. */
 static block_state state_of(const snow_value_image *image,
                             const unsigned char *drawn, int a, int b) {
     const snow_value_lattice *l = &image->lattice;

@@ -103,8 +103,8 @@ static void seeing_pixels(const snow_shear_warp_warping *w, int y,
         range[1]--;
 }
 
-/* Narrows low .. high, around the pixel at which line `line` begins, to a few:
- * where lines are those of a map without perspective they are even. */
+/* Narrows low .. high to a few pixels around that at which line `line` begins,
+ * which follows from the map where there is no perspective. */
 static void narrow(const snow_shear_warp_warping *w, int y, bool rising,
                    int line, int *low, int *high) {
     const double along = w->shear.along_x[1];

@@ -26,9 +26,9 @@
 #define VALUE_LEAF VALUE_INLINE
 #endif
 
-/* What goes over the samples or rows of slabs: there functions of their own,
- * since V8, which compiles for Node and Chromium, keeps the numbers of huge
- * functions on the stack. */
+/* Loops over the samples or rows of slabs.  In WebAssembly they are functions
+ * of their own: V8, the compiler of Node and Chromium, keeps the variables of
+ * huge functions on the stack. */
 #if defined(__wasm__) && !defined(SNOW_SANITIZED)
 #define VALUE_STAGE static __attribute__((noinline, unused))
 #else
