@@ -82,6 +82,32 @@ static void timeout(void *self, double seconds) {
     snow_comm_set_timeout(((bench_meter *)self)->inner, seconds);
 }
 
+static int node_of(void *self, int rank) {
+    const snow_comm *inner = ((bench_meter *)self)->inner;
+    return inner->ops.node_of ? inner->ops.node_of(inner->self, rank) : rank;
+}
+
+static snow_status share(void *self, size_t bytes, void **own) {
+    bench_meter *m = self;
+    const snow_comm *inner = m->inner;
+    *own = NULL;
+    if (!inner->ops.share)
+        return SNOW_STATUS_OK;
+    const double start = now(m);
+    return count(m, start, inner->ops.share(inner->self, bytes, own));
+}
+
+static const void *shared(void *self, int rank) {
+    const snow_comm *inner = ((bench_meter *)self)->inner;
+    return inner->ops.shared(inner->self, rank);
+}
+
+static void unshare(void *self) {
+    const snow_comm *inner = ((bench_meter *)self)->inner;
+    if (inner->ops.unshare)
+        inner->ops.unshare(inner->self);
+}
+
 static void end(void *self) {
     (void)self;
 }
@@ -97,7 +123,11 @@ snow_status bench_meter_new(bench_meter *meter, snow_comm **out) {
                                       .occupy = occupy,
                                       .progress = progress,
                                       .timeout = timeout,
-                                      .end = end};
+                                      .end = end,
+                                      .node_of = node_of,
+                                      .share = share,
+                                      .shared = shared,
+                                      .unshare = unshare};
     return snow_comm_new(snow_comm_context(meter->inner), &ops, meter,
                          snow_comm_rank(meter->inner),
                          snow_comm_size(meter->inner), out);

@@ -103,7 +103,7 @@ void combine_file_pixel(const combine_pattern *pattern, int x, int y,
 typedef struct combine_figures {
     double exchange, gather, total; /* wall, or simulated */
     double exchange_cpu, gather_cpu;
-    int64_t bytes_sent, messages, active, scanned, laid;
+    int64_t bytes_sent, messages, bytes_lent, active, scanned, laid;
     int64_t exchange_bytes, exchange_messages;
     int64_t shown;     /* pixels of the piece that are not nothing */
     double difference; /* from the serial picture; -1: not looked at */

@@ -52,6 +52,7 @@ static void put_counters(bench_line *out, const combine_result *result) {
     const combine_figures *most = &result->most, *sum = &result->sum;
     bench_line_int(out, "bytes_sent_max", most->bytes_sent);
     bench_line_int(out, "bytes_sent_sum", sum->bytes_sent);
+    bench_line_int(out, "bytes_lent_sum", sum->bytes_lent);
     bench_line_int(out, "msgs_max", most->messages);
     bench_line_int(out, "exchange_bytes_max", most->exchange_bytes);
     bench_line_int(out, "exchange_msgs_max", most->exchange_messages);

@@ -195,7 +195,8 @@ static snow_status run_once(rank_state *state, bool drawn,
         .move_seconds = options->move};
     if (drawn)
         SNOW_TRY(line_up(comm));
-    const uint64_t bytes = comm->bytes_sent, messages = comm->messages_sent;
+    const uint64_t bytes = comm->bytes_sent, messages = comm->messages_sent,
+                   lent = comm->bytes_lent;
     const double start = snow_comm_seconds(comm), cpu = cpu_seconds();
     snow_comm_work(comm, state->work[0]);
     SNOW_TRY(snow_exchange(state->combiner, &order, &state->region));
@@ -217,6 +218,7 @@ static snow_status run_once(rank_state *state, bool drawn,
     out->gather_cpu = cpu_seconds() - cpu_between;
     out->bytes_sent = (int64_t)(comm->bytes_sent - bytes);
     out->messages = (int64_t)(comm->messages_sent - messages);
+    out->bytes_lent = (int64_t)(comm->bytes_lent - lent);
     out->active = given->active;
     out->scanned = given->scanned;
     out->laid = given->laid;
@@ -286,7 +288,7 @@ static snow_status compare_picture(rank_state *state, double *out) {
 /* --- all ranks ------------------------------------------------------------ */
 
 /* All figures as numbers of one kind: counters are far below 2^53. */
-#define FIGURES 13
+#define FIGURES 14
 
 static void list_figures(const combine_figures *f, double list[FIGURES]) {
     const double all[FIGURES] = {f->exchange,
@@ -301,7 +303,8 @@ static void list_figures(const combine_figures *f, double list[FIGURES]) {
                                  (double)f->laid,
                                  (double)f->exchange_bytes,
                                  (double)f->exchange_messages,
-                                 (double)f->shown};
+                                 (double)f->shown,
+                                 (double)f->bytes_lent};
     memcpy(list, all, sizeof all);
 }
 
@@ -323,6 +326,7 @@ static snow_status reduce_by(snow_comm *comm, const combine_figures *mine,
                              .exchange_bytes = (int64_t)f[10],
                              .exchange_messages = (int64_t)f[11],
                              .shown = (int64_t)f[12],
+                             .bytes_lent = (int64_t)f[13],
                              .difference = mine->difference};
     return SNOW_STATUS_OK;
 }

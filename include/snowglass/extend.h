@@ -71,6 +71,18 @@ typedef struct snow_comm_ops {
     void (*progress)(void *self); /* moves messages on, without waiting */
     void (*timeout)(void *self, double seconds); /* snow_comm_set_timeout */
     void (*end)(void *self);                     /* frees self */
+    /* All or none, for ranks that share memory. The number of a rank's node,
+     * alike on all ranks and for ever. */
+    int (*node_of)(void *self, int rank);
+    /* Collective. *own becomes this rank's memory of `bytes` (alike on all
+     * ranks), aligned to 64, until the next call or the end; or NULL, on all
+     * ranks of a node. What a rank writes before it sends, is there for who
+     * has received. NO_MEMORY is no failure of the transport. */
+    snow_status (*share)(void *self, size_t bytes, void **own);
+    /* The memory of a rank of the same node, to read. */
+    const void *(*shared)(void *self, int rank);
+    /* This rank's is not used for a while: its pages may go. */
+    void (*unshare)(void *self);
 } snow_comm_ops;
 SNOW_RECORD(snow_comm_ops);
 /* A communicator over a transport; `ops` is copied. It ends `self`, unless it

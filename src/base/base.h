@@ -88,6 +88,11 @@ void *snow_allocate_array(snow_context *context, uint64_t count, size_t size);
     snow_reserve(context, &(block), (uint64_t)(keep), (uint64_t)(count), \
                  sizeof *(block))
 
+/* Counts memory that the allocator does not give, as if it did; forgets it.
+ * Errors: SNOW_STATUS_NO_MEMORY (the limit). */
+snow_status snow_memory_count(snow_context *context, size_t bytes);
+void snow_memory_forget(snow_context *context, size_t bytes);
+
 /* The size of a block; 0 for NULL. */
 size_t snow_block_bytes(const void *block);
 

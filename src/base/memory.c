@@ -31,6 +31,13 @@ static bool may_hold(const snow_context *context, size_t bytes) {
                                context->bytes <= context->limit - bytes);
 }
 
+/* The context is locked. */
+static void count(snow_context *context, size_t bytes) {
+    context->bytes += bytes;
+    if (context->bytes > context->peak)
+        context->peak = context->bytes;
+}
+
 /* A block from the caller's allocator, which need not be safe for threads. */
 static void *allocate_counted(snow_context *context, size_t bytes,
                               size_t with_header, uint64_t *held) {
@@ -39,12 +46,23 @@ static void *allocate_counted(snow_context *context, size_t bytes,
     if (may_hold(context, bytes))
         raw = context->allocator.allocate(context->allocator.user, with_header);
     if (raw)
-        context->bytes += bytes;
-    if (context->bytes > context->peak)
-        context->peak = context->bytes;
+        count(context, bytes);
     *held = context->bytes;
     pthread_mutex_unlock(&context->lock);
     return raw;
+}
+
+/* The message about so many bytes that there are not. */
+static snow_status fail_memory(snow_context *context, size_t bytes,
+                               uint64_t held) {
+    return snow_fail(context, SNOW_STATUS_NO_MEMORY,
+                     "out of memory: %zu bytes more are needed (%llu are "
+                     "allocated%s); %s",
+                     bytes, (unsigned long long)held,
+                     context->limit ? " under a limit" : "",
+                     context->limit
+                         ? "raise it or use a smaller volume"
+                         : "close other programs or use a smaller volume");
 }
 
 void *snow_allocate(snow_context *context, size_t bytes) {
@@ -54,14 +72,7 @@ void *snow_allocate(snow_context *context, size_t bytes) {
     if (bytes <= SIZE_MAX - extra)
         raw = allocate_counted(context, bytes, bytes + extra, &held);
     if (!raw) {
-        snow_fail(context, SNOW_STATUS_NO_MEMORY,
-                  "out of memory: %zu bytes more are needed (%llu are "
-                  "allocated%s); %s",
-                  bytes, (unsigned long long)held,
-                  context->limit ? " under a limit" : "",
-                  context->limit
-                      ? "raise it or use a smaller volume"
-                      : "close other programs or use a smaller volume");
+        (void)fail_memory(context, bytes, held);
         return NULL;
     }
     char *block = raw + extra - (uintptr_t)raw % SNOW_ALIGNMENT;
@@ -119,6 +130,22 @@ void snow_release(snow_context *context, void *block) {
     pthread_mutex_lock(&context->lock);
     context->bytes -= header.bytes;
     context->allocator.release(context->allocator.user, header.raw);
+    pthread_mutex_unlock(&context->lock);
+}
+
+snow_status snow_memory_count(snow_context *context, size_t bytes) {
+    pthread_mutex_lock(&context->lock);
+    const uint64_t held = context->bytes;
+    const bool may = may_hold(context, bytes);
+    if (may)
+        count(context, bytes);
+    pthread_mutex_unlock(&context->lock);
+    return may ? SNOW_STATUS_OK : fail_memory(context, bytes, held);
+}
+
+void snow_memory_forget(snow_context *context, size_t bytes) {
+    pthread_mutex_lock(&context->lock);
+    context->bytes -= bytes;
     pthread_mutex_unlock(&context->lock);
 }
 

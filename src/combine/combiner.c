@@ -21,13 +21,28 @@ snow_status snow_combiner_new(snow_comm *comm, snow_combiner **out) {
     return SNOW_STATUS_OK;
 }
 
+/* Drops the memory of messages to send. */
+static void drop_send_buffers(snow_combiner *combiner) {
+    if (combiner->lends)
+        snow_comm_unshare(combiner->comm);
+    for (int i = 0; i < 2; i++) {
+        if (!combiner->lends)
+            snow_release(combiner->comm->context, combiner->out[i].bytes);
+        combiner->out[i].bytes = NULL;
+    }
+    combiner->lends = false;
+}
+
 static void drop_buffers(snow_combiner *combiner) {
     snow_context *context = combiner->comm->context;
+    drop_send_buffers(combiner);
     for (int i = 0; i < 2; i++) {
         snow_traffic *both[] = {&combiner->in[i], &combiner->out[i]};
         for (int k = 0; k < 2; k++) {
             snow_release(context, both[k]->bytes);
             snow_release(context, both[k]->messages);
+            snow_release(context, both[k]->loans);
+            snow_release(context, both[k]->returns);
             *both[k] = (snow_traffic){0};
         }
     }
@@ -44,9 +59,20 @@ static void drop_buffers(snow_combiner *combiner) {
     combiner->shape = (snow_exchange_params){0};
 }
 
+/* Whether nobody reads any more what was lent. After an exchange that has not
+ * ended there is nobody to wait for. */
+static bool give_back(snow_combiner *combiner) {
+    return combiner->exchange.ended && !snow_comm_broken(combiner->comm) &&
+           snow_traffic_await_returns(combiner) == SNOW_STATUS_OK;
+}
+
 void snow_combiner_free(snow_combiner *combiner) {
     if (!combiner)
         return;
+    if (combiner->lends && !give_back(combiner)) { /* others may read there */
+        combiner->out[0].bytes = combiner->out[1].bytes = NULL;
+        combiner->lends = false; /* it stays taken */
+    }
     drop_buffers(combiner);
     snow_gather_free(combiner);
     snow_release(combiner->comm->context, combiner);
@@ -126,6 +152,9 @@ static snow_status allocate_lists(snow_combiner *combiner) {
     for (int i = 0; i < 2; i++) {
         SNOW_TRY(SNOW_RESERVE(context, combiner->in[i].messages, 0, peers));
         SNOW_TRY(SNOW_RESERVE(context, combiner->out[i].messages, 0, peers));
+        SNOW_TRY(SNOW_RESERVE(context, combiner->in[i].loans, 0, peers));
+        SNOW_TRY(SNOW_RESERVE(context, combiner->out[i].loans, 0, peers));
+        SNOW_TRY(SNOW_RESERVE(context, combiner->out[i].returns, 0, peers));
     }
     SNOW_TRY(SNOW_RESERVE(context, combiner->rounds.shares, 0,
                           snow_rounds_room(&combiner->rounds)));
@@ -153,15 +182,35 @@ static bool replace_block(snow_context *context, void *block_pointer,
     return block || !bytes;
 }
 
+/* Messages to send are written where the ranks of the node can read them, if
+ * they have such memory. */
+static snow_status share_send_buffers(snow_combiner *combiner,
+                                      const snow_exchange_needs *need) {
+    const size_t first = snow_align(need->out[0]);
+    void *shared;
+    drop_send_buffers(combiner);
+    SNOW_TRY(snow_comm_share(combiner->comm, first + snow_align(need->out[1]),
+                             &shared));
+    if (!shared)
+        return SNOW_STATUS_OK;
+    combiner->lends = true;
+    combiner->out[0].bytes = shared;
+    combiner->out[1].bytes = combiner->out[0].bytes + first;
+    return SNOW_STATUS_OK;
+}
+
 static snow_status allocate_buffers(snow_combiner *combiner,
                                     const snow_exchange_needs *need) {
     snow_context *context = combiner->comm->context;
     const bool shown = !combiner->rounds.tree || combiner->comm->rank == 0;
     bool fine = true;
-    for (int i = 0; i < 2; i++)
-        fine = fine &&
-               replace_block(context, &combiner->in[i].bytes, need->in[i]) &&
-               replace_block(context, &combiner->out[i].bytes, need->out[i]);
+    for (int i = 0; i < 2; i++) {
+        fine =
+            fine && replace_block(context, &combiner->in[i].bytes, need->in[i]);
+        if (!combiner->lends)
+            fine = fine && replace_block(context, &combiner->out[i].bytes,
+                                         need->out[i]);
+    }
     fine = fine && replace_block(context, &combiner->words, need->words) &&
            replace_block(context, &combiner->region, shown ? need->region : 0);
     return fine ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
@@ -184,8 +233,11 @@ snow_status snow_combiner_fit(snow_combiner *combiner) {
             now[i] += now[i] / 8;
         now[i] = more(now[i], before[i]);
     }
-    snow_status status = snow_comm_agree_status(
-        combiner->comm, allocate_buffers(combiner, &need));
+    SNOW_TRY(snow_traffic_await_returns(combiner));
+    snow_status status = share_send_buffers(combiner, &need);
+    if (status == SNOW_STATUS_OK)
+        status = snow_comm_agree_status(combiner->comm,
+                                        allocate_buffers(combiner, &need));
     if (status != SNOW_STATUS_OK)
         drop_buffers(combiner);
     else
@@ -229,6 +281,7 @@ static bool same_shape(const snow_exchange_params *a,
 static snow_status plan_shape(snow_combiner *combiner,
                               const snow_exchange_params *order) {
     snow_comm *comm = combiner->comm;
+    SNOW_TRY(snow_traffic_await_returns(combiner));
     drop_buffers(combiner);
     combiner->filled = false;
     combiner->shape = *order;
@@ -236,7 +289,8 @@ static snow_status plan_shape(snow_combiner *combiner,
                             order->grain);
     combiner->bounds.counted = counts_regions(order, comm->ranks);
     snow_rounds_choose(&combiner->rounds, chosen_method(order), order->radix,
-                       comm->ranks, (int64_t)order->width * order->height,
+                       comm->ranks, snow_comm_ranks_per_node(comm),
+                       (int64_t)order->width * order->height,
                        (size_t)order->channels * sizeof(float));
     snow_status status = snow_comm_agree_status(comm, allocate_lists(combiner));
     if (status != SNOW_STATUS_OK)

@@ -12,7 +12,10 @@
 typedef struct snow_traffic {
     unsigned char *bytes;
     snow_message *messages;
+    snow_loan *loans; /* of the messages to and from ranks of this node */
     int count;
+    snow_message *returns; /* of what was lent */
+    int lent;
 } snow_traffic;
 
 /* Pixels first .. last - 1. */
@@ -38,6 +41,7 @@ typedef struct snow_part_to_send {
 typedef struct snow_exchange_state {
     snow_exchange_params order;
     size_t pixel_bytes;
+    bool ended;               /* without a failure */
     bool divided;             /* regions are known */
     int level;                /* the round */
     int awaited;              /* of combiner->parts */
@@ -95,6 +99,7 @@ struct snow_combiner {
     uint64_t *words;          /* their masks */
     uint64_t *part;           /* masks of parts to send, or of the region */
     snow_traffic in[2], out[2];
+    bool lends; /* out[] has its bytes in the communicator's shared memory */
     float *region;
     snow_exchange_state exchange; /* and the last one's params */
     snow_exchange_figures figures;
@@ -110,6 +115,34 @@ snow_status snow_combiner_plan(snow_combiner *combiner,
 
 /* Collective. Allocates buffers for the borders of regions as they are now. */
 snow_status snow_combiner_fit(snow_combiner *combiner);
+
+/* --- traffic.c ---
+
+ * Starts the receive of message `i` of a round from a rank, into `bytes`. */
+snow_status snow_traffic_receive(snow_combiner *combiner, snow_traffic *in,
+                                 int i, int from, unsigned char *bytes,
+                                 size_t capacity);
+
+/* Where message `i` is and how long, when it has come; NULL: it is no valid
+ * loan. */
+const unsigned char *snow_traffic_message(const snow_combiner *combiner,
+                                          const snow_traffic *in, int i,
+                                          int from, const unsigned char *bytes,
+                                          size_t *count);
+
+/* Sends or lends a message to a rank. */
+snow_status snow_traffic_send(snow_combiner *combiner, snow_traffic *out,
+                              const unsigned char *bytes, size_t count, int to);
+
+/* Returns what was borrowed in the round `level`. */
+snow_status snow_traffic_return(snow_combiner *combiner, int level);
+
+/* Waits until all messages of a round are sent; until what was lent in it has
+ * been returned; and the latter for all rounds. */
+snow_status snow_traffic_await_sent(snow_combiner *combiner, snow_traffic *out);
+snow_status snow_traffic_await_return(snow_combiner *combiner,
+                                      snow_traffic *out);
+snow_status snow_traffic_await_returns(snow_combiner *combiner);
 
 /* --- parts.c ---
 

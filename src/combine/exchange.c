@@ -75,10 +75,10 @@ static snow_status begin_receives(snow_combiner *combiner) {
             continue;
         size_t capacity = snow_active_room(part.last - part.first,
                                            combiner->exchange.pixel_bytes);
-        SNOW_TRY(snow_comm_receive(
-            combiner->comm, in->bytes + at, capacity,
+        SNOW_TRY(snow_traffic_receive(
+            combiner, in, i,
             combiner->exchange.order.ranks[share->rank_position],
-            SNOW_TAG_COMBINE, &in->messages[i]));
+            in->bytes + at, capacity));
         at += snow_align(capacity);
     }
     return SNOW_STATUS_OK;
@@ -122,17 +122,16 @@ static snow_status send_part(snow_combiner *combiner,
         return SNOW_STATUS_OK;
     }
     run->sent += run->level == 0 ? (int64_t)what->bytes : 0;
-    return snow_comm_send(combiner->comm, what->message, what->bytes,
-                          run->order.ranks[position], SNOW_TAG_COMBINE,
-                          &out->messages[out->count++]);
+    return snow_traffic_send(combiner, out, what->message, what->bytes,
+                             run->order.ranks[position]);
 }
 
 static snow_status begin_round(snow_combiner *combiner) {
     snow_exchange_state *run = &combiner->exchange;
     snow_traffic *out = &combiner->out[run->level & 1];
     SNOW_TRY(begin_receives(combiner));
-    SNOW_TRY(snow_comm_wait_all(combiner->comm, out->messages, out->count));
-    out->count = 0;
+    SNOW_TRY(snow_traffic_await_sent(combiner, out));
+    SNOW_TRY(snow_traffic_await_return(combiner, out));
     run->used = 0;
     run->own_bytes = 0;
     list_parts(combiner);
@@ -174,12 +173,13 @@ static snow_status end_receives(snow_combiner *combiner) {
         snow_stretch part = overlap(mine, stretch_of(combiner, share));
         if (part.first >= part.last)
             continue;
-        const unsigned char *bytes = in->bytes + at;
-        size_t count = in->messages[i].bytes;
-        if (share->rank_position == combiner->rounds.rank_position) {
-            bytes = combiner->exchange.own;
-            count = combiner->exchange.own_bytes;
-        } else {
+        const unsigned char *bytes = combiner->exchange.own;
+        size_t count = combiner->exchange.own_bytes;
+        if (share->rank_position != combiner->rounds.rank_position) {
+            bytes = snow_traffic_message(
+                combiner, in, i,
+                combiner->exchange.order.ranks[share->rank_position],
+                in->bytes + at, &count);
             at += snow_align(snow_active_room(part.last - part.first,
                                               combiner->exchange.pixel_bytes));
         }
@@ -187,14 +187,17 @@ static snow_status end_receives(snow_combiner *combiner) {
             combiner->figures.receive_largest = (int64_t)count;
         snow_active *layer =
             &combiner->layers[combiner->exchange.layer_count++];
-        bool good = open_layer(combiner, bytes, count, part, words, layer);
+        bool good =
+            bytes && open_layer(combiner, bytes, count, part, words, layer);
         layer->own = share->rank_position == combiner->rounds.rank_position;
-        if (!good)
+        if (!good) {
+            SNOW_TRY(snow_traffic_return(combiner, level));
             return snow_fail(
                 combiner->comm->context, SNOW_STATUS_FAILED,
                 "rank %d sent data of another picture: all ranks "
                 "must combine the same picture",
                 combiner->exchange.order.ranks[share->rank_position]);
+        }
         words += snow_active_words(part.first, part.last);
     }
     snow_parts_copy_layers(combiner);
@@ -311,6 +314,8 @@ static snow_status end_rounds(snow_combiner *combiner, snow_rectangle drawn) {
         SNOW_TRY(send_rest(combiner, drawn));
         if (run->level == combiner->rounds.count)
             return SNOW_STATUS_OK;
+        if (run->level)
+            SNOW_TRY(snow_traffic_return(combiner, run->level - 1));
         SNOW_TRY(end_receives(combiner));
         if (++run->level < combiner->rounds.count)
             SNOW_TRY(begin_round(combiner));
@@ -329,15 +334,14 @@ snow_status snow_exchange_end(snow_combiner *combiner, snow_rectangle drawn,
         snow_parts_copy_layers(combiner);
     }
     snow_parts_composite(combiner, mine);
-    for (int i = 0; i < 2; i++) {
-        snow_traffic *sent = &combiner->out[i];
-        SNOW_TRY(
-            snow_comm_wait_all(combiner->comm, sent->messages, sent->count));
-        sent->count = 0;
-    }
+    if (run->level)
+        SNOW_TRY(snow_traffic_return(combiner, run->level - 1));
+    for (int i = 0; i < 2; i++)
+        SNOW_TRY(snow_traffic_await_sent(combiner, &combiner->out[i]));
     *out = (snow_image_region){mine.first, mine.last - mine.first,
                                run->order.rehearsal ? NULL : combiner->region,
                                combiner->part};
+    run->ended = true;
     return SNOW_STATUS_OK;
 }
 

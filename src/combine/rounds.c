@@ -200,6 +200,7 @@ static double active_part(double parts) {
 /* A search of all sequences of radices, pruned where none can be the best. */
 typedef struct search {
     double rank_order, bytes, best;
+    int nodes;                            /* 1: all ranks are on one */
     int radices[SNOW_ROUNDS_MOST], count; /* current */
     snow_rounds *found;
 } search;
@@ -223,6 +224,12 @@ static bool divides(int left) {
     return left == 1;
 }
 
+/* Whether a round of this radix leaves subsets that still divide nodes. */
+static bool keeps_nodes(const search *s, int left, int radix) {
+    return left <= s->nodes || s->nodes == 1 ||
+           (left % radix == 0 && left / radix % s->nodes == 0);
+}
+
 static void search_rounds(search *s, int left, double seconds) {
     if (seconds >= s->best || s->count == 12)
         return;
@@ -232,9 +239,10 @@ static void search_rounds(search *s, int left, double seconds) {
         memcpy(s->found->radices, s->radices, sizeof s->radices);
         return;
     }
-    const bool even = divides(left);
-    for (int radix = least(left, RADIX_MOST); radix >= 2; radix--) {
-        if (even && left % radix)
+    const bool even = divides(left), within = s->nodes > 1 && left > s->nodes;
+    for (int radix = within ? left : least(left, RADIX_MOST); radix >= 2;
+         radix--) {
+        if ((even && left % radix) || !keeps_nodes(s, left, radix))
             continue;
         s->radices[s->count++] = radix;
         search_rounds(s, (left + radix - 1) / radix,
@@ -251,7 +259,8 @@ static void repeat_radix(snow_rounds *rounds, int rank_order, int radix) {
 }
 
 void snow_rounds_choose(snow_rounds *rounds, snow_combine method, int radix,
-                        int rank_order, int64_t pixels, size_t pixel_bytes) {
+                        int rank_order, int node_ranks, int64_t pixels,
+                        size_t pixel_bytes) {
     rounds->rank_order = rank_order;
     rounds->tree = method == SNOW_COMBINE_TREE;
     rounds->count = 0;
@@ -265,6 +274,7 @@ void snow_rounds_choose(snow_rounds *rounds, snow_combine method, int radix,
         search_rounds(&(search){.rank_order = rank_order,
                                 .bytes = (double)pixels * (double)pixel_bytes,
                                 .best = HUGE_VAL,
+                                .nodes = rank_order / node_ranks,
                                 .found = rounds},
                       rank_order, 0);
 }

@@ -53,9 +53,11 @@ typedef struct snow_rounds {
 size_t snow_rounds_room(const snow_rounds *rounds);
 
 /* Chooses radices for `method`: `pixels` of `pixel_bytes` in the picture;
- * `radix` as in snow_exchange_params. Sets count, radices and tree. */
+ * `radix` as in snow_exchange_params; `node_ranks` neighbours are a node, whose
+ * images the first rounds combine. Sets count, radices and tree. */
 void snow_rounds_choose(snow_rounds *rounds, snow_combine method, int radix,
-                        int rank_order, int64_t pixels, size_t pixel_bytes);
+                        int rank_order, int node_ranks, int64_t pixels,
+                        size_t pixel_bytes);
 
 /* Fills in the lists for a rank position; `shares` has the capacity of
  * snow_rounds_room, and `table` that of `rank_order` numbers. */

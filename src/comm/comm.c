@@ -21,6 +21,11 @@ snow_status snow_comm_new(snow_context *context, const snow_comm_ops *given,
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "the transport lacks a function: send, receive, "
                          "wait_any, wait_all, seconds and end are needed");
+    if (!ops.node_of != !ops.share || !ops.node_of != !ops.shared ||
+        !ops.node_of != !ops.unshare)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "the transport lacks a function: node_of, share, "
+                         "shared and unshare come together");
     snow_comm *comm = snow_allocate(context, sizeof *comm);
     if (!comm)
         return SNOW_STATUS_NO_MEMORY;
@@ -35,6 +40,7 @@ snow_status snow_comm_new(snow_context *context, const snow_comm_ops *given,
 
 void snow_comm_free(snow_comm *comm) {
     if (comm) {
+        snow_comm_forget_shared(comm);
         comm->ops.end(comm->self);
         snow_release(comm->context, comm);
     }

@@ -39,8 +39,9 @@ typedef struct mailbox_queue {
     mailbox_message *queued_messages; /* not yet asked for, oldest first */
     mailbox_slot *slots;              /* without a message yet, oldest first */
     bool gone;                        /* its rank sends nothing more */
-    int before; /* number of ranks that had left before it */
-    bool waits; /* its rank sleeps, and has nothing new */
+    int before;   /* number of ranks that had left before it */
+    bool waits;   /* its rank sleeps, and has nothing new */
+    void *shared; /* memory of its rank that others read, or NULL */
 } mailbox_queue;
 
 struct snow_mailbox {
@@ -339,9 +340,51 @@ static void occupy(void *self, snow_idle_fn *meanwhile, void *user) {
     own->meanwhile_user = user;
 }
 
+/* All ranks are on one node. */
+static int node_of(void *self, int rank) {
+    (void)self;
+    (void)rank;
+    return 0;
+}
+
+static void set_shared(mailbox_rank *own, void *block) {
+    snow_mailbox *mailbox = own->mailbox;
+    pthread_mutex_lock(&mailbox->lock);
+    void *old = mailbox->boxes[own->rank].shared;
+    mailbox->boxes[own->rank].shared = block;
+    pthread_mutex_unlock(&mailbox->lock);
+    snow_release(mailbox->context, old);
+}
+
+/* Of the mailbox' context; this rank's own counts what is used (shared.c). */
+static snow_status share(void *self, size_t bytes, void **out) {
+    mailbox_rank *own = self;
+    set_shared(own, NULL);
+    *out = snow_allocate(own->mailbox->context, bytes);
+    set_shared(own, *out);
+    return *out ? SNOW_STATUS_OK
+                : snow_fail(own->context, SNOW_STATUS_NO_MEMORY,
+                            "out of memory: %zu bytes more are needed for "
+                            "messages; use fewer ranks or a smaller picture",
+                            bytes);
+}
+
+static const void *shared(void *self, int rank) {
+    snow_mailbox *mailbox = ((mailbox_rank *)self)->mailbox;
+    pthread_mutex_lock(&mailbox->lock);
+    const void *there = mailbox->boxes[rank].shared;
+    pthread_mutex_unlock(&mailbox->lock);
+    return there;
+}
+
+static void unshare(void *self) {
+    (void)self;
+}
+
 static void end(void *self) {
     mailbox_rank *own = self;
     snow_mailbox_leave(own->mailbox, own->rank);
+    set_shared(own, NULL);
     while (own->made) {
         mailbox_slot *slot = own->made;
         own->made = slot->made;
@@ -365,7 +408,11 @@ snow_status snow_mailbox_comm(snow_mailbox *mailbox, snow_context *context,
                                       .wait_all = wait_all,
                                       .seconds = seconds,
                                       .occupy = occupy,
-                                      .end = end};
+                                      .end = end,
+                                      .node_of = node_of,
+                                      .share = share,
+                                      .shared = shared,
+                                      .unshare = unshare};
     mailbox_rank *own = snow_allocate(context, sizeof *own);
     if (!own)
         return SNOW_STATUS_NO_MEMORY;

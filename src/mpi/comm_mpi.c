@@ -107,6 +107,8 @@ snow_status snow_comm_new_mpi(snow_context *context, MPI_Comm group,
     if (status == SNOW_STATUS_OK)
         status = agree(context, ours,
                        snow_watchdog_new(context, ours, &side->watchdog));
+    if (status == SNOW_STATUS_OK)
+        status = snow_mpi_node_new(context, ours, &side->node);
 #endif
     if (status != SNOW_STATUS_OK) {
         if (comm)

@@ -121,6 +121,10 @@ static snow_status begin_message(mpi_side *side, bool receives, void *bytes,
     slot->receives = receives;
     slot->peer = peer;
     slot->large = count > SNOW_MPI_CHUNK;
+#ifndef SMPI_H
+    if (!receives)
+        snow_mpi_node_sync(side->node);
+#endif
     if (!slot->large) {
         error = start(side, slot, bytes, (int)count, MPI_BYTE, tag);
     } else {
@@ -192,6 +196,9 @@ static void complete_message(mpi_side *side, snow_message *message,
         message->bytes = count_bytes(slot, status);
     slot->request = MPI_REQUEST_NULL;
     message->handle = NULL;
+#ifndef SMPI_H
+    snow_mpi_node_sync(side->node);
+#endif
 }
 
 /* Waits for one of the first `asked` requests, and sets *found if MPI reports
@@ -204,6 +211,11 @@ static snow_status await(mpi_side *side, int asked, int *found,
     return SNOW_STATUS_OK;
 #else
     bool busy = side->meanwhile != NULL; /* while there is work */
+    int ended = 0;
+    MPI_Finalized(&ended);
+    if (ended)
+        return snow_context_fail(side->context, SNOW_STATUS_FAILED,
+                                 "MPI has ended: free frames before");
     snow_status status = snow_watchdog_begin(side->watchdog);
     while (status == SNOW_STATUS_OK) {
         int there = 0;
@@ -278,6 +290,27 @@ static void occupy(void *self, snow_idle_fn *meanwhile, void *user) {
     side->meanwhile_user = user;
 }
 
+static int node_of(void *self, int rank) {
+    const mpi_side *side = self;
+    return side->node ? snow_mpi_node_number(side->node, rank) : rank;
+}
+
+static snow_status share(void *self, size_t bytes, void **own) {
+    const mpi_side *side = self;
+    *own = side->node ? snow_mpi_node_share(side->node, bytes) : NULL;
+    return SNOW_STATUS_OK;
+}
+
+static const void *shared(void *self, int rank) {
+    return snow_mpi_node_shared(((const mpi_side *)self)->node, rank);
+}
+
+static void unshare(void *self) {
+    const mpi_side *side = self;
+    if (side->node)
+        snow_mpi_node_unshare(side->node);
+}
+
 /* Any test of a message lets all messages progress. */
 static void progress(void *self) {
     mpi_side *side = self;
@@ -322,9 +355,14 @@ static void end(void *self) {
     if (!finalized && !side->failed) {
         for (int i = 0; i < side->slot_count; i++)
             give_up(&side->slots[i]);
+#ifndef SMPI_H
+        snow_mpi_node_free(side->node, true);
+        side->node = NULL;
+#endif
         snow_mpi_drop_group(&side->group);
     }
 #ifndef SMPI_H
+    snow_mpi_node_free(side->node, false);
     snow_watchdog_free(side->watchdog, !finalized && !side->failed);
 #endif
     snow_context_release(side->context, side->slots);
@@ -346,5 +384,9 @@ const snow_comm_ops snow_mpi_ops = {.size = sizeof(snow_comm_ops),
                                     .timeout = limit_waits,
                                     .occupy = occupy,
                                     .progress = progress,
+                                    .node_of = node_of,
+                                    .share = share,
+                                    .shared = shared,
+                                    .unshare = unshare,
 #endif
                                     .end = end};

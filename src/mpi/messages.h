@@ -6,6 +6,7 @@
 #include <snowglass/mpi.h>
 
 #ifndef SMPI_H /* tests would take simulated time */
+#include "mpi/node.h"
 #include "mpi/watchdog.h"
 #endif
 
@@ -27,6 +28,7 @@ typedef struct mpi_side {
     int *places; /* indices of the requests among the messages */
     int *peers;  /* of the requests */
 #ifndef SMPI_H
+    mpi_node *node; /* what the ranks of this node share, or NULL: nothing */
     snow_idle_fn *meanwhile; /* other work done in waits, or NULL */
     void *meanwhile_user;
     mpi_watchdog *watchdog;

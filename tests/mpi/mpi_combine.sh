@@ -1,6 +1,6 @@
 #!/bin/bash
 # mpi_combine.sh - bench combine over ranks of MPI: the same checks and the same
-# counts as between threads.
+# counts as between threads, of bytes that ranks read in place too.
 . "$(dirname "$0")/../support/mpi.sh"
 
 for ranks in $COUNTS; do
@@ -11,6 +11,8 @@ for ranks in $COUNTS; do
         --runs 1 --check
     prints "^ranks=$ranks .* check=ok .*$counts"
 done
+lent=$(grep -o 'bytes_lent_sum=[0-9]*' "$OUT")
+check "ranks of one node read pixels in place" [ "${lent#*=}" -gt 0 ]
 run 0 "a local image" "$TOOL" render phantom:engine --dims 24x24x24 \
     --size 40x30 --threshold 10 -o local.png
 run 0 "$MOST ranks with pictures" launch "$MOST" "$MPI_TOOL" bench combine \

@@ -266,13 +266,43 @@ static snow_status combine_once(snow_comm *comm, snow_combiner *combiner,
     return check_gather(comm, combiner, j, &region);
 }
 
-/* Every way, with sizes, channels, grains and pieces taken in turns. */
+/* Threads as if they were on nodes: one, each alone, two each, of unequal
+ * numbers, and of ranks that do not follow one another. */
+static int in_pairs(void *self, int rank) {
+    (void)self;
+    return rank / 2;
+}
+
+static int alone(void *self, int rank) {
+    (void)self;
+    return rank;
+}
+
+static int first_alone(void *self, int rank) {
+    (void)self;
+    return (rank + 2) / 3;
+}
+
+static int by_turns(void *self, int rank) {
+    (void)self;
+    return rank % 2;
+}
+
+typedef int node_of_fn(void *self, int rank);
+static node_of_fn *const nodes[] = {NULL, in_pairs, alone, first_alone,
+                                    by_turns};
+
+/* Every way, with sizes, channels, grains, pieces and nodes taken in turns. */
 static snow_status combine_all_ways(snow_comm *comm, void *user) {
     snow_combiner *combiner;
     int turn = *(int *)user + comm->ranks;
     snow_status status = SNOW_STATUS_OK;
+    node_of_fn *on_one = comm->ops.node_of;
     SNOW_TRY(snow_combiner_new(comm, &combiner));
-    for (size_t i = 0; i < COUNT_OF(ways) && status == SNOW_STATUS_OK; i++)
+    for (size_t i = 0; i < COUNT_OF(ways) && status == SNOW_STATUS_OK; i++) {
+        node_of_fn *several = nodes[(i + (size_t)turn) % COUNT_OF(nodes)];
+        const uint64_t lent = comm->bytes_lent;
+        comm->ops.node_of = several ? several : on_one;
         for (size_t k = 0; k < COUNT_OF(sizes) && status == SNOW_STATUS_OK;
              k++) {
             turn++;
@@ -287,8 +317,79 @@ static snow_status combine_all_ways(snow_comm *comm, void *user) {
                                   (snow_image_partition)(turn / 2 % 4));
             status = snow_comm_agree_status(comm, status);
         }
+        int64_t all = (int64_t)(comm->bytes_lent - lent);
+        if (status == SNOW_STATUS_OK)
+            status = snow_comm_reduce_ints(comm, &all, 1, SNOW_REDUCE_SUM);
+        CHECK(status != SNOW_STATUS_OK || several != alone || all == 0);
+        CHECK(status != SNOW_STATUS_OK || several || comm->ranks == 1 || all);
+    }
     snow_combiner_free(combiner);
     return status;
+}
+
+/* --- memory of nodes ------------------------------------------------------ */
+
+/* Of this thread's rank: its number, and how its memory is made. */
+static _Thread_local int this_rank;
+static _Thread_local snow_status (*share_of_threads)(void *, size_t, void **);
+
+/* The node of ranks 0 and 1 has no memory that they share. */
+static snow_status share_elsewhere(void *self, size_t bytes, void **own) {
+    snow_status status = share_of_threads(self, bytes, own);
+    if (this_rank < 2)
+        *own = NULL;
+    return status;
+}
+
+static snow_status combine_size(snow_comm *comm, snow_combiner *combiner,
+                                int width, int height) {
+    const way w = {SNOW_COMBINE_DIRECT, 0, false};
+    job j = {.width = width,
+             .height = height,
+             .channels = 4,
+             .seed = width,
+             .count = comm->ranks};
+    shuffle(&j);
+    return snow_comm_agree_status(
+        comm,
+        combine_once(comm, combiner, &j, &w, 1, SNOW_IMAGE_PARTITION_EVEN));
+}
+
+static snow_status lent_by_all(snow_comm *comm, int64_t *out) {
+    *out = (int64_t)comm->bytes_lent;
+    return snow_comm_reduce_ints(comm, out, 1, SNOW_REDUCE_SUM);
+}
+
+/* Larger and smaller pictures; a second combiner, which one rank makes after
+ * it has freed the first one, and others before. */
+static snow_status combine_on_nodes(snow_comm *comm, void *user) {
+    snow_combiner *first, *second;
+    (void)user;
+    this_rank = comm->rank;
+    share_of_threads = comm->ops.share;
+    comm->ops.share = share_elsewhere;
+    comm->ops.node_of = in_pairs;
+    SNOW_TRY(snow_combiner_new(comm, &first));
+    SNOW_TRY(combine_size(comm, first, 64, 16));
+    SNOW_TRY(combine_size(comm, first, 128, 90));
+    SNOW_TRY(combine_size(comm, first, 61, 7));
+    int64_t lent, again;
+    SNOW_TRY(lent_by_all(comm, &lent));
+    CHECK(lent > 0);
+    SNOW_TRY(snow_combiner_new(comm, &second));
+    if (comm->rank == 1)
+        snow_combiner_free(first);
+    SNOW_TRY(combine_size(comm, second, 200, 150));
+    SNOW_TRY(lent_by_all(comm, &again));
+    CHECK(again == lent);
+    if (comm->rank != 1)
+        snow_combiner_free(first);
+    SNOW_TRY(combine_size(comm, second, 256, 200));
+    SNOW_TRY(combine_size(comm, second, 64, 16));
+    SNOW_TRY(lent_by_all(comm, &again));
+    CHECK(again > lent && (comm->rank > 1 || comm->bytes_lent == 0));
+    snow_combiner_free(second);
+    return SNOW_STATUS_OK;
 }
 
 static void
@@ -318,6 +419,12 @@ static void run_body(int ranks, snow_comm_body_fn *body, void *user) {
     assert_int_equal(status, SNOW_STATUS_OK);
     assert_int_equal(snow_context_bytes(context), 0);
     snow_context_free(context);
+}
+
+static void nodes_with_memory_and_without_work_together(void **state) {
+    (void)state;
+    run_body(4, combine_on_nodes, NULL);
+    run_body(7, combine_on_nodes, NULL);
 }
 
 /* --- threads -------------------------------------------------------------- */
@@ -652,7 +759,7 @@ static void counted_and_interlaced_pieces_are_balanced(void **state) {
  * as a sum that tells who, whom and when. */
 static void check_plan(snow_combine method, int radix, int rank_order) {
     snow_rounds rounds;
-    snow_rounds_choose(&rounds, method, radix, rank_order, 1 << 20, 16);
+    snow_rounds_choose(&rounds, method, radix, rank_order, 1, 1 << 20, 16);
     assert_true(rounds.count <= SNOW_ROUNDS_MOST);
     size_t room = snow_rounds_room(&rounds);
     rounds.shares = calloc(room + 1, sizeof *rounds.shares);
@@ -684,6 +791,30 @@ static void check_plan(snow_combine method, int radix, int rank_order) {
     free(rounds.shares);
     free(table);
     free(owners);
+}
+
+/* With `node` ranks on each of `count` nodes: some rounds combine whole nodes,
+ * before others do more. */
+static void check_nodes(int node, int count) {
+    snow_rounds rounds;
+    snow_rounds_choose(&rounds, SNOW_COMBINE_RADIX, 0, node * count, node,
+                       1 << 20, 16);
+    int subsets = 1, level = 0;
+    while (subsets < node && level < rounds.count)
+        subsets *= rounds.radices[level++];
+    if (count > 1)
+        assert_int_equal(subsets, node);
+    for (; level < rounds.count; level++)
+        subsets *= rounds.radices[level];
+    assert_true(subsets >= node * count);
+}
+
+static void the_first_rounds_combine_the_ranks_of_nodes(void **state) {
+    static const int sizes_of_nodes[] = {1, 2, 3, 5, 12, 31, 48, 67, 128};
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(sizes_of_nodes); i++)
+        for (int count = 1; count <= 20; count += 1 + count / 3)
+            check_nodes(sizes_of_nodes[i], count);
 }
 
 static void what_is_sent_is_waited_for_with_any_number_of_ranks(void **state) {
@@ -850,12 +981,14 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(
             every_method_gives_the_picture_of_a_chain_for_1_to_33_ranks),
+        cmocka_unit_test(nodes_with_memory_and_without_work_together),
         cmocka_unit_test(threads_of_ranks_change_no_bit),
         cmocka_unit_test(pictures_that_need_no_more_than_others_take_no_memory),
         cmocka_unit_test(whole_pictures_cost_the_least_that_whole_pictures_can),
         cmocka_unit_test(a_rehearsal_sends_messages_of_the_same_length),
         cmocka_unit_test(counted_and_interlaced_pieces_are_balanced),
         cmocka_unit_test(what_is_sent_is_waited_for_with_any_number_of_ranks),
+        cmocka_unit_test(the_first_rounds_combine_the_ranks_of_nodes),
         cmocka_unit_test(what_is_no_order_is_refused),
         cmocka_unit_test(wrong_runs_of_one_rank_fail_there_and_nobody_waits),
         cmocka_unit_test(one_rank_without_memory_fails_all_and_nobody_waits),

@@ -1,0 +1,183 @@
+/* mpi/node.c - the window of the ranks of a node.
+ *
+ * A window is an open file in memory, in /dev/shm, which some systems make
+ * small: containers often have 64 MB. Only pages that are written need room,
+ * but a page for which there is none ends the program. So a window is made only
+ * if another one of its size would fit beside it: MPI's messages, and other
+ * jobs, have theirs there. */
+#define _DEFAULT_SOURCE /* madvise */
+#include "mpi/node.h"
+
+#include <sched.h>
+#include <stdint.h>
+#include <sys/mman.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+/* A rank whose neighbours do not end with it leaves the window to the system
+ * after so long. */
+#define END_SECONDS 5
+
+struct mpi_node {
+    snow_context *context;
+    MPI_Comm group; /* the ranks of the node */
+    int members;
+    int *numbers; /* of all ranks: the number of the node, the place in it */
+    MPI_Win window;
+    void *own; /* this rank's part, of so many bytes */
+    size_t bytes;
+};
+
+/* --- which ranks ---------------------------------------------------------- */
+
+/* A node's number is its first rank. */
+static int number_nodes(mpi_node *node, MPI_Comm group, int rank) {
+    int mine[2] = {rank, 0};
+    MPI_Comm_rank(node->group, &mine[1]);
+    MPI_Comm_size(node->group, &node->members);
+    const int told = MPI_Bcast(mine, 1, MPI_INT, 0, node->group);
+    const int gathered =
+        MPI_Allgather(mine, 2, MPI_INT, node->numbers, 2, MPI_INT, group);
+    return told == MPI_SUCCESS ? gathered : told;
+}
+
+/* The smallest of the numbers of a group's ranks. */
+static int least_of(MPI_Comm group, int mine) {
+    int least = 0;
+    return MPI_Allreduce(&mine, &least, 1, MPI_INT, MPI_MIN, group) ==
+                   MPI_SUCCESS
+               ? least
+               : 0;
+}
+
+/* All ranks make the same calls, whichever fail. */
+static bool find_members(mpi_node *node, MPI_Comm group) {
+    int rank = 0;
+    MPI_Comm_rank(group, &rank);
+    int error = MPI_Comm_split_type(group, MPI_COMM_TYPE_SHARED, rank,
+                                    MPI_INFO_NULL, &node->group);
+    if (!least_of(group, error == MPI_SUCCESS))
+        return false;
+    MPI_Comm_set_errhandler(node->group, MPI_ERRORS_RETURN);
+    return least_of(group, number_nodes(node, group, rank) == MPI_SUCCESS);
+}
+
+snow_status snow_mpi_node_new(snow_context *context, MPI_Comm group,
+                              mpi_node **out) {
+    int ranks = 1;
+    MPI_Comm_size(group, &ranks);
+    mpi_node *node = snow_context_allocate(context, sizeof *node);
+    int *numbers = snow_context_allocate(context, 2 * (size_t)ranks *
+                                                      sizeof *node->numbers);
+    if (node)
+        *node = (mpi_node){.context = context,
+                           .group = MPI_COMM_NULL,
+                           .numbers = numbers,
+                           .window = MPI_WIN_NULL};
+    *out = NULL;
+    const bool has = node && numbers, all = least_of(group, has);
+    if (all && find_members(node, group)) {
+        *out = node;
+        return SNOW_STATUS_OK;
+    }
+    snow_context_release(context, numbers);
+    snow_context_release(context, node);
+    if (has && !all)
+        return snow_context_fail(
+            context, SNOW_STATUS_NO_MEMORY, "another rank: %s",
+            snow_status_description(SNOW_STATUS_NO_MEMORY));
+    return all ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+}
+
+static void free_window(mpi_node *node) {
+    if (node->window == MPI_WIN_NULL)
+        return;
+    MPI_Win_unlock_all(node->window);
+    MPI_Win_free(&node->window);
+}
+
+/* Whether the other ranks of the node come to their end as well, soon. */
+static bool all_end(const mpi_node *node) {
+    const double begin = MPI_Wtime();
+    MPI_Request request;
+    int done = 0;
+    if (MPI_Ibarrier(node->group, &request) != MPI_SUCCESS)
+        return false;
+    while (!done && MPI_Wtime() - begin < END_SECONDS)
+        if (MPI_Test(&request, &done, MPI_STATUS_IGNORE) != MPI_SUCCESS)
+            return false;
+        else if (!done)
+            sched_yield();
+    return done;
+}
+
+void snow_mpi_node_free(mpi_node *node, bool orderly) {
+    if (!node)
+        return;
+    if (orderly && (node->window == MPI_WIN_NULL || all_end(node))) {
+        free_window(node);
+        MPI_Comm_free(&node->group);
+    }
+    snow_context_release(node->context, node->numbers);
+    snow_context_release(node->context, node);
+}
+
+int snow_mpi_node_number(const mpi_node *node, int rank) {
+    return node->numbers[2 * rank];
+}
+
+/* --- the window ----------------------------------------------------------- */
+
+/* Whether the windows of all members fit twice. */
+static bool has_room(const mpi_node *node, size_t bytes) {
+    struct statvfs room;
+    return statvfs("/dev/shm", &room) == 0 && room.f_frsize &&
+           bytes / room.f_frsize < room.f_bavail / 2 / (unsigned)node->members;
+}
+
+void *snow_mpi_node_share(mpi_node *node, size_t bytes) {
+    void *own = NULL;
+    free_window(node);
+    if (node->members < 2 || !least_of(node->group, has_room(node, bytes)))
+        return NULL;
+    const bool made =
+        MPI_Win_allocate_shared((MPI_Aint)bytes, 1, MPI_INFO_NULL, node->group,
+                                &own, &node->window) == MPI_SUCCESS &&
+        MPI_Win_lock_all(MPI_MODE_NOCHECK, node->window) == MPI_SUCCESS;
+    if (!least_of(node->group, made)) {
+        node->window = MPI_WIN_NULL;
+        return NULL;
+    }
+    MPI_Win_set_errhandler(node->window, MPI_ERRORS_RETURN);
+    node->own = own;
+    node->bytes = bytes;
+    return own;
+}
+
+/* The pages that are this rank's alone go back to the system; the next that
+ * writes there gets others. */
+void snow_mpi_node_unshare(const mpi_node *node) {
+    const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE),
+                    own = (uintptr_t)node->own,
+                    begin = (own + page - 1) / page * page,
+                    end = (own + node->bytes) / page * page;
+    if (node->window != MPI_WIN_NULL && begin < end)
+        (void)madvise((void *)begin, end - begin, MADV_REMOVE);
+}
+
+const void *snow_mpi_node_shared(const mpi_node *node, int rank) {
+    MPI_Aint size = 0;
+    int unit = 1;
+    void *there = NULL;
+    return node->window != MPI_WIN_NULL &&
+                   MPI_Win_shared_query(node->window,
+                                        node->numbers[2 * rank + 1], &size,
+                                        &unit, (void *)&there) == MPI_SUCCESS
+               ? there
+               : NULL;
+}
+
+void snow_mpi_node_sync(const mpi_node *node) {
+    if (node && node->window != MPI_WIN_NULL)
+        MPI_Win_sync(node->window);
+}

@@ -1,0 +1,29 @@
+/* mpi/node.h - memory that the ranks of a node share: a window of MPI-3. */
+#ifndef SNOW_MPI_NODE_H
+#define SNOW_MPI_NODE_H
+
+#include <snowglass/extend.h>
+
+#include <mpi.h>
+
+typedef struct mpi_node mpi_node;
+
+/* Collective. Finds out which ranks of a group share memory. NULL: none; also
+ * if MPI cannot tell. Errors, alike on all ranks: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_mpi_node_new(snow_context *context, MPI_Comm group,
+                              mpi_node **out);
+
+/* Collective if it is orderly. */
+void snow_mpi_node_free(mpi_node *node, bool orderly);
+
+/* As in snow_comm_ops. */
+int snow_mpi_node_number(const mpi_node *node, int rank);
+void *snow_mpi_node_share(mpi_node *node, size_t bytes);
+const void *snow_mpi_node_shared(const mpi_node *node, int rank);
+void snow_mpi_node_unshare(const mpi_node *node);
+
+/* What was written to the window before a message, is there for who has
+ * received it: called before a send and after a receive. */
+void snow_mpi_node_sync(const mpi_node *node);
+
+#endif
