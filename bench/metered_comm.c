@@ -102,7 +102,7 @@ static const void *shared(void *self, int rank) {
     return inner->ops.shared(inner->self, rank);
 }
 
-static void unshare(void *self) {
+static void rest_shared(void *self) {
     const snow_comm *inner = ((bench_meter *)self)->inner;
     if (inner->ops.unshare)
         inner->ops.unshare(inner->self);
@@ -127,7 +127,7 @@ snow_status bench_meter_new(bench_meter *meter, snow_comm **out) {
                                       .node_of = node_of,
                                       .share = share,
                                       .shared = shared,
-                                      .unshare = unshare};
+                                      .unshare = rest_shared};
     return snow_comm_new(snow_comm_context(meter->inner), &ops, meter,
                          snow_comm_rank(meter->inner),
                          snow_comm_size(meter->inner), out);

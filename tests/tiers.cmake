@@ -37,7 +37,7 @@ set(SNOW_LABEL_surface ${formats} test_base test_compare test_convert test_image
     test_guard test_live_file test_mask test_message test_npy_pfm test_pictures test_png test_recipe test_save
     test_source test_tf test_volume test_writer test_writer_named)
 set(SNOW_LABEL_threads test_affinity test_combine test_comm test_early
-    test_pipeline test_frames test_insitu test_insitu_levels test_insitu_marks test_modes
+    test_pipeline test_frames test_insitu test_insitu_levels test_insitu_marks
     test_raycast test_value test_value_layer_parts test_value_parts test_value_perspective test_simulated test_stop test_progress test_ranks test_ranks_open test_redistribute
     test_load_balance test_pool_signals test_shares serve_hostile serve_places serve_sockets)
 set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture

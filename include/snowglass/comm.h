@@ -39,8 +39,7 @@ SNOW_API bool snow_comm_broken(const snow_comm *comm);
 /* Alike on all ranks: seconds to wait for a rank that neither sends nor waits
  * (docs/scaling.md); then the communicator is broken. 0: for ever. */
 SNOW_API void snow_comm_set_timeout(snow_comm *comm, double seconds);
-/* Wall time, unless simulated; messages and bytes sent by this rank so far,
- * and what ranks of its node read in its memory. */
+/* Wall time, unless simulated; messages and bytes of this rank so far. */
 SNOW_API double snow_comm_seconds(snow_comm *comm);
 SNOW_API void snow_comm_sent(
     const snow_comm *comm, uint64_t *messages, uint64_t *bytes);

@@ -45,9 +45,7 @@ typedef struct snow_message {
     void *handle;
     size_t bytes;
 } snow_message;
-
 typedef bool snow_idle_fn(void *user); /* a piece of work; false: none left */
-
 /* A transport, called by the communicator's thread; after a failure, which
  * leaves a message, only `end` is. The first five and `end` are needed. */
 typedef struct snow_comm_ops {
@@ -71,17 +69,10 @@ typedef struct snow_comm_ops {
     void (*progress)(void *self); /* moves messages on, without waiting */
     void (*timeout)(void *self, double seconds); /* snow_comm_set_timeout */
     void (*end)(void *self);                     /* frees self */
-    /* All or none, for ranks that share memory. The number of a rank's node,
-     * alike on all ranks and for ever. */
+    /* Memory that ranks of a node share: all or none (docs/scaling.md). */
     int (*node_of)(void *self, int rank);
-    /* Collective. *own becomes this rank's memory of `bytes` (alike on all
-     * ranks), aligned to 64, until the next call or the end; or NULL, on all
-     * ranks of a node. What a rank writes before it sends, is there for who
-     * has received. NO_MEMORY is no failure of the transport. */
     snow_status (*share)(void *self, size_t bytes, void **own);
-    /* The memory of a rank of the same node, to read. */
     const void *(*shared)(void *self, int rank);
-    /* This rank's is not used for a while: its pages may go. */
     void (*unshare)(void *self);
 } snow_comm_ops;
 SNOW_RECORD(snow_comm_ops);
@@ -92,15 +83,12 @@ SNOW_API snow_status snow_comm_new(snow_context *context,
 /* Collective. Element by element over all ranks; the result replaces `values`,
  * with the same bits on every rank. */
 typedef enum snow_reduce {
-    SNOW_REDUCE_SUM,
-    SNOW_REDUCE_MIN,
-    SNOW_REDUCE_MAX
+    SNOW_REDUCE_SUM, SNOW_REDUCE_MIN, SNOW_REDUCE_MAX
 } snow_reduce;
 SNOW_API snow_status snow_comm_reduce_ints(
     snow_comm *comm, int64_t *values, size_t count, snow_reduce by);
 SNOW_API snow_status snow_comm_reduce_doubles(
     snow_comm *comm, double *values, size_t count, snow_reduce by);
-
 static inline int64_t snow_box_voxels(const snow_box *box) {
     return box->count[0] * box->count[1] * box->count[2];
 }

@@ -24,7 +24,7 @@ snow_status snow_combiner_new(snow_comm *comm, snow_combiner **out) {
 /* Drops the memory of messages to send. */
 static void drop_send_buffers(snow_combiner *combiner) {
     if (combiner->lends)
-        snow_comm_unshare(combiner->comm);
+        snow_comm_drop_shared(combiner->comm);
     for (int i = 0; i < 2; i++) {
         if (!combiner->lends)
             snow_release(combiner->comm->context, combiner->out[i].bytes);
@@ -189,8 +189,8 @@ static snow_status share_send_buffers(snow_combiner *combiner,
     const size_t first = snow_align(need->out[0]);
     void *shared;
     drop_send_buffers(combiner);
-    SNOW_TRY(snow_comm_share(combiner->comm, first + snow_align(need->out[1]),
-                             &shared));
+    SNOW_TRY(snow_comm_take_shared(combiner->comm,
+                                   first + snow_align(need->out[1]), &shared));
     if (!shared)
         return SNOW_STATUS_OK;
     combiner->lends = true;

@@ -78,11 +78,11 @@ snow_status snow_comm_reduce_both(snow_comm *comm, int64_t *values,
 int snow_comm_ranks_per_node(const snow_comm *comm);
 
 /* Collective. Takes `bytes` of this rank's shared memory, alike on all ranks,
- * until snow_comm_unshare; the context counts them. *out is NULL if the ranks
- * of this node share none, or while a combiner of any rank has it. Errors,
- * alike on all ranks: SNOW_STATUS_NO_MEMORY, those of the transport. */
-snow_status snow_comm_share(snow_comm *comm, size_t bytes, void **out);
-void snow_comm_unshare(snow_comm *comm); /* what was lent has come back */
+ * until snow_comm_drop_shared; the context counts them. *out is NULL if the
+ * ranks of this node share none, or while a combiner of any rank has it.
+ * Errors, alike on all ranks: SNOW_STATUS_NO_MEMORY, those of the transport. */
+snow_status snow_comm_take_shared(snow_comm *comm, size_t bytes, void **out);
+void snow_comm_drop_shared(snow_comm *comm); /* what was lent has come back */
 
 /* For snow_comm_free: it is not counted any more. */
 void snow_comm_forget_shared(snow_comm *comm);
@@ -96,8 +96,8 @@ typedef struct snow_loan {
     uint64_t offset, bytes;
 } snow_loan;
 
-/* As snow_comm_send, for bytes in the memory of snow_comm_share. They stay as
- * they are until `returned` is done; *loan stays until `sent` is. */
+/* As snow_comm_send, for bytes in the memory of snow_comm_take_shared. They
+ * stay as they are until `returned` is done; *loan stays until `sent` is. */
 snow_status snow_comm_lend(snow_comm *comm, const void *bytes, size_t count,
                            int to, int tag, snow_loan *loan, snow_message *sent,
                            snow_message *returned);

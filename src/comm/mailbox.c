@@ -377,7 +377,7 @@ static const void *shared(void *self, int rank) {
     return there;
 }
 
-static void unshare(void *self) {
+static void rest_shared(void *self) {
     (void)self;
 }
 
@@ -412,7 +412,7 @@ snow_status snow_mailbox_comm(snow_mailbox *mailbox, snow_context *context,
                                       .node_of = node_of,
                                       .share = share,
                                       .shared = shared,
-                                      .unshare = unshare};
+                                      .unshare = rest_shared};
     mailbox_rank *own = snow_allocate(context, sizeof *own);
     if (!own)
         return SNOW_STATUS_NO_MEMORY;

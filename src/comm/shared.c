@@ -53,7 +53,7 @@ static snow_status renew(snow_comm *comm, size_t bytes) {
 
 /* A rank that has failed says so before the transport's call, in which nobody
  * watches. */
-snow_status snow_comm_share(snow_comm *comm, size_t bytes, void **out) {
+snow_status snow_comm_take_shared(snow_comm *comm, size_t bytes, void **out) {
     bool taken = true;
     *out = NULL;
     if (comm->ranks == 1 || !comm->ops.node_of)
@@ -73,7 +73,7 @@ snow_status snow_comm_share(snow_comm *comm, size_t bytes, void **out) {
     return status;
 }
 
-void snow_comm_unshare(snow_comm *comm) {
+void snow_comm_drop_shared(snow_comm *comm) {
     snow_comm_forget_shared(comm);
     if (comm->context->limit)
         comm->ops.unshare(comm->self);

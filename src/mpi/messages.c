@@ -290,27 +290,6 @@ static void occupy(void *self, snow_idle_fn *meanwhile, void *user) {
     side->meanwhile_user = user;
 }
 
-static int node_of(void *self, int rank) {
-    const mpi_side *side = self;
-    return side->node ? snow_mpi_node_number(side->node, rank) : rank;
-}
-
-static snow_status share(void *self, size_t bytes, void **own) {
-    const mpi_side *side = self;
-    *own = side->node ? snow_mpi_node_share(side->node, bytes) : NULL;
-    return SNOW_STATUS_OK;
-}
-
-static const void *shared(void *self, int rank) {
-    return snow_mpi_node_shared(((const mpi_side *)self)->node, rank);
-}
-
-static void unshare(void *self) {
-    const mpi_side *side = self;
-    if (side->node)
-        snow_mpi_node_unshare(side->node);
-}
-
 /* Any test of a message lets all messages progress. */
 static void progress(void *self) {
     mpi_side *side = self;
@@ -384,9 +363,9 @@ const snow_comm_ops snow_mpi_ops = {.size = sizeof(snow_comm_ops),
                                     .timeout = limit_waits,
                                     .occupy = occupy,
                                     .progress = progress,
-                                    .node_of = node_of,
-                                    .share = share,
-                                    .shared = shared,
-                                    .unshare = unshare,
+                                    .node_of = snow_mpi_node_of,
+                                    .share = snow_mpi_share,
+                                    .shared = snow_mpi_shared,
+                                    .unshare = snow_mpi_unshare,
 #endif
                                     .end = end};

@@ -6,7 +6,7 @@
  * if another one of its size would fit beside it: MPI's messages, and other
  * jobs, have theirs there. */
 #define _DEFAULT_SOURCE /* madvise */
-#include "mpi/node.h"
+#include "mpi/messages.h"
 
 #include <sched.h>
 #include <stdint.h>
@@ -122,8 +122,13 @@ void snow_mpi_node_free(mpi_node *node, bool orderly) {
     snow_context_release(node->context, node);
 }
 
-int snow_mpi_node_number(const mpi_node *node, int rank) {
-    return node->numbers[2 * rank];
+static mpi_node *node_of(void *self) {
+    return ((mpi_side *)self)->node;
+}
+
+int snow_mpi_node_of(void *self, int rank) {
+    const mpi_node *node = node_of(self);
+    return node ? node->numbers[2 * rank] : rank;
 }
 
 /* --- the window ----------------------------------------------------------- */
@@ -135,7 +140,8 @@ static bool has_room(const mpi_node *node, size_t bytes) {
            bytes / room.f_frsize < room.f_bavail / 2 / (unsigned)node->members;
 }
 
-void *snow_mpi_node_share(mpi_node *node, size_t bytes) {
+/* NULL, on all ranks of a node: it has too little room. */
+static void *make_window(mpi_node *node, size_t bytes) {
     void *own = NULL;
     free_window(node);
     if (node->members < 2 || !least_of(node->group, has_room(node, bytes)))
@@ -154,27 +160,36 @@ void *snow_mpi_node_share(mpi_node *node, size_t bytes) {
     return own;
 }
 
+snow_status snow_mpi_share(void *self, size_t bytes, void **own) {
+    mpi_node *node = node_of(self);
+    *own = node ? make_window(node, bytes) : NULL;
+    return SNOW_STATUS_OK;
+}
+
+const void *snow_mpi_shared(void *self, int rank) {
+    const mpi_node *node = node_of(self);
+    MPI_Aint size = 0;
+    int unit = 1;
+    void *there = NULL;
+    const bool found =
+        node && node->window != MPI_WIN_NULL &&
+        MPI_Win_shared_query(node->window, node->numbers[2 * rank + 1], &size,
+                             &unit, (void *)&there) == MPI_SUCCESS;
+    return found ? there : NULL;
+}
+
 /* The pages that are this rank's alone go back to the system; the next that
  * writes there gets others. */
-void snow_mpi_node_unshare(const mpi_node *node) {
+void snow_mpi_unshare(void *self) {
+    const mpi_node *node = node_of(self);
+    if (!node || node->window == MPI_WIN_NULL)
+        return;
     const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE),
                     own = (uintptr_t)node->own,
                     begin = (own + page - 1) / page * page,
                     end = (own + node->bytes) / page * page;
-    if (node->window != MPI_WIN_NULL && begin < end)
+    if (begin < end)
         (void)madvise((void *)begin, end - begin, MADV_REMOVE);
-}
-
-const void *snow_mpi_node_shared(const mpi_node *node, int rank) {
-    MPI_Aint size = 0;
-    int unit = 1;
-    void *there = NULL;
-    return node->window != MPI_WIN_NULL &&
-                   MPI_Win_shared_query(node->window,
-                                        node->numbers[2 * rank + 1], &size,
-                                        &unit, (void *)&there) == MPI_SUCCESS
-               ? there
-               : NULL;
 }
 
 void snow_mpi_node_sync(const mpi_node *node) {

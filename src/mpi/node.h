@@ -17,10 +17,10 @@ snow_status snow_mpi_node_new(snow_context *context, MPI_Comm group,
 void snow_mpi_node_free(mpi_node *node, bool orderly);
 
 /* As in snow_comm_ops. */
-int snow_mpi_node_number(const mpi_node *node, int rank);
-void *snow_mpi_node_share(mpi_node *node, size_t bytes);
-const void *snow_mpi_node_shared(const mpi_node *node, int rank);
-void snow_mpi_node_unshare(const mpi_node *node);
+int snow_mpi_node_of(void *self, int rank);
+snow_status snow_mpi_share(void *self, size_t bytes, void **own);
+const void *snow_mpi_shared(void *self, int rank);
+void snow_mpi_unshare(void *self);
 
 /* What was written to the window before a message, is there for who has
  * received it: called before a send and after a receive. */

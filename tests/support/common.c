@@ -37,18 +37,8 @@ static bool is_short(void) {
     return false;
 }
 
-/* Races do not depend on numbers and angles as bits do, and what looks for them
- * makes a program ten times slower. Steps stay odd, and no multiples of 3. */
-static size_t stride_of_races(size_t stride) {
-#ifdef __SANITIZE_THREAD__
-    return stride > 1 ? 3 * stride + 1 + stride % 2 : 1;
-#else
-    return stride;
-#endif
-}
-
 size_t support_stride(size_t stride) {
-    return is_short() ? stride_of_races(stride) : 1;
+    return is_short() ? stride : 1;
 }
 
 size_t support_start(size_t outer, size_t stride) {
