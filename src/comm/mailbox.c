@@ -13,6 +13,7 @@
  * fails those that wait for it; and when every remaining rank waits, no rank
  * can send. */
 #include "comm/mailbox.h"
+#include "comm/thread_memory.h"
 
 #include <string.h>
 
@@ -39,21 +40,22 @@ typedef struct mailbox_queue {
     mailbox_message *queued_messages; /* not yet asked for, oldest first */
     mailbox_slot *slots;              /* without a message yet, oldest first */
     bool gone;                        /* its rank sends nothing more */
-    int before;   /* number of ranks that had left before it */
-    bool waits;   /* its rank sleeps, and has nothing new */
-    void *shared; /* memory of its rank that others read, or NULL */
+    int before; /* number of ranks that had left before it */
+    bool waits; /* its rank sleeps, and has nothing new */
 } mailbox_queue;
 
 struct snow_mailbox {
     snow_context *context;
     pthread_mutex_t lock; /* of all mailboxes */
     int ranks, waiting, gone;
-    bool stuck; /* every rank waited for another */
+    bool stuck;    /* every rank waited for another */
+    void **shared; /* of each rank, behind the boxes: memory for others */
     mailbox_queue boxes[];
 };
 
 /* The data of a rank, which it alone accesses. */
 typedef struct mailbox_rank {
+    snow_thread_memory memory; /* first */
     snow_mailbox *mailbox;
     snow_context *context;
     int rank;
@@ -340,51 +342,10 @@ static void occupy(void *self, snow_idle_fn *meanwhile, void *user) {
     own->meanwhile_user = user;
 }
 
-/* All ranks are on one node. */
-static int node_of(void *self, int rank) {
-    (void)self;
-    (void)rank;
-    return 0;
-}
-
-static void set_shared(mailbox_rank *own, void *block) {
-    snow_mailbox *mailbox = own->mailbox;
-    pthread_mutex_lock(&mailbox->lock);
-    void *old = mailbox->boxes[own->rank].shared;
-    mailbox->boxes[own->rank].shared = block;
-    pthread_mutex_unlock(&mailbox->lock);
-    snow_release(mailbox->context, old);
-}
-
-/* Of the mailbox' context; this rank's own counts what is used (shared.c). */
-static snow_status share(void *self, size_t bytes, void **out) {
-    mailbox_rank *own = self;
-    set_shared(own, NULL);
-    *out = snow_allocate(own->mailbox->context, bytes);
-    set_shared(own, *out);
-    return *out ? SNOW_STATUS_OK
-                : snow_fail(own->context, SNOW_STATUS_NO_MEMORY,
-                            "out of memory: %zu bytes more are needed for "
-                            "messages; use fewer ranks or a smaller picture",
-                            bytes);
-}
-
-static const void *shared(void *self, int rank) {
-    snow_mailbox *mailbox = ((mailbox_rank *)self)->mailbox;
-    pthread_mutex_lock(&mailbox->lock);
-    const void *there = mailbox->boxes[rank].shared;
-    pthread_mutex_unlock(&mailbox->lock);
-    return there;
-}
-
-static void rest_shared(void *self) {
-    (void)self;
-}
-
 static void end(void *self) {
     mailbox_rank *own = self;
     snow_mailbox_leave(own->mailbox, own->rank);
-    set_shared(own, NULL);
+    snow_thread_memory_end(self);
     while (own->made) {
         mailbox_slot *slot = own->made;
         own->made = slot->made;
@@ -409,15 +370,20 @@ snow_status snow_mailbox_comm(snow_mailbox *mailbox, snow_context *context,
                                       .seconds = seconds,
                                       .occupy = occupy,
                                       .end = end,
-                                      .node_of = node_of,
-                                      .share = share,
-                                      .shared = shared,
-                                      .unshare = rest_shared};
+                                      .node_of = snow_thread_memory_node,
+                                      .share = snow_thread_memory_share,
+                                      .shared = snow_thread_memory_shared,
+                                      .unshare = snow_thread_memory_unshare};
     mailbox_rank *own = snow_allocate(context, sizeof *own);
     if (!own)
         return SNOW_STATUS_NO_MEMORY;
-    *own = (struct mailbox_rank){
-        .mailbox = mailbox, .context = context, .rank = rank, .owns = owns};
+    *own =
+        (struct mailbox_rank){.memory = {mailbox->context, context,
+                                         &mailbox->lock, mailbox->shared, rank},
+                              .mailbox = mailbox,
+                              .context = context,
+                              .rank = rank,
+                              .owns = owns};
     snow_status status =
         snow_comm_new(context, &ops, own, rank, mailbox->ranks, out);
     if (status != SNOW_STATUS_OK)
@@ -442,12 +408,14 @@ int snow_mailbox_left_before(const snow_mailbox *mailbox, int rank) {
 
 snow_status snow_mailbox_new(snow_context *context, int ranks,
                              snow_mailbox **out) {
-    size_t bytes = sizeof(snow_mailbox) + (size_t)ranks * sizeof(mailbox_queue);
+    size_t bytes = sizeof(snow_mailbox) +
+                   (size_t)ranks * (sizeof(mailbox_queue) + sizeof(void *));
     snow_mailbox *mailbox = snow_allocate_clear(context, bytes);
     if (!mailbox)
         return SNOW_STATUS_NO_MEMORY;
     mailbox->context = context;
     mailbox->ranks = ranks;
+    mailbox->shared = (void **)(void *)(mailbox->boxes + ranks);
     mailbox->lock = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
     for (int rank = 0; rank < ranks; rank++)
         mailbox->boxes[rank].wake = (pthread_cond_t)PTHREAD_COND_INITIALIZER;

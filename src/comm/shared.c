@@ -1,5 +1,5 @@
 /* comm/shared.c - memory that the ranks of a node read in place: a message
- * tells where its bytes are, and another one that they were read.
+ * holds the place of its bytes, and an empty one returns them.
  *
  *   lender                        borrower
  *   lend    -- offset, bytes -->  receives the loan, reads the bytes in the

@@ -66,16 +66,16 @@ run 0 "six ranks on three hosts" launch_hosts sh -c hostname
 check "there are three hosts" [ "$(sort -u "$OUT" | wc -l)" -eq 3 ]
 run 0 "messages between hosts" launch_hosts "$TESTS/mpi_comm"
 
-# Ranks of a host read in place; a third of the exchange is within hosts, and
-# comes first.
+# Ranks of a host read each other's pixels in place, and combine them first;
+# those of different hosts send them.
 for method in radix direct tree; do
     run 0 "$method by three hosts" launch_hosts "$MPI_TOOL" bench combine \
         --size 128 --runs 2 --check --method $method
     prints "^ranks=6 nodes=3 rank_per_node=2 .* check=ok "
     check "$method: some bytes are lent, some sent" python3 -c '
 import re, sys
-told = {k: int(n) for k, n in re.findall(r"(bytes_\w+_sum)=(\d+)", sys.argv[1])}
-assert 0 < told["bytes_lent_sum"] < 0.8 * told["bytes_sent_sum"], told
+sums = {k: int(n) for k, n in re.findall(r"(bytes_\w+_sum)=(\d+)", sys.argv[1])}
+assert 0 < sums["bytes_lent_sum"] < 0.8 * sums["bytes_sent_sum"], sums
 ' "$(cat "$OUT")"
 done
 run 0 "a radix by three hosts" launch_hosts "$MPI_TOOL" bench combine \
