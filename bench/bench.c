@@ -19,7 +19,7 @@
 static const char help[] =
     "usage: snowglass bench NAME [options]\n"
     "\n"
-    "  all                    all of these but frame, one after another\n"
+    "  all                    all of these but frame and ranks, one after another\n"
     "  table1 table2 table3   the paper's tables\n"
     "  figure11 figure12      the paper's speed-ups on 1 to 32 nodes\n"
     "  speed                  how fast pictures are made\n"
@@ -28,6 +28,7 @@ static const char help[] =
     "  combine                pictures of many ranks (bench combine --help)\n"
     "  frame                  a volume's picture by many ranks (bench frame "
     "--help)\n"
+    "  ranks                  a picture by many ranks (bench ranks --help)\n"
     "\n"
     "table1 to table3 print the paper's tables beside ours: sparse ratios\n"
     "(table1), original splatting against the three sparse encodings "
@@ -130,7 +131,8 @@ static const struct bench_entry {
 static const struct bench_ranks {
     const char *name;
     int (*run)(int argc, char **argv, snow_comm *comm);
-} of_ranks[] = {{"combine", combine_main}, {"frame", frame_main}};
+} of_ranks[] = {{"combine", combine_main}, {"frame", frame_main},
+              {"ranks", bench_ranks}};
 
 #define OF_ALL "djrh"
 

@@ -6,7 +6,10 @@
 #ifndef SNOW_BENCH_H
 #define SNOW_BENCH_H
 
+#include "option_table.h"
+
 #include <jansson.h>
+#include <snowglass/comm.h>
 #include <snowglass/snowglass.h>
 
 /* The verb: `argv[0]` is "bench".  Returns the tool's exit code. */
@@ -15,14 +18,6 @@ int bench_main(int argc, char **argv);
 /* Whether all ranks run it; others but the first have nothing to do with it
  * otherwise. */
 bool bench_for_all(int argc, char **argv);
-
-#define BENCH_LIST_MOST 8
-
-/* Numbers of a list such as 256,512. */
-typedef struct bench_list {
-    int count;
-    int values[BENCH_LIST_MOST];
-} bench_list;
 
 /* What the user asked for. */
 typedef struct bench_options {
@@ -138,6 +133,10 @@ int bench_balance(snow_context *context, const bench_options *options);
 
 /* What it takes to put their parts in order. */
 int bench_order(snow_context *context, const bench_options *options);
+
+/* What a picture takes many ranks: those of `comm`, or, where that is NULL,
+ * threads.  `argv[0]` is "ranks".  Returns the tool's exit code. */
+int bench_ranks(int argc, char **argv, snow_comm *comm);
 
 /* Today's speed, method by method: see speed.h. */
 int bench_speed(snow_context *context, const bench_options *options);

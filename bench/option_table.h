@@ -1,7 +1,6 @@
-/* bench/option_table.h - options of a benchmark from a table of them.
- *
- * For benchmarks whose options have nothing in common with those of others;
- * only a name in full is an option. */
+/* bench/option_table.h - options of a benchmark from a table of them.  Only a
+ * name in full is an option, so that a later one cannot change what a script
+ * means; its value is the next word, or stands behind "=". */
 #ifndef SNOW_BENCH_OPTION_TABLE_H
 #define SNOW_BENCH_OPTION_TABLE_H
 
@@ -9,12 +8,21 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#define BENCH_LIST_MOST 8
+
+/* Numbers of a list such as 256,512. */
+typedef struct bench_list {
+    int count;
+    int values[BENCH_LIST_MOST];
+} bench_list;
+
 typedef enum bench_option_kind {
     BENCH_FLAG,   /* bool: it is there */
     BENCH_WHOLE,  /* int, low to high */
     BENCH_NUMBER, /* double, low to high */
     BENCH_CHOICE, /* int: the number of a name */
-    BENCH_TEXT    /* const char *: what it says, somebody else reads */
+    BENCH_TEXT,   /* const char *, not empty: somebody else reads it */
+    BENCH_LIST    /* bench_list, each low to high */
 } bench_option_kind;
 
 /* An option: where its value goes, and what values there are. */

@@ -88,9 +88,9 @@ for word in --wrong render\ --wrong render\ a/v.nrrd\ --cut\ wide; do
     fails 2 "rank 2 with '$word'" '^snowglass: rank 2: ' differ $word
 done
 for word in "info a/v.nrrd" "turntable a/v.nrrd -o x_%d.png" "help" \
-    "render --help" "bench combine"; do
+    "render --help" "bench ranks"; do
     # The other MPI's benchmarks are not built.
-    [ "$word" != "bench combine" ] || [ -e "$(dirname "$MPI_TOOL")/snowglass-bench-mpi" ] ||
+    [ "$word" != "bench ranks" ] || [ -e "$(dirname "$MPI_TOOL")/snowglass-bench-mpi" ] ||
         continue
     # shellcheck disable=SC2086
     fails 2 "rank 2 with '$word'" 'rank 2: .*same command' differ $word
