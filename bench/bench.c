@@ -3,7 +3,6 @@
  * It reads its own options, since they mean nothing to other verbs, and the
  * help of the tool shows its text as it stands. */
 #include "bench.h"
-#include "combine.h"
 #include "frame.h"
 #include "run/start.h"
 
@@ -25,7 +24,6 @@ static const char help[] =
     "  speed                  how fast pictures are made\n"
     "  balance                how equal the work of many processors is\n"
     "  order                  what it takes to put their parts in order\n"
-    "  combine                pictures of many ranks (bench combine --help)\n"
     "  frame                  a volume's picture by many ranks (bench frame "
     "--help)\n"
     "  ranks                  a picture by many ranks (bench ranks --help)\n"
@@ -131,8 +129,7 @@ static const struct bench_entry {
 static const struct bench_ranks {
     const char *name;
     int (*run)(int argc, char **argv, snow_comm *comm);
-} of_ranks[] = {{"combine", combine_main}, {"frame", frame_main},
-              {"ranks", bench_ranks}};
+} of_ranks[] = {{"frame", frame_main}, {"ranks", bench_ranks}};
 
 #define OF_ALL "djrh"
 
@@ -425,7 +422,7 @@ static int run_entry(const struct bench_entry *entry,
 static void print_name(const bench_options *options, const char *name,
                        size_t number) {
     fprintf(stderr, "snowglass: bench all: %s, %zu of %zu\n", name, number + 1,
-            ENTRY_COUNT + 1);
+            ENTRY_COUNT);
     if (options->json)
         printf("%s\"%s\":\n", number ? ",\n" : "{\n", name);
     else
@@ -433,18 +430,13 @@ static void print_name(const bench_options *options, const char *name,
     fflush(stdout);
 }
 
-/* The first fault ends it.  `frame` needs an input. */
+/* The first fault ends it.  What needs a file is left out. */
 static int run_all(const bench_options *options) {
-    char *words[] = {"combine", "--json"};
     int code =
         bench_data_found(options) ? SNOW_STATUS_OK : SNOW_STATUS_BAD_INPUT;
     for (size_t i = 0; i < ENTRY_COUNT && code == SNOW_STATUS_OK; i++) {
         print_name(options, entries[i].name, i);
         code = run_entry(&entries[i], options);
-    }
-    if (code == SNOW_STATUS_OK) {
-        print_name(options, words[0], ENTRY_COUNT);
-        code = combine_main(options->json ? 2 : 1, words, process_comm());
     }
     if (options->json && code == SNOW_STATUS_OK)
         puts("}");

@@ -16,7 +16,7 @@
 #            double, or looks at timing and memory of processes
 # The sanitized builds of the long tier run all but `long` and `plain`.
 set(SNOW_LABEL_long cli_documents cli_large cli_matrix cli_stream cli_turntable
-    isa_neon isa_wasm simulate mpi_bench mpi_clusters mpi_combine mpi_fail mpi_hosts
+    isa_neon isa_wasm mpi_bench mpi_clusters mpi_fail mpi_hosts
     mpi_insitu mpi_kill mpi_modes mpi_other mpi_overlay mpi_python mpi_serve mpi_stall
     package_abi package_cmake package_copies
     serve_fuzz
@@ -54,9 +54,9 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
 # tier, and what waits.  ctest begins with the longest, so that no core is idle
 # at the end.
 set(SNOW_COSTS
-    isa_wasm 320 isa_neon 310 mpi_stall 300 mpi_insitu 280 simulate 270
+    isa_wasm 320 isa_neon 310 mpi_stall 300 mpi_insitu 280
     mpi_render 260 wasm_page 300 mpi_modes 250
-    mpi_serve 300 serve_browser 245 mpi_fail 240 mpi_comm 230 mpi_bench 220 cli_progress 200 cli_large 190
+    mpi_serve 300 serve_browser 245 mpi_fail 240 mpi_comm 230 cli_progress 200 cli_large 190
     test_model_raycast 37 cli_stream 87 test_ranks 62 test_stream 57
     cli_figures 52 oracle_zarr 46 test_modes 44
     cli_turntable 41 oracle_vtk 40 cli_render 39 test_stop 37
@@ -78,7 +78,7 @@ foreach(label long late surface threads plain)
   foreach(test ${SNOW_LABEL_${label}})
     if(test IN_LIST tests)
       set_property(TEST ${test} APPEND PROPERTY LABELS ${label})
-    elseif(NOT test MATCHES "^(simulate|isa_neon|isa_wasm|test_writer_named)$" AND
+    elseif(NOT test MATCHES "^(isa_neon|isa_wasm|test_writer_named)$" AND
            NOT sources MATCHES "/${test}[.](c|sh|py)(;|$)")
       message(FATAL_ERROR "tests/tiers.cmake: there is no test '${test}'")
     endif()
@@ -112,7 +112,7 @@ foreach(n RANGE ${last})
   list(GET SNOW_COSTS ${next} cost)
   if(test IN_LIST tests)
     set_tests_properties(${test} PROPERTIES COST ${cost})
-  elseif(NOT test MATCHES "^(simulate|isa_neon|isa_wasm)$" AND
+  elseif(NOT test MATCHES "^(isa_neon|isa_wasm)$" AND
          NOT sources MATCHES "/${test}[.](c|sh|py)(;|$)")
     message(FATAL_ERROR "tests/tiers.cmake: there is no test '${test}'")
   endif()

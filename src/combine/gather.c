@@ -81,8 +81,7 @@ static int walk_tree(int rank, int ranks, int radix, int *children,
     return found;
 }
 
-/* Wide if pixels take longer than messages, which is the case from 2 MB on by
- * simulated networks (docs/combining.md). */
+/* Wide if pixels take longer than messages: from about 2 MB on. */
 static int chosen_radix(const snow_combiner *combiner, int width, int height,
                         size_t pixel_bytes) {
     const int ranks = combiner->comm->ranks;

@@ -1,28 +1,7 @@
 /* mpi/comm_mpi.c - makes communicators of MPI's groups.
  *
- * The files of this folder use public headers only, and none of the names that
- * SimGrid's mpi.h replaces by macros (malloc, free, sleep, ...). */
+ * The files of this folder use public headers only. */
 #include "mpi/messages.h"
-
-/* A duplicate separates our messages from the caller's. In SimGrid that takes
- * time quadratic in the number of ranks, and simulations send no other
- * messages: there the group itself is used. */
-static int take_group(MPI_Comm group, MPI_Comm *ours) {
-#ifdef SMPI_H
-    *ours = group;
-    return MPI_SUCCESS;
-#else
-    return MPI_Comm_dup(group, ours);
-#endif
-}
-
-void snow_mpi_drop_group(MPI_Comm *ours) {
-#ifdef SMPI_H
-    (void)ours;
-#else
-    MPI_Comm_free(ours);
-#endif
-}
 
 static snow_status check_group(snow_context *context, MPI_Comm group) {
     int initialized = 0, finalized = 0, between = 0;
@@ -97,24 +76,23 @@ snow_status snow_comm_new_mpi(snow_context *context, MPI_Comm group,
     snow_status status = check_group(context, group);
     if (status != SNOW_STATUS_OK)
         return status;
-    int error = take_group(group, &ours);
+    /* A duplicate separates our messages from the caller's. */
+    int error = MPI_Comm_dup(group, &ours);
     if (error != MPI_SUCCESS)
         return snow_mpi_fail(context, error, "duplicate the group", -1);
     MPI_Comm_set_errhandler(ours, MPI_ERRORS_RETURN);
     status =
         agree(context, ours, make_communicator(context, ours, &side, &comm));
-#ifndef SMPI_H
     if (status == SNOW_STATUS_OK)
         status = agree(context, ours,
                        snow_watchdog_new(context, ours, &side->watchdog));
     if (status == SNOW_STATUS_OK)
         status = snow_mpi_node_new(context, ours, &side->node);
-#endif
     if (status != SNOW_STATUS_OK) {
         if (comm)
             snow_comm_free(comm); /* frees the duplicate too */
         else
-            snow_mpi_drop_group(&ours);
+            MPI_Comm_free(&ours);
         return status;
     }
     remark_threads(context);

@@ -121,10 +121,8 @@ static snow_status begin_message(mpi_side *side, bool receives, void *bytes,
     slot->receives = receives;
     slot->peer = peer;
     slot->large = count > SNOW_MPI_CHUNK;
-#ifndef SMPI_H
     if (!receives)
         snow_mpi_node_sync(side->node);
-#endif
     if (!slot->large) {
         error = start(side, slot, bytes, (int)count, MPI_BYTE, tag);
     } else {
@@ -175,17 +173,11 @@ static int collect_requests(mpi_side *side, const snow_message *messages,
     return asked;
 }
 
-/* The bytes received. Only with a large type they may exceed an int, and only
- * there they are counted as basic elements: SimGrid does not support that. */
-static size_t count_bytes(const mpi_slot *slot, const MPI_Status *status) {
-    MPI_Status copy = *status; /* SimGrid needs it without const */
-    MPI_Count many = 0;
-    int some = 0;
-    if (slot->large)
-        MPI_Get_elements_x(&copy, MPI_BYTE, &many);
-    else
-        MPI_Get_count(&copy, MPI_BYTE, &some);
-    return (size_t)(slot->large ? many : some);
+/* The bytes received, which may exceed an int. */
+static size_t count_bytes(const MPI_Status *status) {
+    MPI_Count bytes = 0;
+    MPI_Get_elements_x(status, MPI_BYTE, &bytes);
+    return (size_t)bytes;
 }
 
 /* Completes a message: its slot is spare, its length known. */
@@ -193,12 +185,10 @@ static void complete_message(mpi_side *side, snow_message *message,
                              const MPI_Status *status) {
     mpi_slot *slot = slot_of(side, message);
     if (slot->receives)
-        message->bytes = count_bytes(slot, status);
+        message->bytes = count_bytes(status);
     slot->request = MPI_REQUEST_NULL;
     message->handle = NULL;
-#ifndef SMPI_H
     snow_mpi_node_sync(side->node);
-#endif
 }
 
 /* Waits for one of the first `asked` requests, and sets *found if MPI reports
@@ -206,10 +196,6 @@ static void complete_message(mpi_side *side, snow_message *message,
 static snow_status await(mpi_side *side, int asked, int *found,
                          MPI_Status *done, int *error) {
     *found = -1;
-#ifdef SMPI_H
-    *error = MPI_Waitany(asked, side->requests, found, done);
-    return SNOW_STATUS_OK;
-#else
     bool busy = side->meanwhile != NULL; /* while there is work */
     int ended = 0;
     MPI_Finalized(&ended);
@@ -227,7 +213,6 @@ static snow_status await(mpi_side *side, int asked, int *found,
     }
     side->failed = true;
     return status;
-#endif
 }
 
 static snow_status wait_any(void *self, snow_message *messages, int count,
@@ -283,7 +268,6 @@ static double seconds(void *self) {
     return MPI_Wtime();
 }
 
-#ifndef SMPI_H
 static void occupy(void *self, snow_idle_fn *meanwhile, void *user) {
     mpi_side *side = self;
     side->meanwhile = meanwhile;
@@ -297,20 +281,11 @@ static void progress(void *self) {
     MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, side->group, &there,
                MPI_STATUS_IGNORE);
 }
-#endif
 
-#ifdef SMPI_H
-/* In a simulation work takes the given time. */
-static void work(void *self, double length) {
-    (void)self;
-    smpi_execute(length);
-}
-#else
 static void limit_waits(void *self, double length) {
     mpi_side *side = self;
     snow_watchdog_limit(side->watchdog, length);
 }
-#endif
 
 /* Cancels messages that were not waited for: nothing may arrive in a buffer
  * that the caller is about to free. */
@@ -334,16 +309,12 @@ static void end(void *self) {
     if (!finalized && !side->failed) {
         for (int i = 0; i < side->slot_count; i++)
             give_up(&side->slots[i]);
-#ifndef SMPI_H
         snow_mpi_node_free(side->node, true);
         side->node = NULL;
-#endif
-        snow_mpi_drop_group(&side->group);
+        MPI_Comm_free(&side->group);
     }
-#ifndef SMPI_H
     snow_mpi_node_free(side->node, false);
     snow_watchdog_free(side->watchdog, !finalized && !side->failed);
-#endif
     snow_context_release(side->context, side->slots);
     snow_context_release(side->context, side->requests);
     snow_context_release(side->context, side->places);
@@ -357,9 +328,6 @@ const snow_comm_ops snow_mpi_ops = {.size = sizeof(snow_comm_ops),
                                     .wait_any = wait_any,
                                     .wait_all = wait_all,
                                     .seconds = seconds,
-#ifdef SMPI_H
-                                    .work = work,
-#else
                                     .timeout = limit_waits,
                                     .occupy = occupy,
                                     .progress = progress,
@@ -367,5 +335,4 @@ const snow_comm_ops snow_mpi_ops = {.size = sizeof(snow_comm_ops),
                                     .share = snow_mpi_share,
                                     .shared = snow_mpi_shared,
                                     .unshare = snow_mpi_unshare,
-#endif
                                     .end = end};

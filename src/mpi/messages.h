@@ -5,10 +5,8 @@
 #include <snowglass/extend.h>
 #include <snowglass/mpi.h>
 
-#ifndef SMPI_H /* tests would take simulated time */
 #include "mpi/node.h"
 #include "mpi/watchdog.h"
-#endif
 
 typedef struct mpi_slot {
     MPI_Request request; /* MPI_REQUEST_NULL: the slot is spare */
@@ -27,19 +25,14 @@ typedef struct mpi_side {
     MPI_Request *requests;
     int *places; /* indices of the requests among the messages */
     int *peers;  /* of the requests */
-#ifndef SMPI_H
     mpi_node *node; /* what the ranks of this node share, or NULL: nothing */
     snow_idle_fn *meanwhile; /* other work done in waits, or NULL */
     void *meanwhile_user;
     mpi_watchdog *watchdog;
-#endif
 } mpi_side;
 
 /* What a communicator does by MPI. */
 extern const snow_comm_ops snow_mpi_ops;
-
-/* Frees the duplicate of the caller's group (comm_mpi.c). */
-void snow_mpi_drop_group(MPI_Comm *ours);
 
 /* Reports the MPI error of a call that concerns `peer` (-1: no particular
  * rank). */
