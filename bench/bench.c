@@ -3,7 +3,6 @@
  * It reads its own options, since they mean nothing to other verbs, and the
  * help of the tool shows its text as it stands. */
 #include "bench.h"
-#include "frame.h"
 #include "run/start.h"
 
 #include <errno.h>
@@ -18,14 +17,12 @@
 static const char help[] =
     "usage: snowglass bench NAME [options]\n"
     "\n"
-    "  all                    all of these but frame and ranks, one after another\n"
+    "  all                    all of these but ranks, one after another\n"
     "  table1 table2 table3   the paper's tables\n"
     "  figure11 figure12      the paper's speed-ups on 1 to 32 nodes\n"
     "  speed                  how fast pictures are made\n"
     "  balance                how equal the work of many processors is\n"
     "  order                  what it takes to put their parts in order\n"
-    "  frame                  a volume's picture by many ranks (bench frame "
-    "--help)\n"
     "  ranks                  a picture by many ranks (bench ranks --help)\n"
     "\n"
     "table1 to table3 print the paper's tables beside ours: sparse ratios\n"
@@ -129,7 +126,7 @@ static const struct bench_entry {
 static const struct bench_ranks {
     const char *name;
     int (*run)(int argc, char **argv, snow_comm *comm);
-} of_ranks[] = {{"frame", frame_main}, {"ranks", bench_ranks}};
+} of_ranks[] = {{"ranks", bench_ranks}};
 
 #define OF_ALL "djrh"
 

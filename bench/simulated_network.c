@@ -36,7 +36,6 @@ typedef struct node {
     cluster *cluster;
     snow_comm *inner;
     double clock, computed;   /* simulated; processor time when last read */
-    double work;              /* processor time beside the transport's */
     double out_free, in_free; /* times when the ports become free */
     snow_idle_fn *meanwhile;  /* other work done in waits, or NULL */
     void *meanwhile_user;
@@ -69,7 +68,6 @@ static double processor_seconds(void) {
  * do themselves is no part of the model, so leaving only reads the time. */
 static void enter(node *n) {
     const double worked = processor_seconds() - n->computed;
-    n->work += worked;
     n->clock += worked * n->cluster->network.slowness;
 }
 
@@ -265,13 +263,6 @@ static snow_status wait_any(void *self, snow_message *messages, int count,
         complete_message(n, &messages[found]);
     *which = found;
     return leave(n, SNOW_STATUS_OK);
-}
-
-double snow_simulated_work(snow_comm *comm) {
-    node *n = comm->self;
-    enter(n);
-    leave(n, SNOW_STATUS_OK);
-    return n->work;
 }
 
 static double seconds(void *self) {

@@ -24,8 +24,4 @@ snow_status snow_comm_run_simulated(snow_context *context, int ranks,
                                     const snow_network *network,
                                     snow_comm_body_fn *body, void *user);
 
-/* Processor seconds of a rank of such a cluster beside those of its transport.
- */
-double snow_simulated_work(snow_comm *comm);
-
 #endif

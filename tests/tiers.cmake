@@ -24,7 +24,7 @@ set(SNOW_LABEL_long cli_documents cli_large cli_matrix cli_stream cli_turntable
     package_within wasm_engine wasm_page)
 set(SNOW_LABEL_late
     catalyst cli_again cli_background cli_balance cli_bench cli_figures
-    cli_frame cli_interrupt cli_measurements cli_order cli_ranks cli_real
+    cli_interrupt cli_measurements cli_order cli_ranks cli_real
     cli_shear_warp cli_show mpi_comm oracle_amr oracle_dicom oracle_fit oracle_hdf5
     oracle_mrc oracle_netcdf oracle_npy oracle_orientation oracle_pictures
     oracle_seg oracle_series oracle_slice oracle_tiff oracle_vtk oracle_zarr test_comm
@@ -45,7 +45,7 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     test_value_field test_value_model test_value_truth
     test_value_views
     test_phantom test_perspective test_camera_points
-    cli_documents cli_bench cli_figures cli_frame cli_ranks cli_stream
+    cli_documents cli_bench cli_figures cli_ranks cli_stream
     cli_again cli_matrix cli_balance cli_order cli_turntable cli_modules cli_memory cli_progress
     serve_browser cli_large oracle_zarr oracle_tiff oracle_vtk oracle_pictures)
 
@@ -62,7 +62,7 @@ set(SNOW_COSTS
     cli_turntable 41 oracle_vtk 40 cli_render 39 test_stop 37
     test_combine 35 cli_bench 34 cli_interrupt 34
     cli_documents 31 test_raycast 31 cli_matrix 31
-    oracle_dicom 31 cli_frame 30 test_pipeline 28 cli_measurements 28
+    oracle_dicom 31 test_pipeline 28 cli_measurements 28
     test_ranks_open 28 test_value 27 test_insitu 26
     test_model_picture 22 test_histogram 22 oracle_tiff 22
     cli_real 22 cli_balance 21 test_model_encodings 20 test_value_model 20

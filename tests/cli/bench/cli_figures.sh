@@ -47,7 +47,7 @@ else
 fi
 for name in figure13 All; do
     refused 2 "a benchmark that there is not: $name" \
-        "there is no benchmark '$name'; choose one of: all table1 table2 table3 figure11 figure12 speed balance order frame ranks$" \
+        "there is no benchmark '$name'; choose one of: all table1 table2 table3 figure11 figure12 speed balance order ranks$" \
         "$TOOL" bench $name
 done
 refused 2 "none" "give one thing to measure; choose one of: all table1" \

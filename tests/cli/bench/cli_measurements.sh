@@ -26,6 +26,11 @@ row = {"frame": 4.1, "change": 9.5, "first": 1234.4, "megabytes": 23.2,
        "psnr": 43.06, "psnr_scaled": 43.2}
 both = [row | {"program": name, "threads": threads} for threads in (1, 2)
         for name in ("snowglass", "snowglass-draft", "vtk-cpu")]
+json.dump({"rows": [{"ranks": 8, "splat_slowest_ms": 4.614, "splat_mean_ms": 4,
+                     "exchange_slowest_ms": 1.5, "exchange_mean_ms": 0.757,
+                     "picture_ms": 7.2, "bytes_sent": 12345678,
+                     "imbalance": 1.1535, "efficiency": 0.294}]},
+          open("scaling.json", "w"))
 json.dump({"cases": [
     {"case": "engine:shaded:512", "rows": both + [
         row | {"program": "volpack", "threads": 1},
@@ -48,6 +53,7 @@ write speed speed.json
 write accuracy speed.json
 write balance balance.json
 write ranks ranks.md
+write scaling scaling.json
 write files ranks.md
 write light light.md
 
@@ -63,6 +69,8 @@ has "| two threads: draft / normal / VTK | 4.10 / 4.10 / 4.10 |" \
     measurements/peers.md
 has "| VTK, CPU ray caster | 4.10 | – | 1,234 | 23 |" ../README.md
 has "| engine | 0 |" measurements/ranks.md
+has "| 8 | 4.61 | 4.00 | 1.50 | 0.76 | 7.20 | 12.35 | 1.15 | 29 % |" \
+    measurements/ranks.md
 has "| engine | 0 |" measurements/files.md
 check "a cell of every way" grep -qE \
     '^\| Engine, opaque, Phong( \| [0-9.]+( / [0-9.]+)?){8} \|$' \
@@ -91,6 +99,9 @@ for page in ../README.md paper.md measurements/speed.md; do
 done
 check "heads stay" diff <(heads "$root/docs/measurements/speed.md") \
     <(heads docs/measurements/speed.md)
+check "the head of scaling stays" diff \
+    <(grep -F '| ranks | slowest splat' "$root/docs/measurements/ranks.md") \
+    <(grep -F '| ranks | slowest splat' docs/measurements/ranks.md)
 check "the head of balance stays" diff \
     <(grep -F '| | 8 ranks:' "$root/docs/measurements/ranks.md") \
     <(grep -F '| | 8 ranks:' docs/measurements/ranks.md)
