@@ -21,7 +21,6 @@ static const char help[] =
     "  table1 table2 table3   the paper's tables\n"
     "  figure11 figure12      the paper's speed-ups on 1 to 32 nodes\n"
     "  speed                  how fast pictures are made\n"
-    "  balance                how equal the work of many processors is\n"
     "  order                  what it takes to put their parts in order\n"
     "  ranks                  a picture by many ranks (bench ranks --help)\n"
     "\n"
@@ -45,11 +44,6 @@ static const char help[] =
     "splatting, the same by footprint tables (original-table), and tested "
     "splatting,\n"
     "with the same kernel.  It takes many minutes.\n"
-    "\n"
-    "balance prints the interesting voxels of the processor that has most, "
-    "over "
-    "the\n"
-    "mean, for equal slabs, slabs by count, and bricks.\n"
     "\n"
     "order prints what a rank takes to put the parts of all ranks in order "
     "from "
@@ -117,7 +111,6 @@ static const struct bench_entry {
     {"figure11", bench_figure11, "cq", true},
     {"figure12", bench_figure12, "cq", true},
     {"speed", bench_speed, "qlvocwst", false},
-    {"balance", bench_balance, "", true},
     {"order", bench_order, "", false},
 };
 

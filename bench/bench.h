@@ -128,9 +128,6 @@ int bench_table3(snow_context *context, const bench_options *options);
 int bench_figure11(snow_context *context, const bench_options *options);
 int bench_figure12(snow_context *context, const bench_options *options);
 
-/* How equal the work of many processors is. */
-int bench_balance(snow_context *context, const bench_options *options);
-
 /* What it takes to put their parts in order. */
 int bench_order(snow_context *context, const bench_options *options);
 

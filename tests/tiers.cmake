@@ -23,7 +23,7 @@ set(SNOW_LABEL_long cli_documents cli_large cli_matrix cli_stream cli_turntable
     package_layout package_manual package_pkgconfig package_recipes package_site package_wheel
     package_within wasm_engine wasm_page)
 set(SNOW_LABEL_late
-    catalyst cli_again cli_background cli_balance cli_bench cli_figures
+    catalyst cli_again cli_background cli_bench cli_figures
     cli_interrupt cli_measurements cli_order cli_ranks cli_real
     cli_shear_warp cli_show mpi_comm oracle_amr oracle_dicom oracle_fit oracle_hdf5
     oracle_mrc oracle_netcdf oracle_npy oracle_orientation oracle_pictures
@@ -46,7 +46,7 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     test_value_views
     test_phantom test_perspective test_camera_points
     cli_documents cli_bench cli_figures cli_ranks cli_stream
-    cli_again cli_matrix cli_balance cli_order cli_turntable cli_modules cli_memory cli_progress
+    cli_again cli_matrix cli_order cli_turntable cli_modules cli_memory cli_progress
     serve_browser cli_large oracle_zarr oracle_tiff oracle_vtk oracle_pictures)
 
 # Tenths of a second on one core in the short tier, of those that take more than
@@ -65,7 +65,7 @@ set(SNOW_COSTS
     oracle_dicom 31 test_pipeline 28 cli_measurements 28
     test_ranks_open 28 test_value 27 test_insitu 26
     test_model_picture 22 test_histogram 22 oracle_tiff 22
-    cli_real 22 cli_balance 21 test_model_encodings 20 test_value_model 20
+    cli_real 22 test_model_encodings 20 test_value_model 20
     serve_sockets 20 serve_hostile 20 oracle_orientation 20 oracle_hdf5 20 oracle_netcdf 18 test_comm 17
     cli_formats 16 cli_config 16 test_gradient_opacity 16 test_value_truth 14
     test_load_balance 13 test_api 13 test_kernels 13 cli_usage 12

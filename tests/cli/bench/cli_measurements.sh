@@ -13,8 +13,6 @@ cp -r "$root/docs" "$root/README.md" . || exit 1
 
 run 0 "a quick run" "$TOOL" bench speed --quick --json --threads 1,2
 cp "$OUT" speed.json
-run 0 "how evenly volumes are cut" "$TOOL" bench balance --json
-cp "$OUT" balance.json
 python3 - <<'END' || exit 1
 import json
 gain = {"gain_percent": 66.4, "paper_gain_percent": 55.0}
@@ -51,7 +49,6 @@ write peers peers.json
 write readme peers.json
 write speed speed.json
 write accuracy speed.json
-write balance balance.json
 write ranks ranks.md
 write scaling scaling.json
 write files ranks.md
@@ -75,21 +72,6 @@ has "| engine | 0 |" measurements/files.md
 check "a cell of every way" grep -qE \
     '^\| Engine, opaque, Phong( \| [0-9.]+( / [0-9.]+)?){8} \|$' \
     docs/measurements/speed.md
-# Of threshold 10, among others.
-while read -r line; do
-    has "$line" measurements/ranks.md
-done < <(python3 - balance.json <<'END'
-import json, sys
-rows = [row for row in json.load(open(sys.argv[1]))["rows"]
-        if row["threshold"] == 10 and row["ranks"] in (8, 32, 128)]
-for name in ("Head", "Engine"):
-    cells = [", ".join(f"{row[cut]:.2f}"
-                       for cut in ("equal", "counted", "bricks"))
-             for row in rows if row["dataset"] == name]
-    print(f"| {name} | " + " | ".join(cells) + " |")
-END
-)
-
 # The tables' heads are those of the committed pages, so that what is written
 # anew has the same columns, and nothing but tables has changed.
 heads() { sed -nE '/<!-- table/,/^\| ---/p' "$@" | grep -v '^| ---'; }
@@ -102,9 +84,6 @@ check "heads stay" diff <(heads "$root/docs/measurements/speed.md") \
 check "the head of scaling stays" diff \
     <(grep -F '| ranks | slowest splat' "$root/docs/measurements/ranks.md") \
     <(grep -F '| ranks | slowest splat' docs/measurements/ranks.md)
-check "the head of balance stays" diff \
-    <(grep -F '| | 8 ranks:' "$root/docs/measurements/ranks.md") \
-    <(grep -F '| | 8 ranks:' docs/measurements/ranks.md)
 check "heads of Table 2 and README stay" diff \
     <(heads "$root/docs/paper.md" "$root/README.md") \
     <(heads docs/paper.md README.md)
