@@ -21,7 +21,6 @@ static const char help[] =
     "  table1 table2 table3   the paper's tables\n"
     "  figure11 figure12      the paper's speed-ups on 1 to 32 nodes\n"
     "  speed                  how fast pictures are made\n"
-    "  order                  what it takes to put their parts in order\n"
     "  ranks                  a picture by many ranks (bench ranks --help)\n"
     "\n"
     "table1 to table3 print the paper's tables beside ours: sparse ratios\n"
@@ -44,13 +43,6 @@ static const char help[] =
     "splatting, the same by footprint tables (original-table), and tested "
     "splatting,\n"
     "with the same kernel.  It takes many minutes.\n"
-    "\n"
-    "order prints what a rank takes to put the parts of all ranks in order "
-    "from "
-    "front\n"
-    "to back: up to 100,000 slabs, cells of a grid, bricks, and bricks in any "
-    "order\n"
-    "with holes.\n"
     "\n"
     "Every row is verified before its times are printed.  Figures tell on "
     "stderr how\n"
@@ -111,7 +103,6 @@ static const struct bench_entry {
     {"figure11", bench_figure11, "cq", true},
     {"figure12", bench_figure12, "cq", true},
     {"speed", bench_speed, "qlvocwst", false},
-    {"order", bench_order, "", false},
 };
 
 /* What runs on the ranks that there are, or on threads of its own; it reads its

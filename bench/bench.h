@@ -128,9 +128,6 @@ int bench_table3(snow_context *context, const bench_options *options);
 int bench_figure11(snow_context *context, const bench_options *options);
 int bench_figure12(snow_context *context, const bench_options *options);
 
-/* What it takes to put their parts in order. */
-int bench_order(snow_context *context, const bench_options *options);
-
 /* What a picture takes many ranks: those of `comm`, or, where that is NULL,
  * threads.  `argv[0]` is "ranks".  Returns the tool's exit code. */
 int bench_ranks(int argc, char **argv, snow_comm *comm);

@@ -47,7 +47,7 @@ else
 fi
 for name in figure13 All; do
     refused 2 "a benchmark that there is not: $name" \
-        "there is no benchmark '$name'; choose one of: all table1 table2 table3 figure11 figure12 speed order ranks$" \
+        "there is no benchmark '$name'; choose one of: all table1 table2 table3 figure11 figure12 speed ranks$" \
         "$TOOL" bench $name
 done
 refused 2 "none" "give one thing to measure; choose one of: all table1" \
@@ -57,12 +57,12 @@ refused 2 "an option that not all have" "no option of bench all: '--kernel'" \
 refused 3 "all of no data" "nowhere" "$TOOL" bench all --data nowhere
 if long_tier; then
     run 0 "all" "$TOOL" bench all --quick --json
-    says "^snowglass: bench all: order, 7 of 7$"
+    says "^snowglass: bench all: speed, 6 of 6$"
     check "has an object of each" python3 - "$OUT" <<'END'
 import json, sys
 
 told = json.load(open(sys.argv[1]))
-names = "table1 table2 table3 figure11 figure12 speed order".split()
+names = "table1 table2 table3 figure11 figure12 speed".split()
 assert list(told) == names, list(told)
 assert told["table1"]["rows"] and told["figure12"]["figure"] == 12
 END
