@@ -35,6 +35,24 @@ typedef struct bench_options {
     bench_list threads;
 } bench_options;
 
+/* A thing to measure: a file, and a line in bench.c. */
+typedef struct bench_entry {
+    const char *name;
+    int (*run)(snow_context *context, const bench_options *options);
+    unsigned of;     /* BENCH_OF_...: its options beside those of every one */
+    bool needs_data; /* all three volumes, when --data is given */
+} bench_entry;
+
+#define BENCH_OF_TABLES 1u
+#define BENCH_OF_FIGURES 2u
+#define BENCH_OF_SPEED 4u
+#define BENCH_OF_ALL 8u
+
+/* Reads the options of one, after argv[0]; an exit code, or -1 to go on. */
+int bench_options_read(const bench_entry *entry, int argc, char **argv,
+                       bench_options *out);
+int bench_print_help(void);
+
 /* The paper's three test volumes. */
 typedef enum bench_set { BENCH_CUBE, BENCH_HEAD, BENCH_ENGINE } bench_set;
 

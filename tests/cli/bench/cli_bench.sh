@@ -143,8 +143,8 @@ while IFS='|' read -r arguments pattern; do
     eval "set -- $arguments"
     refused 2 "bench $arguments" "$pattern" "$TOOL" bench "$@"
 done <<'END'
-speed --quik|unknown option or missing value '--quik'
-speed --qui|unknown option or missing value '--qui'
+speed --quik|there is no option '--quik'
+speed --qui|there is no option '--qui'
 speed --sizes 0|this value is not possible: '0'
 speed --sizes 64,|this value is not possible: '64,'
 speed --sizes 64,x|this value is not possible: '64,x'
@@ -166,11 +166,11 @@ speed --sweep sparse --large|leave out '--large'
 speed --sweep size --sizes 64,32|all but one of '--sizes'
 speed --quick --data x|leave out '--data'
 speed --chart x.svg --data x|leave out '--data'
-speed --kernel tent|no option of bench speed: '--kernel'
-speed --azimuth=3|no option of bench speed: '--azimuth=3'
-table1 --quick|no option of bench table1: '--quick'
-table2 --threads 2|no option of bench table2: '--threads'
-speed table1|give one thing
+speed --kernel tent|bench speed: there is no option '--kernel'
+speed --azimuth=3|there is no option '--azimuth=3'
+table1 --quick|bench table1: there is no option '--quick'
+table2 --threads 2|bench table2: there is no option '--threads'
+speed table1|there is no option 'table1'
 END
 
 # VTK's files, as far as the bench reads them: right, and damaged.

@@ -52,7 +52,7 @@ for name in figure13 All; do
 done
 refused 2 "none" "give one thing to measure; choose one of: all table1" \
     "$TOOL" bench
-refused 2 "an option that not all have" "no option of bench all: '--kernel'" \
+refused 2 "an option that not all have" "bench all: there is no option '--kernel'" \
     "$TOOL" bench all --kernel tent
 refused 3 "all of no data" "nowhere" "$TOOL" bench all --data nowhere
 if long_tier; then

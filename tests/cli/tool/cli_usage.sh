@@ -204,16 +204,16 @@ while IFS='|' read -r arguments pattern; do
     eval "set -- $arguments"
     refused 2 "bench $arguments" "$pattern" "$TOOL" bench "$@"
 done <<'END'
-table1 --dat x|unknown option or missing value '--dat'
-table1 --dat=x|unknown option or missing value '--dat=x'
-table1 --he|unknown option or missing value '--he'
-table1 --foo|unknown option or missing value '--foo'
-table1 --runs|unknown option or missing value '--runs'
+table1 --dat x|there is no option '--dat'
+table1 --dat=x|there is no option '--dat=x'
+table1 --he|there is no option '--he'
+table1 --foo|there is no option '--foo'
+table1 --runs|a value is missing after '--runs'
 table1 --runs 4|this value is not possible: '4'
 table1 --kernel cube|this value is not possible: 'cube'
 table4|there is no benchmark 'table4'
-table1 table2|give one thing to measure
---json|give one thing to measure
+table1 table2|there is no option 'table2'
+--json|there is no benchmark '--json'
 END
 for table in table1 table2 table3; do
     refused 3 "bench $table without its files" \
