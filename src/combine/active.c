@@ -18,21 +18,12 @@ static int population(uint64_t bits) {
     return snow_scalar_popcount(bits);
 }
 
-static int64_t population_of(const uint64_t *words, int64_t count) {
-    int64_t bits = 0;
-    for (int64_t i = 0; i < count; i++)
-        bits += population(words[i]);
-    return bits;
-}
-
 /* --- the local image ------------------------------------------------------ */
 
 /* The mask of `count` <= 64 pixels of line y from column x on, all drawn. */
 static uint64_t active_mask(const snow_pixel_loops *loops,
                             const snow_exchange_params *order, int y, int x,
                             int count) {
-    if (order->rehearsal)
-        return order->rehearsal->active(order->rehearsal->user, y, x, count);
     return loops->look(order->pixels + (size_t)y * order->stride +
                            (size_t)x * (size_t)order->channels,
                        count);
@@ -49,76 +40,29 @@ static void clip(const snow_exchange_params *order, int y, int *x0, int *x1) {
         *x1 = drawn->x1;
 }
 
-/* Finds the active ones among columns x0 .. x1 - 1 of line y, all drawn,
- * without their pixels; column 0 is pixel `zero` of the picture. */
-static void rehearse_line(const snow_exchange_params *order, int y,
-                          int64_t zero, int x0, int x1, uint64_t *words,
-                          int64_t first_word) {
-    for (int x = x0; x < x1;) {
-        int64_t at = zero + x;
-        int count = 64 - (int)(at % 64);
-        if (count > x1 - x)
-            count = x1 - x;
-        words[at / 64 - first_word] |=
-            order->rehearsal->active(order->rehearsal->user, y, x, count)
-            << (at % 64);
-        x += count;
-    }
-}
-
-/* Copies all of columns x0 .. x1 - 1 of line y, drawn or not. */
-static float *copy_line(const snow_exchange_params *order, int y, int x0,
-                        int x1, float *out) {
-    const size_t channels = (size_t)order->channels;
-    int from = x0, to = x1;
-    clip(order, y, &from, &to);
-    memset(out, 0, (size_t)(x1 - x0) * channels * sizeof *out);
-    if (from < to)
-        memcpy(out + (size_t)(from - x0) * channels,
-               order->pixels + (size_t)y * order->stride +
-                   (size_t)from * channels,
-               (size_t)(to - from) * channels * sizeof *out);
-    return out + (size_t)(x1 - x0) * channels;
-}
-
 int64_t snow_active_scan(const snow_pixel_loops *loops,
-                         const snow_exchange_params *order, const int *lines,
-                         int64_t first, int64_t last, uint64_t *words,
-                         float *out, int64_t *scanned) {
+                         const snow_exchange_params *order, int64_t first,
+                         int64_t last, uint64_t *words, float *out,
+                         int64_t *scanned) {
     const int64_t width = order->width;
     float *const begin = out;
-    if (order->whole && order->rehearsal)
-        return last - first;
-    if (!order->whole)
-        memset(words, 0,
-               (size_t)snow_active_words(first, last) * sizeof *words);
+    memset(words, 0, (size_t)snow_active_words(first, last) * sizeof *words);
     for (int64_t at = first; at < last;) {
         const int64_t zero = at / width * width;
-        const int y = lines ? lines[at / width] : (int)(at / width);
+        const int y = (int)(at / width);
         int x0 = (int)(at - zero);
         int x1 = (int)(last - zero < width ? last - zero : width);
         at = zero + x1;
-        if (order->whole) {
-            out = copy_line(order, y, x0, x1, out);
-            continue;
-        }
         clip(order, y, &x0, &x1);
         if (x0 >= x1)
             continue;
         *scanned += x1 - x0;
-        if (order->rehearsal)
-            rehearse_line(order, y, zero, x0, x1, words, first / 64);
-        else
-            out = loops->scan(order->pixels + (size_t)y * order->stride +
-                                  (size_t)x0 * (size_t)order->channels,
-                              zero + x0, x1 - x0,
-                              words + ((zero + x0) / 64 - first / 64), out);
+        out = loops->scan(order->pixels + (size_t)y * order->stride +
+                              (size_t)x0 * (size_t)order->channels,
+                          zero + x0, x1 - x0,
+                          words + ((zero + x0) / 64 - first / 64), out);
     }
-    if (order->whole)
-        return last - first;
-    return order->rehearsal
-               ? population_of(words, snow_active_words(first, last))
-               : (out - begin) / order->channels;
+    return (out - begin) / order->channels;
 }
 
 int64_t snow_active_in_line(const snow_pixel_loops *loops,
@@ -252,20 +196,6 @@ bool snow_active_open(const unsigned char *message, size_t bytes, int64_t first,
 
 /* --- layers --------------------------------------------------------------- */
 
-/* A merge in a rehearsal: masks, and the number of pixels. */
-static void merge_masks(const snow_active *layers, int count, int64_t first,
-                        int64_t last, uint64_t *words, int64_t *laid) {
-    for (int64_t i = first / 64; i * 64 < last; i++) {
-        uint64_t range = snow_active_range(i, first, last), seen = 0;
-        for (int k = 0; k < count; k++) {
-            uint64_t bits = snow_active_bits(&layers[k], i, range);
-            *laid += layers[k].own ? 0 : population(bits);
-            seen |= bits;
-        }
-        words[i - first / 64] = seen;
-    }
-}
-
 /* Passes over the pixels of a layer before `first` that another thread has
  * merged. */
 static void pass_over(snow_active *layer, int channels, int64_t first) {
@@ -273,9 +203,7 @@ static void pass_over(snow_active *layer, int channels, int64_t first) {
     if (to <= layer->at)
         return;
     int64_t active =
-        layer->words
-            ? snow_active_count(layer->words, layer->first, layer->at, to)
-            : to - layer->at;
+        snow_active_count(layer->words, layer->first, layer->at, to);
     if (active)
         layer->next += active * channels;
 }
@@ -284,10 +212,6 @@ int64_t snow_active_merge(const snow_pixel_loops *loops, snow_active *layers,
                           int count, int channels, int64_t first, int64_t last,
                           uint64_t *words, float *out, bool packed,
                           int64_t *laid) {
-    if (!out) {
-        merge_masks(layers, count, first, last, words, laid);
-        return population_of(words, snow_active_words(first, last));
-    }
     for (int i = 0; i < count; i++)
         pass_over(&layers[i], channels, first);
     float *end =

@@ -22,8 +22,8 @@
 /* Pixels first .. last - 1 of the combined image of one rank or one subset. */
 typedef struct snow_active {
     int64_t first, last;
-    const uint64_t *words; /* from that of `first` on; NULL: all are active */
-    const float *pixels;   /* packed; NULL: none (a rehearsal) */
+    const uint64_t *words; /* from that of `first` on */
+    const float *pixels;   /* packed */
     const float *next;     /* first of the packed pixels from `at` on */
     bool own;              /* this rank's: not counted in *laid */
     int64_t at;            /* where merging goes on; at first `first` */
@@ -50,10 +50,7 @@ static inline uint64_t snow_active_bits(const snow_active *layer, int64_t index,
                                         uint64_t range) {
     if (index < layer->first / 64 || index > (layer->last - 1) / 64)
         return 0;
-    uint64_t own = layer->words
-                       ? layer->words[index - layer->first / 64]
-                       : snow_active_range(index, layer->first, layer->last);
-    return own & range;
+    return layer->words[index - layer->first / 64] & range;
 }
 
 /* The most bytes of a message of `count` pixels, including those beyond it that
@@ -61,14 +58,12 @@ static inline uint64_t snow_active_bits(const snow_active *layer, int64_t index,
 size_t snow_active_room(int64_t count, size_t pixel_bytes);
 
 /* Scans pixels first .. last - 1 of the local image: writes their mask to
- * `words` and the active ones to `out` (not in a rehearsal); returns their
- * number, and adds the number of pixels examined to *scanned. `lines` is the
- * order of lines, NULL for that of the picture. With `whole` params all pixels
- * are active and `words` is not written. */
+ * `words` and the active ones to `out`; returns their number, and adds the
+ * number of pixels examined to *scanned. */
 int64_t snow_active_scan(const snow_pixel_loops *loops,
-                         const snow_exchange_params *order, const int *lines,
-                         int64_t first, int64_t last, uint64_t *words,
-                         float *out, int64_t *scanned);
+                         const snow_exchange_params *order, int64_t first,
+                         int64_t last, uint64_t *words, float *out,
+                         int64_t *scanned);
 
 /* The number of active pixels in one line of the local image. */
 int64_t snow_active_in_line(const snow_pixel_loops *loops,
@@ -96,8 +91,8 @@ bool snow_active_open(const unsigned char *message, size_t bytes, int64_t first,
  * Threads that merge different parts have copies of the layers. The result's
  * mask goes to `words`. With `packed`, its active pixels go to `out`; otherwise
  * all pixels do, number n to out[(n - first) * channels], 0 where no layer is.
- * In a rehearsal `out` is NULL. Returns the number of pixels in `out`, or that
- * would be there; adds the number of pixels of received layers to *laid. */
+ * Returns the number of pixels in `out`, and adds that of received layers to
+ * *laid. */
 int64_t snow_active_merge(const snow_pixel_loops *loops, snow_active *layers,
                           int count, int channels, int64_t first, int64_t last,
                           uint64_t *words, float *out, bool packed,

@@ -47,7 +47,6 @@ static void drop_buffers(snow_combiner *combiner) {
         }
     }
     SNOW_DROP(context, combiner->rounds.shares);
-    SNOW_DROP(context, combiner->lines);
     SNOW_DROP(context, combiner->ranks);
     SNOW_DROP(context, combiner->table);
     SNOW_DROP(context, combiner->layers);
@@ -164,9 +163,6 @@ static snow_status allocate_lists(snow_combiner *combiner) {
                           SNOW_COMBINE_THREADS * peers));
     combiner->layer_room = (int)peers;
     SNOW_TRY(SNOW_RESERVE(context, combiner->parts, 0, peers));
-    if (combiner->shape.regions == SNOW_IMAGE_PARTITION_INTERLACED)
-        SNOW_TRY(
-            SNOW_RESERVE(context, combiner->lines, 0, combiner->shape.height));
     return SNOW_RESERVE(context, combiner->part, 0,
                         (size_t)most_held(combiner, 0) / 64 + 2 + peers);
 }
@@ -258,7 +254,7 @@ static bool counts_regions(const snow_exchange_params *order, int ranks) {
     if (order->method == SNOW_COMBINE_TREE || ranks < 3)
         return false;
     if (order->regions == SNOW_IMAGE_PARTITION_AUTO)
-        return !order->whole && bytes > 720e3 * doublings;
+        return bytes > 720e3 * doublings;
     return order->regions == SNOW_IMAGE_PARTITION_COUNTED;
 }
 
@@ -274,7 +270,7 @@ static bool same_shape(const snow_exchange_params *a,
     return a->width == b->width && a->height == b->height &&
            a->channels == b->channels && a->radix == b->radix &&
            a->grain == b->grain && a->method == b->method &&
-           a->regions == b->regions && a->whole == b->whole;
+           a->regions == b->regions;
 }
 
 /* Makes a plan for the params; all ranks call it together. */
@@ -295,8 +291,6 @@ static snow_status plan_shape(snow_combiner *combiner,
     snow_status status = snow_comm_agree_status(comm, allocate_lists(combiner));
     if (status != SNOW_STATUS_OK)
         drop_buffers(combiner);
-    else if (combiner->lines)
-        snow_order_lines(combiner->lines, order->height);
     return status;
 }
 
@@ -369,8 +363,4 @@ snow_status snow_combiner_plan(snow_combiner *combiner,
 const snow_exchange_figures *
 snow_exchange_get_figures(const snow_combiner *combiner) {
     return &combiner->figures;
-}
-
-int snow_exchange_line(const snow_combiner *combiner, int place) {
-    return combiner->lines ? combiner->lines[place] : place;
 }

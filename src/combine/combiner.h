@@ -90,7 +90,6 @@ struct snow_combiner {
     snow_region_bounds bounds;
     int64_t counts[SNOW_BINS_MOST]; /* snow_exchange_counts */
     int counted_bins;
-    int *lines;               /* the order of lines, NULL for the picture's */
     int *ranks;               /* by position, as in the last params */
     int *table;               /* of snow_rounds_fill */
     snow_part_to_send *parts; /* of one round, not yet sent */

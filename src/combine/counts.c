@@ -23,7 +23,6 @@ static void count_lines(snow_combiner *combiner,
             scanned += order->drawn.x1 - order->drawn.x0;
     }
     combiner->figures.scanned += scanned;
-    snow_comm_work(combiner->comm, (double)scanned * order->scan_seconds);
 }
 
 bool snow_counts_given(const snow_combiner *combiner) {
@@ -45,7 +44,7 @@ snow_status snow_counts_divide(snow_combiner *combiner) {
     }
     snow_region_bounds_count(bounds, counts);
     memset(combiner->counts, 0, sizeof combiner->counts);
-    combiner->counted_bins = order->whole ? 0 : bounds->bins;
+    combiner->counted_bins = bounds->bins;
     return SNOW_STATUS_OK;
 }
 

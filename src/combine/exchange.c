@@ -142,20 +142,8 @@ static snow_status begin_round(snow_combiner *combiner) {
 static bool open_layer(const snow_combiner *combiner,
                        const unsigned char *bytes, size_t count,
                        snow_stretch part, uint64_t *words, snow_active *out) {
-    bool good = true;
-    if (combiner->exchange.order.whole) {
-        *out = (snow_active){
-            .first = part.first, .last = part.last, .at = part.first};
-        out->pixels = out->next = (const float *)(const void *)bytes;
-        good = count == (size_t)(part.last - part.first) *
-                            combiner->exchange.pixel_bytes;
-    } else {
-        good = snow_active_open(bytes, count, part.first, part.last,
-                                combiner->exchange.pixel_bytes, words, out);
-    }
-    if (combiner->exchange.order.rehearsal)
-        out->pixels = NULL;
-    return good;
+    return snow_active_open(bytes, count, part.first, part.last,
+                            combiner->exchange.pixel_bytes, words, out);
 }
 
 /* Waits for the messages of a round, and makes layers of them. */
@@ -254,10 +242,8 @@ bool snow_exchange_awaits(const snow_combiner *combiner, int n, int *y0,
     if (n >= run->awaited)
         return false;
     const snow_stretch part = combiner->parts[n].part;
-    const bool all = combiner->lines != NULL; /* lines of all regions */
-    *y0 = all ? 0 : (int)(part.first / run->order.width);
-    *y1 =
-        all ? run->order.height : (int)((part.last - 1) / run->order.width) + 1;
+    *y0 = (int)(part.first / run->order.width);
+    *y1 = (int)((part.last - 1) / run->order.width) + 1;
     return true;
 }
 
@@ -339,8 +325,7 @@ snow_status snow_exchange_end(snow_combiner *combiner, snow_rectangle drawn,
     for (int i = 0; i < 2; i++)
         SNOW_TRY(snow_traffic_await_sent(combiner, &combiner->out[i]));
     *out = (snow_image_region){mine.first, mine.last - mine.first,
-                               run->order.rehearsal ? NULL : combiner->region,
-                               combiner->part};
+                               combiner->region, combiner->part};
     run->ended = true;
     return SNOW_STATUS_OK;
 }

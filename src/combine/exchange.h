@@ -14,8 +14,7 @@
  *   +-------+ +-------+ +-------+           +-------+        +-------+
  *
  * Pixels are numbered line by line, beginning with line 0; a region is a run of
- * these numbers. With SNOW_IMAGE_PARTITION_INTERLACED the order of lines is not
- * that of the picture: snow_exchange_line gives the line of a place. */
+ * these numbers. */
 #ifndef SNOW_EXCHANGE_H
 #define SNOW_EXCHANGE_H
 
@@ -33,26 +32,14 @@ typedef struct snow_rectangle {
 typedef enum snow_image_partition {
     SNOW_IMAGE_PARTITION_AUTO = 0, /* counted if that is faster, else even */
     SNOW_IMAGE_PARTITION_EVEN,     /* equal numbers of pixels */
-    SNOW_IMAGE_PARTITION_COUNTED, /* about equal numbers of active pixels of all
-                                     local images together, but at most four
-                                     times an even region; costs a reduction
-                                     among the ranks */
-    SNOW_IMAGE_PARTITION_INTERLACED /* even, but neighbouring lines are far
-                                       apart: each region has lines from all
-                                       over the picture */
+    SNOW_IMAGE_PARTITION_COUNTED /* about equal numbers of active pixels of all
+                                    local images together, but at most four
+                                    times an even region; costs a reduction
+                                    among the ranks */
 } snow_image_partition;
 
-/* An exchange without pixels, to predict its time on a simulated machine: masks
- * of active pixels are sent, in messages of the right length, but no pixel is
- * touched. */
-typedef struct snow_rehearsal {
-    /* Bit i is set if pixel (x + i, y) is active, for i < count <= 64. */
-    uint64_t (*active)(void *user, int y, int x, int count);
-    void *user;
-} snow_rehearsal;
-
-/* The parameters of an exchange. All except `pixels`, `stride`, `drawn` and the
- * user of the rehearsal are the same on all ranks. */
+/* The parameters of an exchange. All except `pixels`, `stride` and `drawn` are
+ * the same on all ranks. */
 typedef struct snow_exchange_params {
     int width, height, channels; /* of the picture; 2 (grey, a) or 4 (r, g, b,
                                     a), premultiplied */
@@ -66,24 +53,17 @@ typedef struct snow_exchange_params {
     snow_image_partition
         regions; /* for all methods except the tree, which has one */
     snow_composite_op composite_op; /* for 2 channels if it is not over */
-    bool whole;  /* all pixels are sent, without masks, as in the paper */
     int threads; /* of the communicator's context, that look at pixels and
                     composite them; 0: 1. Ranks may have different numbers */
     /* snow_exchange_counts, summed over all ranks: the borders of counted
      * regions; NULL: from the local images. */
     const int64_t *counts;
     int count_groups;
-    const snow_rehearsal *rehearsal; /* NULL: a real exchange */
-    /* Seconds that a simulated processor takes (snow_comm_work) to examine a
-     * pixel of its local image, to composite one, and to move 16 bytes of a
-     * gathered picture. */
-    double scan_seconds, blend_seconds, move_seconds;
 } snow_exchange_params;
 
 /* This rank's region of the picture: pixels first .. first + count - 1; count
- * may be 0. Owned by the combiner until its next exchange; `pixels` is NULL in
- * a rehearsal. Bit i % 64 of active[i / 64 - first / 64] is set if pixel i is
- * active. */
+ * may be 0. Owned by the combiner until its next exchange. Bit i % 64 of
+ * active[i / 64 - first / 64] is set if pixel i is active. */
 typedef struct snow_image_region {
     int64_t first, count;
     float *pixels;
@@ -130,8 +110,8 @@ snow_status snow_exchange(snow_combiner *combiner,
  *       draw a little more; progress
  *   end
  *
- * `drawn` of the params is not read; what `ranks`, `counts` and `rehearsal`
- * point to must last until the end. Regions that are counted without `counts`
+ * `drawn` of the params is not read; what `ranks` and `counts` point to must
+ * last until the end. Regions that are counted without `counts`
  * need all of the image before anything is sent. After an error the exchange is
  * over. Begin and end are collective, with the errors of snow_exchange. */
 snow_status snow_exchange_begin(snow_combiner *combiner,
@@ -170,9 +150,6 @@ void snow_exchange_regions(const snow_combiner *combiner, int64_t *firsts,
 #define SNOW_COUNTS_MOST 256
 int snow_exchange_counts(const snow_combiner *combiner, const int64_t **counts);
 
-/* The line of the picture at place `place` of the order of lines. */
-int snow_exchange_line(const snow_combiner *combiner, int place);
-
 /* Consecutive pixels of one line of the picture. */
 typedef struct snow_pixel_run {
     int32_t x, y, count;
@@ -183,7 +160,7 @@ typedef struct snow_pixel_run {
  * by the caller); on the other ranks it may be NULL. Runs of all ranks must not
  * overlap. Transparent runs may be omitted; a run costs SNOW_RUN_BYTES besides
  * its pixels. Runs of a line go from left to right; gaps between them of fewer
- * bytes than that must be sent. In a rehearsal `pixels` and `picture` are NULL.
+ * bytes than that must be sent.
  * Sides are at most 65535. Errors: as for snow_exchange; on one rank alone
  * SNOW_STATUS_BAD_USAGE and SNOW_STATUS_NO_MEMORY, for its own runs, which then
  * are missing in the picture. */

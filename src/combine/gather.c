@@ -217,8 +217,7 @@ static void copy_run(const snow_gather_state *state, const snow_pixel_run *run,
            (size_t)run->count * state->pixel_bytes);
 }
 
-/* Writes a block of this rank's runs to `out`; returns its length. Without
- * pixels (a rehearsal) none are touched. */
+/* Writes a block of this rank's runs to `out`; returns its length. */
 static size_t write_block(const snow_gather_state *state,
                           const snow_pixel_run *runs, size_t run_count,
                           const void *pixels, unsigned char *out) {
@@ -234,7 +233,7 @@ static size_t write_block(const snow_gather_state *state,
     size_t bytes = (size_t)count * state->pixel_bytes;
     const block_head head = {run_count, bytes};
     memcpy(out, &head, sizeof head);
-    if (pixels && bytes)
+    if (bytes)
         memcpy(at, pixels, bytes);
     return (size_t)(at - out) + bytes;
 }
@@ -362,10 +361,8 @@ static bool copy_child(snow_combiner *combiner, int child,
     const size_t length = (size_t)message_length(state, child);
     if (state->parent >= 0)
         return true;
-    snow_comm_work(combiner->comm,
-                   (double)length / 16 * combiner->exchange.order.move_seconds);
-    return !picture || copy_blocks(state, state->bytes + state->places[child],
-                                   length, picture);
+    return copy_blocks(state, state->bytes + state->places[child], length,
+                       picture);
 }
 
 /* Receives what children send, in order of arrival, behind the first `used`
@@ -414,7 +411,7 @@ snow_status snow_gather(snow_combiner *combiner, int width, int height,
     unsigned char *block = state->child_count ? state->bytes : state->own;
     if (state->parent >= 0)
         used += write_block(state, runs, run_count, pixels, block + used);
-    for (size_t i = 0; i < run_count && picture && state->parent < 0; i++) {
+    for (size_t i = 0; i < run_count && state->parent < 0; i++) {
         copy_run(state, &runs[i], from, picture);
         from += (size_t)runs[i].count * pixel_bytes;
     }

@@ -76,28 +76,23 @@ static uint64_t *mask_of(const snow_combiner *combiner,
 static void write_part(void *of, int64_t item, int worker) {
     const snow_combiner *combiner = of;
     const snow_exchange_state *run = &combiner->exchange;
-    const snow_exchange_params *order = &run->order;
     snow_part_to_send *what = &combiner->parts[item];
     const snow_stretch part = what->part;
     uint64_t *words = mask_of(combiner, what);
-    float *pixels = order->rehearsal ? NULL : (float *)(void *)what->message;
+    float *pixels = (float *)(void *)what->message;
     if (run->level == 0)
-        what->active = snow_active_scan(combiner->loops, order, combiner->lines,
-                                        part.first, part.last, words, pixels,
-                                        &what->scanned);
+        what->active =
+            snow_active_scan(combiner->loops, &run->order, part.first,
+                             part.last, words, pixels, &what->scanned);
     else
         what->active =
             merge(combiner, worker, part, words, pixels, true, &what->laid);
-    what->bytes =
-        order->whole
-            ? (size_t)what->active * run->pixel_bytes
-            : snow_active_close(what->message, words, part.first, part.last,
-                                what->active, run->pixel_bytes);
+    what->bytes = snow_active_close(what->message, words, part.first, part.last,
+                                    what->active, run->pixel_bytes);
 }
 
 /* What a part that is written took. */
 static void count_part(snow_combiner *combiner, const snow_part_to_send *what) {
-    const snow_exchange_params *order = &combiner->exchange.order;
     snow_exchange_figures *figures = &combiner->figures;
     if (combiner->exchange.level == 0) {
         figures->active += what->active;
@@ -106,9 +101,6 @@ static void count_part(snow_combiner *combiner, const snow_part_to_send *what) {
     }
     figures->scanned += what->scanned;
     figures->laid += what->laid;
-    snow_comm_work(combiner->comm,
-                   (double)what->scanned * order->scan_seconds +
-                       (double)what->laid * order->blend_seconds);
 }
 
 /* Writes the messages of the first `count` awaited parts. */
@@ -144,10 +136,8 @@ static void composite_chunk(void *of, int64_t item, int worker) {
     const snow_stretch chunk = {
         first > job->region.first ? first : job->region.first,
         last < job->region.last ? last : job->region.last};
-    float *out = NULL; /* in a rehearsal */
-    if (!order->rehearsal)
-        out = combiner->region +
-              (chunk.first - job->region.first) * order->channels;
+    float *out =
+        combiner->region + (chunk.first - job->region.first) * order->channels;
     merge(combiner, worker, chunk, combiner->part + item * CHUNK_WORDS, out,
           false, &job->laid[worker]);
 }
@@ -163,6 +153,4 @@ void snow_parts_composite(snow_combiner *combiner, snow_stretch region) {
     for (int i = 0; i < SNOW_COMBINE_THREADS; i++)
         laid += job.laid[i];
     combiner->figures.laid += laid;
-    snow_comm_work(combiner->comm,
-                   (double)laid * combiner->exchange.order.blend_seconds);
 }

@@ -90,22 +90,3 @@ int64_t snow_region_room(const snow_region_bounds *bounds, int regions) {
         return largest(bounds, regions);
     return least(pixels, SNOW_IMAGE_REGION_MOST * even + 1 + bounds->grain);
 }
-
-/* The lowest `bits` bits of `number`, reversed. */
-static int64_t backwards(int64_t number, int bits) {
-    int64_t out = 0;
-    for (int i = 0; i < bits; i++)
-        out |= (number >> i & 1) << (bits - 1 - i);
-    return out;
-}
-
-void snow_order_lines(int *order, int height) {
-    int bits = 0, place = 0;
-    while (((int64_t)1 << bits) < height)
-        bits++;
-    for (int64_t i = 0; i < (int64_t)1 << bits; i++) {
-        int64_t line = backwards(i, bits);
-        if (line < height)
-            order[place++] = (int)line;
-    }
-}

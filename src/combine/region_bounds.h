@@ -1,4 +1,4 @@
-/* combine/region_bounds.h - borders of regions, and the order of lines.
+/* combine/region_bounds.h - borders of regions.
  *
  * A rising function maps fractions of the picture (region t of n begins at t /
  * n) to pixels: linear for even regions, by the counts of active pixels in
@@ -39,10 +39,5 @@ int64_t snow_region_begin(const snow_region_bounds *bounds, int region,
 
 /* The most pixels of any of n regions, or an upper bound. */
 int64_t snow_region_room(const snow_region_bounds *bounds, int regions);
-
-/* Fills order[place] with the lines 0 .. height - 1 so that any run of places
- * has lines from all over the picture: sorted by their numbers with the bits
- * reversed (van der Corput 1935). */
-void snow_order_lines(int *order, int height);
 
 #endif

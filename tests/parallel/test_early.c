@@ -100,19 +100,18 @@ typedef struct way {
     snow_combine method;
     int radix;
     snow_image_partition regions;
-    bool whole;
 } way;
 
 static const way ways[] = {
-    {SNOW_COMBINE_AUTO, 0, SNOW_IMAGE_PARTITION_AUTO, false},
-    {SNOW_COMBINE_AUTO, 0, SNOW_IMAGE_PARTITION_COUNTED, false},
-    {SNOW_COMBINE_SWAP, 0, SNOW_IMAGE_PARTITION_EVEN, false},
-    {SNOW_COMBINE_SWAP, 0, SNOW_IMAGE_PARTITION_COUNTED, true},
-    {SNOW_COMBINE_DIRECT, 0, SNOW_IMAGE_PARTITION_EVEN, true},
-    {SNOW_COMBINE_DIRECT, 0, SNOW_IMAGE_PARTITION_COUNTED, false},
-    {SNOW_COMBINE_RADIX, 3, SNOW_IMAGE_PARTITION_COUNTED, false},
-    {SNOW_COMBINE_RADIX, 4, SNOW_IMAGE_PARTITION_INTERLACED, false},
-    {SNOW_COMBINE_TREE, 0, SNOW_IMAGE_PARTITION_EVEN, false},
+    {SNOW_COMBINE_AUTO, 0, SNOW_IMAGE_PARTITION_AUTO},
+    {SNOW_COMBINE_AUTO, 0, SNOW_IMAGE_PARTITION_COUNTED},
+    {SNOW_COMBINE_SWAP, 0, SNOW_IMAGE_PARTITION_EVEN},
+    {SNOW_COMBINE_SWAP, 0, SNOW_IMAGE_PARTITION_COUNTED},
+    {SNOW_COMBINE_DIRECT, 0, SNOW_IMAGE_PARTITION_EVEN},
+    {SNOW_COMBINE_DIRECT, 0, SNOW_IMAGE_PARTITION_COUNTED},
+    {SNOW_COMBINE_RADIX, 3, SNOW_IMAGE_PARTITION_COUNTED},
+    {SNOW_COMBINE_RADIX, 4, SNOW_IMAGE_PARTITION_EVEN},
+    {SNOW_COMBINE_TREE, 0, SNOW_IMAGE_PARTITION_EVEN},
 };
 #define WAYS (int)(sizeof ways / sizeof *ways)
 
@@ -157,9 +156,8 @@ static snow_status gather_lines(snow_combiner *combiner, const sketch *s,
     for (int64_t at = region->first; left > 0; count++) {
         int64_t x = at % s->width, some = s->width - x;
         some = some < left ? some : left;
-        runs[count] = (snow_pixel_run){
-            (int32_t)x, snow_exchange_line(combiner, (int)(at / s->width)),
-            (int32_t)some};
+        runs[count] = (snow_pixel_run){(int32_t)x, (int32_t)(at / s->width),
+                                       (int32_t)some};
         at += some;
         left -= some;
     }
@@ -184,8 +182,7 @@ static snow_status paint(painter *p, int seed, bool early, float *picture,
                                   .method = p->way->method,
                                   .radix = p->way->radix,
                                   .grain = seed % 2 ? s->width : 1,
-                                  .regions = p->way->regions,
-                                  .whole = p->way->whole};
+                                  .regions = p->way->regions};
     snow_image_region region;
     const int64_t *mine;
     int64_t counts[SNOW_COUNTS_MOST];
@@ -244,10 +241,7 @@ static snow_status paint_series(painter *both, float *pictures[2],
 
 /* Only what cannot be cut into parts of the picture is not early. */
 static snow_status check_early(snow_comm *comm, const way *w, int64_t early) {
-    bool never = comm->ranks == 1 || w->method == SNOW_COMBINE_TREE ||
-                 w->regions == SNOW_IMAGE_PARTITION_INTERLACED ||
-                 (w->whole && w->regions == SNOW_IMAGE_PARTITION_COUNTED &&
-                  comm->ranks > 2);
+    bool never = comm->ranks == 1 || w->method == SNOW_COMBINE_TREE;
     SNOW_TRY(snow_comm_reduce_ints(comm, &early, 1, SNOW_REDUCE_SUM));
     CHECK(never ? early == 0 : early > 0);
     return SNOW_STATUS_OK;

@@ -175,10 +175,10 @@ static bool stack_active(const stack *s, int layer, int64_t at) {
     const snow_active *l = &s->layers[layer];
     if (at < l->first || at >= l->last)
         return false;
-    return !l->words || (l->words[at / 64 - l->first / 64] >> (at % 64) & 1);
+    return l->words[at / 64 - l->first / 64] >> (at % 64) & 1;
 }
 
-/* One layer: some lie in part of the picture only, one in seven has no mask. */
+/* One layer: some lie in part of the picture only. */
 static void make_layer(stack *s, int n, uint64_t *random) {
     const int channels = s->channels;
     int64_t pixels = s->last - s->first;
@@ -192,7 +192,6 @@ static void make_layer(stack *s, int n, uint64_t *random) {
             (int64_t)(support_random(random) % (uint64_t)(l->last - l->first));
     }
     l->own = support_random(random) % 3 == 0;
-    bool masked = support_random(random) % 7 != 0;
     uint64_t *words =
         calloc((size_t)snow_active_words(l->first, l->last), sizeof *words);
     size_t count = (size_t)(l->last - l->first), active = 0;
@@ -200,7 +199,7 @@ static void make_layer(stack *s, int n, uint64_t *random) {
     s->pixels[n] = floats(count * (size_t)channels);
     for (int64_t at = l->first; at < l->last; at++) {
         float *pixel = s->pixels[n] + (at - l->first) * channels;
-        bool on = !masked || is_active(kind, random, at);
+        bool on = is_active(kind, random, at);
         make_pixel(pixel, channels, on, random);
         if (!on)
             continue;
@@ -212,9 +211,7 @@ static void make_layer(stack *s, int n, uint64_t *random) {
     for (int i = 0; i < SLACK; i++)
         packed[active * (size_t)channels + (size_t)i] = MARK;
     l->pixels = l->next = packed;
-    l->words = masked ? words : NULL;
-    if (!masked)
-        free(words);
+    l->words = words;
 }
 
 static void free_layer(stack *s, int n) {
