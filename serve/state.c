@@ -12,10 +12,6 @@
 #include <string.h>
 #include <time.h>
 
-/* Of all pages, and of one, so that another one has room too. */
-#define QUESTIONS_MOST 192
-#define QUESTIONS_OF_PAGE 128
-
 struct viewer_state {
     pthread_mutex_t lock;
     pthread_cond_t changed;
@@ -27,7 +23,7 @@ struct viewer_state {
     bool crop_is_alone;
     int watchers;
     double changed_at;
-    viewer_question questions[QUESTIONS_MOST]; /* a ring */
+    viewer_question questions[STATE_QUESTIONS_MOST]; /* a ring */
     int first, count;
     atomic_int urgent;     /* those of them that do not wait for pictures */
     bool answered;         /* the last work was an answer: pictures are next */
@@ -65,7 +61,7 @@ void state_free(viewer_state *s) {
     if (!s)
         return;
     for (int i = 0; i < s->count; i++)
-        json_decref(s->questions[(s->first + i) % QUESTIONS_MOST].tree);
+        json_decref(s->questions[(s->first + i) % STATE_QUESTIONS_MOST].tree);
     json_decref(s->recipe);
     json_decref(s->files);
     snow_context_free(s->checker);
@@ -229,7 +225,8 @@ void state_set_watchers(viewer_state *s, int count) {
 static int questions_of(const viewer_state *s, uint64_t client) {
     int count = 0;
     for (int i = 0; i < s->count; i++)
-        count += s->questions[(s->first + i) % QUESTIONS_MOST].client == client;
+        count += s->questions[(s->first + i) % STATE_QUESTIONS_MOST].client ==
+                 client;
     return count;
 }
 
@@ -238,7 +235,8 @@ static viewer_question *same_pane(viewer_state *s, uint64_t client,
                                   const json_t *tree) {
     const json_t *pane = json_object_get(tree, "pane");
     for (int i = 0; i < s->count; i++) {
-        viewer_question *q = &s->questions[(s->first + i) % QUESTIONS_MOST];
+        viewer_question *q =
+            &s->questions[(s->first + i) % STATE_QUESTIONS_MOST];
         if (q->waits && q->client == client &&
             json_equal(json_object_get(q->tree, "pane"), pane))
             return q;
@@ -260,12 +258,12 @@ bool state_ask(viewer_state *s, uint64_t client, json_t *tree) {
     bool waits = what && strcmp(what, "thumbnail") == 0;
     pthread_mutex_lock(&s->lock);
     viewer_question *same = waits ? same_pane(s, client, tree) : NULL;
-    bool room = same || (s->count < QUESTIONS_MOST &&
-                         questions_of(s, client) < QUESTIONS_OF_PAGE);
+    bool room = same || (s->count < STATE_QUESTIONS_MOST &&
+                         questions_of(s, client) < STATE_QUESTIONS_OF_PAGE);
     if (same)
         keep_newer(same, tree);
     else if (room)
-        s->questions[(s->first + s->count++) % QUESTIONS_MOST] =
+        s->questions[(s->first + s->count++) % STATE_QUESTIONS_MOST] =
             (viewer_question){client, tree, waits};
     s->urgent += room && !waits;
     pthread_cond_signal(&s->changed);
@@ -306,18 +304,19 @@ static void wait_until(viewer_state *s, double due) {
  * all others. */
 static int next_question(const viewer_state *s, bool rests) {
     for (int i = 0; i < s->count; i++)
-        if (!s->questions[(s->first + i) % QUESTIONS_MOST].waits)
+        if (!s->questions[(s->first + i) % STATE_QUESTIONS_MOST].waits)
             return i;
     return rests && s->count ? 0 : -1;
 }
 
 /* Those before it move up. */
 static viewer_question take_question(viewer_state *s, int place) {
-    viewer_question taken = s->questions[(s->first + place) % QUESTIONS_MOST];
+    viewer_question taken =
+        s->questions[(s->first + place) % STATE_QUESTIONS_MOST];
     for (; place > 0; place--)
-        s->questions[(s->first + place) % QUESTIONS_MOST] =
-            s->questions[(s->first + place - 1) % QUESTIONS_MOST];
-    s->first = (s->first + 1) % QUESTIONS_MOST;
+        s->questions[(s->first + place) % STATE_QUESTIONS_MOST] =
+            s->questions[(s->first + place - 1) % STATE_QUESTIONS_MOST];
+    s->first = (s->first + 1) % STATE_QUESTIONS_MOST;
     s->count--;
     s->urgent -= !taken.waits;
     return taken;

@@ -34,6 +34,10 @@ typedef enum viewer_work {
 #define STATE_NORMAL_SECONDS 0.12
 #define STATE_HIGH_SECONDS 0.3
 
+/* Questions of all pages, and of one, so that another one has room too. */
+#define STATE_QUESTIONS_MOST 192
+#define STATE_QUESTIONS_OF_PAGE 128
+
 /* Takes over a recipe's tree; NULL: no memory. */
 viewer_state *state_new(json_t *recipe);
 void state_free(viewer_state *s);

@@ -4,9 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Bytes of a piece: what a socket takes at once. */
-#define PIECE_BYTES 65536
-
 /* Qualities of pictures that move.  One is left for the next lower one when a
  * trip takes more than `slow` seconds, and for the next higher one when it
  * takes less than `quick`; between the two it stays. */
@@ -173,12 +170,12 @@ static void begin(client *c) {
 /* lws writes into the bytes before a piece, and others read the parcel: so it
  * is copied. */
 static bool send_piece(client *c) {
-    static unsigned char room[LWS_PRE + PIECE_BYTES];
+    static unsigned char room[LWS_PRE + CLIENT_PIECE_BYTES];
     const parcel *p = c->sending;
     size_t length = p->length - c->sent;
-    bool first = c->sent == 0, last = length <= PIECE_BYTES;
+    bool first = c->sent == 0, last = length <= CLIENT_PIECE_BYTES;
     if (!last)
-        length = PIECE_BYTES;
+        length = CLIENT_PIECE_BYTES;
     memcpy(room + LWS_PRE, p->bytes + c->sent, length);
     if (first && is_picture(p))
         frame_head_set_n(room + LWS_PRE, set_log_n(&c->sets, p->revision));

@@ -14,6 +14,9 @@
 #define CLIENT_QUEUE_MOST 96
 #define CLIENT_UNDER_WAY 2
 
+/* Bytes of a piece: what a socket takes at once. */
+#define CLIENT_PIECE_BYTES 65536
+
 /* A picture that is under way. */
 typedef struct sent_picture {
     lws_usec_t at;

@@ -3,7 +3,7 @@
  * thread sanitizer it is the test that the queue has no race. */
 #include "support/support.h"
 
-#include "movie/frames.c"
+#include "movie/frames.h"
 
 #include <stdatomic.h>
 

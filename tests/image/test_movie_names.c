@@ -2,7 +2,7 @@
  * written by patterns. */
 #include "support/support.h"
 
-#include "movie/movie_names.c"
+#include "movie/movie_names.h"
 
 static frame_names read_names(const char *pattern) {
     frame_names names;

@@ -1,10 +1,8 @@
 /* tests/serve/test_client.c - what waits for one page. */
 #include "support/support.h"
 
-#include "message.c"
-#include "outbox.c"
-
-#include "net/client.c"
+#include "message.h"
+#include "net/client.h"
 
 /* No socket is written to here: what would be is noted. */
 static struct {
@@ -235,7 +233,7 @@ static void a_picture_goes_in_pieces_with_the_own_n(void **state) {
     (void)state;
     outbox *box = outbox_new(wake_nobody, NULL);
     client c = {.id = 1};
-    parcel *p = parcel_new(2 * PIECE_BYTES + 100);
+    parcel *p = parcel_new(2 * CLIENT_PIECE_BYTES + 100);
     assert_non_null(p);
     memset(p->bytes, 0, p->length);
     p->topic = PARCEL_PICTURE;
@@ -275,7 +273,7 @@ static void a_link_is_thin_while_pictures_wait(void **state) {
         assert_false(client_acknowledge(&plain)); /* it cannot show WebP */
     }
     assert_true(c.thin);
-    forget_pictures(&c, box);
+    send_all(&c, box);
     for (int i = 0; i < 40; i++)
         changes += client_acknowledge(&c);
     assert_false(c.thin);

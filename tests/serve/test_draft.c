@@ -1,7 +1,7 @@
 /* tests/serve/test_draft.c - how small drafts are. */
 #include "support/support.h"
 
-#include "draw/draft.c"
+#include "draw/draft.h"
 
 /* Seconds of a draft at full size -> those at a shrink: at least a quarter for
  * a quarter of the pixels. */

@@ -1,7 +1,7 @@
 /* tests/serve/test_guard.c - who may talk to the viewer. */
 #include "support/support.h"
 
-#include "net/guard.c"
+#include "net/guard.h"
 
 static guard guard_of(int port, const char *list) {
     guard g = {.token = "0123456789abcdef0123456789abcdef"};

@@ -2,7 +2,7 @@
  * and what stands in it. */
 #include "support/support.h"
 
-#include "live_file.c"
+#include "live_file.h"
 
 #include <fcntl.h>
 #include <unistd.h>

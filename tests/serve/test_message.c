@@ -1,7 +1,7 @@
 /* tests/serve/test_message.c - what a page may say. */
 #include "support/support.h"
 
-#include "message.c"
+#include "message.h"
 
 static message read_good(const char *text) {
     message m;

@@ -6,19 +6,14 @@
 
 static double clock_seconds = 1000; /* in seconds */
 
-static int tell_time(clockid_t id, struct timespec *at) {
+int __wrap_clock_gettime(clockid_t id, struct timespec *at) {
     (void)id;
     at->tv_sec = (time_t)clock_seconds;
     at->tv_nsec = (long)((clock_seconds - (double)at->tv_sec) * 1e9);
     return 0;
 }
 
-#define clock_gettime tell_time
-#include "state.c"
-#undef clock_gettime
-
-#include "message.c"
-#include "outbox.c"
+#include "state.h"
 
 static json_t *tree_of(const char *text) {
     json_t *tree = json_loads(text, 0, NULL);
@@ -246,13 +241,13 @@ static void questions_have_a_limit(void **state) {
     (void)state;
     viewer_state *s = state_of("{}");
     for (int round = 0; round < 3; round++) { /* of a ring, each begins later */
-        for (int i = 0; i < QUESTIONS_OF_PAGE; i++)
+        for (int i = 0; i < STATE_QUESTIONS_OF_PAGE; i++)
             ask(s, i % 2 ? "thumbnail" : "command");
         assert_false(state_ask(s, 1, json_object()));
-        for (int i = QUESTIONS_OF_PAGE; i < QUESTIONS_MOST; i++)
+        for (int i = STATE_QUESTIONS_OF_PAGE; i < STATE_QUESTIONS_MOST; i++)
             assert_true(state_ask(s, 2, json_object())); /* another page */
         assert_false(state_ask(s, 2, json_object()));
-        for (int i = 0; i < QUESTIONS_MOST; i++)
+        for (int i = 0; i < STATE_QUESTIONS_MOST; i++)
             assert_next(s, 0, -1, WORK_ANSWER, 0);
         assert_next(s, 0, -1, WORK_NONE, 0);
         ask(s, "command");
