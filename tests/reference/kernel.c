@@ -8,18 +8,22 @@
 /* What counts as on an edge, in voxels. */
 #define EDGE 1e-5
 
-#define LARGEST_SUPPORT 9
-
-/* The B-spline of order K on the knots 0, 1, ..., K by the recursion of Cox
- * (1972) and de Boor (1972), at t + K/2. */
+/* The B-spline of order K, which is K boxes of width 1 convolved, by
+ * Schoenberg's (1946) sum of truncated powers: 1 / (K-1)!  sum over j of (-1)^j
+ * (K over j) max(0, t + K/2 - j)^(K-1). */
 static double bspline(int order, double t) {
-    double x = t + order / 2.0, n[LARGEST_SUPPORT + 1];
-    for (int i = 0; i < order; i++)
-        n[i] = x >= i && x < i + 1;
-    for (int k = 2; k <= order; k++)
-        for (int i = 0; i + k <= order; i++)
-            n[i] = ((x - i) * n[i] + (i + k - x) * n[i + 1]) / (k - 1);
-    return n[0];
+    double sum = 0, over = 1, factorial = 1;
+    if (!(fabs(t) < order / 2.0))
+        return 0;
+    for (int j = 0; j <= order; j++) {
+        double x = t + order / 2.0 - j;
+        if (x >= 0)
+            sum += (j % 2 ? -over : over) * pow(x, order - 1);
+        over = over * (order - j) / (j + 1);
+    }
+    for (int n = 2; n < order; n++)
+        factorial *= n;
+    return sum / factorial;
 }
 
 static bool inside(double half, double t) {
@@ -51,19 +55,21 @@ int reference_support(const snow_settings *settings) {
                : 4;
 }
 
+/* Variances of convolved kernels add up; that of a box of width 1 is 1/12. */
 static double variance(snow_kernel kernel, double support) {
+    double box = 1.0 / 12;
     switch (kernel) {
-    case SNOW_KERNEL_TENT:
-        return support * support / 24;
+    case SNOW_KERNEL_TENT: /* two boxes of half its support */
+        return 2 * box * (support / 2) * (support / 2);
     case SNOW_KERNEL_GAUSS:
-        return support * support / 64;
+        return (support / 8) * (support / 8);
     case SNOW_KERNEL_BOX:
-        return support * support / 12;
+        return box * support * support;
     case SNOW_KERNEL_AUTO:
     case SNOW_KERNEL_BSPLINE:
         break;
     }
-    return support / 12;
+    return box * support;
 }
 
 double reference_widening(snow_kernel kernel, int support, double rho) {

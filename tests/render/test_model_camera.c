@@ -5,49 +5,51 @@
 #include <math.h>
 #include <string.h>
 
-#define THIRD 0.57735026918962576
-#define SIXTH 0.40824829046386302
-
-/* What the names must mean in the RAS world: right is +x, anterior +y,
- * superior +z. */
+/* Where each view stands in the RAS world: right is +x, anterior +y, superior
+ * +z.  An axis is its own name. */
 static const struct {
-    const char *name;
-    double back[3], up[3];
+    const char *name, *side;
 } names[] = {
-    {"anterior", {0, 1, 0}, {0, 0, 1}},
-    {"posterior", {0, -1, 0}, {0, 0, 1}},
-    {"left", {-1, 0, 0}, {0, 0, 1}},
-    {"right", {1, 0, 0}, {0, 0, 1}},
-    {"superior", {0, 0, 1}, {0, 1, 0}},
-    {"inferior", {0, 0, -1}, {0, 1, 0}},
-    {"iso", {THIRD, THIRD, THIRD}, {-SIXTH, -SIXTH, 2 * SIXTH}},
-    {"+x", {1, 0, 0}, {0, 0, 1}},
-    {"-x", {-1, 0, 0}, {0, 0, 1}},
-    {"+y", {0, 1, 0}, {0, 0, 1}},
-    {"-y", {0, -1, 0}, {0, 0, 1}},
-    {"+z", {0, 0, 1}, {0, 1, 0}},
-    {"-z", {0, 0, -1}, {0, 1, 0}},
-    {"axial", {0, 0, 1}, {0, 1, 0}},
-    {"coronal", {0, -1, 0}, {0, 0, 1}},
-    {"sagittal", {1, 0, 0}, {0, 0, 1}},
-    {"front", {0, -1, 0}, {0, 0, 1}},
-    {"back", {0, 1, 0}, {0, 0, 1}},
-    {"top", {0, 0, 1}, {0, 1, 0}},
-    {"bottom", {0, 0, -1}, {0, 1, 0}},
+    {"anterior", "+y"}, {"posterior", "-y"}, {"left", "-x"},  {"right", "+x"},
+    {"superior", "+z"}, {"inferior", "-z"},  {"axial", "+z"}, {"coronal", "-y"},
+    {"sagittal", "+x"}, {"front", "-y"},     {"back", "+y"},  {"top", "+z"},
+    {"bottom", "-z"},   {"iso", "+x+y+z"},   {"+x", "+x"},    {"-x", "-x"},
+    {"+y", "+y"},       {"-y", "-y"},        {"+z", "+z"},    {"-z", "-z"},
 };
 
 #define NAMES (sizeof names / sizeof *names)
+
+/* A side's direction, from the axes in its name; and the camera's up, which is
+ * what of the world's +z is at right angles to it, or of +y where nothing is.
+ */
+static void frame_of(const char *side, double back[3], double up[3]) {
+    double length = 0, along;
+    for (int c = 0; c < 3; c++)
+        back[c] = up[c] = 0;
+    for (size_t n = 0; side[n]; n += 2)
+        back[side[n + 1] - 'x'] = side[n] == '+' ? 1 : -1;
+    for (int c = 0; c < 3; c++)
+        length += back[c] * back[c];
+    for (int c = 0; c < 3; c++)
+        back[c] /= sqrt(length);
+    int upward = fabs(back[2]) == 1 ? 1 : 2;
+    along = back[upward];
+    for (int c = 0; c < 3; c++)
+        up[c] = ((c == upward) - along * back[c]) / sqrt(1 - along * along);
+}
 
 static void each_view_stands_where_its_name_says(void **state) {
     (void)state;
     snow_context *context = support_context();
     for (size_t n = 0; n < NAMES; n++) {
         snow_view view = {.size = sizeof view};
+        double back[3], up[3];
+        frame_of(names[n].side, back, up);
         assert_int_equal(snow_view_from_name(context, names[n].name, &view),
                          SNOW_STATUS_OK);
         for (int c = 0; c < 3; c++) {
-            assert_near(view.back[c], names[n].back[c], 1e-15);
-            assert_near(view.up[c], names[n].up[c], 1e-15);
+            assert_near(view.back[c], back[c], 1e-15);
+            assert_near(view.up[c], up[c], 1e-15);
         }
         assert_int_equal(view.width, 512);
         assert_int_equal(view.height, 512);
@@ -388,8 +390,9 @@ static void of_equally_parallel_axes_the_last_is_taken(void **state) {
         model_turn(&scene, 90, 45 + 90 * quarter, 0, 1); /* x and y */
         check_axis(&stage, &scene, 1);
     }
-    model_look(&scene, (double[]){THIRD, THIRD, THIRD},
-               (double[]){-SIXTH, -SIXTH, 2 * SIXTH});
+    double back[3], up[3];
+    frame_of("+x+y+z", back, up);
+    model_look(&scene, back, up);
     model_turn(&scene, 0, 0, 0, 1);
     check_axis(&stage, &scene, 2);
     model_free(&scene);
