@@ -8,11 +8,14 @@
 #include "support/folder.h"
 #include "support/support.h"
 
+#include "base/monitor.h"
+#include "base/thread_pool.h"
 #include "comm/comm.h"
 #include "image/image.h"
 #include "render/picture.h"
 
 #include <math.h>
+#include <sched.h>
 #include <snowglass/ranks.h>
 #include <stdatomic.h>
 
@@ -75,6 +78,39 @@ static bool answer(void *user) {
     question *q = user;
     q->foreign |= !pthread_equal(q->thread, pthread_self());
     return ++q->asked == q->at;
+}
+
+/* --- items of a batch ----------------------------------------------------- */
+
+typedef struct batch {
+    snow_monitor monitor;
+    int items; /* of the thread that asks */
+} batch;
+
+/* The other thread leaves all items but one to it. */
+static void count_item(void *job, int64_t item, int worker) {
+    batch *b = job;
+    (void)item;
+    while (worker && !atomic_load(&b->monitor.stopped))
+        sched_yield();
+    b->items += worker == 0;
+}
+
+static void no_item_is_begun_after_a_stop(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    for (int threads = 1; threads <= 2; threads++)
+        for (int at = 1; at <= 5; at++) {
+            question q = {.at = at, .thread = pthread_self()};
+            batch b = {.items = 0};
+            snow_monitor_begin(context, &b.monitor, answer, &q);
+            snow_status status =
+                snow_parallel(context, threads, 10, count_item, &b);
+            assert_int_equal(snow_monitor_end(&b.monitor, status),
+                             SNOW_STATUS_STOPPED);
+            assert_int_equal(b.items, at - 1);
+        }
+    snow_context_free(context);
 }
 
 /* --- what is drawn -------------------------------------------------------- */
@@ -581,6 +617,7 @@ static void stops_are_quick(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(no_item_is_begun_after_a_stop),
         cmocka_unit_test(pictures_stop_on_one_thread),
         cmocka_unit_test(pictures_stop_on_two_threads),
         cmocka_unit_test(pictures_of_a_file_stop),

@@ -3,6 +3,7 @@
 #include "support/support.h"
 
 #include "encode/encode.h"
+#include "encode/fetch.h"
 
 /* A strip over rows of 0 and 1: each 1 is kept, its sample is its number. */
 static void fill_strip(snow_row_block *strip, const unsigned char *mask,
@@ -218,6 +219,62 @@ static void auto_goes_by_density_and_run_length(void **state) {
     assert_int_equal(snow_encoding_choose(1000, 0, 0), SNOW_ENCODING_CRS);
 }
 
+/* Slices along x of a volume of random bytes, each beside its voxels. */
+static void check_fetch(snow_type type, const int64_t dims[3], snow_isa isa) {
+    const size_t size = snow_type_size(type);
+    const size_t bytes = (size_t)(dims[0] * dims[1] * dims[2]) * size;
+    unsigned char *voxels = malloc(bytes);
+    uint64_t random = 5;
+    for (size_t n = 0; n < bytes; n++)
+        voxels[n] = (unsigned char)support_random(&random);
+    const snow_volume volume = {
+        .info = {.dims = {dims[0], dims[1], dims[2]}, .type = type},
+        .voxels = voxels};
+    const snow_placement placement = {.u_axis = 1,
+                                      .v_axis = 2,
+                                      .slice_axis = 0,
+                                      .columns = dims[1],
+                                      .rows = dims[2],
+                                      .slices = dims[0]};
+    const snow_fetch_params params = {.volume = &volume,
+                                      .placement = &placement,
+                                      .slices = dims[0],
+                                      .rows = dims[2],
+                                      .isa = isa};
+    void *scratch =
+        aligned_alloc(64, (snow_fetch_bytes(&params) + 63) / 64 * 64);
+    snow_fetch fetch;
+    snow_fetch_begin(&fetch, &params, scratch);
+    for (int64_t x = 0; x < dims[0]; x++) {
+        snow_rows rows;
+        snow_fetch_slice(&fetch, x, &rows);
+        for (int64_t z = 0; z < dims[2]; z++)
+            for (int64_t y = 0; y < dims[1]; y++)
+                assert_memory_equal(
+                    rows.voxels + (size_t)z * rows.stride + (size_t)y * size,
+                    voxels + (size_t)((z * dims[1] + y) * dims[0] + x) * size,
+                    size);
+    }
+    free(scratch);
+    free(voxels);
+}
+
+static void slices_along_x_have_their_voxels(void **state) {
+    (void)state;
+    static const snow_type types[] = {SNOW_TYPE_UINT8, SNOW_TYPE_INT16,
+                                      SNOW_TYPE_FLOAT32, SNOW_TYPE_FLOAT64};
+    static const int64_t slices[] = {1, 7, 8, 33, 64, 65, 72};
+    static const int64_t columns[] = {1, 63, 64, 65, 130};
+    for (size_t t = 0; t < sizeof types / sizeof *types; t++)
+        for (size_t x = 0; x < sizeof slices / sizeof *slices; x++)
+            for (size_t y = 0; y < sizeof columns / sizeof *columns; y++)
+                for (int isa = SNOW_ISA_SCALAR; isa <= SNOW_ISA_AVX2; isa++)
+                    if (snow_isa_runs((snow_isa)isa))
+                        check_fetch(types[t],
+                                    (int64_t[]){slices[x], columns[y], 3},
+                                    (snow_isa)isa);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(crs_of_figure_4_is_indr_and_col),
@@ -228,6 +285,7 @@ int main(void) {
         cmocka_unit_test(empty_and_full_slices_walk_too),
         cmocka_unit_test(rows_longer_than_a_crs_column_can_say_are_cut),
         cmocka_unit_test(auto_goes_by_density_and_run_length),
+        cmocka_unit_test(slices_along_x_have_their_voxels),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
