@@ -151,11 +151,6 @@ typedef struct bar_ticks {
     double step; /* between numbers; 0: each is one digit */
 } bar_ticks;
 
-static bool is_within(const color_bar *bar, double value) {
-    return value >= bar->low * (1 - 1e-9 * copysign(1, bar->low)) &&
-           value <= bar->high * (1 + 1e-9 * copysign(1, bar->high));
-}
-
 /* A number without room beside those before it is a stroke. */
 static void add_tick(const color_bar *bar, double value, bool number,
                      bar_ticks *ticks) {
@@ -163,7 +158,10 @@ static void add_tick(const color_bar *bar, double value, bool number,
         number = fabs(place_of(bar, value) - place_of(bar, ticks->numbers[n])) >
                  1.2 * bar->height;
     int *count = number ? &ticks->number_count : &ticks->stroke_count;
-    if (is_within(bar, value) && *count < TICKS)
+    const bool within =
+        value >= bar->low * (1 - 1e-9 * copysign(1, bar->low)) &&
+        value <= bar->high * (1 + 1e-9 * copysign(1, bar->high));
+    if (within && *count < TICKS)
         (number ? ticks->numbers : ticks->strokes)[(*count)++] = value;
 }
 

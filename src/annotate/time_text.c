@@ -56,17 +56,14 @@ static int64_t leap_days(int64_t year, bool julian) {
            (int64_t)floor((double)year / 400);
 }
 
-/* Days before the first of a month, of years that begin in March so that a leap
- * day is the last. */
-static int days_before(int month) {
-    return (153 * month + 2) / 5;
-}
-
 /* The number of a day; those of one calendar count on. */
 static int64_t number_of(calendar c, const moment *m) {
     int64_t year = m->year - (m->month < 3);
     int month = (m->month + 9) % 12;
-    int64_t day = days_before(month) + m->day - 1;
+    /* Days before the first of a month, of years that begin in March so that a
+     * leap day is the last. */
+    const int days_before = (153 * month + 2) / 5;
+    int64_t day = days_before + m->day - 1;
     switch (c) {
     case CALENDAR_360:
         return m->year * 360 + (m->month - 1) * 30 + m->day - 1;

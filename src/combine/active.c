@@ -10,10 +10,6 @@
 
 #include <string.h>
 
-static int lowest(uint64_t bits) {
-    return __builtin_ctzll(bits);
-}
-
 static int population(uint64_t bits) {
     return snow_scalar_popcount(bits);
 }
@@ -156,7 +152,7 @@ static int64_t unpack_words(const unsigned char *which, int64_t count,
             from += 8;
         } else {
             for (unsigned bits = which[i]; bits; bits &= bits - 1)
-                word |= (uint64_t)*from++ << (8 * lowest(bits));
+                word |= (uint64_t)*from++ << (8 * __builtin_ctzll(bits));
         }
         words[i] = word;
         active += population(word);

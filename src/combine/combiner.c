@@ -263,16 +263,6 @@ static snow_combine chosen_method(const snow_exchange_params *order) {
                                               : order->method;
 }
 
-/* Whether buffers of the same sizes are needed: the same on all ranks, so that
- * all allocate at the same time and can agree on the status. */
-static bool same_shape(const snow_exchange_params *a,
-                       const snow_exchange_params *b) {
-    return a->width == b->width && a->height == b->height &&
-           a->channels == b->channels && a->radix == b->radix &&
-           a->grain == b->grain && a->method == b->method &&
-           a->regions == b->regions;
-}
-
 /* Makes a plan for the params; all ranks call it together. */
 static snow_status plan_shape(snow_combiner *combiner,
                               const snow_exchange_params *order) {
@@ -344,7 +334,14 @@ static snow_status plan_rank_order(snow_combiner *combiner,
 snow_status snow_combiner_plan(snow_combiner *combiner,
                                const snow_exchange_params *order) {
     SNOW_TRY(check_params(combiner, order));
-    if (!same_shape(order, &combiner->shape))
+    const bool same_shape = order->width == combiner->shape.width &&
+                            order->height == combiner->shape.height &&
+                            order->channels == combiner->shape.channels &&
+                            order->radix == combiner->shape.radix &&
+                            order->grain == combiner->shape.grain &&
+                            order->method == combiner->shape.method &&
+                            order->regions == combiner->shape.regions;
+    if (!same_shape)
         SNOW_TRY(plan_shape(combiner, order));
     combiner->loops =
         snow_pixels_pick(SNOW_ISA_AUTO, order->channels, order->composite_op);

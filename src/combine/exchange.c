@@ -194,14 +194,6 @@ static snow_status end_receives(snow_combiner *combiner) {
 
 /* --- the exchange --------------------------------------------------------- */
 
-/* The end of this rank's part of the first round, which it keeps. */
-static double where_to_begin(const snow_combiner *combiner) {
-    const snow_stretch mine =
-        held_before(combiner, combiner->rounds.count ? 1 : 0);
-    int64_t pixels = whole_picture(combiner).last;
-    return mine.last < pixels ? (double)mine.last / (double)pixels : 0;
-}
-
 /* All of the local image, for one rank or to be counted. */
 static void await_all(snow_combiner *combiner) {
     combiner->parts[0] = (snow_part_to_send){.part = whole_picture(combiner),
@@ -216,7 +208,12 @@ static snow_status begin_rounds(snow_combiner *combiner) {
     if (combiner->bounds.counted)
         SNOW_TRY(snow_counts_divide(combiner));
     SNOW_TRY(snow_combiner_fit(combiner));
-    combiner->figures.begin_at = where_to_begin(combiner);
+    /* The end of this rank's part of the first round, which it keeps. */
+    const snow_stretch mine =
+        held_before(combiner, combiner->rounds.count ? 1 : 0);
+    int64_t pixels = whole_picture(combiner).last;
+    combiner->figures.begin_at =
+        mine.last < pixels ? (double)mine.last / (double)pixels : 0;
     if (combiner->rounds.count)
         return begin_round(combiner);
     await_all(combiner);

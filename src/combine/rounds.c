@@ -191,12 +191,6 @@ int snow_rounds_last(const snow_rounds *rounds, int rank_position) {
 
 #define RADIX_MOST 64
 
-/* The fraction of the picture's pixels that are active when `parts` of all
- * parts of the volume are combined. */
-static double active_part(double parts) {
-    return FOOTPRINT * (1 - pow(1 - HIDDEN, 32 * parts));
-}
-
 /* A search of all sequences of radices, pruned where none can be the best. */
 typedef struct search {
     double rank_order, bytes, best;
@@ -210,7 +204,11 @@ typedef struct search {
  * are in flight, and ends received ones one after another. */
 static double round_seconds(const search *s, int left, int radix) {
     double messages = (left % radix ? 1.6 : 1) * (radix - 1);
-    double held = s->bytes * active_part(1.0 / left) * left / s->rank_order;
+    /* The fraction of the picture's pixels that are active when `parts` of all
+     * parts of the volume are combined. */
+    const double active_part =
+        FOOTPRINT * (1 - pow(1 - HIDDEN, 32 * (1.0 / left)));
+    double held = s->bytes * active_part * left / s->rank_order;
     double start = OVERHEAD * messages;
     double travel = SECONDS_A_BYTE * held * (radix - 1) / radix;
     return LATENCY + OVERHEAD * messages + (start > travel ? start : travel);

@@ -214,12 +214,6 @@ snow_status snow_comm_allgather(snow_comm *comm, const void *mine, size_t count,
 
 /* --- agreement ------------------------------------------------------------ */
 
-/* Whether a message begins with a rank, as one that was agreed on before. */
-static bool names_rank(const char *message) {
-    int rank, length = 0;
-    return sscanf(message, "rank %d: %n", &rank, &length) == 1 && length > 0;
-}
-
 /* Sends the first failure and its message to all ranks. */
 static snow_status spread_failure(snow_comm *comm, snow_status status,
                                   int first) {
@@ -232,7 +226,9 @@ static snow_status spread_failure(snow_comm *comm, snow_status status,
     SNOW_TRY(snow_comm_broadcast(comm, &failure, sizeof failure, first));
     failure.message[sizeof failure.message - 1] = 0;
     comm->agreed = true;
-    if (names_rank(failure.message))
+    int rank, length = 0;
+    if (sscanf(failure.message, "rank %d: %n", &rank, &length) == 1 &&
+        length > 0)
         return snow_fail(comm->context, (snow_status)failure.status, "%s",
                          failure.message);
     return snow_fail(comm->context, (snow_status)failure.status, "rank %d: %s",

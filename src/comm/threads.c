@@ -42,13 +42,6 @@ static crew_gate wait_at_gate(thread_crew *crew) {
     return gate;
 }
 
-static void turn_gate(thread_crew *crew, crew_gate gate) {
-    pthread_mutex_lock(&crew->lock);
-    crew->gate = gate;
-    pthread_cond_broadcast(&crew->turn);
-    pthread_mutex_unlock(&crew->lock);
-}
-
 static void *run_rank(void *argument) {
     thread_rank *member = argument;
     thread_crew *crew = member->crew;
@@ -82,7 +75,10 @@ static snow_status run_ranks(thread_crew *crew, thread_rank *members,
     while (made < ranks && !pthread_create(&members[made].thread, NULL,
                                            run_rank, &members[made]))
         made++;
-    turn_gate(crew, made == ranks ? OPEN : SENT_HOME);
+    pthread_mutex_lock(&crew->lock);
+    crew->gate = made == ranks ? OPEN : SENT_HOME;
+    pthread_cond_broadcast(&crew->turn);
+    pthread_mutex_unlock(&crew->lock);
     for (int rank = 0; rank < made; rank++)
         pthread_join(members[rank].thread, NULL);
     if (made == ranks)

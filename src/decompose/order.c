@@ -87,19 +87,18 @@ static void find_cuts(ordering *o) {
     }
 }
 
-/* The half voxel lies before the plane, and an eye on it on the lower side. */
-static bool is_low_first(const snow_viewer *viewer, const cut *c) {
-    return viewer->perspective ? viewer->eye[c->axis] <= (double)c->plane - 0.5
-                               : viewer->along[c->axis] > 0;
-}
-
 /* All boxes of a joined one. */
 static void place_side(ordering *o, int at) {
     int depth = 0;
     for (;;) {
         for (; at < 0; depth++) {
             const cut *c = &o->cuts[~at];
-            const bool low = is_low_first(o->viewer, c);
+            /* The half voxel lies before the plane, and an eye on it on the
+             * lower side. */
+            const bool low =
+                o->viewer->perspective
+                    ? o->viewer->eye[c->axis] <= (double)c->plane - 0.5
+                    : o->viewer->along[c->axis] > 0;
             at = low ? c->low : c->high;
             o->stack[depth] = low ? c->high : c->low;
         }

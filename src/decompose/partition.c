@@ -127,14 +127,6 @@ static int64_t least_cost(const row *r) {
     return low;
 }
 
-/* The border nearest to a cost. */
-static int64_t nearest(const row *r, int64_t wanted) {
-    int64_t low = snow_last_up_to(r->sums, 0, r->items, wanted);
-    if (low < r->items && r->sums[low + 1] - wanted < wanted - r->sums[low])
-        low++;
-    return low;
-}
-
 /* Many partitions have the least cost, and runs filled completely would leave
  * nothing for the last ranks. So each border goes where it would be ideal, or
  * as near to there as the cost permits. starts[part] is first the earliest
@@ -147,7 +139,12 @@ static void partition(const row *r, int64_t *starts) {
     starts[0] = 0;
     for (int part = 1; part < r->parts; part++) {
         double ideal = (double)r->sums[r->items] / r->parts * part;
-        int64_t border = nearest(r, (int64_t)ideal);
+        /* The border nearest to a cost. */
+        const int64_t wanted = (int64_t)ideal;
+        int64_t border = snow_last_up_to(r->sums, 0, r->items, wanted);
+        if (border < r->items &&
+            r->sums[border + 1] - wanted < wanted - r->sums[border])
+            border++;
         int64_t last = reach(r, starts[part - 1], most);
         if (border > last)
             border = last;

@@ -154,12 +154,6 @@ static void pass_cells(const snow_ray_walk *w, size_t at, float slices,
     sum->drawn += span * widest;
 }
 
-/* How far aside rays are in slice `at`, in cells. */
-static double side_of(const snow_ray_walk *w, int i, double at) {
-    const snow_ray_grid *g = w->grid;
-    return floor(at * g->view.slope[i] / (double)g->cell[i] + 0.5);
-}
-
 static void clear_closed(snow_ray_walk *w) {
     const int64_t *cells = w->grid->cells;
     memset(w->closed, 0, (size_t)(cells[0] * cells[1]) * sizeof *w->closed);
@@ -187,7 +181,10 @@ static void move_to(snow_ray_walk *w, double at) {
     const int64_t *cells = w->grid->cells;
     double by[2];
     for (int i = 0; i < 2; i++) {
-        const double side = side_of(w, i, at);
+        /* How far aside rays are in slice `at`, in cells. */
+        const snow_ray_grid *g = w->grid;
+        const double side =
+            floor(at * g->view.slope[i] / (double)g->cell[i] + 0.5);
         by[i] = side - w->side[i];
         w->side[i] = side;
     }

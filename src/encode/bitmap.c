@@ -25,22 +25,19 @@ static snow_status bitmap_add_row(snow_sparse *s, const uint64_t *mask) {
 
 #define CHUNK 56 /* bits that every load provides */
 
-/* Bits first .. first + count - 1, count <= CHUNK. Reads up to 8 bytes beyond
- * the byte of the first. */
-static uint64_t load_bits(const unsigned char *bits, size_t first,
-                          size_t count) {
-    return snow_load_word(bits + first / 8) >> first % 8 &
-           ((UINT64_C(1) << count) - 1);
-}
-
 static size_t bitmap_next_row(snow_walk *walk, snow_span *spans) {
     size_t columns = (size_t)walk->sparse->columns, count = 0;
     size_t first = (size_t)walk->row * columns;
     for (size_t column = 0; column < columns; column += CHUNK) {
         size_t left = columns - column, some = left < CHUNK ? left : CHUNK;
+        /* Bits first .. first + count - 1, count <= CHUNK. Reads up to 8 bytes
+         * beyond the byte of the first. */
+        const uint64_t load_bits =
+            snow_load_word(walk->slice + (first + column) / 8) >>
+                (first + column) % 8 &
+            ((UINT64_C(1) << some) - 1);
         count =
-            snow_span_append_mask(spans, count, (uint32_t)column,
-                                  load_bits(walk->slice, first + column, some));
+            snow_span_append_mask(spans, count, (uint32_t)column, load_bits);
     }
     return count;
 }

@@ -67,16 +67,12 @@ static snow_status crs_end_slice(snow_sparse *s) {
     return snow_sparse_grow_ea(s, s->ea_bytes % sizeof(uint32_t));
 }
 
-/* COL of the slice at `ea`. */
-static const unsigned char *col_of(const snow_sparse *s,
-                                   const unsigned char *ea) {
-    return ea + ((size_t)s->rows * segments_of(s) + 1) * sizeof(uint32_t);
-}
-
 static size_t crs_next_row(snow_walk *walk, snow_span *spans) {
     const snow_sparse *s = walk->sparse;
     size_t segments = segments_of(s), first = (size_t)walk->row * segments;
-    const unsigned char *col = col_of(s, walk->slice);
+    /* COL of the slice at `ea`. */
+    const unsigned char *col =
+        walk->slice + ((size_t)s->rows * segments_of(s) + 1) * sizeof(uint32_t);
     size_t count = 0;
     for (size_t segment = 0; segment < segments; segment++) {
         uint32_t begin = load_indr(walk->slice, first + segment);

@@ -6,14 +6,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* A relay is of one file: of no mask, and no phantom of such a name. */
-static bool is_relayed(const char *path, const snow_volume_options *options) {
-    struct stat about;
-    return strncmp(path, "phantom:", 8) != 0 && stat(path, &about) == 0 &&
-           S_ISREG(about.st_mode) && !snow_mask_asked(options) &&
-           !options->label_table;
-}
-
 static snow_status open_file(snow_context *context, const char *path,
                              const snow_volume_options *options,
                              snow_volume_info *info, snow_volume **out) {
@@ -29,7 +21,11 @@ static snow_status open_relayed(snow_context *context, const char *path,
                                 snow_relay *relay,
                                 const snow_volume_options *options,
                                 snow_volume_info *info, snow_volume **out) {
-    if (!is_relayed(path, options))
+    /* A relay is of one file: of no mask, and no phantom of such a name. */
+    struct stat about;
+    if (!(strncmp(path, "phantom:", 8) != 0 && stat(path, &about) == 0 &&
+          S_ISREG(about.st_mode) && !snow_mask_asked(options) &&
+          !options->label_table))
         return open_file(context, path, options, info, out);
     snow_volume_info_init(info);
     return snow_volume_open_relayed(context, path, relay, options, info, out);

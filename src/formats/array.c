@@ -132,12 +132,6 @@ static void put_half(const unsigned char *in, uint64_t from, bool big_endian,
     }
 }
 
-static void put_bool(const unsigned char *in, uint64_t from, unsigned char *out,
-                     uint64_t to, uint64_t count) {
-    for (uint64_t i = 0; i < count; i++)
-        out[i * to] = in[i * from] != 0;
-}
-
 /* Copies a block from the front of the buffer to `out`; the innermost loop
  * follows memory, so that whole cache lines are written. */
 static void put_block(const array_reader *reader, const walk block[3],
@@ -164,7 +158,8 @@ static void put_block(const array_reader *reader, const walk block[3],
                          x->count);
                 break;
             case SNOW_CODING_BOOL:
-                put_bool(from, x->from, to, x->to, x->count);
+                for (uint64_t i = 0; i < x->count; i++)
+                    to[i * x->to] = from[i * x->from] != 0;
                 break;
             }
         }

@@ -28,11 +28,6 @@ static int find_components(const int64_t *sizes, const snow_axis_hint *hints,
     return few && !hints[others[0]].space ? 0 : -1;
 }
 
-/* The slowest axis that has no meaning yet. */
-static int slowest(const int *left, int *count) {
-    return left[--*count];
-}
-
 bool snow_axes_assign(int rank, const int64_t sizes[SNOW_MOST_AXES],
                       const snow_axis_hint hints[SNOW_MOST_AXES],
                       snow_axes *out) {
@@ -50,9 +45,9 @@ bool snow_axes_assign(int rank, const int64_t sizes[SNOW_MOST_AXES],
             left[i] = left[i + 1];
     }
     if (count > 3 && out->time < 0)
-        out->time = slowest(left, &count);
+        out->time = left[--count];
     if (count > 3 && out->channel < 0)
-        out->channel = slowest(left, &count);
+        out->channel = left[--count];
     for (int i = 0; i < 3 && i < count; i++)
         out->space[i] = left[i];
     return count <= 3;

@@ -22,17 +22,16 @@ static const struct {
     {"lz4", SNOW_VERSION_LZ4, "compressed Zarr", SNOW_HAVE_LZ4, NULL},
 };
 
-/* Only looks for the module: loading it would take as long as all else. */
-static bool is_there(size_t index) {
-    const char *module = features[index].module;
-    return features[index].built && (!module || snow_module_is_there(module));
-}
-
 const char *snow_library_name(size_t index, const char **version,
                               const char **formats) {
     if (index >= sizeof features / sizeof *features)
         return NULL;
-    *version = is_there(index) ? features[index].version : NULL;
+    /* Only looks for the module: loading it would take as long as all else. */
+    const char *module = features[index].module;
+    *version =
+        (features[index].built && (!module || snow_module_is_there(module)))
+            ? features[index].version
+            : NULL;
     *formats = features[index].formats;
     return features[index].name;
 }

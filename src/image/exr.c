@@ -34,16 +34,12 @@ typedef struct exr_file {
     char complaint[200];
 } exr_file;
 
-static exr_file *file_of(exr_const_context_t exr) {
-    void *user = NULL;
-    exr_get_user_data(exr, &user);
-    return user;
-}
-
 /* The first error is the most specific. */
 static void hear_error(exr_const_context_t exr, exr_result_t code,
                        const char *text) {
-    exr_file *file = file_of(exr);
+    void *user = NULL;
+    exr_get_user_data(exr, &user);
+    exr_file *file = user;
     (void)code;
     if (file && !*file->complaint)
         snprintf(file->complaint, sizeof file->complaint, "%s", text);

@@ -129,15 +129,6 @@ static void widen(float *out, int width) {
     }
 }
 
-static snow_status make_picture(const snow_source *source,
-                                struct jpeg_decompress_struct *info,
-                                snow_image **out) {
-    SNOW_TRY(
-        snow_image_check_sides(source, info->image_width, info->image_height));
-    return snow_image_make(snow_source_context(source), (int)info->image_width,
-                           (int)info->image_height, 4, out);
-}
-
 /* The picture belongs to the caller, so that a jump loses nothing. */
 static snow_status decode(const snow_source *source, const unsigned char *bytes,
                           size_t size, snow_jpeg_fault *fault,
@@ -151,7 +142,11 @@ static snow_status decode(const snow_source *source, const unsigned char *bytes,
     jpeg_read_header(info, TRUE);
     info->out_color_space = JCS_RGB;
     info->dct_method = JDCT_ISLOW;
-    SNOW_TRY(make_picture(source, info, out));
+    SNOW_TRY(
+        snow_image_check_sides(source, info->image_width, info->image_height));
+    SNOW_TRY(snow_image_make(snow_source_context(source),
+                             (int)info->image_width, (int)info->image_height, 4,
+                             out));
     jpeg_start_decompress(info);
     for (size_t y = 0; y < info->image_height; y++) {
         size_t width = info->image_width;

@@ -191,13 +191,6 @@ static uint32_t big_endian_32(const unsigned char *bytes) {
            (uint32_t)bytes[2] << 8 | bytes[3];
 }
 
-/* Bits per pixel in the file, from IHDR's depth and colour type; the smallest
- * possible for combinations that libpng will refuse. */
-static uint64_t stored_bits(unsigned char depth, unsigned char type) {
-    static const unsigned char samples[7] = {1, 1, 3, 1, 2, 1, 4};
-    return depth >= 1 && depth <= 16 && type < 7 ? depth * samples[type] : 1;
-}
-
 /* Checks IHDR, which comes first, before libpng does.  Sides that are too long,
  * or need more compressed bytes than the file has, are refused before anything
  * is allocated.  Deflate compresses at most 1032 bytes into one. */
@@ -213,7 +206,13 @@ static snow_status check_header(snow_source *source) {
     uint64_t width = big_endian_32(start + 16);
     uint64_t height = big_endian_32(start + 20);
     SNOW_TRY(snow_image_check_sides(source, (int64_t)width, (int64_t)height));
-    uint64_t bits = width * height * stored_bits(start[24], start[25]);
+    /* Bits per pixel in the file, from IHDR's depth and colour type; the
+     * smallest possible for combinations that libpng will refuse. */
+    static const unsigned char samples[7] = {1, 1, 3, 1, 2, 1, 4};
+    uint64_t bits = width * height *
+                    (start[24] >= 1 && start[24] <= 16 && start[25] < 7
+                         ? start[24] * samples[start[25]]
+                         : 1);
     return snow_source_expect(source, bits / 8 / 1032, "the pixels");
 }
 

@@ -79,14 +79,6 @@ static int share_places(mpi_watchdog *watchdog) {
                          (int)sizeof mine, MPI_BYTE, watchdog->group);
 }
 
-/* Whether all ranks have memory; otherwise none continues. */
-static bool all_have(MPI_Comm group, bool mine) {
-    int has = mine, all = 0;
-    return MPI_Allreduce(&has, &all, 1, MPI_INT, MPI_MIN, group) ==
-               MPI_SUCCESS &&
-           all;
-}
-
 snow_status snow_watchdog_new(snow_context *context, MPI_Comm group,
                               mpi_watchdog **out) {
     int rank = 0, ranks = 1;
@@ -107,7 +99,10 @@ snow_status snow_watchdog_new(snow_context *context, MPI_Comm group,
     }
     *out = watchdog;
     const bool mine = watchdog && watchdog->places && watchdog->answered;
-    if (!all_have(group, mine))
+    int has = mine, all = 0;
+    if (!(MPI_Allreduce(&has, &all, 1, MPI_INT, MPI_MIN, group) ==
+              MPI_SUCCESS &&
+          all))
         return mine ? snow_context_fail(
                           context, SNOW_STATUS_NO_MEMORY, "another rank: %s",
                           snow_status_description(SNOW_STATUS_NO_MEMORY))

@@ -196,23 +196,6 @@ static void aim(const fit *f, const double bounds[BOUNDS], snow_view *view) {
     move_target(f, step, view);
 }
 
-/* Perspective moves the middle of the bounds, which is put right again. */
-static void aim_again(const fit *f, const double bounds[BOUNDS],
-                      snow_view *view) {
-    const double half = f->cameras[0].pitch / 2, *in = bounds + PLACES;
-    const double step[3] = {(in[0] - in[1]) / 2 * half * view->width,
-                            (in[2] - in[3]) / 2 * half * view->height, 0};
-    move_target(f, step, view);
-}
-
-/* Those of one parallel picture, around its middle. */
-static void center_bounds(const fit *f, double bounds[BOUNDS]) {
-    const double at[3] = {(bounds[0] + bounds[1]) / 2,
-                          (bounds[2] + bounds[3]) / 2, 0};
-    begin_bounds(bounds);
-    add_place(f->view, f->cameras, at, f->margins[0], bounds + PLACES);
-}
-
 /* The first walk finds the target, the last one how far what is shown is from
  * it. */
 static snow_status fit_view(fit *f, snow_comm *comm, const snow_volume *volume,
@@ -223,12 +206,21 @@ static snow_status fit_view(fit *f, snow_comm *comm, const snow_volume *volume,
     view->zoom = 1;
     aim(f, bounds, view);
     SNOW_TRY(place_cameras(f, azimuths, view));
-    if (f->count == 1 && !(view->fov > 0))
-        center_bounds(f, bounds);
-    else
+    if (f->count == 1 && !(view->fov > 0)) {
+        /* Those of one parallel picture, around its middle. */
+        const double at[3] = {(bounds[0] + bounds[1]) / 2,
+                              (bounds[2] + bounds[3]) / 2, 0};
+        begin_bounds(bounds);
+        add_place(f->view, f->cameras, at, f->margins[0], bounds + PLACES);
+    } else
         SNOW_TRY(find_bounds(f, comm, volume, bounds));
     if (f->count == 1 && view->fov > 0) {
-        aim_again(f, bounds, view);
+        /* Perspective moves the middle of the bounds, which is put right again.
+         */
+        const double half = f->cameras[0].pitch / 2, *in = bounds + PLACES;
+        const double step[3] = {(in[0] - in[1]) / 2 * half * view->width,
+                                (in[2] - in[3]) / 2 * half * view->height, 0};
+        move_target(f, step, view);
         SNOW_TRY(place_cameras(f, azimuths, view));
         SNOW_TRY(find_bounds(f, comm, volume, bounds));
     }

@@ -153,13 +153,6 @@ static void take_depths(const snow_image *depth, float *pairs) {
     }
 }
 
-static void give_depths(const snow_image *pairs, snow_image *depth) {
-    size_t count = (size_t)depth->width * (size_t)depth->height;
-    for (size_t n = 0; n < count; n++)
-        depth->pixels[n] =
-            pairs->pixels[2 * n + 1] > 0 ? pairs->pixels[2 * n] : NAN;
-}
-
 /* Depths are exchanged as pairs, each of one rank. */
 static snow_job pairs_job(const snow_in_flight *f) {
     snow_job job = f->picture.pass->job;
@@ -194,8 +187,13 @@ snow_status snow_in_flight_combine_depths(snow_in_flight *f) {
         status = snow_in_flight_exchange(f, &job);
     if (status == SNOW_STATUS_OK)
         status = snow_in_flight_deliver(f, &job, 0, pairs);
-    if (status == SNOW_STATUS_OK && pairs)
-        give_depths(pairs, f->picture.depth);
+    if (status == SNOW_STATUS_OK && pairs) {
+        size_t count =
+            (size_t)f->picture.depth->width * (size_t)f->picture.depth->height;
+        for (size_t n = 0; n < count; n++)
+            f->picture.depth->pixels[n] =
+                pairs->pixels[2 * n + 1] > 0 ? pairs->pixels[2 * n] : NAN;
+    }
     snow_image_free(pairs);
     return status;
 }

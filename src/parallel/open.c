@@ -108,13 +108,6 @@ static uint64_t room_of(const snow_context *context) {
                                            : 0;
 }
 
-/* Packed ones are unpacked up to each slab. */
-static uint64_t slab_bytes(const opening *o) {
-    const uint64_t share = room_of(o->context) / (o->plain ? 8 : 3) + 1;
-    return o->context->limit && (share < SLAB_MOST || !o->plain) ? share
-                                                                 : SLAB_MOST;
-}
-
 /* Whether a limit has room for a box, and for what is made of it: where values
  * serve as they are, a copy that is turned. */
 static bool fits(const opening *o, const snow_part_place *p) {
@@ -183,8 +176,13 @@ static snow_status open_in_file(const opening *o, const snow_part_place *p,
                                 snow_volume **out) {
     snow_volume *all;
     const snow_extent part = snow_part_extent(&o->whole, p);
-    SNOW_TRY(snow_stream_open(o->context, o->path, &o->options, slab_bytes(o),
-                              o->open, &all));
+    /* Packed ones are unpacked up to each slab. */
+    const uint64_t share = room_of(o->context) / (o->plain ? 8 : 3) + 1;
+    SNOW_TRY(snow_stream_open(
+        o->context, o->path, &o->options,
+        o->context->limit && (share < SLAB_MOST || !o->plain) ? share
+                                                              : SLAB_MOST,
+        o->open, &all));
     const snow_status status =
         snow_stream_open_part(all, &part, p->stored.count, out);
     snow_volume_close(all);

@@ -147,15 +147,6 @@ static snow_status move_voxels(snow_comm *comm, const snow_volume *from,
     return all ? snow_comm_agree_status(comm, status) : status;
 }
 
-/* Collective.  Other boxes of the file that all ranks' parts stay in. */
-static snow_status open_again(snow_comm *comm, const snow_volume_info *whole,
-                              const snow_part_place *p, const snow_volume *held,
-                              snow_volume **out) {
-    const snow_extent part = snow_part_extent(whole, p);
-    return snow_comm_agree_status(
-        comm, snow_stream_open_part(held, &part, p->stored.count, out));
-}
-
 /* Room for a part, with a value in the place of voxels that nobody has. */
 static snow_status make_room(snow_context *context,
                              const snow_volume_info *whole,
@@ -183,8 +174,11 @@ static snow_status send_share(snow_comm *comm, const snow_volume_info *whole,
         SNOW_TRY(
             snow_ranks_trim(comm, order, boxes, held, transfer, &own, &left));
     const snow_part_place p = snow_part_place_of(whole, &own, order->layers);
-    if (held->stream)
-        return open_again(comm, whole, &p, held, out);
+    if (held->stream) {
+        const snow_extent part = snow_part_extent(whole, &p);
+        return snow_comm_agree_status(
+            comm, snow_stream_open_part(held, &part, p.stored.count, out));
+    }
     snow_status status = snow_comm_agree_status(
         comm, make_room(snow_comm_context(comm), whole, &p, &left,
                         held->left_out.any, &volume));

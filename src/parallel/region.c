@@ -174,12 +174,6 @@ static void append_runs(snow_ranks *r, int x, int y, int count,
     }
 }
 
-/* How many runs there may be in so many pixels of so many lines: each is
- * followed by a gap, or by the end of its line. */
-static size_t most_runs(size_t pixels, size_t lines) {
-    return pixels / (GAP_MOST + 1) + lines + 1;
-}
-
 /* Room for all runs on their way. */
 static snow_status reserve_way(snow_ranks *r, const snow_job *job,
                                int pixel_bits) {
@@ -241,7 +235,10 @@ static snow_status reserve_pixels(snow_ranks *r, size_t pixels, size_t lines,
                                   int channels, size_t row_floats) {
     size_t bytes = (size_t)channels * sizeof(float);
     SNOW_TRY(snow_reserve(r->context, &r->packed, 0, pixels, bytes));
-    SNOW_TRY(SNOW_RESERVE(r->context, r->runs, 0, most_runs(pixels, lines)));
+    /* How many runs there may be in so many pixels of so many lines: each is
+     * followed by a gap, or by the end of its line. */
+    const size_t most_runs = pixels / (GAP_MOST + 1) + lines + 1;
+    SNOW_TRY(SNOW_RESERVE(r->context, r->runs, 0, most_runs));
     return SNOW_RESERVE(r->context, r->rows, 0, row_floats);
 }
 

@@ -52,17 +52,6 @@ static double data_of(const trimming *t, double native) {
     return t->held->info.slope * native + t->held->info.intercept;
 }
 
-static double native_of(const trimming *t, double data) {
-    return (data - t->held->info.intercept) / t->held->info.slope;
-}
-
-/* The place of a voxel among those stored. */
-static int64_t index_of(const trimming *t, int64_t x, int64_t y, int64_t z) {
-    const int64_t *dims = t->held->info.dims, *stored = t->stored;
-    return ((z - stored[2]) * dims[1] + y - stored[1]) * dims[0] + x -
-           stored[0];
-}
-
 /* Collective.  The range of all stored values; *can: voxels may be left out. */
 static snow_status find_stored(const trimming *t, snow_data_range *all,
                                bool *can) {
@@ -99,8 +88,11 @@ static void count_rows(const trimming *t, const snow_hidden_range *ranges,
     for (int64_t z = box->first[2];
          z < end[1] && !snow_monitor_look(monitor, 0); z++)
         for (int64_t y = box->first[1]; y < end[0]; y++) {
-            const double native =
-                snow_volume_native(t->held, index_of(t, box->first[0], y, z));
+            /* The place of a voxel among those stored. */
+            const int64_t *dims = t->held->info.dims, *stored = t->stored;
+            const double native = snow_volume_native(
+                t->held, ((z - stored[2]) * dims[1] + y - stored[1]) * dims[0] +
+                             box->first[0] - stored[0]);
             const double value = data_of(t, native);
             for (int n = 0; n < count; n++)
                 if (value >= ranges[n].low && value <= ranges[n].high) {
@@ -134,8 +126,10 @@ static snow_status choose_range(const trimming *t, const snow_data_range *all) {
         most = rows[n] > rows[most] ? n : most;
     if (!count || !rows[most])
         return SNOW_STATUS_OK;
-    const double a = native_of(t, ranges[most].low);
-    const double b = native_of(t, ranges[most].high);
+    const double a =
+        (ranges[most].low - t->held->info.intercept) / t->held->info.slope;
+    const double b =
+        (ranges[most].high - t->held->info.intercept) / t->held->info.slope;
     t->left->any = true;
     t->left->low = fmax(fmin(a, b), all->low);
     t->left->high = fmin(fmax(a, b), all->high);
@@ -222,13 +216,6 @@ static snow_status check_boxes(const trimming *t) {
                      (long long)voxels, (long long)all);
 }
 
-/* Whether the look shows nothing of some range, however narrow. */
-static bool hides_any(const trimming *t) {
-    snow_hidden_range ranges[SNOW_HIDDEN_MOST];
-    return snow_hidden_ranges(t->transfer, &t->held->info, t->order->threshold,
-                              0, ranges) > 0;
-}
-
 /* Collective.  The range that is left out, and the layers that are kept, unless
  * they are known.  Later cuts keep as many layers as the first one. */
 static snow_status find_range(const trimming *t) {
@@ -238,7 +225,9 @@ static snow_status find_range(const trimming *t) {
         SNOW_TRY(check_boxes(t));
         return check_rings(t);
     }
-    if (!hides_any(t)) /* on no rank */
+    snow_hidden_range ranges[SNOW_HIDDEN_MOST];
+    if (!(snow_hidden_ranges(t->transfer, &t->held->info, t->order->threshold,
+                             0, ranges) > 0)) /* on no rank */
         return SNOW_STATUS_OK;
     SNOW_TRY(find_stored(t, &all, &can));
     if (can)

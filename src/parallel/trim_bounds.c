@@ -27,11 +27,6 @@ typedef struct search {
     snow_bounds *found; /* by each thread */
 } search;
 
-static int64_t row_of(const search *s, int64_t y, int64_t z) {
-    const int64_t *dims = s->held->info.dims, *stored = s->part.stored;
-    return ((z - stored[2]) * dims[1] + y - stored[1]) * dims[0] - stored[0];
-}
-
 /* The first or the last of some voxels of a row whose value is outside;
  * `count`, or -1: none is. */
 static int64_t find_in_block(const search *s, int64_t at, int64_t count,
@@ -85,7 +80,11 @@ static int64_t more(int64_t a, int64_t b) {
  * at. */
 static void add_row(const search *s, const int64_t at[3], int64_t end,
                     snow_bounds *b) {
-    const int64_t x = at[0], row = row_of(s, at[1], at[2]);
+    const int64_t *dims = s->held->info.dims, *stored = s->part.stored;
+    const int64_t x = at[0],
+                  row = ((at[2] - stored[2]) * dims[1] + at[1] - stored[1]) *
+                            dims[0] -
+                        stored[0];
     const bool within = at[1] >= b->first[1] && at[1] <= b->last[1] &&
                         at[2] >= b->first[2] && at[2] <= b->last[2];
     const int64_t first =
@@ -98,13 +97,6 @@ static void add_row(const search *s, const int64_t at[3], int64_t end,
     for (int i = 1; i < 3 && first != NOWHERE; i++) {
         b->first[i] = less(b->first[i], at[i]);
         b->last[i] = more(b->last[i], at[i]);
-    }
-}
-
-static void join(snow_bounds *to, const snow_bounds *from) {
-    for (int i = 0; i < 3; i++) {
-        to->first[i] = less(to->first[i], from->first[i]);
-        to->last[i] = more(to->last[i], from->last[i]);
     }
 }
 
@@ -137,8 +129,12 @@ static snow_status find_bounds(search *s, const snow_box *box,
         s->found[n] = none;
     const snow_status status = snow_parallel(s->held->context, s->threads,
                                              s->box.count[2], look_at_slice, s);
-    for (int n = 0; n < s->threads; n++)
-        join(out, &s->found[n]);
+    for (int n = 0; n < s->threads; n++) {
+        for (int i = 0; i < 3; i++) {
+            out->first[i] = less(out->first[i], s->found[n].first[i]);
+            out->last[i] = more(out->last[i], s->found[n].last[i]);
+        }
+    }
     return status;
 }
 

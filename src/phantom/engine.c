@@ -75,13 +75,6 @@ static const snow_solid steel[] = {
 };
 /* clang-format on */
 
-/* Scanner noise in the air: triangular, cut at 0, with a faint long tail. */
-static double air_value(uint32_t bits) {
-    double a = (bits & 255) * (1.0 / 255), b = (bits >> 8 & 255) * (1.0 / 255);
-    double tail = (bits >> 16 & 255) < 8 ? 12.0 : 0.0;
-    return 9.2 * (a + b) - 7.3 + tail;
-}
-
 /* Steel is painted over the casting, and both over the air.  The grain belongs
  * to the metal and not to the shape, so that surfaces stay smooth. */
 static void engine_row(const snow_phantom_grid *grid, int64_t j, int64_t k,
@@ -97,7 +90,12 @@ static void engine_row(const snow_phantom_grid *grid, int64_t j, int64_t k,
         double x = snow_phantom_place(grid, 0, i);
         uint32_t bits = snow_noise_bits(key, i);
         double grain = (bits >> 24) * (1.0 / 127.5) - 1;
-        double value = air_value(bits);
+        /* Scanner noise in the air: triangular, cut at 0, with a faint long
+         * tail. */
+        double a = (bits & 255) * (1.0 / 255),
+               b = (bits >> 8 & 255) * (1.0 / 255);
+        double tail = (bits >> 16 & 255) < 8 ? 12.0 : 0.0;
+        double value = 9.2 * (a + b) - 7.3 + tail;
         snow_shape_paint(grid, &value, 112 + 3 * grain,
                          snow_shape_distance(&soft, x));
         snow_shape_paint(grid, &value, 246 + 9 * grain,

@@ -98,11 +98,6 @@ static void solid_bounds(const snow_solid *solid, int axis, double *low,
     *high = at + reach;
 }
 
-/* The distance of a value from an interval; 0 within it. */
-static double outside(double value, double low, double high) {
-    return larger(larger(low - value, value - high), 0);
-}
-
 /* A twin stands on both sides of x = 0, and its bounds are those of |x|. */
 void snow_shape_row_begin(snow_shape_row *row, const snow_solid *solids,
                           size_t count, double y, double z) {
@@ -111,9 +106,11 @@ void snow_shape_row_begin(snow_shape_row *row, const snow_solid *solids,
         const snow_solid *solid = solids + i;
         double reach = SNOW_SHAPE_FAR + solid->blend, low, high;
         solid_bounds(solid, 1, &low, &high);
-        double dy = outside(y, low, high);
+        /* The distance of a value from an interval; 0 within it. */
+        double dy = larger(larger(low - y, y - high), 0);
         solid_bounds(solid, 2, &low, &high);
-        double dz = outside(z, low, high);
+        /* The distance of a value from an interval; 0 within it. */
+        double dz = larger(larger(low - z, z - high), 0);
         if (dy * dy + dz * dz > reach * reach)
             continue;
         solid_bounds(solid, 0, &low, &high);

@@ -140,15 +140,12 @@ static snow_status warp(snow_picture *p) {
     return p->pass->method->show(p, &p->pass->job);
 }
 
-static snow_status paint(snow_picture *p) {
-    SNOW_TRY(snow_step(p->pass->method->show, p, &p->pass->job));
-    return snow_modes_paint(p->frame, &p->job, p->local.pixels, &p->image);
-}
-
 static snow_status show(snow_picture *p) {
     snow_mode mode = p->job.settings.mode;
-    if (mode != SNOW_MODE_OVER && mode != SNOW_MODE_ISO)
-        return paint(p);
+    if (mode != SNOW_MODE_OVER && mode != SNOW_MODE_ISO) {
+        SNOW_TRY(snow_step(p->pass->method->show, p, &p->pass->job));
+        return snow_modes_paint(p->frame, &p->job, p->local.pixels, &p->image);
+    }
     return p->pass->method->warps ? warp(p) : SNOW_STATUS_OK;
 }
 

@@ -187,15 +187,6 @@ static double least_cosine(double gradients[3][3]) {
     return 1 / sqrt(3 * square);
 }
 
-/* How obliquely a slice may be seen: the least |d . n|; 0 where there is no
- * bound.  A ray that meets the volume leaves the line of sight by an angle
- * whose sine is `spread` at most. */
-static double least_slant(double gradients[3][3], double spread) {
-    double cosine = least_cosine(gradients);
-    double angle = acos(fmax(cosine, 0)) + asin(spread);
-    return angle < 1.57 ? cos(angle) : 0;
-}
-
 /* The largest |g x n| of an axis, n being normal to slices along another. */
 static double steepest(double gradients[3][3], int axis) {
     double most = 0;
@@ -264,7 +255,12 @@ static snow_status ask_all(const question *q, int64_t layers[3]) {
     /* The volume stays within a sphere about the target. */
     double reach = snow_length(camera.middle) + snow_volume_radius(q->whole);
     double spread = camera.distance > 0 ? reach / camera.distance : 0;
-    double slant = least_slant(gradients, fmin(spread, 1));
+    /* How obliquely a slice may be seen: the least |d . n|; 0 where there is no
+     * bound.  A ray that meets the volume leaves the line of sight by an angle
+     * whose sine is `spread` at most. */
+    double cosine = least_cosine(gradients);
+    double angle = acos(fmax(cosine, 0)) + asin(fmin(spread, 1));
+    double slant = angle < 1.57 ? cos(angle) : 0;
     double pitch = camera.pitch * (1 + spread);
     double ratio = largest_ratio(q, &camera, gradients);
     ways by = ways_of(q, true);

@@ -136,10 +136,6 @@ void snow_job_clip_sheet(const snow_job *job, int64_t slice,
 
 /* --- figures -------------------------------------------------------------- */
 
-static bool has_ghosts(const snow_clip *clip) {
-    return memcmp(clip->size, clip->count, sizeof clip->size) != 0;
-}
-
 /* Where neighbours' voxels are encoded too, for what their kernels reach: the
  * part's own are counted, when they were encoded anew. */
 static snow_status count_own(snow_frame *frame, const snow_job *job) {
@@ -168,7 +164,9 @@ snow_status snow_job_finish(snow_frame *frame, const snow_job *job) {
     stats->voxels = job->stored.columns * job->stored.rows * job->slab.count;
     if (stats->method == SNOW_METHOD_FOOTPRINT)
         stats->encoded = true; /* for every picture */
-    if (has_ghosts(&job->clip))
+    const bool ghosts =
+        memcmp(job->clip.size, job->clip.count, sizeof job->clip.size) != 0;
+    if (ghosts)
         SNOW_TRY(count_own(frame, job));
     if (job->volume->left_out.any)
         stats->voxels = snow_box_voxels(&job->volume->left_out.box);

@@ -190,15 +190,6 @@ snow_status snow_darken(snow_picture *p, snow_status status) {
     return status;
 }
 
-/* To write a picture to a file: a copy of its pixels, and the state of who
- * packs them.  Ranks had room for the exchange, and may draw the next picture.
- */
-static void leave_room_to_write(const snow_picture *p) {
-    const uint64_t pixels = (uint64_t)p->view.width * (uint64_t)p->view.height;
-    if (p->frame->value_path && p->combiner == &snow_combine_alone)
-        snow_value_leave_room(p->frame->value_path, 16 * pixels + (1 << 20));
-}
-
 snow_status snow_picture_end(snow_picture *p, snow_status status,
                              snow_image **image) {
     snow_frame *frame = p->frame;
@@ -214,7 +205,13 @@ snow_status snow_picture_end(snow_picture *p, snow_status status,
         return status;
     }
     frame->depth = p->depth;
-    leave_room_to_write(p);
+    /* To write a picture to a file: a copy of its pixels, and the state of who
+     * packs them.  Ranks had room for the exchange, and may draw the next
+     * picture.
+     */
+    const uint64_t pixels = (uint64_t)p->view.width * (uint64_t)p->view.height;
+    if (p->frame->value_path && p->combiner == &snow_combine_alone)
+        snow_value_leave_room(p->frame->value_path, 16 * pixels + (1 << 20));
     *image = p->image;
     return SNOW_STATUS_OK;
 }

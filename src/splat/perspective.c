@@ -96,13 +96,6 @@ static frame_of_pixels reach_of(const snow_perspective_splatter *s,
                              snow_last_pixel(high[1], sheet->height) + 1};
 }
 
-static void mark(snow_sheet *sheet, const frame_of_pixels *f) {
-    sheet->x0 = f->x0 < sheet->x0 ? f->x0 : sheet->x0;
-    sheet->y0 = f->y0 < sheet->y0 ? f->y0 : sheet->y0;
-    sheet->x1 = f->x1 > sheet->x1 ? f->x1 : sheet->x1;
-    sheet->y1 = f->y1 > sheet->y1 ? f->y1 : sheet->y1;
-}
-
 /* The weight at distance t along an axis; 0 outside the kernel. */
 static inline float weight_at(const snow_perspective_splatter *s, int axis,
                               double t) {
@@ -122,7 +115,10 @@ static void scatter_voxel(const snow_perspective_splatter *s, snow_sheet *sheet,
     double from_u = eye[0] - u, from_v = eye[1] - v;
     if (f.x0 >= f.x1 || f.y0 >= f.y1)
         return;
-    mark(sheet, &f);
+    sheet->x0 = f.x0 < sheet->x0 ? f.x0 : sheet->x0;
+    sheet->y0 = f.y0 < sheet->y0 ? f.y0 : sheet->y0;
+    sheet->x1 = f.x1 > sheet->x1 ? f.x1 : sheet->x1;
+    sheet->y1 = f.y1 > sheet->y1 ? f.y1 : sheet->y1;
     for (int y = f.y0; y < f.y1; y++) {
         size_t at = (size_t)y * (size_t)sheet->width + (size_t)f.x0;
         float *pixel = sheet->pixels + at * (size_t)s->channels;

@@ -246,14 +246,6 @@ static void build_solid(const snow_histogram_split *p, bool slice,
     add_opacity(builder, p->high, 0.70);
 }
 
-/* All that is left, with its surface. */
-static void build_shape(const snow_histogram_split *p,
-                        snow_transfer_builder *builder) {
-    build_grey(builder, "light-grey", p->low, p->high, DARKEST, 1);
-    add_opacity(builder, p->low, 0.5);
-    add_opacity(builder, p->high, 0.8);
-}
-
 /* The number of axes with one voxel: 1 is a slice, 2 a row. */
 static int axes_of_one(const snow_histogram *histogram) {
     snow_extent part;
@@ -466,7 +458,10 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
     if (field && !look->opacities)
         return build_field(histogram, &p, builder);
     if (p.fills_volume && !slice && histogram->masked && is_left(histogram)) {
-        build_shape(&p, builder);
+        /* All that is left, with its surface. */
+        build_grey(builder, "light-grey", p.low, p.high, DARKEST, 1);
+        add_opacity(builder, p.low, 0.5);
+        add_opacity(builder, p.high, 0.8);
         return SNOW_STATUS_OK;
     }
     if (slice || p.fills_volume) {

@@ -69,13 +69,6 @@ static snow_status count_digits(const snow_volume *slab, void *user) {
     return SNOW_STATUS_OK;
 }
 
-static void append_digit(search *s, int shift) {
-    uint64_t digit = 0;
-    while (s->rank >= s->counts[digit])
-        s->rank -= s->counts[digit++];
-    s->prefix |= digit << shift;
-}
-
 /* The rank, from 0, of the value that is not exceeded by a share of `all`. */
 static uint64_t rank_of(double fraction, uint64_t all) {
     double rank = ceil(fraction * (double)all) - 1;
@@ -100,7 +93,10 @@ static snow_status select_digits(const snow_histogram *histogram,
             SNOW_TRY(snow_histogram_sum_table(histogram, searches[n].counts));
             if (shift == 64 - SNOW_DIGIT_BITS)
                 searches[n].rank = rank_of(fractions[n], d.all);
-            append_digit(&searches[n], shift);
+            uint64_t digit = 0;
+            while (searches[n].rank >= searches[n].counts[digit])
+                searches[n].rank -= searches[n].counts[digit++];
+            searches[n].prefix |= digit << shift;
         }
     }
     return SNOW_STATUS_OK;

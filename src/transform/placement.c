@@ -43,21 +43,16 @@ void snow_slice_normal(const snow_volume_info *info, int axis,
     snow_normalize(normal);
 }
 
-/* The absolute cosine between the line of sight and the normal of the slices
- * along an axis. */
-static double axis_cosine(const snow_volume_info *info, int axis,
-                          const double back[3]) {
-    double normal[3];
-    snow_slice_normal(info, axis, normal);
-    return fabs(snow_dot(normal, back));
-}
-
 /* The axis whose slices face the viewer most. */
 static int choose_axis(const snow_volume_info *info, const double back[3]) {
     double best = -1;
     int chosen = 2;
     for (int axis = 2; axis >= 0; axis--) {
-        double cosine = axis_cosine(info, axis, back);
+        /* The absolute cosine between the line of sight and the normal of the
+         * slices along an axis. */
+        double normal[3];
+        snow_slice_normal(info, axis, normal);
+        double cosine = fabs(snow_dot(normal, back));
         if (cosine > best + AXIS_TIE) {
             best = cosine;
             chosen = axis;
@@ -87,13 +82,6 @@ static void measure_path(const snow_volume_info *info, snow_placement *p) {
     p->nearest_first = distance * cosine < 0;
 }
 
-/* Maps a world step to pixels. */
-static void to_pixels(const snow_placement *p, const double step[3],
-                      double pitch, double pixels[2]) {
-    pixels[0] = snow_dot(step, p->right) / pitch;
-    pixels[1] = -snow_dot(step, p->up) / pitch;
-}
-
 static void place_slices(const snow_volume_info *info,
                          const snow_camera *camera, snow_placement *p) {
     double pitch = camera->pitch;
@@ -108,7 +96,9 @@ static void place_slices(const snow_volume_info *info,
     for (int axis = 0; axis < 3; axis++) {
         double step[3];
         step_of(info, axis, step);
-        to_pixels(p, step, pitch, steps[axis]);
+        /* Maps a world step to pixels. */
+        steps[axis][0] = snow_dot(step, p->right) / pitch;
+        steps[axis][1] = -snow_dot(step, p->up) / pitch;
         for (int i = 0; i < 2; i++)
             p->origin[i] -= steps[axis][i] * ((double)info->dims[axis] - 1) / 2;
     }

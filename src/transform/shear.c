@@ -7,14 +7,6 @@
  * 32,768 pixels needs, which is at most about twice its size. */
 #define LONGEST_SIDE (1 << 20)
 
-/* The minimum and maximum of a linear function c + a x + b y over the corners
- * of [0, width] x [0, height]. */
-static void range_over(double c, double a, double b, double width,
-                       double height, double range[2]) {
-    range[0] = c + fmin(0, a * width) + fmin(0, b * height);
-    range[1] = c + fmax(0, a * width) + fmax(0, b * height);
-}
-
 /* The lattice of one axis: `voxels` long, seen in the range `seen` (voxels of
  * slice 0). */
 static bool make_lattice(const snow_placement *p, int64_t voxels, double reach,
@@ -54,7 +46,12 @@ snow_status snow_shear_make(snow_context *context, const snow_placement *p,
         lattice->slope = row[0] * p->step_slice[0] + row[1] * p->step_slice[1];
         double zero = -row[0] * p->origin[0] - row[1] * p->origin[1];
         double seen[2];
-        range_over(zero, row[0], row[1], p->width, p->height, seen);
+        /* The minimum and maximum of a linear function c + a x + b y over the
+         * corners of [0, width] x [0, height]. */
+        seen[0] =
+            zero + fmin(0, row[0] * p->width) + fmin(0, row[1] * p->height);
+        seen[1] =
+            zero + fmax(0, row[0] * p->width) + fmax(0, row[1] * p->height);
         fits = make_lattice(p, voxels[axis], reach, seen, lattice) && fits;
         double scale = lattice->phases;
         shear.along_x[axis] = scale * row[0];

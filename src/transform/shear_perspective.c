@@ -9,15 +9,11 @@
 #define LONGEST_SIDE (1 << 20)
 #define BORDER 4
 
-/* Heights of the first and the last slice above the eye. */
-static void heights_of(const snow_placement *p, double ends[2]) {
-    ends[0] = -p->eye.at[2];
-    ends[1] = (double)(p->slices - 1) - p->eye.at[2];
-}
-
 double snow_perspective_shear_ratio(const snow_placement *p) {
     double ends[2];
-    heights_of(p, ends);
+    /* Heights of the first and the last slice above the eye. */
+    ends[0] = -p->eye.at[2];
+    ends[1] = (double)(p->slices - 1) - p->eye.at[2];
     double near = fmin(fabs(ends[0]), fabs(ends[1]));
     double far = fmax(fabs(ends[0]), fabs(ends[1]));
     if (!(ends[0] * ends[1] > 0) || near < 1)

@@ -54,15 +54,6 @@ static void weigh(double at, place *out) {
     }
 }
 
-/* Whether values go on smoothly: their second differences are alike, or small
- * beside the last step. */
-static bool is_smooth(double last, double bend, double before) {
-    const double low = fmin(fabs(bend), fabs(before));
-    const double high = fmax(fabs(bend), fabs(before));
-    return high <= 0.5 * fabs(last) ||
-           (high <= 2 * low && (bend > 0) == (before > 0));
-}
-
 /* What follows on d, c, b, a: by the parabola through the last three where
  * values go on smoothly, but not past 0; else the last one again. */
 static double go_on(double a, double b, double c, double d) {
@@ -71,7 +62,11 @@ static double go_on(double a, double b, double c, double d) {
     const double last = a - b, bend = last - (b - c);
     const double before = isfinite(d) ? (b - c) - (c - d) : bend;
     const double next = a + last + bend;
-    if (!is_smooth(last, bend, before) || !isfinite(next))
+    const double low = fmin(fabs(bend), fabs(before));
+    const double high = fmax(fabs(bend), fabs(before));
+    if (!(high <= 0.5 * fabs(last) ||
+          (high <= 2 * low && (bend > 0) == (before > 0))) ||
+        !isfinite(next))
         return a;
     return (next > 0 && a < 0) || (next < 0 && a > 0) ? 0 : next;
 }

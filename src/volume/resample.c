@@ -75,10 +75,6 @@ static int64_t index_of(const regrid *r, const int64_t at[3]) {
            skip[0];
 }
 
-static int64_t clamped(double at, int64_t count) {
-    return (int64_t)fmin(fmax(at, 0), (double)(count - 1));
-}
-
 /* Of a place within, so that none is below 0. */
 static int64_t nearest_to(const regrid *r, const double at[3]) {
     int64_t voxel[3];
@@ -100,7 +96,8 @@ static double linear_at(const regrid *r, const double at[3]) {
         for (int axis = 0; axis < 3; axis++) {
             double low = floor(at[axis]), part = at[axis] - low;
             int on = corner >> axis & 1;
-            voxel[axis] = clamped(low + on, r->dims[axis]);
+            voxel[axis] =
+                (int64_t)fmin(fmax(low + on, 0), (double)(r->dims[axis] - 1));
             weight *= on ? part : 1 - part;
         }
         if (weight > 0)

@@ -6,18 +6,14 @@
 
 #include <math.h>
 
-/* To the nearest integer, halves to the even one: adding this leaves no bit for
- * fractions. */
-static inline double nearest(double x) {
-    const double big = 0x1.8p52;
-    return x + big - big;
-}
-
 static inline int16_t number_of(double low, double high, double value) {
     value = value < low ? low : value;
     value = value > high ? high : value;
-    return (int16_t)(int)nearest((value - low) * SNOW_VALUE_MOST /
-                                 (high - low));
+    /* To the nearest integer, halves to the even one: adding this leaves no bit
+     * for fractions. */
+    const double big = 0x1.8p52;
+    return (int16_t)(int)(((value - low) * SNOW_VALUE_MOST / (high - low)) +
+                          big - big);
 }
 
 static int16_t scaled(const snow_value_scale14 *scale, double value) {

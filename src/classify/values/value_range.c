@@ -54,12 +54,6 @@ static void take_stored(const range_job *job, double *stored, size_t count) {
     }
 }
 
-/* Whether all values that 8 bits have were found. */
-static bool is_full(const range_job *job, const found_range *found) {
-    return snow_type_size(job->volume->info.type) == 1 && !job->log &&
-           found->high - found->low == UINT8_MAX;
-}
-
 /* False where the voxels have another type, or logarithms are wanted. */
 static bool look_at_narrow(const range_job *job, found_range *found,
                            int64_t first, size_t count) {
@@ -76,7 +70,10 @@ static void look_at_item(void *of, int64_t item, int worker) {
     const range_job *job = of;
     int64_t first = item * ITEM, end = first + ITEM;
     end = end < job->voxels ? end : job->voxels;
-    if (is_full(job, &job->found[worker]))
+    const bool full =
+        snow_type_size(job->volume->info.type) == 1 && !job->log &&
+        job->found[worker].high - job->found[worker].low == UINT8_MAX;
+    if (full)
         return;
     if (look_at_narrow(job, &job->found[worker], first, (size_t)(end - first)))
         return;

@@ -59,14 +59,6 @@ static void place_bits(const uint32_t *from, size_t count, int margin,
         bits[w] = w == own ? from[w - 1] >> (32 - margin) : 0;
 }
 
-/* Sets `count` bits, up to 31, from bit `first` on. */
-static void set_bits(uint32_t *bits, size_t first, int count) {
-    uint64_t some = ((UINT64_C(1) << count) - 1) << first % 32;
-    bits[first / 32] |= (uint32_t)some;
-    if (some >> 32)
-        bits[first / 32 + 1] |= (uint32_t)(some >> 32);
-}
-
 /* Whether the number beyond a side is outside of a run: that of a voxel, of
  * which the one inside is `step` on. */
 static bool is_beyond_outside(const snow_value_coder *coder,
@@ -120,8 +112,14 @@ void snow_value_mark_stored(const snow_value_store *s,
         if (is_same(side, side + in * size, size)
                 ? room[column / 64] >> column % 64 & 1
                 : is_beyond_outside(params->coder, stored, column, in,
-                                    s->runs[run]))
-            set_bits(bits, end ? (size_t)s->margin + count : 0, s->margin);
+                                    s->runs[run])) {
+            /* Sets `count` bits, up to 31, from bit `first` on. */
+            const size_t first = end ? (size_t)s->margin + count : 0;
+            uint64_t some = ((UINT64_C(1) << s->margin) - 1) << first % 32;
+            bits[first / 32] |= (uint32_t)some;
+            if (some >> 32)
+                bits[first / 32 + 1] |= (uint32_t)(some >> 32);
+        }
     }
 }
 

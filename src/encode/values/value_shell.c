@@ -12,13 +12,9 @@
 
 #define AROUND 2 /* slices */
 
-/* Rows of cells around a band. */
-static size_t high_rows(const snow_value_store *s) {
-    return SNOW_VALUE_BAND + 2 * (size_t)s->reach + 3;
-}
-
 static size_t tall_bytes(const snow_value_store *s) {
-    return snow_align(high_rows(s) * sizeof(uint32_t));
+    return snow_align((SNOW_VALUE_BAND + 2 * (size_t)s->reach + 3) *
+                      sizeof(uint32_t));
 }
 
 /* Masks of a band of rows, a line of words each, and one word more. */

@@ -17,11 +17,6 @@ static void *scratch_of(const store_job *job, int worker) {
     return job->store->scratch + (size_t)worker * job->scratch_bytes;
 }
 
-static void keep_status(store_job *job, snow_status status) {
-    if (status != SNOW_STATUS_OK)
-        atomic_store(&job->failed, (int)status);
-}
-
 static void cells_item(void *of, int64_t band, int worker) {
     const store_job *job = of;
     snow_value_cells_band(job->store, job->params, band, worker,
@@ -36,8 +31,10 @@ static void coarse_item(void *of, int64_t eight, int worker) {
 
 static void shell_item(void *of, int64_t band, int worker) {
     store_job *job = of;
-    keep_status(job, snow_value_shell_band(job->store, job->params, band,
-                                           worker, scratch_of(job, worker)));
+    const snow_status status = snow_value_shell_band(
+        job->store, job->params, band, worker, scratch_of(job, worker));
+    if (status != SNOW_STATUS_OK)
+        atomic_store(&job->failed, (int)status);
 }
 
 static void measure_item(void *of, int64_t band, int worker) {

@@ -142,10 +142,6 @@ static bool is_taken(const gathering *g, int64_t voxel) {
     return g->taken[voxel / 8] >> voxel % 8 & 1;
 }
 
-static void take(gathering *g, int64_t voxel) {
-    g->taken[voxel / 8] |= (unsigned char)(1 << voxel % 8);
-}
-
 /* --- down ----------------------------------------------------------------- */
 
 /* Adds a row of cells of level `level`, each with its share of values and of
@@ -186,7 +182,7 @@ static void take_voxels(gathering *g, const int64_t at[3], int64_t count,
             const int64_t voxel =
                 place_in(box, (const int64_t[3]){x, at[1], at[2]});
             store(g, voxel, values[x - at[0]]);
-            take(g, voxel);
+            g->taken[voxel / 8] |= (unsigned char)(1 << voxel % 8);
         }
     if (g->grid->finest > 0)
         add_below(g, g->grid->finest, at, count, values, NULL, NULL);
@@ -329,18 +325,15 @@ static bool fill_cells(void *user, int64_t y, int64_t z, const double *row) {
     return false;
 }
 
-/* Without a level below what is not taken has no value. */
-static void clear(gathering *g) {
-    const int64_t all = snow_box_voxels(&g->box);
-    for (int64_t i = 0; i < all; i++)
-        if (!is_taken(g, i))
-            store(g, i, NAN);
-}
-
 static snow_status go_up(gathering *g, const snow_box needed[AMR_MOST_LEVELS]) {
     const amr_grid *grid = g->grid;
-    if (grid->finest == 0)
-        clear(g);
+    if (grid->finest == 0) {
+        /* Without a level below what is not taken has no value. */
+        const int64_t all = snow_box_voxels(&g->box);
+        for (int64_t i = 0; i < all; i++)
+            if (!is_taken(g, i))
+                store(g, i, NAN);
+    }
     for (int l = 1; l <= grid->finest; l++) {
         const level_cells *from = &g->levels[l - 1];
         const bool last = l == grid->finest;

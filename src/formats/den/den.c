@@ -34,13 +34,6 @@ static bool probe_den(const unsigned char *bytes, size_t size) {
     return true;
 }
 
-/* The number of bytes, whose 16-bit halves have an order of their own. */
-static bool length_fits(const unsigned char *bytes, const int64_t dims[3]) {
-    int64_t a = number(bytes, LENGTH), b = number(bytes, LENGTH + 1);
-    int64_t voxels = dims[0] * dims[1] * dims[2];
-    return a + (b << 16) == voxels || b + (a << 16) == voxels;
-}
-
 static snow_status read_den(snow_source *source,
                             const snow_volume_options *options,
                             snow_volume_info *info, snow_volume **out) {
@@ -56,7 +49,10 @@ static snow_status read_den(snow_source *source,
     info->type = SNOW_TYPE_UINT8;
     for (int i = 0; i < 3; i++)
         info->dims[i] = number(bytes, HELD + i);
-    if (!length_fits(bytes, info->dims))
+    /* The number of bytes, whose 16-bit halves have an order of their own. */
+    int64_t a = number(bytes, LENGTH), b = number(bytes, LENGTH + 1);
+    int64_t voxels = info->dims[0] * info->dims[1] * info->dims[2];
+    if (!(a + (b << 16) == voxels || b + (a << 16) == voxels))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "its header gives %lldx%lldx%lld voxels but another "
                          "number of bytes; get the file again",

@@ -23,14 +23,6 @@ static uint32_t big(const unsigned char *at, int bytes) {
     return value;
 }
 
-/* Start of a frame in JPEG: SOF0 to SOF15 except for tables (C4, C8, CC), and
- * SOF55 of JPEG-LS. */
-static bool is_frame_marker(int marker) {
-    return (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 &&
-            marker != 0xc8 && marker != 0xcc) ||
-           marker == 0xf7;
-}
-
 /* Walks the segments up to the start of the frame. */
 static bool read_jpeg(const unsigned char *bytes, size_t size,
                       packed_head *out) {
@@ -43,7 +35,13 @@ static bool read_jpeg(const unsigned char *bytes, size_t size,
             at++;
             continue;
         }
-        if (is_frame_marker(marker)) {
+        /* Start of a frame in JPEG: SOF0 to SOF15 except for tables (C4, C8,
+         * CC), and SOF55 of JPEG-LS. */
+        const bool frame_marker =
+            (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 &&
+             marker != 0xc8 && marker != 0xcc) ||
+            marker == 0xf7;
+        if (frame_marker) {
             *out = (packed_head){.bits = bytes[at + 4],
                                  .rows = big(bytes + at + 5, 2),
                                  .columns = big(bytes + at + 7, 2),
@@ -140,12 +138,6 @@ static bool read_jpeg2000(const unsigned char **bytes, size_t *size,
     return false;
 }
 
-/* Markers of JPEG 2000 without a segment (T.800, A.1.2). */
-static bool is_bare_marker(int marker) {
-    return (marker >= 0xff30 && marker <= 0xff3f) || marker == 0xff4f ||
-           marker == 0xff92 || marker == 0xff93 || marker == 0xffd9;
-}
-
 /* Whether the segments are intact up to the data of the first tile, with a
  * coding style (COD) of sufficient length: GDCM walks them unchecked. */
 static bool has_tile(const unsigned char *bytes, size_t size) {
@@ -155,17 +147,17 @@ static bool has_tile(const unsigned char *bytes, size_t size) {
         at += 2;
         if (marker == 0xff93)
             return true;
-        if (is_bare_marker(marker))
+        /* Markers of JPEG 2000 without a segment (T.800, A.1.2). */
+        const bool bare_marker = (marker >= 0xff30 && marker <= 0xff3f) ||
+                                 marker == 0xff4f || marker == 0xff92 ||
+                                 marker == 0xff93 || marker == 0xffd9;
+        if (bare_marker)
             continue;
         if (length < (marker == 0xff52 ? 12 : 2) || length > size - at)
             return false;
         at += length;
     }
     return false;
-}
-
-static bool is_jpeg_ls(const char *syntax) {
-    return !strncmp(syntax, "1.2.840.10008.1.2.4.8", 21);
 }
 
 static bool is_jpeg2000(const char *syntax) {
@@ -188,10 +180,11 @@ snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
             context, SNOW_STATUS_BAD_INPUT,
             "its compressed colours differ in size or depth, which is not "
             "supported; decompress it, for example with gdcmconv --raw");
-    if (same &&
-        (is_jpeg2000(syntax)
-             ? has_tile(*bytes, *size)
-             : has_scan(*bytes, *size, is_jpeg_ls(syntax), head.samples)))
+    if (same && (is_jpeg2000(syntax)
+                     ? has_tile(*bytes, *size)
+                     : has_scan(*bytes, *size,
+                                !strncmp(syntax, "1.2.840.10008.1.2.4.8", 21),
+                                head.samples)))
         return SNOW_STATUS_OK;
     if (known && !same)
         return snow_fail(

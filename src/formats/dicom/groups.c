@@ -8,11 +8,6 @@
 /* Cosines are written with six digits, or fewer. */
 #define SAME_COSINE 1e-3
 
-/* Numbers that differ only by rounding or printing are equal. */
-static int order_about(double a, double b, double tolerance) {
-    return fabs(a - b) <= tolerance ? 0 : snow_dicom_order(a, b);
-}
-
 static int compare_images(const dicom_image *a, const dicom_image *b) {
     if (a->series_number != b->series_number)
         return a->series_number < b->series_number ? -1 : 1;
@@ -40,12 +35,19 @@ static int compare_frames(const dicom_frame *a, const dicom_frame *b) {
     if (!by)
         by = b->placed - a->placed;
     for (int i = 0; i < 3 && !by && a->placed; i++) {
-        by = order_about(a->row[i], b->row[i], SAME_COSINE);
+        /* Numbers that differ only by rounding or printing are equal. */
+        by = fabs(a->row[i] - b->row[i]) <= SAME_COSINE
+                 ? 0
+                 : snow_dicom_order(a->row[i], b->row[i]);
         if (!by)
-            by = order_about(a->column[i], b->column[i], SAME_COSINE);
+            by = fabs(a->column[i] - b->column[i]) <= SAME_COSINE
+                     ? 0
+                     : snow_dicom_order(a->column[i], b->column[i]);
     }
     for (int i = 0; i < 2 && !by; i++)
-        by = order_about(a->pixel[i], b->pixel[i], 1e-4 * a->pixel[i]);
+        by = fabs(a->pixel[i] - b->pixel[i]) <= (1e-4 * a->pixel[i])
+                 ? 0
+                 : snow_dicom_order(a->pixel[i], b->pixel[i]);
     return by;
 }
 

@@ -20,12 +20,6 @@
  * written with a hundredth of it and less. */
 #define SAME_PLACE 0.01
 
-static void cross(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* --- positions ------------------------------------------------------------ */
 
 /* What sorting needs besides the frame: its position along the normal. */
@@ -150,7 +144,12 @@ static snow_status lay_stack(dicom_stack *s, dicom_frame *frames, ranked *all,
     double normal[3], step[3];
     for (size_t i = 0; i < count; i++)
         all[i].frame = frames[i];
-    cross(frames[0].row, frames[0].column, normal);
+    normal[0] = frames[0].row[1] * frames[0].column[2] -
+                frames[0].row[2] * frames[0].column[1];
+    normal[1] = frames[0].row[2] * frames[0].column[0] -
+                frames[0].row[0] * frames[0].column[2];
+    normal[2] = frames[0].row[0] * frames[0].column[1] -
+                frames[0].row[1] * frames[0].column[0];
     memcpy(s->normal, normal, sizeof normal);
     order_frames(all, count, normal);
     s->placed = frames[0].placed;

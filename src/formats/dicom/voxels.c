@@ -83,13 +83,6 @@ typedef struct bits {
     int shift;
 } bits;
 
-static bits bits_of(const dicom_words *words) {
-    uint32_t mask =
-        words->stored == 32 ? UINT32_MAX : ((uint32_t)1 << words->stored) - 1;
-    return (bits){mask, words->is_signed ? mask ^ mask >> 1 : 0,
-                  words->high + 1 - words->stored};
-}
-
 static double value_of(uint32_t word, bits b) {
     int64_t value = word >> b.shift & b.mask;
     return (double)(b.sign ? (value ^ (int64_t)b.sign) - (int64_t)b.sign
@@ -129,7 +122,11 @@ static double brightness_of(const dicom_palette *palette, double value) {
  * apart. */
 static void take_row(const decoder *d, const dicom_frame *frame,
                      const unsigned char *at, size_t step, double *out) {
-    bits b = bits_of(&d->words);
+    uint32_t mask = d->words.stored == 32
+                        ? UINT32_MAX
+                        : ((uint32_t)1 << d->words.stored) - 1;
+    bits b = (bits){mask, d->words.is_signed ? mask ^ mask >> 1 : 0,
+                    d->words.high + 1 - d->words.stored};
     int size = d->words.size;
     bool pads = frame->image->pads;
     double slope = d->scales ? frame->slope : 1;

@@ -78,13 +78,6 @@ static bool place_by_size(const hdf5_set *set, snow_volume_info *info) {
     return false;
 }
 
-/* The axis x y z that a label names, or -1. */
-static int axis_of(const char *label) {
-    return !*label || label[1]              ? -1
-           : *label >= 'x' && *label <= 'z' ? *label - 'x'
-                                            : -1;
-}
-
 /* Reads the letters of the three axes in the order of the array. */
 static bool read_labels(const hdf5_file *file, hid_t group, int order[3]) {
     int seen = 0;
@@ -93,7 +86,10 @@ static bool read_labels(const hdf5_file *file, hid_t group, int order[3]) {
         if (snow_hdf5_text(file, group, "axisLabels", i, label, sizeof label) !=
             3)
             return false;
-        order[i] = axis_of(label);
+        /* The axis x y z that a label names, or -1. */
+        order[i] = !*label || label[1]              ? -1
+                   : *label >= 'x' && *label <= 'z' ? *label - 'x'
+                                                    : -1;
         if (order[i] < 0)
             return false;
         seen |= 1 << order[i];

@@ -49,16 +49,6 @@ void snow_index_sort(index_list *list) {
     }
 }
 
-static snow_status read_files(snow_source *source, const index_list *list,
-                              size_t first, size_t end,
-                              const snow_volume_options *options,
-                              snow_volume_info *info, snow_volume **out) {
-    return end - first == 1
-               ? snow_volume_open_named(source, snow_index_name(list, first),
-                                        options, info, out)
-               : snow_mosaic_read(source, list, first, end, options, info, out);
-}
-
 snow_status snow_index_read(snow_source *source, const index_list *list,
                             const char *format,
                             const snow_volume_options *options,
@@ -78,7 +68,12 @@ snow_status snow_index_read(snow_source *source, const index_list *list,
                       list->entries[end].step == list->entries[first].step;)
         end++;
     own.time = 0;
-    SNOW_TRY(read_files(source, list, first, end, &own, info, out));
+    const snow_status read_files =
+        end - first == 1
+            ? snow_volume_open_named(source, snow_index_name(list, first), &own,
+                                     info, out)
+            : snow_mosaic_read(source, list, first, end, &own, info, out);
+    SNOW_TRY(read_files);
     info->format = format;
     info->times = series.times;
     info->time = series.time;

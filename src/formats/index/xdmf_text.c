@@ -67,13 +67,6 @@ static void begin_geometry(xdmf_file *f, const char **attributes) {
     copy_text(kind, f->now.grid.geometry, sizeof f->now.grid.geometry);
 }
 
-static void remember(xdmf_file *f, const char *name) {
-    size_t used = strlen(f->seen);
-    if (f->steps == 0 && used + strlen(name) + 3 < sizeof f->seen)
-        snprintf(f->seen + used, sizeof f->seen - used, "%s%s",
-                 used ? ", " : "", name);
-}
-
 /* The requested attribute, by default the first one of scalars or vectors. */
 static void begin_attribute(xdmf_file *f, const char **attributes) {
     const char *kind = snow_index_attribute(attributes, "AttributeType");
@@ -85,7 +78,10 @@ static void begin_attribute(xdmf_file *f, const char **attributes) {
     f->in_attribute =
         !f->now.found &&
         (!f->options->dataset || !strcmp(f->options->dataset, f->attribute));
-    remember(f, f->attribute);
+    size_t used = strlen(f->seen);
+    if (f->steps == 0 && used + strlen(f->attribute) + 3 < sizeof f->seen)
+        snprintf(f->seen + used, sizeof f->seen - used, "%s%s",
+                 used ? ", " : "", f->attribute);
 }
 
 static snow_type type_of(const char *kind, int64_t bytes) {

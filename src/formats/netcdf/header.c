@@ -146,11 +146,6 @@ static double value_of(cursor *c, uint64_t type) {
     }
 }
 
-static void keep_fill(cf_values *values, double fill) {
-    if (values->fills < 2)
-        values->fill[values->fills++] = fill;
-}
-
 /* Copies a text to a room, of which a longer one fills all. */
 static void keep_text(const char *from, char *to, size_t room) {
     size_t length = strlen(from) < room ? strlen(from) : room - 1;
@@ -196,8 +191,10 @@ static void keep_attribute(cursor *c, const char *name, uint64_t type,
         v->values.scale = value;
     else if (!strcmp(name, "add_offset") && isfinite(value))
         v->values.offset = value;
-    else if (!strcmp(name, "_FillValue") || !strcmp(name, "missing_value"))
-        keep_fill(&v->values, value);
+    else if (!strcmp(name, "_FillValue") || !strcmp(name, "missing_value")) {
+        if (v->values.fills < 2)
+            v->values.fill[v->values.fills++] = value;
+    }
 }
 
 /* Reads the attributes of a variable, or, for NULL, of the file. */
@@ -269,13 +266,6 @@ static void take_axes(cursor *c, const netcdf_header *header,
     }
 }
 
-static snow_type unsigned_type(snow_type type) {
-    return type == SNOW_TYPE_INT8    ? SNOW_TYPE_UINT8
-           : type == SNOW_TYPE_INT16 ? SNOW_TYPE_UINT16
-           : type == SNOW_TYPE_INT32 ? SNOW_TYPE_UINT32
-                                     : type;
-}
-
 static void take_variable(cursor *c, netcdf_header *header,
                           netcdf_variable *v) {
     memset(v, 0, sizeof *v);
@@ -286,7 +276,10 @@ static void take_variable(cursor *c, netcdf_header *header,
     uint64_t type = take_number(c, 4);
     v->type = type_of(type);
     if (v->is_unsigned)
-        v->type = unsigned_type(v->type);
+        v->type = v->type == SNOW_TYPE_INT8    ? SNOW_TYPE_UINT8
+                  : v->type == SNOW_TYPE_INT16 ? SNOW_TYPE_UINT16
+                  : v->type == SNOW_TYPE_INT32 ? SNOW_TYPE_UINT32
+                                               : v->type;
     if (c->status == SNOW_STATUS_OK && !type_bytes(type))
         refuse(c, "its NetCDF header has an unknown type; it is damaged");
     v->bytes *= type_bytes(type);

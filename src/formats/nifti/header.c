@@ -104,13 +104,6 @@ static bool has_size(const unsigned char *bytes, uint64_t size, bool *big) {
     return *big || number_at(bytes, 4, false) == size;
 }
 
-/* Version 1 has its magic at the header's end, with its NUL; Analyze has
- * none. */
-static bool has_magic1(const unsigned char *bytes, size_t size) {
-    return size >= NIFTI1_BYTES && (memcmp(bytes + 344, "n+1", 4) == 0 ||
-                                    memcmp(bytes + 344, "ni1", 4) == 0);
-}
-
 /* The byte order in which dim[0] is a number of axes, for headers whose first
  * field is wrong.  Returns false if there is none. */
 static bool order_of_dim(const unsigned char *bytes, bool *big) {
@@ -131,7 +124,12 @@ size_t nifti_header_size(const unsigned char *bytes, size_t size) {
     if (size >= 12 && has_size(bytes, NIFTI2_BYTES, &big) &&
         (memcmp(bytes + 4, "n+2", 4) == 0 || memcmp(bytes + 4, "ni2", 4) == 0))
         return NIFTI2_BYTES;
-    if (has_magic1(bytes, size) &&
+    /* Version 1 has its magic at the header's end, with its NUL; Analyze has
+     * none. */
+    const bool magic1 =
+        size >= NIFTI1_BYTES && (memcmp(bytes + 344, "n+1", 4) == 0 ||
+                                 memcmp(bytes + 344, "ni1", 4) == 0);
+    if (magic1 &&
         (has_size(bytes, NIFTI1_BYTES, &big) || order_of_dim(bytes, &big)))
         return NIFTI1_BYTES;
     return 0;

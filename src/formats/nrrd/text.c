@@ -165,13 +165,6 @@ static snow_status check_magic(snow_context *context, const char *line) {
                      "damaged or of another format");
 }
 
-/* True for "LIST" and "LIST 2". */
-static bool lists_files(const nrrd_text *text) {
-    const char *value = snow_nrrd_value(text, NRRD_DATA_FILE);
-    return value && !strncmp(value, "LIST", 4) &&
-           (!value[4] || isspace((unsigned char)value[4]));
-}
-
 /* The names are contiguous in the block, because nothing else is appended after
  * the list's first line. */
 static snow_status take_listed(snow_context *context, nrrd_text *text,
@@ -200,7 +193,10 @@ static snow_status read_lines(snow_source *source, char *line,
         trim_end(line);
         if (!got || !*line)
             break;
-        if (lists_files(text))
+        /* True for "LIST" and "LIST 2". */
+        const char *value = snow_nrrd_value(text, NRRD_DATA_FILE);
+        if (value && !strncmp(value, "LIST", 4) &&
+            (!value[4] || isspace((unsigned char)value[4])))
             SNOW_TRY(take_listed(context, text, line));
         else if (*line != '#')
             SNOW_TRY(take_line(context, text, line));

@@ -63,13 +63,6 @@ static void take_array(survey *s, const char **attributes) {
         keep(s, attributes, &s->time);
 }
 
-/* Without coordinates nothing is wanted behind this element. */
-static bool is_last(const survey *s, const char *name) {
-    return !strcmp(name, "AppendedData") ||
-           (!strcmp(name, "Piece") && !s->rectilinear &&
-            !(s->time.found && s->time.header.form == VTI_APPENDED));
-}
-
 static void XMLCALL begin_element(void *user, const char *name,
                                   const char **attributes) {
     survey *s = user;
@@ -85,7 +78,11 @@ static void XMLCALL begin_element(void *user, const char *name,
         s->coordinates = s->rectilinear;
     else if (!strcmp(name, "DataArray"))
         take_array(s, attributes);
-    if (!is_last(s, name))
+    /* Without coordinates nothing is wanted behind this element. */
+    const bool last = !strcmp(name, "AppendedData") ||
+                      (!strcmp(name, "Piece") && !s->rectilinear &&
+                       !(s->time.found && s->time.header.form == VTI_APPENDED));
+    if (!last)
         return;
     if (!strcmp(name, "AppendedData")) {
         const char *encoding = snow_vti_attribute(attributes, "encoding");

@@ -94,13 +94,6 @@ static snow_status fail_line(const vtk_reader *reader) {
         reader->count > 1 ? reader->words[1] : "");
 }
 
-static bool take_integers(const vtk_reader *reader, int64_t out[3]) {
-    bool right = reader->count >= 4;
-    for (int i = 0; i < 3 && right; i++)
-        right = snow_parse_int64(reader->words[1 + i], &out[i]);
-    return right;
-}
-
 static bool take_reals(const vtk_reader *reader, double out[3]) {
     bool right = reader->count >= 4;
     for (int i = 0; i < 3 && right; i++)
@@ -383,7 +376,11 @@ static snow_status take_attribute(vtk_reader *reader, bool *known) {
 static bool take_geometry(vtk_reader *reader) {
     if (starts(reader, "DIMENSIONS", 4)) {
         reader->sized = true;
-        return take_integers(reader, reader->grid.points);
+        bool right = reader->count >= 4;
+        for (int i = 0; i < 3 && right; i++)
+            right =
+                snow_parse_int64(reader->words[1 + i], &reader->grid.points[i]);
+        return right;
     }
     if (starts(reader, "ORIGIN", 4))
         return take_reals(reader, reader->grid.origin);

@@ -153,19 +153,15 @@ static snow_status unpack_lz4(snow_context *context, const char *name,
 
 /* --- any ------------------------------------------------------------------ */
 
-/* The size without the checksums after the compressed bytes; they are verified
- * at decompression. */
-static size_t packed_size(const zarr_coding *coding, size_t size) {
-    size_t sums = (size_t)coding->outer_sums * SUM_BYTES;
-    return size > sums ? size - sums : 0;
-}
-
 snow_status snow_zarr_expect(snow_context *context, const char *name,
                              const zarr_coding *coding,
                              const unsigned char *packed, size_t size,
                              uint64_t bytes) {
     uint64_t inner = snow_zarr_room(coding, bytes);
-    size = packed_size(coding, size);
+    /* The size without the checksums after the compressed bytes; they are
+     * verified at decompression. */
+    size_t sums = (size_t)coding->outer_sums * SUM_BYTES;
+    size = size > sums ? size - sums : 0;
     if (coding->packer == ZARR_PLAIN)
         return size == inner ? SNOW_STATUS_OK
                              : snow_zarr_fail_size(context, name, size, inner);

@@ -131,11 +131,6 @@ static int64_t parts_of(int64_t whole, int64_t part) {
     return (whole + part - 1) / part;
 }
 
-static uint64_t spread_bytes(const snow_context *context) {
-    uint64_t part = context->limit / SPREAD_PART;
-    return context->limit && part < SPREAD_BYTES ? part : SPREAD_BYTES;
-}
-
 /* How the picture is cut for threads. */
 static void cut(snow_exact *exact, const snow_job *job) {
     const snow_placement *p = &job->stored;
@@ -145,8 +140,11 @@ static void cut(snow_exact *exact, const snow_job *job) {
     exact->dense_used = 0;
     if (exact->gathers) {
         exact->bands = (int)parts_of(p->height, GATHER_ROWS);
-        uint64_t fit = spread_bytes(exact->context) /
-                       snow_dense_bytes(&exact->gatherer.shape);
+        uint64_t part = exact->context->limit / SPREAD_PART;
+        uint64_t fit =
+            (exact->context->limit && part < SPREAD_BYTES ? part
+                                                          : SPREAD_BYTES) /
+            snow_dense_bytes(&exact->gatherer.shape);
         /* Threads wait for each other between spreading and gathering: seldom
          * where slices are spread by the dozen.  One thread has no one to wait
          * for, and finds a single slice in its cache. */
@@ -549,14 +547,6 @@ static void spread_item(void *data, int64_t item, int number) {
     snow_lap(&mark, &w->seconds[SPLAT]);
 }
 
-/* Opaque pixels gather no more: looked for every few slices, the same ones
- * however many are spread at once.  Not where something else than over is laid,
- * to which opacity is nothing. */
-static bool closes(const pass *work, int64_t n) {
-    return !work->job->composite &&
-           (work->first + n) % CLOSE_SLICES == CLOSE_SLICES - 1;
-}
-
 /* Line 13 for one row of slice n: a run of what it has gathered goes into the
  * local image. */
 static void composite_run(const pass *work, int64_t n, int y, float *gathered,
@@ -576,7 +566,12 @@ static void composite_run(const pass *work, int64_t n, int y, float *gathered,
         snow_depth_note(job, slice, run.first, y, count, back);
     snow_job_composite(job)(row + (size_t)run.first * channels, back,
                             (size_t)count);
-    if (closes(work, n))
+    /* Opaque pixels gather no more: looked for every few slices, the same ones
+     * however many are spread at once.  Not where something else than over is
+     * laid, to which opacity is nothing. */
+    const bool closes = !work->job->composite &&
+                        (work->first + n) % CLOSE_SLICES == CLOSE_SLICES - 1;
+    if (closes)
         snow_gather_close(row, run, job->channels,
                           exact->not_opaque + (size_t)y * open_row(job));
 }

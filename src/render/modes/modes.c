@@ -187,14 +187,6 @@ static inline void color_pixels(const finish_job *f, const float *pairs,
     }
 }
 
-static void color_line(const finish_job *f, const float *pairs, int count,
-                       float *pixels) {
-    if (f->image->channels == 2)
-        color_pixels(f, pairs, count, 2, pixels);
-    else
-        color_pixels(f, pairs, count, 4, pixels);
-}
-
 /* (sum of weighted values, of weights) to the mean or the sum in data units. */
 static void value_line(const finish_job *f, const float *pairs, int count,
                        float *pixels) {
@@ -236,8 +228,12 @@ static void finish_line(void *of, int64_t y, int worker) {
         number_line(f, pairs, width, pixels);
     else if (f->image->channels == 1)
         value_line(f, pairs, width, pixels);
-    else
-        color_line(f, pairs, width, pixels);
+    else {
+        if (f->image->channels == 2)
+            color_pixels(f, pairs, width, 2, pixels);
+        else
+            color_pixels(f, pairs, width, 4, pixels);
+    }
 }
 
 /* What 0 to 1 stands for. */

@@ -93,13 +93,6 @@ static void gather(const snow_raycast_pass *pass, const snow_ray *ray,
         note_depth(pass, ray, before, alpha, state->batch.t[n], state->depth);
 }
 
-static void multiply_colors(int channels, over_batch *batch) {
-    for (int n = 0; n < batch->count; n++)
-        for (int c = 0; c < channels - 1; c++)
-            batch->samples[n * channels + c] *=
-                batch->samples[n * channels + channels - 1];
-}
-
 /* Shades and composites what is gathered. */
 static void flush(const snow_raycast_pass *pass, const snow_ray *ray,
                   snow_raycast_eye *eye, over_state *state) {
@@ -109,8 +102,12 @@ static void flush(const snow_raycast_pass *pass, const snow_ray *ray,
         snow_shade_gradients(&eye->shader,
                              (const double(*)[SNOW_SHADE_BLOCK])eye->gradients,
                              batch->count, channels, batch->samples);
-    else
-        multiply_colors(channels, batch);
+    else {
+        for (int n = 0; n < batch->count; n++)
+            for (int c = 0; c < channels - 1; c++)
+                batch->samples[n * channels + c] *=
+                    batch->samples[n * channels + channels - 1];
+    }
     for (int n = 0; n < batch->count; n++)
         gather(pass, ray, state, n);
     batch->count = 0;
@@ -181,19 +178,15 @@ static void add_sample(const snow_raycast_pass *pass, const snow_ray *ray,
     batch->count++;
 }
 
-static bool is_visible(const snow_raycast_pass *pass,
-                       const snow_field_window *window) {
-    return window->least <= pass->visible[1] &&
-           window->most >= pass->visible[0];
-}
-
 /* A step of a ray in a layer; false: nothing is seen between these voxels. */
 static bool step(const snow_raycast_pass *pass, const snow_raycast_pass *base,
                  const snow_ray *ray, double t, const double at[3],
                  snow_raycast_eye *own, snow_raycast_eye *eye,
                  over_state *state) {
     snow_field_place(&pass->field, at, &own->near);
-    if (!is_visible(pass, &own->near))
+    const bool visible = own->near.least <= pass->visible[1] &&
+                         own->near.most >= pass->visible[0];
+    if (!visible)
         return false;
     double value = pass->labels ? snow_field_label(&pass->field, at, &own->near,
                                                    pass->nearest)

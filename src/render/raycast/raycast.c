@@ -50,14 +50,6 @@ static void to_axes(const snow_placement *p, const double from[3],
     to[p->slice_axis] = from[2];
 }
 
-static void start_parallel(const snow_placement *p, double x, double y,
-                           double start[3]) {
-    for (int axis = 0; axis < 2; axis++)
-        start[axis] = p->inverse[axis][0] * (x - p->origin[0]) +
-                      p->inverse[axis][1] * (y - p->origin[1]);
-    start[2] = 0;
-}
-
 /* The world vector of a step in index space. */
 static void to_world(const snow_volume_info *info, const double step[3],
                      double world[3]) {
@@ -86,7 +78,10 @@ static void aim(const snow_raycast_pass *pass, double x, double y,
             viewer[n] = -world[n] / length;
         }
     } else {
-        start_parallel(p, x, y, start);
+        for (int axis = 0; axis < 2; axis++)
+            start[axis] = p->inverse[axis][0] * (x - p->origin[0]) +
+                          p->inverse[axis][1] * (y - p->origin[1]);
+        start[2] = 0;
         memcpy(viewer, p->back, 3 * sizeof *viewer);
         for (int n = 0; n < 3; n++)
             ray->along[n] = -snow_dot(pass->shader.inverse[n], viewer);
@@ -235,13 +230,6 @@ static void set_colors(snow_raycast_pass *pass) {
         pass->rgb[n] = (float)rgb[n];
 }
 
-static void set_depth(snow_raycast_pass *pass) {
-    double of[4];
-    snow_depth_place(pass->job, of);
-    to_axes(&pass->job->placement, of, pass->depth);
-    pass->depth[3] = of[3];
-}
-
 /* In mode over: whether a mask has left holes, and the range. */
 static snow_status find_border(snow_raycast_pass *pass) {
     const snow_volume *volume = pass->field.volume;
@@ -294,7 +282,10 @@ static snow_status prepare(const snow_picture *p, const snow_job *job,
     pass->layers = layers;
     pass->layer_count = job->layer_count;
     set_part(pass);
-    set_depth(pass);
+    double of[4];
+    snow_depth_place(pass->job, of);
+    to_axes(&pass->job->placement, of, pass->depth);
+    pass->depth[3] = of[3];
     return SNOW_STATUS_OK;
 }
 

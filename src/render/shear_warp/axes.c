@@ -92,14 +92,6 @@ void snow_value_change_axis(snow_value_path *path,
 
 /* --- ahead ---------------------------------------------------------------- */
 
-/* The turn that leads from one camera to the next. */
-static void find_turn(double from[3][3], double to[3][3], double turn[3][3]) {
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            turn[i][j] = from[0][j] * to[0][i] + from[1][j] * to[1][i] +
-                         from[2][j] * to[2][i];
-}
-
 static void apply(double turn[3][3], double v[3]) {
     const double from[3] = {v[0], v[1], v[2]};
     for (int i = 0; i < 3; i++)
@@ -121,7 +113,11 @@ static int find_next(const snow_value_params *params, double from[3][3],
     memcpy(view.back, to[2], sizeof view.back);
     if (!(angle > TURN_LEAST && angle < TURN_MOST))
         return 0;
-    find_turn(from, to, turn);
+    /* The turn that leads from one camera to the next. */
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            turn[i][j] = from[0][j] * to[0][i] + from[1][j] * to[1][i] +
+                         from[2][j] * to[2][i];
     for (int n = 1; n <= PICTURES_AHEAD && n * angle < TURN_AHEAD; n++) {
         apply(turn, view.up);
         apply(turn, view.back);

@@ -74,22 +74,17 @@ static void size_plane(snow_value_lattice *l, const snow_value_grid *grid,
     image->lattice = *l;
 }
 
-/* How many layers; -1: these slices are not whole groups. */
-static int count_layers(snow_value_path *path,
-                        const snow_value_params *params) {
-    if (!params->settings->deterministic)
-        return 1;
-    return snow_group_nodes(params->placement->slices, params->slab,
-                            path->image->nodes);
-}
-
 snow_status snow_value_reserve_image(snow_value_path *path,
                                      const snow_value_params *params) {
     snow_value_grid grid;
     if (params->aside)
         path->image = &path->images[path->image == path->images];
     snow_value_image *image = path->image;
-    int layers = count_layers(path, params);
+    /* How many layers; -1: these slices are not whole groups. */
+    int layers = !params->settings->deterministic
+                     ? 1
+                     : snow_group_nodes(params->placement->slices, params->slab,
+                                        path->image->nodes);
     if (layers < 0)
         return snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
                          "parts of a deterministic picture must begin and end "

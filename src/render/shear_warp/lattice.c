@@ -73,15 +73,6 @@ static int sheets_per_slice(const snow_volume_info *info,
     return count;
 }
 
-static void choose_sheets(const snow_volume_info *info, const snow_placement *p,
-                          snow_quality quality, double pixels,
-                          snow_value_lattice *l) {
-    l->per_slice = sheets_per_slice(info, p, quality, pixels);
-    l->sheet_count =
-        p->slices == 1 ? 2 : (int)(p->slices - 1) * l->per_slice + 1;
-    l->path = p->path / l->per_slice;
-}
-
 double snow_value_lattice_reach(const snow_volume_info *info,
                                 const snow_placement *p, snow_quality quality) {
     double most = 0;
@@ -252,7 +243,9 @@ snow_value_lattice_make(snow_context *context, const snow_volume_info *info,
                          (long long)p->slices, SLICES_MOST);
     SNOW_TRY(measure_density(context, info, view, p, &pixels));
     choose_cells(info, p, quality, pixels, &l);
-    choose_sheets(info, p, quality, pixels, &l);
+    l.per_slice = sheets_per_slice(info, p, quality, pixels);
+    l.sheet_count = p->slices == 1 ? 2 : (int)(p->slices - 1) * l.per_slice + 1;
+    l.path = p->path / l.per_slice;
     place_front(p, &l);
     const int dense = l.quincunx ? 2 : 1;
     const int phases[2] = {dense * l.cells[0], dense * l.cells[1]};

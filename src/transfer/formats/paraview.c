@@ -86,11 +86,6 @@ static snow_status take_opacities(const tf_input *in, snow_look_file *tf,
     return SNOW_STATUS_OK;
 }
 
-static bool has_log(const json_t *map) {
-    const json_t *log = json_object_get(map, "UseLogScale");
-    return json_is_true(log) || json_integer_value(log) == 1;
-}
-
 snow_status tf_take_paraview(const tf_input *in, snow_look_file *tf,
                              const json_t *map) {
     const char *name = json_string_value(json_object_get(map, "Name"));
@@ -101,7 +96,8 @@ snow_status tf_take_paraview(const tf_input *in, snow_look_file *tf,
     if (json_array_size(json_object_get(map, "IndexedColors")))
         snow_context_warn(
             in->context, "%s: its colours of categories are ignored", in->name);
-    tf->look.log = has_log(map);
+    const json_t *log = json_object_get(map, "UseLogScale");
+    tf->look.log = json_is_true(log) || json_integer_value(log) == 1;
     tf->format = "paraview";
     if (name)
         tf_set_name(tf, name);
