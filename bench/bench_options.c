@@ -42,6 +42,7 @@ static const char help[] =
     "                   without it phantoms are used\n"
     "  --json           print one JSON object\n"
     "  --runs N         alternated runs whose median is taken, 5 to 99 (7)\n"
+    "  --quick          one run on tiny phantoms: a test, no measurement\n"
     "  --help           this text\n"
     "\n"
     "tables:\n"
@@ -66,9 +67,7 @@ static const char help[] =
     "  --sweep NAME     instead: phantoms by sparse ratio (sparse) or by size\n"
     "                   (size)\n"
     "  --chart FILE     draw the sweep (sparse unless told) as SVG; of the\n"
-    "                   figures, too\n"
-    "  --quick          one run on a tiny phantom: a test, no measurement; of\n"
-    "                   the figures and all, too\n";
+    "                   figures, too\n";
 
 int bench_print_help(void) {
     fputs(help, stdout);
@@ -141,6 +140,7 @@ int bench_options_read(const bench_entry *entry, int argc, char **argv,
     const entry_option all[] = {
         {OF_EVERY, {"--data", BENCH_TEXT, &out->data, 0, 0, NULL}},
         {OF_EVERY, {"--json", BENCH_FLAG, &out->json, 0, 0, NULL}},
+        {OF_EVERY, {"--quick", BENCH_FLAG, &out->quick, 0, 0, NULL}},
         {OF_EVERY, {"--runs", BENCH_WHOLE, &out->runs, 5, 99, NULL}},
         {OF_EVERY, {"--help", BENCH_FLAG, &helps, 0, 0, NULL}},
         {BENCH_OF_TABLES, {"--kernel", BENCH_TEXT, &kernel, 0, 0, NULL}},
@@ -148,8 +148,6 @@ int bench_options_read(const bench_entry *entry, int argc, char **argv,
          {"--azimuth", BENCH_NUMBER, &out->azimuth, -1e6, 1e6, NULL}},
         {BENCH_OF_TABLES,
          {"--elevation", BENCH_NUMBER, &out->elevation, -1e6, 1e6, NULL}},
-        {OF_CHARTS | BENCH_OF_ALL,
-         {"--quick", BENCH_FLAG, &out->quick, 0, 0, NULL}},
         {OF_CHARTS, {"--chart", BENCH_TEXT, &out->chart, 0, 0, NULL}},
         {BENCH_OF_SPEED, {"--large", BENCH_FLAG, &out->large, 0, 0, NULL}},
         {BENCH_OF_SPEED, {"--volumes", BENCH_TEXT, &out->volumes, 0, 0, NULL}},

@@ -15,37 +15,11 @@
 #include <string.h>
 
 #define IMAGE_SIDE 256 /* of the paper's pictures, section 5.2 */
+#define TINY_SIDE 48   /* of a test's */
 #define FOOTPRINT 2
 #define PICTURES 3 /* of a run */
 #define NODES_MOST 32
 #define TOLERANCE (0.5 / 255)
-
-const int figure_nodes[FIGURE_NODES] = {1, 2, 4, 8, 16, 32};
-const bench_way figure_ways[FIGURE_WAYS] = {BENCH_ORIGINAL, BENCH_CRS,
-                                            BENCH_BITMAP, BENCH_RLE};
-const char *const figure_way_names[FIGURE_WAYS] = {"original", "crs", "bitmap",
-                                                   "rle"};
-const figure_volume figure_volumes[FIGURE_VOLUMES] = {
-    {BENCH_HEAD, "Head", 30, 7.102},
-    {BENCH_ENGINE, "Engine", 30, 5.518},
-};
-const figure_cluster figure_clusters[FIGURE_CLUSTERS] = {
-    {"sp2-paper",
-     "SP2, equal slabs, the paper's tree",
-     {40e-6, 35e6, 10e-6, 0},
-     SNOW_PARTITION_EQUAL,
-     SNOW_COMBINE_TREE},
-    {"sp2",
-     "SP2, slabs by count, auto",
-     {40e-6, 35e6, 10e-6, 0},
-     SNOW_PARTITION_COUNTED,
-     SNOW_COMBINE_AUTO},
-    {"today",
-     "100 Gb/s, slabs by count, auto",
-     {1e-6, 12.5e9, 0.3e-6, 1},
-     SNOW_PARTITION_COUNTED,
-     SNOW_COMBINE_AUTO},
-};
 
 /* One picture by some nodes. */
 typedef struct figure_job {
@@ -53,6 +27,7 @@ typedef struct figure_job {
     const figure_volume *paper;
     bench_way way;
     const figure_cluster *cluster;
+    int side, pictures;
     const snow_image *expected; /* NULL: keep the picture instead */
     snow_image *kept;
     figure_time least;
@@ -121,9 +96,9 @@ static snow_status settle(const figure_job *job, snow_context *context,
                           snow_view *view, snow_settings *settings) {
     snow_view_init(view);
     snow_status status = snow_view_from_name(context, "+z", view);
-    view->width = view->height = IMAGE_SIDE;
+    view->width = view->height = job->side;
     view->zoom =
-        snow_view_zoom_for_voxels(job->volume->volume, IMAGE_SIDE, IMAGE_SIDE);
+        snow_view_zoom_for_voxels(job->volume->volume, job->side, job->side);
     snow_settings_init(settings);
     settings->kernel = SNOW_KERNEL_GAUSS;
     settings->footprint = FOOTPRINT;
@@ -202,7 +177,7 @@ static snow_status time_pictures(snow_comm *comm, figure_job *job,
                                  figure_node *node) {
     snow_image *image = NULL;
     snow_status status = SNOW_STATUS_OK;
-    for (int n = 0; n <= PICTURES && status == SNOW_STATUS_OK; n++) {
+    for (int n = 0; n <= job->pictures && status == SNOW_STATUS_OK; n++) {
         if (n <= 1 && snow_comm_rank(comm) == 0)
             job->least.seconds = INFINITY;
         status = time_picture(comm, job, node, &image);
@@ -213,7 +188,7 @@ static snow_status time_pictures(snow_comm *comm, figure_job *job,
     if (!job->expected) {
         /* The picture goes with its context: its pixels are copied. */
         memcpy(snow_image_pixels(job->kept), snow_image_pixels(image),
-               (size_t)IMAGE_SIDE * IMAGE_SIDE * 2 * sizeof(float));
+               (size_t)job->side * (size_t)job->side * 2 * sizeof(float));
     } else {
         status = snow_image_compare(image, job->expected, &difference);
         job->largest = difference.largest;
@@ -305,13 +280,17 @@ static snow_status
 measure_volume(snow_context *context, const bench_options *options,
                const figure_volume *paper, bench_volume *volume,
                figure_progress *progress, figure_times *times) {
-    figure_job job = {.volume = volume, .paper = paper, .progress = progress};
+    figure_job job = {.volume = volume,
+                      .paper = paper,
+                      .side = options->quick ? TINY_SIDE : IMAGE_SIDE,
+                      .pictures = options->quick ? 1 : PICTURES,
+                      .progress = progress};
     times->source = volume->source;
     snow_status status =
         snow_transfer_sparse_ratio(volume->transfer, volume->volume,
                                    paper->threshold, &times->sparse_ratio);
     if (status == SNOW_STATUS_OK)
-        status = snow_image_new(context, IMAGE_SIDE, IMAGE_SIDE, 2, &job.kept);
+        status = snow_image_new(context, job.side, job.side, 2, &job.kept);
     for (int c = 0; c < FIGURE_CLUSTERS && status == SNOW_STATUS_OK; c++)
         status = measure_cluster(context, options->runs, c, &job, times);
     snow_image_free(job.kept);
@@ -322,26 +301,6 @@ measure_volume(snow_context *context, const bench_options *options,
                 volume->name, times->largest);
         return SNOW_STATUS_DIFFERENT;
     }
-    return status;
-}
-
-double figure_speedup(const figure_times *times, int figure, int cluster,
-                      int way, int nodes) {
-    double one = times->taken[cluster][figure == 11 ? 0 : way][0].seconds;
-    return one / times->taken[cluster][way][nodes].seconds;
-}
-
-/* For a test: the phantom, an eighth as long along each side. */
-static snow_status open_tiny(snow_context *context,
-                             const bench_options *options, bench_set set,
-                             bench_volume *out) {
-    bench_source source = *bench_source_of(set);
-    for (int axis = 0; axis < 3; axis++)
-        source.options.dims[axis] = axis < 2 ? 32 : 14;
-    snow_status status = bench_source_open(context, &source, options, out);
-    if (status == SNOW_STATUS_OK)
-        status = snow_transfer_new_for_volume(out->volume, &bench_linear_look,
-                                              &out->transfer);
     return status;
 }
 
@@ -356,10 +315,7 @@ static int run_figure(snow_context *context, const bench_options *options,
     figure_progress_begin(&progress, figure, options->runs);
     for (int i = 0; i < FIGURE_VOLUMES && status == SNOW_STATUS_OK; i++) {
         const figure_volume *paper = &figure_volumes[i];
-        status =
-            options->quick
-                ? open_tiny(context, options, paper->set, &volumes[i])
-                : bench_volume_open(context, paper->set, options, &volumes[i]);
+        status = bench_volume_open(context, paper->set, options, &volumes[i]);
         if (status == SNOW_STATUS_OK)
             status = measure_volume(context, options, paper, &volumes[i],
                                     &progress, &times[i]);

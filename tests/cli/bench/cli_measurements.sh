@@ -11,7 +11,8 @@ root=$(realpath "$HERE/..")
 script=$root/scripts/measurements
 cp -r "$root/docs" "$root/README.md" . || exit 1
 
-run 0 "a quick run" "$TOOL" bench speed --quick --json --threads 1,2
+run 0 "a quick run" "$TOOL" bench speed --quick --json --threads 1 \
+    --only rgba,opaque,phong
 cp "$OUT" speed.json
 python3 - <<'END' || exit 1
 import json
