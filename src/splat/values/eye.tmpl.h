@@ -390,10 +390,10 @@ TARGET static void NAME(cross_holes_eye)(const snow_value_splat *p, int n,
 }
 
 /* As NAME(sample). */
-TARGET VALUE_STAGE void NAME(sample_eye)(const snow_value_splat *p, int n,
-                                         int phase, const int tile[2],
-                                         uint64_t rows, uint32_t across,
-                                         value_rows *out) {
+TARGET VALUE_ONCE void NAME(sample_eye)(const snow_value_splat *p, int n,
+                                        int phase, const int tile[2],
+                                        uint64_t rows, uint32_t across,
+                                        value_rows *out) {
     const snow_value_store *s = p->store;
     const snow_value_sheet *sheet = p->sheets + n;
     const snow_value_lanes *u = value_lanes_of(p->rays, n, phase, 0, tile[0]);
@@ -430,11 +430,10 @@ TARGET VALUE_STAGE void NAME(sample_eye)(const snow_value_splat *p, int n,
 
 /* Samples the neighbours of a phase's samples on a sheet, and says where they
  * are. */
-TARGET VALUE_STAGE void NAME(sample_beside)(const snow_value_splat *p, int n,
-                                            int phase, const int tile[2],
-                                            uint32_t rows,
-                                            value_rows (*room)[2],
-                                            value_beside *out) {
+TARGET VALUE_ONCE void NAME(sample_beside)(const snow_value_splat *p, int n,
+                                           int phase, const int tile[2],
+                                           uint32_t rows, value_rows (*room)[2],
+                                           value_beside *out) {
     out->holes = room[phase][n & 1].holes;
     for (int way = 0; way < 4; way++) {
         int axis = way / 2, by = p->rays->sheets[n].apart[axis], cells;

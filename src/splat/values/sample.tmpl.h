@@ -138,17 +138,19 @@ NAME(fill_rows_of)(const NAME(source) * from, int64_t first, uint64_t rows,
     const NAME(source) s = *from;
     const V(row) u = V(row_set1)(place->weight[0]);
     const V(row) v = V(row_set1)(place->weight[1]);
+    /* Of each stretch: the row above its first one, then those below. */
     while (rows) {
-        int row = __builtin_ctzll(rows);
-        V(row)
-        above =
-            NAME(along)(&s, first + row, u, between, difference, kind, sided);
-        for (; rows >> row & 1; row++) {
+        const int begin = __builtin_ctzll(rows);
+        V(row) above = V(row_set1)(0);
+        for (int row = begin;; row++) {
             V(row)
-            below = NAME(along)(&s, first + row + 1, u, between, difference,
-                                kind, sided);
-            V(row_store)(out[row], NAME(mix)(above, below, v));
-            above = below;
+            here = NAME(along)(&s, first + row, u, between, difference, kind,
+                               sided);
+            if (row > begin)
+                V(row_store)(out[row - 1], NAME(mix)(above, here, v));
+            above = here;
+            if (!(rows >> row & 1))
+                break;
             rows &= rows - 1;
         }
     }
@@ -377,10 +379,10 @@ TARGET VALUE_INLINE void NAME(begin_across)(const snow_value_sheet *sheet,
 
 /* The values of a sheet in some rows of a tile, and the differences across it
  * in others, unless they are there. */
-TARGET VALUE_STAGE void NAME(sample_all)(const snow_value_splat *p, int n,
-                                         int phase, const int tile[2],
-                                         uint64_t rows, uint32_t across,
-                                         value_rows *out) {
+TARGET VALUE_ONCE void NAME(sample_all)(const snow_value_splat *p, int n,
+                                        int phase, const int tile[2],
+                                        uint64_t rows, uint32_t across,
+                                        value_rows *out) {
     const snow_value_store *s = p->store;
     const snow_value_sheet *sheet = p->sheets + n;
     const snow_value_place *place = p->places + n * p->phases + phase;

@@ -296,7 +296,7 @@ TARGET VALUE_STAGE int NAME(gather)(const snow_value_splat *p, int n, int first,
     return count;
 }
 
-/* Some phases of slab `n`. */
+/* Some phases of slab `n`; of each kind of tile there is one such function. */
 TARGET VALUE_INLINE bool NAME(slab)(const snow_value_splat *p, int n, int first,
                                     int end, const int tile[2],
                                     snow_value_plane *planes, value_room *room,
@@ -411,7 +411,7 @@ static inline bool NAME(alive)(const value_room *room, int first, int end) {
 TARGET VALUE_INLINE bool NAME(phases)(const snow_value_splat *p, int first,
                                       int end, const int tile[2],
                                       snow_value_plane *planes,
-                                      value_room *room, const int channels,
+                                      value_room *room, value_slab_fn *draw,
                                       const bool sloped, const bool eye) {
     value_list list =
         value_list_begin(p, first, end, tile, value_slabs(p, room));
@@ -433,9 +433,8 @@ TARGET VALUE_INLINE bool NAME(phases)(const snow_value_splat *p, int first,
             (p, slabs[seen], first, end, tile, room,
              room->slab[seen % AHEAD_RING], sloped, eye);
         }
-        drawn |=
-            NAME(slab)(p, slabs[turn], first, end, tile, planes, room,
-                       room->slab[turn % AHEAD_RING], channels, sloped, eye);
+        drawn |= draw(p, slabs[turn], first, end, tile, planes, room,
+                      room->slab[turn % AHEAD_RING]);
         if (!NAME(alive)(room, first, end))
             break;
     }
@@ -447,7 +446,7 @@ TARGET VALUE_INLINE bool NAME(phases)(const snow_value_splat *p, int first,
 TARGET VALUE_INLINE bool NAME(phases_eye)(const snow_value_splat *p,
                                           const int tile[2],
                                           snow_value_plane *planes,
-                                          value_room *room, const int channels,
+                                          value_room *room, value_slab_fn *draw,
                                           const bool sloped) {
     value_list list =
         value_list_begin(p, 0, p->phases, tile, value_slabs(p, room));
@@ -464,15 +463,15 @@ TARGET VALUE_INLINE bool NAME(phases_eye)(const snow_value_splat *p,
             NAME(look_ahead)
             (p, list.slabs[turn], first, end, tile, room, room->slab[0], sloped,
              true);
-            drawn |= NAME(slab)(p, list.slabs[turn], first, end, tile, planes,
-                                room, room->slab[0], channels, sloped, true);
+            drawn |= draw(p, list.slabs[turn], first, end, tile, planes, room,
+                          room->slab[0]);
         }
     }
     return drawn;
 }
 
 TARGET VALUE_INLINE bool NAME(tile)(const snow_value_splat *p, int x, int y,
-                                    void *memory, const int channels,
+                                    void *memory, value_slab_fn *draw,
                                     const bool sloped, const bool eye) {
     snow_value_plane *planes = memory;
     value_room *room =
@@ -488,19 +487,26 @@ TARGET VALUE_INLINE bool NAME(tile)(const snow_value_splat *p, int x, int y,
     if (eye)
         NAME(aim)(p, tile, room);
     if (eye && p->phases > TOGETHER)
-        return NAME(phases_eye)(p, tile, planes, room, channels, sloped);
+        return NAME(phases_eye)(p, tile, planes, room, draw, sloped);
     for (int first = 0; first < p->phases; first += TOGETHER) {
         int end = first + TOGETHER < p->phases ? first + TOGETHER : p->phases;
-        drawn |= NAME(phases)(p, first, end, tile, planes, room, channels,
-                              sloped, eye);
+        drawn |=
+            NAME(phases)(p, first, end, tile, planes, room, draw, sloped, eye);
     }
     return drawn;
 }
 
 #define VALUE_TILE(kind, channels, sloped, eye)                            \
+    TARGET VALUE_ONCE bool NAME(slab_##kind)(                              \
+        const snow_value_splat *p, int n, int first, int end,              \
+        const int tile[2], snow_value_plane *planes, value_room *room,     \
+        value_slab *slabs) {                                               \
+        return NAME(slab)(p, n, first, end, tile, planes, room, slabs,     \
+                          channels, sloped, eye);                          \
+    }                                                                      \
     TARGET static bool NAME(tile_##kind)(const snow_value_splat *p, int x, \
                                          int y, void *room) {              \
-        return NAME(tile)(p, x, y, room, channels, sloped, eye);           \
+        return NAME(tile)(p, x, y, room, NAME(slab_##kind), sloped, eye);  \
     }
 VALUE_TILE(grey, 2, false, false)
 VALUE_TILE(color, 4, false, false)

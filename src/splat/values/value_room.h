@@ -35,6 +35,11 @@
 #define VALUE_STAGE VALUE_INLINE
 #endif
 
+/* Long functions that are called once for a slab or a phase of it: a copy in
+ * each kind of tile would gain nothing, and take the compiler three times as
+ * long. */
+#define VALUE_ONCE static __attribute__((noinline, unused))
+
 /* WebAssembly has no instruction that asks the cache for memory. */
 #if defined(__wasm__)
 #define VALUE_ASKS 0
@@ -141,6 +146,11 @@ typedef struct value_room {
     float slope[2][2];    /* perspective: snow_value_rays' of the tile */
     value_rows rows[][2]; /* [phase][sheet & 1] */
 } value_room;
+
+/* Draws phases `first` .. `end` - 1 of slab `n`; whether it has anything. */
+typedef bool value_slab_fn(const snow_value_splat *splat, int n, int first,
+                           int end, const int tile[2], snow_value_plane *planes,
+                           value_room *room, value_slab *slabs);
 
 /* Behind the rows: the borders of a queue, of some pictures; the slabs of a
  * tile that may be seen. */
