@@ -33,6 +33,14 @@
 #define SNOW_HAS_V128 0
 #endif
 
+/* What the thread sanitizer does not look at. For loops that hold no atomics:
+ * it calls a function for each vector that they load or store. */
+#if defined(__SANITIZE_THREAD__)
+#define SNOW_UNWATCHED __attribute__((no_sanitize("thread")))
+#else
+#define SNOW_UNWATCHED
+#endif
+
 /* `name` with the suffix of an instruction set, which was resolved. */
 #if SNOW_HAS_AVX
 #define SNOW_OF_ISA(isa, name)                \

@@ -7,7 +7,8 @@
  * A template then uses
  *
  *   LANES         floats of a vector: 4, 8 or 16
- *   TARGET        attribute of each function of the template
+ *   TARGET        attribute of each function of the template, and TARGET_ALSO,
+ *                 which a file may define before (not of scalar)
  *   NAME(word)    word with the instruction set appended, as in over_avx2
  *   V(vec)        the vector type
  *   VC(word, n)   V(word2) or V(word4): n is a macro of 2 or 4 channels
@@ -67,6 +68,9 @@
 #undef TARGET
 #undef NAME
 #undef V
+#ifndef TARGET_ALSO
+#define TARGET_ALSO
+#endif
 #define VC(word, channels) SNOW_VC(word, channels)
 #define SNOW_VC(word, channels) V(word##channels)
 
@@ -79,13 +83,13 @@
 #elif defined(SELECT_AVX2)
 #undef SELECT_AVX2
 #define LANES SNOW_AVX2_LANES
-#define TARGET SNOW_AVX2_TARGET
+#define TARGET SNOW_AVX2_TARGET TARGET_ALSO
 #define NAME(word) word##_avx2
 #define V(word) snow_avx2_##word
 #elif defined(SELECT_AVX512)
 #undef SELECT_AVX512
 #define LANES SNOW_AVX512_LANES
-#define TARGET SNOW_AVX512_TARGET
+#define TARGET SNOW_AVX512_TARGET TARGET_ALSO
 #define NAME(word) word##_avx512
 #define V(word) snow_avx512_##word
 #elif defined(SELECT_V128)

@@ -21,6 +21,7 @@ typedef struct entry_ways {
     float sum[ENTRIES][4], places[ENTRIES][4];
 } entry_ways;
 
+#define TARGET_ALSO SNOW_UNWATCHED
 #define TEMPLATE "classify/values/entries.tmpl.h"
 #include "simd/each_isa.h"
 

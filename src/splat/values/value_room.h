@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define TARGET_ALSO SNOW_UNWATCHED
+
 /* Constants that are handed on make each kind of tile's loops short.  That is a
  * lot of code: with sanitizers it would take minutes to compile, and a page
  * seconds to load. */
