@@ -7,7 +7,7 @@ PAGE=$HERE/../docs/clusters.md
 mkdir bin files
 ln -s "$TOOL" bin/snowglass
 ln -s "$(realpath "$MPI_TOOL")" bin/snowglass-mpi
-printf '#!/bin/sh\nexec timeout -k 5 120 "%s" "$@"\n' "$(command -v "$MPIEXEC")" \
+printf '#!/bin/sh\nexec timeout -k 5 360 "%s" "$@"\n' "$(command -v "$MPIEXEC")" \
     >bin/mpirun
 # As many ranks as the script asks for; options of srun itself are none here.
 printf '#!/bin/sh\nexec mpirun -n "$TASKS" "$@"\n' >bin/srun

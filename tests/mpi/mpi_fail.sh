@@ -2,7 +2,7 @@
 # mpi_fail.sh - what fails on one rank fails on all: one message that names the
 # rank, an exit code, no picture, and nobody waits.
 . "$(dirname "$0")/../support/mpi.sh"
-LIMIT=60
+LIMIT=180
 
 # job OPTION...: one rank in the folder a, and two more in b, whose files have
 # the same names.

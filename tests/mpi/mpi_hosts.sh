@@ -56,7 +56,7 @@ chmod +x agent
 # launch_hosts COMMAND...: idle ranks give the processor away, though they do
 # not see that it is shared.
 launch_hosts() {
-    inside 0 timeout -k 5 "${LIMIT:-120}" "$MPIEXEC" --hostfile hosts -n 6 \
+    inside 0 timeout -k 5 "${LIMIT:-360}" "$MPIEXEC" --hostfile hosts -n 6 \
         --mca plm_rsh_agent "$WORK/agent" --mca mpi_yield_when_idle 1 \
         --mca oob_tcp_if_include 10.77.0.0/24 \
         --mca btl_tcp_if_include 10.77.0.0/24 "$@"

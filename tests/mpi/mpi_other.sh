@@ -10,7 +10,7 @@ for name in mpirun.openmpi mpirun.mpich; do
         "$("$MPIEXEC" --version 2>&1 | head -1)" ] || other=$path
 done
 [ -n "$other" ] || skip "there is one MPI only"
-run 2 "ranks of another MPI" timeout 60 "$other" -n 3 "$MPI_TOOL" phantom:head \
+run 2 "ranks of another MPI" timeout 180 "$other" -n 3 "$MPI_TOOL" phantom:head \
     --dims 32x32x32 -o out.png
 says '^snowglass: 3 processes were started by'
 check "one of them says so" [ "$(grep -c '^snowglass: ' "$ERR")" -eq 1 ]

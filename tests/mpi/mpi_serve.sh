@@ -8,8 +8,8 @@ need_proc
     skip "the viewer of many ranks is not built"
 is_open_mpi || skip "only the jobs of Open MPI are looked into"
 LIVE=$TESTS/live_simulation
-[ ! -x "$LIVE" ] || timeout -k 5 200 python3 -B "$HERE/serve/live.py" "$TOOL" \
+[ ! -x "$LIVE" ] || timeout -k 5 600 python3 -B "$HERE/serve/live.py" "$TOOL" \
     "$MPIEXEC" "$LIVE" || FAILED=1
-timeout -k 5 380 python3 -B "$HERE/serve/many_ranks.py" "$TOOL" "$MPIEXEC" \
+timeout -k 5 1140 python3 -B "$HERE/serve/many_ranks.py" "$TOOL" "$MPIEXEC" \
     "$MPI_TOOL" || FAILED=1
 finish

@@ -4,7 +4,7 @@
 # rank that goes on in time is waited for.
 . "$(dirname "$0")/../support/mpi.sh"
 need_proc
-LIMIT=180
+LIMIT=540
 
 # begin WHEN COMMAND...: starts four ranks, and stops rank $RANK once WHEN is
 # true.
@@ -14,7 +14,7 @@ begin() {
     victim=
     launch 4 "$@" >"$OUT" 2>"$ERR" </dev/null &
     job=$!
-    while [ -z "$victim" ] && [ $tries -lt 300 ]; do
+    while [ -z "$victim" ] && [ $tries -lt 900 ]; do
         sleep 0.1
         tries=$((tries + 1))
         eval "$when" && victim=$(process_of_rank "$RANK")
@@ -30,7 +30,7 @@ stalled() {
     started=$(date +%s)
     wait "$job"
     check "$NAME: the job fails" [ $? -ne 0 ]
-    check "$NAME: within 20 s" [ $(($(date +%s) - started)) -le 20 ]
+    check "$NAME: within a minute" [ $(($(date +%s) - started)) -le 60 ]
     # A launcher that ends the job lets go of the stopped rank first, which
     # then says that it was interrupted.
     check "$NAME: one message" [ "$(grep '^snowglass: ' "$ERR" |
@@ -76,7 +76,7 @@ for timeout in 24 0; do
     if [ $timeout -eq 0 ]; then
         sleep 5
     else
-        check "$NAME: a line says how long they do" line_comes 20
+        check "$NAME: a line says how long they do" line_comes 60
     fi
     check "$NAME: the others wait" [ ! -e f_000399.png ]
     [ -n "$victim" ] && kill -CONT "$victim"

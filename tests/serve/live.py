@@ -45,7 +45,7 @@ def simulate():
 def end(simulation):
     """Steps, and the longest in seconds."""
     open("stop", "w").close()
-    told, said = simulation.communicate(timeout=60)
+    told, said = simulation.communicate(timeout=180)
     check("the simulation ends well", simulation.returncode == 0, told + said)
     steps, longest = told.split()[:2]
     return int(steps), float(longest)
@@ -60,7 +60,7 @@ def number(name):
     return int(name[2:7])
 
 
-def wait_for(what, seconds=30):
+def wait_for(what, seconds=90):
     stop = time.monotonic() + seconds
     while time.monotonic() < stop:
         found = what()
@@ -204,7 +204,7 @@ def slow_pages():
     time.sleep(3)
     beside = (number(newest()) - first) / (time.monotonic() - begin)
     # As many steps as fill what lies between the viewer and the pages.
-    went_on = wait_for(lambda: number(newest()) >= first + 20, 120)
+    went_on = wait_for(lambda: number(newest()) >= first + 20, 360)
     server.process.kill()
     steps, longest = end(simulation)
     print(f"       {alone:.1f} steps a second alone, {beside:.1f} beside a viewer "
@@ -222,20 +222,20 @@ def refused():
     for text, recipe in cases.items():
         write(recipe, "wrong.json")
         done = subprocess.run([TOOL, "serve", "--live", "wrong.json"],
-                              capture_output=True, text=True, timeout=20)
+                              capture_output=True, text=True, timeout=60)
         check(f"{recipe} is refused", done.returncode and text in done.stderr
               and done.stderr.count("\n") == 1, done.stderr)
     write(RECIPE, "right.json")
     for words in (["--azimuth", "30"], ["--preset", "ct-bone"],
                   ["--mask", "none.nrrd"], ["--deterministic"], ["-j", "2"]):
         done = subprocess.run([TOOL, "serve", "--live", "right.json", *words],
-                              capture_output=True, text=True, timeout=20)
+                              capture_output=True, text=True, timeout=60)
         check(f"{words} is refused, which the recipe says", done.returncode and
               "cannot be given with --live" in done.stderr
               and done.stderr.count("\n") == 1, done.stderr)
     for words in (["look.json", "--live", "wrong.json"], ["--live", "none.json"]):
         done = subprocess.run([TOOL, "serve", *words], capture_output=True,
-                              text=True, timeout=20)
+                              text=True, timeout=60)
         check(f"{words} is refused", done.returncode and
               done.stderr.count("\n") == 1, done.stderr)
 

@@ -25,7 +25,7 @@ is_open_mpi() {
 launch() {
     local ranks=$1
     shift
-    timeout -k 5 "${LIMIT:-120}" "$MPIEXEC" -n "$ranks" "$@"
+    timeout -k 5 "${LIMIT:-360}" "$MPIEXEC" -n "$ranks" "$@"
 }
 
 # Processes of a job are found in /proc, and its messages name them by it.
