@@ -131,7 +131,7 @@ static snow_status draw_edges(const box_view *b) {
 
 /* --- axes ----------------------------------------------------------------- */
 
-/* Of an axis: where it is in the picture, and what its ends are called. */
+/* An axis: where it is in the picture, and what its ends are called. */
 typedef struct box_axis {
     double ends[2][3], pixels[2][2];
     double out[2];  /* unit vector, away from the box */

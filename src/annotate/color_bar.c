@@ -180,8 +180,8 @@ static double pixels_of_decade(const color_bar *bar) {
     return fabs(place_of(bar, side * top) - place_of(bar, side * top / 10));
 }
 
-/* Of decade `power` on one side of 0: its number, or a stroke where there is no
- * room for all; and what room allows between it and the next. */
+/* Adds decade `power` on one side of 0: its number, or a stroke where there is
+ * no room for all; and what room allows between it and the next. */
 static void add_decade(const color_bar *bar, int power, int each, double side,
                        bar_ticks *ticks) {
     double room = pixels_of_decade(bar) / bar->height, ten = pow(10, power);

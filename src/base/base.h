@@ -77,7 +77,7 @@ snow_status snow_fail_in_file(snow_context *context, snow_status status,
 
 /* --- memory -------------------------------------------------------------- */
 
-/* As snow_allocate, but of zeros. */
+/* Does what snow_allocate does, but of zeros. */
 void *snow_allocate_clear(snow_context *context, size_t bytes);
 
 /* The same for an array; its size is checked for overflow. */

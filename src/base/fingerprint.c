@@ -23,8 +23,8 @@ uint64_t snow_hash_mix(uint64_t hash, const void *bytes, size_t size) {
     return hash;
 }
 
-/* Of a path in an open folder, or of one from where the process is.  -1: it
- * cannot be read. */
+/* The hash of a file at a path in an open folder, or from where the process
+ * is. -1: it cannot be read. */
 static int64_t hash_blocks(int folder, const char *path, int64_t size) {
     unsigned char block[BLOCK];
     uint64_t hash = SNOW_HASH_START;

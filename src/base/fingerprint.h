@@ -5,8 +5,8 @@
 
 #include "base/base.h"
 
-/* Of a folder: of names and sizes of the regular files directly in it, and of
- * blocks of a few; folders in it are not looked into. */
+/* The fingerprint of a folder is that of names and sizes of the regular files
+ * directly in it, and of blocks of a few; folders in it are not looked into. */
 typedef struct snow_fingerprint {
     int64_t bytes;   /* of the file, or of all files */
     int64_t changed; /* seconds since 1970; 0 for a folder */

@@ -122,7 +122,7 @@ typedef struct span_rows {
     unsigned char *seen; /* whether they have interesting voxels */
 } span_rows;
 
-/* Of a worker, who has slices of its own. */
+/* What a worker counts, who has slices of its own. */
 typedef struct counting {
     const snow_block_counts *block_counts;
     int64_t *counts;        /* the first worker's are those of all at last */

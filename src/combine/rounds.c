@@ -249,7 +249,7 @@ static void search_rounds(search *s, int left, double seconds) {
     }
 }
 
-/* As many rounds of one radix as necessary, the last with the rest. */
+/* Takes as many rounds of one radix as necessary, the last with the rest. */
 static void repeat_radix(snow_rounds *rounds, int rank_order, int radix) {
     rounds->count = 0;
     for (int left = rank_order; left > 1; left = (left + radix - 1) / radix)

@@ -96,8 +96,9 @@ typedef struct snow_loan {
     uint64_t offset, bytes;
 } snow_loan;
 
-/* As snow_comm_send, for bytes in the memory of snow_comm_take_shared. They
- * stay as they are until `returned` is done; *loan stays until `sent` is. */
+/* Does what snow_comm_send does, for bytes in the memory of
+ * snow_comm_take_shared. They stay as they are until `returned` is done; *loan
+ * stays until `sent` is. */
 snow_status snow_comm_lend(snow_comm *comm, const void *bytes, size_t count,
                            int to, int tag, snow_loan *loan, snow_message *sent,
                            snow_message *returned);

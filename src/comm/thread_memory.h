@@ -14,7 +14,7 @@ typedef struct snow_thread_memory {
     int rank;
 } snow_thread_memory;
 
-/* As in snow_comm_ops. */
+/* They are those of snow_comm_ops. */
 int snow_thread_memory_node(void *self, int rank);
 snow_status snow_thread_memory_share(void *self, size_t bytes, void **own);
 const void *snow_thread_memory_shared(void *self, int rank);

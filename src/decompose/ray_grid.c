@@ -79,7 +79,7 @@ int64_t snow_ray_grid_place(const snow_ray_grid *g, int axis, int64_t voxel) {
 
 /* --- what is drawn -------------------------------------------------------- */
 
-/* Of the volume's voxels in cell n along axis i those that are counted. */
+/* How many of the volume's voxels in cell n along axis i are counted. */
 static double counted(const snow_ray_grid *g, int i, int64_t n) {
     const int64_t step = g->view.axes[i] == 2 ? g->step : 1;
     int64_t first = n * g->cell[i], end = first + g->cell[i];
@@ -120,7 +120,7 @@ void snow_ray_walk_free(snow_context *context, snow_ray_walk *w) {
     snow_release(context, w->closed);
 }
 
-/* Of costs: what is there, and what of it is drawn. */
+/* The costs of what is there, and of what is drawn of it. */
 typedef struct work {
     float all, drawn;
 } work;

@@ -26,7 +26,7 @@
 
 #include <string.h>
 
-/* Of a buffer, about. */
+/* A buffer has about so many bytes. */
 #define ROUND_BYTES ((int64_t)4 << 20)
 
 /* A part of a message, or of the copy within a rank: voxels of one box. */

@@ -67,8 +67,8 @@ float snow_half_to_float(uint16_t half);
  * first are red, green and blue, as in a photograph, the next opacity. */
 void snow_channels_begin(snow_volume_info *info, int64_t count, bool shown);
 
-/* As many whole letters of a name as there is room for; '?' for a byte that
- * begins none in UTF-8. */
+/* Copies as many whole letters of a name as fit; '?' for a byte that begins
+ * none in UTF-8. */
 void snow_copy_name(const char *text, char *out, size_t size);
 void snow_channels_are_colors(snow_volume_info *info);
 

@@ -158,8 +158,8 @@ snow_status snow_volume_pick_channel(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* As ParaView shows vectors: by their length.  Four components may be anything,
- * and whole numbers are most often colours. */
+/* Vectors are shown by their length, as ParaView does. Four components may be
+ * anything, and whole numbers are most often colours. */
 static bool is_vector(int64_t count, snow_type type) {
     return (count == 2 || count == 3) &&
            (type == SNOW_TYPE_FLOAT32 || type == SNOW_TYPE_FLOAT64);

@@ -127,7 +127,7 @@ static inline void snow_image_turn(double matrix[4][4]) {
 /* Whether a file name ends as those of the format do. */
 bool snow_format_has_name(const snow_format *format, const char *name);
 
-/* As snow_format_of_name; handed to readers of many files. */
+/* Does what snow_format_of_name does; handed to readers of many files. */
 typedef const snow_format *snow_format_finder(const char *name);
 
 /* The format whose files begin like these bytes; the one of a file name; NULL

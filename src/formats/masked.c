@@ -99,7 +99,7 @@ static void write_box(const snow_volume_info *info, char text[128]) {
              ends[0][1], ends[1][0], ends[1][1], ends[2][0], ends[2][1]);
 }
 
-/* Of a mask on another grid its part is read that the box needs. */
+/* A mask on another grid is read as far as the box needs it. */
 static snow_status crop_mask(opening *o, const snow_volume_info *volume) {
     static const int64_t none[3][2];
     char at[2][128];

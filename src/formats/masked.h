@@ -4,12 +4,12 @@
 
 #include "volume/stream.h"
 
-/* As snow_volume_open with options that name a mask, labels or planes; where
- * `out` is NULL, as snow_volume_inspect.  `open` opens each of the two files,
- * and never gets such options.  Headers of both are compared before any voxel
- * is read.  Errors: also SNOW_STATUS_BAD_INPUT (another grid; whatever is wrong
- * with the mask), SNOW_STATUS_BAD_USAGE (labels without a mask, or that are
- * none). */
+/* Does what snow_volume_open does with options that name a mask, labels or
+ * planes; where `out` is NULL, as snow_volume_inspect. `open` opens each of
+ * the two files, and never gets such options. Headers of both are compared
+ * before any voxel is read. Errors: also SNOW_STATUS_BAD_INPUT (another grid;
+ * whatever is wrong with the mask), SNOW_STATUS_BAD_USAGE (labels without a
+ * mask, or that are none). */
 snow_status snow_masked_open(snow_context *context, const char *path,
                              const snow_volume_options *options,
                              snow_open_fn *open, snow_volume_info *info,

@@ -15,8 +15,9 @@ snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer);
 int snow_print_numbers(char *text, size_t room, const double *values, int count,
                        const char *between);
 
-/* As snow_format's write.  Errors: SNOW_STATUS_BAD_USAGE when the format cannot
- * say what the volume is (a scaling of values, say), those of the writer. */
+/* Writes as a snow_format does. Errors: SNOW_STATUS_BAD_USAGE when the format
+ * cannot say what the volume is (a scaling of values, say), those of the
+ * writer. */
 snow_status snow_nrrd_write(const snow_volume *volume, const char *path,
                             snow_writer *writer);
 snow_status snow_nifti_write(const snow_volume *volume, const char *path,

@@ -17,8 +17,8 @@ struct snow_image {
     float *pixels;      /* [(y * width + x) * channels] */
 };
 
-/* As snow_image_new, but the pixels are undefined.  For readers, which fill
- * them: a false size in a file then costs only address space. */
+/* Does what snow_image_new does, but the pixels are undefined. For readers,
+ * which fill them: a false size in a file then costs only address space. */
 snow_status snow_image_make(snow_context *context, int width, int height,
                             int channels, snow_image **out);
 

@@ -15,7 +15,7 @@ typedef struct snow_output_file {
     bool overwrite;    /* may `path` be replaced? */
 } snow_output_file;
 
-/* As snow_writer_open; after a failure nothing is left. */
+/* Does what snow_writer_open does; after a failure nothing is left. */
 snow_status snow_output_file_open(snow_context *context, const char *path,
                                   bool overwrite, snow_output_file *out);
 

@@ -6,7 +6,7 @@
 #include "base/relay.h"
 #include "io/source.h"
 
-/* As snow_source_open; `relay` may be NULL. */
+/* Does what snow_source_open does; `relay` may be NULL. */
 snow_status snow_source_open_relayed(snow_context *context, const char *path,
                                      snow_relay *relay, snow_source **out);
 

@@ -21,10 +21,10 @@ typedef struct mpi_side {
     bool failed;    /* MPI's state is unknown: it is not used any more */
     mpi_slot *slots;
     int slot_count;
-    /* Of the last wait: its requests. */
+    /* These are the requests of the last wait. */
     MPI_Request *requests;
-    int *places; /* indices of the requests among the messages */
-    int *peers;  /* of the requests */
+    int *places;    /* indices of the requests among the messages */
+    int *peers;     /* of the requests */
     mpi_node *node; /* what the ranks of this node share, or NULL: nothing */
     snow_idle_fn *meanwhile; /* other work done in waits, or NULL */
     void *meanwhile_user;

@@ -16,7 +16,7 @@ snow_status snow_mpi_node_new(snow_context *context, MPI_Comm group,
 /* Collective if it is orderly. */
 void snow_mpi_node_free(mpi_node *node, bool orderly);
 
-/* As in snow_comm_ops. */
+/* They are those of snow_comm_ops. */
 int snow_mpi_node_of(void *self, int rank);
 snow_status snow_mpi_share(void *self, size_t bytes, void **own);
 const void *snow_mpi_shared(void *self, int rank);

@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Of a picture's side that the bounds fill. */
+/* The bounds fill so much of a picture's side. */
 #define FILLED 0.92
 
 /* The largest places of voxels: before the first camera along right, up and

@@ -41,8 +41,8 @@ snow_status snow_in_flight_agree_range(snow_in_flight *f) {
                                         words[HOLES] == 0);
 }
 
-/* Of the volume and of its layers.  A part without voxels of its own has none
- * that count. */
+/* Finds the ranges of the volume and of its layers. A part without voxels of
+ * its own has none that count. */
 static snow_status measure_values(snow_in_flight *f, snow_data_range *range) {
     snow_extent part;
     const snow_job *job = &f->picture.job;

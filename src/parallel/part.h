@@ -55,8 +55,8 @@ snow_ranks_distribute(snow_comm *comm, const snow_volume_info *whole,
  * The name of format `index` (snow_format_name). */
 typedef const char *snow_format_name_fn(size_t index);
 
-/* As snow_ranks_open, by functions that open files, which this folder does not
- * know. */
+/* Does what snow_ranks_open does, by functions that open files, which this
+ * folder does not know. */
 snow_status
 snow_ranks_open_by(snow_open_fn *open, snow_open_relayed_fn *open_relayed,
                    snow_format_name_fn *format_name, snow_comm *comm,

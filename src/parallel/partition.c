@@ -16,7 +16,7 @@
  * docs/measurements/ranks.md). */
 #define COST_OF_SPAN 24
 
-/* Of a volume that has more, about so many slices are counted: slabs by those
+/* About so many slices of a volume that has more are counted: slabs by those
  * of a step are as equal. */
 #define SLICES_COUNTED 256
 

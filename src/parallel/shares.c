@@ -43,8 +43,8 @@ static int64_t largest_of(const layout *l) {
     return longest_of(l, 2, l->slabs) * longest_of(l, 1, l->parts);
 }
 
-/* As many slabs as there can be, or fewer, if the largest share of blocks is
- * smaller then. */
+/* There are as many slabs as there can be, or fewer, if the largest share of
+ * blocks is smaller then. */
 static layout lay_out(const int64_t dims[3], const snow_file_blocks *blocks,
                       int ranks) {
     const bool packed = blocks && blocks->size[2] > 0;

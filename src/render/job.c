@@ -38,7 +38,7 @@ bool snow_can_lack_voxels(const snow_settings *settings) {
            settings->method == SNOW_METHOD_SHEAR_WARP;
 }
 
-/* Of a part that lacks what another look showed nothing of. */
+/* Checks a part that lacks what another look showed nothing of. */
 static snow_status check_left_out(const snow_job *job) {
     const snow_volume_info *info = &job->volume->info;
     const snow_left_out *left = &job->volume->left_out;

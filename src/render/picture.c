@@ -24,8 +24,8 @@ static snow_render_pass *add_pass(snow_picture *p, const snow_job *job) {
     return pass;
 }
 
-/* Of over footprints once more, with an eye on opacity alone; of isosurfaces
- * rays. */
+/* Depths of over are found by footprints once more, of opacity alone; those of
+ * isosurfaces by rays. */
 static void add_depth(snow_picture *p) {
     const bool iso = p->job.settings.mode == SNOW_MODE_ISO;
     snow_render_pass *pass = add_pass(p, &p->job);
@@ -120,9 +120,10 @@ snow_status snow_picture_plan(snow_picture *p, const snow_request *asked) {
     request.view = &p->view;
     snow_status found = read_request(p, asked, &settings);
     memcpy(message, p->frame->context->message, sizeof message);
-    /* Also where there is nothing to plan: all ranks begin in the same way. */
+    /* This is done even where there is nothing to plan, so that all ranks
+     * begin in the same way. */
     snow_status status = plan_job(p, &request);
-    /* As in snow_picture_plan_mode. */
+    /* It is as in snow_picture_plan_mode. */
     if (status != SNOW_STATUS_OK && !p->pass_count)
         add_pass(p, &p->job);
     return found == SNOW_STATUS_OK

@@ -75,7 +75,7 @@ typedef struct snow_local_image {
     /* Deterministic ones of the exact methods have a layer for each node. */
     int layers;
     snow_group_node nodes[SNOW_NODES_MOST];
-    /* Of methods that warp. */
+    /* Methods that warp fill these. */
     snow_placement placement;
     snow_shear_warp_image image;
     bool begun; /* by shear-warp: it has what all parts share */
@@ -145,13 +145,14 @@ bool snow_group_rises(const snow_placement *placement, snow_group_node node);
 extern const snow_render_method snow_method_exact, snow_method_groups,
     snow_method_raycast, snow_method_shear_warp;
 
-/* Of snow_method_exact (exact/exact.c): frees its buffers, which are kept from
- * picture to picture; adds a job's voxels and bytes to job->stats, once its
- * image is made.  Errors: SNOW_STATUS_NO_MEMORY. */
+/* These belong to snow_method_exact (exact/exact.c). The first frees
+ * its buffers, which are kept from picture to picture; adds a job's
+ * voxels and bytes to job->stats, once its image is made. Errors:
+ * SNOW_STATUS_NO_MEMORY. */
 void snow_exact_free(snow_exact *exact);
 snow_status snow_exact_count(snow_exact *exact, const snow_job *job);
 
-/* Of one process. */
+/* One process has nothing to combine. */
 extern const snow_combine_ops snow_combine_alone;
 
 /* Collective.  Darkens a picture that has its depths, by settings.occlusion and

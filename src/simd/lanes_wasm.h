@@ -60,8 +60,9 @@ static inline void snow_lanes_widen(snow_scalar_eighth a,
     out[1] = snow_wasm_floats(wasm_i16x8_shuffle(v, v, 4, 4, 5, 5, 6, 6, 7, 7));
 }
 
-/* As row_round.  Of a sum with 1.5 2^23 the lower bits are the number, which
- * browsers find in fewer steps than by WebAssembly's conversion. */
+/* Does what row_round does. Of a sum with 1.5 2^23 the lower bits are
+ * the number, which browsers find in fewer steps than by WebAssembly's
+ * conversion. */
 static inline v128_t snow_wasm_whole(snow_scalar_vec v) {
     return wasm_i32x4_sub((v128_t)(v + 12582912.0F),
                           wasm_i32x4_splat(0x4B400000));
@@ -88,7 +89,7 @@ static inline uint32_t snow_wasm_hidden(uint32_t count) {
     return count;
 }
 
-/* Of masks of 32 rows four at a time; rows.h says what. */
+/* Takes masks of 32 rows four at a time; rows.h says how. */
 static inline void snow_lanes_window(const uint32_t *low, const uint32_t *high,
                                      int shift, uint32_t *out) {
     const uint32_t count = snow_wasm_hidden((uint32_t)shift);

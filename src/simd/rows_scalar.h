@@ -5,7 +5,7 @@
 
 #include "simd/vec_scalar.h"
 
-/* Of each byte of a mask: the bytes of the numbers that it keeps, and where
+/* For each byte of a mask: the bytes of the numbers that it keeps, and where
  * kept ones come from. */
 extern const uint8_t snow_rows_compress[256][16], snow_rows_expand[256][16];
 

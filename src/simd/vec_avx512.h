@@ -25,7 +25,7 @@ typedef uint64_t snow_avx512_wide __attribute__((vector_size(64)));
 #define INLINE SNOW_AVX512_INLINE
 #include "simd/vec_avx.tmpl.h"
 
-/* Of each of two vectors the quarters i and j, added to those behind them. */
+/* Adds the quarters i and j of each of two vectors to those behind them. */
 #define SNOW_AVX512_FOLD(a, b, first, second)        \
     _mm512_add_ps(_mm512_shuffle_f32x4(a, b, first), \
                   _mm512_shuffle_f32x4(a, b, second))

@@ -153,7 +153,7 @@ static inline void snow_scalar_scatter4(float *p, const uint32_t *n,
     snow_scalar_store(p + (size_t)n[0] * 4, v);
 }
 
-/* As two words each, ignoring their signs. */
+/* Takes them as two words each, and ignores their signs. */
 static inline unsigned snow_scalar_nonzero4(const float *p) {
     const uint64_t numbers = 0x7fffffff7fffffff;
     unsigned bits = 0;

@@ -41,7 +41,7 @@ snow_perspective_splatter_begin_slice(snow_context *context,
                                       snow_perspective_splatter *splatter,
                                       int64_t slice, bool *seen);
 
-/* As snow_splat_row. */
+/* Does what snow_splat_row does. */
 void snow_perspective_splat_row(const snow_perspective_splatter *splatter,
                                 snow_sheet *sheet, int64_t row,
                                 const snow_span *spans, size_t count,

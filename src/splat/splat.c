@@ -27,7 +27,7 @@ static inline float box_weight(const snow_splatter *splatter, float u,
            snow_scaled_kernel_box(&splatter->along_v, (double)v);
 }
 
-/* As fmin and fmax, but inline; there are no NaNs here. */
+/* They are fmin and fmax, but inline; there are no NaNs here. */
 static inline double smaller(double a, double b) {
     return a < b ? a : b;
 }

@@ -37,7 +37,7 @@ static const map_point grey[] = {{0, 0x000000}, {510, 0xffffff}};
 static const map_point dim_grey[] = {{0, 0x000000}, {510, 0xf7f7f7}};
 static const map_point light_grey[] = {{0, 0xa6a6a6}, {510, 0xffffff}};
 
-/* Of channels. */
+/* These are the maps of channels. */
 static const map_point red[] = {{0, 0x000000}, {510, 0xff0000}};
 static const map_point green[] = {{0, 0x000000}, {510, 0x00ff00}};
 static const map_point blue[] = {{0, 0x000000}, {510, 0x0000ff}};

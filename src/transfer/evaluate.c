@@ -13,8 +13,8 @@
 #include <math.h>
 #include <string.h>
 
-/* As part_of_way on a logarithmic scale; points with equal logarithms are
- * joined by a straight line. */
+/* Does what part_of_way does, on a logarithmic scale; points with equal
+ * logarithms are joined by a straight line. */
 double snow_part_of_decades(double value, double a, double b) {
     double from = snow_log2_rising(a), to = snow_log2_rising(b);
     if (!(from < to))

@@ -435,7 +435,8 @@ static snow_status make_among(snow_comm *comm, const snow_volume *volume,
     return SNOW_STATUS_OK;
 }
 
-/* Of one volume without a communicator; slabs of a file are read for it. */
+/* Without a communicator it is that of one volume; slabs of a file are read
+ * for it. */
 snow_status snow_ranks_new_transfer(snow_comm *comm, const snow_volume *volume,
                                     const snow_look *look,
                                     snow_transfer **out) {

@@ -24,8 +24,8 @@ static bool is_even(const void *bytes, size_t size) {
 /* Voxels between two questions for a stop. */
 #define BLOCK 65536
 
-/* Of the run of a walk, what lies in memory without a gap, up to a block; the
- * walk goes on behind it. */
+/* Returns what of the walk's run lies in memory without a gap, up to a block;
+ * the walk goes on behind it. */
 static const void *next_part(snow_voxel_walk *w, uint64_t *count) {
     const snow_volume *volume = w->volume;
     *count = w->end - w->at < BLOCK ? w->end - w->at : BLOCK;
@@ -153,7 +153,7 @@ static void join_extremes(const snow_volume *volume, int64_t first,
         data_value(volume, n->low) < 0 || data_value(volume, n->high) < 0;
 }
 
-/* Of the voxels that a volume answers for; `user` are extremes. */
+/* Finds the extremes, `user`, of the voxels that a volume answers for. */
 static snow_status find_extremes_of_part(const snow_volume *volume,
                                          void *user) {
     extremes *n = user;

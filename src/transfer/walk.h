@@ -29,7 +29,7 @@ typedef struct snow_voxel_walk {
     unsigned blocks;       /* so far */
 } snow_voxel_walk;
 
-/* Of a slab of the histogram's volume, or of its sample. */
+/* Walks over a slab of the histogram's volume, or of its sample. */
 snow_voxel_walk snow_voxel_walk_begin(const snow_histogram *histogram,
                                       const snow_volume *slab, bool log,
                                       snow_histogram_mode histogram_mode);

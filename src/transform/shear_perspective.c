@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-/* As in transform/shear.c. */
+/* The limit is that of transform/shear.c. */
 #define LONGEST_SIDE (1 << 20)
 #define BORDER 4
 

@@ -69,7 +69,7 @@ snow_status snow_view_from_name(snow_context *context, const char *name,
                      name);
 }
 
-/* Of patients axial slices are seen from the feet, as radiologists do. */
+/* Axial slices of patients are seen from the feet, as radiologists do. */
 static const char *default_name(const snow_volume_info *info) {
     static const char *const faces[2][3] = {{"+x", "-y", "+z"},
                                             {"left", "anterior", "inferior"}};

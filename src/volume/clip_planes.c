@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Of the least spacing: a voxel that lies in a plane stays, however the place
- * is rounded, which parts of a volume do differently. */
+/* This is a share of the least spacing: a voxel that lies in a plane stays,
+ * however the place is rounded, which parts of a volume do differently. */
 #define PLANE_TOLERANCE 1e-6
 
 bool snow_is_plane(const double plane[4]) {

@@ -21,9 +21,9 @@
 /* Beyond it doubles, through which masks are looked at, hold not all. */
 #define LABEL_MOST ((INT64_C(1) << 53) - 1)
 
-/* Of the least spacing: files that keep matrices in single precision, or as
- * quaternions, differ by less, and another convention for the middle of a voxel
- * by half. */
+/* This is a share of the least spacing: files that keep matrices in single
+ * precision, or as quaternions, differ by less, and another convention for the
+ * middle of a voxel by half. */
 #define PLACE_TOLERANCE 0.1
 
 /* --- labels --------------------------------------------------------------- */

@@ -75,7 +75,7 @@ static int64_t index_of(const regrid *r, const int64_t at[3]) {
            skip[0];
 }
 
-/* Of a place within, so that none is below 0. */
+/* The place is within, so that none is below 0. */
 static int64_t nearest_to(const regrid *r, const double at[3]) {
     int64_t voxel[3];
     for (int axis = 0; axis < 3; axis++) {

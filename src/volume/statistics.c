@@ -101,7 +101,7 @@ int32_t snow_type_lowest(snow_type type) {
         return true;                                               \
     }
 
-/* Of values in memory without a gap. */
+/* Finds the extremes of values in memory without a gap. */
 static bool find_extremes(const snow_volume *volume, int64_t first,
                           size_t count, int32_t *low, int32_t *high) {
     switch (volume->info.type) {

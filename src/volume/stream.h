@@ -20,7 +20,8 @@ typedef snow_status snow_open_fn(snow_context *context, const char *path,
                                  const snow_volume_options *options,
                                  snow_volume_info *info, snow_volume **out);
 
-/* As snow_volume_open_streamed; slabs are boxes of what `open` reads. */
+/* Does what snow_volume_open_streamed does; slabs are boxes of what `open`
+ * reads. */
 snow_status snow_stream_open(snow_context *context, const char *path,
                              const snow_volume_options *options,
                              uint64_t slab_bytes, snow_open_fn *open,

@@ -133,7 +133,7 @@ static snow_status read_slab(const snow_volume *volume,
     return SNOW_STATUS_OK;
 }
 
-/* As of a volume in memory: of one that is cropped nothing is said. */
+/* Nothing is said of a volume that is cropped, as of one in memory. */
 static void warn_empty(const snow_volume *volume) {
     static const int64_t none[3][2];
     snow_stream *stream = volume->stream;

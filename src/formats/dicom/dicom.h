@@ -111,7 +111,7 @@ int snow_dicom_compare_sources(const dicom_frame *a, const dicom_frame *b);
 
 /* --- parse.c, values.c ---------------------------------------------------- */
 
-/* Of the progress of reading a series, one part in so many is headers. */
+/* One part in so many of the progress of reading a series is headers. */
 #define DICOM_HEADER_SHARE 4
 
 #define DICOM_TAG_PIXELS 0x7fe00010u
@@ -293,7 +293,7 @@ void snow_dicom_stack_free(dicom_stack *stack);
 bool snow_dicom_among(snow_context *context, const snow_folder *files,
                       snow_format_finder *find);
 
-/* As a format's read, for all DICOM files of the list. */
+/* Reads as a format does, for all DICOM files of the list. */
 snow_status snow_dicom_read_files(snow_context *context, snow_folder *files,
                                   const snow_volume_options *options,
                                   snow_volume_info *info, snow_volume **out);

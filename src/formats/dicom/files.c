@@ -364,8 +364,8 @@ static void add_siblings(collection *c, const char *path, snow_folder *files) {
     warn_scraps(c);
 }
 
-/* Of a stack with several times, keeps the one that contains the given file;
- * returns false if none does. */
+/* Keeps the time of a stack that contains the given file; returns false if
+ * none does. */
 static bool keep_its_time(dicom_stack *stack, dicom_frame *frames) {
     size_t times = stack->times, count = stack->places * times, time = times;
     for (size_t i = 0; i < count; i++)

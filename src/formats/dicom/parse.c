@@ -194,8 +194,8 @@ static snow_status next_head(walk *w, coding how, head *out) {
     return SNOW_STATUS_OK;
 }
 
-/* Of pixels no more are inflated than are wanted; for the others the packed
- * bytes must suffice. */
+/* No more pixels are inflated than are wanted; for the others the packed bytes
+ * must suffice. */
 static snow_status check_length(walk *w, const head *h) {
     uint64_t bytes = h->length, most = w->size - w->at;
     if (h->tag == DICOM_TAG_PIXELS && bytes > w->pixels)

@@ -212,8 +212,8 @@ static snow_status empty_far(dicom_stack *s, const double normal[3]) {
     return SNOW_STATUS_OK;
 }
 
-/* Of segments only slices that are not empty need be there.  The distance is
- * the given one, or that of the closest two, if all lie on its grid. */
+/* Segments need only have the slices that are not empty. The distance is the
+ * given one, or that of the closest two, if all lie on its grid. */
 static snow_status space_sparse(dicom_stack *s, const double normal[3]) {
     const double steps[2] = {fabs(s->frames->depth), s->gap_least};
     for (int i = 0; i < 2; i++) {

@@ -200,7 +200,7 @@ static snow_axis_hint hint_of(const scales *s, hid_t scale, const char *path) {
     return snow_cf_hint(&words);
 }
 
-/* Of a dimension called time without coordinates (WRF): those of any variable
+/* The times of a dimension without coordinates (WRF) are those of any variable
  * along it that has the unit of a date. */
 static snow_status read_dates(const scales *s, hid_t scale,
                               const scale_use *uses, hssize_t count,

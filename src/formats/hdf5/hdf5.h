@@ -108,8 +108,9 @@ void snow_hdf5_place(snow_context *context, const hdf5_file *file,
                      const snow_volume_options *options, snow_volume_info *info,
                      cf_values *values, snow_uneven *grid);
 
-/* Of image data that VTK wrote: sets the matrix, false of others; the time;
- * which axes are time and components, if it has steps. */
+/* Image data that VTK wrote: the first sets the matrix, and is false for other
+ * data; then the time; then which axes are time and components, if it has
+ * steps. */
 bool snow_hdf5_place_image(const hdf5_file *file, const hdf5_set *set,
                            snow_volume_info *info);
 void snow_hdf5_time_image(const hdf5_file *file, const hdf5_set *set,

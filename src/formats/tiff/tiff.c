@@ -198,7 +198,7 @@ static void set_spacing(snow_tiff *file, tiff_plan *plan,
     memcpy(info->unit, shape->unit, sizeof info->unit);
 }
 
-/* Of samples that are colours the names are known. */
+/* Samples that are colours have known names. */
 static void tell_channels(const tiff_plan *plan, snow_volume_info *info) {
     const tiff_shape *shape = &plan->shape;
     const int64_t samples = plan->page.samples;

@@ -92,7 +92,7 @@ static bool probe_vtr(const unsigned char *bytes, size_t size) {
     return snow_vtk_probe_xml(bytes, size, "RectilinearGrid");
 }
 
-/* Also files of other types: the reader reports what a .vtp is. */
+/* Files of other types are taken too: the reader reports what a .vtp is. */
 static bool probe_vti(const unsigned char *bytes, size_t size) {
     return snow_vtk_probe_xml(bytes, size, NULL);
 }

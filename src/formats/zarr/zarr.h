@@ -272,7 +272,7 @@ snow_status snow_zarr_fill(const zarr_box *box, unsigned char *voxels);
  * one by its name. */
 bool snow_zarr_is(const char *path);
 
-/* As a format's `read`, for a folder. */
+/* Reads as a format does, for a folder. */
 snow_status snow_zarr_read_folder(snow_context *context, const char *path,
                                   const snow_volume_options *options,
                                   snow_volume_info *info, snow_volume **out);

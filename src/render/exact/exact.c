@@ -69,7 +69,7 @@ typedef struct pass {
     int64_t first, count; /* gathering: slices from the viewer */
 } pass;
 
-/* Of the frame; made when a picture needs it. */
+/* The frame's buffers are made when a picture needs them. */
 static snow_status new_exact(snow_frame *frame) {
     if (frame->exact)
         return SNOW_STATUS_OK;

@@ -7,8 +7,8 @@
 
 #include <math.h>
 
-/* Of the picture's short side: deviations of the two blurs, and the distance
- * behind what is beside that counts 1. */
+/* Deviations of the two blurs, and the distance behind what is beside that
+ * counts 1, all as shares of the picture's short side. */
 static const double deviations[] = {1.0 / 128, 1.0 / 43};
 #define UNIT (1.0 / 21)
 #define MOST 3.0     /* more does not count */

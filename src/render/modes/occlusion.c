@@ -241,7 +241,7 @@ static void find_open_line(void *of, int64_t y, int worker) {
     }
 }
 
-/* Of a pixel that is not opaque less is that of its depth. */
+/* The less opaque a pixel is, the less of it lies at its depth. */
 static void darken_pixels(const occlusion *o, snow_image *image) {
     const size_t count = (size_t)image->width * (size_t)image->height;
     const int channels = image->channels;

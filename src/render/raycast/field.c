@@ -200,7 +200,8 @@ double snow_field_value(const snow_field_window *w) {
 
 /* --- gradients ------------------------------------------------------------ */
 
-/* Of two values, times a factor; what is rounding alone has no direction. */
+/* The difference of two values, times a factor; what is rounding alone has no
+ * direction. */
 static double way_of(double from, double to, double factor) {
     return fabs(to - from) > 1e-13 * (fabs(from) + fabs(to))
                ? factor * (to - from)

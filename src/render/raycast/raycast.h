@@ -62,14 +62,14 @@ struct snow_raycast_pass {
     double depth[4];      /* of index position (x, y, z), and a constant */
     /* Values that a window must reach to be seen, in the field's units. */
     double visible[2];
-    /* Of iso. */
+    /* Mode iso has the surface's value and colour. */
     double level;
     float rgb[3];
     /* Layers drawn with it, of mode over. */
     struct snow_raycast_pass *layers;
     int layer_count;
     bool mixes; /* as a layer: with the one before it */
-    /* Of the other modes: a value's number is (value - from) / range. */
+    /* The other modes take a value as (value - from) / range. */
     double from, range;
 };
 
