@@ -25,7 +25,7 @@ static block_header *header_of(const void *block) {
     return (block_header *)((uintptr_t)block - SNOW_ALIGNMENT);
 }
 
-/* Whether so many bytes more are allowed; the context is locked. */
+/* Returns whether so many bytes more are allowed; the context is locked. */
 static bool may_hold(const snow_context *context, size_t bytes) {
     return !context->limit || (bytes <= context->limit &&
                                context->bytes <= context->limit - bytes);
@@ -55,14 +55,13 @@ static void *allocate_counted(snow_context *context, size_t bytes,
 /* The message about so many bytes that there are not. */
 static snow_status fail_memory(snow_context *context, size_t bytes,
                                uint64_t held) {
-    return snow_fail(context, SNOW_STATUS_NO_MEMORY,
-                     "out of memory: %zu bytes more are needed (%llu are "
-                     "allocated%s); %s",
-                     bytes, (unsigned long long)held,
-                     context->limit ? " under a limit" : "",
-                     context->limit
-                         ? "raise it or use a smaller volume"
-                         : "close other programs or use a smaller volume");
+    return snow_fail(
+        context, SNOW_STATUS_NO_MEMORY,
+        "out of memory: %zu bytes more are needed (%llu are "
+        "allocated%s); %s",
+        bytes, (unsigned long long)held, context->limit ? " under a limit" : "",
+        context->limit ? "raise it or use a smaller volume"
+                       : "close other programs or use a smaller volume");
 }
 
 void *snow_allocate(snow_context *context, size_t bytes) {

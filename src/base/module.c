@@ -124,10 +124,10 @@ static snow_status find_module(snow_context *context, const char *name,
     return SNOW_STATUS_OK;
 }
 
-/* Whether only those who may change the program may change the file: others
- * must not be able to inject code. A group may have write access if it is
- * root's, or one that may write to the program too: that is usual in folders of
- * users with their own group (umask 002). */
+/* Returns whether only those who may change the program may change the file:
+ * others must not be able to inject code. A group may have write access if it
+ * is root's, or one that may write to the program too: that is usual in
+ * folders of users with their own group (umask 002). */
 static bool is_ours(const struct stat *file, const struct stat *self) {
     bool owned = file->st_uid == 0 || file->st_uid == geteuid() ||
                  file->st_uid == self->st_uid;

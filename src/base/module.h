@@ -47,7 +47,7 @@ extern const char snow_module_stamp[];
 snow_status snow_module_load(snow_context *context, const char *name,
                              const snow_module **out);
 
-/* Whether it exists, by its name alone: nothing is loaded. */
+/* Returns whether it exists, by its name alone: nothing is loaded. */
 bool snow_module_is_there(const char *name);
 
 #endif

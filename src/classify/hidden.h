@@ -21,7 +21,7 @@ int snow_hidden_ranges(const snow_transfer *transfer,
                        const snow_volume_info *info, double threshold,
                        double spare, snow_hidden_range out[SNOW_HIDDEN_MOST]);
 
-/* Whether one of them has all values low .. high. */
+/* Returns whether one of them has all values low .. high. */
 bool snow_is_hidden(const snow_transfer *transfer, const snow_volume_info *info,
                     double threshold, double spare, double low, double high);
 

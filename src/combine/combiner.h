@@ -122,8 +122,8 @@ snow_status snow_traffic_receive(snow_combiner *combiner, snow_traffic *in,
                                  int i, int from, unsigned char *bytes,
                                  size_t capacity);
 
-/* Where message `i` is and how long, when it has come; NULL: it is no valid
- * loan. */
+/* Returns where message `i` is and how long, when it has come; NULL: it is no
+ * valid loan. */
 const unsigned char *snow_traffic_message(const snow_combiner *combiner,
                                           const snow_traffic *in, int i,
                                           int from, const unsigned char *bytes,

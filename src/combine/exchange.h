@@ -117,8 +117,8 @@ snow_status snow_exchange(snow_combiner *combiner,
 snow_status snow_exchange_begin(snow_combiner *combiner,
                                 const snow_exchange_params *params);
 
-/* Whether there is an n-th part that was not sent; it needs lines y0 .. y1 - 1
- * of the local image. */
+/* Returns whether there is an n-th part that was not sent; it needs lines y0
+ * .. y1 - 1 of the local image. */
 bool snow_exchange_awaits(const snow_combiner *combiner, int n, int *y0,
                           int *y1);
 

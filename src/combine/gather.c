@@ -155,7 +155,7 @@ static snow_status plan_tree(snow_combiner *combiner, int width, int height,
 
 /* --- blocks --------------------------------------------------------------- */
 
-/* Whether a run is inside the picture. */
+/* Returns whether a run is inside the picture. */
 static bool run_fits(const snow_gather_state *state,
                      const snow_pixel_run *run) {
     return run->x >= 0 && run->y >= 0 && run->count >= 0 &&
@@ -178,7 +178,7 @@ snow_status snow_gather_reserve(snow_combiner *combiner, int width, int height,
     return SNOW_RESERVE(combiner->comm->context, state->own, 0, bytes);
 }
 
-/* Whether the gap before a run is shorter than the cost of the run. */
+/* Returns whether the gap before a run is shorter than the cost of the run. */
 static bool crowds(const snow_gather_state *state, const snow_pixel_run *before,
                    const snow_pixel_run *run) {
     int64_t gap = (int64_t)run->x - before->x - before->count;

@@ -214,7 +214,7 @@ static double round_seconds(const search *s, int left, int radix) {
     return LATENCY + OVERHEAD * messages + (start > travel ? start : travel);
 }
 
-/* Whether it is a product of available radices. */
+/* Returns whether it is a product of available radices. */
 static bool divides(int left) {
     for (int factor = 2; factor <= 16; factor++)
         while (left % factor == 0)
@@ -222,7 +222,8 @@ static bool divides(int left) {
     return left == 1;
 }
 
-/* Whether a round of this radix leaves subsets that still divide nodes. */
+/* Returns whether a round of this radix leaves subsets that still divide
+ * nodes. */
 static bool keeps_nodes(const search *s, int left, int radix) {
     return left <= s->nodes || s->nodes == 1 ||
            (left % radix == 0 && left / radix % s->nodes == 0);

@@ -87,8 +87,8 @@ void snow_comm_drop_shared(snow_comm *comm); /* what was lent has come back */
 /* For snow_comm_free: it is not counted any more. */
 void snow_comm_forget_shared(snow_comm *comm);
 
-/* Whether messages between this rank and another may be loans: the same on
- * both. */
+/* Returns whether messages between this rank and another may be loans: the
+ * same on both. */
 bool snow_comm_lends(const snow_comm *comm, int rank);
 
 /* A loan: the place of bytes in the shared memory of the rank that sends it. */

@@ -89,9 +89,9 @@ static snow_status run_ranks(thread_crew *crew, thread_rank *members,
         made, ranks);
 }
 
-/* Whether the failure of `a` is reported rather than that of `b`: a rank that
- * failed by itself before those that could not go on without it; among the
- * former the lowest rank, among the latter the first in time. */
+/* Returns whether the failure of `a` is reported rather than that of `b`: a
+ * rank that failed by itself before those that could not go on without it;
+ * among the former the lowest rank, among the latter the first in time. */
 static bool comes_before(const thread_rank *a, const thread_rank *b) {
     const snow_mailbox *mailbox = a->crew->mailbox;
     if (!a->comm->broken != !b->comm->broken)

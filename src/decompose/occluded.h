@@ -43,7 +43,7 @@ void snow_occluded_free(snow_occluded *set);
 void snow_occluded_clear(snow_occluded *set);
 void snow_occluded_fill(snow_occluded *set);
 
-/* Whether it was in the set. */
+/* Returns whether it was in the set. */
 bool snow_occluded_remove(snow_occluded *set, int box);
 void snow_occluded_insert(snow_occluded *set, int box);
 

@@ -133,7 +133,7 @@ static void sort(snow_occluded *tree, int *stack, int *order) {
     }
 }
 
-/* Whether no box is before an earlier one. */
+/* Returns whether no box is before an earlier one. */
 static bool is_sorted(snow_occluded *tree, const int *order) {
     snow_occluded_clear(tree);
     for (int n = 0; n < tree->count; n++) {

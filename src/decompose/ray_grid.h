@@ -44,8 +44,8 @@ void snow_ray_grid_make(const snow_ray_view *view, const int64_t dims[3],
                         int64_t step, snow_ray_grid *out);
 size_t snow_ray_grid_cells(const snow_ray_grid *grid);
 
-/* Where a voxel's cell is, by its index along an axis of the volume: the sum of
- * those of three. */
+/* Returns where a voxel's cell is, by its index along an axis of the volume:
+ * the sum of those of three. */
 int64_t snow_ray_grid_place(const snow_ray_grid *grid, int axis, int64_t voxel);
 
 /* What an interesting voxel adds to the sum of its cell. */

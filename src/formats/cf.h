@@ -46,8 +46,8 @@ snow_axis_hint snow_cf_hint(const cf_words *words);
 void snow_cf_measure(double *coordinates, int64_t count, const char *units,
                      cf_axis *out);
 
-/* Whether coordinates grow downward (section 4.3): by their attribute positive,
- * or where that is "", by a unit of pressure. */
+/* Returns whether coordinates grow downward (section 4.3): by their attribute
+ * positive, or where that is "", by a unit of pressure. */
 bool snow_cf_is_down(const char *positive, const char *units);
 
 /* Releases the coordinates of axes. */

@@ -65,8 +65,8 @@ extern const snow_format snow_format_xdmf;
 extern const snow_format snow_format_amrex;
 extern const snow_format snow_format_vth;
 
-/* Whether the user gives the spacing, so that what a file lacks of it needs no
- * warning. */
+/* Returns whether the user gives the spacing, so that what a file lacks of it
+ * needs no warning. */
 static inline bool snow_spacing_given(const snow_volume_options *options) {
     return options->spacing[0] > 0;
 }
@@ -124,7 +124,7 @@ static inline void snow_image_turn(double matrix[4][4]) {
             matrix[row][i] = 0 - matrix[row][i]; /* never -0 */
 }
 
-/* Whether a file name ends as those of the format do. */
+/* Returns whether a file name ends as those of the format do. */
 bool snow_format_has_name(const snow_format *format, const char *name);
 
 /* Does what snow_format_of_name does; handed to readers of many files. */

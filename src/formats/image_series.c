@@ -30,7 +30,7 @@ static const snow_format *slice_format(const stack *s, const char *path) {
     return format && format->slices ? format : NULL;
 }
 
-/* Whether any file is a slice that cannot be a preview of others. */
+/* Returns whether any file is a slice that cannot be a preview of others. */
 static bool holds_slices(const stack *s, const snow_folder *files) {
     for (size_t i = 0; i < files->count; i++) {
         const snow_format *format = slice_format(s, files->paths[i]);

@@ -192,7 +192,7 @@ static snow_status read_mask(const opening *o, const snow_volume *volume,
     return status;
 }
 
-/* Whether a mask or planes leave something out, not labels alone. */
+/* Returns whether a mask or planes leave something out, not labels alone. */
 static bool is_cut(const opening *o) {
     static const double none[SNOW_CLIPS_MAX][4];
     return o->mask_path || memcmp(o->clip, none, sizeof none) != 0;

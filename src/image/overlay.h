@@ -57,7 +57,7 @@ void snow_overlay_settle_mirrored(snow_overlay *overlay, size_t first,
  * outermost strokes of its first and last letter. */
 double snow_font_width(const char *text);
 
-/* Whether it has all letters of a text of several lines. */
+/* Returns whether it has all letters of a text of several lines. */
 bool snow_font_has(const char *text);
 
 /* Ends a text that is wider with "...". */

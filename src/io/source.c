@@ -87,8 +87,8 @@ static bool pass_by(snow_filter_stage *filter, uint64_t size) {
     return true;
 }
 
-/* Whether reading what is skipped, with what follows it, costs more than a
- * jump: it is beyond the horizon, or fills a buffer. */
+/* Returns whether reading what is skipped, with what follows it, costs more
+ * than a jump: it is beyond the horizon, or fills a buffer. */
 static bool worth_a_jump(const snow_filter_stage *filter, uint64_t size) {
     return size >= SNOW_FILTER_BYTES || filter->taken >= filter->horizon ||
            size >= filter->horizon - filter->taken;

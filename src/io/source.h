@@ -24,7 +24,7 @@ typedef struct snow_source snow_source;
 snow_status snow_source_open(snow_context *context, const char *path,
                              snow_source **out);
 
-/* Whether a path can be read only once: "-", a pipe. */
+/* Returns whether a path can be read only once: "-", a pipe. */
 bool snow_source_is_stream(const char *path);
 
 /* Bytes in memory, which must outlive the source; gzip is unpacked too. It has
@@ -90,7 +90,7 @@ snow_context *snow_source_context(const snow_source *source);
 /* The path or name with which it was opened. */
 const char *snow_source_name(const snow_source *source);
 
-/* Whether it is a file in a folder, whose other files can be opened. */
+/* Returns whether it is a file in a folder, whose other files can be opened. */
 bool snow_source_has_siblings(const snow_source *source);
 
 /* Copies up to `size` (at most SNOW_PEEK_BYTES) of the next bytes without

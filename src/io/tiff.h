@@ -9,7 +9,7 @@
 #include "io/memory_file.h"
 #include "io/seekable.h"
 
-/* Whether a file begins like TIFF or BigTIFF of either byte order. */
+/* Returns whether a file begins like TIFF or BigTIFF of either byte order. */
 static inline bool snow_tiff_probe(const unsigned char *bytes, size_t size) {
     static const unsigned char magic[4][4] = {{'I', 'I', 42, 0},
                                               {'M', 'M', 0, 42},

@@ -96,7 +96,8 @@ static void free_window(mpi_node *node) {
     MPI_Win_free(&node->window);
 }
 
-/* Whether the other ranks of the node come to their end as well, soon. */
+/* Returns whether the other ranks of the node come to their end as well,
+ * soon. */
 static bool all_end(const mpi_node *node) {
     const double begin = MPI_Wtime();
     MPI_Request request;
@@ -133,7 +134,7 @@ int snow_mpi_node_of(void *self, int rank) {
 
 /* --- the window ----------------------------------------------------------- */
 
-/* Whether the windows of all members fit twice. */
+/* Returns whether the windows of all members fit twice. */
 static bool has_room(const mpi_node *node, size_t bytes) {
     struct statvfs room;
     return statvfs("/dev/shm", &room) == 0 && room.f_frsize &&

@@ -35,7 +35,8 @@ static snow_rectangle drawn_part(const snow_shear_warp_image *image, int layer,
     return box;
 }
 
-/* Whether lines y0 .. y1 - 1 are finished; if so, what of them was drawn on. */
+/* Returns whether lines y0 .. y1 - 1 are finished; if so, what of them was
+ * drawn on. */
 static bool look_at_lines(const snow_in_flight *p, int y0, int y1,
                           snow_rectangle *drawn) {
     const snow_shear_warp_image *image = &p->picture.local.image;

@@ -115,7 +115,7 @@ static inline snow_in_flight *snow_in_flight_at(const snow_ranks *r, int n) {
 /* Ends its drawing, and what it was made with. */
 void snow_in_flight_end(snow_in_flight *in_flight);
 
-/* Whether pictures are under way whose local images the frame holds. */
+/* Returns whether pictures are under way whose local images the frame holds. */
 bool snow_ranks_busy(const snow_ranks *ranks);
 
 /* The communicator's clock, which stands while pictures are drawn ahead, or
@@ -160,7 +160,7 @@ void snow_ranks_drain(snow_ranks *ranks);
 /* The combiner of many ranks. */
 extern const snow_combine_ops snow_combine_ranks;
 
-/* Whether this rank keeps pixels of the picture. */
+/* Returns whether this rank keeps pixels of the picture. */
 static inline bool snow_in_flight_keeps(const snow_in_flight *f) {
     return f->ranks->rank == 0 || f->how.scattered;
 }
@@ -194,8 +194,8 @@ snow_status snow_in_flight_agree_range(snow_in_flight *in_flight);
 /* Collective.  The range of all parts, for shear-warp. */
 snow_status snow_in_flight_agree_values(snow_in_flight *in_flight);
 
-/* Whether it is known already: the same on all ranks, unless only some have a
- * new volume. */
+/* Returns whether it is known already: the same on all ranks, unless only some
+ * have a new volume. */
 bool snow_in_flight_knows_values(const snow_in_flight *in_flight);
 
 /* Local work: makes it known for a picture without asking the others. */

@@ -108,8 +108,8 @@ static uint64_t room_of(const snow_context *context) {
                                            : 0;
 }
 
-/* Whether a limit has room for a box, and for what is made of it: where values
- * serve as they are, a copy that is turned. */
+/* Returns whether a limit has room for a box, and for what is made of it:
+ * where values serve as they are, a copy that is turned. */
 static bool fits(const opening *o, const snow_part_place *p) {
     const uint64_t size = (uint64_t)snow_type_size(o->whole.type);
     const uint64_t voxel = size + (size > 2 ? NUMBER_BYTES : size) + MASK_BYTES;
@@ -134,8 +134,8 @@ static bool fits(const opening *o, const snow_part_place *p) {
  * that the file is read once. */
 #define SHARE_MOST (INT64_C(16) << 20)
 
-/* Whether one voxel of the data beside a header is as dear as all, as those of
- * packed data are.  It is asked where shares may stay in the file. */
+/* Returns whether one voxel of the data beside a header is as dear as all, as
+ * those of packed data are. It is asked where shares may stay in the file. */
 static bool is_packed_beside(const opening *o, double bytes) {
     snow_volume_options voxel = o->options;
     snow_volume_info info;

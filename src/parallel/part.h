@@ -38,7 +38,7 @@ snow_status snow_part_cut(snow_comm *comm, const snow_volume_info *whole,
 /* What a part answers for, with what it lacks. */
 snow_box snow_part_box(const snow_volume *volume);
 
-/* Whether this rank's part gives its share of a picture. */
+/* Returns whether this rank's part gives its share of a picture. */
 bool snow_part_serves(const snow_volume *volume,
                       const snow_partition_params *order);
 

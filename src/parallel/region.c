@@ -217,7 +217,7 @@ static void warp_lines(void *of, int64_t item, int worker) {
     }
 }
 
-/* Where each line's pixels go; their sum. */
+/* Returns where each line's pixels go; their sum. */
 static size_t place_pixels(const warp_job *job) {
     size_t pixels = 0;
     for (int y = 0; y < job->height; y++) {

@@ -32,10 +32,10 @@
 
 /* --- the beginning -------------------------------------------------------- */
 
-/* Whether a picture has one pass and one volume, whose method leaves its local
- * image to be drawn, of voxels in memory, and needs no word of others first.
- * Ranks that have failed, or have a new volume alone, may differ:
- * synchronize_all finds out. */
+/* Returns whether a picture has one pass and one volume, whose method leaves
+ * its local image to be drawn, of voxels in memory, and needs no word of
+ * others first. Ranks that have failed, or have a new volume alone, may
+ * differ: synchronize_all finds out. */
 static bool is_ahead(const snow_in_flight *f) {
     const snow_picture *p = &f->picture;
     return p->job.settings.mode == SNOW_MODE_OVER && p->pass_count == 1 &&
@@ -185,7 +185,7 @@ static snow_status share_parts(snow_ranks *r, const snow_in_flight *p) {
     return SNOW_STATUS_OK;
 }
 
-/* Whether this rank knows the parts of a picture. */
+/* Returns whether this rank knows the parts of a picture. */
 static bool knows_parts(const snow_in_flight *p) {
     return p->generation && p->ranks->generation == p->generation;
 }

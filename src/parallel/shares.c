@@ -19,7 +19,7 @@ static int64_t count_blocks(const layout *l, int axis) {
     return (l->dims[axis] + l->blocks.cut[axis] + size - 1) / size;
 }
 
-/* Where a block begins; the end, for the one behind the last. */
+/* Returns where a block begins; the end, for the one behind the last. */
 static int64_t begin_of(const layout *l, int axis, int64_t block) {
     const int64_t at = block * l->blocks.size[axis] - l->blocks.cut[axis];
     return at < 0 ? 0 : at < l->dims[axis] ? at : l->dims[axis];

@@ -175,7 +175,7 @@ static snow_box trimmed(const trimming *t, int rank) {
                : box;
 }
 
-/* Whether a part of all voxels is left out, and some are not. */
+/* Returns whether a part of all voxels is left out, and some are not. */
 static bool is_worthwhile(const trimming *t) {
     int64_t kept = 0, all = snow_box_voxels(&t->whole);
     for (int n = 0; n < t->order->ranks; n++) {

@@ -227,7 +227,7 @@ static double largest_ratio(const question *q, const snow_camera *camera,
     return most;
 }
 
-/* Whether encodings provide for every turn (snow_value_fits). */
+/* Returns whether encodings provide for every turn (snow_value_fits). */
 static bool every_turn_fits(const question *q, double gradients[3][3],
                             double ratio, double slant) {
     double reach = 0;

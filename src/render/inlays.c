@@ -35,7 +35,7 @@ static snow_status find_box(snow_context *context, const snow_request *r,
     return SNOW_STATUS_OK;
 }
 
-/* Whether what was taken serves still. */
+/* Returns whether what was taken serves still. */
 static bool serves(const snow_taken *t, const snow_inlay *layer,
                    const snow_volume *part, const snow_extent *wanted,
                    const int64_t count[3]) {
@@ -90,7 +90,7 @@ void snow_inlays_drop(snow_frame *frame, int first) {
 
 /* --- checks --------------------------------------------------------------- */
 
-/* Whether it has what the volume has, of the same whole. */
+/* Returns whether it has what the volume has, of the same whole. */
 static bool is_beside(const snow_volume *layer, const snow_volume *volume) {
     snow_volume_info a, b;
     snow_extent own, other;

@@ -85,8 +85,8 @@ snow_status snow_settings_resolve(snow_context *context,
                                   const snow_volume_info *info,
                                   snow_settings *settings);
 
-/* Whether pictures are made without voxels of which the look shows nothing, by
- * resolved settings. */
+/* Returns whether pictures are made without voxels of which the look shows
+ * nothing, by resolved settings. */
 bool snow_can_lack_voxels(const snow_settings *settings);
 
 /* What a picture is to be made of. */
@@ -119,7 +119,7 @@ snow_status snow_inlays_check(snow_job *job);
 snow_status snow_job_begin(snow_context *context, const snow_request *request,
                            snow_stats *stats, snow_job *job);
 
-/* Whether the job draws all voxels that there are. */
+/* Returns whether the job draws all voxels that there are. */
 bool snow_job_whole(const snow_job *job);
 
 /* What was chosen for the picture, and how much of it is interesting, when its

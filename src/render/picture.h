@@ -139,7 +139,8 @@ static inline snow_status snow_method_figures(const snow_render_method *method,
                            : snow_job_finish(picture->frame, job);
 }
 
-/* Whether of a node's two halves the one of lower slices is in front. */
+/* Returns whether of a node's two halves the one of lower slices is in
+ * front. */
 bool snow_group_rises(const snow_placement *placement, snow_group_node node);
 
 extern const snow_render_method snow_method_exact, snow_method_groups,

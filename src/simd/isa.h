@@ -51,7 +51,8 @@
 #define SNOW_OF_ISA(isa, name) ((void)(isa), name##_scalar)
 #endif
 
-/* Whether this machine has an instruction set; AUTO and SCALAR always. */
+/* Returns whether this machine has an instruction set; AUTO and SCALAR
+ * always. */
 bool snow_isa_runs(snow_isa isa);
 
 /* The instruction set that AUTO means here; others are returned unchanged. */

@@ -45,8 +45,8 @@ int snow_kernel_default_support(snow_kernel kernel);
 snow_scaled_kernel snow_scaled_kernel_make(snow_kernel kernel, int support,
                                            double rho);
 
-/* Whether distance t (voxels) is within the half-open support, and a distance
- * beyond which none is. */
+/* Returns whether distance t (voxels) is within the half-open support, and a
+ * distance beyond which none is. */
 bool snow_scaled_kernel_covers(const snow_scaled_kernel *scaled_kernel,
                                double t);
 double snow_scaled_kernel_reach(const snow_scaled_kernel *scaled_kernel);
@@ -81,7 +81,7 @@ typedef struct snow_scaled_kernel_table {
     snow_scaled_kernel made_for;
 } snow_scaled_kernel_table;
 
-/* Whether two scaled kernels are equal. */
+/* Returns whether two scaled kernels are equal. */
 bool snow_scaled_kernel_same(const snow_scaled_kernel *a,
                              const snow_scaled_kernel *b);
 

@@ -30,9 +30,9 @@ typedef struct snow_kernel_table {
     snow_scaled_kernel made_for;
 } snow_kernel_table;
 
-/* Whether a kernel can be tabulated like this: boxes jump, and a kernel that
- * reaches more than SNOW_PHASE_TAPS_MOST voxels would need a long row for each
- * phase. */
+/* Returns whether a kernel can be tabulated like this: boxes jump, and a
+ * kernel that reaches more than SNOW_PHASE_TAPS_MOST voxels would need a long
+ * row for each phase. */
 bool snow_kernel_table_serve(const snow_scaled_kernel *scaled_kernel);
 
 /* Makes the table unless it is for this kernel already; its memory is reused.

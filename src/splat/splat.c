@@ -68,9 +68,10 @@ static inline double larger(double a, double b) {
  * this fraction of its change per pixel down. */
 #define UPRIGHT 1e-12
 
-/* Whether steps along u move along one image axis only, and steps along v along
- * the other: u along `axis` (0 x, 1 y). If voxels are smaller than pixels the
- * tolerance shrinks with them, since a table divides by their steps. */
+/* Returns whether steps along u move along one image axis only, and steps
+ * along v along the other: u along `axis` (0 x, 1 y). If voxels are smaller
+ * than pixels the tolerance shrinks with them, since a table divides by their
+ * steps. */
 static bool lies_along(const snow_placement *p, int axis) {
     double step = fmin(fabs(p->step_u[axis]), fabs(p->step_v[1 - axis]));
     return fabs(p->step_u[1 - axis]) * (double)p->columns +

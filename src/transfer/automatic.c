@@ -284,7 +284,7 @@ static void build_constant(const snow_histogram *histogram,
 #define BINS_HU 40
 #define BIN_HU(value) (((value) + 1100) / 100)
 
-/* Whether the whole is seen from its face, which is a cut. */
+/* Returns whether the whole is seen from its face, which is a cut. */
 static bool is_slab(const snow_histogram *histogram) {
     snow_volume_info whole;
     snow_volume_whole(histogram->volume, &whole);
@@ -323,8 +323,8 @@ static bool is_beyond_fractions(const snow_histogram *histogram) {
                                        : false;
 }
 
-/* Whether values may be those of a computed field rather than of a scan:
- * numbers with fractions, in no patient and no format of microscopes. */
+/* Returns whether values may be those of a computed field rather than of a
+ * scan: numbers with fractions, in no patient and no format of microscopes. */
 static bool is_field(const snow_histogram *histogram) {
     static const char *const images[] = {"mrc", "tiff", "zarr"};
     const snow_volume_info *info = &histogram->volume->info;

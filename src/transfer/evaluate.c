@@ -151,8 +151,8 @@ static bool same_color(const snow_color_point *a, const snow_color_point *b) {
     return a->red == b->red && a->green == b->green && a->blue == b->blue;
 }
 
-/* Whether values are the numbers of things rather than quantities: the colours
- * of categories have steps, and do not change in between. */
+/* Returns whether values are the numbers of things rather than quantities: the
+ * colours of categories have steps, and do not change in between. */
 bool snow_transfer_has_labels(const snow_transfer *transfer,
                               const snow_volume_info *info) {
     const snow_color_point *c = transfer->colors;

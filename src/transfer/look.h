@@ -163,13 +163,13 @@ void snow_transfer_builder_shift(snow_transfer_builder *builder, double shift);
 void snow_full_range(const snow_histogram *histogram, double *low,
                      double *high);
 
-/* Whether a look is the preset of labels; and whether it leaves all to the
- * volume, but opacities perhaps, and gradients'. */
+/* Returns whether a look is the preset of labels; and whether it leaves all to
+ * the volume, but opacities perhaps, and gradients'. */
 bool snow_look_is_of_labels(const snow_look *look);
 bool snow_look_is_free(const snow_look *look);
 
-/* Whether labels can have what it asks for: opacities, those of gradients, and
- * a list of colours. */
+/* Returns whether labels can have what it asks for: opacities, those of
+ * gradients, and a list of colours. */
 bool snow_look_suits_labels(const snow_look *look);
 
 /* The slopes that a look may have on a volume (transfer.h); NULL: on one that

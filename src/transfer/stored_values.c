@@ -8,9 +8,9 @@
 /* Bytes that are compared at once. */
 #define EVEN 32
 
-/* Whether these bytes are copies of one value of `size` bytes, 1 or 2.  Empty
- * regions usually are, and incrementing the same count again and again is
- * slow. */
+/* Returns whether these bytes are copies of one value of `size` bytes, 1 or 2.
+ * Empty regions usually are, and incrementing the same count again and again
+ * is slow. */
 static bool is_even(const void *bytes, size_t size) {
     uint64_t words[EVEN / sizeof(uint64_t)];
     memcpy(words, bytes, sizeof words);

@@ -55,8 +55,8 @@ void snow_transfer_near(const snow_transfer *transfer, double value,
  * < b, a <= value <= b: from 0 to 1, never decreasing. */
 double snow_part_of_decades(double value, double a, double b);
 
-/* Whether values are labels: whole numbers that are shown in colours of
- * categories, without any in between. */
+/* Returns whether values are labels: whole numbers that are shown in colours
+ * of categories, without any in between. */
 bool snow_transfer_has_labels(const snow_transfer *transfer,
                               const snow_volume_info *info);
 
@@ -70,8 +70,8 @@ int snow_transfer_slopes(const snow_transfer *transfer,
 /* So that rounding never decides whether a voxel is above the threshold. */
 #define SNOW_THRESHOLD_MARGIN 0.0001
 
-/* Whether a voxel of this opacity is above a threshold of 0 to 255 (model,
- * point 3). */
+/* Returns whether a voxel of this opacity is above a threshold of 0 to 255
+ * (model, point 3). */
 static inline bool snow_is_interesting(double opacity, double threshold) {
     return opacity > 0 && (!(threshold > 0) ||
                            255 * opacity > threshold + SNOW_THRESHOLD_MARGIN);

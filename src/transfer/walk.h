@@ -38,8 +38,8 @@ snow_voxel_walk snow_voxel_walk_begin(const snow_histogram *histogram,
  * indices of the voxels in memory follow one another, too. */
 bool snow_voxel_walk_next_run(snow_voxel_walk *walk);
 
-/* Whether the caller wants the pass to end, which snow_histogram_visit returns
- * then.  Ranks end together, behind their passes. */
+/* Returns whether the caller wants the pass to end, which snow_histogram_visit
+ * returns then. Ranks end together, behind their passes. */
 bool snow_voxel_walk_is_stopped(snow_voxel_walk *walk);
 
 /* Finds the next voxels, up to SNOW_WALK_BLOCK, that a sampled block has in the

@@ -115,8 +115,8 @@ void snow_clip_planes_show(const snow_clip_planes *clip, snow_type type,
     }
 }
 
-/* Whether a voxel is beyond a plane; *reached: it is in reach of all planes
- * that it is beyond. */
+/* Returns whether a voxel is beyond a plane; *reached: it is in reach of all
+ * planes that it is beyond. */
 static bool is_beyond(const snow_clip_planes *clip, const int64_t at[3],
                       bool *reached) {
     bool beyond = false;

@@ -34,7 +34,7 @@ typedef struct snow_clip_planes {
     double reach[3]; /* how far values are kept, in steps along each axis */
 } snow_clip_planes;
 
-/* Whether four numbers are a plane: the first three are not all 0. */
+/* Returns whether four numbers are a plane: the first three are not all 0. */
 bool snow_is_plane(const double plane[4]);
 
 /* Those of `before` (NULL: none), and `count` planes of the world, four numbers

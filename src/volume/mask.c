@@ -74,8 +74,8 @@ bool snow_labels_parse(const char *text, snow_label_range *ranges, size_t room,
 
 /* --- the grid ------------------------------------------------------------- */
 
-/* Whether the file gives a position or directions.  A file without them is at 0
- * along the world's axes, or turned so that an image's rows go down. */
+/* Returns whether the file gives a position or directions. A file without them
+ * is at 0 along the world's axes, or turned so that an image's rows go down. */
 static bool has_place(const snow_volume_info *info) {
     bool given = info->medical;
     bool image = info->matrix[1][1] < 0 && info->matrix[2][2] < 0;

@@ -38,8 +38,8 @@ snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
  * once more: its voxels have come from elsewhere. */
 snow_status snow_mask_cut_again(snow_volume *volume);
 
-/* Whether the options name a mask, labels of one, or planes; options may be
- * NULL. */
+/* Returns whether the options name a mask, labels of one, or planes; options
+ * may be NULL. */
 bool snow_mask_asked(const snow_volume_options *options);
 
 /* Notifies that no voxel is left of a volume that was opened with these

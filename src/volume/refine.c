@@ -103,7 +103,7 @@ static double at_place(const double p[STENCIL], const place *at) {
     return sum < low ? low : less(high, sum);
 }
 
-/* Whether its own value can be blended with others; completes these. */
+/* Returns whether its own value can be blended with others; completes these. */
 static bool prepare(double p[STENCIL]) {
     if (!isfinite(p[OWN]))
         return false;

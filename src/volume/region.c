@@ -137,8 +137,8 @@ bool snow_file_part_is_all(const snow_file_part *part) {
            end == part->end;
 }
 
-/* Where the bytes end that are read in one go with those of a run: at the end
- * of the run, of its slice, or of the box, as gaps are small. */
+/* Returns where the bytes end that are read in one go with those of a run: at
+ * the end of the run, of its slice, or of the box, as gaps are small. */
 static uint64_t stretch_end(const snow_region *w, int64_t run) {
     uint64_t begin, end, next;
     int64_t rows = run_axes(w) < 2 ? w->count[1] : 1;

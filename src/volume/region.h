@@ -56,7 +56,8 @@ typedef struct snow_file_part {
     uint64_t begin, end;
 } snow_file_part;
 
-/* Whether some of them are wanted; whether all are, and nothing else. */
+/* Returns whether some of them are wanted; whether all are, and nothing
+ * else. */
 bool snow_file_part_wanted(const snow_file_part *part);
 bool snow_file_part_is_all(const snow_file_part *part);
 

@@ -155,7 +155,7 @@ static void fill_row(const regrid *r, int64_t y, int64_t z) {
     }
 }
 
-/* Whether each voxel of the new grid is one of the volume's. */
+/* Returns whether each voxel of the new grid is one of the volume's. */
 static bool is_turned(const regrid *r) {
     double off = 0;
     for (int axis = 0; axis < 3; axis++) {

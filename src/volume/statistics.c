@@ -176,8 +176,8 @@ static void measure_value(snow_volume_statistics *m, double value,
     m->wsum += value * (double)(index % WEIGHT_PERIOD + 1);
 }
 
-/* Whether the caller wants a pass over the voxels to end, which reports where
- * it is a call of its own. */
+/* Returns whether the caller wants a pass over the voxels to end, which
+ * reports where it is a call of its own. */
 static bool is_stopped(const snow_volume *volume, snow_monitor *own,
                        int64_t first) {
     if (first % WATCHED != 0)

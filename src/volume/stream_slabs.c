@@ -184,7 +184,7 @@ snow_volume *snow_slabs_keep(snow_slabs *slabs) {
     return slabs->slab;
 }
 
-/* Whether a slab of a file is left, from `next` on. */
+/* Returns whether a slab of a file is left, from `next` on. */
 static bool any_left(snow_slabs *slabs) {
     if (!slabs->falls && slabs->next >= slabs->slices) {
         slabs->falls = true;

@@ -148,8 +148,8 @@ void snow_volume_freeze(snow_volume *volume) {
     volume->generation = ++volume->context->generations;
 }
 
-/* Whether `count` voxels from `first` on lie within `room` from `begin` on;
- * written so that nothing overflows. */
+/* Returns whether `count` voxels from `first` on lie within `room` from
+ * `begin` on; written so that nothing overflows. */
 static bool lies_within(int64_t first, int64_t count, int64_t begin,
                         int64_t room) {
     return first >= begin && first - begin <= room && count >= 0 &&

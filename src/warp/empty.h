@@ -57,9 +57,9 @@ static inline void snow_blocks_between(uint64_t inverse, int64_t a, int64_t b,
     range[1] = (size_t)((uint64_t)high * inverse >> 32);
 }
 
-/* Whether anything was drawn in what is read for the pixels between two places,
- * which are within the image. Blocks about as large as the image are not
- * tested. */
+/* Returns whether anything was drawn in what is read for the pixels between
+ * two places, which are within the image. Blocks about as large as the image
+ * are not tested. */
 static inline bool snow_blocks_drawn(const snow_blocks *blocks,
                                      const int64_t first[2],
                                      const int64_t last[2]) {

@@ -70,7 +70,8 @@ static bool take_box(const amr_plotfile *file, int level,
     return out->components > file->component;
 }
 
-/* Whether the box that the level's list has, and its ghosts, are there. */
+/* Returns whether the box that the level's list has, and its ghosts, are
+ * there. */
 static bool holds_box(const amr_plotfile *file, size_t number,
                       const fab *values) {
     const amr_box *listed = &file->grid.boxes[number];

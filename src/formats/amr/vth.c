@@ -61,7 +61,7 @@ static snow_status refuse(const vth_file *f, size_t number, const char *what) {
                      snow_index_name(&f->list, number), what);
 }
 
-/* Whether the axes are those of the world, rising. */
+/* Returns whether the axes are those of the world, rising. */
 static bool is_straight(const snow_volume_info *info) {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)

@@ -74,9 +74,9 @@ static bool warns(const jpeg_signs *signs, uint32_t samples) {
     return signs->version || (signs->transform && samples == 3 && !signs->jfif);
 }
 
-/* Whether the segments are intact up to the start of the scan, including
- * Huffman tables if the frame needs them: otherwise GDCM ends the process.
- * JPEG-LS (`ls`) needs no tables, and does not use libjpeg. */
+/* Returns whether the segments are intact up to the start of the scan,
+ * including Huffman tables if the frame needs them: otherwise GDCM ends the
+ * process. JPEG-LS (`ls`) needs no tables, and does not use libjpeg. */
 static bool has_scan(const unsigned char *bytes, size_t size, bool ls,
                      uint32_t samples) {
     bool tables = false;
@@ -102,9 +102,9 @@ static bool has_scan(const unsigned char *bytes, size_t size, bool ls,
     return false;
 }
 
-/* Whether components have one depth and are not subsampled, as the caller
- * expects. `siz` is the marker's segment at its length; `room` counts from
- * there. */
+/* Returns whether components have one depth and are not subsampled, as the
+ * caller expects. `siz` is the marker's segment at its length; `room` counts
+ * from there. */
 static bool are_alike(const unsigned char *siz, size_t room, uint32_t samples) {
     if (samples > (room - 38) / 3)
         return false;
@@ -138,8 +138,8 @@ static bool read_jpeg2000(const unsigned char **bytes, size_t *size,
     return false;
 }
 
-/* Whether the segments are intact up to the data of the first tile, with a
- * coding style (COD) of sufficient length: GDCM walks them unchecked. */
+/* Returns whether the segments are intact up to the data of the first tile,
+ * with a coding style (COD) of sufficient length: GDCM walks them unchecked. */
 static bool has_tile(const unsigned char *bytes, size_t size) {
     for (size_t at = 0; at + 4 <= size;) {
         int marker = (int)big(bytes + at, 2);

@@ -117,7 +117,7 @@ int snow_dicom_compare_sources(const dicom_frame *a, const dicom_frame *b);
 #define DICOM_TAG_PIXELS 0x7fe00010u
 #define DICOM_TAG_ITEM 0xfffee000u
 
-/* Whether the bytes begin a DICOM file, with its mark at byte 128 or
+/* Returns whether the bytes begin a DICOM file, with its mark at byte 128 or
  * without. */
 bool snow_dicom_probe(const unsigned char *bytes, size_t size);
 

@@ -136,7 +136,7 @@ static snow_status add_path(collection *c, char *path, const char *series) {
     return status;
 }
 
-/* Whether a file may be a slice, by its name: "IM_0004", "1.2.840.4",
+/* Returns whether a file may be a slice, by its name: "IM_0004", "1.2.840.4",
  * "4.dcm". */
 static bool may_be_slice(const char *path) {
     const char *dot = strrchr(snow_path_name(path), '.');
@@ -379,8 +379,8 @@ static bool keep_its_time(dicom_stack *stack, dicom_frame *frames) {
     return true;
 }
 
-/* Whether the frames of the folder's files form one volume with the given
- * one. */
+/* Returns whether the frames of the folder's files form one volume with the
+ * given one. */
 static bool gather_stack(collection *c, dicom_stack *out) {
     dicom_group *groups =
         snow_allocate_array(c->context, c->frame_count, sizeof *groups);

@@ -173,9 +173,9 @@ static void read_padding(dicom_reader *reader, dicom_image *image) {
     }
 }
 
-/* Whether the file can hold the pixels.  Plain ones are counted in their
- * element; each compressed frame has at least the header of a fragment.  The
- * decompressed size is checked again with the frames' own headers. */
+/* Returns whether the file can hold the pixels. Plain ones are counted in
+ * their element; each compressed frame has at least the header of a fragment.
+ * The decompressed size is checked again with the frames' own headers. */
 static bool can_hold(const dicom_reader *reader, const dicom_image *image) {
     uint64_t frames = (uint64_t)image->frames, bits, most;
     uint64_t size = snow_seekable_size(reader->store);
@@ -211,9 +211,9 @@ static snow_status check_sizes(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* Whether a file claims to contain an image, by the class of its contents
- * (PS3.4, B.5): all classes except spectra, waveforms, presentation states,
- * registrations, measurements, documents, protocols and plans. */
+/* Returns whether a file claims to contain an image, by the class of its
+ * contents (PS3.4, B.5): all classes except spectra, waveforms, presentation
+ * states, registrations, measurements, documents, protocols and plans. */
 static bool says_image(const dicom_reader *reader) {
     static const char root[] = "1.2.840.10008.5.1.4.1.1.";
     static const char *const others[] = {

@@ -122,8 +122,8 @@ static bool begins_stream(dicom_reader *reader, const dicom_element *at) {
            !memcmp(bytes + 4, "jP  \r\n\x87\n", 8);
 }
 
-/* Whether fragment `index` is the first of frame `number`, or of the frame
- * reached by counting. */
+/* Returns whether fragment `index` is the first of frame `number`, or of the
+ * frame reached by counting. */
 static bool begins_frame(dicom_reader *reader, const dicom_element *pixels,
                          int64_t index, int64_t number, bool table) {
     uint64_t at;

@@ -97,8 +97,9 @@ static bool read_labels(const hdf5_file *file, hid_t group, int order[3]) {
     return seen == 7;
 }
 
-/* Whether the labels, and all in their order, begin with the fastest axis: the
- * array was written by a program that counts indices as Fortran does. */
+/* Returns whether the labels, and all in their order, begin with the fastest
+ * axis: the array was written by a program that counts indices as Fortran
+ * does. */
 static bool is_fortran(const hdf5_file *file, hid_t object) {
     char text[4];
     double code = 0;
@@ -238,8 +239,8 @@ static void use_scale(scales *s, hid_t scale, const char *path,
     }
 }
 
-/* Whether entries of this type are a reference and a number within their size:
- * libhdf5 converts others without checking their bounds. */
+/* Returns whether entries of this type are a reference and a number within
+ * their size: libhdf5 converts others without checking their bounds. */
 static bool is_use(hid_t type) {
     size_t size = H5Tget_size(type);
     if (H5Tget_class(type) != H5T_COMPOUND || H5Tget_nmembers(type) != 2)

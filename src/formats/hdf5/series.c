@@ -35,7 +35,7 @@ static bool is_pattern(const char *text) {
     return false;
 }
 
-/* Whether a name fits; all numbers in it are the same. */
+/* Returns whether a name fits; all numbers in it are the same. */
 static bool fits(const char *pattern, const char *name, int64_t *out) {
     *out = -1;
     while (*pattern) {

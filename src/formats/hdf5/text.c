@@ -121,7 +121,7 @@ static size_t padded(const unsigned char *message, size_t bytes) {
     return message[0] == 1 ? (bytes + 7) / 8 * 8 : bytes;
 }
 
-/* Whether a datatype is text of variable length, class 9 of type 1. */
+/* Returns whether a datatype is text of variable length, class 9 of type 1. */
 static bool is_text(const unsigned char *type, size_t bytes) {
     return bytes >= 8 && (type[0] & 15) == 9 && (type[1] & 15) == 1 &&
            number(type + 4, 4) == 16;

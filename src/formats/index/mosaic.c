@@ -34,7 +34,7 @@ static snow_status refuse(const mosaic *m, size_t index, const char *what) {
                      snow_index_name(m->list, m->begin));
 }
 
-/* Whether the voxels have the same size and direction. */
+/* Returns whether the voxels have the same size and direction. */
 static bool is_parallel(const snow_volume_info *a, const snow_volume_info *b) {
     for (int j = 0; j < 3; j++) {
         double length = 0;
@@ -47,7 +47,7 @@ static bool is_parallel(const snow_volume_info *a, const snow_volume_info *b) {
     return true;
 }
 
-/* Where a part's first voxel lies on the grid of the first one. */
+/* Returns where a part's first voxel lies on the grid of the first one. */
 static bool find_place(const snow_volume_info *grid,
                        const snow_volume_info *info, part *out) {
     double inverse[3][3];

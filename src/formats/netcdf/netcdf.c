@@ -23,7 +23,7 @@ static int64_t size_of(const netcdf_header *header, const netcdf_variable *v,
                           : 1;
 }
 
-/* Whether a variable could be a volume, by its last axes. */
+/* Returns whether a variable could be a volume, by its last axes. */
 static bool is_volume(const netcdf_header *header, const netcdf_variable *v,
                       int axes) {
     if (!v->type || v->axes < axes || v->axes > NETCDF_MOST_AXES)

@@ -39,7 +39,7 @@ static size_t print_header(const snow_volume_info *info, char *text,
     return all;
 }
 
-/* Whether axes are rotated, mirrored, or medical. */
+/* Returns whether axes are rotated, mirrored, or medical. */
 static bool is_oriented(const snow_volume_info *info) {
     for (int row = 0; row < 3; row++)
         for (int column = 0; column < 3; column++)

@@ -48,8 +48,8 @@ static void drop_flat_axes(const nrrd_header *header, axis_choice *choice) {
     }
 }
 
-/* Whether values of an axis of a role are an image's colours.  Many programs
- * call those of 8 bits a vector. */
+/* Returns whether values of an axis of a role are an image's colours. Many
+ * programs call those of 8 bits a vector. */
 static bool are_colors(const nrrd_header *header, int axis) {
     const nrrd_role role = header->axes[axis].role;
     const int64_t size = header->axes[axis].size;

@@ -29,7 +29,7 @@ typedef struct tiff_plan {
     int64_t channels, slices, times;
 } tiff_plan;
 
-/* Whether the page is a thumbnail of another. */
+/* Returns whether the page is a thumbnail of another. */
 static bool is_reduced(TIFF *tiff) {
     uint32_t kind = 0;
     TIFFGetFieldDefaulted(tiff, TIFFTAG_SUBFILETYPE, &kind);
@@ -154,7 +154,7 @@ static bool is_of_paper(double inch) {
     return false;
 }
 
-/* Whether somebody has measured pixels of this size. */
+/* Returns whether somebody has measured pixels of this size. */
 static bool is_measured(double mm) {
     return mm >= LEAST_MM && mm <= MOST_MM && !is_of_paper(25.4 / mm);
 }

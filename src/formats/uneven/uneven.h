@@ -20,10 +20,10 @@ typedef struct snow_uneven {
                             its first voxel is at[i][0] */
 } snow_uneven;
 
-/* Whether coordinates are finite, and rise or fall throughout. */
+/* Returns whether coordinates are finite, and rise or fall throughout. */
 bool snow_uneven_fits(const double *coordinates, int64_t count);
 
-/* Whether any axis is uneven. */
+/* Returns whether any axis is uneven. */
 bool snow_uneven_any(const snow_uneven *grid);
 
 /* Chooses `even` and `step`, and notes what is resampled, also in

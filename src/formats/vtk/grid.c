@@ -65,7 +65,7 @@ snow_status snow_vtk_read(snow_context *context, const vtk_grid *grid,
                : read(user, options, info, out);
 }
 
-/* Where a text lies in bytes; NULL: nowhere. */
+/* Returns where a text lies in bytes; NULL: nowhere. */
 static const unsigned char *find_text(const unsigned char *bytes, size_t size,
                                       const char *text) {
     size_t length = strlen(text);

@@ -132,7 +132,8 @@ static snow_status parse(snow_context *context, snow_seekable *bytes,
                : SNOW_STATUS_OK;
 }
 
-/* Where the numbers of an array begin; false if that is not in the file. */
+/* Returns where the numbers of an array begin; false if that is not in the
+ * file. */
 static bool find_numbers(const survey *s, const small_array *array,
                          snow_seekable *bytes, uint64_t *out) {
     char blanks[BLANKS];

@@ -69,7 +69,8 @@ snow_status snow_vtk_read(snow_context *context, const vtk_grid *grid,
                           snow_uneven_fn *read, void *user,
                           snow_volume_info *info, snow_volume **out);
 
-/* Whether bytes begin an XML file of VTK, of a type unless that is NULL. */
+/* Returns whether bytes begin an XML file of VTK, of a type unless that is
+ * NULL. */
 bool snow_vtk_probe_xml(const unsigned char *bytes, size_t size,
                         const char *type);
 

@@ -55,7 +55,8 @@ static size_t last_part(const char *path, size_t length) {
     return length;
 }
 
-/* Whether a path such as "2" or "a/.." does not show the folder above. */
+/* Returns whether a path such as "2" or "a/.." does not show the folder
+ * above. */
 static bool hides_above(const char *path, size_t length) {
     size_t last = last_part(path, length), letters = length - last;
     return !last || (letters <= 2 && !strncmp(path + last, "..", letters));

@@ -292,7 +292,7 @@ static snow_status run(pass *work, int64_t items, snow_work_fn *one) {
     return SNOW_STATUS_OK;
 }
 
-/* Whether the picture is to end: the rest may be left out. */
+/* Returns whether the picture is to end: the rest may be left out. */
 static bool stops(const pass *work, const worker *w) {
     return snow_monitor_look(work->exact->context->monitor,
                              (int)(w - work->exact->workers));

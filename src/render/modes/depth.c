@@ -57,7 +57,7 @@ void snow_depth_find(const snow_placement *p, const double of[4], int x, int y,
         at[n] += way * away[n];
 }
 
-/* Whether slices rise along the ray of a pixel. */
+/* Returns whether slices rise along the ray of a pixel. */
 static bool rises(const snow_placement *p, int x, int y) {
     double ray[3];
     if (!p->perspective)

@@ -82,7 +82,7 @@ static bool is_above(const snow_raycast_pass *pass, double value) {
     return !isnan(value) && value >= pass->level;
 }
 
-/* Where between i - 1 and i a surface is met. */
+/* Returns where between i - 1 and i a surface is met. */
 static double find_crossing(const snow_raycast_pass *pass, const snow_ray *ray,
                             int64_t i, snow_raycast_eye *eye) {
     double low = (double)(i - 1), high = (double)i, at[3];
@@ -114,7 +114,7 @@ static void shade_surface(const snow_raycast_pass *pass, const snow_ray *ray,
                          channels, pixel);
 }
 
-/* Whether a position is next to a voxel of the part. */
+/* Returns whether a position is next to a voxel of the part. */
 static bool is_own(const snow_raycast_pass *pass, const double at[3]) {
     for (int axis = 0; pass->cut && axis < 3; axis++) {
         double last = (double)(pass->field.dims[axis] - 1);

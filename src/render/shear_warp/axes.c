@@ -51,7 +51,7 @@ uint64_t snow_value_axes_most(const snow_volume *volume) {
     return twice > KEPT_LEAST ? twice : KEPT_LEAST;
 }
 
-/* Whether so many bytes more may be kept. */
+/* Returns whether so many bytes more may be kept. */
 static bool has_room(const snow_value_path *path, const snow_volume *volume,
                      uint64_t bytes) {
     const snow_context *context = path->context;

@@ -139,8 +139,8 @@ static snow_status place_clips(snow_value_path *path,
     return SNOW_STATUS_OK;
 }
 
-/* Whether a mask has left a border; those of labels are lit by their own
- * gradients. */
+/* Returns whether a mask has left a border; those of labels are lit by their
+ * own gradients. */
 static bool has_border(const snow_value_path *path) {
     return path->range.masked && path->made.store.holes && !path->has_labels;
 }
@@ -204,8 +204,8 @@ static void describe(snow_value_drawing *job) {
 
 /* --- tiles ---------------------------------------------------------------- */
 
-/* Where row `row` of a phase of a tile is in a layer; *step leads to the next
- * pixel. */
+/* Returns where row `row` of a phase of a tile is in a layer; *step leads to
+ * the next pixel. */
 static float *find_row(const snow_value_drawing *job, int layer, int phase,
                        int64_t column, int64_t row, ptrdiff_t *step) {
     const snow_value_image *image = job->path->image;
@@ -275,8 +275,8 @@ static void load_phase(const snow_value_drawing *job, void *planes, int phase,
     }
 }
 
-/* Whether lines of the picture that are drawn need a tile which lines of it
- * before have not made.  Values that are finished have changed. */
+/* Returns whether lines of the picture that are drawn need a tile which lines
+ * of it before have not made. Values that are finished have changed. */
 static bool is_wanted(const snow_value_drawing *job, int64_t item,
                       int64_t column, int64_t row) {
     snow_value_image *image = job->path->image;

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* Whether the runs that were left out are invisible still. */
+/* Returns whether the runs that were left out are invisible still. */
 static bool shows_no_more(const snow_value_table *table,
                           const snow_value_store *store) {
     for (int n = 0; n < store->run_count; n++) {
@@ -82,8 +82,8 @@ static bool same_key(const snow_value_key *a, const snow_value_key *b) {
            a->encoding == b->encoding;
 }
 
-/* Whether its voxels may go before the picture is drawn: the caller's, which no
- * picture of many ranks can hold. */
+/* Returns whether its voxels may go before the picture is drawn: the caller's,
+ * which no picture of many ranks can hold. */
 static bool is_left(const snow_value_params *params) {
     return params->shared && !params->volume->owned;
 }

@@ -177,12 +177,12 @@ snow_status snow_value_order_make(snow_value_path *path,
                                   const snow_value_params *params, bool spare,
                                   snow_value_order *out);
 
-/* Whether an encoding, once it is whole, serves a part of a volume. */
+/* Returns whether an encoding, once it is whole, serves a part of a volume. */
 bool snow_value_fits_key(const snow_value_path *path,
                          const snow_value_encoding *has,
                          const snow_value_params *params, uint64_t generation);
 
-/* Whether it serves now. */
+/* Returns whether it serves now. */
 bool snow_value_serves(const snow_value_path *path,
                        const snow_value_encoding *has,
                        const snow_value_params *params, uint64_t generation);
@@ -220,7 +220,7 @@ static inline size_t snow_value_tiles(const snow_value_image *image) {
 
 /* --- image.c --- */
 
-/* Whether there is anything to see; the same for all parts. */
+/* Returns whether there is anything to see; the same for all parts. */
 bool snow_value_shows(const snow_value_path *path);
 
 /* Room for a picture's image, which is cleared but for what it is known that
@@ -267,8 +267,8 @@ bool snow_value_node_tile(const snow_value_drawing *drawing,
 snow_value_strip snow_value_strip_of(const snow_value_lattice *lattice,
                                      const int lines[2], int height);
 
-/* Whether a tile, from a column and row of the lattice's voxels on, is needed
- * for it. */
+/* Returns whether a tile, from a column and row of the lattice's voxels on, is
+ * needed for it. */
 bool snow_value_strip_needs(const snow_value_strip *strip,
                             const snow_value_lattice *lattice, int64_t column,
                             int64_t row);

@@ -54,16 +54,16 @@ void snow_value_lattice_move(snow_value_lattice *lattice, int axis, double by);
 
 /* --- perspective: eye.c --------------------------------------------------- */
 
-/* Whether the eye is outside of the slices, and not too near: samples of the
- * last sheet and rays are as far apart as encodings provide for. */
+/* Returns whether the eye is outside of the slices, and not too near: samples
+ * of the last sheet and rays are as far apart as encodings provide for. */
 bool snow_value_eye_fits(const snow_placement *placement, int per_slice);
 
 /* The most voxels along u or v that rays move aside from one slice to the next
  * where they meet the volume. */
 double snow_value_eye_slope(const snow_placement *placement, int axis);
 
-/* Whether rays move aside by no more voxels from one sheet to the next than
- * encodings provide for, whatever the view; in perspective, as above. */
+/* Returns whether rays move aside by no more voxels from one sheet to the next
+ * than encodings provide for, whatever the view; in perspective, as above. */
 bool snow_value_fits(const snow_volume_info *info,
                      const snow_placement *placement,
                      const snow_settings *settings);

@@ -49,7 +49,7 @@ static bool draw_slabs(layer_walk *w, int end, int x, int y, void *room) {
     return w->tile(&w->splat, x, y, room);
 }
 
-/* Whether a tile has pixels that something behind would show in. */
+/* Returns whether a tile has pixels that something behind would show in. */
 static bool is_open(const snow_value_splat *splat, const void *room) {
     const snow_value_faint_plane *planes =
         (const snow_value_faint_plane *)(uintptr_t)room;

@@ -97,7 +97,8 @@ void snow_value_cut_slabs(snow_value_path *path,
                           const snow_value_params *params, snow_slab_cut *cut);
 void snow_value_forget_slabs(snow_value_path *path);
 
-/* Whether memory was too small, and there is more: what was kept is gone. */
+/* Returns whether memory was too small, and there is more: what was kept is
+ * gone. */
 bool snow_value_lacks_room(snow_value_path *path, snow_status status);
 
 /* Drops encodings until a limit leaves so many bytes, as for the exchange of

@@ -44,7 +44,7 @@ void snow_shear_warp_clear(const snow_shear_warp_image *image, int layer,
     }
 }
 
-/* Whether `count` floats are all 0. */
+/* Returns whether `count` floats are all 0. */
 static bool all_zero(const float *values, size_t count) {
     for (size_t n = 0; n < count; n++)
         if (values[n] != 0)
@@ -70,7 +70,8 @@ void snow_shear_warp_put_lines(const snow_shear_warp_image *image, int first,
     }
 }
 
-/* Where pixel x of a line of the picture falls in the intermediate image. */
+/* Returns where pixel x of a line of the picture falls in the intermediate
+ * image. */
 static double line_of_place(const snow_shear_warp_warping *w, int x, int y) {
     if (!w->perspective)
         return floor(w->shear.start[1] + x * w->shear.along_x[1] +

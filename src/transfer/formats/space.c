@@ -195,7 +195,8 @@ typedef struct stretch {
     const double *color[2];
 } stretch;
 
-/* Whether a straight line between two positions is close to the curve. */
+/* Returns whether a straight line between two positions is close to the
+ * curve. */
 static bool is_close(const stretch *s, double from, const double a[3],
                      double to, const double b[3]) {
     for (int n = 1; n < 4; n++) {

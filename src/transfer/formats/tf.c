@@ -27,8 +27,8 @@ static bool is_text(const tf_input *in) {
     return !memchr(in->bytes, 0, in->size);
 }
 
-/* Whether it has only numbers and blanks, and at least the six of the light and
- * three counts. */
+/* Returns whether it has only numbers and blanks, and at least the six of the
+ * light and three counts. */
 static bool looks_like_vp(const tf_input *in) {
     const char *at = in->bytes, *end = at + in->size;
     double number;

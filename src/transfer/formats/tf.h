@@ -54,7 +54,7 @@ snow_status tf_add_opacity(const tf_input *in, snow_look_file *tf,
                            tf_list *list, const char *what, double value,
                            double opacity);
 
-/* Whether a name is the wanted one. */
+/* Returns whether a name is the wanted one. */
 bool tf_is_wanted(const tf_input *in, const char *name);
 void tf_set_name(snow_look_file *tf, const char *name);
 
