@@ -25,6 +25,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Without a page the program ends after this time. */
+#define IDLE_SECONDS 3600
+
 /* What is shown without a file. */
 static char engine[] = "phantom:engine";
 
@@ -144,7 +147,7 @@ static int open_door(viewer *v, const json_t *recipe) {
         return done;
     json_t *copy = json_deep_copy(recipe);
     v->state = copy ? state_new(copy) : NULL;
-    v->listener = listener_new(&v->sockets, &v->guard, opts->idle);
+    v->listener = listener_new(&v->sockets, &v->guard, IDLE_SECONDS);
     v->box = v->listener ? outbox_new(listener_wake, v->listener) : NULL;
     return v->state && v->box ? CONTINUE : fail_start();
 }

@@ -26,7 +26,6 @@ static const struct {
     {read_view, "{'type': 'string'}"},
     {read_type, "{'type': 'string'}"},
     {read_choice, "{'type': 'string'}"},
-    {read_method, "{'type': 'string'}"},
     {read_real, "{'type': 'number'}"},
     {read_strength, "{'type': 'number'}"},
     {read_symlog, "{'anyOf': [{'type': 'boolean'}, {'type': 'number',"

@@ -95,9 +95,9 @@ const option_row option_table[] = {
      FIELD(encoding), 0, 0, "",
      "how the positions of interesting voxels are stored (default auto)"},
     {"method", 0, "auto|original|footprint|shear-warp|raycast", TOPIC_SPARSE, RENDER,
-     read_method, FIELD(method), 0, 0, "",
+     read_choice, FIELD(method), 0, 0, "",
      "rendering method. shear-warp: interpolates values slice by slice, then "
-     "colours them; the fastest; sheared is its old name; raycast: the same "
+     "colours them; the fastest; raycast: the same "
      "along each ray; slow, the reference for the others; footprint: splats "
      "interesting voxels straight onto the picture, as the paper does; "
      "original: the same with every voxel (default auto: shear-warp)"},
@@ -434,17 +434,12 @@ const option_row option_table[] = {
     {"live", 0, "RECIPE", TOPIC_MORE, SERVE, read_text, FIELD(live), 0, 0, "",
      "in place of a volume show the newest picture of the running simulation "
      "that draws by this recipe, and change the recipe"},
-    {"idle", 0, "TIME", TOPIC_MORE, SERVE, read_seconds, FIELD(idle), 0, 0, "",
-     "end after this time without a page: seconds, or a number with m or h; 0 "
-     "never ends (default 1h)"},
 
     {"json", 0, NULL, TOPIC_MORE, INFO | COMPARE | DOCTOR | TF, read_flag,
      FIELD(json), 0, 0, "",
      "print one JSON object; of several inputs of info a list of them"},
     {"patient", 0, NULL, TOPIC_MORE, INFO, read_flag, FIELD(patient), 0, 0, "",
      "also print the patient's name, if the file has one"},
-    {"seed", 0, "N", TOPIC_MORE, PHANTOM, read_count, FIELD(seed), 0, 0, "",
-     "seed of the random parts of a phantom (default 0)"},
     {"tolerance", 0, "X", TOPIC_MORE, COMPARE, read_tolerance, FIELD(tolerance),
      0, 1, "",
      "largest difference that counts as equal, from 0 to 1; quotients such as "

@@ -124,7 +124,6 @@ typedef struct options {
     bool overlay_picks;         /* `labels` are its, not the input's */
     range_value overlay_range;
     point_list overlay_opacity;
-    uint64_t seed;
 
     bool each_time; /* `time` is one of all steps, which are opened in turn */
 
@@ -136,7 +135,6 @@ typedef struct options {
     const char *embed;      /* origins, separated by commas; NULL: none */
     const char *token_file; /* NULL: none */
     const char *live;       /* a simulation's recipe; NULL: none */
-    double idle;            /* seconds without a page; 0: no end */
 
     int64_t frames; /* in a turn */
     double fps;

@@ -105,14 +105,6 @@ bool read_choice(const option_row *row, const char *text, void *field,
     return false;
 }
 
-bool read_method(const option_row *row, const char *text, void *field,
-                 char wrong[WRONG_BYTES]) {
-    int method = snow_method_from_name(text);
-    if (method >= 0) /* an alias becomes the name */
-        text = snow_method_name((snow_method)method);
-    return read_choice(row, text, field, wrong);
-}
-
 /* A row with both limits 0 has none; written so that NaN is never within. */
 static bool is_within(const option_row *row, double value) {
     bool any = row->low == 0 && row->high == 0;
@@ -538,27 +530,5 @@ bool read_place(const option_row *row, const char *text, void *field,
         return refuse(wrong, "is not a position; give X,Y,Z in the volume's "
                              "world, such as 0,250,-12.5");
     *(place_value *)field = place;
-    return true;
-}
-
-/* A week is more than a batch job lasts. */
-#define SECONDS_MOST (7 * 24 * 3600.0)
-
-bool read_seconds(const option_row *row, const char *text, void *field,
-                  char wrong[WRONG_BYTES]) {
-    char number[32];
-    double value;
-    size_t length = strlen(text);
-    char unit = length ? text[length - 1] : '\0';
-    double seconds = unit == 'h' ? 3600 : unit == 'm' ? 60 : 1;
-    (void)row;
-    if (unit == 'h' || unit == 'm' || unit == 's')
-        length--;
-    snprintf(number, sizeof number, "%.*s", (int)length, text);
-    if (length >= sizeof number || !value_real(number, &value) || value < 0 ||
-        value * seconds > SECONDS_MOST)
-        return refuse(wrong, "is not a time of up to a week; give seconds, or "
-                             "a number with s, m or h, such as 30m");
-    *(double *)field = value * seconds;
     return true;
 }

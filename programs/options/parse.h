@@ -9,7 +9,6 @@ option_read read_text;      /* const char * */
 option_read read_flag;      /* bool: true */
 option_read read_constant;  /* int: the row's lower limit */
 option_read read_choice;    /* const char *: one of the row's choices */
-option_read read_method;    /* const char *: one of them, or an alias */
 option_read read_real;      /* double within low..high */
 option_read read_fov;       /* double; the default for an empty text */
 option_read read_strength;  /* double; 1 for an empty text */
@@ -39,6 +38,5 @@ option_read read_factor_points;   /* point_list */
 option_read read_gradient_points; /* point_list */
 option_read read_light;           /* light_value */
 option_read read_place;           /* place_value */
-option_read read_seconds;         /* double; units as in 90s, 5m or 1h */
 
 #endif

@@ -51,8 +51,8 @@ static bool look_at_lines(const snow_in_flight *p, int y0, int y1,
 }
 
 /* `drawn` is known only when the image is finished. */
-static snow_local sheared_local(const snow_shear_warp_image *image,
-                                bool drawing) {
+static snow_local shear_warp_local(const snow_shear_warp_image *image,
+                                   bool drawing) {
     snow_local local = {.image = *image};
     for (int n = 0; image->width && n < image->layers && !drawing; n++)
         local.drawn[n] =
@@ -118,9 +118,9 @@ static snow_status prepare(snow_in_flight *p, const snow_job *job) {
     const bool warps = p->picture.pass->method->warps;
     if (is_empty(p))
         return SNOW_STATUS_OK;
-    p->local = warps
-                   ? sheared_local(&p->picture.local.image, p->picture.drawing)
-                   : picture_local(p, job);
+    p->local =
+        warps ? shear_warp_local(&p->picture.local.image, p->picture.drawing)
+              : picture_local(p, job);
     p->local.composite_op = composite_op_of(job->settings.mode);
     if (warps)
         SNOW_TRY(snow_lines_prepare(p->ranks, &p->picture.local.image));

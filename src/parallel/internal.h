@@ -17,7 +17,7 @@
 #include "render/picture.h"
 #include "render/shear_warp/warping.h"
 
-/* The local image of a rank: in the sheared method an intermediate image; else
+/* The local image of a rank: in shear-warp an intermediate image; else
  * pixels of the picture, without tiles. */
 typedef struct snow_local {
     snow_shear_warp_image image;

@@ -9,7 +9,7 @@
  * What a rank finds wrong by itself is agreed on before anybody waits for a
  * message of it; what all ranks find wrong alike needs no word.
  *
- * A local image by the sheared method along one axis is begun as soon as the
+ * A local image by shear-warp along one axis is begun as soon as the
  * picture is, and then drawn while others wait, for messages of the picture
  * before it (pipeline.c).  From then on it needs no volume.  Where its turn
  * comes before all of it is drawn, its parts are sent as they are done:

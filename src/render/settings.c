@@ -49,8 +49,6 @@ const char *snow_encoding_name(snow_encoding encoding) {
 }
 
 int snow_method_from_name(const char *name) {
-    if (snow_same_name(name, "sheared")) /* an alias */
-        return SNOW_METHOD_SHEAR_WARP;
     return find_name(methods, COUNT(methods), name);
 }
 

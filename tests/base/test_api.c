@@ -25,12 +25,6 @@ static void a_name_leads_back_to_its_value(void **state) {
     EACH_VALUE_HAS_A_NAME(mode);
 }
 
-static void shear_warp_has_an_alias(void **state) {
-    (void)state;
-    assert_string_equal(snow_method_name(SNOW_METHOD_SHEAR_WARP), "shear-warp");
-    assert_int_equal(snow_method_from_name("sheared"), SNOW_METHOD_SHEAR_WARP);
-}
-
 /* The picture of one call is that of the objects made one by one. */
 static void a_file_is_rendered_in_one_call(void **state) {
     snow_context *context = NULL;
@@ -354,7 +348,6 @@ static void less_than_0_levels_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_name_leads_back_to_its_value),
-        cmocka_unit_test(shear_warp_has_an_alias),
         cmocka_unit_test(a_file_is_rendered_in_one_call),
         cmocka_unit_test(a_file_that_is_missing_makes_no_image),
         cmocka_unit_test(initialisers_reach_as_far_as_the_callers_record),

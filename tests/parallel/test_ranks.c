@@ -133,14 +133,14 @@ static void sweep(const char *title, int scenes, double fov,
 
 static void any_number_of_ranks_makes_the_serial_picture(void **state) {
     (void)state;
-    const snow_method sheared = SNOW_METHOD_SHEAR_WARP;
-    sweep("sheared", (int)support_sweep(30, 15), 0, &sheared, 1);
+    const snow_method shear_warp = SNOW_METHOD_SHEAR_WARP;
+    sweep("shear-warp", (int)support_sweep(30, 15), 0, &shear_warp, 1);
 }
 
 static void so_it_does_in_perspective(void **state) {
     (void)state;
-    const snow_method sheared = SNOW_METHOD_SHEAR_WARP;
-    sweep("perspective", (int)support_sweep(20, 10), 35, &sheared, 1);
+    const snow_method shear_warp = SNOW_METHOD_SHEAR_WARP;
+    sweep("perspective", (int)support_sweep(20, 10), 35, &shear_warp, 1);
 }
 
 static void so_it_does_by_the_exact_methods(void **state) {

@@ -74,7 +74,7 @@ static void pictures_from_any_place_are_those_of_the_reference(void **state) {
     model_close(&stage);
 }
 
-static void the_sheared_method_sees_the_same(void **state) {
+static void shear_warp_sees_the_same(void **state) {
     (void)state;
     model_stage stage = model_open();
     uint64_t random = 2;
@@ -251,7 +251,7 @@ static void cameras_that_cannot_be_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_from_any_place_are_those_of_the_reference),
-        cmocka_unit_test(the_sheared_method_sees_the_same),
+        cmocka_unit_test(shear_warp_sees_the_same),
         cmocka_unit_test(so_it_does_in_perspective),
         cmocka_unit_test(the_usual_place_gives_the_usual_picture),
         cmocka_unit_test(the_target_falls_on_the_middle),

@@ -278,7 +278,7 @@ static double distance_of(snow_image *a, snow_image *b) {
 
 /* Of an object that ends within its volume, as most do: PSNR of 50 and 61 dB.
  */
-static void sheared_pictures_of_smooth_data_are_near_to_rays(void **state) {
+static void shear_warp_pictures_of_smooth_data_are_near_to_rays(void **state) {
     (void)state;
     static const double bounds[] = {0.0032, 0.0032, 0.0009, 0.0009};
     model_stage stage = model_open();
@@ -552,7 +552,7 @@ int main(void) {
         UNIT(every_type_and_matrix_from_every_side),
         UNIT(every_type_and_matrix_in_perspective),
         UNIT(depths_of_over),
-        UNIT(sheared_pictures_of_smooth_data_are_near_to_rays),
+        UNIT(shear_warp_pictures_of_smooth_data_are_near_to_rays),
         UNIT(isosurfaces_are_of_values),
         UNIT(threads_and_encodings_change_no_bit),
         UNIT(levels_make_the_same_picture),

@@ -154,7 +154,7 @@ def folders_of_sockets():
     """In a folder of others, who could put another socket in the place."""
     def is_refused(folder, why):
         path = os.path.join(folder, "s")
-        done = subprocess.run([TOOL, "serve", SMALL, "--socket", path, "--idle", "0.1s"],
+        done = subprocess.run([TOOL, "serve", SMALL, "--socket", path],
                               capture_output=True, text=True, timeout=60)
         check(f"a folder that {why} is refused", done.returncode == 2 and
               done.stderr.count("\n") == 1 and why in done.stderr and

@@ -1097,7 +1097,6 @@ def endings():
             ([SMALL, "--embed", "hub.example.org"], 2, "--embed"),
             ([SMALL, "--embed", "*"], 2, "--embed"),
             ([SMALL, "--embed", "https://a.org/; script-src *"], 2, "--embed"),
-            ([SMALL, "--idle", "soon"], 2, "--idle"),
             ([SMALL, "--socket", "/no/such/folder/x"], 4, "--socket"),
             ([SMALL, "--socket", "x", "--port", "8000"], 2, "conflicts"),
             ([SMALL, "--preset", "nonsense"], 2, "--preset"),
@@ -1107,8 +1106,6 @@ def endings():
         check(f"serve {' '.join(arguments)} ends with {code}",
               done.returncode == code and words in done.stderr and
               not done.stdout, f"{done.returncode} {done.stderr}")
-    idle = Server(SMALL, "--idle", "0.3s")
-    check("--idle ends it", idle.process.wait(20) == 0)
     first = Server(SMALL)
     taken = subprocess.run([TOOL, "serve", SMALL, "--port", str(first.port)],
                            capture_output=True, text=True, timeout=60)

@@ -77,11 +77,11 @@ check "all four are equal" [ "$(sort -u sums | wc -l)" -eq 1 ]
 for encoding in crs bitmap rle; do
     for threads in 1 2 5; do
         # shellcheck disable=SC2086
-        run 0 "the engine sheared by $encoding, -j $threads" "$TOOL" -q \
+        run 0 "the engine by shear-warp, $encoding, -j $threads" "$TOOL" -q \
             "$engine" $engine_form --encoding $encoding -j $threads \
             --azimuth 30 -s 128x128 -o e.npy -y --stats -
-        sum "$OUT" >>sheared_sums
+        sum "$OUT" >>shear_warp_sums
     done
 done
-check "all nine are equal" [ "$(sort -u sheared_sums | wc -l)" -eq 1 ]
+check "all nine are equal" [ "$(sort -u shear_warp_sums | wc -l)" -eq 1 ]
 finish

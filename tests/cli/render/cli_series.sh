@@ -5,7 +5,7 @@
 . "$(dirname "$0")/../../support/shell.sh"
 
 for step in 0 10 30; do
-    "$TOOL" phantom shells --dims 16x16x16 --seed $step -q \
+    "$TOOL" phantom shells --dims 16x16x16 -q \
         -o "$(printf run_%04d.nrrd $step)" || exit 1
     printf 'run_%04d.nrrd\n!TIME 0.%d\n' $step $step >>list
 done

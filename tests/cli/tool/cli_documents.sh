@@ -23,7 +23,7 @@ cp head.nii.gz ct.nrrd scans
 echo '{"input": "sim.nrrd", "output": "sim.png"}' >look.json
 "$tool" tf convert ct-bone -q -o bone.json || exit 1
 for step in 0 1 2; do
-    "$tool" phantom shells --dims 16x16x16 --seed $step -q \
+    "$tool" phantom shells --dims 16x16x16 -q \
         -o run_000$step.nrrd || exit 1
 done
 head -c $((2 * 256 * 256 * 113)) /dev/zero | gzip -1 >CThead.raw.gz

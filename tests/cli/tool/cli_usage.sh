@@ -178,7 +178,6 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
 info nope.nii --preset foo|--preset: 'foo' is unknown
 --progress some x|choose from: auto, always, never
 --stats x.png phantom:cube -o x.png|name two files
-phantom --seed -1 cube|whole number of 0 or more
 compare --tolerance 2 a b|is not a difference
 compare --tolerance 1/0 a b|is not a difference
 x -o y.npy --background white|work only for PNG, WebP and JPEG
