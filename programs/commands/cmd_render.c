@@ -138,11 +138,11 @@ int check_picture_paths(snow_context *context, const options *opts) {
 }
 
 /* Whether opacities are per millimetre: a file of a transfer function may say
- * so, but the command line has priority. */
+ * so, but a recipe has priority. */
 static bool is_per_mm(const options *opts) {
-    if (opts->loaded && !options_given(opts, "opacity-unit"))
+    if (opts->loaded && !opts->opacity_unit)
         return snow_look_file_look(opts->loaded)->per_mm;
-    return strcmp(opts->opacity_unit, "mm") == 0;
+    return opts->opacity_unit && strcmp(opts->opacity_unit, "mm") == 0;
 }
 
 /* The length of a millimetre in the unit of the volume's world. */
@@ -162,8 +162,8 @@ static int opacity_length(const options *opts, const snow_volume_info *info,
     }
     if (*out > 0)
         return CONTINUE;
-    return fail_usage("--opacity-unit mm: the volume's unit '%s' is not a "
-                      "length; use --opacity-unit voxel",
+    return fail_usage("opacities per mm: the volume's unit '%s' is not a "
+                      "length; give --config '{\"opacity-unit\": \"voxel\"}'",
                       info->unit);
 }
 

@@ -155,6 +155,11 @@ static void add_others(json_t *properties) {
         parse("{'anyOf': [{'type': 'string'}, {'type': 'array', 'items':"
               "{'type': 'string'}}], 'description':"
               "'volume file, or phantom:NAME; of a movie a list'}"));
+    json_object_set_new(
+        properties, "opacity-unit",
+        parse("{'enum': ['voxel', 'mm'], 'description': 'length over which an "
+              "opacity applies: the smallest voxel spacing or one "
+              "millimetre (default voxel)'}"));
     json_object_set_new(properties, "verb",
                         parse("{'type': 'string', 'description':"
                               "'the verb that wrote the file'}"));

@@ -140,6 +140,11 @@ static int take_key(options *out, const verb_row *verb, const char *key,
         (strcmp(key, "perspective") == 0 && json_number_value(value) == 0);
     if (nothing || gives_way(out, key))
         return CONTINUE;
+    if (strcmp(key, "opacity-unit") == 0) { /* which is no option */
+        out->opacity_unit =
+            strcmp(json_string_value(value), "mm") == 0 ? "mm" : "voxel";
+        return CONTINUE;
+    }
     if (json_is_true(value))
         return options_take(out, verb, key, NULL);
     if (json_is_array(value) && strcmp(key, "input") == 0)
@@ -158,14 +163,22 @@ static int take_key(options *out, const verb_row *verb, const char *key,
     return CONTINUE;
 }
 
-/* Whether the file is a recipe. */
-static int check_recipe(const char *path) {
+/* Whether it is no file but a text, {"KEY": VALUE}. */
+static bool is_recipe_text(const char *config) {
+    return *config == '{';
+}
+
+/* Whether the file, or the text, is a recipe. */
+static int check_recipe(const char *config) {
     snow_context *context = NULL;
     snow_recipe recipe = {.size = sizeof recipe};
     snow_status status = snow_context_new(NULL, &context);
     if (status != SNOW_STATUS_OK)
         return fail_status(NULL, status);
-    status = snow_recipe_load(context, path, &recipe);
+    status = is_recipe_text(config)
+                 ? snow_recipe_parse(context, "--config", config,
+                                     strlen(config), &recipe)
+                 : snow_recipe_load(context, config, &recipe);
     int done = CONTINUE;
     if (status == SNOW_STATUS_OK)
         snow_recipe_clear(&recipe);
@@ -209,8 +222,11 @@ static int take_file(options *out, const verb_row *verb) {
     int done = check_recipe(out->config);
     if (done != CONTINUE)
         return done;
-    json_t *tree = json_load_file(out->config, 0, &error);
-    config_paths_read(tree, out->config);
+    json_t *tree = is_recipe_text(out->config)
+                       ? json_loads(out->config, 0, &error)
+                       : json_load_file(out->config, 0, &error);
+    if (!is_recipe_text(out->config))
+        config_paths_read(tree, out->config);
     fit_depth(out, verb, tree);
     done = config_take_tree(out, verb, tree);
     const json_t *overlay = json_object_get(tree, "overlay");

@@ -56,9 +56,9 @@ static void fill_look(const options *opts, snow_recipe *out) {
     out->gradient_opacity_count = opts->gradient_opacities.count;
     memcpy(out->gradient_opacities, opts->gradient_opacities.points,
            opts->gradient_opacities.count * sizeof *out->gradient_opacities);
-    out->opacity_per_mm = strcmp(opts->opacity_unit, "mm") == 0;
-    out->opacity_per_voxel =
-        !out->opacity_per_mm && options_given(opts, "opacity-unit");
+    out->opacity_per_mm =
+        opts->opacity_unit && strcmp(opts->opacity_unit, "mm") == 0;
+    out->opacity_per_voxel = !out->opacity_per_mm && opts->opacity_unit;
 }
 
 static void fill_overlay(const options *opts, snow_recipe *out) {
@@ -326,6 +326,7 @@ static void set_inputs(const options *opts, json_t *tree) {
 static void keep_slice(const options *opts, json_t *tree) {
     if (!options_given(opts, "size"))
         json_object_del(tree, "size");
+    json_object_del(tree, "opacity-unit");
     for (const option_row *row = option_table; row->name; row++)
         if (!(row->verbs & VERB_SLICE))
             json_object_del(tree, row->name);
@@ -368,9 +369,15 @@ static void add_word(FILE *out, const char *word) {
         fputc('\'', out);
 }
 
+/* A key that is no option stands in a recipe's text. */
 static void add_option(FILE *out, const char *key, const json_t *value) {
     static options scratch; /* for its texts */
     char name[64];
+    if (strcmp(key, "opacity-unit") == 0) {
+        fprintf(out, " --config '{\"%s\": \"%s\"}'", key,
+                json_string_value(value));
+        return;
+    }
     scratch.text_bytes = 0;
     snprintf(name, sizeof name, "--%s", key);
     add_word(out, name);

@@ -141,10 +141,6 @@ const option_row option_table[] = {
     {"shift", 0, "N", TOPIC_LOOK, LOOKED, read_real, FIELD(shift), 0, 0, "",
      "move the look by N data units: a preset keeps its shape, which --window "
      "and --range would stretch or squeeze (default 0)"},
-    {"opacity-unit", 0, "voxel|mm", TOPIC_LOOK, RENDER, read_choice,
-     FIELD(opacity_unit), 0, 0, "",
-     "length over which an opacity applies: the smallest voxel spacing or one "
-     "millimetre (default voxel)"},
     {"shade", 0, "phong|none", TOPIC_LOOK, RENDER, read_choice, FIELD(shade), 0,
      0, "", "shading of the voxels (default phong)"},
     {"light", 0, "key|head|AZ,EL", TOPIC_LOOK, RENDER, read_light, FIELD(light),
@@ -367,8 +363,8 @@ const option_row option_table[] = {
      "that does not fit either, the exit code is 5 (default: the free memory; "
      "-v prints the need)"},
     {"config", 0, "FILE", TOPIC_RUN, LOOKED, read_text, FIELD(config), 0, 0, "",
-     "read options from a JSON file whose keys are long option names, and "
-     "input; options on the command line have priority"},
+     "read options from a JSON file, or a text in {}, whose keys are long option "
+     "names, and input; options on the command line have priority"},
     {"save-config", 0, "FILE", TOPIC_RUN, FILED, read_text,
      FIELD(save_config), 0, 0, "",
      "write the options to a JSON file that gives the same picture with "

@@ -38,7 +38,6 @@ void options_init(options *out) {
         .iso = NAN,
         .window = NAN,
         .level = NAN,
-        .opacity_unit = "voxel",
         .shade = "phong",
         .light = {settings.light},
         .ambient = settings.ambient,

@@ -85,7 +85,8 @@ typedef struct options {
     double window, level; /* NaN: not given */
     double shift;         /* of the look, in data units */
     range_value range;
-    const char *opacity_unit, *shade;
+    const char *opacity_unit; /* of a recipe; NULL: not given */
+    const char *shade;
     light_value light;
     double ambient, diffuse, specular, shininess;
     double depth_darkening, occlusion;

@@ -62,8 +62,8 @@ run 0 "a file's points are told" small --tf "$SEEDS/niivue.json" -o n.png
 says 'niivue 100\.\.1000; opacity 0 at 100.*\(from the file\); opacity per voxel'
 run 0 "its unit too" small --tf "$SEEDS/own.json" -o o.png
 says 'mine .*gradient opacity 0 at .*; opacity per mm'
-run 0 "the command line counts more" small --tf "$SEEDS/own.json" \
-    --opacity-unit voxel -o o.png -y
+run 0 "a recipe counts more" small --tf "$SEEDS/own.json" \
+    --config '{"opacity-unit": "voxel"}' -o o.png -y
 says 'opacity per voxel'
 run 0 "spread over a range" small --tf "$SEEDS/niivue.json" --range 10,200 \
     -o r.png

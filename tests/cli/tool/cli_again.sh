@@ -76,6 +76,8 @@ done
 again "a logarithm of a sum of zeros" render a.png negative.nhdr -m sum --log
 again "a colour map" render a.png phantom:head $small -c viridis
 again "opacities" render a.png phantom:head $small --opacity 10:0,200:0.7
+again "opacities of a millimetre" render a.png phantom:head $small --spacing 3x3x3 \
+    --config '{"opacity-unit": "mm"}'
 again "a range" render a.png phantom:head $small --range p2,p98
 again "a window" render a.png ct.nhdr -w 400 --level 40
 again "a look that is moved" render a.png phantom:head $small --shift 3.7

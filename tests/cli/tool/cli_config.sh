@@ -10,7 +10,7 @@ run 0 "a picture with many wishes is saved" "$TOOL" render \
     phantom:marschner-lobb --dims 40x36x44 --spacing 1x1.5x0.7 -o a.png \
     -s 130x110 --background '#102030' --bits 16 --threshold 2.5 \
     --kernel gauss --footprint 5 --preset linear -c inferno \
-    --opacity 0.1:0,0.5:0.05,0.5:0.2,1:1 --range 0.1,0.9 --opacity-unit mm \
+    --opacity 0.1:0,0.5:0.05,0.5:0.2,1:1 --range 0.1,0.9 --config '{"opacity-unit": "mm"}' \
     --gradient-opacity 0:0.1,0.2:0.7,0.2:0.8,1.25:1 \
     --light 20,-10 --ambient 0.31 --diffuse 0.6 --specular 0.1 --shininess 7 \
     --depth-darkening 0.4 --occlusion 0.3 \
@@ -44,7 +44,7 @@ run 4 "nothing is replaced without it" render --config once.json
 echo '{"snowglass-tf": 1, "opacity-unit": "mm",
     "opacities": [[0, 0], [255, 0.5]]}' >mm.json
 run 0 "opacities of a voxel" render phantom:cube --dims 20x20x20 \
-    --spacing 4x4x4 --tf mm.json --opacity-unit voxel -o voxel.png \
+    --spacing 4x4x4 --tf mm.json --config '{"opacity-unit": "voxel"}' -o voxel.png \
     --save-config voxel.json
 run 0 "and again" render --config voxel.json -o again.png
 check "are the same" cmp -s voxel.png again.png
