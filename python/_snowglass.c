@@ -61,7 +61,7 @@ static PyObject *fail(PyObject *module, PyObject *args) {
 static PyObject *text(PyObject *module, PyObject *message) {
     const char *given = PyUnicode_AsUTF8AndSize(message, NULL);
     (void)module;
-    return given ? message_text(given, false) : NULL;
+    return given ? message_text(given) : NULL;
 }
 
 static PyMethodDef functions[] = {

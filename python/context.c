@@ -96,7 +96,7 @@ static bool report(void *user, snow_stage stage, double fraction) {
 static void keep_warning(void *user, const char *text) {
     context_object *c = user;
     PyGILState_STATE state = PyGILState_Ensure();
-    PyObject *one = message_text(text, true);
+    PyObject *one = message_text(text);
     if (!one || PyList_Append(c->warnings, one))
         PyErr_Clear();
     Py_XDECREF(one);
@@ -163,7 +163,7 @@ bool context_enter(context_object *c, PyObject *progress) {
 }
 
 void context_set_error(snow_status status, const char *message) {
-    PyObject *text = message_text(message, true),
+    PyObject *text = message_text(message),
              *number = PyLong_FromLong(status);
     PyObject *type = status == SNOW_STATUS_NO_MEMORY   ? PyExc_MemoryError
                      : status == SNOW_STATUS_BAD_USAGE ? PyExc_ValueError

@@ -111,9 +111,8 @@ bool record_is_argument(const char *name);
 bool record_has(PyObject *given, const char *name);
 
 /* A message of the library, in which options of the tool are arguments: crop=
- * for --crop, time=2 for --time 2, dims=(4, 5, 6) for --dims 4x5x6. That of a
- * volume says intercept=-1024 for --shift 1024, which movies in situ have. */
-PyObject *message_text(const char *message, bool of_volume);
+ * for --crop, time=2 for --time 2, dims=(4, 5, 6) for --dims 4x5x6. */
+PyObject *message_text(const char *message);
 
 /* --- objects -------------------------------------------------------------- */
 

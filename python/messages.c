@@ -92,16 +92,7 @@ static size_t write_types(const char *from, char **to) {
     return length;
 }
 
-/* An offset that values have is an intercept that is taken from them. */
-static void write_option(const char *name, bool of_volume, bool is_list,
-                         char **to) {
-    if (of_volume && strcmp(name, "shift") == 0)
-        *to += sprintf(*to, "intercept=-");
-    else /* a list behind it explains its name */
-        *to += sprintf(*to, is_list ? "%s" : "%s=", name);
-}
-
-PyObject *message_text(const char *message, bool of_volume) {
+PyObject *message_text(const char *message) {
     /* "," becomes "), (", the longest of what is put in for its length */
     char *copy = malloc(4 * strlen(message) + 1), *to = copy, name[32];
     if (!copy)
@@ -117,7 +108,8 @@ PyObject *message_text(const char *message, bool of_volume) {
             continue;
         }
         from += length;
-        write_option(name, of_volume, strncmp(from, " (", 2) == 0, &to);
+        /* a list behind it explains its name */
+        to += sprintf(to, strncmp(from, " (", 2) == 0 ? "%s" : "%s=", name);
         from += is_value(from, begins);
         if (is_tuple(name))
             from += write_tuple(from, &to);

@@ -369,7 +369,7 @@ static bool has_changed(void *user) {
     return state_is_stale(b->state, b->revision);
 }
 
-/* {"what": "thumbnail", "preset": "ct-bone", "shift": 1024, "pane": 4}: is
+/* {"what": "thumbnail", "preset": "ct-bone", "pane": 4}: is
  * asked again where a page changes something meanwhile. */
 static void answer_thumbnail(drawing *d, viewer_state *s, outbox *box,
                              uint64_t client, json_t *tree) {
@@ -380,8 +380,7 @@ static void answer_thumbnail(drawing *d, viewer_state *s, outbox *box,
     if (!d->state.volume || !preset || pane < 4 || pane > 255 ||
         (*preset && snow_preset_from_name(preset) < 0))
         return;
-    double shift = json_number_value(json_object_get(tree, "shift"));
-    int done = small_thumbnail(d, preset, shift, THUMBNAIL_SIDE, has_changed,
+    int done = small_thumbnail(d, preset, THUMBNAIL_SIDE, has_changed,
                                &now, &image);
     if (done == EXIT_INTERRUPTED) {
         json_object_set_new(tree, "again", json_true());

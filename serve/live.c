@@ -182,7 +182,6 @@ static snow_status make_look(live *l, double ends[2]) {
     look.range = SNOW_RANGE_VALUES;
     look.low = ends[0];
     look.high = ends[1];
-    look.shift = 0;
     for (size_t i = 0; i < json_array_size(list) && i < POINTS_MOST; i++) {
         double pair[2] = {0, 0};
         (void)read_numbers(json_array_get(list, i), pair, 2);

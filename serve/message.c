@@ -21,7 +21,6 @@ static const char *const keys[] = {
     "range",
     "window",
     "level",
-    "shift",
     "opacity-unit",
     "shade",
     "light",

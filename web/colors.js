@@ -16,10 +16,9 @@ export const ownColors = map => map?.includes(':')
 export const painted = (map, value, color) => text([
     ...ownColors(map)?.filter(([label]) => label !== value) ?? [], [value, color]]);
 
-/** Another range, with which one's own colours go, as those of a map do.  Both are of
- * the data: the shift of the keys is added to a range, but not to colours. */
-export function ranged({low, high}, {colormap, shift = 0}, [a, b]) {
-    const own = ownColors(colormap), range = apart([a - shift, b - shift], 6);
+/** Another range, with which one's own colours go, as those of a map do. */
+export function ranged({low, high}, {colormap}, [a, b]) {
+    const own = ownColors(colormap), range = apart([a, b], 6);
     return own ? {range, colormap: text(own.map(([value, color]) =>
         [...near([a + (value - low) / (high - low || 1) * (b - a)], b - a, 6), color]))} : {range};
 }

@@ -50,8 +50,7 @@ export class Editor {
                 button('Remove', 'Remove the chosen point', () => this.remove()),
                 ...this.kind === BY_VALUE ? [scale,
                     button('Automatic', 'Opacity of the preset, or made from the histogram',
-                        () => recipe.set({opacity: null, range: null,
-                            shift: recipe.keys.preset && recipe.keys.shift || null}))]
+                        () => recipe.set({opacity: null, range: null}))]
                     : [button('None', 'The gradient does not matter',
                         () => recipe.set({[this.kind.key]: null}))]));
     }

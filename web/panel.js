@@ -13,7 +13,7 @@ const WORLD_VIEWS = ['+x', '-x', '+y', '-y', '+z', '-z'];
 const AXES = ['x', 'y', 'z'];
 const FIRST_PANE = 4;
 const NO_SHAPE = {colormap: null, opacity: null, 'gradient-opacity': null, range: null,
-    shift: null, log: null, symlog: null};
+    log: null, symlog: null};
 
 export class Panel {
     constructor(recipe, page, engine, actions, slices) {
@@ -84,12 +84,7 @@ export class Panel {
         () => page.look ? short(page.look[end]) : ''));
         const percent = button('1-99 %', 'Range of the 1st to the 99th percentile',
             () => recipe.set({range: ['p1', 'p99']}));
-        const shift = this.kept(number('shift of the look in data units', value => {
-            this.shift = value;
-            recipe.set({shift: value || null});
-        }), ({shift: now = 0}) => short(now));
         const alone = make('div', {}, this.editor.element, row('Range', ...ends, percent),
-            page.info.mask === undefined ? '' : row('Shift', shift), // the kernel of a notebook has none
             row('Colours', maps));
         this.follow(keys => {
             alone.hidden = mixed(page.look);
@@ -99,11 +94,6 @@ export class Panel {
             this.box('logarithmic values', ({log}) => log, on => recipe.set({log: on || null, symlog: null})),
             this.box('on both sides of 0', ({symlog}) => symlog,
                 on => recipe.set({symlog: on || null, log: null})));
-    }
-
-    /** Presets of a CT are in its unit; what is made from the histogram is of the volume. */
-    shiftOf(preset) {
-        return (preset ? preset.startsWith('ct-') : this.page.info.tf) && this.shift || null;
     }
 
     setRange(low, high) {
@@ -118,13 +108,12 @@ export class Panel {
         const names = [['', page.info.tf ? 'of the file of --tf' : 'made from the histogram'], 
             ...page.info.presets];
         const grid = make('div', {className: 'presets'});
-        let asked;
         this.images = names.map(([name, text]) => {
             const image = make('img', {alt: '', hidden: true});
             const choose = make('button', {type: 'button', title: text,
                 'aria-label': `Preset ${name || none}: ${text}`,
                 onclick: () => this.recipe.set({...NO_SHAPE, preset: name || null,
-                    shift: this.shiftOf(name), ...mixed(page.look) && {channel: `${page.look.channels[0][0]}`}})},
+                    ...mixed(page.look) && {channel: `${page.look.channels[0][0]}`}})},
             image, name || none);
             this.follow(keys => choose.setAttribute('aria-pressed',
                 (keys.preset ?? '') === name));
@@ -133,14 +122,8 @@ export class Panel {
         });
         const list = section('Presets', false, grid);
         const ask = () => list.open && names.forEach(([preset], i) => this.engine.ask('thumbnail',
-            {preset, shift: this.shiftOf(preset), pane: FIRST_PANE + i}));
+            {preset, pane: FIRST_PANE + i}));
         list.addEventListener('toggle', ask);
-        this.follow(({shift = this.shift}) => {
-            this.shift = shift;
-            if (asked !== shift)
-                ask();
-            asked = shift;
-        });
         return list;
     }
 

@@ -43,7 +43,7 @@ module snowglass
     integer(c_size_t) :: opacity_count
     type(c_ptr) :: gradient_opacities
     integer(c_size_t) :: gradient_opacity_count
-    real(c_double) :: shift, symlog
+    real(c_double) :: symlog
   end type
 
   type, bind(c) :: snow_view

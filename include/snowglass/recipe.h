@@ -35,7 +35,7 @@ typedef struct snow_recipe {
     bool log;          /* as in snow_look */
     const char *depth; /* path of the depths, or NULL */
     int fit, frames;   /* of the tool: 1 visible, 2 volume; in a turn, or 0 */
-    double shift, fps; /* as in snow_look; of the tool (25) */
+    double fps;        /* of the tool (25) */
     const char *verb, *version; /* of the tool that wrote it, or NULL */
     bool scale_bar;             /* without the colour bar of `legend` */
     const char *axis, *at;      /* of the tool's slice, or NULL */

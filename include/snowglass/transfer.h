@@ -74,7 +74,6 @@ typedef struct snow_look {
     size_t opacity_count;
     const snow_opacity_point *gradient_opacities;
     size_t gradient_opacity_count;
-    double shift;  /* added to all values but those of `opacities` */
     double symlog; /* linear up to it, logarithms beyond; -1: chosen */
 } snow_look;
 SNOW_RECORD(snow_look);

@@ -284,7 +284,7 @@ static int open_colors(slice_work *w) {
     automatic = *opts;
     automatic.mode = "over";
     bool asked = opts->preset || opts->tf || opts->colormap || opts->log ||
-                 opts->symlog != 0 || opts->shift != 0 ||
+                 opts->symlog != 0 ||
                  options_range(opts).kind != SNOW_RANGE_AUTO;
     int done = CONTINUE;
     if (w->channels.list.count)

@@ -235,7 +235,6 @@ snow_look look_options(const options *opts) {
                       .high = range.high,
                       .log = opts->log,
                       .symlog = opts->symlog,
-                      .shift = opts->shift,
                       .base = opts->loaded ? snow_look_file_look(opts->loaded)
                                            : NULL};
     /* Projections are grey by default, over the file's window or all values but

@@ -103,7 +103,6 @@ static void fill_recipe(const options *opts, const verb_row *verb,
     if (verb->bit == VERB_TURNTABLE)
         out->frames = (int)opts->frames;
     out->fps = opts->fps;
-    out->shift = opts->shift;
     out->output =
         opts->show && strcmp(opts->output, "-") == 0 ? NULL : opts->output;
     out->depth = opts->depth;
@@ -255,7 +254,7 @@ static void note_look(const options *opts, const snow_transfer *transfer) {
 
 void config_note(const options *opts, const snow_transfer *transfer,
                  snow_shade shade, const char *view, const double painted[2]) {
-    bool asked = opts->preset || opts->tf || opts->shift < 0 || opts->shift > 0;
+    bool asked = opts->preset || opts->tf;
     if (!asked && mode_is_projection(opts->mode))
         note_projection(opts, transfer, painted);
     else if (!asked)
@@ -284,8 +283,7 @@ void config_note_slice(const options *opts, const snow_transfer *transfer,
     snprintf(at, sizeof at, "%" PRId64, index);
     chosen.axis = json_string(axis);
     chosen.at = json_string(opts->at ? opts->at : at);
-    if (transfer && !opts->preset && !opts->tf && !(opts->shift < 0) &&
-        !(opts->shift > 0)) {
+    if (transfer && !opts->preset && !opts->tf) {
         if (snow_transfer_label(transfer, 0))
             chosen.preset = json_string("labels");
         else

@@ -138,9 +138,6 @@ const option_row option_table[] = {
      "finite voxels, or all values (default: from the histogram, or the "
      "preset's or file's own). With convert: two values or full, spread over "
      "the type of --as"},
-    {"shift", 0, "N", TOPIC_LOOK, LOOKED, read_real, FIELD(shift), 0, 0, "",
-     "move the look by N data units: a preset keeps its shape, which --window "
-     "and --range would stretch or squeeze (default 0)"},
     {"shade", 0, "phong|none", TOPIC_LOOK, RENDER, read_choice, FIELD(shade), 0,
      0, "", "shading of the voxels (default phong)"},
     {"light", 0, "key|head|AZ,EL", TOPIC_LOOK, RENDER, read_light, FIELD(light),

@@ -83,7 +83,6 @@ typedef struct options {
     double symlog; /* 0: not given; -1: from where it suits */
     point_list opacities, gradient_opacities;
     double window, level; /* NaN: not given */
-    double shift;         /* of the look, in data units */
     range_value range;
     const char *opacity_unit; /* of a recipe; NULL: not given */
     const char *shade;

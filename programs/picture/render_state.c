@@ -742,8 +742,8 @@ static const snow_look *ranged_preset(const options *opts) {
 }
 
 /* A range stretches a preset of data values with its opacities, which few
- * expect of a window.  One that is the preset's own leaves the ends of the
- * colours where they are: those of the preset, or of a map over all of it. */
+ * expect of a window.  One as wide as the preset's own moves both ends of the
+ * colours alike: those of the preset, or of a map over all of it. */
 static void describe_squeeze(const render_state *s, char out[160]) {
     const snow_look *look = ranged_preset(s->opts);
     double ends[2];
@@ -756,13 +756,13 @@ static void describe_squeeze(const render_state *s, char out[160]) {
     double high = fmax(last, look->opacities[look->opacity_count - 1].value);
     bool mapped = s->opts->colormap != NULL;
     snow_transfer_domain(s->transfer, &ends[0], &ends[1]);
-    ends[0] -= (mapped ? low : first) + s->opts->shift;
-    ends[1] -= (mapped ? high : last) + s->opts->shift;
-    if (fmax(fabs(ends[0]), fabs(ends[1])) <= ROUNDING * (high - low))
+    ends[0] -= mapped ? low : first;
+    ends[1] -= mapped ? high : last;
+    if (fabs(ends[1] - ends[0]) <= ROUNDING * (high - low)) /* it is moved */
         return;
     snprintf(out, 160,
              "; the range squeezes or stretches the preset's own %g..%g and "
-             "its opacities; --shift N moves them",
+             "its opacities; one of the same width moves them",
              low, high);
 }
 

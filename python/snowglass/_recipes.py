@@ -26,7 +26,7 @@ ARRAY = ("affine", "medical", "slope", "intercept", "copy", "frozen", "memory")
 OVERLAY = ("preset", "colormap", "range", "opacity")
 #: Keys of the file of a picture and of other verbs, which are left out.
 OTHERS = ("output", "depth", "overwrite", "background", "bits", "frames", "fps",
-          "verb", "version", "time_label", "shift", "title", "legend_title",
+          "verb", "version", "time_label", "title", "legend_title",
           "annotate", "time_format", "outline", "axes")
 #: What need not be said; some of it the command line has no words for.
 USUAL = {"azimuth": 0, "elevation": 0, "roll": 0, "perspective": 0, "zoom": 1,
@@ -203,9 +203,6 @@ def split(options: Mapping[str, Any]) -> tuple[
                          "drawn here; use the command line, or give points")
     if second:
         given["overlay_look"] = Look(**second)
-    if given.get("shift"):
-        raise ValueError("a recipe with a shift cannot be drawn here; use the "
-                         "command line")
     if isinstance(given.get("depth"), bool):
         data_depth = {"depth": given["depth"]}
     else:

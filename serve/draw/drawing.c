@@ -27,7 +27,7 @@ static const char *const overlay_look_keys[] = {
     NULL};
 static const char *const look_keys[] = {
     "preset", "colormap", "log",   "symlog", "opacity", "gradient-opacity",
-    "range",  "window",   "level", "shift",  "mode",    "channel",
+    "range",  "window",   "level", "mode",    "channel",
     NULL};
 
 /* The smallest side of a draft that is drawn in a hurry. */
@@ -286,8 +286,8 @@ static bool restyle_quickly(drawing *d, bool spread) {
     snow_look quick = {.size = sizeof quick, .base = &base};
     if (spread) {
         quick.range = SNOW_RANGE_VALUES;
-        quick.low = range.low + d->opts.shift;
-        quick.high = range.high + d->opts.shift;
+        quick.low = range.low;
+        quick.high = range.high;
     } else {
         quick.opacities = look.opacities;
         quick.opacity_count = look.opacity_count;

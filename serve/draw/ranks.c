@@ -85,8 +85,7 @@ static void make_call(drawing *d, ranks_call call, const json_t *given) {
         break;
     case RANKS_THUMBNAIL:
         (void)small_thumbnail(d, json_string_value(json_array_get(given, 0)),
-                              number(given, 1), (int)number(given, 2), NULL,
-                              NULL, &image);
+                              (int)number(given, 1), NULL, NULL, &image);
         break;
     case RANKS_DEPTH:
         (void)pick_depth(d, number(given, 0), number(given, 1), &depth);

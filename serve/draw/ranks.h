@@ -14,7 +14,7 @@ typedef enum ranks_call {
     RANKS_APPLY,     /* a recipe */
     RANKS_FIT,       /* nothing */
     RANKS_RENDER,    /* [quality, shrink] */
-    RANKS_THUMBNAIL, /* [preset, shift, side] */
+    RANKS_THUMBNAIL, /* [preset, side] */
     RANKS_DEPTH,     /* [x, y] */
     RANKS_ENDS,      /* nothing */
     RANKS_WINDOW,    /* nothing */

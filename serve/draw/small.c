@@ -33,14 +33,14 @@ snow_status small_render(drawing *d, const snow_transfer *transfer,
                                     settings, image);
 }
 
-int small_thumbnail(drawing *d, const char *preset, double shift, int side,
+int small_thumbnail(drawing *d, const char *preset, int side,
                     snow_stop_fn *stop, void *user, snow_image **image) {
     render_state *s = &d->state;
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
     snow_look look = {
-        .size = sizeof look, .preset = *preset ? preset : NULL, .shift = shift};
-    ranks_tell(d, RANKS_THUMBNAIL, json_pack("[s,f,i]", preset, shift, side));
+        .size = sizeof look, .preset = *preset ? preset : NULL};
+    ranks_tell(d, RANKS_THUMBNAIL, json_pack("[s,i]", preset, side));
     if (!*preset && d->first.loaded) /* what no preset means then */
         look.base = snow_look_file_look(d->first.loaded);
     snow_view view = s->view;

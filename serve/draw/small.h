@@ -12,9 +12,9 @@ snow_status small_render(drawing *d, const snow_transfer *transfer,
                          const snow_view *view, const snow_settings *settings,
                          snow_frame **frame, snow_image **image);
 
-/* A picture with a preset and a shift in place of the look, or with no preset,
+/* A picture with a preset in place of the look, or with no preset,
  * unless `stop` says so: EXIT_INTERRUPTED. */
-int small_thumbnail(drawing *d, const char *preset, double shift, int side,
+int small_thumbnail(drawing *d, const char *preset, int side,
                     snow_stop_fn *stop, void *user, snow_image **image);
 
 #endif

@@ -31,7 +31,7 @@ static void add_points(uint64_t *print, const void *points, size_t count,
 }
 
 static void add_look(uint64_t *print, const snow_look *look) {
-    const double reals[] = {look->low, look->high, look->shift, look->symlog};
+    const double reals[] = {look->low, look->high, look->symlog};
     const int64_t wholes[] = {look->range, look->log, look->domain,
                               look->per_mm, look->base != NULL};
     add_text(print, look->preset);

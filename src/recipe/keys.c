@@ -104,7 +104,6 @@ const recipe_key recipe_keys[] = {
     MADE("opacity", points, opacity_count, 0, 0, 0),
     MADE("gradient-opacity", points, gradient_opacity_count, 0, 0, 0),
     MADE("range", range, range, 0, 0, 0),
-    REAL("shift", shift, 0, 0),
     MADE("opacity-unit", unit, opacity_per_mm, 0, 0, 0),
     NAME("shade", settings.shade, shade_name, NULL),
     MADE("light", light, settings, 0, 0, 2),

@@ -196,8 +196,7 @@ snow_status snow_recipe_get_look(snow_context *context,
                       .low = recipe->low,
                       .high = recipe->high,
                       .log = recipe->log,
-                      .symlog = recipe->symlog,
-                      .shift = recipe->shift};
+                      .symlog = recipe->symlog};
     if (recipe->opacity_count) {
         look.opacities = recipe->opacities;
         look.opacity_count = recipe->opacity_count;

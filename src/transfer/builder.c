@@ -212,11 +212,3 @@ void snow_transfer_builder_round(snow_transfer_builder *builder) {
     builder->high = high;
 }
 
-void snow_transfer_builder_shift(snow_transfer_builder *builder, double shift) {
-    for (size_t i = 0; i < builder->color_count; i++)
-        builder->colors[i].value += shift;
-    for (size_t i = 0; i < builder->opacity_count; i++)
-        builder->opacities[i].value += shift;
-    builder->low += shift;
-    builder->high += shift;
-}

@@ -13,8 +13,7 @@ bool snow_look_is_of_labels(const snow_look *look) {
 }
 
 static bool is_unranged(const snow_look *look) {
-    return look->range == SNOW_RANGE_AUTO && !look->log && look->symlog == 0 &&
-           !(look->shift < 0) && !(look->shift > 0);
+    return look->range == SNOW_RANGE_AUTO && !look->log && look->symlog == 0;
 }
 
 bool snow_look_is_free(const snow_look *look) {
@@ -34,11 +33,8 @@ static void set_reason(const snow_transfer_builder *builder,
                        const snow_look *look, char *text, size_t room) {
     bool all_asked =
         look->opacities && look->range != SNOW_RANGE_AUTO && !look->preset;
-    char shift[40] = "";
-    if (look->shift < 0 || look->shift > 0)
-        snprintf(shift, sizeof shift, " shifted by %.9g", look->shift);
-    snprintf(text, room, " (%s%s%s%s)",
-             all_asked ? "as requested" : builder->reason, shift,
+    snprintf(text, room, " (%s%s%s)",
+             all_asked ? "as requested" : builder->reason,
              builder->range_note,
              look->opacities && !all_asked ? "; opacities as requested" : "");
 }

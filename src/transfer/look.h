@@ -153,10 +153,8 @@ snow_status snow_is_signed_field(const snow_histogram *histogram,
 snow_status snow_is_scan(const snow_histogram *histogram, double low,
                          double high, bool is_signed, bool *is_scan);
 
-/* Rounds all values to what a line reports; adds to all values, so that a
- * preset suits data with another offset. */
+/* Rounds all values to what a line reports. */
 void snow_transfer_builder_round(snow_transfer_builder *builder);
-void snow_transfer_builder_shift(snow_transfer_builder *builder, double shift);
 
 /* Smallest to largest finite value, separated if they are equal; above 0 on a
  * logarithmic scale. */

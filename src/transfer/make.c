@@ -36,7 +36,7 @@ static snow_status check_look(snow_context *context, const snow_look *look) {
     if (snow_look_is_of_labels(look) && !snow_look_suits_labels(look))
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "labels have a colour each, and no range; leave out "
-                         "range, shift and log, and give colours by a list "
+                         "range and log, and give colours by a list "
                          "such as 3:#ff8800, not by the name of a map");
     if ((look->log && look->symlog != 0) || !isfinite(look->symlog))
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
@@ -150,6 +150,9 @@ static snow_status begin_builder(snow_context *context, const snow_look *look,
                                          builder);
 }
 
+/* What most files of CT add to Hounsfield units that say nothing of it. */
+#define CT_OFFSET 1024
+
 /* Checks that the values suit those of a preset or a file.  Values of 8 bits
  * are no Hounsfield units: presets for these are spread over the object's. */
 static snow_status fit_values(const snow_histogram *histogram,
@@ -164,15 +167,16 @@ static snow_status fit_values(const snow_histogram *histogram,
                          "%.64s has values of 0 and below, which a logarithmic "
                          "scale cannot show; give a range too",
                          points->name);
-    if (look->base || look->shift != 0 || !(histogram->min >= 0) ||
+    if (look->base || !(histogram->min >= 0) ||
         histogram->had_negative)
         return SNOW_STATUS_OK;
     if (!snow_has_8_bits(&histogram->volume->info) || builder->scale.log ||
         histogram->max > 255) {
         snow_notify(context,
                     "%s is for Hounsfield units, but the smallest value is %g: "
-                    "if the values have an offset, give it by --shift 1024",
-                    look->preset, histogram->min);
+                    "if the values have an offset of 1024, give --range %g,%g",
+                    look->preset, histogram->min, builder->low + CT_OFFSET,
+                    builder->high + CT_OFFSET);
         return SNOW_STATUS_OK;
     }
     SNOW_TRY(snow_object_range(histogram, &low, &high));
@@ -283,7 +287,6 @@ static snow_status build_look(const snow_histogram *histogram,
         stretch(builder, data ? (snow_scale){points->log, 0} : builder->scale,
                 low, high);
     }
-    snow_transfer_builder_shift(builder, look->shift);
     const char *map = look->colormap ? look->colormap : builder->colormap;
     if (map && !builder->labels) /* which have taken theirs */
         snow_transfer_builder_colormap(builder, map, builder->low,

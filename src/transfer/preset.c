@@ -11,7 +11,7 @@
  * 700, metal above 2500.  Gradient magnitudes are in Hounsfield units per
  * millimetre: noise and uniform regions up to 15, fat against muscle 60, bone
  * and air against all else above 150.  CT data that are stored with an offset
- * and without an intercept (smallest value 0, water about 1000) need a shift;
+ * and without an intercept (smallest value 0, water about 1000) need a range;
  * those of 8 bits are spread over the object's range, found from the histogram.
  * MR values have no unit, so the MR presets are spread over that range too. */
 #include "transfer/look.h"

@@ -447,17 +447,15 @@ class Stumbles(InFolder):
         with self.assertRaises(MemoryError):
             sg.render("phantom:head", memory=1000)
 
-    def test_an_offset_is_an_intercept(self):
+    def test_an_offset_is_a_range_or_an_intercept(self):
         ct = numpy.maximum(ball() + 1024, 0).astype(numpy.uint16)
         with self.assertWarnsRegex(sg.SnowglassWarning,
-                                   "have an offset, give it by intercept=-1024$"):
+                                   "offset of 1024, give range=.1174, 2524.$"):
             sg.Volume(ct).render("ct-bone", size=16)
-        # A movie in situ, whose recipe has a shift, takes the other text.
-        self.assertEqual(sg._snowglass.text("give it by --shift 1024"),
-                         "give it by shift=1024")
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             sg.Volume(ct, intercept=-1024).render("ct-bone", size=16)
+            sg.Volume(ct).render("ct-bone", range=(1174, 2524), size=16)
 
     def test_messages_name_arguments_and_not_options(self):
         numpy.save("a.npy", ball())

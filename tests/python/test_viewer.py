@@ -266,15 +266,13 @@ class Viewers(unittest.TestCase):
         _, page = self.open(self.head(), size=(64, 64))
         page.rest()
         shape = dict.fromkeys(("colormap", "opacity", "gradient_opacity",
-                               "range", "shift", "log",
+                               "range", "log",
                                "symlog"))  # as panel.js does
         for preset in ("ct-bone", None):
             n = page.set(**shape, preset=preset)
             page.rest(n)
             self.assertIsNone(page.last("said"))
             self.assertEqual(page.widget.recipe.get("preset"), preset)
-        page.set(shift=30)
-        self.assertIn("shift", page.text("said")["text"])
 
     def test_more_pages_than_are_kept(self):
         widget, page = self.open(self.head(), size=(64, 64))

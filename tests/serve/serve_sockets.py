@@ -406,9 +406,8 @@ def thumbnails_wait(server):
         smalls += what == "picture" and message[10] > 0
     check("a command does not wait for thumbnails", smalls < 4, smalls)
     page.say({"t": "set", "n": 2, "recipe": {"azimuth": 4}})
-    for shift in range(300):  # the newest one of a pane is made
-        page.say({"t": "ask", "what": "thumbnail", "preset": "ct-bone",
-                  "shift": shift, "pane": 4})
+    for preset in ("ct-bone", "ct-soft") * 150:  # the newest of a pane is made
+        page.say({"t": "ask", "what": "thumbnail", "preset": preset, "pane": 4})
     page.say({"t": "ask", "what": "command"})
     texts = []
     while not texts or texts[-1]["t"] not in ("closed", "command"):

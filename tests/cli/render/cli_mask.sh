@@ -221,7 +221,7 @@ for cut in "--mask ball.nrrd" "--clip 0,0,1,12"; do
     # shellcheck disable=SC2086
     run 0 "those with an offset, with $cut" "$TOOL" render offset.nrrd $cut \
         --preset ct-soft -s 40x40 -o hu.png -y
-    says 'if the values have an offset, give it by --shift 1024'
+    says 'if the values have an offset of 1024, give --range [0-9-]*,[0-9]*$'
 done
 run 0 "the look of what fills a mask" "$TOOL" render grad.nrrd --mask ball.nrrd \
     -s 40x40 -o grad.png -y

@@ -80,12 +80,11 @@ again "opacities of a millimetre" render a.png phantom:head $small --spacing 3x3
     --config '{"opacity-unit": "mm"}'
 again "a range" render a.png phantom:head $small --range p2,p98
 again "a window" render a.png ct.nhdr -w 400 --level 40
-again "a look that is moved" render a.png phantom:head $small --shift 3.7
 again "a look in a window" render a.png float.nhdr -w 0.017,100000.01
 again "a look over percentiles" render a.png float.nhdr --range p7,p91.5
 again "a preset" render a.png ct.nhdr --preset ct-bone
 again "a preset in a window" render a.png ct.nhdr --preset ct-soft -w 900 --level 100
-again "a preset moved" render a.png ct.nhdr --preset ct-bone --shift -60.5
+again "a preset moved" render a.png ct.nhdr --preset ct-bone --range 89.5,1439.5
 again "a preset of the object" render a.png phantom:head $small --preset mr-default
 for mode in mip minip mean sum "iso --iso 60"; do
     again "mode $mode" render a.png phantom:head $small -m $mode
@@ -96,7 +95,6 @@ for mode in mip minip mean sum; do
     check "$mode: its range is saved" grep -q '"range": \[[0-9]' first.json
 done
 again "mip in colours" render a.png spot.nhdr -m mip -s 60x64 -c viridis
-again "mip, moved" render a.png spot.nhdr -m mip -s 60x64 --shift 20.5
 again "mip of percentiles" render a.png spot.nhdr -m mip -s 60x64 --range p1,p99
 again "means as floats" render a.npy spot.nhdr -m mean -s 60x64
 again "mean of one value" render a.png constant.nhdr -m mean -s 60x64
@@ -151,9 +149,8 @@ says '; grey [0-9.]*; opacity'
 run 0 "a window" "$TOOL" render ct.nhdr --preset ct-bone -w 400 --level 40 \
     -o a.png -y
 says "the range squeezes or stretches the preset's own 150..1500 and its opacities"
-says 'and its opacities; --shift N moves them; opacity per voxel'
-for range in "--range 150,1500" "-w 1350,825" "--range 150,1500 -c hot" \
-    "--range 150,1500 --shift 9"; do
+says 'and its opacities; one of the same width moves them; opacity per voxel'
+for range in "--range 150,1500" "-w 1350,825" "--range 150,1500 -c hot"; do
     # shellcheck disable=SC2086
     run 0 "the preset's own, $range" "$TOOL" render ct.nhdr --preset ct-bone \
         $range -o b.png -y
@@ -173,12 +170,10 @@ for range in "--range 150,1501" "--range 149,1500" "--range full" \
         -o b.png -y
     says "squeezes or stretches the preset's own 150..1500"
 done
-run 0 "a shift" "$TOOL" render ct.nhdr --preset ct-bone --shift -100 -o a.png -y
-says 'bone 50\.\.1400; opacity 0 at 50, 0\.1 at 120, .*\(ct-bone shifted by -100\)'
+run 0 "a range of the same width" "$TOOL" render ct.nhdr --preset ct-bone \
+    --range 50,1400 -o a.png -y
+says 'bone 50\.\.1400; opacity 0 at 50, 0\.1 at 120, .*\(ct-bone\)'
 check "no word on squeezing" bash -c "! grep -q squeezes '$ERR'"
-run 0 "by nothing" "$TOOL" render ct.nhdr --preset ct-bone --shift 0 -o b.png -y
-run 0 "is the preset" "$TOOL" render ct.nhdr --preset ct-bone -o c.png -y
-check "byte for byte" cmp -s b.png c.png
 
 # --- what stands in the file ----------------------------------------------------
 run 0 "a turntable is saved" "$TOOL" turntable -q phantom:cube $small \

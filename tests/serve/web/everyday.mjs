@@ -249,42 +249,6 @@ async function planes({check, keys, rest, wheel}, page, its) {
     check('no change was refused', !/clip/.test(await page.locator('.said').textContent()));
 }
 
-/** A CT whose values are 1024 too large: thumbnails and presets have the shift. */
-export async function offset(tools) {
-    const {check, open, rest} = tools, page = await open();
-    const its = (...rest_) => sets(tools, page, ...rest_);
-    /** The pictures of two presets, when all have come that an action asks for. */
-    const pictures = async act => {
-        await page.evaluate(() => {
-            const all = [...document.querySelectorAll('.presets button')], came = new Map();
-            const of = preset => came.get(4 + all.findIndex(one => one.textContent === preset));
-            window.shown = new Promise(done => window.snowglass.engine.on('small', ({pane, data}) =>
-                came.set(pane, new Uint8Array(data, 32).join()).size === all.length &&
-                    done([of('ct-bone'), of('linear')])));
-        });
-        await act();
-        return page.evaluate(() => window.shown);
-    };
-    const shift = value => enter(page, 'shift of the look in data units', value);
-    const choose = name => page.locator('.presets').getByRole('button', {name: `Preset ${name}:`}).click();
-    await its('a shift is typed', () => shift('1024'), {shift: 1024});
-    const [bone, linear] = await pictures(() => page.locator('summary', {hasText: 'Presets'}).click());
-    await its('a preset keeps it', () => choose('ct-bone'), {preset: 'ct-bone', shift: 1024});
-    await its('and the next one', () => choose('ct-soft'), {preset: 'ct-soft', shift: 1024});
-    await its('and what is automatic of it', () => page.getByRole('button', {name: /^Opacity of the preset/})
-        .first().click(), {preset: 'ct-soft', shift: 1024});
-    await its('one that goes by the values has none', () => choose('linear'),
-        {preset: 'linear', shift: undefined});
-    await its('after which it is not typed again', () => choose('ct-bone'), {preset: 'ct-bone', shift: 1024});
-    const plain = await pictures(() => shift('0'));
-    check('pictures of presets have the shift', plain[0] !== bone);
-    check('but not that of one by values', plain[1] === linear);
-    const again = await pictures(() => shift('1024'));
-    check('and have it again', again[0] === bone && again[1] === linear);
-    await rest(page);
-    await page.context().close();
-}
-
 /** A viewer of its own: [process, URL]. */
 async function start(tool, ...options) {
     const server = spawn(tool, ['serve', 'phantom:head', ...options], {stdio: ['ignore', 'pipe', 'ignore']});

@@ -7,7 +7,7 @@
 import {createServer, request} from 'node:http';
 import {connect} from 'node:net';
 import {readFileSync, writeFileSync} from 'node:fs';
-import {offset, restarted, steps} from './everyday.mjs';
+import {restarted, steps} from './everyday.mjs';
 
 const [playwright, chromium, url, folder, tier, ...words] = process.argv.slice(2);
 const {chromium: browsers} = await import(playwright);
@@ -1176,15 +1176,7 @@ async function fused() {
     JSON.stringify([now['overlay-range'], now['overlay-opacity']]));
     check('which the command has', /--overlay-colormap viridis/.test(command), command);
     await shot(page, 'fused');
-    await page.evaluate(() => window.snowglass.recipe.set({shift: 10}));
-    await rest(page);
-    await page.getByLabel('highest value of the range', {exact: true}).fill('190');
-    await page.keyboard.press('Enter');
-    await rest(page);
-    const shifted = await keys(page);
-    check('a shift is added to the range alone', /,190:#[\da-f]{6}$/.test(shifted.colormap) &&
-        shifted.range[1] === 180, JSON.stringify([shifted.range, shifted.colormap]));
-    await page.evaluate(() => window.snowglass.recipe.set({shift: null, colormap: null,
+    await page.evaluate(() => window.snowglass.recipe.set({colormap: null,
         range: [100000, 100001]}));
     await rest(page);
     await page.locator('details', {has: page.locator('summary', {hasText: 'Look'})})
@@ -1315,7 +1307,7 @@ async function many() {
 }
 
 const tools = {answered, check, folder, keys, open, rest, said, slicesRest, wheel};
-const alone = {steps: () => steps(tools), offset: () => offset(tools),
+const alone = {steps: () => steps(tools),
     restarted: () => restarted(tools, url), embed: embedded, points: manyPoints, mask: masked, overlay: overlaid, labels: labelled, recipes, fused, channels: mixed, begun, many};
 if (alone[tier]) {
     await alone[tier]();
