@@ -163,8 +163,7 @@ bool context_enter(context_object *c, PyObject *progress) {
 }
 
 void context_set_error(snow_status status, const char *message) {
-    PyObject *text = message_text(message),
-             *number = PyLong_FromLong(status);
+    PyObject *text = message_text(message), *number = PyLong_FromLong(status);
     PyObject *type = status == SNOW_STATUS_NO_MEMORY   ? PyExc_MemoryError
                      : status == SNOW_STATUS_BAD_USAGE ? PyExc_ValueError
                                                        : error_type;

@@ -380,8 +380,8 @@ static void answer_thumbnail(drawing *d, viewer_state *s, outbox *box,
     if (!d->state.volume || !preset || pane < 4 || pane > 255 ||
         (*preset && snow_preset_from_name(preset) < 0))
         return;
-    int done = small_thumbnail(d, preset, THUMBNAIL_SIDE, has_changed,
-                               &now, &image);
+    int done =
+        small_thumbnail(d, preset, THUMBNAIL_SIDE, has_changed, &now, &image);
     if (done == EXIT_INTERRUPTED) {
         json_object_set_new(tree, "again", json_true());
         state_ask(s, client, json_incref(tree));

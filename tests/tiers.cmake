@@ -32,7 +32,7 @@ set(SNOW_LABEL_late
     cli_shear_warp cli_show mpi_comm oracle_amr oracle_dicom oracle_fit oracle_hdf5
     oracle_mrc oracle_netcdf oracle_npy oracle_orientation oracle_pictures
     oracle_seg oracle_series oracle_slice oracle_tiff oracle_vtk oracle_zarr test_comm
-    test_darken test_histogram test_load_balance test_model_encodings
+    test_darken test_histogram test_model_encodings
     test_model_raycast test_phantom test_raycast test_splat_isa test_stream
     test_value_model test_value_truth test_value_views)
 file(GLOB formats CONFIGURE_DEPENDS formats/test_*.c)
@@ -43,7 +43,7 @@ set(SNOW_LABEL_surface ${formats} test_base test_compare test_convert test_image
 set(SNOW_LABEL_threads test_affinity test_combine test_comm test_early
     test_pipeline test_frames test_insitu test_insitu_levels test_insitu_marks
     test_raycast test_value test_value_layer_parts test_value_parts test_value_perspective test_simulated test_stop test_progress test_ranks test_ranks_open test_redistribute
-    test_load_balance test_pool_signals test_shares serve_hostile serve_places serve_sockets)
+    test_pool_signals test_shares serve_hostile serve_places serve_sockets)
 set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     test_model_raycast test_model_reference test_model_rules test_model_slabs
     test_value_field test_value_model test_value_truth
@@ -72,7 +72,7 @@ set(SNOW_COSTS
     cli_real 22 test_model_encodings 20 test_value_model 20
     serve_sockets 20 serve_hostile 20 oracle_orientation 20 oracle_hdf5 20 oracle_netcdf 18 test_comm 17
     cli_formats 16 cli_config 16 test_gradient_opacity 16 test_value_truth 14
-    test_load_balance 13 test_api 13 test_kernels 13 cli_usage 12
+    test_api 13 test_kernels 13 cli_usage 12
     test_splat_isa 11 
     test_phantom 11 oracle_pictures 11 test_value_views 11 test_early 10)
 

@@ -13,8 +13,7 @@ typedef enum snow_partition { /* how the volume is partitioned */
     SNOW_PARTITION_AUTO = 0,  /* counted; bricks where slabs would be thin */
     SNOW_PARTITION_EQUAL,     /* the paper's slabs: as equal as can be */
     SNOW_PARTITION_COUNTED,   /* slabs of about equal cost */
-    SNOW_PARTITION_BRICKS,  /* boxes of about equally many interesting voxels */
-    SNOW_PARTITION_MEASURED /* auto, later by the time that pictures took */
+    SNOW_PARTITION_BRICKS     /* boxes of equally many interesting voxels */
 } snow_partition;
 
 typedef enum snow_combine { /* how local images are combined */
@@ -51,12 +50,6 @@ SNOW_API snow_status snow_ranks_open(snow_comm *comm, const char *path,
 SNOW_API snow_status snow_ranks_repartition(snow_comm *comm,
     const snow_transfer *transfer, const snow_view *view,
     const snow_settings *settings, const snow_ranks_options *how,
-    snow_volume **volume);
-/* The same before each picture of a frame, `left` of which are to come, this
- * one included; with SNOW_PARTITION_MEASURED also where ranks' times differ. */
-SNOW_API snow_status snow_ranks_rebalance(snow_frame *frame, snow_comm *comm,
-    const snow_transfer *transfer, const snow_view *view,
-    const snow_settings *settings, const snow_ranks_options *how, int64_t left,
     snow_volume **volume);
 /* Of the whole, whose parts the ranks' volumes are. */
 SNOW_API snow_status snow_ranks_new_transfer(snow_comm *comm,

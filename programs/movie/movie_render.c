@@ -120,7 +120,6 @@ static void report_choices(shot_renderer *shots, snow_image *image) {
 static int begin(void *self, const movie_shot *shot) {
     shot_renderer *shots = self;
     int done = shots_volume(shots, shot);
-    shots->state.left = shots->count - shots->begun++;
     return done == CONTINUE ? render_state_begin(&shots->state, shot->azimuth)
                             : done;
 }

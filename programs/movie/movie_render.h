@@ -10,7 +10,6 @@
 typedef struct shot_renderer {
     render_state state;
     int64_t count;         /* number of frames, for messages */
-    int64_t begun;         /* frames begun */
     int64_t time;          /* time step of the present volume */
     snow_volume_info grid; /* grid of the first volume */
     bool whole_files; /* a file with several time steps is an error: it is one

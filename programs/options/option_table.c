@@ -385,11 +385,10 @@ const option_row option_table[] = {
     {"resume", 0, NULL, TOPIC_MORE, MOVIES, read_flag, FIELD(resume), 0, 0, "",
      "continue an interrupted run and keep its finished frames; all other "
      "options must be the same"},
-    {"cut", 0, "auto|equal|counted|bricks|measured", TOPIC_RANKS, WRITTEN | SERVE,
+    {"cut", 0, "auto|equal|counted|bricks", TOPIC_RANKS, WRITTEN | SERVE,
      read_choice, FIELD(cut), 0, 0, "",
      "how the volume is partitioned: equal slabs as in the paper; counted or "
-     "bricks: slabs or bricks with equal numbers of interesting voxels; "
-     "measured: as auto, and a turntable repartitions slabs by rendering time "
+     "bricks: slabs or bricks with equal numbers of interesting voxels "
      "(default auto: counted, or bricks where slabs would be thin)"},
     {"combine", 0, "auto|tree|swap|direct|radix", TOPIC_RANKS, WRITTEN | SERVE,
      read_choice, FIELD(combine), 0, 0, "",

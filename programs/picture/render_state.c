@@ -558,9 +558,8 @@ static snow_status begin_part(render_state *s) {
     snow_ranks_options how = how_of(s);
     snow_status status = set_layers(s);
     if (s->turns && status == SNOW_STATUS_OK)
-        status = snow_ranks_rebalance(s->frame, process_comm(), s->transfer,
-                                      &s->view, &s->settings, &how, s->left,
-                                      &s->volume);
+        status = snow_ranks_repartition(process_comm(), s->transfer, &s->view,
+                                        &s->settings, &how, &s->volume);
     return status == SNOW_STATUS_OK
                ? snow_ranks_begin(s->frame, process_comm(), s->volume,
                                   s->transfer, &s->view, &s->settings, &how)

@@ -27,7 +27,6 @@ typedef struct render_state {
     bool steps;       /* or of several time steps */
     bool one_look;    /* all pictures have the look of the first */
     bool framed;      /* the view below frames all pictures */
-    int64_t left;     /* then: how many are left, including the next */
     memory_plan plan; /* the memory plan, if this process is alone */
     bool in_slabs; /* the volume did not fit beside its interesting voxels: this
                       one and all later ones stay in their files */

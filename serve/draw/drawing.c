@@ -27,14 +27,10 @@ static const char *const overlay_look_keys[] = {
     NULL};
 static const char *const look_keys[] = {
     "preset", "colormap", "log",   "symlog", "opacity", "gradient-opacity",
-    "range",  "window",   "level", "mode",    "channel",
-    NULL};
+    "range",  "window",   "level", "mode",   "channel", NULL};
 
 /* The smallest side of a draft that is drawn in a hurry. */
 #define SIDE_LEAST 64
-
-/* So many are expected: moving voxels between ranks may pay. */
-#define PICTURES_LEFT 100
 
 /* A turn is framed from these angles on. */
 #define TURN_SIDES 4
@@ -566,7 +562,6 @@ static int draw(drawing *d, snow_image **image, paint_given *painted) {
     render_state *s = &d->state;
     const int channels = s->channels.list.count;
     s->fault = 0;
-    s->left = PICTURES_LEFT;
     int done = d->draw ? d->draw(d, image)
                        : render_state_draw(s, s->view.azimuth, image);
     d->look_is_new |= s->channels.list.count != channels; /* some gave way */

@@ -38,8 +38,7 @@ int small_thumbnail(drawing *d, const char *preset, int side,
     render_state *s = &d->state;
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
-    snow_look look = {
-        .size = sizeof look, .preset = *preset ? preset : NULL};
+    snow_look look = {.size = sizeof look, .preset = *preset ? preset : NULL};
     ranks_tell(d, RANKS_THUMBNAIL, json_pack("[s,i]", preset, side));
     if (!*preset && d->first.loaded) /* what no preset means then */
         look.base = snow_look_file_look(d->first.loaded);

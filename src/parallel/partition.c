@@ -74,9 +74,8 @@ snow_partition_params_make(snow_context *context, const snow_volume_info *whole,
     SNOW_TRY(SNOW_RECORD_READ(context, snow_ranks_options, asked, &how));
     SNOW_TRY(SNOW_RECORD_READ(context, snow_settings, settings, &resolved));
     const snow_settings unresolved = resolved;
-    bool chooses =
-        how.cut == SNOW_PARTITION_AUTO || how.cut == SNOW_PARTITION_MEASURED;
-    if (how.cut < SNOW_PARTITION_AUTO || how.cut > SNOW_PARTITION_MEASURED)
+    bool chooses = how.cut == SNOW_PARTITION_AUTO;
+    if (how.cut < SNOW_PARTITION_AUTO || how.cut > SNOW_PARTITION_BRICKS)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "invalid partition %d; use a value of snow_partition",
                          how.cut);
@@ -274,45 +273,6 @@ snow_status snow_partition_boxes(snow_comm *comm,
     if (status == SNOW_STATUS_OK && loads)
         snow_partition_loads(&counts, boxes, order->ranks, loads);
     snow_release(volume->context, counts.counts);
-    return status;
-}
-
-int64_t snow_partition_slices(const snow_partition_params *order) {
-    return snow_block_counts_for_slabs(&order->grid).blocks[order->grid.axis];
-}
-
-snow_status snow_partition_count(snow_comm *comm,
-                                 const snow_partition_params *order,
-                                 const snow_volume *volume,
-                                 const snow_transfer *transfer, double *costs) {
-    snow_block_counts counts = snow_block_counts_for_slabs(&order->grid);
-    counts.step = step_of(order);
-    snow_status status = count_all(comm, order, volume, transfer, &counts);
-    for (size_t n = 0;
-         n < snow_block_counts_blocks(&counts) && status == SNOW_STATUS_OK; n++)
-        costs[n] = (double)counts.counts[n];
-    snow_release(volume->context, counts.counts);
-    return status;
-}
-
-/* What all costs become together in whole numbers. */
-#define COST_OF_ALL 0x1p40
-
-snow_status snow_partition_costs(snow_context *context,
-                                 const snow_partition_params *order,
-                                 const double *costs, snow_box *boxes) {
-    snow_block_counts counts = snow_block_counts_for_slabs(&order->grid);
-    size_t slices = snow_block_counts_blocks(&counts);
-    double sum = 0;
-    SNOW_TRY(SNOW_RESERVE(context, counts.counts, 0, slices));
-    for (size_t n = 0; n < slices; n++)
-        sum += costs[n];
-    for (size_t n = 0; n < slices; n++)
-        counts.counts[n] =
-            sum > 0 ? (int64_t)(costs[n] / sum * COST_OF_ALL + 0.5) : 0;
-    snow_status status =
-        snow_partition_counted(context, &counts, order->ranks, boxes);
-    snow_release(context, counts.counts);
     return status;
 }
 

@@ -54,16 +54,4 @@ snow_status snow_partition_boxes(snow_comm *comm,
                                  const snow_transfer *transfer, snow_box *boxes,
                                  int64_t *loads);
 
-/* Slabs by costs of their slices, of which an order has so many.  First they
- * are counts: collective, as above.  Cutting by them is
- * not; the boxes are a function of the costs. */
-int64_t snow_partition_slices(const snow_partition_params *order);
-snow_status snow_partition_count(snow_comm *comm,
-                                 const snow_partition_params *order,
-                                 const snow_volume *volume,
-                                 const snow_transfer *transfer, double *costs);
-snow_status snow_partition_costs(snow_context *context,
-                                 const snow_partition_params *order,
-                                 const double *costs, snow_box *boxes);
-
 #endif

@@ -1,7 +1,6 @@
 /* parallel/ranks.c - what a frame keeps for pictures by many ranks. */
 #include "decompose/order.h"
 #include "parallel/internal.h"
-#include "parallel/load_balance.h"
 
 #include <string.h>
 
@@ -114,18 +113,13 @@ snow_status snow_frame_new(snow_context *context, snow_frame **out) {
     if (!frame)
         return SNOW_STATUS_NO_MEMORY;
     frame->context = context;
-    snow_status status = snow_load_balance_new(context, &frame->work);
-    if (status == SNOW_STATUS_OK)
-        *out = frame;
-    else
-        snow_buffers_free(frame);
-    return status;
+    *out = frame;
+    return SNOW_STATUS_OK;
 }
 
 void snow_frame_free(snow_frame *frame) {
     if (!frame)
         return;
     free_ranks(frame->ranks);
-    snow_load_balance_free(frame->context, frame->work);
     snow_buffers_free(frame);
 }

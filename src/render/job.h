@@ -13,8 +13,6 @@
 
 typedef struct snow_exact snow_exact; /* render/exact/exact.c */
 typedef struct snow_ranks snow_ranks; /* parallel/internal.h */
-typedef struct snow_load_balance
-    snow_load_balance; /* parallel/load_balance.h */
 
 /* What was read of a layer in its file (inlays.c); `of` it and for `part`. */
 typedef struct snow_taken {
@@ -39,8 +37,7 @@ struct snow_frame {
     snow_inlay placed[SNOW_INLAYS_MOST]; /* what the present part has of them */
     snow_taken taken[SNOW_INLAYS_MOST];
     int layer_count;
-    snow_ranks *ranks;       /* of pictures by many ranks; NULL until needed */
-    snow_load_balance *work; /* of the same */
+    snow_ranks *ranks; /* of pictures by many ranks; NULL until needed */
     /* The first line of the picture that is drawn, and one past the last; {0,
      * 0}: all.  Others are undefined.  `more`: the volume, the look, the view
      * and the settings are those of the last picture, whose tiles are there; it

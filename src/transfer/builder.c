@@ -211,4 +211,3 @@ void snow_transfer_builder_round(snow_transfer_builder *builder) {
     builder->low = low;
     builder->high = high;
 }
-

@@ -34,8 +34,7 @@ static void set_reason(const snow_transfer_builder *builder,
     bool all_asked =
         look->opacities && look->range != SNOW_RANGE_AUTO && !look->preset;
     snprintf(text, room, " (%s%s%s)",
-             all_asked ? "as requested" : builder->reason,
-             builder->range_note,
+             all_asked ? "as requested" : builder->reason, builder->range_note,
              look->opacities && !all_asked ? "; opacities as requested" : "");
 }
 

@@ -167,8 +167,7 @@ static snow_status fit_values(const snow_histogram *histogram,
                          "%.64s has values of 0 and below, which a logarithmic "
                          "scale cannot show; give a range too",
                          points->name);
-    if (look->base || !(histogram->min >= 0) ||
-        histogram->had_negative)
+    if (look->base || !(histogram->min >= 0) || histogram->had_negative)
         return SNOW_STATUS_OK;
     if (!snow_has_8_bits(&histogram->volume->info) || builder->scale.log ||
         histogram->max > 255) {

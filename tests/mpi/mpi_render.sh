@@ -146,14 +146,6 @@ if ! long_tier; then
     skipped "movies, looks and masks by ranks" "left to the long tier"
     finish
 fi
-# By the time that pictures took; the last view's slices lie along another axis.
-# shellcheck disable=SC2086
-run 0 "a turntable of measured parts" launch 3 "$MPI_TOOL" $turn --cut measured \
-    -o timed_%02d.png
-for frame in 0 1 2 3; do
-    run 0 "measured frame $frame" "$TOOL" compare one_0$frame.png \
-        timed_0$frame.png --tolerance 1.001/255
-done
 rm many_02.png
 # shellcheck disable=SC2086
 run 0 "a turntable is resumed" launch 3 "$MPI_TOOL" $turn --resume \
@@ -298,7 +290,7 @@ run 6 "compare" launch 2 "$MPI_TOOL" compare one_00.png one_01.png
 run 0 "doctor" launch 2 "$MPI_TOOL" doctor
 prints '^mpi  *[A-Z].*, 2 ranks$'
 run 0 "help" launch 2 "$MPI_TOOL" help ranks
-prints '^      --cut auto.equal.counted.bricks.measured'
+prints '^      --cut auto.equal.counted.bricks$'
 refused 2 "--cut alone" 'snowglass-mpi' "$TOOL" v.nrrd -o x.png --cut equal
 run 2 "help ranks alone" "$TOOL" help ranks
 finish
