@@ -20,7 +20,7 @@ static const char *const keys[] = {
     "gradient-opacity",
     "range",
     "window",
-    "level",
+    "shift",
     "opacity-unit",
     "shade",
     "light",

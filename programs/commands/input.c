@@ -205,21 +205,14 @@ void look_unload(options *opts) {
     opts->tf_context = NULL;
 }
 
-/* --window and --level are the radiologists' way to give a range; neither means
- * anything alone. */
 int check_look(const options *opts) {
-    bool window = !isnan(opts->window), level = !isnan(opts->level);
-    if (window != level)
-        return fail_usage("--%s: needs --%s too; add it",
-                          window ? "window" : "level",
-                          window ? "level" : "window");
     if (opts->log && opts->symlog != 0)
         return fail_usage(
             "--log: conflicts with --symlog; give only one of them");
     if (opts->tf && opts->preset)
         return fail_usage(
             "--tf: conflicts with --preset; give only one of them");
-    if (window && opts->range.kind != SNOW_RANGE_AUTO)
+    if (!isnan(opts->window[0]) && opts->range.kind != SNOW_RANGE_AUTO)
         return fail_usage(
             "--window: conflicts with --range; give only one of them");
     return CONTINUE;

@@ -38,8 +38,8 @@ static const struct {
      "{'anyOf': [{'type': 'integer', 'minimum': 1, 'maximum': 32768},"
      "{'type': 'array', 'minItems': 2, 'maxItems': 2, 'items':"
      "{'type': 'integer', 'minimum': 1, 'maximum': 32768}}]}"},
-    {read_window, "{'anyOf': [{'type': 'number'}, {'type': 'array', 'minItems':"
-                  "2, 'maxItems': 2, 'items': {'type': 'number'}}]}"},
+    {read_window, "{'type': 'array', 'minItems': 2, 'maxItems': 2, 'items':"
+                  "{'type': 'number'}}"},
     {read_dims, "{'type': 'array', 'minItems': 3, 'maxItems': 3, 'items':"
                 "{'type': 'integer', 'minimum': 1}}"},
     {read_spacing, "{'type': 'array', 'minItems': 3, 'maxItems': 3, 'items':"

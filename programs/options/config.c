@@ -10,7 +10,6 @@
 #include "run/start.h"
 
 #include <jansson.h>
-#include <math.h>
 #include <snowglass/recipe.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -88,21 +87,17 @@ char *config_text(options *out, const char *key, const json_t *value) {
 /* Whether a key gives way to another option on the command line that means the
  * same. */
 static bool gives_way(const options *out, const char *key) {
-    bool window = options_given(out, "window") || options_given(out, "level");
     if (strcmp(key, "range") == 0)
-        return window;
+        return options_given(out, "window");
     if (strcmp(key, "tf") == 0)
         return options_given(out, "preset");
     if (strcmp(key, "preset") == 0)
         return options_given(out, "tf");
     if (strcmp(key, "view") == 0)
         return options_given(out, "position");
-    if (strcmp(key, "level") == 0 && !isnan(out->level)) /* --window W,L */
-        return true;
     if (strcmp(key, "position") == 0)
         return options_given(out, "view");
-    return (strcmp(key, "window") == 0 || strcmp(key, "level") == 0) &&
-           options_given(out, "range");
+    return strcmp(key, "window") == 0 && options_given(out, "range");
 }
 
 static int fail_inputs(size_t count) {

@@ -3,6 +3,7 @@
  * (help_brief.c); options and presets have one each (help_word.c). */
 #include "options/help.h"
 #include "options/guess.h"
+#include "options/renamed.h"
 #include "run/log.h"
 #include "run/sibling.h"
 
@@ -161,6 +162,9 @@ static int refuse_word(const char *word) {
         if (!verb_named(row->name) && topic_named(row->name) < 0)
             guess_offer(&near, row->name);
     guess_offer_all(&near, snow_preset_name);
+    const char *now = renamed_option(word + strspn(word, "-"));
+    if (now)
+        return fail_usage("%s: is now %s", word, now);
     const char *what = "is not a verb, topic, option or preset";
     char meant[128];
     if (guess_write(&near, "", meant, sizeof meant))

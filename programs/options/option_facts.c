@@ -22,8 +22,8 @@ bool options_place_colors(const options *opts) {
 }
 
 range_value options_range(const options *opts) {
-    if (isnan(opts->window))
+    const double half = opts->window[0] / 2, centre = opts->window[1];
+    if (isnan(half))
         return opts->range;
-    return (range_value){SNOW_RANGE_VALUES, opts->level - opts->window / 2,
-                         opts->level + opts->window / 2};
+    return (range_value){SNOW_RANGE_VALUES, centre - half, centre + half};
 }

@@ -127,11 +127,8 @@ const option_row option_table[] = {
      "scale the opacity by gradient magnitude (data units per mm): factors "
      "from 0 to 1, linear in between; 0:0,20:1 shows boundaries and hides "
      "uniform regions (default: none)"},
-    {"window", 'w', "W[,L]", TOPIC_LOOK, LOOKED, read_window, FIELD(window), 1e-300,
-     1e300, "", "width of the range of data values, and its centre; W alone needs "
-     "--level"},
-    {"level", 0, "L", TOPIC_LOOK, LOOKED, read_real, FIELD(level), 0, 0, "",
-     "centre of the range of data values; needs --window"},
+    {"window", 'w', "W,L", TOPIC_LOOK, LOOKED, read_window, FIELD(window), 1e-300,
+     1e300, "", "width of the range of data values, and its centre"},
     {"range", 0, "LO,HI|pLO,pHI|full", TOPIC_LOOK, INPUT, read_range,
      FIELD(range), 0, 0, "",
      "range that the look is spread over: data values, percentiles of the "

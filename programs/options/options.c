@@ -7,6 +7,7 @@
 #include "options/config.h"
 #include "options/guess.h"
 #include "options/parse.h"
+#include "options/renamed.h"
 #include "run/log.h"
 #include "run/start.h"
 
@@ -36,8 +37,8 @@ void options_init(options *out) {
         .kernel = snow_kernel_name(settings.kernel),
         .mode = "over",
         .iso = NAN,
-        .window = NAN,
-        .level = NAN,
+        .window = {NAN, NAN},
+        .opacity_unit = "voxel",
         .shade = "phong",
         .light = {settings.light},
         .ambient = settings.ambient,
@@ -168,6 +169,8 @@ static int refuse_unknown(const verb_row *verb, const char *word, int code) {
                           verb->name);
     char name[64], near[128];
     snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
+    if (renamed_option(name))
+        return fail_usage("--%s: is now %s", name, renamed_option(name));
     if (is_ambiguous(name, strlen(name)))
         return fail_usage("--%s: matches several options; write the full name, "
                           "see snowglass help %s",
@@ -365,6 +368,9 @@ int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
             return refuse_unknown(verb, argv[optind - 1], optopt);
         const option_row *row = row_of(code == ':' ? optopt : code);
         const char *word = long_word(argv);
+        if (!in_full(word, row) && renamed_option(word))
+            return fail_usage("--%.*s: is now %s", (int)strcspn(word, "="),
+                              word, renamed_option(word));
         if (!in_full(word, row))
             return fail_usage("--%s: unknown option; did you mean --%s?", word,
                               row->name);

@@ -82,7 +82,8 @@ typedef struct options {
     bool log;
     double symlog; /* 0: not given; -1: from where it suits */
     point_list opacities, gradient_opacities;
-    double window, level; /* NaN: not given */
+    double window[2]; /* width, centre; NaN: not given */
+    double shift;     /* of the look, in data units */
     range_value range;
     const char *opacity_unit; /* of a recipe; NULL: not given */
     const char *shade;
@@ -253,7 +254,7 @@ bool mode_is_projection(const char *mode);
 /* Bits per channel of a picture; 0: not given. */
 int options_bits(const options *opts);
 
-/* The range of --range, or of --window and --level. */
+/* The range of --range, or of --window. */
 range_value options_range(const options *opts);
 
 /* Whether --colormap is a list of colours, which lie at values of the data. */

@@ -18,7 +18,7 @@ option_read read_time;
 option_read read_integer;         /* int64_t within low..high */
 option_read read_count;           /* uint64_t */
 option_read read_bytes;           /* uint64_t; units as in 4G or 4GiB */
-option_read read_window;          /* double, and the level beside it */
+option_read read_window;          /* double[2]: width, centre */
 option_read read_size;            /* int64_t[2] */
 option_read read_dims;            /* int64_t[3] */
 option_read read_component;       /* const char * */
@@ -38,5 +38,17 @@ option_read read_factor_points;   /* point_list */
 option_read read_gradient_points; /* point_list */
 option_read read_light;           /* light_value */
 option_read read_place;           /* place_value */
+
+/* What readers share: each writes the end of an error message and returns
+ * false, but for the test. */
+bool parse_refuse(char wrong[WRONG_BYTES], const char *text);
+bool parse_refuse_number(const option_row *row, const char *kind,
+                         char wrong[WRONG_BYTES]);
+bool parse_refuse_name(const option_row *row, const char *text,
+                       const char *(*name)(size_t), char wrong[WRONG_BYTES]);
+bool parse_within(const option_row *row, double value);
+
+/* Writes " (did you mean a?)" for a word that is near one of a|b|c, else "". */
+void parse_near(const char *choices, const char *text, char *out, size_t size);
 
 #endif

@@ -19,7 +19,7 @@ LOOK = ("preset", "colormap", "range", "opacity", "gradient_opacity", "log",
 #: Other names of some, as of matplotlib and PyVista, and what no recipe has.
 ALSO = ("cmap", "clim", "colors")
 #: All that make a look beside a Look.
-LOOKS = (*LOOK, *ALSO, "window", "level")
+LOOKS = (*LOOK, *ALSO, "window")
 #: Options of Volume for arrays alone.
 ARRAY = ("affine", "medical", "slope", "intercept", "copy", "frozen", "memory")
 #: Those that an overlay has, too.
@@ -147,18 +147,15 @@ def make(data: Optional[Mapping[str, Any]], unit: str, look: Look,
             for name, value in keys.items() if value is not False}
 
 
-def _of_window(window: Any, level: Any) -> tuple[float, float]:
-    """The range that a window's width and its middle are."""
-    if window is None:
-        raise TypeError("level: give window= too, the width of the range around it")
-    give = "its width above 0, and level=, its middle, or both as (width, level)"
-    if level is None:
-        try:
-            window, level = window
-        except (TypeError, ValueError):
-            raise _checks.fault("window", give, window) from None
-    width, middle = _checks.number("window", window, give), \
-        _checks.number("level", level)
+def _of_window(window: Any) -> tuple[float, float]:
+    """The range that a window's width and its centre are."""
+    give = "(width, centre), the width above 0"
+    try:
+        width, centre = window
+    except (TypeError, ValueError):
+        raise _checks.fault("window", give, window) from None
+    width, middle = _checks.number("window", width, give), \
+        _checks.number("window", centre, give)
     if width <= 0:
         raise _checks.fault("window", give, window, ValueError)
     return middle - width / 2, middle + width / 2
@@ -168,12 +165,12 @@ def take_look(options: dict[str, Any]) -> dict[str, Any]:
     """Takes the keys of a look out of options."""
     given = {name: options.pop(name) for name in LOOKS if name in options}
     given = {name: value for name, value in given.items() if value is not None}
-    window, level = given.pop("window", None), given.pop("level", None)
-    if window is None and level is None:
+    window = given.pop("window", None)
+    if window is None:
         return given
     if "range" in given or "clim" in given:
-        raise TypeError("give range, or window and level, not both")
-    return {**given, "range": _of_window(window, level)}
+        raise TypeError("give range or window, not both")
+    return {**given, "range": _of_window(window)}
 
 
 def split(options: Mapping[str, Any]) -> tuple[

@@ -358,7 +358,7 @@ class Volume(_snowglass.Volume):
 
         look          a Look, the name of a preset, or None: chosen, but for the
                       options of Look that are given here: cmap="bone", ...;
-                      window and level are the width and the middle of a range
+                      window is the width and the centre of a range
         view          a side: "anterior", "left", "+z", "iso", ...; None: chosen
         size          (width, height) in pixels, or one number for both
         azimuth, elevation, roll   degrees that the camera moves to its right

@@ -27,7 +27,7 @@ static const char *const overlay_look_keys[] = {
     NULL};
 static const char *const look_keys[] = {
     "preset", "colormap", "log",   "symlog", "opacity", "gradient-opacity",
-    "range",  "window",   "level", "mode",   "channel", NULL};
+    "range",  "window",   "shift", "mode",   "channel", NULL};
 
 /* The smallest side of a draft that is drawn in a hurry. */
 #define SIDE_LEAST 64
@@ -104,7 +104,7 @@ static char *color_key_of(const json_t *recipe) {
 /* What stays the same while a range is dragged, over which the points of the
  * look are spread; NULL: there is none, or some points stay at their values. */
 static char *spread_key_of(const json_t *recipe) {
-    static const char *const ends[] = {"range", "window", "level"};
+    static const char *const ends[] = {"range", "window"};
     const char *map = json_string_value(json_object_get(recipe, "colormap"));
     const bool stay =
         json_object_get(recipe, "opacity") || (map && strchr(map, ':'));

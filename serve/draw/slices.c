@@ -102,10 +102,10 @@ static void take_channels(const drawing *d, const slice_asked *asked,
 /* The recipe of a slice: of the data what the volume has, but no clip planes;
  * of the look its colours alone. */
 static json_t *slice_tree(const drawing *d, const slice_asked *asked) {
-    static const char *const unwanted[] = {"clip",   "size",  "background",
-                                           "window", "level", "opacity"};
-    static const char *const colors[] = {"preset", "tf", "colormap", "log",
-                                         "symlog"};
+    static const char *const unwanted[] = {"clip", "size", "background",
+                                           "window", "opacity"};
+    static const char *const colors[] = {"preset", "tf",     "colormap",
+                                         "log",    "symlog", "shift"};
     json_t *tree = json_copy(d->tree);
     const char *kernel = json_string_value(json_object_get(tree, "kernel"));
     for (size_t i = 0; i < sizeof unwanted / sizeof *unwanted; i++)

@@ -2,6 +2,7 @@
 #include "recipe/kinds.h"
 
 #include <stddef.h>
+#include <string.h>
 
 /* --- names ---------------------------------------------------------------- */
 
@@ -170,3 +171,15 @@ const recipe_key recipe_keys[] = {
     {NULL, NULL, 0, 0, 0, 0, NULL, NULL},
 };
 /* clang-format on */
+
+/* --- old spellings, which the release drops ------------------------------- */
+
+const char *recipe_renamed(const char *name) {
+    static const char *const rows[][2] = {
+        {"level", "\"window\": [width, centre]"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (strcmp(rows[i][0], name) == 0)
+            return rows[i][1];
+    return NULL;
+}

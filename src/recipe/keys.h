@@ -40,6 +40,9 @@ struct recipe_key {
 /* Ends with a row without a name. */
 extern const recipe_key recipe_keys[];
 
+/* The new spelling of a key that had another one before 0.1, or NULL. */
+const char *recipe_renamed(const char *name);
+
 /* The bytes of a recipe's file, to be released.  Errors: BAD_INPUT, NO_MEMORY.
  */
 snow_status recipe_read_file(snow_context *context, const char *path,

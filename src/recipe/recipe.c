@@ -42,6 +42,10 @@ static snow_status take_key(snow_context *context, const char *source,
                             snow_recipe *out) {
     char wrong[WRONG_BYTES];
     const recipe_key *key = key_named(name);
+    const char *now = key ? NULL : recipe_renamed(name);
+    if (now)
+        return snow_context_fail(context, SNOW_STATUS_BAD_INPUT,
+                                 "%s: \"%s\" is now %s", source, name, now);
     if (!key)
         return snow_context_fail(context, SNOW_STATUS_BAD_INPUT,
                                  "%s: \"%.64s\" is not a key of a recipe; use "
@@ -53,25 +57,23 @@ static snow_status take_key(snow_context *context, const char *source,
                              source, name, wrong);
 }
 
-/* A window and a level are another way to give a range. */
+/* A window is another way to give a range. */
 static snow_status take_window(snow_context *context, const char *source,
                                json_t *tree, snow_recipe *out) {
-    json_t *window = json_object_get(tree, "window");
-    json_t *level = json_object_get(tree, "level");
-    if (json_array_size(window) == 2 && !level) { /* [window, level] */
-        level = json_array_get(window, 1);
-        window = json_array_get(window, 0);
-    }
-    if (!window && !level)
+    const json_t *window = json_object_get(tree, "window");
+    const json_t *width = json_array_get(window, 0),
+                 *centre = json_array_get(window, 1);
+    if (!window)
         return SNOW_STATUS_OK;
-    double half = json_number_value(window) / 2;
-    double low = json_number_value(level) - half;
-    double high = json_number_value(level) + half;
-    if (!json_is_number(window) || !json_is_number(level) || !(low < high) ||
-        !isfinite(low) || !isfinite(high) || out->range != SNOW_RANGE_AUTO)
+    double half = json_number_value(width) / 2;
+    double low = json_number_value(centre) - half;
+    double high = json_number_value(centre) + half;
+    if (json_array_size(window) != 2 || !json_is_number(width) ||
+        !json_is_number(centre) || !(low < high) || !isfinite(low) ||
+        !isfinite(high) || out->range != SNOW_RANGE_AUTO)
         return snow_context_fail(context, SNOW_STATUS_BAD_INPUT,
-                                 "%s: \"window\" (above 0) and \"level\" must "
-                                 "be given together, without \"range\"",
+                                 "%s: \"window\" must be [width, centre], the "
+                                 "width above 0, without \"range\"",
                                  source);
     out->range = SNOW_RANGE_VALUES;
     out->low = low;
@@ -89,7 +91,7 @@ static snow_status take_tree(snow_context *context, const char *source,
             "%s: a recipe must be one JSON object; begin it with {", source);
     json_object_foreach(tree, name, value) {
         snow_status status = SNOW_STATUS_OK;
-        if (strcmp(name, "window") != 0 && strcmp(name, "level") != 0)
+        if (strcmp(name, "window") != 0)
             status = take_key(context, source, name, value, out);
         if (status != SNOW_STATUS_OK)
             return status;

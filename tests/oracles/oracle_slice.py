@@ -281,7 +281,7 @@ def ramp(low, high):
     return np.clip((flat - low) / (high - low), 0, 1)
 
 
-same_colors("a window", ("-w", "400", "--level", "40"), ramp(-160, 240))
+same_colors("a window", ("-w", "400,40"), ramp(-160, 240))
 same_colors("a range", ("--range", "-1000,2000"), ramp(-1000, 2000))
 same_colors("all values", ("--range", "full"), ramp(flat.min(), flat.max()))
 with np.errstate(invalid="ignore"):

@@ -46,7 +46,7 @@ CASES = [
     {"opacity": []}, {"opacity": [[0]]}, {"gradient-opacity": [[0, 0], [9, 1]]},
     {"range": [0, 9]}, {"range": ["p1", "p99"]}, {"range": "full"},
     {"range": "auto"}, {"range": [0]}, {"range": ["p1", 3]},
-    {"window": 100, "level": 50}, {"window": [100, 50]}, {"window": [100]},
+    {"window": 100}, {"window": [100, 50]}, {"window": [100]},
     {"shift": -3.5}, {"shift": "3"}, {"verb": "render"}, {"version": "0.1.0"},
     {"version": True}, {"fps": 1000}, {"fps": 0}, {"allow-gaps": False},
     {"input": ["phantom:shells"]}, {"input": 3}, {"opacity-unit": "mm"},

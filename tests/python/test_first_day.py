@@ -339,7 +339,7 @@ class Stumbles(InFolder):
                 ("labels", label, (3.5, [1, "a"], 1j),
                  lambda labels: volume.masked(ct, labels=labels)),
                 ("light", light, ((30,), (30, 40, 50), 5, (1, "a")), None),
-                ("window", "its width above 0, and level=", (400, "ab", (0, 40)), None),
+                ("window", r"\(width, centre\), the width above 0", (400, "ab", (0, 40)), None),
                 ("view", "a name of snowglass.views", ((1, 0, 0), 5), None),
                 ("perspective", "True or degrees", ("yes", float("nan")), None),
                 ("unit", "unit of the values", (5,), None),
@@ -385,9 +385,8 @@ class Stumbles(InFolder):
         turn = lambda path: lambda: volume.turntable(path, frames=2, size=16)
         for kind, answer, call in (
                 (TypeError, "^up must be 3 numbers$", lambda: volume.render(up="z")),
-                (TypeError, "^level: give window=", lambda: volume.render(level=4)),
-                (TypeError, "^give range, or window and level", lambda: volume.render(
-                    clim=(0, 1), window=4, level=4)),
+                (TypeError, "^give range or window", lambda: volume.render(
+                    clim=(0, 1), window=(4, 4))),
                 (TypeError, "^clim: project gives data values", lambda: volume.project(
                     "mip", clim=(0, 1))),
                 (ValueError, "^affine: it is singular: .*, or give spacing$",
@@ -434,7 +433,6 @@ class Stumbles(InFolder):
         for label in 900, numpy.int16(900), [900], numpy.array([900.0]), "900":
             same(volume.masked(ct, label).render(), volume.masked(ct, "900").render())
         for one, other in (
-                ({"window": 400, "level": 40}, {"range": (-160, 240)}),
                 ({"window": (400, 40)}, {"range": (-160, 240)}),
                 ({"colors": colors}, {"look": sg.Look(colors=iter(colors))})):
             same(volume.render(size=32, **one), volume.render(size=32, **other))

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <snowglass/recipe.h>
 
-/* Every key but window and level, none with its default. */
+/* Every key but window, none with its default. */
 static const char all_keys[] =
     "{\"input\": \"a.raw\", \"output\": \"b_%04d.png\", \"overwrite\": true,"
     " \"depth\": \"d.npy\","
@@ -115,7 +115,6 @@ static void what_is_written_reads_as_it_was(void **state) {
                                         "{}",
                                         "{\"range\": \"full\"}",
                                         "{\"range\": [-1e-3, 0.1]}",
-                                        "{\"window\": 0.2, \"level\": 7}",
                                         "{\"window\": [0.2, 7]}",
                                         "{\"size\": 9, \"mode\": \"MIP\"}",
                                         "{\"view\": \"Axial\"}",
@@ -213,16 +212,15 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"background\": \"#12345\"}", "\"background\" must be"},
         {"{\"background\": \"#1010-8\"}", "\"background\" must be"},
         {"{\"range\": [\"p 1\", \"p99\"]}", "\"range\" must be"},
-        {"{\"window\": 1.7e308, \"level\": 1.7e308}", "must be given together"},
-        {"{\"window\": 1e-300, \"level\": 1e308}", "must be given together"},
+        {"{\"window\": [1.7e308, 1.7e308]}", "\"window\" must be"},
+        {"{\"window\": [1e-300, 1e308]}", "\"window\" must be"},
         {"{\"background\": [0, 0, 2]}", "\"background\" must be"},
-        {"{\"window\": 3}", "must be given together"},
-        {"{\"window\": [3, 1], \"level\": 1}", "must be given together"},
-        {"{\"window\": [3, 1, 1]}", "must be given together"},
-        {"{\"window\": [0, 1]}", "must be given together"},
+        {"{\"window\": 3}", "\"window\" must be"},
+        {"{\"window\": [3, 1, 1]}", "\"window\" must be"},
+        {"{\"window\": [0, 1]}", "\"window\" must be"},
+        {"{\"level\": 1}", "\"level\" is now \"window\": [width, centre]"},
         {"{\"size\": 0}", "\"size\" must be"},
-        {"{\"window\": 3, \"level\": 1, \"range\": [0, 1]}",
-         "must be given together"},
+        {"{\"window\": [3, 1], \"range\": [0, 1]}", "\"window\" must be"},
         {"{\"type\": \"int12\"}", "\"type\" must be one of"},
         {"{\"overwrite\": 1}", "true or false"},
         {"{\"mode\": \"most\"}", "\"mode\" must be one of"},

@@ -60,7 +60,7 @@ run 0 "percentiles and a window" render phantom:shells --dims 32x32x32 \
 run 0 "are kept" render --config f.json -o g.png
 check "as they are" cmp -s f.png g.png
 run 0 "a window" render phantom:shells --dims 32x32x32 -o h.png \
-    --window 100 --level 120 --save-config h.json
+    --window 100,120 --save-config h.json
 run 0 "is kept" render --config h.json -o i.png
 check "as a range" cmp -s h.png i.png
 "$TOOL" phantom cube --dims 16x16x16 -q -o step_0.nrrd && cp step_0.nrrd step_1.nrrd
@@ -110,9 +110,8 @@ echo '{"input": "phantom:cube", "size": [50, 40], "range": [10, 20],
        "azimuth": 10, "deterministic": true, "overwrite": false,
        "perspective": 0}' >base.json
 run 0 "a size on the command line" render --config base.json -o k.png \
-    -s 60x30 --window 50 --level 100
-run 0 "is the size" render phantom:cube -o l.png -s 60x30 --window 50 \
-    --level 100 --azimuth 10 --deterministic
+    -s 60x30 --window 50,100
+run 0 "is the size" render phantom:cube -o l.png -s 60x30 --window 50,100 --azimuth 10 --deterministic
 check "and the window counts, not the file's range" cmp -s k.png l.png
 run 0 "an input on the command line" render phantom:shells --dims 20x20x20 \
     --config base.json -o m.png --range 1,200
@@ -121,7 +120,7 @@ run 0 "is the input" render phantom:shells --dims 20x20x20 -o n.png -s 50x40 \
 check "of this picture" cmp -s m.png n.png
 run 0 "info takes what is its own" "$TOOL" info --config base.json
 prints 'phantom'
-echo '{"window": 50, "level": 100}' >w.json
+echo '{"window": [50, 100]}' >w.json
 run 0 "a window in a file" render phantom:cube --config w.json -o o.png
 run 0 "a range on the command line" render phantom:cube --config w.json \
     -o p.png --range 75,125
@@ -132,7 +131,7 @@ run 0 "in any case, with one number for both sides" render \
     phantom:shells --dims 20x20x20 -o sa.png -m MIP -s 40 --window 300,120 \
     --view Front --quality HIGH --save-config s.json
 run 0 "as is usual" render phantom:shells --dims 20x20x20 -o sb.png -m mip \
-    -s 40x40 --window 300 --level 120 --view -y --quality high
+    -s 40x40 --window 300,120 --view -y --quality high
 check "is the same picture" cmp -s sa.png sb.png
 run 0 "which is kept" render --config s.json -o sc.png
 check "as it is" cmp -s sa.png sc.png
@@ -171,16 +170,10 @@ echo '{"input": "phantom:shells", "dims": [20, 20, 20], "mode": "MIP",
        "quality": "HIGH"}' >spelt.json
 run 0 "a file takes these spellings too" render --config spelt.json -o sd.png
 check "for the same picture" cmp -s sa.png sd.png
-run 0 "a level on the command line" render --config spelt.json -o se.png \
-    --level 80
-run 0 "or before a window" render phantom:shells --dims 20x20x20 -o sf.png \
-    -m mip -s 40 --level 80 --window 300,120 --view front --quality high
-check "counts" cmp -s se.png sf.png
-check "and is another" bash -c '! cmp -s sa.png se.png'
-echo '{"window": 50, "level": 100}' >w.json
+echo '{"window": [50, 100]}' >w.json
 run 0 "a pair on the command line" render phantom:cube --config w.json \
     -o sg.png --window 60,90
-run 0 "counts more than a file" render phantom:cube --window 60 --level 90 \
+run 0 "counts more than a file" render phantom:cube --window 60,90 \
     -o sh.png
 check "in both" cmp -s sg.png sh.png
 

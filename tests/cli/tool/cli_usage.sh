@@ -17,6 +17,8 @@ done <<'END'
 --overwrite=3 x|--overwrite takes no value
 info --roll 3 x|--roll: is not an option of info but of render
 x --json|--json: is not an option of render but of info
+--level 3 x|--level: is now --window W,L$
+help level|level: is now --window W,L$
 -q info x|info: the verb must come first; give snowglass info
 rendr x -o y.png|rendr: is not a verb; did you mean render\?
 x y -o z.png|x: is neither a verb nor a file; verbs: render turntable movie
@@ -191,10 +193,9 @@ while IFS='|' read -r arguments pattern; do
     refused 2 "phantom:cube $arguments" "$pattern" \
         "$TOOL" phantom:cube --dims 8x8x8 -o z.png "$@"
 done <<'END'
---window 3|needs --level too
---window 400,abc|is not a window; give its width, or width and level
---level 3|needs --window too
---window 3 --level 3 --range 1,2|conflicts with --range
+--window 3|is not a window; give its width and its centre
+--window 400,abc|is not a window
+--window 3,3 --range 1,2|conflicts with --range
 --type uint8|type
 END
 # The bench reads its own options.

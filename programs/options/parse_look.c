@@ -1,0 +1,141 @@
+/* parse_look.c - the readers of options of the look: colours, ranges,
+ * opacities, light. */
+#include "options/parse.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+bool read_strength(const option_row *row, const char *text, void *field,
+                   char wrong[WRONG_BYTES]) {
+    return read_real(row, *text ? text : "1", field, wrong);
+}
+
+bool read_symlog(const option_row *row, const char *text, void *field,
+                 char wrong[WRONG_BYTES]) {
+    if (*text)
+        return read_real(row, text, field, wrong);
+    *(double *)field = -1;
+    return true;
+}
+
+bool read_window(const option_row *row, const char *text, void *field,
+                 char wrong[WRONG_BYTES]) {
+    double pair[2];
+    if (!value_reals(text, ',', 2, pair))
+        return parse_refuse(wrong, "is not a window; give its width and its "
+                                   "centre, such as 400,40");
+    if (!parse_within(row, pair[0]))
+        return parse_refuse_number(row, "a width", wrong);
+    memcpy(field, pair, sizeof pair);
+    return true;
+}
+
+/* The library would refuse wrong names too, but only after reading the
+ * volume. */
+bool read_preset(const option_row *row, const char *text, void *field,
+                 char wrong[WRONG_BYTES]) {
+    if (snow_preset_from_name(text) < 0)
+        return parse_refuse_name(row, text, snow_preset_name, wrong);
+    return read_text(row, text, field, wrong);
+}
+
+bool read_colormap(const option_row *row, const char *text, void *field,
+                   char wrong[WRONG_BYTES]) {
+    const bool known = snow_colormap_from_name(text) >= 0;
+    if (!known && strchr(text, ':')) {
+        snprintf(wrong, WRONG_BYTES,
+                 "is no list of colours: must be at most %d VALUE:#RRGGBB, "
+                 "values rising; correct it",
+                 SNOW_COLORMAP_POINTS_MAX);
+        return false;
+    }
+    return known ? read_text(row, text, field, wrong)
+                 : parse_refuse_name(row, text, snow_colormap_name, wrong);
+}
+
+bool read_color(const option_row *row, const char *text, void *field,
+                char wrong[WRONG_BYTES]) {
+    (void)row;
+    if (value_color(text, field))
+        return true;
+    char names[128], near[128];
+    value_color_names(names, sizeof names);
+    parse_near(names, text, near, sizeof near);
+    snprintf(wrong, WRONG_BYTES,
+             "is not a colour%s; give auto, none, #rgb, #rrggbb, "
+             "red,green,blue from 0 to 1, or a name: %s",
+             near, names);
+    return false;
+}
+
+bool read_range(const option_row *row, const char *text, void *field,
+                char wrong[WRONG_BYTES]) {
+    (void)row;
+    if (!value_range(text, field))
+        return parse_refuse(wrong,
+                            "is not a range; give LOW,HIGH in data values, "
+                            "pLOW,pHIGH in percent such as p1,p99, or full");
+    return true;
+}
+
+bool read_points(const option_row *row, const char *text, void *field,
+                 char wrong[WRONG_BYTES]) {
+    (void)row;
+    if (!value_points(text, field))
+        return parse_refuse(
+            wrong,
+            "are not control points; give VALUE:OPACITY pairs, values rising, "
+            "opacities 0 to 1, at most 256, such as 80:0,200:0.5");
+    return true;
+}
+
+bool read_factor_points(const option_row *row, const char *text, void *field,
+                        char wrong[WRONG_BYTES]) {
+    (void)row;
+    if (!value_factor(text, field) && !value_points(text, field))
+        return parse_refuse(
+            wrong,
+            "is neither a factor from 0 to 1, such as 0.6, nor control points; "
+            "give VALUE:OPACITY pairs, values rising, opacities 0 to 1, at "
+            "most "
+            "256, such as 80:0,200:0.5");
+    return true;
+}
+
+bool read_gradient_points(const option_row *row, const char *text, void *field,
+                          char wrong[WRONG_BYTES]) {
+    (void)row;
+    if (!value_points(text, field))
+        return parse_refuse(
+            wrong,
+            "are not control points; give MAGNITUDE:FACTOR pairs, magnitudes "
+            "rising, factors 0 to 1, at most 256, such as 0:0,20:1");
+    return true;
+}
+
+/* Any angle is valid: full turns do not matter. */
+bool read_light(const option_row *row, const char *text, void *field,
+                char wrong[WRONG_BYTES]) {
+    (void)row;
+    double pair[2] = {0};
+    light_value light = {.light = SNOW_LIGHT_DIRECTION};
+    if (strcasecmp(text, "key") == 0)
+        light.light = SNOW_LIGHT_KEY;
+    else if (strcasecmp(text, "head") == 0)
+        light.light = SNOW_LIGHT_HEAD;
+    else if (!value_reals(text, ',', 2, pair)) {
+        char near[128];
+        parse_near("key|head", text, near, sizeof near);
+        snprintf(wrong, WRONG_BYTES,
+                 "is not a light%s; give key, head, or AZIMUTH,ELEVATION in "
+                 "degrees, such as 30,45",
+                 near);
+        return false;
+    }
+    light.azimuth = pair[0];
+    light.elevation = pair[1];
+    *(light_value *)field = light;
+    return true;
+}

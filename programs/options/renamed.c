@@ -1,0 +1,20 @@
+/* renamed.c - the table of old spellings, which the release drops. */
+#include "options/renamed.h"
+
+#include <stddef.h>
+#include <string.h>
+
+static const struct {
+    const char *old, *now;
+} rows[] = {
+    {"level", "--window W,L"},
+};
+
+const char *renamed_option(const char *name) {
+    size_t length = strcspn(name, "=");
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (strlen(rows[i].old) == length &&
+            strncmp(rows[i].old, name, length) == 0)
+            return rows[i].now;
+    return NULL;
+}
