@@ -13,7 +13,7 @@ const WORLD_VIEWS = ['+x', '-x', '+y', '-y', '+z', '-z'];
 const AXES = ['x', 'y', 'z'];
 const FIRST_PANE = 4;
 const NO_SHAPE = {colormap: null, opacity: null, 'gradient-opacity': null, range: null,
-    log: null, symlog: null};
+    shift: null, scale: null};
 
 export class Panel {
     constructor(recipe, page, engine, actions, slices) {
@@ -91,9 +91,9 @@ export class Panel {
             isoRow.hidden = keys.mode !== 'iso';
         });
         return section('Look', true, alone, row('Mode', modes), isoRow,
-            this.box('logarithmic values', ({log}) => log, on => recipe.set({log: on || null, symlog: null})),
-            this.box('on both sides of 0', ({symlog}) => symlog,
-                on => recipe.set({symlog: on || null, log: null})));
+            this.box('logarithmic values', ({scale}) => scale === 'log', on => recipe.set({scale: on ? 'log' : null})),
+            this.box('on both sides of 0', ({scale}) => scale?.startsWith('sym'),
+                on => recipe.set({scale: on ? 'symlog' : null})));
     }
 
     setRange(low, high) {

@@ -326,11 +326,11 @@ export class Slices {
 
     /** The volume that is shown: another crop, time, channel has other slices. */
     get data() {
-        const {crop, time, channel, component, labels, preset, colormap, log, symlog} = this.recipe.keys;
+        const {crop, time, channel, component, labels, preset, colormap, scale, shift} = this.recipe.keys;
         const overlay = ['', '-preset', '-colormap', '-range', '-opacity'].map(
             end => this.recipe.keys[`overlay${end}`]);
         return [crop, time, channel, component, labels, ...overlay,
-            this.keys.colored && [preset, colormap, log, symlog]];
+            this.keys.colored && [preset, colormap, scale, shift]];
     }
 
     set(changes) {

@@ -283,8 +283,9 @@ static int open_colors(slice_work *w) {
     const options *opts = &w->opts;
     automatic = *opts;
     automatic.mode = "over";
-    bool asked = opts->preset || opts->tf || opts->colormap || opts->log ||
-                 opts->symlog != 0 ||
+    bool asked = opts->preset || opts->tf || opts->colormap ||
+                 opts->scale.log || opts->scale.symlog != 0 ||
+                 opts->shift != 0 ||
                  options_range(opts).kind != SNOW_RANGE_AUTO;
     int done = CONTINUE;
     if (w->channels.list.count)
@@ -379,7 +380,7 @@ static void report(const slice_work *w) {
         w->opts.named ? w->opts.output : "");
     if (picture_is_empty(w->image))
         say("note: the picture is empty: the slice has no finite value, or "
-            "with --log none above 0; give another --at");
+            "with --scale log none above 0; give another --at");
 }
 
 /* Letters stay at the edges: a slice fills its picture. */

@@ -206,9 +206,6 @@ void look_unload(options *opts) {
 }
 
 int check_look(const options *opts) {
-    if (opts->log && opts->symlog != 0)
-        return fail_usage(
-            "--log: conflicts with --symlog; give only one of them");
     if (opts->tf && opts->preset)
         return fail_usage(
             "--tf: conflicts with --preset; give only one of them");
@@ -226,8 +223,9 @@ snow_look look_options(const options *opts) {
                       .range = range.kind,
                       .low = range.low,
                       .high = range.high,
-                      .log = opts->log,
-                      .symlog = opts->symlog,
+                      .log = opts->scale.log,
+                      .symlog = opts->scale.symlog,
+                      .shift = opts->shift,
                       .base = opts->loaded ? snow_look_file_look(opts->loaded)
                                            : NULL};
     /* Projections are grey by default, over the file's window or all values but

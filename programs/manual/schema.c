@@ -28,8 +28,8 @@ static const struct {
     {read_choice, "{'type': 'string'}"},
     {read_real, "{'type': 'number'}"},
     {read_strength, "{'type': 'number'}"},
-    {read_symlog, "{'anyOf': [{'type': 'boolean'}, {'type': 'number',"
-                  "'minimum': 1e-300, 'maximum': 1e300}]}"},
+    {read_scale, "{'anyOf': [{'enum': ['linear', 'log', 'symlog']}, {'type':"
+                 "'string', 'pattern': '^symlog:[0-9.eE+-]+$'}]}"},
     {read_fov, "{'type': 'number'}"},
     {read_integer, "{'type': 'integer'}"},
     {read_time, "{'anyOf': [{'type': 'integer'}, {'type': 'string'}]}"},

@@ -28,7 +28,7 @@ static bool add_text(options *out, const char *text) {
 static bool add_value(options *out, const char *key, const json_t *value);
 
 /* With as few digits as bring the number back, but no "4e+01". */
-static void spell_real(double value, char text[40]) {
+void config_real(double value, char text[40]) {
     for (int digits = 6; digits <= 17; digits++) {
         snprintf(text, 40, "%.*g", digits, value);
         double again = strtod(text, NULL);
@@ -72,7 +72,7 @@ static bool add_value(options *out, const char *key, const json_t *value) {
         snprintf(number, sizeof number, "%" JSON_INTEGER_FORMAT,
                  json_integer_value(value));
     else
-        spell_real(json_real_value(value), number);
+        config_real(json_real_value(value), number);
     return add_text(out, number);
 }
 

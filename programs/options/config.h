@@ -23,6 +23,9 @@ const verb_row *config_verb(int argc, char **argv);
  * options; NULL if there is no more room. */
 char *config_text(options *out, const char *key, const json_t *value);
 
+/* A number with as few digits as bring it back. */
+void config_real(double value, char text[40]);
+
 /* Refuses a --save-config file that cannot be written, before rendering.
  * Returns CONTINUE or an exit code. */
 int config_check(const options *opts);

@@ -44,8 +44,8 @@ static void fill_look(const options *opts, snow_recipe *out) {
     out->preset = opts->preset;
     out->colormap = opts->colormap;
     out->tf = opts->tf;
-    out->log = opts->log;
-    out->symlog = opts->symlog;
+    out->log = opts->scale.log;
+    out->symlog = opts->scale.symlog;
     const range_value range = options_range(opts);
     out->range = range.kind;
     out->low = range.low;
@@ -168,7 +168,7 @@ static json_t *recipe_tree(snow_context *context, const snow_recipe *recipe) {
 
 /* What a look of the histogram and the default view came to. */
 static struct chosen {
-    json_t *preset, *colormap, *range, *opacity, *symlog, *shade, *view, *axis,
+    json_t *preset, *colormap, *range, *opacity, *scale, *shade, *view, *axis,
         *at, *channel;
 } chosen;
 
@@ -202,9 +202,11 @@ static void note_range(const options *opts, const snow_transfer *transfer) {
 }
 
 /* From where it was chosen. */
-static void note_symlog(const snow_look *look) {
+static void note_scale(const snow_look *look) {
+    char number[40];
+    config_real(look->symlog, number);
     if (look->symlog > 0)
-        chosen.symlog = json_real(look->symlog);
+        chosen.scale = json_sprintf("symlog:%s", number);
 }
 
 /* Means and sums are painted over the values of the picture, and their range in
@@ -219,7 +221,7 @@ static void note_projection(const options *opts, const snow_transfer *transfer,
     if (snow_transfer_get_look(transfer, &look) != SNOW_STATUS_OK)
         return;
     if (!of_picture) {
-        note_symlog(&look);
+        note_scale(&look);
         note_range(opts, transfer);
     } else if (options_range(opts).kind == SNOW_RANGE_AUTO &&
                !options_place_colors(opts) && painted[0] < painted[1] &&
@@ -233,7 +235,7 @@ static void note_look(const options *opts, const snow_transfer *transfer) {
     snow_look look = {.size = sizeof look};
     if (snow_transfer_get_look(transfer, &look) != SNOW_STATUS_OK)
         return;
-    note_symlog(&look);
+    note_scale(&look);
     if (look.name) {
         chosen.preset = json_string(look.name);
         if (strcmp(look.name, "signed") == 0)
@@ -297,7 +299,7 @@ static void set_chosen(json_t *tree) {
         json_t **value;
     } rows[] = {{"preset", &chosen.preset}, {"colormap", &chosen.colormap},
                 {"range", &chosen.range},   {"opacity", &chosen.opacity},
-                {"symlog", &chosen.symlog}, {"shade", &chosen.shade},
+                {"scale", &chosen.scale},   {"shade", &chosen.shade},
                 {"view", &chosen.view},     {"axis", &chosen.axis},
                 {"at", &chosen.at},         {"channel", &chosen.channel}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {

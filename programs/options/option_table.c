@@ -162,14 +162,12 @@ const option_row option_table[] = {
      "transfer function from a file, in place of a preset: Snowglass .json or "
      ".csv, 3D Slicer .vp or .xml, ParaView or niivue .json, Amrvis .pal; "
      "FILE#NAME selects one of several"},
-    {"log", 0, NULL, TOPIC_LOOK, LOOKED, read_flag, FIELD(log), 0, 0, "",
-     "logarithmic scale for values; values of 0 and below are transparent, and "
-     "a note says how many these are"},
-    {"symlog", 0, "[X]", TOPIC_LOOK, LOOKED, read_symlog, FIELD(symlog), 1e-300,
-     1e300, "",
-     "symmetric logarithmic scale for values of both signs: linear from -X to "
-     "X, logarithmic beyond (default for X: about a thousandth of the largest "
-     "magnitude, which is printed)"},
+    {"scale", 0, "linear|log|symlog|symlog:X", TOPIC_LOOK, LOOKED, read_scale, FIELD(scale),
+     1e-300, 1e300, "",
+     "scale of the values. log: logarithmic; values of 0 and below are "
+     "transparent, and a note says how many these are; symlog: for both signs, "
+     "linear from -X to X and logarithmic beyond; without X from about a "
+     "thousandth of the largest magnitude, which is printed (default linear)"},
 
     {"quality", 0, "draft|normal|high", TOPIC_QUALITY, WRITTEN, read_choice,
      FIELD(quality), 0, 0, "",

@@ -36,6 +36,12 @@ typedef struct light_value {
     double azimuth, elevation;
 } light_value;
 
+/* Of the values. */
+typedef struct scale_value {
+    bool log;
+    double symlog; /* 0: not; -1: from where it suits */
+} scale_value;
+
 typedef struct color_value {
     bool given;     /* false: transparent, or */
     bool automatic; /* dark where the output shows a background */

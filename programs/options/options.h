@@ -79,8 +79,7 @@ typedef struct options {
     const char *tf;                /* a file; NULL: none */
     snow_look_file *loaded;   /* the content of that file, set by look_load */
     snow_context *tf_context; /* that owns it */
-    bool log;
-    double symlog; /* 0: not given; -1: from where it suits */
+    scale_value scale;
     point_list opacities, gradient_opacities;
     double window[2]; /* width, centre; NaN: not given */
     double shift;     /* of the look, in data units */

@@ -12,7 +12,6 @@ option_read read_choice;    /* const char *: one of the row's choices */
 option_read read_real;      /* double within low..high */
 option_read read_fov;       /* double; the default for an empty text */
 option_read read_strength;  /* double; 1 for an empty text */
-option_read read_symlog;    /* double; -1 for an empty text */
 option_read read_tolerance; /* double; quotients are allowed */
 option_read read_time;
 option_read read_integer;         /* int64_t within low..high */
@@ -37,6 +36,7 @@ option_read read_points;          /* point_list */
 option_read read_factor_points;   /* point_list */
 option_read read_gradient_points; /* point_list */
 option_read read_light;           /* light_value */
+option_read read_scale;           /* scale_value */
 option_read read_place;           /* place_value */
 
 /* What readers share: each writes the end of an error message and returns

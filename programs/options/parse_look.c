@@ -12,11 +12,24 @@ bool read_strength(const option_row *row, const char *text, void *field,
     return read_real(row, *text ? text : "1", field, wrong);
 }
 
-bool read_symlog(const option_row *row, const char *text, void *field,
-                 char wrong[WRONG_BYTES]) {
-    if (*text)
-        return read_real(row, text, field, wrong);
-    *(double *)field = -1;
+bool read_scale(const option_row *row, const char *text, void *field,
+                char wrong[WRONG_BYTES]) {
+    static const char from[] = "symlog:";
+    scale_value scale = {.log = strcmp(text, "log") == 0};
+    if (strcmp(text, "symlog") == 0)
+        scale.symlog = -1;
+    else if (strncmp(text, from, strlen(from)) == 0) {
+        if (!read_real(row, text + strlen(from), &scale.symlog, wrong))
+            return false;
+    } else if (!scale.log && strcmp(text, "linear") != 0) {
+        char near[128];
+        parse_near(row->argument, text, near, sizeof near);
+        snprintf(wrong, WRONG_BYTES,
+                 "is unknown%s; choose from: linear, log, symlog, symlog:X",
+                 near);
+        return false;
+    }
+    *(scale_value *)field = scale;
     return true;
 }
 

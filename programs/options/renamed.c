@@ -8,6 +8,8 @@ static const struct {
     const char *old, *now;
 } rows[] = {
     {"level", "--window W,L"},
+    {"log", "--scale log"},
+    {"symlog", "--scale symlog[:X]"},
 };
 
 const char *renamed_option(const char *name) {

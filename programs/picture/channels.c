@@ -192,8 +192,8 @@ snow_status channels_look(snow_comm *comm, const options *opts,
                       .range = range.kind,
                       .low = range.low,
                       .high = range.high,
-                      .log = opts->log,
-                      .symlog = opts->symlog};
+                      .log = opts->scale.log,
+                      .symlog = opts->scale.symlog};
     take_color(opts, of, pick, &room, &look);
     if (opts->gradient_opacities.count) {
         look.gradient_opacities = opts->gradient_opacities.points;

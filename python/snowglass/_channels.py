@@ -11,7 +11,7 @@ from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence, \
     Union
 
 from . import _snowglass
-from ._looks import Look, Range, _parse_range, is_ranged
+from ._looks import Look, Range, _parse_range, _parse_scale, is_ranged
 from ._warnings import warn
 
 #: The most that are shown together.
@@ -326,9 +326,8 @@ class Channels:
         kind, low, high = _parse_range(
             pick.range or (look.range if is_ranged(look) else said["window"]) or
             ("robust" if flat else None))
-        fields: dict[str, Any] = {"low": low, "high": high, "log": look.log,
-                                  "symlog": -1.0 if look.symlog is True else
-                                  float(look.symlog)}
+        fields: dict[str, Any] = {"low": low, "high": high,
+                                  **_parse_scale(look.scale)}
         rgb, colors, opacities = _rgb(color), None, None
         if rgb is None:
             fields["colormap"] = color

@@ -17,7 +17,7 @@ Keys = Mapping[str, Any]
 #: What a page may change, as the viewer in the browser has it: no key names a
 #: file.
 SETTABLE = frozenset("""
-size background mode iso threshold preset colormap log symlog opacity
+size background mode iso threshold preset colormap scale opacity
 gradient-opacity range shift window opacity-unit shade light ambient diffuse specular shininess
 depth-darkening occlusion view azimuth elevation roll zoom perspective fit
 position target up no-labels legend scale-bar crop channel component labels clip

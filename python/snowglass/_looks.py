@@ -28,10 +28,9 @@ class Look:
     colors        [(value, (red, green, blue)), ...], 0 to 1
     gradient_opacity  [(magnitude, factor), ...]: factors 0 to 1 of opacities by
                   the magnitude of the gradient, in data units per unit of length
-    symlog        True: linear around 0 and logarithmic beyond, on both sides;
-                  a number: from there on
-    log           points are joined by logarithms of values; 0 and below is
-                  transparent
+    scale         "log": points are joined by logarithms of values; 0 and below is
+                  transparent; "symlog": linear around 0 and logarithmic beyond,
+                  on both sides, "symlog:5" from 5 on; "linear" else
     """
     preset: Optional[str] = None
     colormap: Optional[str] = None
@@ -39,8 +38,7 @@ class Look:
     opacity: Optional[Sequence[Tuple[float, float]]] = None
     colors: Optional[Sequence[Tuple[float, Sequence[float]]]] = None
     gradient_opacity: Optional[Sequence[Tuple[float, float]]] = None
-    log: bool = False
-    symlog: Union[bool, float] = False
+    scale: str = "linear"
     cmap: dataclasses.InitVar[Optional[str]] = None
     clim: dataclasses.InitVar[Optional[Range]] = None
 
@@ -59,8 +57,7 @@ class Look:
         object.__setattr__(self, "colors", _colors(self.colors))
         for name in ("opacity", "gradient_opacity"):
             object.__setattr__(self, name, _points(name, getattr(self, name)))
-        object.__setattr__(self, "symlog", _magnitude(self.symlog))
-        object.__setattr__(self, "log", bool(self.log))
+        _parse_scale(self.scale)
 
     def _arguments(self) -> tuple[Any, ...]:
         """Those of the core's `_look`."""
@@ -69,8 +66,7 @@ class Look:
         if self.colors is not None:
             colors = [(value, *color) for value, color in self.colors]
         fields = {"preset": self.preset, "colormap": self.colormap,
-                  "log": self.log, "low": low, "high": high,
-                  "symlog": -1.0 if self.symlog is True else float(self.symlog)}
+                  "low": low, "high": high, **_parse_scale(self.scale)}
         return fields, kind, colors, self.opacity, self.gradient_opacity
 
 
@@ -109,18 +105,21 @@ def _colors(given: Any) -> Optional[Tuple[Any, ...]]:
     return made
 
 
-def _magnitude(symlog: Any) -> Any:
-    if hasattr(symlog, "tolist"):  # numbers of NumPy
-        symlog = symlog.tolist()
-    if isinstance(symlog, bool):
-        return symlog
-    fault = f"symlog {symlog!r}: must be a magnitude above 0, or True to have " \
-            f"it chosen"
-    if not hasattr(symlog, "__float__"):
-        raise TypeError(fault)
-    if not 0 <= float(symlog) < math.inf:
-        raise ValueError(fault)
-    return symlog
+def _parse_scale(scale: Any) -> dict[str, Any]:
+    """The core's names of a scale."""
+    give = "'linear', 'log', 'symlog', or 'symlog:X' with a number X above 0"
+    if not isinstance(scale, str):
+        raise _checks.fault("scale", give, scale)
+    word, _, number = scale.lower().partition(":")
+    beyond = -1.0 if word == "symlog" else 0.0
+    try:
+        beyond = float(number) if ":" in scale else beyond
+    except ValueError:
+        raise _checks.fault("scale", give, scale, ValueError) from None
+    if word not in ("linear", "log", "symlog") or ":" in scale and not (
+            word == "symlog" and 0 < beyond < math.inf):
+        raise _checks.fault("scale", give, scale, ValueError)
+    return {"log": word == "log", "symlog": beyond}
 
 
 def look_of(look: Union[Look, str, None]) -> Look:
@@ -151,8 +150,8 @@ def is_ranged(look: Any) -> bool:
 
 def colors_are_open(look: Look) -> bool:
     """Whether a look says nothing of colours but what the data do."""
-    return not (look.preset or look.colormap or look.colors or look.log or
-                look.symlog or is_ranged(look))
+    return not (look.preset or look.colormap or look.colors or
+                look.scale != "linear" or is_ranged(look))
 
 
 def _parse_range(given: Optional[Range]) -> tuple[str, float, float]:

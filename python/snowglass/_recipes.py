@@ -14,8 +14,7 @@ DATA = ("dims", "type", "endian", "spacing", "offset", "time", "channel",
         "component", "crop", "dataset", "series", "allow_gaps", "levels",
         "mask", "labels", "label_table", "clip")
 #: Keys of the look.
-LOOK = ("preset", "colormap", "range", "opacity", "gradient_opacity", "log",
-        "symlog")
+LOOK = ("preset", "colormap", "range", "opacity", "gradient_opacity", "scale")
 #: Other names of some, as of matplotlib and PyVista, and what no recipe has.
 ALSO = ("cmap", "clim", "colors")
 #: All that make a look beside a Look.
@@ -82,7 +81,7 @@ def _look_keys(look: Look) -> dict[str, Any]:
     if keys["range"] is not None:
         keys["range"] = _range_key(keys["range"])
     return {name: value for name, value in keys.items()
-            if value is not None and value is not False}
+            if value is not None and (name, value) != ("scale", "linear")}
 
 
 def _overlay_keys(overlay: Any, look: Any) -> dict[str, Any]:

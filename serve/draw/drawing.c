@@ -26,8 +26,9 @@ static const char *const overlay_look_keys[] = {
     "overlay-preset", "overlay-colormap", "overlay-range", "overlay-opacity",
     NULL};
 static const char *const look_keys[] = {
-    "preset", "colormap", "log",   "symlog", "opacity", "gradient-opacity",
-    "range",  "window",   "shift", "mode",   "channel", NULL};
+    "preset", "colormap", "scale", "opacity", "gradient-opacity",
+    "range",  "window",   "shift", "mode",    "channel",
+    NULL};
 
 /* The smallest side of a draft that is drawn in a hurry. */
 #define SIDE_LEAST 64

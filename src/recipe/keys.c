@@ -100,8 +100,7 @@ const recipe_key recipe_keys[] = {
     KNOWN("preset", preset, preset_name, snow_preset_from_name),
     KNOWN("colormap", colormap, colormap_name, snow_colormap_from_name),
     TEXT("tf", tf),
-    MADE("log", flag, log, 0, 0, 0),
-    MADE("symlog", symlog, symlog, 1e-300, 1e300, 0),
+    MADE("scale", scale, symlog, 1e-300, 1e300, 0),
     MADE("opacity", points, opacity_count, 0, 0, 0),
     MADE("gradient-opacity", points, gradient_opacity_count, 0, 0, 0),
     MADE("range", range, range, 0, 0, 0),
@@ -177,6 +176,8 @@ const recipe_key recipe_keys[] = {
 const char *recipe_renamed(const char *name) {
     static const char *const rows[][2] = {
         {"level", "\"window\": [width, centre]"},
+        {"log", "\"scale\": \"log\""},
+        {"symlog", "\"scale\": \"symlog\" or \"symlog:X\""},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (strcmp(rows[i][0], name) == 0)

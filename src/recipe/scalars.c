@@ -4,6 +4,9 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
 
 bool recipe_refuse(char wrong[WRONG_BYTES], const char *text) {
     snprintf(wrong, WRONG_BYTES, "must be %s", text);
@@ -134,23 +137,52 @@ static json_t *write_flag(const recipe_key *key, const void *field) {
     return *(const bool *)field ? json_true() : NULL;
 }
 
-/* true: where it begins is chosen, which is -1 in the record. */
-static bool read_symlog(const recipe_key *key, const json_t *value, void *field,
-                        char wrong[WRONG_BYTES]) {
-    if (!json_is_boolean(value))
-        return recipe_read_real(key, value, field, wrong);
-    *(double *)field = json_is_true(value) ? -1 : 0;
+/* A number with as few digits as bring it back. */
+static void spell_real(double value, char text[40]) {
+    double again = NAN;
+    for (int digits = 6; digits <= 17 && !(again <= value && again >= value);
+         digits++) {
+        snprintf(text, 40, "%.*g", digits, value);
+        again = strtod(text, NULL);
+    }
+}
+
+/* Where symlog begins is chosen if it is not said, which is -1 in the record.
+ */
+static bool read_scale(const recipe_key *key, const json_t *value, void *field,
+                       char wrong[WRONG_BYTES]) {
+    snow_recipe *r = recipe_at(field, offsetof(snow_recipe, symlog));
+    const char *text = json_string_value(value), *number = text;
+    double from = 0;
+    char *end = NULL;
+    const bool is_log = text && strcasecmp(text, "log") == 0;
+    if (text && strcasecmp(text, "symlog") == 0)
+        from = -1;
+    else if (text && strncasecmp(text, "symlog:", 7) == 0)
+        from = strtod(number += 7, &end);
+    if (end ? end == number || *end || !in_range(key, from)
+            : !text ||
+                  (!is_log && from == 0 && strcasecmp(text, "linear") != 0))
+        return recipe_refuse(wrong, "\"linear\", \"log\", \"symlog\" or "
+                                    "\"symlog:X\", X from 1e-300 to 1e300");
+    r->log = is_log;
+    r->symlog = from;
     return true;
 }
 
-static json_t *write_symlog(const recipe_key *key, const void *field) {
-    double value = *(const double *)field;
-    return value < 0   ? json_true()
-           : value > 0 ? recipe_write_real(key, field)
-                       : NULL;
+static json_t *write_scale(const recipe_key *key, const void *field) {
+    const snow_recipe *r = recipe_at(field, offsetof(snow_recipe, symlog));
+    char number[40];
+    (void)key;
+    if (r->symlog > 0)
+        spell_real(r->symlog, number);
+    return r->symlog < 0   ? json_string("symlog")
+           : r->symlog > 0 ? json_sprintf("symlog:%s", number)
+           : r->log        ? json_string("log")
+                           : NULL;
 }
 
-const recipe_kind recipe_symlog = {read_symlog, write_symlog};
+const recipe_kind recipe_scale = {read_scale, write_scale};
 const recipe_kind recipe_real = {recipe_read_real, recipe_write_real};
 const recipe_kind recipe_int = {recipe_read_int, recipe_write_given_int};
 const recipe_kind recipe_channel = {read_channel, write_channel};

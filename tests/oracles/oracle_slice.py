@@ -286,7 +286,7 @@ same_colors("a range", ("--range", "-1000,2000"), ramp(-1000, 2000))
 same_colors("all values", ("--range", "full"), ramp(flat.min(), flat.max()))
 with np.errstate(invalid="ignore"):
     logarithm = np.clip(np.log10(np.maximum(flat, 1e-9) / 10) / 2, 0, 1)
-same_colors("a logarithm", ("--log", "--range", "10,1000"), logarithm,
+same_colors("a logarithm", ("--scale", "log", "--range", "10,1000"), logarithm,
             (flat > 0).astype(float))
 look = {"colors": [[0, 0.2, 0.2, 0.2], [500, 0.2, 0.2, 0.2],
                    [500, 0.6, 0.6, 0.6], [900, 0.6, 0.6, 0.6],

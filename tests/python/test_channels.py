@@ -144,8 +144,8 @@ class Channels(unittest.TestCase):
                  sg.Look(opacity=[(40, 0), (200, 0.4)])),
                 (["--gradient-opacity", "0:0,60:1"],
                  sg.Look(gradient_opacity=[(0, 0), (60, 1)])),
-                (["--log"], sg.Look(log=True)),
-                (["--symlog", "5"], sg.Look(symlog=5))):
+                (["--scale", "log"], sg.Look(scale="log")),
+                (["--scale", "symlog:5"], sg.Look(scale="symlog:5"))):
             with self.subTest(words):
                 image = volume.render(look, size=80)
                 self.same(image, "render", self.file, "-s", "80", *words)

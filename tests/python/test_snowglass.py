@@ -185,9 +185,9 @@ class Pictures(InFolder):
                     volume.render(**options)
         with self.assertRaisesRegex(ValueError, "give rising|below|values"):
             volume.render(sg.Look(opacity=[(9, 0), (1, 1)]))
-        for symlog in (-3, numpy.nan):
-            with self.assertRaisesRegex(ValueError, "symlog .*above 0"):
-                sg.Look(symlog=symlog)
+        for scale in ("symlog:-3", "symlog:nan", "log:3", "symlog:", "ln"):
+            with self.assertRaisesRegex(ValueError, "scale: .*above 0"):
+                sg.Look(scale=scale)
         with self.assertRaisesRegex(TypeError, "save\\(\\) the array"):
             sg.Volume(numpy.zeros((2, 2, 2), "u1"), label_table="a.txt")
         self.assertEqual(volume.look("rdbu_r"), volume.look("RdBu_r"))

@@ -1,5 +1,5 @@
 #!/bin/bash
-# tf, --tf, --log and presets through the tool: what files of other programs say
+# tf, --tf, --scale log and presets through the tool: what files of other programs say
 # becomes a picture, is shown, and is converted.
 . "$(dirname "$0")/../../support/shell.sh"
 SEEDS=$HERE/../fuzz/corpus/tf
@@ -68,7 +68,7 @@ says 'opacity per voxel'
 run 0 "spread over a range" small --tf "$SEEDS/niivue.json" --range 10,200 \
     -o r.png
 says 'niivue 10\.\.200'
-run 0 "kept in a configuration" small -q --tf "$SEEDS/points.csv" --log \
+run 0 "kept in a configuration" small -q --tf "$SEEDS/points.csv" --scale log \
     --range 1,200 -o c.png --save-config c.json
 run 0 "and taken from it" "$TOOL" render -q --config c.json -o d.png
 check "the same picture" cmp -s c.png d.png
@@ -83,18 +83,18 @@ refused 2 "with a preset" 'conflicts with --preset' \
     small --tf "$SEEDS/ct.vp" --preset linear -o x.png
 check "nothing is written then" absent x.png
 
-# --- --log --------------------------------------------------------------------
-run 0 "by logarithms" small --log --preset linear --range 1,255 -o l.png
+# --- --scale log --------------------------------------------------------------
+run 0 "by logarithms" small --scale log --preset linear --range 1,255 -o l.png
 says 'grey 1\.\.255 logarithmic; opacity 0 at 1, 1 at 255'
-run 0 "from the histogram" small --log -o m.png
+run 0 "from the histogram" small --scale log -o m.png
 says 'logarithmic'
-run 0 "every method" small -q --log --preset linear --method footprint \
+run 0 "every method" small -q --scale log --preset linear --method footprint \
     --shade none -o f.png
 refused 2 "a point at 0" 'the opacity at 0 has no logarithm; give values above 0, or symlog' \
-    small --log --opacity 0:0,9:1 -o x.png
+    small --scale log --opacity 0:0,9:1 -o x.png
 refused 2 "a colour below 0" 'the colour at -2 has no logarithm' \
-    small --log -c "-2:#000000,9:#ff0000" -o x.png
-refused 2 "Hounsfield units" 'give a range too' small --log --preset ct-soft \
+    small --scale log -c "-2:#000000,9:#ff0000" -o x.png
+refused 2 "Hounsfield units" 'give a range too' small --scale log --preset ct-soft \
     -o x.png
 
 # --- names --------------------------------------------------------------------

@@ -238,8 +238,8 @@ for n in range(12000):
 run 0 "half the light of a slice" "$TOOL" slice ome.tif -q -o half.png --channel 0:blue:20..230:0.5,1:green:20..230:0.5
 run 0 "over twice the range" "$TOOL" slice ome.tif -q -o twice.png --channel 0:blue:20..440,1:green:20..440
 run 0 "is the same" "$TOOL" compare half.png twice.png --tolerance 0.005
-run 0 "a scale that is linear near 0" render ome.tif -o symlog.npy --symlog 5 --channel 0:blue:2..250,1:green:2..250
-run 0 "and nearly opaque" render ome.tif -o symlog2.npy --symlog 5 --channel 0:blue:2..250:0.999999,1:green:2..250:0.999999
+run 0 "a scale that is linear near 0" render ome.tif -o symlog.npy --scale symlog:5 --channel 0:blue:2..250,1:green:2..250
+run 0 "and nearly opaque" render ome.tif -o symlog2.npy --scale symlog:5 --channel 0:blue:2..250:0.999999,1:green:2..250:0.999999
 run 0 "is nearly the same" "$TOOL" compare symlog.npy symlog2.npy --tolerance 1e-4
 run 0 "a linear one" render ome.tif -o linear.npy --channel 0:blue:2..250,1:green:2..250
 check "is another" [ -n "$(cmp symlog.npy linear.npy)" ]

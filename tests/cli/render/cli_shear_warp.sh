@@ -45,7 +45,7 @@ check "do not change the picture" cmp -s normal.npy one.npy
 
 # What is left out, logarithms, gradient opacity: nearer to the truth of it.
 "$TOOL" phantom -q head --dims 60x60x40 -o head.nrrd
-for options in "--clip 0.3,0.5,-0.8,4" "--log" "--mask head.nrrd" \
+for options in "--clip 0.3,0.5,-0.8,4" "--scale log" "--mask head.nrrd" \
     "--gradient-opacity 0:0,20:1" "-c tab10" \
     "--kernel bspline"; do
     # shellcheck disable=SC2086

@@ -67,13 +67,13 @@ cp ct.nhdr ./-ct.nhdr
 again "a name that begins with a dash" render a.png -s 30x20 ./-ct.nhdr
 run 0 "after two dashes" "$TOOL" render -v -o dash.png -s 30x20 -- -ct.nhdr
 says 'again: snowglass render ./-ct.nhdr --output'
-again "a logarithm" render a.png tiny.nhdr --log
+again "a logarithm" render a.png tiny.nhdr --scale log
 for mode in mean sum mip; do
-    again "logarithms of $mode" render a.png float.nhdr -m $mode --log -c turbo \
+    again "logarithms of $mode" render a.png float.nhdr -m $mode --scale log -c turbo \
         -s 200 --legend
-    again "$mode, symmetric" render a.png float.nhdr -m $mode --symlog -c RdBu
+    again "$mode, symmetric" render a.png float.nhdr -m $mode --scale symlog -c RdBu
 done
-again "a logarithm of a sum of zeros" render a.png negative.nhdr -m sum --log
+again "a logarithm of a sum of zeros" render a.png negative.nhdr -m sum --scale log
 again "a colour map" render a.png phantom:head $small -c viridis
 again "opacities" render a.png phantom:head $small --opacity 10:0,200:0.7
 again "opacities of a millimetre" render a.png phantom:head $small --spacing 3x3x3 \

@@ -18,6 +18,10 @@ done <<'END'
 info --roll 3 x|--roll: is not an option of info but of render
 x --json|--json: is not an option of render but of info
 --level 3 x|--level: is now --window W,L$
+--log x|--log: is now --scale log$
+--symlog=5 x|--symlog: is now --scale symlog\[:X\]$
+--scale ln x|is unknown; choose from: linear, log, symlog, symlog:X
+--scale symlog:0 x|out of range
 help level|level: is now --window W,L$
 -q info x|info: the verb must come first; give snowglass info
 rendr x -o y.png|rendr: is not a verb; did you mean render\?
