@@ -15,6 +15,9 @@ const FIRST_PANE = 4;
 const NO_SHAPE = {colormap: null, opacity: null, 'gradient-opacity': null, range: null,
     shift: null, scale: null};
 
+const put = (list, i, value) => list.map((old, k) => k === i ? value : old);
+const material = keys => keys.material ?? [0.2, 0.7, 0.2, 20];
+
 export class Panel {
     constructor(recipe, page, engine, actions, slices) {
         Object.assign(this, {recipe, page, engine, actions, slices});
@@ -137,13 +140,12 @@ export class Panel {
     }
 
     /** A slider of a number that has a default. */
-    strength(name, key, low, high, step, otherwise) {
+    strength(name, high, step, get, set) {
         const told = make('output');
-        const input = slider(name, low, high, step, this.recipe,
-            value => this.recipe.set({[key]: value}));
+        const input = slider(name, 0, high, step, this.recipe, value => this.recipe.set(set(value)));
         this.follow(keys => {
-            input.value = keys[key] ?? otherwise;
-            told.textContent = short(keys[key] ?? otherwise);
+            input.value = get(keys);
+            told.textContent = short(get(keys));
         });
         return row(name, input, told);
     }
@@ -156,7 +158,7 @@ export class Panel {
             ['direction', 'from a direction']],
         value => recipe.set({light: value === 'direction' ? [-25, 35] : value}));
         const way = ['right', 'up'].map((name, i) => slider(`degrees of the light ${name}`, -90, 90, 1,
-            recipe, value => recipe.set({light: recipe.keys.light.map((old, k) => k === i ? value : old)})));
+            recipe, value => recipe.set({light: put(recipe.keys.light, i, value)})));
         const ways = row('Right, up', ...way);
         const sparse = make('output', {className: 'faint'});
         this.engine.on('figures', figures => {
@@ -172,12 +174,11 @@ export class Panel {
             });
         });
         return section('Light and detail', false, shade, row('Light', light), ways,
-            this.strength('Ambient', 'ambient', 0, 1, 0.01, 0.2),
-            this.strength('Diffuse', 'diffuse', 0, 1, 0.01, 0.7),
-            this.strength('Specular', 'specular', 0, 1, 0.01, 0.2),
-            this.strength('Depth dark', 'depth-darkening', 0, 1, 0.05, 0),
-            this.strength('Occlusion', 'occlusion', 0, 1, 0.05, 0),
-            this.strength('Threshold', 'threshold', 0, 255, 1, 0), sparse);
+            ...['Ambient', 'Diffuse', 'Specular'].map((name, i) => this.strength(name, 1, 0.01,
+                keys => material(keys)[i], value => ({material: put(material(recipe.keys), i, value)}))),
+            ...[['Depth dark', 'depth-darkening', 1, 0.05], ['Occlusion', 'occlusion', 1, 0.05],
+                ['Threshold', 'threshold', 255, 1]].map(([name, key, high, step]) => this.strength(
+                name, high, step, keys => keys[key] ?? 0, value => ({[key]: value}))), sparse);
     }
 
     camera() {

@@ -177,10 +177,10 @@ void fill_settings(const options *opts, snow_settings *out) {
     out->footprint = (int)opts->footprint;
     out->shade =
         strcmp(opts->shade, "none") == 0 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
-    out->ambient = opts->ambient;
-    out->diffuse = opts->diffuse;
-    out->specular = opts->specular;
-    out->shininess = opts->shininess;
+    out->ambient = opts->material[0];
+    out->diffuse = opts->material[1];
+    out->specular = opts->material[2];
+    out->shininess = opts->material[3];
     out->light = opts->light.light;
     out->light_azimuth = opts->light.azimuth;
     out->light_elevation = opts->light.elevation;

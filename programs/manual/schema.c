@@ -28,6 +28,11 @@ static const struct {
     {read_choice, "{'type': 'string'}"},
     {read_real, "{'type': 'number'}"},
     {read_strength, "{'type': 'number'}"},
+    {read_material, "{'type': 'array', 'minItems': 4, 'maxItems': 4, 'items':"
+                    "[{'type': 'number', 'minimum': 0, 'maximum': 1},"
+                    "{'type': 'number', 'minimum': 0, 'maximum': 1},"
+                    "{'type': 'number', 'minimum': 0, 'maximum': 1},"
+                    "{'type': 'number', 'minimum': 0, 'maximum': 1000}]}"},
     {read_scale, "{'anyOf': [{'enum': ['linear', 'log', 'symlog']}, {'type':"
                  "'string', 'pattern': '^symlog:[0-9.eE+-]+$'}]}"},
     {read_fov, "{'type': 'number'}"},

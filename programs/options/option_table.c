@@ -142,14 +142,9 @@ const option_row option_table[] = {
      "where the light comes from. key: most of it from the upper left of the "
      "camera, the rest from the camera; head: all from the camera; or a "
      "direction: degrees to the right of the camera and up (default key)"},
-    {"ambient", 0, "A", TOPIC_LOOK, RENDER, read_real, FIELD(ambient), 0, 1, "",
-     "strength of the ambient light (default 0.2)"},
-    {"diffuse", 0, "D", TOPIC_LOOK, RENDER, read_real, FIELD(diffuse), 0, 1, "",
-     "strength of the diffuse light (default 0.7)"},
-    {"specular", 0, "S", TOPIC_LOOK, RENDER, read_real, FIELD(specular), 0, 1,
-     "", "strength of the specular light (default 0.2)"},
-    {"shininess", 0, "N", TOPIC_LOOK, RENDER, read_real, FIELD(shininess), 0,
-     1000, "", "exponent of the specular light (default 20)"},
+    {"material", 0, "A,D,S,N", TOPIC_LOOK, RENDER, read_material, FIELD(material), 0, 1, "",
+     "strength of the ambient, diffuse and specular light, each from 0 to 1, and "
+     "the exponent of the latter, 0 to 1000 (default 0.2,0.7,0.2,20)"},
     {"depth-darkening", 0, "[S]", TOPIC_LOOK, RENDER, read_strength,
      FIELD(depth_darkening), 0, 1, "",
      "darken what lies deeper than its surroundings, in modes over and iso, "

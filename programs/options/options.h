@@ -87,7 +87,7 @@ typedef struct options {
     const char *opacity_unit; /* of a recipe; NULL: not given */
     const char *shade;
     light_value light;
-    double ambient, diffuse, specular, shininess;
+    double material[4]; /* ambient, diffuse, specular, shininess */
     double depth_darkening, occlusion;
 
     const char *view; /* NULL: the volume's own */

@@ -12,6 +12,22 @@ bool read_strength(const option_row *row, const char *text, void *field,
     return read_real(row, *text ? text : "1", field, wrong);
 }
 
+/* Three strengths, and an exponent up to 1000. */
+bool read_material(const option_row *row, const char *text, void *field,
+                   char wrong[WRONG_BYTES]) {
+    double parts[4];
+    bool good =
+        value_reals(text, ',', 4, parts) && parts[3] >= 0 && parts[3] <= 1000;
+    for (int i = 0; i < 3 && good; i++)
+        good = parse_within(row, parts[i]);
+    if (!good)
+        return parse_refuse(wrong, "is not a material; give AMBIENT,DIFFUSE,"
+                                   "SPECULAR from 0 to 1 and an exponent up to "
+                                   "1000, such as 0.2,0.7,0.2,20");
+    memcpy(field, parts, sizeof parts);
+    return true;
+}
+
 bool read_scale(const option_row *row, const char *text, void *field,
                 char wrong[WRONG_BYTES]) {
     static const char from[] = "symlog:";

@@ -7,8 +7,9 @@
 static const struct {
     const char *old, *now;
 } rows[] = {
-    {"level", "--window W,L"},
-    {"log", "--scale log"},
+    {"ambient", "--material A,D,S,N"},   {"diffuse", "--material A,D,S,N"},
+    {"level", "--window W,L"},           {"log", "--scale log"},
+    {"shininess", "--material A,D,S,N"}, {"specular", "--material A,D,S,N"},
     {"symlog", "--scale symlog[:X]"},
 };
 

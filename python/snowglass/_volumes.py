@@ -379,7 +379,8 @@ class Volume(_snowglass.Volume):
 
         Settings: quality ("draft", "normal", "high"), mode ("over", "mip",
         "minip", "mean", "sum", "iso"), iso, method, threshold, shade (True or
-        "phong", False or "none"), ambient, diffuse, specular, shininess, depth, threads,
+        "phong", False or "none"), material (ambient, diffuse, specular,
+        shininess), depth, threads,
         deterministic, depth_darkening, occlusion, opacity_length, kernel,
         encoding, footprint, isa.
 
@@ -418,6 +419,7 @@ class Volume(_snowglass.Volume):
                       "perspective", perspective, "True or degrees"),
                   "position": position, "target": target, "up": up}
         _set_light(light, settings)
+        _set_material(settings)
         layer = _overlays.overlaid(self, overlay, overlay_look)
         if mixture and settings.get("shade") is None:
             settings["shade"] = "none"
@@ -667,6 +669,8 @@ class Volume(_snowglass.Volume):
 
 #: What else to give.
 UNIT = "the unit of the values, such as 'HU'"
+#: Strengths of the lights, and the exponent of the last: the parts of `material`.
+MATERIAL = ("ambient", "diffuse", "specular", "shininess")
 VIEW = "a name of snowglass.views(), such as 'anterior', or a camera by position, " \
        "target and up"
 
@@ -694,11 +698,11 @@ def _labels(given: Any) -> Optional[str]:
 
 def _check_render(settings: Mapping[str, Any], view: Any, unit: Any) -> None:
     """What the core of a picture would refuse without a name."""
-    settable = _snowglass.names("settings")
-    if not settings.keys() <= set(settable):
+    settable = {"material", *_snowglass.names("settings")} - set(MATERIAL)
+    if not settings.keys() <= settable:
         code = Volume.render.__code__
         own = code.co_varnames[1:code.co_argcount + code.co_kwonlyargcount]
-        _checks.names(settings, (*own, *_recipes.LOOKS, *settable), {
+        _checks.names(settings, (*own, *_recipes.LOOKS, *sorted(settable)), {
             name: "is an option of Volume: give it when the volume is opened"
             for name in (*_recipes.DATA, *_arrays.OPTIONS, "memory")})
     _checks.text("view", view, VIEW)
@@ -755,6 +759,21 @@ def _set_light(light: Union[str, Sequence[float], None],
     settings["light"] = "direction"
     settings["light_azimuth"] = _checks.number("light", azimuth, give)
     settings["light_elevation"] = _checks.number("light", elevation, give)
+
+
+def _set_material(settings: dict[str, Any]) -> None:
+    material = settings.pop("material", None)
+    if material is None:
+        return
+    give = f"four numbers ({', '.join(MATERIAL)})"
+    try:
+        given = tuple(material)
+    except TypeError:
+        raise _checks.fault("material", give, material) from None
+    if isinstance(material, str) or len(given) != len(MATERIAL):
+        raise _checks.fault("material", give, material, ValueError)
+    for name, value in zip(MATERIAL, given):
+        settings[name] = _checks.number("material", value, give)
 
 
 def open(source: Path, **options: Any) -> Volume:

@@ -12,7 +12,7 @@ static bool refuse_array(const recipe_key *key, char wrong[WRONG_BYTES]) {
 
 bool recipe_read_reals(const recipe_key *key, const json_t *value, void *field,
                        char wrong[WRONG_BYTES]) {
-    double numbers[3];
+    double numbers[4];
     if (json_array_size(value) != (size_t)key->count)
         return refuse_array(key, wrong);
     for (int i = 0; i < key->count; i++)

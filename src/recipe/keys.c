@@ -107,10 +107,7 @@ const recipe_key recipe_keys[] = {
     MADE("opacity-unit", unit, opacity_per_mm, 0, 0, 0),
     NAME("shade", settings.shade, shade_name, NULL),
     MADE("light", light, settings, 0, 0, 2),
-    REAL("ambient", settings.ambient, 0, 1),
-    REAL("diffuse", settings.diffuse, 0, 1),
-    REAL("specular", settings.specular, 0, 1),
-    REAL("shininess", settings.shininess, 0, 1000),
+    MADE("material", material, settings, 0, 1000, 4),
     REAL("depth-darkening", settings.depth_darkening, 0, 1),
     REAL("occlusion", settings.occlusion, 0, 1),
     NAME("quality", settings.quality, quality_name, snow_quality_from_name),
@@ -173,10 +170,16 @@ const recipe_key recipe_keys[] = {
 
 /* --- old spellings, which the release drops ------------------------------- */
 
+#define MATERIAL "\"material\": [ambient, diffuse, specular, shininess]"
+
 const char *recipe_renamed(const char *name) {
     static const char *const rows[][2] = {
+        {"ambient", MATERIAL},
+        {"diffuse", MATERIAL},
         {"level", "\"window\": [width, centre]"},
         {"log", "\"scale\": \"log\""},
+        {"shininess", MATERIAL},
+        {"specular", MATERIAL},
         {"symlog", "\"scale\": \"symlog\" or \"symlog:X\""},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)

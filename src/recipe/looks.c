@@ -253,6 +253,28 @@ static json_t *write_light(const recipe_key *key, const void *field) {
     return recipe_write_reals(key, angles);
 }
 
+static bool read_material(const recipe_key *key, const json_t *value,
+                          void *field, char wrong[WRONG_BYTES]) {
+    snow_settings *s = field;
+    double parts[4];
+    if (!recipe_read_reals(key, value, parts, wrong) || parts[0] > 1 ||
+        parts[1] > 1 || parts[2] > 1)
+        return recipe_refuse(wrong, "[ambient, diffuse, specular, shininess], "
+                                    "from 0 to 1 and the last to 1000");
+    s->ambient = parts[0];
+    s->diffuse = parts[1];
+    s->specular = parts[2];
+    s->shininess = parts[3];
+    return true;
+}
+
+static json_t *write_material(const recipe_key *key, const void *field) {
+    const snow_settings *s = field;
+    const double parts[4] = {s->ambient, s->diffuse, s->specular, s->shininess};
+    return recipe_write_reals(key, parts);
+}
+
+const recipe_kind recipe_material = {read_material, write_material};
 const recipe_kind recipe_unit = {read_unit, write_unit};
 const recipe_kind recipe_iso = {read_iso, write_iso};
 const recipe_kind recipe_range = {read_range, write_range};

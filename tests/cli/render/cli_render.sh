@@ -106,10 +106,11 @@ changes --shade none
 changes --light 60,30
 changes --light head
 same --light key
-changes --ambient 0.6
-changes --diffuse 0.1
-changes --specular 0.9
-changes --shininess 3
+changes --material 0.6,0.7,0.2,20
+changes --material 0.2,0.1,0.2,20
+changes --material 0.2,0.7,0.9,20
+changes --material 0.2,0.7,0.2,3
+same --material 0.2,0.7,0.2,20
 for way in depth-darkening occlusion; do
     for strength in 0 0.5 1; do
         run 0 "an engine, $way $strength" "$TOOL" phantom:engine -y \

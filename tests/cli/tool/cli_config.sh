@@ -12,7 +12,7 @@ run 0 "a picture with many wishes is saved" "$TOOL" render \
     --kernel gauss --footprint 5 --preset linear -c inferno \
     --opacity 0.1:0,0.5:0.05,0.5:0.2,1:1 --range 0.1,0.9 --config '{"opacity-unit": "mm"}' \
     --gradient-opacity 0:0.1,0.2:0.7,0.2:0.8,1.25:1 \
-    --light 20,-10 --ambient 0.31 --diffuse 0.6 --specular 0.1 --shininess 7 \
+    --light 20,-10 --material 0.31,0.6,0.1,7 \
     --depth-darkening 0.4 --occlusion 0.3 \
     --view iso --azimuth 33.3 --elevation -12 --roll 5 --zoom 1.1 \
     --perspective 25 --quality high --isa scalar -j 1 --crop 3:39,2:,:40 \

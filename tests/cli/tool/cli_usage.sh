@@ -161,8 +161,11 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
 --window 400,nan x|is not a window
 --shade flat x|choose from: phong, none
 --light 30 x|give key, head, or AZIMUTH,ELEVATION
---ambient 2 x|from 0 to 1
---shininess -1 x|out of range
+--material 2,0,0,1 x|is not a material; give AMBIENT,DIFFUSE,SPECULAR from 0 to 1
+--material 1,0,0,-1 x|is not a material
+--material 1,0,0 x|is not a material
+--ambient 0.5 x|--ambient: is now --material A,D,S,N$
+--shininess 9 x|--shininess: is now --material A,D,S,N$
 --depth-darkening 2 x|from 0 to 1
 --occlusion 1.5 x|from 0 to 1
 --dims 8x8 x|are not dimensions
