@@ -397,15 +397,15 @@ export class Panel {
             keys => keys.title ?? '');
         const time = this.kept(select([['', 'nothing'], ['time', 'time'], ['step', 'number of the step']],
             annotate => recipe.set({annotate: annotate || null})), keys => keys.annotate ?? '');
-        const boxes = [['letters of the sides', 'no-labels', true], ['colour bar', 'legend', false],
-            ['scale bar', 'scale-bar', false], ["edges of the volume's box", 'outline', false],
-            ['its axes, with numbers', 'axes', false]].map(([name, key, inverse]) => {
-            return make('div', {}, this.box(name, keys => Boolean(keys[key]) !== inverse, on => {
-                recipe.set({[key]: on !== inverse || null});
-                if (key === 'outline' || key === 'axes')
+        const boxes = [['letters of the sides', 'no-labels', null, true], ['colour bar', 'legend', true, null],
+            ['scale bar', 'legend', 'scale', null], ["edges of the volume's box", 'box', 'outline', null],
+            ['its axes, with numbers', 'box', 'axes', null]].map(([name, key, on, off]) => make('div', {},
+            this.box(name, ({[key]: now = null}) => now === on ||
+                on === true && now !== null && now !== 'scale', checked => {
+                recipe.set({[key]: checked ? on : off});
+                if (key === 'box')
                     this.actions.fit(); // the box is larger
-            }));
-        });
+            })));
         const drawn = page.info.mask === undefined ? boxes.slice(0, 3) // by the kernel of a notebook
             : [...boxes, row('Title', title), row('Time', time)];
         return section('Letters and bars', false, ...drawn);

@@ -25,24 +25,24 @@ typedef struct snow_recipe {
     int width, height;                      /* (512, 512) */
     double azimuth, elevation, roll, zoom, fov; /* as in snow_view */
     double position[3], target[3], up[3];       /* of the camera: snow_view */
-    bool no_labels, legend, time_label; /* letters; bars; number of the step */
-    snow_settings settings;             /* opacity_length stays 0 */
-    snow_image_options image;           /* of the file */
-    void *owned;                        /* the texts; NULL: the caller's */
-    size_t gradient_opacity_count;      /* of the look; 0: none */
+    bool no_labels, legend;                     /* letters; bars */
+    snow_settings settings;                     /* opacity_length stays 0 */
+    snow_image_options image;                   /* of the file */
+    void *owned;                   /* the texts; NULL: the caller's */
+    size_t gradient_opacity_count; /* of the look; 0: none */
     snow_opacity_point gradient_opacities[SNOW_RECIPE_POINTS_MAX];
     const char *tf;    /* file of the look's base (look_file.h), or NULL */
     bool log;          /* as in snow_look */
     const char *depth; /* path of the depths, or NULL */
     int fit, frames;   /* of the tool: 1 visible, 2 volume; in a turn, or 0 */
-    double fps;        /* of the tool (25) */
-    const char *verb, *version; /* of the tool that wrote it, or NULL */
-    bool scale_bar;             /* without the colour bar of `legend` */
-    const char *axis, *at;      /* of the tool's slice, or NULL */
-    double symlog;              /* as in snow_look */
-    const char *title, *legend_title, *value_unit; /* annotations; or NULL */
-    const char *annotate, *time_format; /* "time"; as of snow_time_text */
-    bool outline, axes, reread; /* the box; in situ: when the file changes */
+    double shift, fps; /* as in snow_look; of the tool (25) */
+    const char *verb, *version;       /* of the tool that wrote it, or NULL */
+    bool scale_bar;                   /* without the colour bar of `legend` */
+    const char *axis, *at;            /* of the tool's slice, or NULL */
+    double symlog;                    /* as in snow_look */
+    const char *title, *legend_title; /* of the bar "name (unit)"; or NULL */
+    const char *annotate, *box; /* "step", "time=FORMAT"; "axes"; or NULL */
+    bool reread;                /* in situ: when the file changes */
     const char *overlay, *overlay_preset, *overlay_colormap; /* or NULL */
     snow_range overlay_range;
     double overlay_low, overlay_high;

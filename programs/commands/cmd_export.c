@@ -231,14 +231,28 @@ static int append_volume(snow_context *context, const options *opts,
 static void add_time(const options *opts, const snow_volume_info *info,
                      json_t *tree) {
     char time[256], title[512];
-    if (!opts->annotate || strcmp(opts->annotate, "time") != 0 ||
-        !snow_time_text(info, opts->time_format, time, sizeof time))
+    if (!opts->annotate.time ||
+        !snow_time_text(info, opts->annotate.format, time, sizeof time))
         return;
     snprintf(title, sizeof title, "%.250s%s%s", opts->title ? opts->title : "",
              opts->title ? "\n" : "", time);
     json_object_set_new(tree, "title", json_string(title));
     json_object_del(tree, "annotate");
-    json_object_del(tree, "time-format");
+}
+
+/* Nor a quantity: it stands in the legend. */
+static void add_legend(const options *opts, const snow_volume_info *info,
+                       json_t *tree) {
+    const legend_value *legend = &opts->legend;
+    const char *unit = *legend->unit      ? legend->unit
+                       : info->hounsfield ? "HU"
+                                          : info->value_unit;
+    const char *name = *legend->name ? legend->name : info->quantity;
+    if (*unit)
+        json_object_set_new(tree, "legend",
+                            json_sprintf("%s (%s)", name, unit));
+    else if (*name)
+        json_object_set_new(tree, "legend", json_string(name));
 }
 
 /* What the page begins with: all that is not done to the volume here, what NRRD
@@ -260,10 +274,8 @@ static char *recipe_text(const options *opts, const snow_volume_info *info,
         json_object_set_new(tree, "tf", json_string(tf));
     else if (opts->labels && !opts->mask && !opts->preset)
         json_object_set_new(tree, "preset", json_string("labels"));
-    if (!opts->legend_title && *info->quantity)
-        json_object_set_new(tree, "legend-title", json_string(info->quantity));
-    if (!opts->unit && info->hounsfield)
-        json_object_set_new(tree, "unit", json_string("HU"));
+    if (opts->legend.bar)
+        add_legend(opts, info, tree);
     add_time(opts, info, tree);
     char *made = json_dumps(tree, JSON_COMPACT | JSON_FORM);
     json_decref(tree);

@@ -28,6 +28,9 @@ static const struct {
     {read_choice, "{'type': 'string'}"},
     {read_real, "{'type': 'number'}"},
     {read_strength, "{'type': 'number'}"},
+    {read_legend, "{'anyOf': [{'type': 'boolean'}, {'type': 'string'}]}"},
+    {read_annotate, "{'anyOf': [{'enum': ['step', 'time']}, {'type': 'string',"
+                    "'pattern': '^time='}]}"},
     {read_material, "{'type': 'array', 'minItems': 4, 'maxItems': 4, 'items':"
                     "[{'type': 'number', 'minimum': 0, 'maximum': 1},"
                     "{'type': 'number', 'minimum': 0, 'maximum': 1},"

@@ -88,8 +88,7 @@ static void report_legend(shot_renderer *shots, const snow_image *image) {
     snow_context *context = NULL;
     snow_overlay *overlay = NULL;
     picture_annotations made;
-    const bool any =
-        opts->legend || opts->scale_bar || opts->title || opts->annotate;
+    const bool any = opts->legend.scale || opts->title || opts->annotate.text;
     if (!any || !image || open_context(opts, &context) != CONTINUE)
         return;
     annotations(shots, &made);

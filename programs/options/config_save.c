@@ -115,16 +115,12 @@ static void fill_recipe(const options *opts, const verb_row *verb,
     fill_overlay(opts, out);
     fill_view(opts, out);
     out->no_labels = opts->no_labels;
-    out->legend = opts->legend;
-    out->scale_bar = opts->scale_bar;
-    out->time_label = opts->time_label;
+    out->legend = opts->legend.bar;
+    out->scale_bar = opts->legend.scale && !opts->legend.bar;
+    out->legend_title = opts->legend.title;
     out->title = opts->title;
-    out->legend_title = opts->legend_title;
-    out->value_unit = opts->unit;
-    out->annotate = opts->annotate;
-    out->time_format = opts->time_format;
-    out->outline = opts->outline;
-    out->axes = opts->axes;
+    out->annotate = opts->annotate.text;
+    out->box = opts->box;
     fill_settings(opts, &out->settings);
 }
 
@@ -384,7 +380,13 @@ static void add_option(FILE *out, const char *key, const json_t *value) {
     if (json_is_true(value))
         return;
     const char *text = config_text(&scratch, key, value);
-    add_word(out, text ? text : "");
+    if (strcmp(key, "legend") != 0) { /* whose value may be left out */
+        add_word(out, name);
+        add_word(out, text ? text : "");
+        return;
+    }
+    snprintf(whole, sizeof whole, "%s=%s", name, text ? text : "");
+    add_word(out, whole);
 }
 
 /* A file whose name begins with a dash is no option. */

@@ -60,7 +60,7 @@ static const struct {
     {VERB_MOVIE,
      {"snowglass movie run_%04d.nrrd -o run.mp4",
       "snowglass movie a.vti b.vti c.vti -o abc.webm -c viridis --range 0,1",
-      "snowglass movie heart.nii.gz -o heart.gif --fps 10 --time-label"}},
+      "snowglass movie heart.nii.gz -o heart.gif --fps 10 --annotate step"}},
     {VERB_SERVE,
      {"snowglass serve head.nii.gz",
       "snowglass serve ct.nrrd --preset ct-bone --port 8000",

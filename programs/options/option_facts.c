@@ -21,6 +21,10 @@ bool options_place_colors(const options *opts) {
     return map >= 0 && snow_colormap_points((size_t)map, &point, 1) == 0;
 }
 
+bool options_has_axes(const options *opts) {
+    return opts->box && strcmp(opts->box, "axes") == 0;
+}
+
 range_value options_range(const options *opts) {
     const double half = opts->window[0] / 2, centre = opts->window[1];
     if (isnan(half))

@@ -209,32 +209,23 @@ const option_row option_table[] = {
      0, "",
      "omit the orientation letters R L A P S I at the edges (default: drawn if "
      "the file has a medical orientation, but never into float files)"},
-    {"legend", 0, NULL, TOPIC_LABELS, PICTURE, read_flag, FIELD(legend), 0, 0,
+    {"legend", 0, "[TITLE|scale]", TOPIC_LABELS, PICTURE, read_legend, FIELD(legend), 0, 0,
      "",
      "draw a colour bar with values and the opacity curve, and in a parallel "
-     "projection a scale bar"},
-    {"scale-bar", 0, NULL, TOPIC_LABELS, PICTURE, read_flag, FIELD(scale_bar), 0,
-     0, "",
-     "draw the scale bar without the colour bar, in a parallel projection"},
-    {"time-label", 0, NULL, TOPIC_LABELS, MOVIE, read_flag, FIELD(time_label),
-     0, 0, "",
-     "draw the number of the time step, from the file's name or in the file"},
+     "projection a scale bar; over the bar stands TITLE, such as --legend=\"T (K)\", "
+     "whose unit may be left out or stand alone (default: the file's quantity and "
+     "unit, or HU). --legend scale draws the scale bar alone"},
     {"title", 0, "TEXT", TOPIC_LABELS, PICTURE, read_text, FIELD(title), 0, 0, "",
      "draw a line of text in the upper left"},
-    {"legend-title", 0, "TEXT", TOPIC_LABELS, PICTURE, read_text, FIELD(legend_title), 0, 0, "",
-     "the quantity that the colour bar shows (default: the file's)"},
-    {"unit", 0, "TEXT", TOPIC_LABELS, PICTURE, read_text, FIELD(unit), 0, 0, "",
-     "the unit of the values beside it (default: the file's, or HU)"},
-    {"annotate", 0, "time|step", TOPIC_LABELS, PICTURE, read_choice, FIELD(annotate), 0, 0, "",
-     "draw which step it is. time: its physical time, or its number where the "
-     "file has no time; step: its number"},
-    {"time-format", 0, "FORMAT", TOPIC_LABELS, PICTURE, read_text, FIELD(time_format), 0, 0, "",
-     "how --annotate time writes it: one number as in printf (\"t = %.2f s\"), "
-     "or a date (%Y-%m-%d %H:%M:%S) where the unit counts from one"},
-    {"outline", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(outline), 0, 0, "",
-     "draw the edges of the volume's box, which is framed then"},
-    {"axes", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(axes), 0, 0, "",
-     "draw them with ticks: coordinates in the unit of the file"},
+    {"annotate", 0, "step|time|time=FORMAT", TOPIC_LABELS, PICTURE, read_annotate,
+     FIELD(annotate), 0, 0, "",
+     "draw which step it is. step: its number, from the file's name or in the file; "
+     "time: its physical time, or its number where the file has no time; FORMAT is "
+     "one number as in printf (\"time=t = %.2f s\"), or a date (%Y-%m-%d %H:%M:%S) "
+     "where the unit counts from one"},
+    {"box", 0, "outline|axes", TOPIC_LABELS, RENDER, read_choice, FIELD(box), 0, 0, "",
+     "draw the volume's box, which is framed then. outline: its edges; axes: with "
+     "ticks: coordinates in the unit of the file"},
 
     {"dims", 0, "XxYxZ", TOPIC_DATA, INPUT | PHANTOM, read_dims, FIELD(dims), 0,
      0, "", "voxels of raw data or of a phantom, x fastest"},

@@ -42,6 +42,20 @@ typedef struct scale_value {
     double symlog; /* 0: not; -1: from where it suits */
 } scale_value;
 
+/* What explains the colours and lengths of a picture. */
+typedef struct legend_value {
+    bool bar, scale;           /* colours; lengths */
+    const char *title;         /* as it was given: "name (unit)"; NULL: not */
+    char name[104], unit[104]; /* its parts; "": the file's */
+} legend_value;
+
+/* Which step a picture is of. */
+typedef struct annotate_value {
+    const char *text;   /* as it was given; NULL: not */
+    bool time;          /* its physical time, where there is one */
+    const char *format; /* of the time; NULL: the usual */
+} annotate_value;
+
 typedef struct color_value {
     bool given;     /* false: transparent, or */
     bool automatic; /* dark where the output shows a background */

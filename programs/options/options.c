@@ -263,11 +263,13 @@ int options_take(options *out, const verb_row *verb, const char *name,
     return take_option(out, row, verb, text);
 }
 
-/* The next word is the optional argument only if all of it is a number;
- * otherwise it is an operand, as in --perspective in.nrrd. */
-static const char *take_number(int argc, char **argv) {
+/* The next word is the optional argument only if all of it is a number, or the
+ * word of --legend; otherwise it is an operand, as in --perspective in.nrrd. */
+static const char *take_number(const option_row *row, int argc, char **argv) {
     double number;
-    if (optind >= argc || !value_real(argv[optind], &number))
+    if (optind >= argc ||
+        (row->read == read_legend ? strcmp(argv[optind], "scale") != 0
+                                  : !value_real(argv[optind], &number)))
         return NULL;
     return argv[optind++];
 }
@@ -380,10 +382,10 @@ int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
         const char *text = optarg;
         if (takes_number(row) && text && !*text)
             return fail_usage(
-                "--%s: needs a value after =; give --%s=30, or remove the =",
-                row->name, row->name);
+                "--%s: needs a value after =; give one, or remove the =",
+                row->name);
         if (takes_number(row) && !text)
-            text = take_number(argc, argv);
+            text = take_number(row, argc, argv);
         int done = take_option(out, row, verb, text);
         if (done != CONTINUE || out->version)
             return done;

@@ -151,11 +151,12 @@ typedef struct options {
     int64_t radix;  /* 0: automatic */
     double timeout; /* seconds; 0: none */
     bool deterministic;
-    bool no_labels, legend, scale_bar, time_label;
-    const char *title, *legend_title, *unit; /* NULL: the file's, or none */
-    const char *annotate, *time_format;      /* NULL: not given */
-    bool outline, axes;                      /* of the volume's box */
-    int verbosity; /* -1 quiet, 0, 1 verbose; the last one counts */
+    bool no_labels;
+    legend_value legend;
+    const char *title; /* NULL: none */
+    annotate_value annotate;
+    const char *box; /* "outline", "axes"; NULL: none */
+    int verbosity;   /* -1 quiet, 0, 1 verbose; the last one counts */
 
     bool version, help;
     const char *help_word;            /* the requested name, or NULL */
@@ -255,6 +256,9 @@ int options_bits(const options *opts);
 
 /* The range of --range, or of --window. */
 range_value options_range(const options *opts);
+
+/* Whether the box has ticks. */
+bool options_has_axes(const options *opts);
 
 /* Whether --colormap is a list of colours, which lie at values of the data. */
 bool options_place_colors(const options *opts);

@@ -262,3 +262,49 @@ bool read_seconds(const option_row *row, const char *text, void *field,
     *(double *)field = value * seconds;
     return true;
 }
+
+/* The word scale is no title. */
+bool read_legend(const option_row *row, const char *text, void *field,
+                 char wrong[WRONG_BYTES]) {
+    legend_value legend = {.bar = strcmp(text, "scale") != 0, .scale = true};
+    const size_t length = strlen(text);
+    const char *open = strrchr(text, '(');
+    (void)row;
+    if (length >= sizeof legend.name)
+        return parse_refuse(wrong, "is too long; give up to 100 bytes");
+    if (legend.bar && *text)
+        legend.title = text;
+    if (!open || text[length - 1] != ')')
+        open = text + length;
+    else
+        snprintf(legend.unit, sizeof legend.unit, "%.*s",
+                 (int)(text + length - open - 2), open + 1);
+    while (open > text && open[-1] == ' ')
+        open--;
+    if (legend.title)
+        memcpy(legend.name, text, (size_t)(open - text));
+    *(legend_value *)field = legend;
+    return true;
+}
+
+/* What snow_time_text makes of a format is known without a file. */
+bool read_annotate(const option_row *row, const char *text, void *field,
+                   char wrong[WRONG_BYTES]) {
+    const snow_volume_info dated = {.size = sizeof dated,
+                                    .time_unit = "days since 2000-01-01"};
+    annotate_value value = {.text = text};
+    char made[256];
+    if (strncasecmp(text, "time=", 5) == 0)
+        value.format = text + 5;
+    else if (strcasecmp(text, "time") != 0 && strcasecmp(text, "step") != 0)
+        return read_choice(row, text, &(const char *){NULL}, wrong);
+    if (value.format &&
+        !snow_time_text(&dated, value.format, made, sizeof made))
+        return parse_refuse(wrong,
+                            "has a format that is neither one number as in "
+                            "\"time=t = %.2f s\" nor a date of %Y, %m, %d, "
+                            "%H, %M and %S");
+    value.time = strcasecmp(text, "step") != 0;
+    *(annotate_value *)field = value;
+    return true;
+}

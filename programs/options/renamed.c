@@ -7,10 +7,20 @@
 static const struct {
     const char *old, *now;
 } rows[] = {
-    {"ambient", "--material A,D,S,N"},   {"diffuse", "--material A,D,S,N"},
-    {"level", "--window W,L"},           {"log", "--scale log"},
-    {"shininess", "--material A,D,S,N"}, {"specular", "--material A,D,S,N"},
+    {"axes", "--box axes"},
+    {"ambient", "--material A,D,S,N"},
+    {"diffuse", "--material A,D,S,N"},
+    {"legend-title", "--legend=TITLE"},
+    {"level", "--window W,L"},
+    {"log", "--scale log"},
+    {"outline", "--box outline"},
+    {"scale-bar", "--legend scale"},
+    {"shininess", "--material A,D,S,N"},
+    {"specular", "--material A,D,S,N"},
     {"symlog", "--scale symlog[:X]"},
+    {"time-format", "--annotate time=FORMAT"},
+    {"time-label", "--annotate step"},
+    {"unit", "--legend=\"TITLE (UNIT)\""},
 };
 
 const char *renamed_option(const char *name) {

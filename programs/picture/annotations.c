@@ -25,23 +25,11 @@ static bool shows_annotations(const char *path) {
 }
 
 int annotations_check(const options *opts) {
-    const char *wanted = opts->legend       ? "legend"
-                         : opts->scale_bar  ? "scale-bar"
-                         : opts->time_label ? "time-label"
-                         : opts->title      ? "title"
-                         : opts->outline    ? "outline"
-                         : opts->axes       ? "axes"
-                         : opts->annotate   ? "annotate"
-                                            : NULL;
-    const snow_volume_info dated = {.size = sizeof dated,
-                                    .time_unit = "days since 2000-01-01"};
-    char text[TITLE_BYTES];
-    if (opts->time_format &&
-        !snow_time_text(&dated, opts->time_format, text, sizeof text))
-        return fail_usage("--time-format: '%.64s' is neither one number as in "
-                          "\"t = %%.2f s\" nor a date of %%Y, %%m, %%d, %%H, "
-                          "%%M and %%S",
-                          opts->time_format);
+    const char *wanted = opts->legend.scale    ? "legend"
+                         : opts->title         ? "title"
+                         : opts->box           ? "box"
+                         : opts->annotate.text ? "annotate"
+                                               : NULL;
     if (opts->output && wanted && !shows_annotations(opts->output))
         return fail_usage("%s: --%s cannot be drawn into a file of floats; "
                           "remove it or name a .png",
@@ -49,28 +37,10 @@ int annotations_check(const options *opts) {
     return CONTINUE;
 }
 
-/* Options that change what others draw. */
-static void report_idle(const options *opts) {
-    const struct {
-        bool given, used;
-        const char *name, *needs;
-    } rows[] = {
-        {opts->time_format, opts->annotate, "time-format", "--annotate time"},
-        {opts->legend_title, opts->legend, "legend-title", "--legend"},
-        {opts->unit, opts->legend, "unit", "--legend"}};
-    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
-        if (rows[n].given && !rows[n].used && opts->verbosity >= 0)
-            say("note: --%s changes nothing without %s", rows[n].name,
-                rows[n].needs);
-}
-
 void annotations_report(const options *opts) {
-    bool wanted = opts->legend || opts->scale_bar;
-    report_idle(opts);
-    if (wanted && opts->fov > 0 && opts->verbosity >= 0)
-        say("--%s: the scale bar is left out: in perspective no single length "
-            "is valid",
-            opts->scale_bar ? "scale-bar" : "legend");
+    if (opts->legend.scale && opts->fov > 0 && opts->verbosity >= 0)
+        say("--legend: the scale bar is left out: in perspective no single "
+            "length is valid");
 }
 
 /* Of medical formats only DICOM names the unit of values.  A volume that stays
@@ -80,8 +50,8 @@ void annotations_find_unit(const options *opts, const snow_volume *volume,
     snow_volume_statistics of;
     snow_volume_statistics_init(&of);
     double ends[2] = {INFINITY, INFINITY}; /* lowest, -highest */
-    if (!opts->legend || opts->unit || whole->hounsfield || !whole->medical ||
-        *whole->modality)
+    if (!opts->legend.bar || *opts->legend.unit || whole->hounsfield ||
+        !whole->medical || *whole->modality)
         return;
     if (snow_volume_get_statistics(volume, &of) == SNOW_STATUS_OK &&
         of.finite > 0) {
@@ -98,12 +68,11 @@ void annotations_find_unit(const options *opts, const snow_volume *volume,
 static void make_caption(const picture_annotations *annotations,
                          char caption[TITLE_BYTES]) {
     const snow_volume_info *info = &annotations->info;
-    const options *opts = annotations->opts;
-    const char *unit = opts->unit         ? opts->unit
+    const legend_value *legend = &annotations->opts->legend;
+    const char *unit = *legend->unit      ? legend->unit
                        : info->hounsfield ? "HU"
                                           : info->value_unit;
-    const char *title =
-        opts->legend_title ? opts->legend_title : info->quantity;
+    const char *title = *legend->name ? legend->name : info->quantity;
     bool both = *title && *unit;
     snprintf(caption, TITLE_BYTES, "%.100s%s%.100s%s", title, both ? " (" : "",
              unit, both ? ")" : "");
@@ -194,14 +163,13 @@ static void write_time(const picture_annotations *annotations, int64_t step,
     const options *opts = annotations->opts;
     const snow_volume_info *info = &annotations->info;
     *time = 0;
-    if (!opts->time_label && opts->annotate &&
-        strcmp(opts->annotate, "time") == 0 &&
-        snow_time_text(info, opts->time_format, time, TITLE_BYTES))
+    if (opts->annotate.time &&
+        snow_time_text(info, opts->annotate.format, time, TITLE_BYTES))
         return;
     if (step < 0 && info->times > 1)
         step = info->time;
     *time = 0;
-    if ((opts->time_label || opts->annotate) && step >= 0)
+    if (opts->annotate.text && step >= 0)
         snprintf(time, TITLE_BYTES, "step %" PRId64, step);
 }
 
@@ -223,17 +191,17 @@ static snow_status add_annotations(const picture_annotations *annotations,
                                    snow_overlay *overlay) {
     const options *opts = annotations->opts;
     snow_status status = SNOW_STATUS_OK;
-    if (opts->legend)
+    if (opts->legend.bar)
         status = add_legend(annotations, overlay);
-    if (status == SNOW_STATUS_OK && (opts->legend || opts->scale_bar))
+    if (status == SNOW_STATUS_OK && opts->legend.scale)
         status = snow_overlay_scale_bar(overlay, &annotations->info, view);
     if (status == SNOW_STATUS_OK)
         status = add_title(annotations, step, overlay);
     if (status == SNOW_STATUS_OK && !opts->no_labels)
         status = snow_overlay_orientation(overlay, &annotations->info, view);
-    if (status == SNOW_STATUS_OK && (opts->outline || opts->axes))
-        status =
-            snow_overlay_box(overlay, &annotations->info, view, opts->axes);
+    if (status == SNOW_STATUS_OK && opts->box)
+        status = snow_overlay_box(overlay, &annotations->info, view,
+                                  options_has_axes(opts));
     return status;
 }
 
@@ -248,13 +216,13 @@ snow_status annotations_make(const picture_annotations *annotations,
     *out = NULL;
     if (!shows_annotations(opts->output) && strcmp(opts->output, "-") != 0)
         return SNOW_STATUS_OK;
-    if (!letters && !opts->legend && !opts->scale_bar && !opts->time_label &&
-        !opts->title && !opts->annotate && !opts->outline && !opts->axes)
+    if (!letters && !opts->legend.scale && !opts->title &&
+        !opts->annotate.text && !opts->box)
         return SNOW_STATUS_OK;
     view.azimuth = azimuth;
     char time[TITLE_BYTES];
     write_time(annotations, step, time);
-    if (opts->annotate && !*time)
+    if (opts->annotate.text && !*time)
         snow_context_warn(context, "--annotate draws nothing: the file has "
                                    "neither a time nor several steps");
     snow_status status =

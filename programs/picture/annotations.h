@@ -1,6 +1,6 @@
 /* annotations.h - overlays that are drawn when pictures are written:
  * orientation letters unless --no-labels, the bars of --legend, the step of
- * --time-label. */
+ * --annotate. */
 #ifndef ANNOTATIONS_H
 #define ANNOTATIONS_H
 

@@ -88,8 +88,7 @@ static snow_status frame_turn(render_state *s, snow_comm *comm, size_t frames) {
                                  frames);
     for (size_t i = 0; i < frames; i++)
         azimuths[i] = s->opts->azimuth + 360 * (double)i / (double)frames;
-    const bool boxed =
-        s->opts->outline || s->opts->axes || s->channels.list.count > 1;
+    const bool boxed = s->opts->box || s->channels.list.count > 1;
     snow_status status =
         snow_view_fit(comm, s->volume, boxed ? NULL : s->transfer, &s->settings,
                       azimuths, frames, &s->view);
@@ -104,11 +103,11 @@ static snow_status frame_turn(render_state *s, snow_comm *comm, size_t frames) {
 #define LINE_ZOOM 0.115
 
 double render_state_margin(const options *opts) {
-    const bool dated = opts->annotate || opts->time_label;
-    if (!opts->axes && !opts->outline)
+    const int lines = (opts->title != NULL) + (opts->annotate.text != NULL);
+    if (!opts->box)
         return 1;
-    return fmin(opts->axes ? AXES_ZOOM : OUTLINE_ZOOM,
-                OUTLINE_ZOOM - LINE_ZOOM * ((opts->title != NULL) + dated));
+    return fmin(options_has_axes(opts) ? AXES_ZOOM : OUTLINE_ZOOM,
+                OUTLINE_ZOOM - LINE_ZOOM * lines);
 }
 
 /* Frames what the look shows, once for all pictures.  What later steps show is
@@ -118,7 +117,7 @@ static snow_status frame_view(render_state *s) {
     snow_status status = SNOW_STATUS_OK;
     if (strcmp(s->opts->fit, "visible") != 0)
         return SNOW_STATUS_OK;
-    const bool boxed = s->opts->outline || s->opts->axes;
+    const bool boxed = s->opts->box != NULL;
     if (!s->framed && s->turns)
         status = frame_turn(s, comm, (size_t)s->opts->frames);
     else if (!s->framed)

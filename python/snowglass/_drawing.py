@@ -20,7 +20,7 @@ SETTABLE = frozenset("""
 size background mode iso threshold preset colormap scale opacity
 gradient-opacity range shift window opacity-unit shade light material
 depth-darkening occlusion view azimuth elevation roll zoom perspective fit
-position target up no-labels legend scale-bar crop channel component labels clip
+position target up no-labels legend crop channel component labels clip
 time""".split())
 #: What a volume is made of, besides its clip planes.
 DATA = ("crop", "channel", "component", "labels", "time")
@@ -193,7 +193,7 @@ class Drawing:
         own, so that the encoding of the picture stays."""
         options: dict[str, Any] = {
             **self._options(recipe), "size": side, "mode": "over",
-            "letters": False, "legend": False, "scale_bar": False,
+            "letters": False, "legend": False,
             "quality": "draft"}
         look = Look(preset=preset) if preset else self.look or Look()
         return self._twin().render(look, progress=progress, **options)

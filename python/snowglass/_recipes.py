@@ -25,14 +25,12 @@ ARRAY = ("affine", "medical", "slope", "intercept", "copy", "frozen", "memory")
 OVERLAY = ("preset", "colormap", "range", "opacity")
 #: Keys of the file of a picture and of other verbs, which are left out.
 OTHERS = ("output", "depth", "overwrite", "background", "bits", "frames", "fps",
-          "verb", "version", "time_label", "title", "legend_title",
-          "annotate", "time_format", "outline", "axes")
+          "verb", "version", "shift", "title", "annotate", "box")
 #: What need not be said; some of it the command line has no words for.
 USUAL = {"azimuth": 0, "elevation": 0, "roll": 0, "perspective": 0, "zoom": 1,
          "fit": "visible", "threads": 0, "footprint": 0, "opacity_length": 0}
 #: What Volume.slice takes, besides the look.
-SLICE = ("axis", "at", "size", "kernel", "legend", "scale_bar", "letters",
-         "unit", "threads")
+SLICE = ("axis", "at", "size", "kernel", "legend", "letters", "threads")
 #: Lengths of a millimetre.
 UNITS = {"": 1.0, "mm": 1.0, "um": 1e3, "nm": 1e6, "m": 1e-3, "angstrom": 1e7}
 
@@ -125,7 +123,7 @@ def make(data: Optional[Mapping[str, Any]], unit: str, look: Look,
     keys: dict[str, Any] = {**(data or {}), **colors, **second}
     for name, value in options.items():
         value = _plain(value)
-        if value is None or name in ("depth", "unit") or \
+        if value is None or name == "depth" or \
                 value == USUAL.get(name):
             continue
         if name == "iso" and options.get("mode") != "iso":
@@ -178,7 +176,7 @@ def split(options: Mapping[str, Any]) -> tuple[
     recipe, and of any options that have these names."""
     given = {name.replace("-", "_"): value for name, value in options.items()}
     data = {name: given.pop(name) for name in DATA + ARRAY if name in given}
-    if isinstance(given.get("axes"), str):  # and not the axes of a picture
+    if "axes" in given:
         data["axes"] = given.pop("axes")
     colors = take_look(given)
     if isinstance(data.get("time"), str):
@@ -262,5 +260,6 @@ def command(recipe: Mapping[str, Any]) -> str:
     for key, value in recipe.items():
         if key not in ("input", "verb"):
             words += ["--" + key] if value is True else \
+                [f"--legend={value}"] if key == "legend" else \
                 ["--" + key, _word(key, value)]
     return shlex.join(words)

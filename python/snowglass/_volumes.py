@@ -351,8 +351,8 @@ class Volume(_snowglass.Volume):
                light: Union[str, Sequence[float], None] = None,
                overlay: Any = None,
                overlay_look: Union[Look, str, None] = None,
-               legend: bool = False, scale_bar: bool = False,
-               letters: bool = True, unit: Optional[str] = None,
+               legend: Union[bool, str] = False,
+               letters: bool = True,
                progress: Progress = None, **settings: Any) -> Image:
         """A picture.
 
@@ -372,8 +372,9 @@ class Volume(_snowglass.Volume):
                       drawn in this one: a path, a Volume with its place in the
                       world, or an array of this one's shape
         overlay_look  its look; None: labels, else hot colours
-        legend, scale_bar, letters   what is drawn when the picture is saved as
-                      PNG, WebP or TIFF of 8 bits; `unit` is that of the values
+        legend, letters   what is drawn when the picture is saved as PNG, WebP or
+                      TIFF of 8 bits; a legend may be its title, "T (K)", or
+                      "scale" for the scale bar alone
         progress      called as progress(stage, fraction), or True: printed,
                       by tqdm where that is installed
 
@@ -394,7 +395,7 @@ class Volume(_snowglass.Volume):
                             "transparent until then")
         look = _given_look(look, settings)
         azimuths = settings.pop("_azimuths", None)
-        _check_render(settings, view, unit)
+        _check_render(settings, view, legend)
         shade: Any = settings.get("shade")
         if hasattr(shade, "tolist"):  # a truth of NumPy
             shade = shade.tolist()
@@ -411,7 +412,7 @@ class Volume(_snowglass.Volume):
                  "perspective": perspective, "position": position,
                  "target": target, "up": up, "fit": fit, "light": light,
                  "overlay": overlay, "overlay_look": overlay_look,
-                 "legend": legend, "scale_bar": scale_bar, "letters": letters,
+                 "legend": legend, "letters": letters,
                  **settings}
         fields = {"width": width, "height": height, "azimuth": azimuth,
                   "elevation": elevation, "roll": roll, "zoom": zoom,
@@ -440,16 +441,19 @@ class Volume(_snowglass.Volume):
             image._made = (self._source, self._info["unit"],
                            look_of(look), asked)
         self._annotate(image, mode, transfer, look, {
-            "letters": letters, "legend": legend, "unit": unit,
-            "scale_bar": scale_bar}, mixture)
+            "letters": letters, "legend": legend}, mixture)
         return image
 
     def _annotate(self, image: Image, mode: str, transfer: Any, look: Any,
                   annotations: dict[str, Any],
                   mixture: Optional[_channels.Mixture]) -> None:
         """Notes what a saved picture will show, as the command line has it."""
-        if annotations["legend"] and annotations["unit"] is None:
-            annotations["unit"] = self._caption()
+        legend = annotations["legend"]
+        annotations["unit"], annotations["scale_bar"] = None, legend == "scale"
+        annotations["legend"] = bool(legend) and legend != "scale"
+        if annotations["legend"]:
+            annotations["unit"] = self._caption(
+                legend if isinstance(legend, str) else "")
         if mixture:
             annotations["bars"] = mixture.bars(mode)
         image._annotations = annotations
@@ -459,18 +463,25 @@ class Volume(_snowglass.Volume):
         image._background = (20 / 255,) * 3 if mode in ("over", "iso") \
             else (0.0,) * 3
 
-    def _caption(self) -> Optional[str]:
-        """Quantity and unit.  That of a CT is known by its values where no
-        modality is named."""
+    def _caption(self, title: str) -> Optional[str]:
+        """Quantity and unit, as a title "quantity (unit)" has them, else of the
+        data.  The unit of a CT is known by its values where no modality is
+        named."""
         info = self._info
+        quantity, unit = info["quantity"], ""
+        if title.endswith(")") and "(" in title:
+            title, _, unit = title[:-1].rpartition("(")
+        quantity = title.rstrip(" ") or quantity
+        if unit:
+            return f"{quantity} ({unit})" if quantity else unit
         unit = self._values or info["value_unit"]
         if not self._values and (info["hounsfield"] or info["medical"] and
                                  not info["modality"] and
                                  self._statistics()["hounsfield"]):
             unit = "HU"
-        if info["quantity"] and unit:
-            return f"{info['quantity']} ({unit})"
-        return info["quantity"] or unit or None
+        if quantity and unit:
+            return f"{quantity} ({unit})"
+        return quantity or unit or None
 
     def project(self, mode: str = "mip", *, view: Optional[str] = None,
                 size: Union[int, Sequence[int]] = 512, **options: Any
@@ -504,9 +515,9 @@ class Volume(_snowglass.Volume):
     def slice(self, axis: Union[str, int] = "axial", at: Union[int, str, None] = None,
               look: Union[Look, str, None] = None, *,
               size: Union[int, Sequence[int], None] = None,
-              kernel: Optional[str] = None, legend: bool = False,
-              scale_bar: bool = False, letters: bool = True,
-              unit: Optional[str] = None, threads: int = 0) -> Image:
+              kernel: Optional[str] = None, legend: Union[bool, str] = False,
+              letters: bool = True,
+              threads: int = 0) -> Image:
         """A picture of one slice, in the colours of a look, opaque.
 
         axis    "axial", "coronal" or "sagittal": the axis of the grid that is
@@ -527,7 +538,7 @@ class Volume(_snowglass.Volume):
         and position.
         """
         axis = self._axis_name(axis)
-        _checks.text("unit", unit, UNIT)
+        _check_legend(legend)
         along, index, position = self._find_slice(axis, at)
         alone = self._slice_alone(along, index)
         mixture = None
@@ -546,11 +557,10 @@ class Volume(_snowglass.Volume):
                 "verb": "slice", "axis": axis.lower(),
                 "at": at if isinstance(at, str) else str(index), "size":
                 None if size is None else _sides(size), "kernel": kernel,
-                "legend": legend, "scale_bar": scale_bar, "letters": letters,
+                "legend": legend, "letters": letters,
                 "threads": threads})
         alone._annotate(image, "slice", transfer, look, {
-            "letters": letters, "legend": legend, "unit": unit,
-            "scale_bar": scale_bar}, mixture)
+            "letters": letters, "legend": legend}, mixture)
         return image
 
     def slice_values(self, axis: Union[str, int] = "axial",
@@ -668,7 +678,6 @@ class Volume(_snowglass.Volume):
 
 
 #: What else to give.
-UNIT = "the unit of the values, such as 'HU'"
 #: Strengths of the lights, and the exponent of the last: the parts of `material`.
 MATERIAL = ("ambient", "diffuse", "specular", "shininess")
 VIEW = "a name of snowglass.views(), such as 'anterior', or a camera by position, " \
@@ -696,7 +705,7 @@ def _labels(given: Any) -> Optional[str]:
                         given)
 
 
-def _check_render(settings: Mapping[str, Any], view: Any, unit: Any) -> None:
+def _check_render(settings: Mapping[str, Any], view: Any, legend: Any) -> None:
     """What the core of a picture would refuse without a name."""
     settable = {"material", *_snowglass.names("settings")} - set(MATERIAL)
     if not settings.keys() <= settable:
@@ -706,7 +715,12 @@ def _check_render(settings: Mapping[str, Any], view: Any, unit: Any) -> None:
             name: "is an option of Volume: give it when the volume is opened"
             for name in (*_recipes.DATA, *_arrays.OPTIONS, "memory")})
     _checks.text("view", view, VIEW)
-    _checks.text("unit", unit, UNIT)
+    _check_legend(legend)
+
+
+def _check_legend(legend: Any) -> None:
+    if legend not in (None, False, True):
+        _checks.text("legend", legend, "True, a title such as 'T (K)', or 'scale'")
 
 
 def _given_look(look: Union[Look, str, None], options: dict[str, Any]

@@ -7,6 +7,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 #define PATH_BYTES 4096
@@ -83,20 +84,39 @@ static bool has_shade(const snow_recipe *recipe) {
     return json_object_get(recipe->owned, "shade") != NULL;
 }
 
+/* The title of a bar, "name (unit)", as its parts, each "" where it has none.
+ */
+static void split_title(const char *title, char name[128], char unit[128]) {
+    const size_t length = strlen(title);
+    const char *open = strrchr(title, '(');
+    *unit = 0;
+    if (!open || title[length - 1] != ')')
+        open = title + length;
+    else
+        snprintf(unit, 128, "%.*s", (int)(title + length - open - 2), open + 1);
+    while (open > title && open[-1] == ' ')
+        open--;
+    snprintf(name, 128, "%.*s", (int)(open - title), title);
+}
+
 static snow_status set_marks(const snow_recipe *recipe, snow_insitu *insitu) {
-    const bool timed = recipe->annotate && !recipe->time_label &&
-                       strcmp(recipe->annotate, "time") == 0;
-    const snow_insitu_texts texts = {.size = sizeof texts,
-                                     .title = recipe->title,
-                                     .quantity = recipe->legend_title,
-                                     .unit = recipe->value_unit,
-                                     .time_format =
-                                         timed ? recipe->time_format : "",
-                                     .outline = recipe->outline,
-                                     .axes = recipe->axes};
-    snow_status status =
-        snow_insitu_set_annotations(insitu, recipe->legend, recipe->scale_bar,
-                                    recipe->time_label || recipe->annotate);
+    const char *step = recipe->annotate;
+    const bool timed = step && strncasecmp(step, "time", 4) == 0;
+    char name[128] = "", unit[128] = "";
+    if (recipe->legend_title)
+        split_title(recipe->legend_title, name, unit);
+    const snow_insitu_texts texts = {
+        .size = sizeof texts,
+        .title = recipe->title,
+        .quantity = name,
+        .unit = unit,
+        .time_format = !timed           ? ""
+                       : step[4] == '=' ? step + 5
+                                        : NULL,
+        .outline = recipe->box != NULL,
+        .axes = recipe->box && strcasecmp(recipe->box, "axes") == 0};
+    snow_status status = snow_insitu_set_annotations(
+        insitu, recipe->legend, recipe->scale_bar, recipe->annotate != NULL);
     return status == SNOW_STATUS_OK ? snow_insitu_set_texts(insitu, &texts)
                                     : status;
 }

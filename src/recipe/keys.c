@@ -60,8 +60,8 @@ static const char *fit_name(int value) {
     return of_list(names, 3, value);
 }
 
-static const char *annotate_name(int value) {
-    static const char *const names[] = {"time", "step"};
+static const char *box_name(int value) {
+    static const char *const names[] = {"outline", "axes"};
     return of_list(names, 2, value);
 }
 
@@ -122,16 +122,10 @@ const recipe_key recipe_keys[] = {
     MADE("target", point, target, 0, 0, 3),
     MADE("up", point, up, 0, 0, 3),
     MADE("no-labels", flag, no_labels, 0, 0, 0),
-    MADE("legend", flag, legend, 0, 0, 0),
-    MADE("scale-bar", flag, scale_bar, 0, 0, 0),
-    MADE("time-label", flag, time_label, 0, 0, 0),
+    MADE("legend", legend, legend_title, 0, 0, 0),
     TEXT("title", title),
-    TEXT("legend-title", legend_title),
-    TEXT("unit", value_unit),
-    KNOWN("annotate", annotate, annotate_name, NULL),
-    TEXT("time-format", time_format),
-    MADE("outline", flag, outline, 0, 0, 0),
-    MADE("axes", flag, axes, 0, 0, 0),
+    MADE("annotate", annotate, annotate, 0, 0, 0),
+    KNOWN("box", box, box_name, NULL),
     MADE("threads", int, settings.threads, 1, 4096, 0),
     MADE("deterministic", flag, settings.deterministic, 0, 0, 0),
     NAME("isa", settings.isa, isa_name, snow_isa_from_name),
@@ -174,13 +168,20 @@ const recipe_key recipe_keys[] = {
 
 const char *recipe_renamed(const char *name) {
     static const char *const rows[][2] = {
+        {"axes", "\"box\": \"axes\""},
         {"ambient", MATERIAL},
         {"diffuse", MATERIAL},
+        {"legend-title", "\"legend\": \"TITLE\""},
         {"level", "\"window\": [width, centre]"},
         {"log", "\"scale\": \"log\""},
+        {"outline", "\"box\": \"outline\""},
+        {"scale-bar", "\"legend\": \"scale\""},
         {"shininess", MATERIAL},
         {"specular", MATERIAL},
         {"symlog", "\"scale\": \"symlog\" or \"symlog:X\""},
+        {"time-format", "\"annotate\": \"time=FORMAT\""},
+        {"time-label", "\"annotate\": \"step\""},
+        {"unit", "\"legend\": \"TITLE (UNIT)\""},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (strcmp(rows[i][0], name) == 0)

@@ -95,6 +95,41 @@ static json_t *write_told_name(const recipe_key *key, const void *field) {
     return value ? json_string(key->name_of(value)) : NULL;
 }
 
+/* true: with the file's title; the word scale: the scale bar alone. */
+static bool read_legend(const recipe_key *key, const json_t *value, void *field,
+                        char wrong[WRONG_BYTES]) {
+    snow_recipe *r = (snow_recipe *)(void *)((char *)field - key->field);
+    const char *text = json_string_value(value);
+    if (!text && !json_is_boolean(value))
+        return recipe_refuse(wrong, "true, false, \"scale\" or a title");
+    r->scale_bar = text && strcmp(text, "scale") == 0;
+    r->legend = !r->scale_bar && !json_is_false(value);
+    r->legend_title = r->legend ? text : NULL;
+    return true;
+}
+
+static json_t *write_legend(const recipe_key *key, const void *field) {
+    const snow_recipe *r =
+        (const snow_recipe *)(const void *)((const char *)field - key->field);
+    return r->legend && r->legend_title ? json_string(r->legend_title)
+           : r->legend                  ? json_true()
+           : r->scale_bar               ? json_string("scale")
+                                        : NULL;
+}
+
+/* What follows "time=" is checked where there is a time. */
+static bool read_annotate(const recipe_key *key, const json_t *value,
+                          void *field, char wrong[WRONG_BYTES]) {
+    const char *text = json_string_value(value);
+    if (!text ||
+        (strcasecmp(text, "step") != 0 && strcasecmp(text, "time") != 0 &&
+         strncasecmp(text, "time=", 5) != 0))
+        return recipe_refuse(wrong, "one of step, time or time=FORMAT");
+    return read_text(key, value, field, wrong);
+}
+
+const recipe_kind recipe_legend = {read_legend, write_legend};
+const recipe_kind recipe_annotate = {read_annotate, write_text};
 const recipe_kind recipe_text = {read_text, write_text};
 const recipe_kind recipe_input = {read_input, write_text};
 const recipe_kind recipe_labels = {read_labels, write_text};

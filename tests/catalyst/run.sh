@@ -44,7 +44,7 @@ check "says so once" [ "$(grep -c colourmap "$ERR")" -eq 1 ]
 check "and makes no picture of another look" absent snowglass_000000.png
 for said in step time; do
     echo '{"input": "v", "size": 150, "output": "'$said'_%d.png",
-        "annotate": "'$said'", "time-format": "%.3f"}' >look.json
+        "annotate": "'${said/time/time=%.3f}'"}' >look.json
     run 0 "a picture with its $said" "$DRIVER" "$PLUGIN" look.json vertex f.raw
 done
 run 6 "time and step are two words" "$TOOL" compare step_1.png time_1.png

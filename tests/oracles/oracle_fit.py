@@ -111,9 +111,9 @@ def written(*options):
 
 SIDE = 300
 np.save("a.npy", np.full((40, 40, 40), 200, np.uint8))
-for box in ("--outline", "--axes"):
+for box in ("outline", "axes"):
     for lines in (("--title",), ("--annotate", "step", "--title")):
-        one, other = (written("--spacing", "1x1x1", box, *lines, title)
+        one, other = (written("--spacing", "1x1x1", "--box", box, *lines, title)
                       for title in ("Run", "Gq."))
         text = np.nonzero((one != other).any(axis=(1, 2)))[0]
         top = np.nonzero(one[:, int(0.7 * SIDE), 3])[0][0]

@@ -82,7 +82,7 @@ static void a_recipes_legend_and_step_are_drawn(void **state) {
     uint64_t plain[2], legend[2], label[2];
     make_steps(f, "{}", plain);
     make_steps(f, "{\"legend\": true}", legend);
-    make_steps(f, "{\"time-label\": true}", label);
+    make_steps(f, "{\"annotate\": \"step\"}", label);
     assert_true(plain[0] == plain[1]);
     assert_true(legend[0] == legend[1] && legend[0] != plain[0]);
     assert_true(label[0] != label[1] && label[0] != plain[0]);

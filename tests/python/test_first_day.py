@@ -342,7 +342,7 @@ class Stumbles(InFolder):
                 ("window", r"\(width, centre\), the width above 0", (400, "ab", (0, 40)), None),
                 ("view", "a name of snowglass.views", ((1, 0, 0), 5), None),
                 ("perspective", "True or degrees", ("yes", float("nan")), None),
-                ("unit", "unit of the values", (5,), None),
+                ("legend", "True, a title", (5,), None),
                 ("range", r"\(low, high\), 'full'", (
                     5, "foo", "5%-95%", ("a", "b"), (1, 2, 3), ct), None),
                 ("colors", color, (["red", "blue"], [(0, "red")], 5, [(0, (1, 0))],

@@ -120,7 +120,7 @@ class Pictures(InFolder):
                 head().render(size=size)
 
     def test_saved_pictures_have_letters_and_bars(self):
-        image = head().render(size=256, legend=True, scale_bar=True)
+        image = head().render(size=256, legend=True)
         plain = head().render(size=256, letters=False)
         image.save(self.path("with.png"))
         plain.save(self.path("without.png"))
@@ -449,7 +449,7 @@ class Arrays(InFolder):
         self.assertEqual(volume.info["unit"], "um")
         self.assertEqual(volume.affine[1, 1], -0.5)
         data.attrs["units"] = "K"
-        for options in ({"legend": True}, {"legend": True, "unit": "K"}):
+        for options in ({"legend": True}, {"legend": "(K)", "azimuth": 0}):
             sg.Volume(data).render(size=256, **options).save(
                 self.path(f"{len(options)}.png"))
         self.assertEqual(sg.compare(self.path("1.png"),

@@ -120,8 +120,8 @@ class Pictures(Same):
                     self.same(make, words, options)
                     self.same(make, [*words, "--legend"],
                               {**options, "legend": True})
-                    self.same(make, [*words, "--scale-bar", "--no-labels"],
-                              {**options, "scale_bar": True, "letters": False})
+                    self.same(make, [*words, "--legend", "scale", "--no-labels"],
+                              {**options, "legend": "scale", "letters": False})
 
     def test_looks(self):
         for words, look in some([

@@ -134,9 +134,9 @@ def switched(name, *options, clip=None):
     look = look_of(page, lambda look: len(look["channels"]) == 1)
     check("a mode of one channel draws the first", numbers(look) == [0],
           look["channels"])
-    is_of_command(page, "as its command does", 16, outline=True)
+    is_of_command(page, "as its command does", 16, box="outline")
     last = is_of_command(page, "and all again", 17, channel=None, mode=None,
-                         outline=None, clip=clip)
+                         box=None, clip=clip)
     check("are the first", last == every)
     page.say({"t": "set", "n": 18, "recipe": {"channel": "7:red,0"}})
     said = page.hear_text("said")["text"]

@@ -21,7 +21,8 @@ static const char all_keys[] =
     " \"quality\": \"high\", \"view\": \"iso\", \"azimuth\": 1,"
     " \"elevation\": -2, \"roll\": 3.25, \"zoom\": 1.5, \"perspective\": 40,"
     " \"target\": [1, 2.5, -3], \"up\": [0, 0, 1],"
-    " \"no-labels\": true, \"legend\": true, \"time-label\": true,"
+    " \"no-labels\": true, \"legend\": \"T (K)\", \"annotate\": \"time=%g\", "
+    "\"box\": \"axes\","
     " \"threads\": 3, \"deterministic\": true, \"isa\": \"scalar\","
     " \"dims\": [5, 6, 7], \"type\": \"int16\", \"spacing\": [1, 2, 0.1],"
     " \"endian\": \"big\", \"offset\": 352, \"time\": 2,"
@@ -86,7 +87,10 @@ static void every_key_reaches_its_field(void **state) {
                 r.settings.specular == 0.4 && r.settings.shininess == 7);
     assert_int_equal(r.settings.quality, SNOW_QUALITY_HIGH);
     assert_string_equal(r.view, "iso");
-    assert_true(r.no_labels && r.legend && r.time_label);
+    assert_true(r.no_labels && r.legend);
+    assert_string_equal(r.legend_title, "T (K)");
+    assert_string_equal(r.annotate, "time=%g");
+    assert_string_equal(r.box, "axes");
     assert_true(isnan(r.position[0]) && r.target[1] == 2.5 && r.up[2] == 1);
     assert_true(r.azimuth == 1 && r.elevation == -2 && r.roll == 3.25);
     assert_true(r.zoom == 1.5 && r.fov == 40);

@@ -30,26 +30,21 @@ run 6 "is drawn" "$TOOL" compare g.png h.png
 check "of the same check sum" [ "$(checksum g.json)" = "$(checksum h.json)" ]
 run 0 "in perspective" head_of render -o i.png --legend --perspective
 says 'the scale bar is left out'
-run 0 "a scale bar" head_of render -q -o sb.png --scale-bar -c viridis \
+run 0 "a scale bar" head_of render -q -o sb.png --legend scale -c viridis \
     --save-config sb.json
 run 6 "is drawn" "$TOOL" compare sb.png h.png
 run 6 "without the colour bar" "$TOOL" compare sb.png g.png
 run 0 "it is kept" "$TOOL" render -q --config sb.json -o sc.png
 check "in the same picture" cmp -s sb.png sc.png
-run 0 "beside a legend" head_of render -q -o sd.png --scale-bar --legend \
-    -c viridis
-check "it is there once" cmp -s sd.png g.png
-run 0 "a scale bar in perspective" head_of render -o se.png --scale-bar \
+run 0 "a scale bar in perspective" head_of render -o se.png --legend=scale \
     --perspective
-says '^snowglass: --scale-bar: the scale bar is left out'
-refused 2 "a scale bar in floats" '--scale-bar cannot be drawn' \
-    head_of render -o x.npy --scale-bar
+says '^snowglass: --legend: the scale bar is left out'
+refused 2 "a scale bar in floats" '--legend cannot be drawn' \
+    head_of render -o x.npy --legend scale
 refused 2 "a legend in floats" 'remove it or name a .png' \
     head_of render -o x.npy --legend
 refused 2 "in frames of floats" 'remove it or name a .png' \
     head_of turntable -o 'x_%d.pfm' --legend
-refused 2 "a time label of one picture" 'but of movie' \
-    head_of render -o x.png --time-label
 check "nothing is written then" absent x.npy
 
 run 0 "letters turn in a turntable" head_of turntable -q -o 't_%d.png' \
@@ -66,7 +61,7 @@ says 'other settings'
 run 0 "steps" "$TOOL" phantom head --dims 20x20x20 -o s_0010.nrrd
 cp s_0010.nrrd s_0025.nrrd
 run 0 "of a movie with their numbers" "$TOOL" movie -q s_%04d.nrrd -s 100x90 \
-    --time-label -o 'm_%d.png'
+    --annotate step -o 'm_%d.png'
 run 0 "and without" "$TOOL" movie -q s_%04d.nrrd -s 100x90 -o 'n_%d.png'
 run 6 "differ" "$TOOL" compare m_0.png n_0.png
 run 6 "from step to step" "$TOOL" compare m_0.png m_1.png
@@ -95,8 +90,8 @@ END
 done
 of_time() { "$TOOL" render s_1.vti -q -s 160x150 -y "$@"; }
 run 0 "a picture" of_time -o w0.png
-for said in "--title Run" "--annotate time" "--outline" "--axes" \
-    "--annotate time --time-format %.3f"; do
+for said in "--title Run" "--annotate time" "--box outline" "--box axes" \
+    "--annotate time=%.3f"; do
     run 0 "$said" of_time -o w1.png $said
     run 6 "$said is drawn" "$TOOL" compare w0.png w1.png
     run 0 "$said by a recipe" of_time -o w2.png --save-config w.json $said
@@ -104,10 +99,14 @@ for said in "--title Run" "--annotate time" "--outline" "--axes" \
     check "$said: the same picture" cmp -s w1.png w2.png
 done
 run 0 "the file's quantity" of_time -o w1.png --legend
-run 0 "said as it is" of_time -o w2.png --legend --legend-title rho
+run 0 "said as it is" of_time -o w2.png --legend=rho
 check "is the same" cmp -s w1.png w2.png
-run 0 "with a unit" of_time -o w2.png --legend --unit kg
-run 6 "it is another" "$TOOL" compare w1.png w2.png
+run 0 "a unit alone" of_time -o w2.png '--legend=(kg)' --save-config w.json
+run 6 "makes another" "$TOOL" compare w1.png w2.png
+run 0 "with the quantity" of_time -o w3.png '--legend=rho (kg)'
+check "it is the same" cmp -s w2.png w3.png
+run 0 "as by its recipe" "$TOOL" render --config w.json -q -y -o w3.png
+check "which keeps it" cmp -s w2.png w3.png
 run 0 "a movie with times" "$TOOL" movie s_0.vti s_1.vti -q -s 160x150 \
     -o 'x_%d.png' --annotate time --range 0,255 --preset linear
 run 0 "its second frame as a picture" of_time -o x.png --annotate time \
@@ -115,7 +114,7 @@ run 0 "its second frame as a picture" of_time -o x.png --annotate time \
 run 0 "a frame of the other time" "$TOOL" render s_1.vti -q -s 160x150 -y \
     -o y.png --range 0,255 --preset linear --fit volume
 run 6 "shows it" "$TOOL" compare x.png y.png
-run 2 "formats are checked" of_time -o w1.png --annotate time --time-format %s
+run 2 "formats are checked" of_time -o w1.png --annotate time=%s
 says "neither one number"
 run 2 "floats have no title" of_time -o w.npy --title Run
 says "cannot be drawn"

@@ -59,7 +59,7 @@ done
 for verb in turntable movie slice; do
     "$TOOL" help $verb >page
     check "$verb shows what is its own first" bash -c \
-        "grep -m 1 -oE -- '--[a-z-]+ ' page | grep -qE 'frames|time-label|axis'"
+        "grep -m 1 -oE -- '--[a-z-]+ ' page | grep -qE 'frames|fps|axis'"
 done
 topics=$("$TOOL" help render | sed -n '/^all options/,/^$/s/^  \([a-z]*\) .*/\1/p')
 check "topics are listed" [ "$(wc -w <<<"$topics")" -ge 10 ]

@@ -22,6 +22,12 @@ x --json|--json: is not an option of render but of info
 --symlog=5 x|--symlog: is now --scale symlog\[:X\]$
 --scale ln x|is unknown; choose from: linear, log, symlog, symlog:X
 --scale symlog:0 x|out of range
+--unit K x|--unit: is now --legend="TITLE \(UNIT\)"$
+--outline x|--outline: is now --box outline$
+--time-label x|--time-label: is now --annotate step$
+--box edges x|'edges' is unknown; choose from: outline, axes
+--legend= x|--legend: needs a value after =
+--annotate date x|'date' is unknown
 help level|level: is now --window W,L$
 -q info x|info: the verb must come first; give snowglass info
 rendr x -o y.png|rendr: is not a verb; did you mean render\?

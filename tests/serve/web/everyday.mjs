@@ -106,10 +106,10 @@ async function looks({check}, page, its) {
     await its('or none more', () => threshold.fill('0'), {threshold: 0});
     await written(before);
     check('and they are seen again', await part() === before, await part());
-    for (const [name, key] of [['colour bar', 'legend'], ['scale bar', 'scale-bar'],
-        ["edges of the volume's box", 'outline']]) {
+    for (const [name, key, on] of [['colour bar', 'legend', true], ['scale bar', 'legend', 'scale'],
+        ["edges of the volume's box", 'box', 'outline']]) {
         const plain = await pixels(page);
-        await its(`${name} is switched on`, () => page.getByLabel(name).check(), {[key]: true});
+        await its(`${name} is switched on`, () => page.getByLabel(name).check(), {[key]: on});
         check('and seen', await pixels(page) !== plain);
         await its('and off', () => page.getByLabel(name).uncheck(), {[key]: undefined});
     }

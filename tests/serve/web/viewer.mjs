@@ -336,7 +336,7 @@ async function marks(page) {
     await page.waitForFunction(zoom => window.snowglass.recipe.keys.zoom < zoom, before.zoom);
     await rest(page);
     const now = await keys(page);
-    check('a title is in the recipe', now.title === 'Head, \u00b0C' && now.axes === true,
+    check('a title is in the recipe', now.title === 'Head, \u00b0C' && now.box === 'axes',
         JSON.stringify(now));
     check('the box is framed', now.zoom < 0.9 * before.zoom, now.zoom);
     await shot(page, 'marks');
