@@ -498,6 +498,9 @@ static int report_figures(slice_work *w) {
 static int check_request(slice_work *w) {
     const options *opts = &w->opts;
     int done = check_picture(opts);
+    if (done == CONTINUE && opts->footprint)
+        done = fail_usage("--kernel: a slice has no support; give %s alone",
+                          opts->kernel);
     if (done == CONTINUE && (strcmp(opts->kernel, "gauss") == 0 ||
                              strcmp(opts->kernel, "bspline") == 0))
         done = fail_usage("--kernel: %s cannot draw a slice; use tent, or box "

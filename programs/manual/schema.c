@@ -28,6 +28,8 @@ static const struct {
     {read_choice, "{'type': 'string'}"},
     {read_real, "{'type': 'number'}"},
     {read_strength, "{'type': 'number'}"},
+    {read_kernel, "{'type': 'string', 'pattern':"
+                  "'^(auto|tent|gauss|bspline|box)(:[2-9])?$'}"},
     {read_legend, "{'anyOf': [{'type': 'boolean'}, {'type': 'string'}]}"},
     {read_annotate, "{'anyOf': [{'enum': ['step', 'time']}, {'type': 'string',"
                     "'pattern': '^time='}]}"},
@@ -132,8 +134,7 @@ static void add_words(json_t *type, const option_row *row) {
     json_object_set_new(type, "enum", words);
 }
 
-/* A field of view of 0 is a parallel projection, a footprint of 0 the kernel's
- * own. */
+/* A field of view of 0 is a parallel projection. */
 static void add_limits(json_t *type, const option_row *row) {
     double low = row->read == read_fov ? 0 : row->low;
     if (row->low == 0 && row->high == 0)

@@ -102,15 +102,13 @@ const option_row option_table[] = {
      "interesting voxels straight onto the picture, as the paper does; "
      "original: the same with every voxel (default auto: shear-warp)"},
 
-    {"kernel", 0, "auto|tent|gauss|bspline|box", TOPIC_KERNEL, PICTURE, read_choice,
-     FIELD(kernel), 0, 0, "", "reconstruction kernel. shear-warp and raycast support tent and bspline; "
-     "with gauss and box, footprint makes the picture (default auto: tent; "
-     "bspline with footprint and original). Slices are linear between their "
-     "voxels (tent), or show the nearest one (box)"},
-    {"footprint", 0, "K", TOPIC_KERNEL, RENDER, read_integer, FIELD(footprint),
-     2, 9, "",
-     "support of the kernel in voxels, 2 to 9 (default 2 for tent and box, "
-     "otherwise 4)"},
+    {"kernel", 0, "auto|tent|gauss|bspline|box|NAME:N", TOPIC_KERNEL, PICTURE, read_kernel,
+     FIELD(kernel), 2, 9, "", "reconstruction kernel, and its support N in voxels, 2 to 9, "
+     "such as gauss:5 or auto:3 (default 2 for tent and box, otherwise 4). shear-warp "
+     "and raycast support tent and bspline; with gauss and box, and another N, "
+     "footprint makes the picture (default auto: tent; bspline with footprint and "
+     "original). Slices are linear between their voxels (tent), or show the nearest "
+     "one (box)"},
 
     {"preset", 0, "NAME", TOPIC_LOOK, LOOKED, read_preset, FIELD(preset), 0, 0,
      "",
@@ -371,12 +369,11 @@ const option_row option_table[] = {
      "how the volume is partitioned: equal slabs as in the paper; counted or "
      "bricks: slabs or bricks with equal numbers of interesting voxels "
      "(default auto: counted, or bricks where slabs would be thin)"},
-    {"combine", 0, "auto|tree|swap|direct|radix", TOPIC_RANKS, WRITTEN | SERVE,
-     read_choice, FIELD(combine), 0, 0, "",
+    {"combine", 0, "auto|tree|swap|direct|radix|radix:K", TOPIC_RANKS, WRITTEN | SERVE,
+     read_combine, FIELD(combine), 2, 64, "",
      "how the pictures of the ranks are combined: binary tree as in the paper, "
-     "binary swap, direct send, or radix-k (default auto: by ranks and size)"},
-    {"radix", 0, "K", TOPIC_RANKS, WRITTEN | SERVE, read_integer, FIELD(radix), 2, 64,
-     "", "ranks per group of --combine radix (default: chosen)"},
+     "binary swap, direct send, or radix-k in groups of K ranks, 2 to 64, chosen "
+     "without K (default auto: by ranks and size)"},
     {"timeout", 0, "SECONDS", TOPIC_RANKS, WRITTEN | SERVE, read_real, FIELD(timeout), 0,
      1e9, "",
      "end the job if a rank neither sends nor waits for this long, and name "

@@ -195,8 +195,8 @@ static int refuse_foreign(const option_row *row, const verb_row *verb) {
  * compare without regard to case, or take names of files. */
 static bool has_small_letters(const option_row *row) {
     static option_read *const readers[] = {
-        read_choice, read_method,  read_component, read_size,
-        read_dims,   read_spacing, read_range,     read_scale};
+        read_choice,  read_method, read_component, read_size,   read_dims,
+        read_spacing, read_range,  read_scale,     read_kernel, read_combine};
     for (size_t i = 0; i < sizeof readers / sizeof *readers; i++)
         if (row->read == readers[i])
             return true;
@@ -350,7 +350,7 @@ static const char *long_word(char **argv) {
     return strncmp(word, "--", 2) == 0 ? word + 2 : NULL;
 }
 
-/* getopt_long accepts abbreviations: --foo would be --footprint, until another
+/* getopt_long accepts abbreviations: --azim would be --azimuth, until another
  * option begins so. */
 static bool in_full(const char *word, const option_row *row) {
     return !word || strcspn(word, "=") == strlen(row->name);

@@ -308,3 +308,40 @@ bool read_annotate(const option_row *row, const char *text, void *field,
     *(annotate_value *)field = value;
     return true;
 }
+
+/* "NAME" or "NAME:N": one of the row's choices, and a whole number within its
+ * limits, 0 where it is not given. */
+static bool read_numbered(const option_row *row, const char *text,
+                          const char **name, int64_t *number,
+                          char wrong[WRONG_BYTES]) {
+    static const char *const names[] = {"auto",    "tent",   "gauss",
+                                        "bspline", "box",    "tree",
+                                        "swap",    "direct", "radix"};
+    char word[32];
+    int64_t value = 0;
+    const char *colon = strchr(text, ':');
+    snprintf(word, sizeof word, "%.*s", (int)strcspn(text, ":"), text);
+    if (!read_choice(row, word, &(const char *){NULL}, wrong) ||
+        (colon && !read_integer(row, colon + 1, &value, wrong)))
+        return false;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcasecmp(word, names[i]) == 0)
+            *name = names[i];
+    *number = value;
+    return true;
+}
+
+bool read_kernel(const option_row *row, const char *text, void *field,
+                 char wrong[WRONG_BYTES]) {
+    options *out = (options *)(void *)((char *)field - row->field);
+    return read_numbered(row, text, field, &out->footprint, wrong);
+}
+
+/* Only radix has groups. */
+bool read_combine(const option_row *row, const char *text, void *field,
+                  char wrong[WRONG_BYTES]) {
+    options *out = (options *)(void *)((char *)field - row->field);
+    if (strchr(text, ':') && strncasecmp(text, "radix:", 6) != 0)
+        return parse_refuse(wrong, "has a number; only radix has one");
+    return read_numbered(row, text, field, &out->radix, wrong);
+}

@@ -9,6 +9,9 @@ option_read read_text;      /* const char * */
 option_read read_flag;      /* bool: true */
 option_read read_constant;  /* int: the row's lower limit */
 option_read read_choice;    /* const char *: one of the row's choices */
+option_read read_method;    /* const char *: one of them, or an alias */
+option_read read_kernel;    /* const char *, and options.footprint */
+option_read read_combine;   /* const char *, and options.radix */
 option_read read_real;      /* double within low..high */
 option_read read_fov;       /* double; the default for an empty text */
 option_read read_strength;  /* double; 1 for an empty text */

@@ -28,7 +28,7 @@ OTHERS = ("output", "depth", "overwrite", "background", "bits", "frames", "fps",
           "verb", "version", "shift", "title", "annotate", "box")
 #: What need not be said; some of it the command line has no words for.
 USUAL = {"azimuth": 0, "elevation": 0, "roll": 0, "perspective": 0, "zoom": 1,
-         "fit": "visible", "threads": 0, "footprint": 0, "opacity_length": 0}
+         "fit": "visible", "threads": 0, "opacity_length": 0}
 #: What Volume.slice takes, besides the look.
 SLICE = ("axis", "at", "size", "kernel", "legend", "letters", "threads")
 #: Lengths of a millimetre.

@@ -383,7 +383,7 @@ class Volume(_snowglass.Volume):
         "phong", False or "none"), material (ambient, diffuse, specular,
         shininess), depth, threads,
         deterministic, depth_darkening, occlusion, opacity_length, kernel,
-        encoding, footprint, isa.
+        ("gauss", or "gauss:5" with its support), encoding, isa.
 
         Raises ValueError (a value out of its range, an unknown name),
         MemoryError, snowglass.Error, KeyboardInterrupt within 0.1 s.
@@ -421,6 +421,7 @@ class Volume(_snowglass.Volume):
                   "position": position, "target": target, "up": up}
         _set_light(light, settings)
         _set_material(settings)
+        _set_kernel(settings)
         layer = _overlays.overlaid(self, overlay, overlay_look)
         if mixture and settings.get("shade") is None:
             settings["shade"] = "none"
@@ -707,7 +708,7 @@ def _labels(given: Any) -> Optional[str]:
 
 def _check_render(settings: Mapping[str, Any], view: Any, legend: Any) -> None:
     """What the core of a picture would refuse without a name."""
-    settable = {"material", *_snowglass.names("settings")} - set(MATERIAL)
+    settable = {"material", *_snowglass.names("settings")} - {*MATERIAL, "footprint"}
     if not settings.keys() <= settable:
         code = Volume.render.__code__
         own = code.co_varnames[1:code.co_argcount + code.co_kwonlyargcount]
@@ -788,6 +789,18 @@ def _set_material(settings: dict[str, Any]) -> None:
         raise _checks.fault("material", give, material, ValueError)
     for name, value in zip(MATERIAL, given):
         settings[name] = _checks.number("material", value, give)
+
+
+def _set_kernel(settings: dict[str, Any]) -> None:
+    """A name, which the core checks, and its support."""
+    kernel = settings.get("kernel")
+    if not isinstance(kernel, str) or ":" not in kernel:
+        return
+    settings["kernel"], _, support = kernel.partition(":")
+    if support not in tuple("23456789"):
+        raise _checks.fault("kernel", "NAME:N with a support N of 2 to 9 voxels",
+                            kernel, ValueError)
+    settings["footprint"] = int(support)
 
 
 def open(source: Path, **options: Any) -> Volume:

@@ -110,8 +110,10 @@ static json_t *slice_tree(const drawing *d, const slice_asked *asked) {
     const char *kernel = json_string_value(json_object_get(tree, "kernel"));
     for (size_t i = 0; i < sizeof unwanted / sizeof *unwanted; i++)
         json_object_del(tree, unwanted[i]);
-    if (kernel && strcmp(kernel, "box") != 0) /* slices have none but tent */
-        json_object_del(tree, "kernel");
+    if (kernel && strcmp(kernel, "box") != 0 && strncmp(kernel, "box:", 4) != 0)
+        json_object_del(tree, "kernel"); /* slices have none but tent */
+    else if (kernel)
+        json_object_set_new(tree, "kernel", json_string("box"));
     for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
         if (!asked->colored || (i == 1 && json_object_get(tree, "preset")))
             json_object_del(tree, colors[i]);

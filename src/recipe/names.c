@@ -95,6 +95,33 @@ static json_t *write_told_name(const recipe_key *key, const void *field) {
     return value ? json_string(key->name_of(value)) : NULL;
 }
 
+/* "gauss", or "gauss:5" with its support. */
+static bool read_kernel(const recipe_key *key, const json_t *value, void *field,
+                        char wrong[WRONG_BYTES]) {
+    snow_settings *s = field;
+    const char *text = json_string_value(value);
+    const char *colon = text ? strchr(text, ':') : NULL;
+    char name[32] = "";
+    if (text)
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(text, ":"), text);
+    const int kernel = snow_kernel_from_name(name);
+    if (kernel < 0)
+        return refuse_name(key, wrong);
+    if (colon && (colon[1] < '2' || colon[1] > '9' || colon[2]))
+        return recipe_refuse(wrong, "NAME:N, N from 2 to 9");
+    s->kernel = (snow_kernel)kernel;
+    s->footprint = colon ? colon[1] - '0' : 0;
+    return true;
+}
+
+static json_t *write_kernel(const recipe_key *key, const void *field) {
+    const snow_settings *s = field;
+    (void)key;
+    return s->footprint ? json_sprintf("%s:%d", snow_kernel_name(s->kernel),
+                                       s->footprint)
+                        : json_string(snow_kernel_name(s->kernel));
+}
+
 /* true: with the file's title; the word scale: the scale bar alone. */
 static bool read_legend(const recipe_key *key, const json_t *value, void *field,
                         char wrong[WRONG_BYTES]) {
@@ -128,6 +155,7 @@ static bool read_annotate(const recipe_key *key, const json_t *value,
     return read_text(key, value, field, wrong);
 }
 
+const recipe_kind recipe_kernel = {read_kernel, write_kernel};
 const recipe_kind recipe_legend = {read_legend, write_legend};
 const recipe_kind recipe_annotate = {read_annotate, write_text};
 const recipe_kind recipe_text = {read_text, write_text};

@@ -40,7 +40,7 @@ done
 ways=("--cut equal" "--combine tree" "--combine swap" "--combine direct"
     "--cut bricks")
 long_tier || ways=()
-for way in "${ways[@]}" "--combine radix --radix 3"; do
+for way in "${ways[@]}" "--combine radix:3"; do
     # shellcheck disable=SC2086
     run 0 "a picture alone" "$TOOL" $head --azimuth 70 -y -o one.npy
     # shellcheck disable=SC2086

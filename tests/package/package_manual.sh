@@ -28,7 +28,7 @@ for verb in $verbs; do
     said=$(sed -n "/^        $verb)/,/;;/p" "$bash_file")
     zshed=$(sed -n "/^    $verb)/,/;;/p" "$zsh_file")
     for option in $(paged "$file"); do
-        [[ $option != @(cut|combine|radix|timeout) ]] || continue # of MPI
+        [[ $option != @(cut|combine|timeout) ]] || continue # of MPI
         grep -q -- "--$option " <<<"$said" || lacking+=" bash:$verb:$option"
         grep -qE -- "--${option}[=[}]" <<<"$zshed" || lacking+=" zsh:$verb:$option"
         grep -E -- "-n '__snowglass_takes [a-z ]*\\b$verb\\b.* -l $option " \
@@ -135,7 +135,7 @@ check "bash: an option without value is none's" offers some.nrrd \
     snowglass render --legend so
 check "bash: nothing for a number" offers "" snowglass a.nrrd --zoom ''
 check "bash: of MPI alone" offers "" snowglass a.nrrd --radi
-check "bash: for MPI" offers --radix snowglass-mpi a.nrrd --radi
+check "bash: for MPI" offers --combine snowglass-mpi a.nrrd --combin
 
 # --- zsh and fish -------------------------------------------------------------
 
@@ -197,7 +197,7 @@ if have fish; then
     check "fish: others as their option" fish_describes \
         'reconstruction kernel' 'snowglass a --kernel bs'
     [ -z "$fish_mpi" ] ||
-        check "fish: for MPI" fish_offers --radix 'snowglass-mpi a --radi'
+        check "fish: for MPI" fish_offers --combine 'snowglass-mpi a --combin'
 else
     skipped "fish" "it is not there"
 fi

@@ -220,7 +220,7 @@ class Commands(Same):
                 ("a.nrrd", {"spacing": 2}, {}),
                 ("a.nrrd", {"spacing": numpy.float32(1.5)}, {}),
                 ("a.nrrd", {"allow_gaps": False, "labels": None}, {}),
-                ("a.nrrd", {}, {"threads": 0, "footprint": 0, "iso": 0,
+                ("a.nrrd", {}, {"threads": 0, "iso": 0,
                                 "opacity_length": 0}),
                 ("-dash.nrrd", {}, {"azimuth": -20})]:
             with self.subTest(path, opening=opening, options=options):

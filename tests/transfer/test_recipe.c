@@ -11,7 +11,7 @@ static const char all_keys[] =
     " \"depth\": \"d.npy\","
     " \"size\": [640, 480], \"background\": [1, 0.5, 0], \"bits\": 16,"
     " \"mode\": \"mip\", \"threshold\": 10.5, \"encoding\": \"rle\","
-    " \"method\": \"footprint\", \"kernel\": \"gauss\", \"footprint\": 5,"
+    " \"method\": \"footprint\", \"kernel\": \"gauss:5\","
     " \"preset\": \"ct-bone\", \"colormap\": \"viridis\","
     " \"opacity\": [[-10, 0], [0.25, 0.5], [90, 1]],"
     " \"gradient-opacity\": [[0, 0.125], [30, 1]],"
@@ -200,8 +200,7 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"size\": [640, 0]}", "\"size\" must be"},
         {"{\"target\": [1, 2]}", "\"target\" must be an array of 3"},
         {"{\"zoom\": 0}", "\"zoom\" must be a number from"},
-        {"{\"footprint\": 2.5}", "\"footprint\" must be a whole number"},
-        {"{\"footprint\": 10}", "from 2 to 9"},
+        {"{\"kernel\": \"tent:10\"}", "from 2 to 9"},
         {"{\"azimuth\": \"30\"}", "\"azimuth\" must be a number"},
         {"{\"opacity\": [[0, 0], [-1, 1]]}", "values that do not decrease"},
         {"{\"opacity\": [[0, 1.5]]}", "opacities 0 to 1"},
@@ -222,6 +221,15 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"window\": 3}", "\"window\" must be"},
         {"{\"window\": [3, 1, 1]}", "\"window\" must be"},
         {"{\"window\": [0, 1]}", "\"window\" must be"},
+        {"{\"kernel\": \"gauss:1\"}", "\"kernel\" must be NAME:N"},
+        {"{\"kernel\": \"gausss:3\"}", "\"kernel\" must be one of"},
+        {"{\"footprint\": 3}", "\"footprint\" is now \"kernel\""},
+        {"{\"scale\": \"symlog:0\"}", "\"scale\" must be"},
+        {"{\"scale\": \"symlog:\"}", "\"scale\" must be"},
+        {"{\"material\": [0.1, 0.2, 1.1, 2]}", "\"material\" must be"},
+        {"{\"annotate\": \"date\"}", "\"annotate\" must be"},
+        {"{\"legend\": 3}", "\"legend\" must be"},
+        {"{\"box\": true}", "\"box\" must be one of"},
         {"{\"level\": 1}", "\"level\" is now \"window\": [width, centre]"},
         {"{\"size\": 0}", "\"size\" must be"},
         {"{\"window\": [3, 1], \"range\": [0, 1]}", "\"window\" must be"},

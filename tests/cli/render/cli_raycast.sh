@@ -50,7 +50,7 @@ for kernel in gauss box; do
     run 2 "kernel $kernel" render --kernel $kernel -o no.png
     says "^snowglass: invalid kernel $kernel of footprint [24] for method raycast"
 done
-run 2 "a wider tent" render --kernel tent --footprint 4 -o no.png
+run 2 "a wider tent" render --kernel tent:4 -o no.png
 says 'method footprint$'
 
 # --- what is cut -------------------------------------------------------------

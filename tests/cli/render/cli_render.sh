@@ -92,7 +92,7 @@ changes --kernel bspline
 same --kernel tent
 changes --kernel gauss
 changes --kernel box
-changes --footprint 3
+changes --kernel auto:3
 changes --colormap viridis
 changes --preset linear
 changes --opacity 0:0,1:0.1
@@ -246,7 +246,7 @@ for signal in TERM INT; do
     rm -f stages
     set -m # else a job would ignore SIGINT
     "$TOOL" phantom:head --dims 200x200x200 -s 1000x1000 --progress always \
-        --method original --footprint 9 -o late.png 2>stages &
+        --method original --kernel auto:9 -o late.png 2>stages &
     job=$!
     set +m
     await rendering stages

@@ -82,8 +82,8 @@ run 5 "deterministic in slabs" "$TOOL" render $large -q --memory 4M \
 says 'a deterministic picture by method shear-warp needs all voxels in memory'
 
 # --- what footprints draw ----------------------------------------------------------------
-for options in "--kernel gauss" "--kernel box" "--footprint 3" \
-    "--kernel bspline --footprint 3"; do
+for options in "--kernel gauss" "--kernel box" "--kernel auto:3" \
+    "--kernel bspline:3"; do
     # shellcheck disable=SC2086
     run 0 "$options" render $options -o one.npy
     says 'note: method footprint is used in place of shear-warp'

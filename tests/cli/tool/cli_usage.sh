@@ -28,6 +28,8 @@ x --json|--json: is not an option of render but of info
 --box edges x|'edges' is unknown; choose from: outline, axes
 --legend= x|--legend: needs a value after =
 --annotate date x|'date' is unknown
+--footprint 3 x|--footprint: is now --kernel NAME:N$
+--kernel gaus:5 x|did you mean gauss\?
 help level|level: is now --window W,L$
 -q info x|info: the verb must come first; give snowglass info
 rendr x -o y.png|rendr: is not a verb; did you mean render\?
@@ -73,7 +75,7 @@ info phantom:marschner-lobb --labels 1|--labels: picks whole numbers
 --clip 1,0,0,nan x -o y.png|are not planes
 phantom --mask m cube -o y.nrrd|--mask: is not an option of phantom
 --azim 10 x|--azim: unknown option; did you mean --azimuth
---foo x|--foo: unknown option; did you mean --footprint
+--encod x|--encod: unknown option; did you mean --encoding
 --crop 0:1,0:1 x|--crop: 
 --series= x|--series
 --patient x|--patient: is not an option of render but of info
@@ -134,9 +136,9 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
 --encoding zip x|choose from: auto, crs, bitmap, rle
 --encoding '' x|choose from
 --kernel cube x|choose from: auto, tent, gauss, bspline, box
---footprint 1 x|from 2 to 9
---footprint 10 x|from 2 to 9
---footprint 3.5 x|from 2 to 9
+--kernel auto:1 x|from 2 to 9
+--kernel gauss:10 x|from 2 to 9
+--kernel box:3.5 x|from 2 to 9
 --azimuth nan x|is not a finite number
 --azimuth inf x|is not a finite number
 --azimuth 1e999 x|is not a finite number
