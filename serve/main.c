@@ -112,8 +112,8 @@ static int read_options(options *opts, int argc, char **argv) {
     if (strcmp(opts->operands[0], "-") == 0)
         return fail_usage("-: standard input can be read only once; give serve "
                           "a file");
-    if (points_are_factor(&opts->overlay_opacity))
-        return fail_usage("--overlay-opacity: a factor is for pictures; give "
+    if (points_are_factor(&opts->overlay_look.opacity))
+        return fail_usage("--overlay-look: a factor is for pictures; give "
                           "serve opacities at values, such as 10:0,30:0.5");
     done = layers_check(opts);
     return done == CONTINUE ? check_settings(opts) : done;

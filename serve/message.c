@@ -19,7 +19,6 @@ static const char *const keys[] = {
     "gradient-opacity",
     "range",
     "window",
-    "shift",
     "opacity-unit",
     "shade",
     "light",
@@ -49,10 +48,7 @@ static const char *const keys[] = {
     "time",
     "mask",
     "overlay",
-    "overlay-preset",
-    "overlay-colormap",
-    "overlay-range",
-    "overlay-opacity",
+    "overlay-look",
 };
 
 const char *message_switches(size_t index) {

@@ -1,6 +1,7 @@
 /* state.c - implements state.h: a monitor. */
 #include "state.h"
 #include "message.h"
+#include "options/option_values.h"
 
 #include <snowglass/recipe.h>
 
@@ -98,11 +99,16 @@ static const char *beyond_pages(const snow_recipe *recipe) {
     if (recipe->steps && strcmp(recipe->steps, "last") != 0)
         return "the page: \"time\" must be one step, as a range or a moment "
                "is of the command line; give its number";
-    if (recipe->overlay_opacity_count == 1 &&
-        isnan(recipe->overlay_opacities[0].value))
-        return "the page: \"overlay-opacity\" is a factor, which is for "
-               "pictures; give opacities at values, such as [[10, 0], "
-               "[30, 0.5]]";
+    overlay_look look;
+    const char *text = recipe->overlay_look;
+    if (text && !value_overlay_look(text, &look))
+        return "the page: \"overlay-look\" is not a look; give \"hot,2,12\", "
+               "or "
+               "opacities at values too, such as \"hot,2,12,2:0,12:0.5\"";
+    if (text && points_are_factor(&look.opacity))
+        return "the page: \"overlay-look\" has a factor, which is for "
+               "pictures; "
+               "give opacities at values, such as \"hot,10:0,30:0.5\"";
     return NULL;
 }
 

@@ -14,7 +14,7 @@ export const ownColors = map => map?.includes(':')
 
 /** A list of colours of labels with another one. */
 export const painted = (map, value, color) => text([
-    ...ownColors(map)?.filter(([label]) => label !== value) ?? [], [value, color]]);
+    ...ownColors(map)?.filter(([label, old]) => old && label !== value) ?? [], [value, color]]);
 
 /** Another range, with which one's own colours go, as those of a map do. */
 export function ranged({low, high}, {colormap}, [a, b]) {

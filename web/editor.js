@@ -49,7 +49,7 @@ export class Editor {
                 button('Add', 'Add a point beside the chosen one', () => this.insert()),
                 button('Remove', 'Remove the chosen point', () => this.remove()),
                 ...this.kind === BY_VALUE ? [scale,
-                    button('Automatic', 'Opacity of the preset, or made from the histogram',
+                    button('Automatic', 'Opacity of the preset',
                         () => recipe.set({opacity: null, range: null}))]
                     : [button('None', 'The gradient does not matter',
                         () => recipe.set({[this.kind.key]: null}))]));

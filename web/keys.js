@@ -7,16 +7,16 @@ export const VIEWS = ['anterior', 'posterior', 'left', 'right', 'superior', 'inf
 export const MODES = ['over', 'mip', 'minip', 'mean', 'sum', 'iso'];
 
 const TEXTS = [['Drag', 'turn'], ['Shift or middle drag', 'move'], ['Wheel', 'zoom'],
-    ['Right drag', 'window (across) and level (up)'], ['Ctrl right drag', 'opacity'],
+    ['Right drag', 'window, level'], ['Ctrl right drag', 'opacity'],
     ['Ctrl drag', 'light'], ['Double click', 'turn around this point'],
     ['x', 'three slices'], ['k', 'handles of clip planes'],
-    ['On a slice', 'drag: where they cross; wheel: next slice; right drag: window and level; ' +
+    ['On a slice', 'drag: where they cross; wheel: next slice; right drag: window, level; ' +
         'Ctrl wheel: zoom; double click: alone'],
-    ['Two fingers', 'move and zoom'], ['Arrows', 'as Drag: 5 degrees, with Shift 1'], ['d', 'next kind of drag'],
+    ['Two fingers', 'move and zoom'], ['Arrows', 'as Drag: 5 degrees, Shift: 1'], ['d', 'next kind of drag'],
     ['+ -', 'zoom'], ['r', 'frame all'],
     ['1 - 6', 'front, back, left, right, top, bottom'], ['m', 'next mode'],
-    ['p', 'parallel or perspective'], ['l', 'letters'], ['Space', 'play time steps'],
-    ['c v', 'the command line, that of a movie'], ['s', 'save the picture'], ['z Shift+z', 'undo, redo'],
+    ['p', 'perspective'], ['l', 'letters'], ['Space', 'play time steps'],
+    ['c v', 'the command, that of a movie'], ['s', 'save the picture'], ['z Shift+z', 'undo, redo'],
     ['?', 'this help']];
 
 export function helpTable() {

@@ -13,9 +13,16 @@ const WORLD_VIEWS = ['+x', '-x', '+y', '-y', '+z', '-z'];
 const AXES = ['x', 'y', 'z'];
 const FIRST_PANE = 4;
 const NO_SHAPE = {colormap: null, opacity: null, 'gradient-opacity': null, range: null,
-    shift: null, scale: null};
+    scale: null};
 
-const put = (list, i, value) => list.map((old, k) => k === i ? value : old);
+/** The look of the overlay, "labels,1:#00ff00,0:0,5:0.8", as the keys of the volume's. */
+const split = ({'overlay-look': text = ''}) => {
+    const of = test => text.split(',').filter(part => test.test(part)), name = /#|^[a-eg-z]\D/;
+    return {colormap: of(name).join(), opacity: of(/:[^#]/).map(part => part.split(':').map(Number)),
+        range: of(/^[^:]+$/).filter(part => !name.test(part))};
+};
+
+const swap = (list, i, value) => list.map((old, k) => k === i ? value : old);
 const material = keys => keys.material ?? [0.2, 0.7, 0.2, 20];
 
 export class Panel {
@@ -139,13 +146,14 @@ export class Panel {
         image.hidden = false;
     }
 
-    /** A slider of a number that has a default. */
-    strength(name, high, step, get, set) {
-        const told = make('output');
-        const input = slider(name, 0, high, step, this.recipe, value => this.recipe.set(set(value)));
+    /** A slider of a number, or of one of the material. */
+    strength(name, key, high, step, i) {
+        const told = make('output'), {recipe} = this;
+        const input = slider(name, 0, high, step, recipe, value => recipe.set({[key]:
+            key === 'material' ? swap(material(recipe.keys), i, value) : value}));
         this.follow(keys => {
-            input.value = get(keys);
-            told.textContent = short(get(keys));
+            input.value = key === 'material' ? material(keys)[i] : keys[key] ?? 0;
+            told.textContent = input.value;
         });
         return row(name, input, told);
     }
@@ -158,7 +166,7 @@ export class Panel {
             ['direction', 'from a direction']],
         value => recipe.set({light: value === 'direction' ? [-25, 35] : value}));
         const way = ['right', 'up'].map((name, i) => slider(`degrees of the light ${name}`, -90, 90, 1,
-            recipe, value => recipe.set({light: put(recipe.keys.light, i, value)})));
+            recipe, value => recipe.set({light: swap(recipe.keys.light, i, value)})));
         const ways = row('Right, up', ...way);
         const sparse = make('output', {className: 'faint'});
         this.engine.on('figures', figures => {
@@ -174,11 +182,12 @@ export class Panel {
             });
         });
         return section('Light and detail', false, shade, row('Light', light), ways,
-            ...['Ambient', 'Diffuse', 'Specular'].map((name, i) => this.strength(name, 1, 0.01,
-                keys => material(keys)[i], value => ({material: put(material(recipe.keys), i, value)}))),
-            ...[['Depth dark', 'depth-darkening', 1, 0.05], ['Occlusion', 'occlusion', 1, 0.05],
-                ['Threshold', 'threshold', 255, 1]].map(([name, key, high, step]) => this.strength(
-                name, high, step, keys => keys[key] ?? 0, value => ({[key]: value}))), sparse);
+            this.strength('Ambient', 'material', 1, 0.01, 0),
+            this.strength('Diffuse', 'material', 1, 0.01, 1),
+            this.strength('Specular', 'material', 1, 0.01, 2),
+            this.strength('Depth dark', 'depth-darkening', 1, 0.05),
+            this.strength('Occlusion', 'occlusion', 1, 0.05),
+            this.strength('Threshold', 'threshold', 255, 1), sparse);
     }
 
     camera() {
@@ -291,45 +300,41 @@ export class Panel {
         if (!page.info.overlay)
             return '';
         const on = this.box(page.info.overlay, keys => keys.overlay, value => recipe.set({overlay: value || null}));
-        const labels = () => this.labelled('overlay-', page.look?.overlay?.labels);
+        const over = {get: split, set: changes => {
+            const {preset = [], colormap, range, opacity} = {...split(recipe.keys), ...changes};
+            recipe.set({'overlay-look': [preset, colormap, range, opacity.map(point => point.join(':'))].filter(
+                String).join() || null});
+        }};
+        const labels = () => this.labelled(over, page.look?.overlay?.labels);
         // Half, as in slices where nothing is asked.
-        const list = this.switches('overlay-', labels, 0.5);
-        const maps = this.kept(select(['hot', ...page.info.colormaps.filter(name => name !== 'hot')],
-            name => recipe.set({'overlay-colormap': name})), keys => keys['overlay-colormap'] ?? 'hot');
-        const ends = ['lowest', 'highest'].map((name, i) => number(`${name} value of the range of the overlay`, value => {
-            const {low, high} = page.look.overlay;
-            this.setOverlay(i ? low : value, i ? value : high);
-        }));
-        const opacity = slider('opacity of the overlay', 0.02, 1, 0.02, recipe, value => {
-            const {low, high} = page.look.overlay;
-            if (labels().length)
-                recipe.set({'overlay-opacity': labels().map(([label, , , now]) => [label, now ? value : 0])});
-            else
-                this.setOverlay(low, high, value);
-        });
-        const values = make('div', {}, row('Colours', maps), row('Range', ...ends), button('Automatic', 'Opacity of the preset, or made from the histogram', () => recipe.set(
-                {'overlay-range': null, 'overlay-opacity': null})));
+        const list = this.switches(over, labels, 0.5);
+        const maps = this.kept(select(page.info.colormaps,
+            colormap => over.set({colormap})), keys => split(keys).colormap || 'hot');
+        // From nothing at the low end of a range on.  The next change may come before the
+        // server's look.
+        const spread = (to, opacity = this.most(over)) => {
+            const {low, high} = Object.assign(page.look.overlay, to);
+            if (low < high)
+                over.set({range: [low, high], opacity: opacity ? [[low, 0], [high, opacity]] : []});
+        };
+        const ends = ['lowest', 'highest'].map((name, i) => number(`${name} value of the range of the overlay`,
+            value => spread({[i ? 'high' : 'low']: value})));
+        const opacity = slider('opacity of the overlay', 0.02, 1, 0.02, recipe, value => labels().length
+            ? over.set({opacity: labels().map(([label, , , now]) => [label, now ? value : 0])}) : spread({}, value));
+        const values = make('div', {}, row('Colours', maps), row('Range', ...ends), button('Automatic', 'Opacity of the preset', () => over.set({range: [], opacity: []})));
         this.follow(keys => {
             const overlay = page.look?.overlay;
             values.hidden = !overlay || labels().length > 0;
             ends.forEach((field, i) => show(field, overlay ? short(i ? overlay.high : overlay.low) : ''));
-            opacity.value = this.most('overlay-opacity') || 0.5;
+            opacity.value = this.most(over) || 0.5;
         });
         return section('Overlay', true, on, list, row('Opacity', opacity), values);
     }
 
-    /** From nothing at the low end of a range on.  The next change may come before the
-     * server's look. */
-    setOverlay(low, high, opacity = this.most('overlay-opacity')) {
-        if (low < high)
-            this.recipe.set({'overlay-range': [low, high],
-                'overlay-opacity': opacity ? [[low, 0], [high, opacity]] : null});
-        Object.assign(this.page.look.overlay, {low, high});
-    }
-
     /** Labels of the volume itself. */
     named() {
-        const list = this.switches('', () => this.labelled('', this.page.look?.labels));
+        const {recipe} = this, own = {get: keys => keys, set: keys => recipe.set(keys)};
+        const list = this.switches(own, () => this.labelled(own, this.page.look?.labels));
         const made = section('Labels', true, list);
         this.follow(() => {
             made.hidden = !list.childElementCount;
@@ -337,26 +342,26 @@ export class Panel {
         return made;
     }
 
-    /** The largest opacity of the recipe. */
-    most(key) {
-        return Math.max(0, ...(this.recipe.keys[key] ?? []).map(point => point[1]));
+    /** The largest opacity of a look. */
+    most(of) {
+        return Math.max(0, ...(of.get(this.recipe.keys).opacity ?? []).map(point => point[1]));
     }
 
     /** Labels with the colours and opacities of the recipe, which may be newer than the
      * look. */
     labelled(of, labels = []) {
-        const {keys} = this.recipe, points = new Map(keys[`${of}opacity`]);
-        const colors = new Map(ownColors(keys[`${of}colormap`]));
+        const {opacity: given, colormap} = of.get(this.recipe.keys), points = new Map(given);
+        const colors = new Map(ownColors(colormap));
         return labels.map(([value, name, color, opacity]) =>
             [value, name, colors.get(value) ?? color, points.get(value) ?? opacity]);
     }
 
     /** A box for each label, that sets its opacity to 0 and back, and its colour. */
     switches(of, labels, usual = 1) {
-        const list = make('div', {}), {recipe} = this, key = `${of}opacity`, map = `${of}colormap`;
+        const list = make('div', {});
         const put = (i, on) => {
-            const full = this.most(key) || usual;
-            recipe.set({[key]: labels().map(([value, , , opacity], k) =>
+            const full = this.most(of) || usual;
+            of.set({opacity: labels().map(([value, , , opacity], k) =>
                 [value, (k === i ? on : opacity) ? full : 0])});
         };
         let names, boxes;
@@ -364,8 +369,8 @@ export class Panel {
             const now = labels(), called = now.map(([value, name]) => name || value);
             if (String(called) !== names) {
                 boxes = called.map((name, i) => ({...check(name, on => put(i, on)),
-                    color: ink(`colour of ${name}`, to => recipe.set({[`${of}preset`]: 'labels',
-                        [map]: painted(recipe.keys[map], labels()[i][0], to)}))}));
+                    color: ink(`colour of ${name}`, to => of.set({preset: 'labels',
+                        colormap: painted(of.get(this.recipe.keys).colormap, labels()[i][0], to)}))}));
                 list.replaceChildren(...boxes.map(({color, label}) => make('div', {className: 'row'}, color, label)));
             }
             names = String(called);
@@ -397,14 +402,13 @@ export class Panel {
             keys => keys.title ?? '');
         const time = this.kept(select([['', 'nothing'], ['time', 'time'], ['step', 'number of the step']],
             annotate => recipe.set({annotate: annotate || null})), keys => keys.annotate ?? '');
-        const boxes = [['letters of the sides', 'no-labels', null, true], ['colour bar', 'legend', true, null],
-            ['scale bar', 'legend', 'scale', null], ["edges of the volume's box", 'box', 'outline', null],
-            ['its axes, with numbers', 'box', 'axes', null]].map(([name, key, on, off]) => make('div', {},
-            this.box(name, ({[key]: now = null}) => now === on ||
-                on === true && now !== null && now !== 'scale', checked => {
+        const {legend = 'scale'} = recipe.keys; // its title is kept
+        const boxes = [['letters of the sides', 'no-labels', null, true],
+            ['colour bar', 'legend', legend === 'scale' || legend], ['scale bar', 'legend', 'scale'],
+            ["edges of the volume's box", 'box', 'outline'], ['its axes, with numbers', 'box', 'axes']].map(([name, key, on, off = null]) => make('div', {},
+            this.box(name, ({[key]: now = null}) => now === on, checked => {
                 recipe.set({[key]: checked ? on : off});
-                if (key === 'box')
-                    this.actions.fit(); // the box is larger
+                key === 'box' && this.actions.fit(); // it is larger
             })));
         const drawn = page.info.mask === undefined ? boxes.slice(0, 3) // by the kernel of a notebook
             : [...boxes, row('Title', title), row('Time', time)];

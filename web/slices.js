@@ -326,11 +326,10 @@ export class Slices {
 
     /** The volume that is shown: another crop, time, channel has other slices. */
     get data() {
-        const {crop, time, channel, component, labels, preset, colormap, scale, shift} = this.recipe.keys;
-        const overlay = ['', '-preset', '-colormap', '-range', '-opacity'].map(
-            end => this.recipe.keys[`overlay${end}`]);
-        return [crop, time, channel, component, labels, ...overlay,
-            this.keys.colored && [preset, colormap, scale, shift]];
+        const {crop, time, channel, component, labels, preset, colormap, scale, overlay,
+            'overlay-look': look} = this.recipe.keys;
+        return [crop, time, channel, component, labels, overlay, look,
+            this.keys.colored && [preset, colormap, scale]];
     }
 
     set(changes) {

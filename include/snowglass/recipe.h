@@ -35,7 +35,7 @@ typedef struct snow_recipe {
     bool log;          /* as in snow_look */
     const char *depth; /* path of the depths, or NULL */
     int fit, frames;   /* of the tool: 1 visible, 2 volume; in a turn, or 0 */
-    double shift, fps; /* as in snow_look; of the tool (25) */
+    double fps;        /* of the tool (25) */
     const char *verb, *version;       /* of the tool that wrote it, or NULL */
     bool scale_bar;                   /* without the colour bar of `legend` */
     const char *axis, *at;            /* of the tool's slice, or NULL */
@@ -43,11 +43,7 @@ typedef struct snow_recipe {
     const char *title, *legend_title; /* of the bar "name (unit)"; or NULL */
     const char *annotate, *box; /* "step", "time=FORMAT"; "axes"; or NULL */
     bool reread;                /* in situ: when the file changes */
-    const char *overlay, *overlay_preset, *overlay_colormap; /* or NULL */
-    snow_range overlay_range;
-    double overlay_low, overlay_high;
-    size_t overlay_opacity_count; /* 0: the preset's; 1 at NaN: a factor */
-    snow_opacity_point overlay_opacities[SNOW_RECIPE_POINTS_MAX];
+    const char *overlay, *overlay_look; /* of the tool, or NULL */
     const char *channels, *steps; /* of the tool: --channel, --time; or NULL */
 } snow_recipe;
 SNOW_RECORD(snow_recipe);

@@ -285,7 +285,6 @@ static int open_colors(slice_work *w) {
     automatic.mode = "over";
     bool asked = opts->preset || opts->tf || opts->colormap ||
                  opts->scale.log || opts->scale.symlog != 0 ||
-                 opts->shift != 0 ||
                  options_range(opts).kind != SNOW_RANGE_AUTO;
     int done = CONTINUE;
     if (w->channels.list.count)

@@ -225,7 +225,6 @@ snow_look look_options(const options *opts) {
                       .high = range.high,
                       .log = opts->scale.log,
                       .symlog = opts->scale.symlog,
-                      .shift = opts->shift,
                       .base = opts->loaded ? snow_look_file_look(opts->loaded)
                                            : NULL};
     /* Projections are grey by default, over the file's window or all values but

@@ -71,11 +71,7 @@ static const struct {
      "{'type': 'array', 'minItems': 1, 'maxItems': 256, 'items':"
      "{'type': 'array', 'minItems': 2, 'maxItems': 2, 'items':"
      "[{'type': 'number'}, {'type': 'number', 'minimum': 0, 'maximum': 1}]}}"},
-    {read_factor_points,
-     "{'anyOf': [{'type': 'number', 'minimum': 0, 'maximum': 1}, {'type':"
-     "'array', 'minItems': 1, 'maxItems': 256, 'items': {'type': 'array',"
-     "'minItems': 2, 'maxItems': 2, 'items': [{'type': 'number'},"
-     "{'type': 'number', 'minimum': 0, 'maximum': 1}]}}]}"},
+    {read_overlay_look, "{'type': 'string'}"},
     {read_light,
      "{'anyOf': [{'enum': ['key', 'head']}, {'type': 'array',"
      "'minItems': 2, 'maxItems': 2, 'items': {'type': 'number'}}]}"},

@@ -61,18 +61,6 @@ static void fill_look(const options *opts, snow_recipe *out) {
     out->opacity_per_voxel = !out->opacity_per_mm && opts->opacity_unit;
 }
 
-static void fill_overlay(const options *opts, snow_recipe *out) {
-    out->overlay = opts->overlay;
-    out->overlay_preset = opts->overlay_preset;
-    out->overlay_colormap = opts->overlay_colormap;
-    out->overlay_range = opts->overlay_range.kind;
-    out->overlay_low = opts->overlay_range.low;
-    out->overlay_high = opts->overlay_range.high;
-    out->overlay_opacity_count = opts->overlay_opacity.count;
-    memcpy(out->overlay_opacities, opts->overlay_opacity.points,
-           opts->overlay_opacity.count * sizeof *out->overlay_opacities);
-}
-
 static void fill_place(const place_value *place, double out[3]) {
     if (place->given)
         memcpy(out, place->at, sizeof place->at);
@@ -112,7 +100,8 @@ static void fill_recipe(const options *opts, const verb_row *verb,
     out->image.bits = options_bits(opts);
     fill_data(opts, out);
     fill_look(opts, out);
-    fill_overlay(opts, out);
+    out->overlay = opts->overlay;
+    out->overlay_look = opts->overlay_look.text;
     fill_view(opts, out);
     out->no_labels = opts->no_labels;
     out->legend = opts->legend.bar;
@@ -376,17 +365,17 @@ static void add_option(FILE *out, const char *key, const json_t *value) {
     }
     scratch.text_bytes = 0;
     snprintf(name, sizeof name, "--%s", key);
-    add_word(out, name);
-    if (json_is_true(value))
-        return;
-    const char *text = config_text(&scratch, key, value);
-    if (strcmp(key, "legend") != 0) { /* whose value may be left out */
-        add_word(out, name);
-        add_word(out, text ? text : "");
+    const char *text =
+        json_is_true(value) ? NULL : config_text(&scratch, key, value);
+    if (strcmp(key, "legend") == 0 && text) { /* a value that may be left out */
+        char whole[256];
+        snprintf(whole, sizeof whole, "%s=%s", name, text);
+        add_word(out, whole);
         return;
     }
-    snprintf(whole, sizeof whole, "%s=%s", name, text ? text : "");
-    add_word(out, whole);
+    add_word(out, name);
+    if (!json_is_true(value))
+        add_word(out, text ? text : "");
 }
 
 /* A file whose name begins with a dash is no option. */

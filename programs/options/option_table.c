@@ -293,17 +293,12 @@ const option_row option_table[] = {
      "draw a second volume in the first, at its place in the world: a "
      "segmentation, in colours by label, or values, as of a PET over a CT; in "
      "mode over (default: none)"},
-    {"overlay-preset", 0, "NAME", TOPIC_DATA, OVERLAID, read_preset,
-     FIELD(overlay_preset), 0, 0, "",
-     "as --preset, of the overlay (default: from its histogram, or labels)"},
-    {"overlay-colormap", 0, "NAME|LIST", TOPIC_DATA, OVERLAID, read_colormap,
-     FIELD(overlay_colormap), 0, 0, "", "as --colormap (default hot)"},
-    {"overlay-range", 0, "LO,HI|pLO,pHI|full", TOPIC_DATA, OVERLAID, read_range,
-     FIELD(overlay_range), 0, 0, "", "as --range (default: from its histogram)"},
-    {"overlay-opacity", 0, "F|V:O,V:O", TOPIC_DATA, OVERLAID, read_factor_points,
-     FIELD(overlay_opacity), 0, 0, "",
-     "as --opacity, or one factor from 0 to 1 for all its opacities, in a slice "
-     "the most that it covers (default: from its histogram; 1 for labels)"},
+    {"overlay-look", 0, "COLOURS[,RANGE[,OPACITY]]", TOPIC_DATA, OVERLAID, read_overlay_look,
+     FIELD(overlay_look), 0, 0, "",
+     "look of the overlay, of which any part may be left out: a preset, a colour map or "
+     "list as of --colormap, or both; a range as of --range; opacities as of --opacity, "
+     "or one factor from 0 to 1 for all, in a slice the most that it covers, such as "
+     "hot,2,12,0.6 or labels,3:#ff8800 (default: labels, or hot by its histogram)"},
     {"clip", 0, "A,B,C,D", TOPIC_DATA, INPUT, read_clip, FIELD(clip), 0, 0, "",
      "remove the voxels beyond a plane in world coordinates, where A x + B y + "
      "C z > D; up to six planes, in one list (default: none)"},

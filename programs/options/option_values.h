@@ -24,6 +24,15 @@ typedef struct range_value {
     double low, high;
 } range_value;
 
+/* The look of an overlay, of which any part may be left out. */
+typedef struct overlay_look {
+    const char *text;    /* as it was given; NULL: not */
+    const char *preset;  /* NULL: none */
+    char colormap[1024]; /* a name or a list; "": none */
+    range_value range;
+    point_list opacity;
+} overlay_look;
+
 /* A position or a direction in the world. */
 typedef struct place_value {
     bool given;
@@ -100,6 +109,9 @@ bool value_points(const char *text, point_list *out);
 /* Parses one factor, from 0 to 1; whether a list is one. */
 bool value_factor(const char *text, point_list *out);
 bool points_are_factor(const point_list *list);
+
+/* "hot,2,12,0.6": colours, range and opacities by their forms. */
+bool value_overlay_look(const char *text, overlay_look *out);
 
 /* True if `text` is one of the words of "a|b|c", in any case; "" is not a
  * choice. */

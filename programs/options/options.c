@@ -38,7 +38,6 @@ void options_init(options *out) {
         .mode = "over",
         .iso = NAN,
         .window = {NAN, NAN},
-        .opacity_unit = "voxel",
         .shade = "phong",
         .light = {settings.light},
         .material = {settings.ambient, settings.diffuse, settings.specular,

@@ -82,7 +82,6 @@ typedef struct options {
     scale_value scale;
     point_list opacities, gradient_opacities;
     double window[2]; /* width, centre; NaN: not given */
-    double shift;     /* of the look, in data units */
     range_value range;
     const char *opacity_unit; /* of a recipe; NULL: not given */
     const char *shade;
@@ -119,11 +118,11 @@ typedef struct options {
     int64_t crop[3][2];                      /* 0: the end */
     double clip[SNOW_CLIPS_MAX][4];          /* zeros: none */
     const char *mask, *labels, *label_table; /* NULL: not given */
-    const char *overlay, *overlay_preset, *overlay_colormap;
+    const char *overlay;
+    overlay_look overlay_look;
     const char *overlay_hidden; /* of a recipe; verbs that do not show it */
     bool overlay_picks;         /* `labels` are its, not the input's */
-    range_value overlay_range;
-    point_list overlay_opacity;
+    uint64_t seed;
 
     bool each_time; /* `time` is one of all steps, which are opened in turn */
 

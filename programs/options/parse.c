@@ -240,29 +240,6 @@ bool read_place(const option_row *row, const char *text, void *field,
     return true;
 }
 
-/* A week is more than a batch job lasts. */
-#define SECONDS_MOST (7 * 24 * 3600.0)
-
-bool read_seconds(const option_row *row, const char *text, void *field,
-                  char wrong[WRONG_BYTES]) {
-    char number[32];
-    double value;
-    size_t length = strlen(text);
-    char unit = length ? text[length - 1] : '\0';
-    double seconds = unit == 'h' ? 3600 : unit == 'm' ? 60 : 1;
-    (void)row;
-    if (unit == 'h' || unit == 'm' || unit == 's')
-        length--;
-    snprintf(number, sizeof number, "%.*s", (int)length, text);
-    if (length >= sizeof number || !value_real(number, &value) || value < 0 ||
-        value * seconds > SECONDS_MOST)
-        return parse_refuse(wrong,
-                            "is not a time of up to a week; give seconds, or "
-                            "a number with s, m or h, such as 30m");
-    *(double *)field = value * seconds;
-    return true;
-}
-
 /* The word scale is no title. */
 bool read_legend(const option_row *row, const char *text, void *field,
                  char wrong[WRONG_BYTES]) {

@@ -36,7 +36,7 @@ option_read read_view;            /* const char * */
 option_read read_color;           /* color_value */
 option_read read_range;           /* range_value */
 option_read read_points;          /* point_list */
-option_read read_factor_points;   /* point_list */
+option_read read_overlay_look;    /* overlay_look */
 option_read read_gradient_points; /* point_list */
 option_read read_light;           /* light_value */
 option_read read_legend;          /* legend_value */

@@ -120,16 +120,16 @@ bool read_points(const option_row *row, const char *text, void *field,
     return true;
 }
 
-bool read_factor_points(const option_row *row, const char *text, void *field,
-                        char wrong[WRONG_BYTES]) {
+bool read_overlay_look(const option_row *row, const char *text, void *field,
+                       char wrong[WRONG_BYTES]) {
     (void)row;
-    if (!value_factor(text, field) && !value_points(text, field))
+    if (!value_overlay_look(text, field))
         return parse_refuse(
             wrong,
-            "is neither a factor from 0 to 1, such as 0.6, nor control points; "
-            "give VALUE:OPACITY pairs, values rising, opacities 0 to 1, at "
-            "most "
-            "256, such as 80:0,200:0.5");
+            "is not a look; give COLOURS,RANGE,OPACITY, each or none of "
+            "them: a preset or colour map, two values or percentiles or "
+            "full, and a factor from 0 to 1 or VALUE:OPACITY pairs, such "
+            "as hot,2,12,0.6");
     return true;
 }
 

@@ -21,12 +21,9 @@ int layers_check_file(const char *path) {
 }
 
 int layers_check(const options *opts) {
-    const bool alone = !opts->overlay_preset && !opts->overlay_colormap &&
-                       opts->overlay_range.kind == SNOW_RANGE_AUTO &&
-                       !opts->overlay_opacity.count;
-    if (!opts->overlay && !alone)
-        return fail_usage("--overlay-preset, -range, -opacity and -colormap: "
-                          "are of an overlay; give --overlay FILE too");
+    if (!opts->overlay && opts->overlay_look.text)
+        return fail_usage("--overlay-look: is of an overlay; give --overlay "
+                          "FILE too");
     const int done = layers_check_file(opts->overlay);
     if (done != CONTINUE)
         return done;
@@ -52,9 +49,8 @@ void layers_leave_out(options *opts) {
         opts->labels = NULL;
     if (opts->overlay)
         opts->label_table = NULL;
-    opts->overlay = opts->overlay_preset = opts->overlay_colormap = NULL;
-    opts->overlay_range = (range_value){.kind = SNOW_RANGE_AUTO};
-    opts->overlay_opacity.count = 0;
+    opts->overlay = NULL;
+    opts->overlay_look = (overlay_look){.text = NULL};
     opts->overlay_picks = false;
 }
 
@@ -96,12 +92,13 @@ static snow_opacity_point *scale_points(const snow_transfer *transfer,
 
 static snow_status make_look(const options *opts, const snow_volume *of,
                              layers *l) {
-    const range_value range = opts->overlay_range;
-    const point_list *asked = &opts->overlay_opacity;
+    const overlay_look *given = &opts->overlay_look;
+    const range_value range = given->range;
+    const point_list *asked = &given->opacity;
     const bool factor = points_are_factor(asked);
     snow_look look = {.size = sizeof look,
-                      .preset = opts->overlay_preset,
-                      .colormap = opts->overlay_colormap,
+                      .preset = given->preset,
+                      .colormap = *given->colormap ? given->colormap : NULL,
                       .range = range.kind,
                       .low = range.low,
                       .high = range.high};

@@ -45,8 +45,8 @@ void layers_drop_volume(layers *l);
 void layers_drop_look(layers *l);
 
 /* Lays its slice over the picture of a slice of the volume, which is replaced:
- * with the opacities of --overlay-opacity, else with those of its look, of
- * which the largest becomes 1/2, or the factor of --overlay-opacity. */
+ * with the opacities of --overlay-look, else with those by its values, of
+ * which the largest becomes 1/2, or the factor of --overlay-look. */
 snow_status layers_lay_slice(const options *opts, const layers *l,
                              int64_t index, const snow_view *view,
                              const snow_settings *settings,

@@ -9,7 +9,7 @@
 /* What its opacities are multiplied by: opacities of sheets say little of a
  * single one.  A factor is the most that it covers. */
 static double cover_of(const options *opts, const snow_transfer *transfer) {
-    const point_list *asked = &opts->overlay_opacity;
+    const point_list *asked = &opts->overlay_look.opacity;
     const bool factor = points_are_factor(asked);
     const bool labels = snow_transfer_label(transfer, 0);
     const double cover = factor ? asked->points[0].opacity : COVER;

@@ -18,7 +18,7 @@ Keys = Mapping[str, Any]
 #: file.
 SETTABLE = frozenset("""
 size background mode iso threshold preset colormap scale opacity
-gradient-opacity range shift window opacity-unit shade light material
+gradient-opacity range window opacity-unit shade light material
 depth-darkening occlusion view azimuth elevation roll zoom perspective fit
 position target up no-labels legend crop channel component labels clip
 time""".split())

@@ -25,7 +25,7 @@ ARRAY = ("affine", "medical", "slope", "intercept", "copy", "frozen", "memory")
 OVERLAY = ("preset", "colormap", "range", "opacity")
 #: Keys of the file of a picture and of other verbs, which are left out.
 OTHERS = ("output", "depth", "overwrite", "background", "bits", "frames", "fps",
-          "verb", "version", "shift", "title", "annotate", "box")
+          "verb", "version", "title", "annotate", "box")
 #: What need not be said; some of it the command line has no words for.
 USUAL = {"azimuth": 0, "elevation": 0, "roll": 0, "perspective": 0, "zoom": 1,
          "fit": "visible", "threads": 0, "opacity_length": 0}
@@ -94,8 +94,43 @@ def _overlay_keys(overlay: Any, look: Any) -> dict[str, Any]:
     if others:
         raise ValueError(f"{', '.join(others)} of overlay_look: a recipe knows "
                          f"only {', '.join(OVERLAY)}")
+    parts = [keys[name] if isinstance(keys[name], str) else
+             ",".join(":".join(_word("", part) for part in _plain(each))
+                      if hasattr(each, "__len__") and not isinstance(each, str)
+                      else _word("", _plain(each)) for each in keys[name])
+             for name in OVERLAY if name in keys]
     return {"overlay": os.fspath(overlay),
-            **{"overlay_" + name: value for name, value in keys.items()}}
+            **({"overlay_look": ",".join(parts)} if parts else {})}
+
+
+def _overlay_look(text: str) -> Look:
+    """The look of the option's text: what a part between commas is, its form
+    says."""
+    from . import presets
+    known = {name.lower() for name in presets()}
+    names: list[str] = []
+    colors: list[str] = []
+    ends: list[str] = []
+    points: list[tuple[float, float]] = []
+    for part in text.split(","):
+        number = part[1:] if part[:1] == "p" else part
+        if ":#" in part:
+            colors.append(part)
+        elif ":" in part:
+            value, opacity = part.split(":")
+            points.append((float(value), float(opacity)))
+        elif part == "full" or number.strip("0123456789+-.e") == "":
+            ends.append(part)
+        else:
+            names.append(part)
+    if len(ends) % 2 and ends != ["full"]:
+        raise ValueError("a recipe with one factor in overlay-look cannot be "
+                         "drawn here; use the command line, or give points")
+    preset = names.pop(0) if names and names[0].lower() in known else None
+    low_high: Any = None if not ends else "full" if ends == ["full"] else \
+        _range_look(ends) if ends[0][:1] == "p" else tuple(map(float, ends))
+    return Look(preset=preset, colormap=",".join([*names, *colors]) or None,
+                range=low_high, opacity=points or None)
 
 
 def length_of_mm(unit: str) -> float:
@@ -186,17 +221,11 @@ def split(options: Mapping[str, Any]) -> tuple[
     if "tf" in given:
         raise ValueError("a recipe with a file of a look (tf) cannot be drawn "
                          "here; use the command line")
-    second = {name: _range_look(value) if name == "range" else value
-              for name in OVERLAY
-              if (value := given.pop("overlay_" + name, None)) is not None}
     if given.get("overlay") and "labels" in data:
         raise ValueError("a recipe with an overlay and labels cannot be drawn "
                          "here; use the command line")
-    if isinstance(second.get("opacity"), (int, float)):
-        raise ValueError("a recipe with one factor as overlay-opacity cannot be "
-                         "drawn here; use the command line, or give points")
-    if second:
-        given["overlay_look"] = Look(**second)
+    if isinstance(given.get("overlay_look"), str):
+        given["overlay_look"] = _overlay_look(given["overlay_look"])
     if isinstance(given.get("depth"), bool):
         data_depth = {"depth": given["depth"]}
     else:

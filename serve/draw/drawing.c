@@ -22,13 +22,10 @@ static const char *const data_keys[] = {"crop", "component", "labels", "clip",
 static const char *const base_keys[] = {
     "crop", "channel", "component", "labels", "time", "mask", NULL};
 static const char *const overlay_keys[] = {"overlay", "labels", "time", NULL};
-static const char *const overlay_look_keys[] = {
-    "overlay-preset", "overlay-colormap", "overlay-range", "overlay-opacity",
-    NULL};
+static const char *const overlay_look_keys[] = {"overlay-look", NULL};
 static const char *const look_keys[] = {
     "preset", "colormap", "scale", "opacity", "gradient-opacity",
-    "range",  "window",   "shift", "mode",    "channel",
-    NULL};
+    "range",  "window",   "mode",  "channel", NULL};
 
 /* The smallest side of a draft that is drawn in a hurry. */
 #define SIDE_LEAST 64

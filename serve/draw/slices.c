@@ -104,8 +104,7 @@ static void take_channels(const drawing *d, const slice_asked *asked,
 static json_t *slice_tree(const drawing *d, const slice_asked *asked) {
     static const char *const unwanted[] = {"clip", "size", "background",
                                            "window", "opacity"};
-    static const char *const colors[] = {"preset", "tf", "colormap", "scale",
-                                         "shift"};
+    static const char *const colors[] = {"preset", "tf", "colormap", "scale"};
     json_t *tree = json_copy(d->tree);
     const char *kernel = json_string_value(json_object_get(tree, "kernel"));
     for (size_t i = 0; i < sizeof unwanted / sizeof *unwanted; i++)

@@ -144,10 +144,7 @@ const recipe_key recipe_keys[] = {
     MADE("labels", labels, data.labels, 0, 0, 0),
     TEXT("label-table", data.label_table),
     TEXT("overlay", overlay),
-    KNOWN("overlay-preset", overlay_preset, preset_name, snow_preset_from_name),
-    KNOWN("overlay-colormap", overlay_colormap, colormap_name, snow_colormap_from_name),
-    MADE("overlay-range", range, overlay_range, 0, 0, 0),
-    MADE("overlay-opacity", points, overlay_opacity_count, 0, 1, 0),
+    TEXT("overlay-look", overlay_look),
     MADE("clip", clip, data.clip, 0, 0, 4),
     MADE("time", time, steps, -9e15, 9e15, 0),
     MADE("frames", int, frames, 1, 1000000, 0),
@@ -165,6 +162,8 @@ const recipe_key recipe_keys[] = {
 
 #define MATERIAL "\"material\": [ambient, diffuse, specular, shininess]"
 
+#define OVERLAY "\"overlay-look\": \"COLOURS[,RANGE[,OPACITY]]\""
+
 const char *recipe_renamed(const char *name) {
     static const char *const rows[][2] = {
         {"axes", "\"box\": \"axes\""},
@@ -175,6 +174,10 @@ const char *recipe_renamed(const char *name) {
         {"level", "\"window\": [width, centre]"},
         {"log", "\"scale\": \"log\""},
         {"outline", "\"box\": \"outline\""},
+        {"overlay-colormap", OVERLAY},
+        {"overlay-opacity", OVERLAY},
+        {"overlay-preset", OVERLAY},
+        {"overlay-range", OVERLAY},
         {"scale-bar", "\"legend\": \"scale\""},
         {"shininess", MATERIAL},
         {"specular", MATERIAL},

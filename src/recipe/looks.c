@@ -140,19 +140,11 @@ static bool read_point(const json_t *pair, const snow_opacity_point *before,
            (!before || out->value >= before->value);
 }
 
-/* Where the key has limits, those of one factor for all opacities, which is the
- * opacity of a point at NaN. */
 static bool read_points(const recipe_key *key, const json_t *value, void *field,
                         char wrong[WRONG_BYTES]) {
     snow_opacity_point *points = points_of(field);
     size_t count = json_array_size(value);
-    if (key->high > 0 && json_is_number(value)) {
-        if (!recipe_read_real(key, value, &points[0].opacity, wrong))
-            return false;
-        points[0].value = NAN;
-        *(size_t *)field = 1;
-        return true;
-    }
+    (void)key;
     bool good = count > 0 && count <= SNOW_RECIPE_POINTS_MAX;
     for (size_t i = 0; i < count && good; i++)
         good = read_point(json_array_get(value, i), i ? points + i - 1 : NULL,
@@ -170,8 +162,7 @@ static json_t *write_points(const recipe_key *key, const void *field) {
     const snow_opacity_point *points = points_of(field);
     if (!count)
         return NULL;
-    if (key->high > 0 && isnan(points[0].value))
-        return json_real(points[0].opacity);
+    (void)key;
     json_t *array = json_array();
     for (size_t i = 0; i < count; i++)
         json_array_append_new(

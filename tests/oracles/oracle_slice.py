@@ -345,22 +345,21 @@ overlaid("labels over a slice", ("cells.nrrd",), INKS[flat], 0.5 * seen)
 overlaid("one of them", ("cells.nrrd", "--labels", "2"), INKS[flat],
          0.5 * (flat == 2)[..., None])
 overlaid("as opaque as is asked",
-         ("cells.nrrd", "--overlay-opacity", "1:0.25,2:1"), INKS[flat],
+         ("cells.nrrd", "--overlay-look", "1:0.25,2:1"), INKS[flat],
          np.array([0, 0.25, 1])[flat][..., None])
 both, once = 1 + cells % 2, grey
 nrrd("both.nrrd", both, "Segment0_LabelValue:=1\nSegment0_Color:=1 0 0\n"
      "Segment1_LabelValue:=2\nSegment1_Color:=0 0.2 1\n")
 grey = np.kron(grey, np.ones((4, 4)))
 overlaid("enlarged, labels do not mix",
-         ("both.nrrd", "--overlay-opacity", "1:1,2:1", "-s", "48x56"),
+         ("both.nrrd", "--overlay-look", "1:1,2:1", "-s", "48x56"),
          INKS[np.kron(plane(both, 2, 5), np.ones((4, 4), int))], 1.0)
 grey = once
 dose = (random.random(VOXELS.shape) * 40).astype(np.float32)
 nrrd("dose.nrrd", dose)
 flat = plane(dose, 2, 5).astype(float)[..., None]
 overlaid("values over a slice",
-         ("dose.nrrd", "--overlay-colormap", "red", "--overlay-range", "10,30",
-          "--overlay-opacity", "10:0,30:0.8"),
+         ("dose.nrrd", "--overlay-look", "red,10,30,10:0,30:0.8"),
          np.clip((flat - 10) / 20, 0, 1) * [1, 0, 0],
          np.clip((flat - 10) / 20, 0, 1) * 0.8)
 done = run(path, "--overlay", "cells.nrrd")

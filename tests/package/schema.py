@@ -48,7 +48,7 @@ CASES = [
     {"range": [0, 9]}, {"range": ["p1", "p99"]}, {"range": "full"},
     {"range": "auto"}, {"range": [0]}, {"range": ["p1", 3]},
     {"window": 100}, {"window": [100, 50]}, {"window": [100]},
-    {"shift": -3.5}, {"shift": "3"}, {"verb": "render"}, {"version": "0.1.0"},
+    {"verb": "render"}, {"version": "0.1.0"},
     {"version": True}, {"fps": 1000}, {"fps": 0}, {"allow-gaps": False},
     {"input": ["phantom:shells"]}, {"input": 3}, {"opacity-unit": "mm"},
     {"opacity-unit": "cm"}, {"shade": "none"}, {"light": "head"},

@@ -233,7 +233,7 @@ class Channels(unittest.TestCase):
         look = sg.Look(opacity=[(100, 0), (200, 1)])
         self.same(volume.render(size=80, overlay=labels, overlay_look=look),
                   "render", self.file, "-s", "80", "--overlay", labels,
-                  "--overlay-opacity", "100:0,200:1")
+                  "--overlay-look", "100:0,200:1")
         words = ["render", self.file, "-s", "80", "--clip", "1,0,0,4"]
         clipped = sg.Volume(self.file, clip=[(1, 0, 0, 4)])
         self.same(clipped.render(size=80), *words)

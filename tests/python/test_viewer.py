@@ -266,7 +266,7 @@ class Viewers(unittest.TestCase):
         _, page = self.open(self.head(), size=(64, 64))
         page.rest()
         shape = dict.fromkeys(("colormap", "opacity", "gradient_opacity",
-                               "range", "shift", "scale"))  # as panel.js does
+                               "range", "scale"))  # as panel.js does
         for preset in ("ct-bone", None):
             n = page.set(**shape, preset=preset)
             page.rest(n)

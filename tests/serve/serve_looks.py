@@ -61,8 +61,6 @@ page.hear_picture(2)
 drag(page, 10, "a range", True, {"range": [10, 200]}, {"range": [30, 180]}, (30, 180))
 drag(page, 20, "a window", True, {"window": [100, 90]},
      {"window": [120, 80]}, (20, 140))
-drag(page, 30, "under a shift", True, {"shift": 5, "range": [10, 200]},
-     {"range": [30, 180]}, (35, 185))
 drag(page, 40, "the first range", False, {"azimuth": 3}, {"range": [30, 180]}, (30, 180))
 page.close()
 server.stop()

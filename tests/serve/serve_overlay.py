@@ -134,12 +134,12 @@ def only_values():
     server = Server("ct.nrrd", "--overlay", "turned.nrrd", "-q", "-j", "2")
     page = Page(server)
     is_of_command(page, "a picture", 1, size=[64, 60])
-    page.say({"t": "set", "n": 2, "recipe": {"overlay-opacity": 0.5}})
+    page.say({"t": "set", "n": 2, "recipe": {"overlay-look": "0.5"}})
     said = page.hear_text("said")["text"]
-    check("a factor is refused", '"overlay-opacity"' in said, said)
+    check("a factor is refused", '"overlay-look"' in said, said)
     is_of_command(page, "and not kept", 3, azimuth=20)
     is_of_command(page, "opacities at labels are taken", 4,
-                  **{"overlay-opacity": [[1, 0.5], [2, 0]]})
+                  **{"overlay-look": "1:0.5,2:0"})
     page.close()
     server.stop()
 

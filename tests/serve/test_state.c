@@ -101,7 +101,8 @@ static void a_wrong_set_changes_nothing(void **state) {
     static const char *const wrong[] = {
         "{\"azimuth\":2,\"zoom\":\"large\"}",
         "{\"azimuth\":2,\"time\":\"2:4\"}", "{\"azimuth\":2,\"preset\":7}",
-        "{\"azimuth\":2,\"overlay-opacity\":0.5}"};
+        "{\"azimuth\":2,\"overlay-look\":\"0.5\"}",
+        "{\"azimuth\":2,\"overlay-look\":\"hot,5,\"}"};
     viewer_state *s = state_of("{\"azimuth\":1}");
     uint32_t first = state_revision(s);
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {

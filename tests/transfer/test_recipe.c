@@ -173,13 +173,11 @@ static void other_kinds_of_values_are_kept(void **state) {
     (void)state;
     snow_context *context = support_context();
     snow_recipe r = {.size = sizeof r};
-    assert_int_equal(parse(context, "{\"overlay-opacity\": 0.5}", &r),
+    assert_int_equal(parse(context, "{\"overlay-look\": \"hot,0.5\"}", &r),
                      SNOW_STATUS_OK);
-    assert_int_equal(r.overlay_opacity_count, 1);
-    assert_true(isnan(r.overlay_opacities[0].value));
-    assert_true(r.overlay_opacities[0].opacity == 0.5);
+    assert_string_equal(r.overlay_look, "hot,0.5");
     char *text = write_text(context, &r);
-    assert_non_null(strstr(text, "\"overlay-opacity\": 0.5"));
+    assert_non_null(strstr(text, "\"overlay-look\": \"hot,0.5\""));
     free(text);
     snow_recipe_clear(&r);
     assert_int_equal(parse(context, "{\"time\": \"2:8\"}", &r), SNOW_STATUS_OK);
@@ -208,7 +206,7 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"opacity\": []}", "\"opacity\" must be"},
         {"{\"opacity\": 0.5}", "\"opacity\" must be"},
         {"{\"time\": 0.5}", "\"time\" must be a number, or a text"},
-        {"{\"overlay-opacity\": 1.5}", "\"overlay-opacity\" must be a number"},
+        {"{\"overlay-opacity\": 1}", "\"overlay-opacity\" is now"},
         {"{\"range\": [2, 1]}", "\"range\" must be"},
         {"{\"range\": [\"p1\", 3]}", "\"range\" must be"},
         {"{\"range\": [\"p1\", \"p101\"]}", "\"range\" must be"},

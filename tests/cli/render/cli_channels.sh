@@ -320,7 +320,7 @@ run 0 "the last ones" "$TOOL" render ten.tif -o last.png -s 60x50 --channel 9:re
 says 'channels 9 red [0-9.]+, 8 green [0-9.]+; '
 check "without a note" [ "$(grep -c note "$ERR")" = 0 ]
 
-run 0 "an overlay" render ome.tif --overlay third.nrrd --overlay-opacity 100:0,200:1 -o over.png
+run 0 "an overlay" render ome.tif --overlay third.nrrd --overlay-look 100:0,200:1 -o over.png
 check "is seen too" [ -n "$(cmp over.png all.png)" ]
 
 run 0 "colours of voxels" "$TOOL" render rgb.nii -o rgb.png -s 40x40 --background '#000' --no-labels

@@ -50,30 +50,30 @@ for over in seg.nrrd pet.nrrd; do
     points=$(sed -n 's/.*overlay .*; opacity \(.*\) (from.*/\1/p' "$ERR" |
         awk -F ', ' '{for (n = 1; n <= NF; n++) {split($n, p, " at ")
             printf "%s%s:%.9g", (n > 1) ? "," : "", p[2], 0.5 * p[1]}}')
-    run 0 "times 1" render w.nrrd --overlay $over --overlay-opacity 1 -o b.npy
+    run 0 "times 1" render w.nrrd --overlay $over --overlay-look 1 -o b.npy
     check "is the same" cmp -s a.npy b.npy
-    run 0 "times 0.5" render w.nrrd --overlay $over --overlay-opacity 0.5 -o c.npy \
+    run 0 "times 0.5" render w.nrrd --overlay $over --overlay-look 0.5 -o c.npy \
         --save-config half.json
     check "is another" [ -n "$(cmp a.npy c.npy)" ]
     run 0 "half at each point" render w.nrrd --overlay $over -o d.npy \
-        --overlay-opacity "${points:-1:0.5,3:0.5}"
+        --overlay-look "${points:-1:0.5,3:0.5}"
     check "is the same too" cmp -s c.npy d.npy
-    check "is kept" grep -q '"overlay-opacity": 0.5[,}]' half.json
+    check "is kept" grep -q '"overlay-look": "0.5"' half.json
     cp c.npy half.npy
     run 0 "its configuration" "$TOOL" --config half.json -q -y
     check "gives it again" cmp -s c.npy half.npy
     run 0 "a slice" "$TOOL" slice w.nrrd --overlay $over -q -o full.png
     run 0 "half of it" "$TOOL" slice w.nrrd --overlay $over -q -o half.png \
-        --overlay-opacity 0.5
+        --overlay-look 0.5
     check "is what it is by itself" cmp -s full.png half.png
     run 0 "less of it" "$TOOL" slice w.nrrd --overlay $over -q -o less.png \
-        --overlay-opacity 0.25
+        --overlay-look 0.25
     check "is fainter" [ -n "$(cmp full.png less.png)" ]
     rm ./*.npy full.png half.png less.png half.json
 done
 "$TOOL" convert w.nrrd -o w.npy -q
-refused 2 "a factor of more than 1" 'is neither a factor from 0 to 1, such as 0.6, nor' \
-    "$TOOL" render w.nrrd --overlay seg.nrrd -o z.png --overlay-opacity 1.5
+refused 2 "a factor of more than 1" 'is not a look; give COLOURS,RANGE,OPACITY' \
+    "$TOOL" render w.nrrd --overlay seg.nrrd -o z.png --overlay-look 1.5
 echo '{"input": "w.nrrd", "opacity": 0.5}' >f.json
 refused 3 "one of the volume itself" '"opacity" must be \[\[value' \
     "$TOOL" render --config f.json -o z.png
@@ -99,7 +99,7 @@ def write(name, value):
 write("base.nii", lambda x, y, z, t: 40 + 9 * x + 3 * y + z + 20 * t)
 write("over.nii", lambda x, y, z, t: 200 * (4 * t <= x < 4 * t + 4))
 END
-steps="--colormap grey --range 40,250 --opacity 40:0.1,250:0.4 --overlay-range 20,200 --overlay-opacity 20:0,200:0.5"
+steps="--colormap grey --range 40,250 --opacity 40:0.1,250:0.4 --overlay-look 20,200,20:0,200:0.5"
 
 run 0 "without" render w.nrrd -o none.npy
 run 0 "labels" render w.nrrd --overlay seg.nrrd -o a.npy
@@ -122,8 +122,7 @@ run 0 "with an overlay" render w.nrrd --overlay seg.nrrd --method raycast \
     -o y.npy --depth y_depth.npy
 check "is the volume's" cmp -s x_depth.npy y_depth.npy
 run 0 "values" "$TOOL" render w.nrrd --overlay pet.nrrd -o f.png -s 60x50 \
-    --overlay-colormap viridis --overlay-range 50,200 \
-    --overlay-opacity 50:0,200:0.3 --save-config c.json
+    --overlay-look viridis,50,200,50:0,200:0.3 --save-config c.json
 check "are resampled" grep -q "another grid .*linear" "$ERR"
 check "have their look" grep -q "overlay pet.nrrd: viridis 50..200; opacity 0 at 50" "$ERR"
 run 0 "from a file" "$TOOL" render --config c.json -o g.png -q
@@ -134,7 +133,7 @@ check "turns both" [ -n "$(cmp t_0.png t_1.png)" ]
 
 # What a legend explains: labels of the overlay, or a bar for each volume.
 for over in seg.nrrd pet.nrrd; do
-    clear="--overlay $over --overlay-opacity 0 -s 200"
+    clear="--overlay $over --overlay-look 0 -s 200"
     # shellcheck disable=SC2086
     run 0 "$over, clear" render w.nrrd $clear -o clear.png
     run 0 "is not seen" render w.nrrd -s 200 -o plain.png
@@ -293,8 +292,8 @@ check "is that without one, through a pipe" cmp -s placed.png placeless.png
 refused 3 "one of other voxels" 'the overlay has 16x14x15 voxels' \
     "$TOOL" slice w.npy -o z.png --overlay pet.nrrd
 
-refused 2 "a look of none" 'are of an overlay; give --overlay FILE too' \
-    "$TOOL" render w.nrrd -o z.png --overlay-range 1,2
+refused 2 "a look of none" 'is of an overlay; give --overlay FILE too' \
+    "$TOOL" render w.nrrd -o z.png --overlay-look 1,2
 mkfifo pipe
 refused 2 "a pipe" 'pipe: an overlay is read from a file; write it to one' \
     "$TOOL" render w.nrrd -o z.png --overlay pipe --labels 1
