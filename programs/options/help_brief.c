@@ -63,8 +63,9 @@ static const struct {
       "snowglass movie heart.nii.gz -o heart.gif --fps 10 --annotate step"}},
     {VERB_SERVE,
      {"snowglass serve head.nii.gz",
-      "snowglass serve ct.nrrd --preset ct-bone --port 8000",
-      "snowglass serve run.nrrd --socket $XDG_RUNTIME_DIR/snowglass.sock"}},
+      "snowglass serve ct.nrrd --preset ct-bone --listen :8000",
+      "snowglass serve run.nrrd --listen "
+      "unix:$XDG_RUNTIME_DIR/snowglass.sock"}},
     {VERB_EXPORT,
      {"snowglass export head.html head.nii.gz",
       "snowglass export knee.html dicom/ --preset ct-bone",

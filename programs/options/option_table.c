@@ -374,15 +374,12 @@ const option_row option_table[] = {
      "end the job if a rank neither sends nor waits for this long, and name "
      "the rank; 0 waits forever (default 300)"},
 
-    {"port", 0, "N", TOPIC_MORE, SERVE, read_integer, FIELD(port), 0, 65535, "",
-     "TCP port of the viewer (default 0: a free one, which is printed)"},
-    {"socket", 0, "PATH", TOPIC_MORE, SERVE, read_text, FIELD(socket), 0, 0, "",
-     "listen on a Unix socket that only its owner can open, in place of a port; "
-     "for ssh -L 8000:PATH on machines that others use too"},
-    {"listen", 0, "ADDRESS", TOPIC_MORE, SERVE, read_text, FIELD(listen), 0, 0,
-     "",
-     "listen on this address of the machine, without encryption (default: "
-     "127.0.0.1 and ::1, which only this machine can reach)"},
+    {"listen", 0, "[ADDRESS]:PORT|unix:PATH", TOPIC_MORE, SERVE, read_listen,
+     FIELD(listen), 0, 65535, "",
+     "where the viewer listens: on a TCP port of this machine alone (:8000); on one of "
+     "its addresses, without encryption (10.0.0.17:8000, or 10.0.0.17 for a free port); "
+     "or on a Unix socket that only its owner can open, for ssh -L 8000:PATH (default "
+     ":0, a free port of 127.0.0.1 and ::1, which is printed)"},
     {"allow-host", 0, "NAME,...", TOPIC_MORE, SERVE, read_text,
      FIELD(allow_host), 0, 0, "",
      "names, with their ports, under which a proxy or a tunnel shows the "
@@ -443,7 +440,7 @@ const verb_row verb_table[] = {
     {"tf", VERB_TF, -1,
      "list | show NAME|FILE [-o OUT.png] | convert IN -o OUT",
      "list, show and convert transfer functions"},
-    {"serve", VERB_SERVE, -1, "[INPUT] [--port N]",
+    {"serve", VERB_SERVE, -1, "[INPUT] [--listen :PORT]",
      "show a volume in a browser"},
     {"export", VERB_EXPORT, 2, "OUT.html INPUT",
      "make a page that shows a volume without a server"},

@@ -51,6 +51,13 @@ typedef struct scale_value {
     double symlog; /* 0: not; -1: from where it suits */
 } scale_value;
 
+/* Where the viewer listens. */
+typedef struct listen_value {
+    char address[64]; /* as numbers; "": this machine alone */
+    int port;         /* 0: a free one */
+    const char *path; /* of a Unix socket; NULL: a port */
+} listen_value;
+
 /* What explains the colours and lengths of a picture. */
 typedef struct legend_value {
     bool bar, scale;           /* colours; lengths */
@@ -112,6 +119,9 @@ bool points_are_factor(const point_list *list);
 
 /* "hot,2,12,0.6": colours, range and opacities by their forms. */
 bool value_overlay_look(const char *text, overlay_look *out);
+
+/* "ADDRESS:PORT", "[ADDRESS]:PORT", ":PORT", "ADDRESS" or "unix:PATH". */
+bool value_listen(const char *text, listen_value *out);
 
 /* True if `text` is one of the words of "a|b|c", in any case; "" is not a
  * choice. */

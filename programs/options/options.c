@@ -194,8 +194,8 @@ static int refuse_foreign(const option_row *row, const verb_row *verb) {
  * compare without regard to case, or take names of files. */
 static bool has_small_letters(const option_row *row) {
     static option_read *const readers[] = {
-        read_choice,  read_method, read_component, read_size,   read_dims,
-        read_spacing, read_range,  read_scale,     read_kernel, read_combine};
+        read_choice, read_component, read_size,   read_dims,   read_spacing,
+        read_range,  read_scale,     read_kernel, read_combine};
     for (size_t i = 0; i < sizeof readers / sizeof *readers; i++)
         if (row->read == readers[i])
             return true;

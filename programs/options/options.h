@@ -122,14 +122,11 @@ typedef struct options {
     overlay_look overlay_look;
     const char *overlay_hidden; /* of a recipe; verbs that do not show it */
     bool overlay_picks;         /* `labels` are its, not the input's */
-    uint64_t seed;
 
     bool each_time; /* `time` is one of all steps, which are opened in turn */
 
     const char *axis, *at;  /* of a slice; NULL: not given */
-    int64_t port;           /* of the viewer; 0: a free one */
-    const char *socket;     /* NULL: a port */
-    const char *listen;     /* address; NULL: this machine alone */
+    listen_value listen;    /* of the viewer */
     const char *allow_host; /* names, separated by commas; NULL: none */
     const char *embed;      /* origins, separated by commas; NULL: none */
     const char *token_file; /* NULL: none */

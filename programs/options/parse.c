@@ -322,3 +322,13 @@ bool read_combine(const option_row *row, const char *text, void *field,
         return parse_refuse(wrong, "has a number; only radix has one");
     return read_numbered(row, text, field, &out->radix, wrong);
 }
+
+bool read_listen(const option_row *row, const char *text, void *field,
+                 char wrong[WRONG_BYTES]) {
+    (void)row;
+    if (!value_listen(text, field))
+        return parse_refuse(wrong, "is no place to listen; give a port such as "
+                                   ":8000, ADDRESS:PORT, [ADDRESS]:PORT, or "
+                                   "unix:PATH");
+    return true;
+}

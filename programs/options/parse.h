@@ -9,7 +9,6 @@ option_read read_text;      /* const char * */
 option_read read_flag;      /* bool: true */
 option_read read_constant;  /* int: the row's lower limit */
 option_read read_choice;    /* const char *: one of the row's choices */
-option_read read_method;    /* const char *: one of them, or an alias */
 option_read read_kernel;    /* const char *, and options.footprint */
 option_read read_combine;   /* const char *, and options.radix */
 option_read read_real;      /* double within low..high */
@@ -44,6 +43,7 @@ option_read read_annotate;        /* annotate_value */
 option_read read_material;        /* double[4] */
 option_read read_scale;           /* scale_value */
 option_read read_place;           /* place_value */
+option_read read_listen;          /* listen_value */
 
 /* What readers share: each writes the end of an error message and returns
  * false, but for the test. */

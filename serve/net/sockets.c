@@ -75,8 +75,8 @@ static int port_of(int fd) {
 
 static int refuse_address(const char *address, int port) {
     if (port)
-        return fail_usage("--port: %s:%d cannot be used (%s); take another "
-                          "port, or leave it out for a free one",
+        return fail_usage("--listen: %s:%d cannot be used (%s); take another "
+                          "port, or 0 for a free one",
                           address, port, strerror(errno));
     return fail_usage("--listen: %s cannot be used (%s); give an address of "
                       "this machine as numbers",
@@ -85,9 +85,9 @@ static int refuse_address(const char *address, int port) {
 
 /* A machine without IPv6, or whose same port is taken there, has one socket. */
 static int open_loopback(const options *opts, guard *g, sockets *out) {
-    int fd = listen_at("127.0.0.1", (int)opts->port);
+    int fd = listen_at("127.0.0.1", opts->listen.port);
     if (fd < 0)
-        return refuse_address("127.0.0.1", (int)opts->port);
+        return refuse_address("127.0.0.1", opts->listen.port);
     out->fds[out->count++] = fd;
     out->port = port_of(fd);
     int other = listen_at("::1", out->port);
@@ -101,12 +101,12 @@ static int open_loopback(const options *opts, guard *g, sockets *out) {
 /* All addresses of the machine have its name. */
 static int open_address(const options *opts, guard *g, sockets *out) {
     char name[200] = "", allowed[600];
-    const char *address = opts->listen;
+    const char *address = opts->listen.address;
     bool six = strchr(address, ':') != NULL;
     bool all = strcmp(address, "0.0.0.0") == 0 || strcmp(address, "::") == 0;
-    int fd = listen_at(address, (int)opts->port);
+    int fd = listen_at(address, opts->listen.port);
     if (fd < 0)
-        return refuse_address(address, (int)opts->port);
+        return refuse_address(address, opts->listen.port);
     out->fds[out->count++] = fd;
     out->port = port_of(fd);
     gethostname(name, sizeof name - 1);
@@ -157,7 +157,7 @@ static int check_folder(const char *path) {
     bool shared = what.st_mode & (S_IWGRP | S_IWOTH);
     if (!foreign && (!shared || what.st_mode & S_ISVTX))
         return CONTINUE;
-    return fail_usage("--socket: others could replace %s, since its folder %s; "
+    return fail_usage("--listen: others could replace %s, since its folder %s; "
                       "name a file in a folder that only you can write to, "
                       "such as $XDG_RUNTIME_DIR",
                       path,
@@ -167,12 +167,12 @@ static int check_folder(const char *path) {
 
 static int open_path(const options *opts, guard *g, sockets *out) {
     struct sockaddr_un at = {.sun_family = AF_UNIX};
-    if (strlen(opts->socket) >= sizeof at.sun_path)
-        return fail_usage("--socket: %s is too long: %zu bytes; take a shorter "
+    if (strlen(opts->listen.path) >= sizeof at.sun_path)
+        return fail_usage("--listen: %s is too long: %zu bytes; take a shorter "
                           "path",
-                          opts->socket, sizeof at.sun_path - 1);
-    memcpy(at.sun_path, opts->socket, strlen(opts->socket) + 1);
-    int done = check_folder(opts->socket);
+                          opts->listen.path, sizeof at.sun_path - 1);
+    memcpy(at.sun_path, opts->listen.path, strlen(opts->listen.path) + 1);
+    int done = check_folder(opts->listen.path);
     if (done != CONTINUE)
         return done;
     if (is_stale(&at))
@@ -183,26 +183,23 @@ static int open_path(const options *opts, guard *g, sockets *out) {
         fd = listen_on(fd, (struct sockaddr *)&at, sizeof at);
     umask(before);
     if (fd < 0)
-        return fail_output("--socket: %s cannot be made (%s); name a new file "
+        return fail_output("--listen: %s cannot be made (%s); name a new file "
                            "in a folder of yours",
-                           opts->socket, strerror(errno));
+                           opts->listen.path, strerror(errno));
     out->fds[out->count++] = fd;
-    out->path = opts->socket;
+    out->path = opts->listen.path;
     guard_allow_own(g, 0);
     snprintf(out->host, sizeof out->host, "127.0.0.1:%d", TUNNEL_PORT);
     say("note: reach it by ssh -L %d:%s HOST, then open the URL", TUNNEL_PORT,
-        opts->socket);
+        opts->listen.path);
     return CONTINUE;
 }
 
 int sockets_open(const options *opts, guard *g, sockets *out) {
     *out = (sockets){.fds = {-1, -1}};
-    if (opts->socket && (opts->listen || opts->port))
-        return fail_usage("--socket: conflicts with --port and --listen; give "
-                          "only one of them");
-    int done = opts->socket   ? open_path(opts, g, out)
-               : opts->listen ? open_address(opts, g, out)
-                              : open_loopback(opts, g, out);
+    int done = opts->listen.path       ? open_path(opts, g, out)
+               : *opts->listen.address ? open_address(opts, g, out)
+                                       : open_loopback(opts, g, out);
     if (done != CONTINUE)
         return done;
     if (opts->allow_host && !guard_allow(g, opts->allow_host)) {

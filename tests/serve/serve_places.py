@@ -154,7 +154,7 @@ def folders_of_sockets():
     """In a folder of others, who could put another socket in the place."""
     def is_refused(folder, why):
         path = os.path.join(folder, "s")
-        done = subprocess.run([TOOL, "serve", SMALL, "--socket", path],
+        done = subprocess.run([TOOL, "serve", SMALL, "--listen", f"unix:{path}"],
                               capture_output=True, text=True, timeout=60)
         check(f"a folder that {why} is refused", done.returncode == 2 and
               done.stderr.count("\n") == 1 and why in done.stderr and
@@ -175,7 +175,7 @@ def folders_of_sockets():
         print("skip   a folder of another user: this one cannot make it")
     for mode, path in ((0o1777, os.path.join(folder, "s")), (0o755, "s")):
         os.chmod(folder, mode)
-        server = Server(SMALL, "--socket", path, cwd=folder)
+        server = Server(SMALL, "--listen", f"unix:{path}", cwd=folder)
         server.path = os.path.join(folder, "s")
         check(f"one of mode {mode:o} is taken",
               server.get("/", host="localhost:8000")[0] == 200)

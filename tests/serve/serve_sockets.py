@@ -1090,14 +1090,16 @@ def endings():
     for arguments, code, words in (
             (["no-such-file.nrrd"], 3, "no-such-file"),
             ([SMALL, SMALL], 2, "one file too many"),
-            ([SMALL, "--port", "99999"], 2, "out of range"),
+            ([SMALL, "--listen", ":99999"], 2, "no place to listen"),
             ([SMALL, "--listen", "nowhere"], 2, "--listen"),
             ([SMALL, "--allow-host", "a b"], 2, "--allow-host"),
             ([SMALL, "--embed", "hub.example.org"], 2, "--embed"),
             ([SMALL, "--embed", "*"], 2, "--embed"),
             ([SMALL, "--embed", "https://a.org/; script-src *"], 2, "--embed"),
-            ([SMALL, "--socket", "/no/such/folder/x"], 4, "--socket"),
-            ([SMALL, "--socket", "x", "--port", "8000"], 2, "conflicts"),
+            ([SMALL, "--listen", "unix:/no/such/folder/x"], 4, "--listen"),
+            ([SMALL, "--listen", "8000"], 2, "give a port such as :8000"),
+            ([SMALL, "--listen", "unix:"], 2, "no place to listen"),
+            ([SMALL, "--socket", "x"], 2, "--socket: is now --listen unix:PATH"),
             ([SMALL, "--preset", "nonsense"], 2, "--preset"),
             (["-"], 2, "standard input")):
         done = subprocess.run([TOOL, "serve", *arguments], capture_output=True,
@@ -1106,10 +1108,10 @@ def endings():
               done.returncode == code and words in done.stderr and
               not done.stdout, f"{done.returncode} {done.stderr}")
     first = Server(SMALL)
-    taken = subprocess.run([TOOL, "serve", SMALL, "--port", str(first.port)],
+    taken = subprocess.run([TOOL, "serve", SMALL, "--listen", f":{first.port}"],
                            capture_output=True, text=True, timeout=60)
     check("a port that is taken is refused", taken.returncode == 2 and
-          "--port" in taken.stderr, taken.stderr)
+          "--listen" in taken.stderr, taken.stderr)
     code, said = first.stop()
     check("a signal ends it in order", code == 0 and not said, said)
 
@@ -1141,7 +1143,7 @@ def new_secret():
 def unix_socket():
     path = os.path.join(FOLDER.name, "viewer.sock")
     for turn in ("new", "left behind"):
-        server = Server(SMALL, "--socket", path)
+        server = Server(SMALL, "--listen", f"unix:{path}")
         server.path = path
         mode = stat.S_IMODE(os.stat(path).st_mode)
         check(f"a socket that is {turn} is its owner's alone",

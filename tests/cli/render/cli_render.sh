@@ -101,7 +101,7 @@ same --gradient-opacity 0:1,255:1
 changes --range p20,p60
 changes --range full --opacity 0:0.1
 changes --window 1,0.5
-changes --opacity-unit mm --spacing 2x2x2
+changes --config '{"opacity-unit": "mm"}' --spacing 2x2x2
 changes --shade none
 changes --light 60,30
 changes --light head

@@ -80,12 +80,11 @@ again "opacities of a millimetre" render a.png phantom:head $small --spacing 3x3
     --config '{"opacity-unit": "mm"}'
 again "a range" render a.png phantom:head $small --range p2,p98
 again "a window" render a.png ct.nhdr -w 400,40
-again "a look that is moved" render a.png phantom:head $small --shift 3.7
 again "a look in a window" render a.png float.nhdr -w 0.017,100000.01
 again "a look over percentiles" render a.png float.nhdr --range p7,p91.5
 again "a preset" render a.png ct.nhdr --preset ct-bone
 again "a preset in a window" render a.png ct.nhdr --preset ct-soft -w 900,100
-again "a preset moved" render a.png ct.nhdr --preset ct-bone --shift -60.5
+again "a preset moved" render a.png ct.nhdr --preset ct-bone --range 89.5,1439.5
 again "a preset of the object" render a.png phantom:head $small --preset mr-default
 for mode in mip minip mean sum "iso --iso 60"; do
     again "mode $mode" render a.png phantom:head $small -m $mode

@@ -10,7 +10,7 @@ run 0 "a picture with many wishes is saved" "$TOOL" render \
     phantom:marschner-lobb --dims 40x36x44 --spacing 1x1.5x0.7 -o a.png \
     -s 130x110 --background '#102030' --bits 16 --threshold 2.5 \
     --kernel gauss:5 --preset linear -c inferno \
-    --opacity 0.1:0,0.5:0.05,0.5:0.2,1:1 --range 0.1,0.9 --opacity-unit mm \
+    --opacity 0.1:0,0.5:0.05,0.5:0.2,1:1 --range 0.1,0.9 --config '{"opacity-unit": "mm"}' \
     --gradient-opacity 0:0.1,0.2:0.7,0.2:0.8,1.25:1 \
     --light 20,-10 --material 0.31,0.6,0.1,7 \
     --depth-darkening 0.4 --occlusion 0.3 \

@@ -273,13 +273,13 @@ export async function restarted({check, open, rest, folder, said}, tool) {
     await hears('start snowglass serve again');
     check('the page says that the viewer does not answer', true);
     await page.evaluate(() => { window.snowglass.page.rest = null; });
-    [server] = await start(tool, '--token-file', file, '--port', port);
+    [server] = await start(tool, '--token-file', file, '--listen', `:${port}`);
     await rest(page);
     check('a page comes back with the viewer',
         await page.locator('.said').textContent() === '');
     await end(server);
     await hears('start snowglass serve again');
-    [server, url] = await start(tool, '--port', port);
+    [server, url] = await start(tool, '--listen', `:${port}`);
     await hears('open the printed URL');
     check('the page says that the secret is another', true);
     await page.evaluate(() => { window.snowglass.old = true; });
