@@ -174,8 +174,6 @@ static int read_command(int argc, char **argv, command *c) {
         c->verb = config_verb(argc, argv);
         return read_options(c, argc, argv);
     }
-    if (!verb->bit)
-        return fail_usage("%s is not built yet; %s", verb->name, verb->text);
     if (verb->bit == VERB_BENCH) /* of MPI: mpi_main.c */
         return sibling_become("snowglass-bench", argv + 1);
     if (verb->bit == VERB_SERVE) /* the same */

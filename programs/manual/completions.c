@@ -31,7 +31,7 @@ static void print_pattern(const option_row *row) {
 
 static void print_bash_arguments(void) {
     for (const option_row *row = option_table; row->name; row++) {
-        if (!row->read || !option_takes_word(row))
+        if (!option_takes_word(row))
             continue;
         printf("    ");
         print_pattern(row);
@@ -48,8 +48,6 @@ static void print_bash_arguments(void) {
 static void print_bash_verbs(void) {
     char room[WORD_BYTES];
     for (const verb_row *verb = verb_table; verb->name; verb++) {
-        if (!verb->bit)
-            continue;
         printf("        %s)\n            names='", verb->name);
         for (size_t i = 0; verb_word(verb, i, room); i++)
             printf("%s%s", i ? " " : "", verb_word(verb, i, room));
@@ -68,10 +66,8 @@ static void print_bash_verbs(void) {
 static void print_verb_names(const char *between) {
     const char *before = "";
     for (const verb_row *verb = verb_table; verb->name; verb++) {
-        if (verb->bit) {
-            printf("%s%s", before, verb->name);
-            before = between;
-        }
+        printf("%s%s", before, verb->name);
+        before = between;
     }
 }
 
@@ -203,8 +199,6 @@ void print_zsh(void) {
            "    local -a verbs ranks\n"
            "    verbs=(\n");
     for (const verb_row *verb = verb_table; verb->name; verb++) {
-        if (!verb->bit)
-            continue;
         printf("        '%s:", verb->name);
         print_zsh_text(verb->text);
         printf("'\n");
@@ -213,7 +207,7 @@ void print_zsh(void) {
            "    if [[ ${words[1]:t} == snowglass-mpi ]]; then\n"
            "        ranks=(\n");
     for (const option_row *row = option_table; row->name; row++) {
-        if (row->read && option_is_of_ranks(row)) {
+        if (option_is_of_ranks(row)) {
             printf("            '--%s=", row->name);
             print_zsh_argument(row);
             printf("'\n");
@@ -230,8 +224,7 @@ void print_zsh(void) {
            "        (( CURRENT-- )) ;;\n    esac\n"
            "    case $verb in\n");
     for (const verb_row *verb = verb_table; verb->name; verb++)
-        if (verb->bit)
-            print_zsh_verb(verb);
+        print_zsh_verb(verb);
     printf("    esac\n}\n_snowglass \"$@\"\n");
 }
 
@@ -281,7 +274,7 @@ static void print_fish_words(const option_row *row) {
 static void print_fish_option(const option_row *row, const char *command) {
     printf("complete -c %s -n '__snowglass_takes", command);
     for (const verb_row *verb = verb_table; verb->name; verb++)
-        if (verb->bit && verb_takes(verb, row))
+        if (verb_takes(verb, row))
             printf(" %s", verb->name);
     printf("' -l %s ", row->name);
     if (row->letter)
@@ -314,7 +307,7 @@ void print_fish(bool mpi) {
     if (mpi)
         printf("complete -c snowglass-mpi -w snowglass\n");
     for (const option_row *row = option_table; row->name && mpi; row++)
-        if (row->read && option_is_of_ranks(row))
+        if (option_is_of_ranks(row))
             print_fish_option(row, "snowglass-mpi");
     if (mpi)
         return;
@@ -335,9 +328,8 @@ void print_fish(bool mpi) {
     print_phantoms("phantom:");
     printf("'\n");
     for (const verb_row *verb = verb_table; verb->name; verb++)
-        if (verb->bit)
-            print_fish_verb(verb);
+        print_fish_verb(verb);
     for (const option_row *row = option_table; row->name; row++)
-        if (row->read && !option_is_of_ranks(row))
+        if (!option_is_of_ranks(row))
             print_fish_option(row, "snowglass");
 }

@@ -24,7 +24,7 @@ static void print_row(const option_row *row) {
     print_cell(row->text);
     printf(" | ");
     for (const verb_row *verb = verb_table; verb->name; verb++) {
-        if (verb->bit && verb_takes(verb, row)) {
+        if (verb_takes(verb, row)) {
             printf("%s%s", before, verb->name);
             before = ", ";
         }
@@ -35,8 +35,6 @@ static void print_row(const option_row *row) {
 static void print_verbs(void) {
     printf("## Verbs\n\n| verb | does |\n| --- | --- |\n");
     for (const verb_row *verb = verb_table; verb->name; verb++) {
-        if (!verb->bit)
-            continue;
         printf("| `%s` | ", verb->name);
         print_cell(verb->text);
         printf(" |\n");
@@ -50,7 +48,7 @@ void print_options(void) {
                "| --- | --- | --- |\n",
                topic_table[i].name, topic_table[i].text);
         for (const option_row *row = option_table; row->name; row++)
-            if (row->read && row->topic == (topic)i)
+            if (row->topic == (topic)i)
                 print_row(row);
     }
 }

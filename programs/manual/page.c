@@ -35,8 +35,7 @@ static void print_option(const option_row *row) {
 static void print_topic(const verb_row *verb, topic which) {
     bool first = true;
     for (const option_row *row = option_table; row->name; row++) {
-        if (row->topic != which || !row->read ||
-            (verb && !verb_takes(verb, row)))
+        if (row->topic != which || (verb && !verb_takes(verb, row)))
             continue;
         if (first) {
             char title[128];
@@ -77,8 +76,7 @@ static void print_see_also(void) {
 static void print_verb_pages(void) {
     puts(".SH SEE ALSO");
     for (const verb_row *verb = verb_table; verb->name; verb++)
-        if (verb->bit)
-            printf(".BR snowglass\\-%s (1),\n", verb->name);
+        printf(".BR snowglass\\-%s (1),\n", verb->name);
     print_documents();
 }
 
@@ -190,8 +188,7 @@ static void print_overview(void) {
               "topic.");
     puts(".SH VERBS");
     for (const verb_row *verb = verb_table; verb->name; verb++)
-        if (verb->bit)
-            roff_item(verb->name, verb->text);
+        roff_item(verb->name, verb->text);
     puts(".SH TOPICS");
     for (const topic_row *row = topic_table; row->name; row++)
         roff_item(row->name, row->text);
@@ -211,7 +208,7 @@ bool print_page(const char *name) {
     const verb_row *verb = name ? verb_named(name) : NULL;
     if (!name)
         print_overview();
-    else if (verb && verb->bit)
+    else if (verb)
         print_verb(verb);
     else if (strcmp(name, "mpi") == 0)
         print_mpi();

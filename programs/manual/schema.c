@@ -180,7 +180,7 @@ static void add_others(json_t *properties) {
 static int add_properties(snow_context *context, json_t *properties) {
     add_others(properties);
     for (const option_row *row = option_table; row->name; row++) {
-        if (!row->read || json_object_get(properties, row->name) ||
+        if (json_object_get(properties, row->name) ||
             !is_key(context, row->name))
             continue;
         json_t *made = property(row);

@@ -42,7 +42,7 @@ static const char *topic_word(size_t index) {
     if (index < topics)
         return topic_table[index].name;
     for (const verb_row *verb = verb_table; verb->name; verb++)
-        if (verb->bit && verbs++ == index - topics)
+        if (verbs++ == index - topics)
             return verb->name;
     return NULL;
 }
@@ -93,7 +93,7 @@ bool option_takes_file(const option_row *row) {
 }
 
 bool verb_takes(const verb_row *verb, const option_row *row) {
-    return row->read && (row->verbs & verb->bit) != 0;
+    return (row->verbs & verb->bit) != 0;
 }
 
 bool option_is_of_ranks(const option_row *row) {

@@ -1,11 +1,9 @@
-/* help.c - the help, written from the tables of option_table.c and from the
- * library's lists of names.  Verbs that render have a short page
- * (help_brief.c); options and presets have one each (help_word.c). */
+/* help.c - finds what is asked: the page of a verb (help_verb.c), of a topic
+ * (help_topic.c), of an option or preset (help_word.c), or the overview. */
 #include "options/help.h"
 #include "options/guess.h"
 #include "options/renamed.h"
 #include "run/log.h"
-#include "run/sibling.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -29,101 +27,10 @@ static const char examples[] =
     "unreadable or unsupported; 4 output not writable; 5 not enough memory;\n"
     "6 the comparison differs; 7 the picture is empty; 130 interrupted.\n";
 
-/* A row belongs to one topic and may serve several verbs. */
-static bool belongs(const option_row *row, topic which, unsigned verbs) {
-    return row->topic == which && (row->verbs & verbs) != 0;
-}
-
-static void print_heading(topic which) {
-    printf("%s: %s\n", topic_table[which].name, topic_table[which].text);
-}
-
-bool help_has_options(topic which, unsigned verbs) {
-    const option_row *row = option_table;
-    while (row->name && !(row->read && belongs(row, which, verbs)))
-        row++;
-    return row->name != NULL;
-}
-
-/* An option that is not built yet has no reader and is not listed. */
-static void print_options(topic which, unsigned verbs) {
-    for (const option_row *row = option_table; row->name; row++) {
-        if (row->read && belongs(row, which, verbs))
-            help_option(row, row->text);
-    }
-}
-
-/* Names the options that are planned, so that nobody searches for them. */
-static void print_later(topic which) {
-    char line[512] = "";
-    size_t used = 0;
-    for (const option_row *row = option_table; row->name; row++) {
-        if (!row->read && row->topic == which && used < sizeof line)
-            used += (size_t)snprintf(line + used, sizeof line - used, " --%s",
-                                     row->name);
-    }
-    if (used) {
-        printf("  not built yet:");
-        help_wrapped(line, 16, 4);
-    }
-}
-
-/* The options of all verbs, then the names that they take. */
-static int print_topic_page(topic which) {
-    print_heading(which);
-    print_options(which, ~0U);
-    print_later(which);
-    if (which == TOPIC_LOOK) {
-        help_names("presets", snow_preset_name, snow_preset_description);
-        help_names("colour maps", snow_colormap_name, NULL);
-    } else if (which == TOPIC_CAMERA) {
-        help_views();
-    } else if (which == TOPIC_DATA) {
-        help_names("formats", snow_format_name, snow_format_description);
-        help_names("phantoms (as phantom:NAME)", snow_phantom_name,
-                   snow_phantom_description);
-    }
-    return finish_stdout();
-}
-
-/* The page of a verb lists only the options that it takes. */
-static int print_verb_page(const verb_row *row) {
-    if (!row->bit)
-        return fail_usage("%s is not built yet; %s", row->name, row->text);
-    if (row->bit == VERB_BENCH) { /* it reads and describes its own options */
-        char *words[] = {NULL, "--help", NULL};
-        return sibling_run("snowglass-bench", words);
-    }
-    printf("snowglass %s %s\n%s\n", row->name, row->usage, row->text);
-    if (row->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE | VERB_SLICE |
-                    VERB_SERVE | VERB_EXPORT)) {
-        help_brief(row);
-        return finish_stdout();
-    }
-    for (int i = 0; topic_table[i].name; i++) {
-        if (topic_is_here((topic)i) && help_has_options((topic)i, row->bit)) {
-            printf("\n");
-            print_heading((topic)i);
-            print_options((topic)i, row->bit);
-        }
-    }
-    if (row->bit == VERB_PHANTOM)
-        help_names("phantoms", snow_phantom_name, snow_phantom_description);
-    return finish_stdout();
-}
-
-void help_topics(unsigned verbs) {
-    for (int i = 0; topic_table[i].name; i++)
-        if (topic_is_here((topic)i) && help_has_options((topic)i, verbs))
-            printf("  %-11s%s\n", topic_table[i].name, topic_table[i].text);
-}
-
-/* The overview omits verbs that are not built yet; help VERB names them. */
 static int print_overview(void) {
     printf("%s\nverbs:\n", overview);
     for (const verb_row *row = verb_table; row->name; row++) {
-        if (row->bit)
-            printf("  %-11s%s\n", row->name, row->text);
+        printf("  %-11s%s\n", row->name, row->text);
     }
     printf("\ntopics (snowglass help NAME, also of a verb, an option or a "
            "preset):\n");
@@ -148,8 +55,7 @@ static int refuse_word(const char *word) {
     guess near;
     guess_begin(&near, word + strspn(word, "-"));
     for (const verb_row *row = verb_table; row->name; row++)
-        if (row->bit)
-            guess_offer(&near, row->name);
+        guess_offer(&near, row->name);
     for (int i = 0; topic_table[i].name; i++) {
         if (!topic_is_here((topic)i))
             continue;
@@ -176,11 +82,13 @@ static int refuse_word(const char *word) {
  * not list, and of a preset of the same name. */
 static int print_page(int which, const verb_row *verb, const option_row *row,
                       int preset) {
-    int done = verb ? print_verb_page(verb) : print_topic_page((topic)which);
+    int done = verb ? help_verb_page(verb) : SNOW_STATUS_OK;
     bool listed = !row || (verb ? (row->verbs & verb->bit) != 0
                                 : (int)row->topic == which);
     if (done != SNOW_STATUS_OK)
         return done;
+    if (!verb)
+        help_topic_page((topic)which);
     if (!listed) {
         printf("\n");
         help_option_page(row);
@@ -195,7 +103,7 @@ static int print_page(int which, const verb_row *verb, const option_row *row,
 /* No topic has the name of a verb. */
 int help_print(const char *word, const verb_row *verb) {
     if (!word)
-        return verb ? print_verb_page(verb) : print_overview();
+        return verb ? help_verb_page(verb) : print_overview();
     const option_row *row = help_option_named(word);
     int which = topic_named(word), preset = snow_preset_from_name(word);
     const verb_row *named = verb_named(word);

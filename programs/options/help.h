@@ -18,15 +18,13 @@ void help_names(const char *title, const char *(*name)(size_t),
 /* Prints the views and what they mean. */
 void help_views(void);
 
-/* Whether a verb has options of a topic. */
-bool help_has_options(topic which, unsigned verbs);
-
 /* Prints the topics that have options of some verbs, with their texts. */
 void help_topics(unsigned verbs);
 
-/* Prints the page of a verb that renders: its own options, the common ones,
- * examples and topics. */
-void help_brief(const verb_row *verb);
+/* Prints the page of a topic, or of a verb: its own options, the common ones,
+ * examples and topics. Returns an exit code. */
+void help_topic_page(topic which);
+int help_verb_page(const verb_row *verb);
 
 /* The option of a name, or of a letter; NULL: none. */
 const option_row *help_option_named(const char *word);

@@ -48,9 +48,7 @@ void help_option_page(const option_row *row) {
                                      verb->name);
     printf("\n");
     help_wrapped(line, 0, 7);
-    if (!row->read)
-        printf("not built yet\n");
-    else if (topic_is_here(row->topic))
+    if (topic_is_here(row->topic))
         printf("topic: %s (snowglass help %s)\n", topic_table[row->topic].name,
                topic_table[row->topic].name);
     else

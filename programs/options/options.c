@@ -1,8 +1,7 @@
 /* options.c - the parser: getopt_long with the option table.
  *
  * Options may follow operands, "--" ends them, and the last of a repeated
- * option counts.  Options that are unknown, not built yet, or of another verb
- * are refused. */
+ * option counts.  Options that are unknown or of another verb are refused. */
 #include "options/options.h"
 #include "options/config.h"
 #include "options/guess.h"
@@ -85,7 +84,6 @@ const verb_row *verb_named(const char *name) {
     return NULL;
 }
 
-/* The row of a verb that is built; planned verbs have no bit. */
 const verb_row *verb_of(unsigned bit) {
     const verb_row *row = verb_table;
     while (row->name && row->bit != bit)
@@ -95,7 +93,7 @@ const verb_row *verb_of(unsigned bit) {
 
 /* Whether an option has an optional argument, a number. */
 static bool takes_number(const option_row *row) {
-    return row->read && row->argument && row->argument[0] == '[';
+    return row->argument && row->argument[0] == '[';
 }
 
 /* Converts the table to getopt's form. */
@@ -108,8 +106,7 @@ static void fill_getopt(struct option longs[ROWS_MAX + 1],
     for (const option_row *row = option_table; row->name && count < ROWS_MAX;
          row++, count++) {
         bool optional = row->argument &&
-                        (row->read == NULL || strcmp(row->name, "help") == 0 ||
-                         takes_number(row));
+                        (strcmp(row->name, "help") == 0 || takes_number(row));
         int argument = optional        ? optional_argument
                        : row->argument ? required_argument
                                        : no_argument;
@@ -141,7 +138,7 @@ static bool guess_option(const char *name, unsigned verb, char *out,
     guess near;
     guess_begin(&near, name);
     for (const option_row *row = option_table; row->name; row++)
-        if ((row->verbs & verb) && row->read && topic_is_here(row->topic))
+        if ((row->verbs & verb) && topic_is_here(row->topic))
             guess_offer(&near, row->name);
     return guess_write(&near, "--", out, size);
 }
@@ -218,11 +215,8 @@ static const char *keep_small(options *out, const option_row *row,
     return kept;
 }
 
-/* Options that are not built come first: they belong to no verb. */
 static int take_option(options *out, const option_row *row,
                        const verb_row *verb, const char *text) {
-    if (!row->read)
-        return fail_usage("--%s is not built yet; %s", row->name, row->text);
     if (!topic_is_here(row->topic))
         return fail_usage(
             "--%s: is only for several ranks; use snowglass-mpi with mpirun",
@@ -295,8 +289,6 @@ static int refuse_verb(const char *word) {
     guess nearest;
     guess_begin(&nearest, word);
     for (const verb_row *row = verb_table; row->name; row++) {
-        if (!row->bit)
-            continue;
         guess_offer(&nearest, row->name);
         if (used < sizeof verbs)
             used += (size_t)snprintf(verbs + used, sizeof verbs - used, " %s",

@@ -1,8 +1,8 @@
 /* options.h - the command line: the table of options, the record that they are
  * read into, and the help.
  *
- * The parser, --help, the refusal of options that are not built yet and the
- * suggestion of the nearest name all use the one table. */
+ * The parser, --help and the suggestion of the nearest name all use the one
+ * table. */
 #ifndef OPTIONS_H
 #define OPTIONS_H
 
@@ -176,7 +176,7 @@ typedef struct option_row option_row;
 typedef bool option_read(const option_row *row, const char *text, void *field,
                          char wrong[WRONG_BYTES]);
 
-/* One option.  A row without `read` is planned but not built yet. */
+/* One option. */
 struct option_row {
     const char *name;     /* long name */
     char letter;          /* short name, or 0 */
@@ -185,11 +185,9 @@ struct option_row {
     topic topic;
     unsigned verbs; /* the verbs that take it */
     option_read *read;
-    size_t field;      /* offset in options */
-    double low, high;  /* for numbers; both 0: any finite number */
-    const char *later; /* choices that are not built yet, a|b */
-    const char *text; /* help, with the default; for a planned option what to do
-                         instead */
+    size_t field;     /* offset in options */
+    double low, high; /* for numbers; both 0: any finite number */
+    const char *text; /* help, with the default */
 };
 
 /* Ends with a row without a name. */
@@ -198,7 +196,7 @@ extern const option_row option_table[];
 /* One verb.  `operands` below 0 means that it reads its own arguments. */
 typedef struct verb_row {
     const char *name;
-    unsigned bit; /* 0: planned but not built yet */
+    unsigned bit;
     int operands;
     const char *usage; /* the operands, for the help */
     const char *text;

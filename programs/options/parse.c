@@ -75,8 +75,6 @@ void parse_near(const char *choices, const char *text, char *out, size_t size) {
         snprintf(out, size, " (did you mean %s?)", near);
 }
 
-/* A planned choice is not unknown: its user has read a manual and need not look
- * for a misspelling. */
 bool read_choice(const option_row *row, const char *text, void *field,
                  char wrong[WRONG_BYTES]) {
     if (value_is_choice(row->argument, text)) {
@@ -84,11 +82,10 @@ bool read_choice(const option_row *row, const char *text, void *field,
         return true;
     }
     char choices[128], near[128];
-    bool later = value_is_choice(row->later, text);
     spell_choices(row->argument, choices, sizeof choices);
-    parse_near(later ? "" : row->argument, text, near, sizeof near);
-    snprintf(wrong, WRONG_BYTES, "%s%s; choose from: %s",
-             later ? "is not built yet" : "is unknown", near, choices);
+    parse_near(row->argument, text, near, sizeof near);
+    snprintf(wrong, WRONG_BYTES, "is unknown%s; choose from: %s", near,
+             choices);
     return false;
 }
 

@@ -162,7 +162,7 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
 --range p99,p1 x|is not a range
 --range p1,99 x|is not a range
 --range p1,p101 x|is not a range
---window 0 x|out of range
+--window 0,5 x|out of range
 --window 0,40 x|out of range
 --window 400, x|is not a window
 --window 400,40,1 x|is not a window
