@@ -99,7 +99,7 @@ static const char *beyond_pages(const snow_recipe *recipe) {
     if (recipe->steps && strcmp(recipe->steps, "last") != 0)
         return "the page: \"time\" must be one step, as a range or a moment "
                "is of the command line; give its number";
-    overlay_look look;
+    overlay_look_value look;
     const char *text = recipe->overlay_look;
     if (text && !value_overlay_look(text, &look))
         return "the page: \"overlay-look\" is not a look; give \"hot,2,12\", "

@@ -25,13 +25,13 @@ typedef struct range_value {
 } range_value;
 
 /* The look of an overlay, of which any part may be left out. */
-typedef struct overlay_look {
+typedef struct overlay_look_value {
     const char *text;    /* as it was given; NULL: not */
     const char *preset;  /* NULL: none */
     char colormap[1024]; /* a name or a list; "": none */
     range_value range;
     point_list opacity;
-} overlay_look;
+} overlay_look_value;
 
 /* A position or a direction in the world. */
 typedef struct place_value {
@@ -118,7 +118,7 @@ bool value_factor(const char *text, point_list *out);
 bool points_are_factor(const point_list *list);
 
 /* "hot,2,12,0.6": colours, range and opacities by their forms. */
-bool value_overlay_look(const char *text, overlay_look *out);
+bool value_overlay_look(const char *text, overlay_look_value *out);
 
 /* "ADDRESS:PORT", "[ADDRESS]:PORT", ":PORT", "ADDRESS" or "unix:PATH". */
 bool value_listen(const char *text, listen_value *out);

@@ -119,7 +119,7 @@ typedef struct options {
     double clip[SNOW_CLIPS_MAX][4];          /* zeros: none */
     const char *mask, *labels, *label_table; /* NULL: not given */
     const char *overlay;
-    overlay_look overlay_look;
+    overlay_look_value overlay_look;
     const char *overlay_hidden; /* of a recipe; verbs that do not show it */
     bool overlay_picks;         /* `labels` are its, not the input's */
 

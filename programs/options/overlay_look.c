@@ -59,7 +59,7 @@ static bool append(char *list, size_t size, const char *part) {
            (int)(size - used);
 }
 
-static bool take_name(const char *part, overlay_look *out) {
+static bool take_name(const char *part, overlay_look_value *out) {
     const int preset = snow_preset_from_name(part);
     if (preset >= 0 && !out->preset)
         out->preset = snow_preset_name((size_t)preset);
@@ -70,7 +70,8 @@ static bool take_name(const char *part, overlay_look *out) {
     return true;
 }
 
-static bool take_range(const char *part, const char **rest, overlay_look *out) {
+static bool take_range(const char *part, const char **rest,
+                       overlay_look_value *out) {
     char ends[2 * PART_BYTES], next[PART_BYTES];
     snprintf(ends, sizeof ends, "%s", part);
     return (strcasecmp(part, "full") == 0 ||
@@ -78,9 +79,9 @@ static bool take_range(const char *part, const char **rest, overlay_look *out) {
            value_range(ends, &out->range);
 }
 
-bool value_overlay_look(const char *text, overlay_look *out) {
+bool value_overlay_look(const char *text, overlay_look_value *out) {
     char points[POINTS_MAX * PART_BYTES] = "";
-    overlay_look look = {.text = text};
+    overlay_look_value look = {.text = text};
     part_kind before = PART_NAME;
     char part[PART_BYTES];
     const char *at = text;

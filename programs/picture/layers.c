@@ -50,7 +50,7 @@ void layers_leave_out(options *opts) {
     if (opts->overlay)
         opts->label_table = NULL;
     opts->overlay = NULL;
-    opts->overlay_look = (overlay_look){.text = NULL};
+    opts->overlay_look = (overlay_look_value){.text = NULL};
     opts->overlay_picks = false;
 }
 
@@ -92,7 +92,7 @@ static snow_opacity_point *scale_points(const snow_transfer *transfer,
 
 static snow_status make_look(const options *opts, const snow_volume *of,
                              layers *l) {
-    const overlay_look *given = &opts->overlay_look;
+    const overlay_look_value *given = &opts->overlay_look;
     const range_value range = given->range;
     const point_list *asked = &given->opacity;
     const bool factor = points_are_factor(asked);

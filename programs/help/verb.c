@@ -1,6 +1,6 @@
-/* help_verb.c - the page of a verb, at most 60 lines: its own options first,
+/* verb.c - the page of a verb, at most 60 lines: its own options first,
  * then those that are used most, examples, and the topics of all the others. */
-#include "options/help.h"
+#include "help/help.h"
 #include "run/log.h"
 #include "run/sibling.h"
 

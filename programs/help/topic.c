@@ -1,5 +1,5 @@
-/* help_topic.c - the page of a topic, and the list of topics. */
-#include "options/help.h"
+/* topic.c - the page of a topic, and the list of topics. */
+#include "help/help.h"
 
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
-/* help.c - finds what is asked: the page of a verb (help_verb.c), of a topic
- * (help_topic.c), of an option or preset (help_word.c), or the overview. */
-#include "options/help.h"
+/* help.c - finds what is asked: the page of a verb (verb.c), of a topic
+ * (topic.c), of an option or preset (word.c), or the overview. */
+#include "help/help.h"
 #include "options/guess.h"
 #include "options/renamed.h"
 #include "run/log.h"

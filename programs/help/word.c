@@ -1,5 +1,5 @@
-/* help_word.c - the page of one option or of one preset. */
-#include "options/help.h"
+/* word.c - the page of one option or of one preset. */
+#include "help/help.h"
 
 #include <stddef.h>
 #include <stdio.h>

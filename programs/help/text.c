@@ -1,5 +1,5 @@
-/* help_text.c - the lines of the help, at most 80 characters wide. */
-#include "options/help.h"
+/* text.c - the lines of the help, at most 80 characters wide. */
+#include "help/help.h"
 
 #include <stdio.h>
 #include <string.h>
