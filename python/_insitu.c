@@ -31,7 +31,7 @@ static snow_context *context_of(const snow_insitu *movie) {
 
 /* What the library says to programs in C, and what it is in Python. */
 static const char *const words[][2] = {
-    {"call snow_insitu_set_output", "give output= to Movie"},
+    {"give snow_insitu_set an output", "give output= to Movie"},
     {"call snow_insitu_set_brick", "call Movie.brick"},
     {"call snow_insitu_set_voxels", "call Movie.brick"},
     {"correct first and count", "correct first= or the shape of the array"},
@@ -132,20 +132,11 @@ static PyObject *movie_new(PyObject *module, PyObject *args) {
 static PyObject *movie_recipe(PyObject *module, PyObject *args) {
     PyObject *capsule;
     const char *text;
-    Py_ssize_t bytes;
-    snow_recipe recipe;
     (void)module;
-    if (!PyArg_ParseTuple(args, "Os#", &capsule, &text, &bytes) ||
-        !movie_of(capsule))
+    if (!PyArg_ParseTuple(args, "Os", &capsule, &text) || !movie_of(capsule))
         return NULL;
     snow_insitu *movie = movie_of(capsule);
-    snow_recipe_init(&recipe);
-    snow_status status = snow_recipe_parse(context_of(movie), "the recipe",
-                                           text, (size_t)bytes, &recipe);
-    if (status == SNOW_STATUS_OK) {
-        status = snow_recipe_apply(&recipe, movie);
-        snow_recipe_clear(&recipe);
-    }
+    const snow_status status = snow_recipe_apply_text(movie, text);
     return answer(status, snow_context_message(context_of(movie)));
 }
 

@@ -122,7 +122,9 @@ static void take_input(const char *input) {
 static snow_status take_recipe(const char *path) {
     char first[4096] = "";
     snow_recipe recipe = {.size = sizeof recipe};
-    snow_insitu_set_output(adaptor.insitu, "snowglass_%06d.png", NULL);
+    const snow_insitu_settings usual = {.size = sizeof usual,
+                                        .output = "snowglass_%06d.png"};
+    snow_insitu_set(adaptor.insitu, &usual);
     if (path)
         snprintf(first, sizeof first, "%s", path);
     snow_status status =

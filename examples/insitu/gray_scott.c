@@ -203,11 +203,13 @@ static snow_insitu *open_movie(const box *b, const char *pattern) {
     snow_insitu_set_warning(movie, hear, NULL);
     snow_insitu_set_grid(movie, b->dims, NULL, NULL);
     snow_insitu_set_brick(movie, 0, b->first, b->count, NULL);
-    snow_insitu_set_look(movie, &look);
     snow_view_from_name(snow_comm_context(snow_insitu_comm(movie)), "iso",
                         &view);
-    snow_insitu_set_view(movie, &view);
-    snow_insitu_set_output(movie, pattern, NULL);
+    const snow_insitu_settings settings = {.size = sizeof settings,
+                                           .output = pattern,
+                                           .look = &look,
+                                           .view = &view};
+    snow_insitu_set(movie, &settings);
     return movie;
 }
 

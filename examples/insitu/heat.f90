@@ -6,7 +6,7 @@
 ! mpirun -n 4 ./a.out heat.json|- [FIELD]
 !
 ! writes the last field as raw float64 to FIELD, x fastest.  With - in place of a
-! recipe the picture is described by calls.
+! recipe the picture is described by a text.
 program heat
   use mpi
   use snowglass
@@ -75,35 +75,11 @@ program heat
 contains
 
   subroutine describe_picture()
-    character(len=9), target :: map = "plasma" // c_null_char
-    character(len=16), target :: title = "Heat" // c_null_char
-    type(snow_opacity_point), target :: points(3) = [ &
-      snow_opacity_point(0.05d0, 0d0), snow_opacity_point(0.5d0, 0.1d0), &
-      snow_opacity_point(1d0, 0.9d0)]
-    type(snow_look) :: look
-    type(snow_view) :: view
-    type(snow_insitu_texts) :: texts
-    look = snow_look_init()
-    look%colormap = c_loc(map)
-    look%range = SNOW_RANGE_VALUES
-    look%low = 0
-    look%high = 1
-    look%opacities = c_loc(points)
-    look%opacity_count = size(points)
-    status = snow_insitu_set_look(movie, look)
-    view = snow_view_init()
-    view%width = 400
-    view%height = 300
-    view%azimuth = 30
-    view%elevation = 20
-    status = snow_insitu_set_view(movie, view)
-    texts = snow_insitu_texts_init()
-    texts%title = c_loc(title)
-    status = snow_insitu_set_texts(movie, texts)
-    status = snow_insitu_set_annotations(movie, .true._c_bool, &
-      .false._c_bool, .true._c_bool)
-    status = snow_insitu_set_output(movie, "told_%04d.png" // c_null_char, &
-      c_null_ptr)
+    status = snow_recipe_apply_text(movie, '{"output": "told_%04d.png",' // &
+      '"size": [400, 300], "azimuth": 30, "elevation": 20,' // &
+      '"colormap": "plasma", "range": [0, 1],' // &
+      '"opacity": [[0.05, 0], [0.5, 0.1], [1, 0.9]],' // &
+      '"title": "Heat", "legend": true, "annotate": "time"}' // c_null_char)
   end subroutine
 
   ! Two bars and a ball are kept hot: they are set again after every step.

@@ -21,45 +21,6 @@ module snowglass
     SNOW_TYPE_UINT16 = 4, SNOW_TYPE_INT32 = 5, SNOW_TYPE_UINT32 = 6, SNOW_TYPE_INT64 = 7, &
     SNOW_TYPE_UINT64 = 8, SNOW_TYPE_FLOAT32 = 9, SNOW_TYPE_FLOAT64 = 10
 
-  integer(c_int), parameter :: SNOW_RANGE_AUTO = 0, SNOW_RANGE_FULL = 1, SNOW_RANGE_VALUES = 2
-
-  ! Records: call the function snow_..._init first, which sets all defaults.
-  type, bind(c) :: snow_opacity_point
-    real(c_double) :: value, opacity
-  end type
-
-  ! Texts are c_loc of a target that ends with c_null_char, or c_null_ptr.
-  type, bind(c) :: snow_look
-    integer(c_size_t) :: size
-    type(c_ptr) :: name, preset, colormap, base
-    integer(c_int) :: range
-    real(c_double) :: low, high
-    logical(c_bool) :: log
-    integer(c_int) :: domain
-    logical(c_bool) :: per_mm
-    type(c_ptr) :: colors
-    integer(c_size_t) :: color_count
-    type(c_ptr) :: opacities
-    integer(c_size_t) :: opacity_count
-    type(c_ptr) :: gradient_opacities
-    integer(c_size_t) :: gradient_opacity_count
-    real(c_double) :: symlog
-  end type
-
-  type, bind(c) :: snow_view
-    integer(c_size_t) :: size
-    integer(c_int) :: width, height
-    real(c_double) :: back(3), up(3), azimuth, elevation, roll, zoom, fov
-    logical(c_bool) :: has_position, has_target, has_up
-    real(c_double) :: position(3), target(3), upward(3)
-  end type
-
-  type, bind(c) :: snow_insitu_texts
-    integer(c_size_t) :: size
-    type(c_ptr) :: title, quantity, unit, time_format
-    logical(c_bool) :: outline, axes
-  end type
-
   type, bind(c) :: snow_halo
     integer(c_int64_t) :: low(3) = 0, high(3) = 0
   end type
@@ -96,64 +57,18 @@ module snowglass
       integer(c_int), value :: id, type
     end function
 
-    ! Look, camera, settings and output from a JSON file.  Texts of C end with
-    ! c_null_char.
+    ! All that holds for many steps, as JSON (docs/insitu.md, Recipes): a text, or
+    ! a file.  Texts of C end with c_null_char.
+    integer(c_int) function snow_recipe_apply_text(movie, text) bind(c)
+      import
+      type(c_ptr), value :: movie
+      character(kind=c_char), intent(in) :: text(*)
+    end function
+
     integer(c_int) function snow_recipe_apply_file(movie, path) bind(c)
       import
       type(c_ptr), value :: movie
       character(kind=c_char), intent(in) :: path(*)
-    end function
-
-    ! Look, camera, output and labels one by one.
-    subroutine snow_look_init_sized(look, size) bind(c)
-      import
-      type(snow_look), intent(out) :: look
-      integer(c_size_t), value :: size
-    end subroutine
-
-    subroutine snow_view_init_sized(view, size) bind(c)
-      import
-      type(snow_view), intent(out) :: view
-      integer(c_size_t), value :: size
-    end subroutine
-
-    subroutine snow_insitu_texts_init_sized(texts, size) bind(c)
-      import
-      type(snow_insitu_texts), intent(out) :: texts
-      integer(c_size_t), value :: size
-    end subroutine
-
-    integer(c_int) function snow_insitu_set_look(movie, look) bind(c)
-      import
-      type(c_ptr), value :: movie
-      type(snow_look), intent(in) :: look
-    end function
-
-    integer(c_int) function snow_insitu_set_view(movie, view) bind(c)
-      import
-      type(c_ptr), value :: movie
-      type(snow_view), intent(in) :: view
-    end function
-
-    ! A path with one %d or %04d; options: c_null_ptr.
-    integer(c_int) function snow_insitu_set_output(movie, pattern, options) &
-        bind(c)
-      import
-      type(c_ptr), value :: movie, options
-      character(kind=c_char), intent(in) :: pattern(*)
-    end function
-
-    integer(c_int) function snow_insitu_set_annotations(movie, legend, &
-        scale_bar, step) bind(c)
-      import
-      type(c_ptr), value :: movie
-      logical(c_bool), value :: legend, scale_bar, step
-    end function
-
-    integer(c_int) function snow_insitu_set_texts(movie, texts) bind(c)
-      import
-      type(c_ptr), value :: movie
-      type(snow_insitu_texts), intent(in) :: texts
     end function
 
     integer(c_int) function snow_insitu_set_time(movie, time, unit) bind(c)
@@ -161,14 +76,6 @@ module snowglass
       type(c_ptr), value :: movie
       real(c_double), value :: time
       character(kind=c_char), intent(in) :: unit(*)
-    end function
-
-    integer(c_int) function snow_insitu_set_limits(movie, seconds, bytes) &
-        bind(c)
-      import
-      type(c_ptr), value :: movie
-      real(c_double), value :: seconds
-      integer(c_int64_t), value :: bytes
     end function
 
     ! Collective.
@@ -197,21 +104,6 @@ module snowglass
   end interface
 
 contains
-
-  function snow_look_init() result(look)
-    type(snow_look) :: look
-    call snow_look_init_sized(look, c_sizeof(look))
-  end function
-
-  function snow_view_init() result(view)
-    type(snow_view) :: view
-    call snow_view_init_sized(view, c_sizeof(view))
-  end function
-
-  function snow_insitu_texts_init() result(texts)
-    type(snow_insitu_texts) :: texts
-    call snow_insitu_texts_init_sized(texts, c_sizeof(texts))
-  end function
 
   ! The message of the last call that failed.
   function snow_insitu_message(movie) result(text)

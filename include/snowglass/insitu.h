@@ -74,44 +74,46 @@ typedef enum snow_balance {    /* where the work is done */
     SNOW_BALANCE_IN_PLACE = 0, /* where the voxels are, if the method can */
     SNOW_BALANCE_REPARTITION   /* voxels move to ranks with equal parts */
 } snow_balance;
-SNOW_API snow_status snow_insitu_set_distribution(
-    snow_insitu *insitu, snow_ghosts ghosts, snow_balance balance);
-/* Alike on all ranks. The look (copied) is fitted to the next picture's values;
- * set again, anew. `shaded` (false): also where a look is best unshaded. */
-SNOW_API snow_status snow_insitu_set_look(
-    snow_insitu *insitu, const snow_look *look);
-SNOW_API snow_status snow_insitu_set_view(
-    snow_insitu *insitu, const snow_view *view);
-SNOW_API snow_status snow_insitu_set_settings(
-    snow_insitu *insitu, const snow_settings *settings);
-SNOW_API void snow_insitu_set_shaded(snow_insitu *insitu, bool shaded);
-/* Voxels taken from now on are cut by snow_volume_clip; a count of 0: not. */
-SNOW_API snow_status snow_insitu_set_clip(
-    snow_insitu *insitu, const double *planes, size_t count);
-SNOW_API snow_status snow_insitu_set_ranks(
-    snow_insitu *insitu, const snow_ranks_options *how);
-/* Where a step writes, with one %d (or %04d) for its number; what it draws over
- * pictures: colour and scale bar; the latter alone; that number. */
-SNOW_API snow_status snow_insitu_set_output(snow_insitu *insitu,
-    const char *pattern, const snow_image_options *options);
-SNOW_API snow_status snow_insitu_set_annotations(
-    snow_insitu *insitu, bool legend, bool scale_bar, bool step);
-/* What annotations say (snow_time_text, snow_overlay_box), copied; the time of
- * the next step, in place of its number (but with the time_format ""). */
-typedef struct snow_insitu_texts {
+typedef struct snow_insitu_work {
     size_t size;
-    const char *title, *quantity, *unit, *time_format; /* NULL: none */
-    bool outline, axes;
-} snow_insitu_texts;
-SNOW_RECORD(snow_insitu_texts);
-SNOW_API snow_status snow_insitu_set_texts(
-    snow_insitu *insitu, const snow_insitu_texts *texts);
+    snow_ghosts ghosts;
+    snow_balance balance;
+    double seconds; /* limits: of a step in the mean, of each rank's context; */
+    uint64_t bytes; /* 0: none. Pictures are lowered or left out (docs: Cost) */
+} snow_insitu_work;
+SNOW_RECORD(snow_insitu_work);
+/* What is drawn over pictures (snow_time_text, snow_overlay_box). */
+typedef struct snow_insitu_annotations {
+    size_t size;
+    const char *title, *quantity, *unit; /* NULL: none */
+    const char *time_format;      /* NULL: the usual; "": the step's number */
+    bool legend, scale_bar, step; /* bars; the latter alone; time or number */
+    bool outline, axes;           /* of the volume's box */
+} snow_insitu_annotations;
+SNOW_RECORD(snow_insitu_annotations);
+/* All that holds for many steps, alike on all ranks, copied. What is NULL stays
+ * as it was, at first the default. A look is fitted to the next picture's
+ * values, each time that it is given. */
+typedef struct snow_insitu_settings {
+    size_t size;
+    const char *output; /* where a step writes, with one %d (or %04d) */
+    const snow_image_options *image; /* with output; NULL: the default */
+    const snow_look *look;
+    const snow_view *view;
+    const snow_settings *picture;
+    bool shaded; /* with picture: also where a look is best unshaded */
+    size_t clip_count;
+    const double *clip; /* planes of 4; cut voxels taken from now on */
+    const snow_insitu_annotations *annotations;
+    const snow_ranks_options *ranks;
+    const snow_insitu_work *work;
+} snow_insitu_settings;
+SNOW_RECORD(snow_insitu_settings);
+SNOW_API snow_status snow_insitu_set(
+    snow_insitu *insitu, const snow_insitu_settings *settings);
+/* The time of the next step, which annotations may have. */
 SNOW_API snow_status snow_insitu_set_time(
     snow_insitu *insitu, double time, const char *unit);
-/* Mean `seconds` a step, `bytes` of each rank's context; 0: no limit. Pictures
- * are lowered or left out (docs/insitu.md, Cost). */
-SNOW_API snow_status snow_insitu_set_limits(
-    snow_insitu *insitu, double seconds, uint64_t bytes);
 /* Collective. Takes the voxels; then they may change, if they were copied. */
 SNOW_API snow_status snow_insitu_update(snow_insitu *insitu);
 /* Collective. A picture of the voxels last taken, on rank 0 (scattered: each

@@ -44,6 +44,8 @@ typedef struct snow_recipe {
     const char *annotate, *box; /* "step", "time=FORMAT"; "axes"; or NULL */
     bool reread;                /* in situ: when the file changes */
     const char *overlay, *overlay_look; /* of the tool, or NULL */
+    double limit_seconds; /* in situ, as in snow_insitu_work; 0: not given */
+    int64_t limit_bytes;
     const char *channels, *steps; /* of the tool: --channel, --time; or NULL */
 } snow_recipe;
 SNOW_RECORD(snow_recipe);
@@ -74,6 +76,8 @@ SNOW_API snow_status snow_recipe_get_settings(snow_context *context,
  * above and of the setters; BAD_USAGE (a depth). Of a file: collective. */
 SNOW_API snow_status snow_recipe_apply(
     const snow_recipe *recipe, snow_insitu *insitu);
+SNOW_API snow_status snow_recipe_apply_text(
+    snow_insitu *insitu, const char *text);
 SNOW_API snow_status snow_recipe_apply_file(
     snow_insitu *insitu, const char *path);
 

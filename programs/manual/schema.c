@@ -169,6 +169,13 @@ static void add_others(json_t *properties) {
                         parse("{'type': 'string', 'description':"
                               "'the verb that wrote the file'}"));
     json_object_set_new(
+        properties, "limit-seconds",
+        parse("{'type': 'number', 'minimum': 0, 'maximum': 1e9, 'description':"
+              "'of simulations: the most that a step takes in the mean'}"));
+    json_object_set_new(properties, "limit-bytes",
+                        parse("{'type': 'integer', 'minimum': 0, 'description':"
+                              "'of simulations: the most that a rank holds'}"));
+    json_object_set_new(
         properties, "reread",
         parse("{'type': 'boolean', 'description': 'of simulations: read the "
               "file again when it changes'}"));

@@ -308,7 +308,7 @@ static snow_status check_output(const snow_insitu *insitu) {
     if (!insitu->pattern) /* on one rank only: found by its print below */
         return snow_context_fail(
             insitu->context, SNOW_STATUS_BAD_USAGE,
-            "there is no path for pictures; call snow_insitu_set_output");
+            "there is no path for pictures; give snow_insitu_set an output");
     if (insitu->settings.mode == SNOW_MODE_SUM &&
         insitu->look.look.range == SNOW_RANGE_AUTO &&
         snow_image_format_bits(insitu->pattern) > 0)

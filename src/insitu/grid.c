@@ -143,18 +143,3 @@ snow_status snow_insitu_set_voxels(snow_insitu *insitu, int id, snow_type type,
     brick->voxels = voxels;
     return SNOW_STATUS_OK;
 }
-
-snow_status snow_insitu_set_distribution(snow_insitu *insitu,
-                                         snow_ghosts ghosts,
-                                         snow_balance balance) {
-    if ((int)ghosts < 0 || ghosts > SNOW_GHOSTS_NONE || (int)balance < 0 ||
-        balance > SNOW_BALANCE_REPARTITION)
-        return snow_insitu_refuse(insitu,
-                                  "invalid ghosts %d or balance %d; use values "
-                                  "of snow_ghosts and snow_balance",
-                                  (int)ghosts, (int)balance);
-    insitu->ghosts = ghosts;
-    insitu->balance = balance;
-    insitu->changed = true;
-    return SNOW_STATUS_OK;
-}

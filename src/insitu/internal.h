@@ -125,10 +125,9 @@ struct snow_insitu {
     snow_ranks_options how;
     char *pattern; /* NULL: no output */
     snow_image_options form;
-    bool legend, scale_bar, step_label; /* drawn over them */
-    snow_insitu_texts texts;
+    snow_insitu_annotations annotations;
     snow_volume_info says; /* quantity, unit, time: all else is `whole` */
-    char title[TEXT_BYTES], time_format[TEXT_BYTES]; /* of the texts */
+    char title[TEXT_BYTES], time_format[TEXT_BYTES]; /* of these */
     double limit_seconds;
     uint64_t limit_bytes, outer_bytes; /* the latter the context's own */
 
@@ -173,6 +172,11 @@ struct snow_insitu {
     double between, within; /* seconds of all: of the simulation, of steps */
     snow_degradation last_lowering;
 };
+
+/* Parts of snow_insitu_set. */
+snow_status snow_insitu_keep_look(snow_insitu *insitu, const snow_look *given);
+snow_status snow_insitu_keep_output(snow_insitu *insitu, const char *pattern,
+                                    const snow_image_options *options);
 
 /* For setters, beside snow_insitu_set_error: SNOW_STATUS_BAD_USAGE with that
  * message. */

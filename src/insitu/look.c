@@ -70,7 +70,7 @@ static snow_status check_names(snow_insitu *insitu, const snow_look *look) {
 }
 
 /* The old one stays where there is no memory for the new one. */
-snow_status snow_insitu_set_look(snow_insitu *insitu, const snow_look *given) {
+snow_status snow_insitu_keep_look(snow_insitu *insitu, const snow_look *given) {
     snow_own_look *own = &insitu->look, next = {.blocks = {NULL}};
     snow_status status = keep_look(insitu, given, &next);
     if (status == SNOW_STATUS_OK)

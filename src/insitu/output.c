@@ -31,8 +31,8 @@ static const char *find_number(const char *pattern, int *digits, size_t *end) {
     return *p == 'd' && *digits <= 18 ? at : NULL;
 }
 
-snow_status snow_insitu_set_output(snow_insitu *insitu, const char *pattern,
-                                   const snow_image_options *options) {
+snow_status snow_insitu_keep_output(snow_insitu *insitu, const char *pattern,
+                                    const snow_image_options *options) {
     snow_image_options form;
     int digits;
     size_t end, bytes = strlen(pattern) + 1;
@@ -53,53 +53,18 @@ snow_status snow_insitu_set_output(snow_insitu *insitu, const char *pattern,
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_insitu_set_annotations(snow_insitu *insitu, bool legend,
-                                        bool scale_bar, bool step) {
-    insitu->legend = legend;
-    insitu->scale_bar = legend || scale_bar;
-    insitu->step_label = step;
-    return SNOW_STATUS_OK;
-}
-
 /* The title, the time or number of a step in lines. */
 static void write_title(const snow_insitu *insitu, int64_t step, char *text,
                         size_t room) {
-    const char *title = insitu->texts.title;
-    const char *format = insitu->texts.time_format;
+    const char *title = insitu->annotations.title;
+    const char *format = insitu->annotations.time_format;
     char time[TEXT_BYTES] = "";
-    if (insitu->step_label &&
+    if (insitu->annotations.step &&
         ((format && !*format) ||
          !snow_time_text(&insitu->says, format, time, sizeof time)))
         snprintf(time, sizeof time, "step %" PRId64, step);
     snprintf(text, room, "%s%s%s", title ? title : "",
              title && *time ? "\n" : "", time);
-}
-
-snow_status snow_insitu_set_texts(snow_insitu *insitu,
-                                  const snow_insitu_texts *given) {
-    snow_insitu_texts texts;
-    snow_volume_info *says = &insitu->says;
-    INSITU_TRY(INSITU_READ(insitu, snow_insitu_texts, given, &texts));
-    const struct {
-        const char *from;
-        char *to;
-        size_t room;
-    } kept[] = {{texts.title, insitu->title, TEXT_BYTES},
-                {texts.time_format, insitu->time_format, TEXT_BYTES},
-                {texts.quantity, says->quantity, sizeof says->quantity},
-                {texts.unit, says->value_unit, sizeof says->value_unit}};
-    for (size_t n = 0; n < sizeof kept / sizeof *kept; n++)
-        snprintf(kept[n].to, kept[n].room, "%s",
-                 kept[n].from ? kept[n].from : "");
-    texts.title = texts.title ? insitu->title : NULL;
-    texts.time_format = texts.time_format ? insitu->time_format : NULL;
-    texts.quantity = texts.unit = NULL;
-    insitu->texts = texts;
-    return SNOW_STATUS_OK;
-}
-
-void snow_insitu_texts_init_sized(snow_insitu_texts *texts, size_t size) {
-    snow_record_init(texts, size, NULL, sizeof *texts);
 }
 
 snow_status snow_insitu_set_time(snow_insitu *insitu, double time,
@@ -133,16 +98,16 @@ static snow_status add_marks(snow_insitu *insitu, int64_t step,
     bool both = *says->quantity && *says->value_unit;
     snprintf(text, sizeof text, "%s%s%s%s", says->quantity, both ? " (" : "",
              says->value_unit, both ? ")" : "");
-    if (insitu->legend)
+    if (insitu->annotations.legend)
         INSITU_TRY(
             snow_overlay_color_bar(overlay, insitu->transfer, text, range));
-    if (insitu->scale_bar)
+    if (insitu->annotations.scale_bar)
         INSITU_TRY(snow_overlay_scale_bar(overlay, &insitu->whole, &view));
     write_title(insitu, step, text, sizeof text);
     INSITU_TRY(snow_overlay_title(overlay, text));
-    if (insitu->texts.outline || insitu->texts.axes)
+    if (insitu->annotations.outline || insitu->annotations.axes)
         INSITU_TRY(snow_overlay_box(overlay, &insitu->whole, &view,
-                                    insitu->texts.axes));
+                                    insitu->annotations.axes));
     return SNOW_STATUS_OK;
 }
 
@@ -218,9 +183,9 @@ static snow_status save_colors(snow_insitu *insitu, int64_t step,
     describe(insitu, step, comment);
     form.comment = form.comment ? form.comment : comment;
     snow_overlay *overlay = NULL;
-    bool marked = insitu->scale_bar || insitu->step_label ||
-                  insitu->texts.title || insitu->texts.outline ||
-                  insitu->texts.axes;
+    bool marked = insitu->annotations.scale_bar || insitu->annotations.step ||
+                  insitu->annotations.title || insitu->annotations.outline ||
+                  insitu->annotations.axes;
     if (!marked || form.overlay || snow_image_format_bits(path) <= 0)
         return snow_image_save(image, path, &form);
     INSITU_TRY(snow_overlay_new(insitu->context, snow_image_width(image),

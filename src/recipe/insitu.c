@@ -99,56 +99,53 @@ static void split_title(const char *title, char name[128], char unit[128]) {
     snprintf(name, 128, "%.*s", (int)(open - title), title);
 }
 
-static snow_status set_marks(const snow_recipe *recipe, snow_insitu *insitu) {
+/* The planes of a recipe are its first ones. */
+static size_t count_planes(const double planes[SNOW_CLIPS_MAX][4]) {
+    size_t count = 0;
+    while (count < SNOW_CLIPS_MAX &&
+           (planes[count][0] != 0 || planes[count][1] != 0 ||
+            planes[count][2] != 0))
+        count++;
+    return count;
+}
+
+static snow_status set_picture(const snow_recipe *recipe, const picture *p,
+                               snow_insitu *insitu) {
     const char *step = recipe->annotate;
     const bool timed = step && strncasecmp(step, "time", 4) == 0;
     char name[128] = "", unit[128] = "";
     if (recipe->legend_title)
         split_title(recipe->legend_title, name, unit);
-    const snow_insitu_texts texts = {
-        .size = sizeof texts,
+    const snow_insitu_annotations annotations = {
+        .size = sizeof annotations,
         .title = recipe->title,
         .quantity = name,
         .unit = unit,
         .time_format = !timed           ? ""
                        : step[4] == '=' ? step + 5
                                         : NULL,
+        .legend = recipe->legend,
+        .scale_bar = recipe->scale_bar,
+        .step = step != NULL,
         .outline = recipe->box != NULL,
         .axes = recipe->box && strcasecmp(recipe->box, "axes") == 0};
-    snow_status status = snow_insitu_set_annotations(
-        insitu, recipe->legend, recipe->scale_bar, recipe->annotate != NULL);
-    return status == SNOW_STATUS_OK ? snow_insitu_set_texts(insitu, &texts)
-                                    : status;
-}
-
-/* The planes of a recipe are its first ones. */
-static snow_status set_clip(const snow_recipe *recipe, snow_insitu *insitu) {
-    const double(*planes)[4] = recipe->data.clip;
-    size_t count = 0;
-    while (count < SNOW_CLIPS_MAX &&
-           (planes[count][0] != 0 || planes[count][1] != 0 ||
-            planes[count][2] != 0))
-        count++;
-    return snow_insitu_set_clip(insitu, planes[0], count);
-}
-
-/* The path comes first, since it may be refused. */
-static snow_status set_picture(const snow_recipe *recipe, const picture *p,
-                               snow_insitu *insitu) {
-    snow_status status = SNOW_STATUS_OK;
-    if (recipe->output)
-        status = snow_insitu_set_output(insitu, recipe->output, &recipe->image);
-    if (status == SNOW_STATUS_OK)
-        status = snow_insitu_set_look(insitu, &p->look);
-    if (status == SNOW_STATUS_OK)
-        status = snow_insitu_set_view(insitu, &p->view);
-    if (status == SNOW_STATUS_OK)
-        status = snow_insitu_set_settings(insitu, &p->settings);
-    if (status == SNOW_STATUS_OK)
-        status = set_clip(recipe, insitu);
-    if (status == SNOW_STATUS_OK)
-        snow_insitu_set_shaded(insitu, has_shade(recipe));
-    return status == SNOW_STATUS_OK ? set_marks(recipe, insitu) : status;
+    const snow_insitu_work work = {.size = sizeof work,
+                                   .seconds = recipe->limit_seconds,
+                                   .bytes = (uint64_t)recipe->limit_bytes};
+    const bool limited = work.seconds > 0 || work.bytes > 0;
+    const snow_insitu_settings settings = {.size = sizeof settings,
+                                           .output = recipe->output,
+                                           .image = &recipe->image,
+                                           .look = &p->look,
+                                           .view = &p->view,
+                                           .picture = &p->settings,
+                                           .shaded = has_shade(recipe),
+                                           .clip = recipe->data.clip[0],
+                                           .clip_count =
+                                               count_planes(recipe->data.clip),
+                                           .annotations = &annotations,
+                                           .work = limited ? &work : NULL};
+    return snow_insitu_set(insitu, &settings);
 }
 
 snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
@@ -159,6 +156,19 @@ snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
         status = set_picture(recipe, &p, insitu);
     snow_look_file_free(p.tf);
     return snow_insitu_set_recipe_status(insitu, status);
+}
+
+snow_status snow_recipe_apply_text(snow_insitu *insitu, const char *text) {
+    snow_recipe recipe;
+    snow_context *context = snow_comm_context(snow_insitu_comm(insitu));
+    snow_recipe_init(&recipe);
+    snow_status status =
+        snow_recipe_parse(context, "the recipe", text, strlen(text), &recipe);
+    if (status != SNOW_STATUS_OK)
+        return snow_insitu_set_recipe_status(insitu, status);
+    status = snow_recipe_apply(&recipe, insitu);
+    snow_recipe_clear(&recipe);
+    return status;
 }
 
 /* --- reading again ---------------------------------------------------------

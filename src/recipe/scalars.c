@@ -42,6 +42,10 @@ json_t *recipe_write_real(const recipe_key *key, const void *field) {
     return json_real(*(const double *)field);
 }
 
+static json_t *write_told_real(const recipe_key *key, const void *field) {
+    return *(const double *)field > 0 ? recipe_write_real(key, field) : NULL;
+}
+
 bool recipe_read_whole(const recipe_key *key, const json_t *value, int64_t *out,
                        char wrong[WRONG_BYTES]) {
     json_int_t number = json_integer_value(value);
@@ -184,6 +188,7 @@ static json_t *write_scale(const recipe_key *key, const void *field) {
 
 const recipe_kind recipe_scale = {read_scale, write_scale};
 const recipe_kind recipe_real = {recipe_read_real, recipe_write_real};
+const recipe_kind recipe_given_real = {recipe_read_real, write_told_real};
 const recipe_kind recipe_int = {recipe_read_int, recipe_write_given_int};
 const recipe_kind recipe_channel = {read_channel, write_channel};
 const recipe_kind recipe_time = {read_time, write_time};

@@ -82,19 +82,22 @@ static void a_file_that_is_missing_makes_no_image(void **state) {
     X(snow_volume_statistics) \
     X(snow_extent)
 
-#define EACH_RECORD(X)       \
-    X(snow_view)             \
-    X(snow_settings)         \
-    X(snow_look)             \
-    X(snow_stats)            \
-    X(snow_ranks_stats)      \
-    X(snow_image_options)    \
-    X(snow_image_difference) \
-    X(snow_ranks_options)    \
-    X(snow_ranks_needs)      \
-    X(snow_comm_ops)         \
-    X(snow_insitu_stats)     \
-    X(snow_recipe)           \
+#define EACH_RECORD(X)         \
+    X(snow_view)               \
+    X(snow_settings)           \
+    X(snow_look)               \
+    X(snow_stats)              \
+    X(snow_ranks_stats)        \
+    X(snow_image_options)      \
+    X(snow_image_difference)   \
+    X(snow_ranks_options)      \
+    X(snow_ranks_needs)        \
+    X(snow_comm_ops)           \
+    X(snow_insitu_stats)       \
+    X(snow_insitu_work)        \
+    X(snow_insitu_settings)    \
+    X(snow_insitu_annotations) \
+    X(snow_recipe)             \
     EACH_VOLUME_RECORD(X)
 
 /* A caller with a shorter record is not written beyond it, and one with a

@@ -11,6 +11,12 @@
 #include <math.h>
 #include <unistd.h>
 
+/* snow_insitu_set with these parts of the record. */
+#define SET(insitu, ...)                           \
+    snow_insitu_set(insitu,                        \
+                    &(const snow_insitu_settings){ \
+                        .size = sizeof(snow_insitu_settings), __VA_ARGS__})
+
 #define BRICKS_MOST 40
 #define RANKS_MOST 16
 
@@ -284,12 +290,11 @@ static snow_status describe_picture(snow_insitu *insitu, const scene *s) {
     snow_opacity_point scaled[5];
     snow_look look = look_of(s, scaled);
     SNOW_TRY(snow_insitu_set_grid(insitu, s->dims, NULL, NULL));
-    SNOW_TRY(snow_insitu_set_distribution(insitu, s->ghosts, s->balance));
-    SNOW_TRY(snow_insitu_set_view(insitu, &s->view));
-    SNOW_TRY(snow_insitu_set_settings(insitu, &s->settings));
-    if (s->clipped)
-        SNOW_TRY(snow_insitu_set_clip(insitu, planes[0], 2));
-    return snow_insitu_set_look(insitu, &look);
+    const snow_insitu_work work = {
+        .size = sizeof work, .ghosts = s->ghosts, .balance = s->balance};
+    return SET(insitu, .view = &s->view, .picture = &s->settings, .look = &look,
+               .work = &work, .clip = s->clipped ? planes[0] : NULL,
+               .clip_count = s->clipped ? 2 : 0);
 }
 
 /* Of values as a part of the largest; infinite where one of both has none. */
@@ -351,11 +356,11 @@ static snow_status draw_deterministic(snow_insitu *insitu, const scene *s) {
     snow_settings settings = s->settings;
     snow_image *image = NULL;
     settings.deterministic = 1;
-    SNOW_TRY(snow_insitu_set_settings(insitu, &settings));
+    SNOW_TRY(SET(insitu, .picture = &settings));
     SNOW_TRY(snow_insitu_update(insitu));
     SNOW_TRY(snow_insitu_render(insitu, &image));
     snow_image_free(image);
-    return snow_insitu_set_settings(insitu, &s->settings);
+    return SET(insitu, .picture = &s->settings);
 }
 
 static snow_status run_rank(snow_comm *comm, void *user) {
@@ -658,7 +663,7 @@ static snow_status scatter_rank(snow_comm *comm, void *user) {
         memcpy(all->whole, snow_image_pixels(image), sizeof all->whole);
     snow_image_free(image);
     how.scattered = 1;
-    snow_insitu_set_ranks(insitu, &how);
+    SET(insitu, .ranks = &how);
     SNOW_TRY(snow_insitu_render(insitu, &image));
     /* One after the other. */
     for (int turn = 0; turn < all->scene.ranks; turn++) {
@@ -897,12 +902,16 @@ static snow_status movie_rank(snow_comm *comm, void *user) {
     snow_insitu_set_warning(insitu, hear, m);
     snow_status status = describe_picture(insitu, &m->scene);
     if (status == SNOW_STATUS_OK && m->automatic)
-        status = snow_insitu_set_look(insitu, &automatic);
+        status = SET(insitu, .look = &automatic);
     if (status == SNOW_STATUS_OK)
-        status = snow_insitu_set_output(insitu, m->pattern, NULL);
+        status = SET(insitu, .output = m->pattern);
+    const snow_insitu_work limits = {.size = sizeof limits,
+                                     .ghosts = m->scene.ghosts,
+                                     .balance = m->scene.balance,
+                                     .seconds = m->limit_seconds,
+                                     .bytes = m->limit_bytes};
     if (status == SNOW_STATUS_OK)
-        status =
-            snow_insitu_set_limits(insitu, m->limit_seconds, m->limit_bytes);
+        status = SET(insitu, .work = &limits);
     if (status == SNOW_STATUS_OK)
         status = make_movie(insitu, m, snow_comm_rank(comm));
     snow_insitu_free(insitu);
@@ -1400,7 +1409,7 @@ static void make_fault(snow_insitu *insitu, faulty *f, int rank) {
         snow_insitu_set_voxels(insitu, 0, SNOW_TYPE_FLOAT64, nothing, NULL);
     if (f->fault == FAULT_VIEW) {
         view.azimuth++;
-        snow_insitu_set_view(insitu, &view);
+        SET(insitu, .view = &view);
     }
     snow_opacity_point ramp[] = {{0, 0}, {1, 0.5}};
     snow_look look = {.size = sizeof look,
@@ -1413,13 +1422,13 @@ static void make_fault(snow_insitu *insitu, faulty *f, int rank) {
     if (f->fault == FAULT_OPACITY)
         ramp[1].opacity = 0.75;
     if (f->fault == FAULT_LOOK || f->fault == FAULT_OPACITY)
-        snow_insitu_set_look(insitu, &look);
+        SET(insitu, .look = &look);
     snow_settings_init(&settings);
     settings.diffuse = 0.5;
     if (f->fault == FAULT_LIGHT)
-        snow_insitu_set_settings(insitu, &settings);
+        SET(insitu, .picture = &settings);
     if (f->fault == FAULT_CLIP)
-        snow_insitu_set_clip(insitu, NULL, 0);
+        SET(insitu, .clip = &(const double){0});
     if (f->fault == FAULT_OVERLAP)
         count[2]++;
     if (f->fault == FAULT_LACK)
@@ -1502,18 +1511,15 @@ static void setters_refuse_what_cannot_be(void **state) {
     assert_int_equal(
         snow_insitu_set_voxels(insitu, 0, SNOW_TYPE_UINT8, &voxel, NULL),
         SNOW_STATUS_BAD_USAGE);
-    assert_int_equal(snow_insitu_set_look(insitu, &look),
-                     SNOW_STATUS_BAD_USAGE);
-    assert_int_equal(snow_insitu_set_clip(insitu, NULL, 1),
-                     SNOW_STATUS_BAD_USAGE);
-    assert_int_equal(snow_insitu_set_clip(insitu, NULL, 0), SNOW_STATUS_OK);
+    assert_int_equal(SET(insitu, .look = &look), SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(SET(insitu, .clip_count = 1), SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(SET(insitu, .clip = &(const double){0}), SNOW_STATUS_OK);
     static const char *const patterns[] = {
         "a.png", "a_%s.png", "a_%d%d.png", "a_%04x.png", "a_%099d.png", "%"};
     for (int i = 0; i < 6; i++)
-        assert_int_equal(snow_insitu_set_output(insitu, patterns[i], NULL),
+        assert_int_equal(SET(insitu, .output = patterns[i]),
                          SNOW_STATUS_BAD_USAGE);
-    assert_int_equal(snow_insitu_set_output(insitu, "a_%d.png", NULL),
-                     SNOW_STATUS_OK);
+    assert_int_equal(SET(insitu, .output = "a_%d.png"), SNOW_STATUS_OK);
     /* The first of them is what the next collective call tells. */
     assert_int_equal(snow_insitu_update(insitu), SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(snow_insitu_message(insitu), "there is no grid"));

@@ -187,9 +187,9 @@ static snow_status draw(snow_insitu *insitu, scene *s) {
     snow_image *image = NULL;
     snow_settings_init(&settings);
     settings.shade = SNOW_SHADE_NONE;
-    SNOW_TRY(snow_insitu_set_view(insitu, &view));
-    SNOW_TRY(snow_insitu_set_settings(insitu, &settings));
-    SNOW_TRY(snow_insitu_set_look(insitu, &look));
+    const snow_insitu_settings all = {
+        .size = sizeof all, .view = &view, .picture = &settings, .look = &look};
+    SNOW_TRY(snow_insitu_set(insitu, &all));
     uint64_t messages, before = 0,
                        *sent = &s->sent[snow_comm_rank(insitu->comm)];
     for (int again = 0; again < 2; again++) {

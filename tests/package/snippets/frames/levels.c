@@ -14,7 +14,9 @@ int main(int argc, char **argv) {
     snow_insitu *movie = NULL;
     snow_insitu_new_mpi(NULL, MPI_COMM_WORLD, &movie);
     snow_insitu_set_grid(movie, dims, NULL, NULL);
-    snow_insitu_set_output(movie, "u_%04d.png", NULL);
+    const snow_insitu_settings how = {.size = sizeof how,
+                                      .output = "u_%04d.png"};
+    snow_insitu_set(movie, &how);
     SNIPPET
     const snow_status status = snow_insitu_step(movie, 7);
     fprintf(stderr, "%s\n", snow_insitu_message(movie));

@@ -1,0 +1,142 @@
+/* insitu/settings.c - what holds for many steps: copies of all that the
+ * caller's record points to. */
+#include "insitu/internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static snow_status keep_view(snow_insitu *insitu, const snow_view *given) {
+    snow_view view;
+    INSITU_TRY(INSITU_READ(insitu, snow_view, given, &view));
+    if (view.width < 1 || view.height < 1)
+        return snow_insitu_refuse(
+            insitu,
+            "invalid picture of %dx%d pixels; set width and height of the view",
+            view.width, view.height);
+    insitu->view = view;
+    insitu->has_view = true;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status keep_clip(snow_insitu *insitu, const double *planes,
+                             size_t count) {
+    if (count > SNOW_CLIPS_MAX)
+        return snow_insitu_refuse(insitu,
+                                  "too many clip planes: %zu; give at most %d",
+                                  count, SNOW_CLIPS_MAX);
+    if (count && !planes)
+        return snow_insitu_refuse(insitu,
+                                  "no clip planes where there are to be %zu; "
+                                  "give them, or a count of 0",
+                                  count);
+    for (size_t i = 0; i < 4 * count; i++)
+        if (!isfinite(planes[i]))
+            return snow_insitu_refuse(
+                insitu, "clip plane %zu has a number that is not finite",
+                i / 4);
+    insitu->clip_count = (int64_t)count;
+    if (count)
+        memcpy(insitu->clips, planes, count * sizeof *insitu->clips);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status keep_picture(snow_insitu *insitu,
+                                const snow_insitu_settings *given) {
+    snow_settings known;
+    INSITU_TRY(INSITU_READ(insitu, snow_settings, given->picture, &known));
+    insitu->settings = known;
+    insitu->shaded = given->shaded;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status keep_ranks(snow_insitu *insitu,
+                              const snow_ranks_options *how) {
+    snow_ranks_options known;
+    INSITU_TRY(INSITU_READ(insitu, snow_ranks_options, how, &known));
+    insitu->how = known;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status keep_work(snow_insitu *insitu,
+                             const snow_insitu_work *given) {
+    snow_insitu_work work;
+    INSITU_TRY(INSITU_READ(insitu, snow_insitu_work, given, &work));
+    if ((int)work.ghosts < 0 || work.ghosts > SNOW_GHOSTS_NONE ||
+        (int)work.balance < 0 || work.balance > SNOW_BALANCE_REPARTITION)
+        return snow_insitu_refuse(insitu,
+                                  "invalid ghosts %d or balance %d; use values "
+                                  "of snow_ghosts and snow_balance",
+                                  (int)work.ghosts, (int)work.balance);
+    if (!(work.seconds >= 0))
+        return snow_insitu_refuse(
+            insitu, "invalid limit %g s: must not be negative", work.seconds);
+    insitu->ghosts = work.ghosts;
+    insitu->balance = work.balance;
+    insitu->changed = true;
+    insitu->limit_seconds = work.seconds;
+    insitu->limit_bytes = work.bytes;
+    insitu->lowering = SNOW_DEGRADATION_NONE;
+    insitu->to_skip = 0;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status keep_annotations(snow_insitu *insitu,
+                                    const snow_insitu_annotations *given) {
+    snow_insitu_annotations marks;
+    snow_volume_info *says = &insitu->says;
+    INSITU_TRY(INSITU_READ(insitu, snow_insitu_annotations, given, &marks));
+    const struct {
+        const char *from;
+        char *to;
+        size_t room;
+    } kept[] = {{marks.title, insitu->title, TEXT_BYTES},
+                {marks.time_format, insitu->time_format, TEXT_BYTES},
+                {marks.quantity, says->quantity, sizeof says->quantity},
+                {marks.unit, says->value_unit, sizeof says->value_unit}};
+    for (size_t n = 0; n < sizeof kept / sizeof *kept; n++)
+        snprintf(kept[n].to, kept[n].room, "%s",
+                 kept[n].from ? kept[n].from : "");
+    marks.title = marks.title ? insitu->title : NULL;
+    marks.time_format = marks.time_format ? insitu->time_format : NULL;
+    marks.quantity = marks.unit = NULL;
+    marks.scale_bar = marks.legend || marks.scale_bar;
+    insitu->annotations = marks;
+    return SNOW_STATUS_OK;
+}
+
+/* The path comes first, since it may be refused. */
+snow_status snow_insitu_set(snow_insitu *insitu,
+                            const snow_insitu_settings *given) {
+    snow_insitu_settings s;
+    INSITU_TRY(INSITU_READ(insitu, snow_insitu_settings, given, &s));
+    if (s.output)
+        INSITU_TRY(snow_insitu_keep_output(insitu, s.output, s.image));
+    if (s.look)
+        INSITU_TRY(snow_insitu_keep_look(insitu, s.look));
+    if (s.view)
+        INSITU_TRY(keep_view(insitu, s.view));
+    if (s.picture)
+        INSITU_TRY(keep_picture(insitu, &s));
+    if (s.clip || s.clip_count)
+        INSITU_TRY(keep_clip(insitu, s.clip, s.clip_count));
+    if (s.annotations)
+        INSITU_TRY(keep_annotations(insitu, s.annotations));
+    if (s.ranks)
+        INSITU_TRY(keep_ranks(insitu, s.ranks));
+    return s.work ? keep_work(insitu, s.work) : SNOW_STATUS_OK;
+}
+
+void snow_insitu_work_init_sized(snow_insitu_work *work, size_t size) {
+    snow_record_init(work, size, NULL, sizeof *work);
+}
+
+void snow_insitu_annotations_init_sized(snow_insitu_annotations *annotations,
+                                        size_t size) {
+    snow_record_init(annotations, size, NULL, sizeof *annotations);
+}
+
+void snow_insitu_settings_init_sized(snow_insitu_settings *settings,
+                                     size_t size) {
+    snow_record_init(settings, size, NULL, sizeof *settings);
+}
