@@ -11,8 +11,8 @@ int cmd_phantom(const options *opts) {
     int done = open_context(opts, &context);
     if (done != CONTINUE)
         return done;
-    snow_status status = snow_volume_open_phantom(
-        context, opts->operands[0], opts->dims, 0, &volume);
+    snow_status status = snow_volume_open_phantom(context, opts->operands[0],
+                                                  opts->dims, 0, &volume);
     done = status == SNOW_STATUS_OK ? save_volume(context, opts, volume)
                                     : fail_status(context, status);
     snow_volume_close(volume);

@@ -4,6 +4,7 @@
 #define COMMANDS_H
 
 #include "options/options.h"
+#include "picture/settings.h"
 
 int cmd_render(const options *opts);
 int cmd_turntable(const options *opts);
@@ -62,17 +63,6 @@ int check_look(const options *opts);
  * exit code. */
 int open_look(snow_context *context, const options *opts,
               const snow_volume *volume, snow_transfer **out);
-
-/* Fills the settings from the options, except the opacity length, which depends
- * on the volume's unit. */
-void fill_settings(const options *opts, snow_settings *out);
-
-/* Make the settings and the view that the options request.  Return CONTINUE or
- * an exit code. */
-int make_settings(const options *opts, const snow_volume_info *info,
-                  snow_settings *out);
-int make_view(snow_context *context, const options *opts,
-              const snow_volume_info *info, snow_view *out);
 
 /* Refuses --depth in modes without depth.  Returns CONTINUE or an exit code. */
 int check_depth_mode(const options *opts);

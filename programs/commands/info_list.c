@@ -4,6 +4,7 @@
 #define _XOPEN_SOURCE 700
 #include "commands/info_list.h"
 #include "commands/commands.h"
+#include "commands/info_volume.h"
 #include "run/log.h"
 #include "run/paths.h"
 

@@ -43,6 +43,9 @@ void config_note_channels(const options *opts, const channel_list *list,
 void config_note_slice(const options *opts, const snow_transfer *transfer,
                        const char *axis, int64_t index);
 
+/* Sets what was noted in the tree of a recipe, and forgets it. */
+void config_set_noted(json_t *tree);
+
 /* The options as the tree of a recipe, a new reference; NULL: no memory. */
 json_t *config_tree(const options *opts, const verb_row *verb);
 

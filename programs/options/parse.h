@@ -45,6 +45,10 @@ option_read read_scale;           /* scale_value */
 option_read read_place;           /* place_value */
 option_read read_listen;          /* listen_value */
 
+/* Checks the number of operands; `named`: the verb was written. Returns
+ * CONTINUE or an exit code. */
+int operands_check(const options *out, const verb_row *verb, bool named);
+
 /* What readers share: each writes the end of an error message and returns
  * false, but for the test. */
 bool parse_refuse(char wrong[WRONG_BYTES], const char *text);
