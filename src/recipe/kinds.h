@@ -6,8 +6,8 @@
 
 /* Numbers. Those that may be 0 in the record are omitted then, but for reals:
  * "int" and "long" of scalars.c, "given_reals" of arrays.c. */
-extern const recipe_kind recipe_real, recipe_given_real, recipe_int, recipe_long, recipe_flag,
-    recipe_scale;
+extern const recipe_kind recipe_real, recipe_given_real, recipe_int,
+    recipe_long, recipe_flag, recipe_scale;
 
 /* Arrays of `count` numbers; a point is NaN if it is not given. A size is width
  * and height, which follow each other in the record. */
