@@ -302,7 +302,7 @@ const option_row option_table[] = {
      1e9, "end the job if a rank neither sends nor waits for this long, and name "
      "the rank; 0 waits forever (default 300)"},
 
-    {"listen", 0, "[ADDRESS]:PORT|unix:PATH", TOPIC_MORE, SERVE, read_listen,
+    {"listen", 0, ":PORT|ADDRESS:PORT|unix:PATH", TOPIC_MORE, SERVE, read_listen,
      FIELD(listen), 0, 65535, "where the viewer listens: on a TCP port of this machine alone (:8000); on one of "
      "its addresses, without encryption (10.0.0.17:8000, or 10.0.0.17 for a free port); "
      "or on a Unix socket that only its owner can open, for ssh -L 8000:PATH (default "
