@@ -163,37 +163,31 @@ static snow_status prepare_frame(void *user, frame_slot *slot) {
                : status;
 }
 
-/* The record is written before the first frame that it lists. */
-static snow_status begin_record(movie *s, frame_slot *slot) {
-    int number = record_begin(&s->record, &s->place, s->list->count);
-    s->begun = number == 0;
-    return number == 0 ? SNOW_STATUS_OK : fault(slot, s->place.record, number);
-}
-
-/* Gives a frame its final name.  A frame of this name that is not recorded may
- * come from a run that was killed between the two; it is replaced if a record
- * shows such a run.  Otherwise another program wrote it, and it stays. */
+/* Gives a frame its final name, under which the record lists it already: a run
+ * that is killed between the two leaves no frame that nobody knows.  A file of
+ * this name that was there before is another program's, and stays, unless a
+ * record shows that it may be replaced. */
 static snow_status name_frame(movie *s, frame_slot *slot) {
     char aside[PATH_MAX], path[PATH_MAX];
     struct stat what;
     place_aside(&s->place, slot->index, aside, sizeof aside);
     place_frame(&s->place, slot->index, path, sizeof path);
+    if (!s->record.replaces && lstat(path, &what) == 0)
+        return fault(slot, path, EEXIST);
     int64_t bytes = stat(aside, &what) == 0 ? (int64_t)what.st_size : 0;
-    int number = name_output(aside, path, s->record.replaces);
-    if (number == 0)
-        number = record_add(&s->record, slot->index, bytes);
+    int number = record_add(&s->record, &s->place, s->list, slot->index, bytes);
+    s->begun = s->begun || number == 0;
+    if (number != 0)
+        return fault(slot, s->place.record, number);
+    number = name_output(aside, path, s->record.replaces);
     return number == 0 ? SNOW_STATUS_OK : fault(slot, path, number);
 }
 
 static snow_status commit(void *user, frame_slot *slot) {
     movie *s = user;
     snow_status status = SNOW_STATUS_OK;
-    if (!s->record.kept[slot->index]) {
-        if (!s->begun)
-            status = begin_record(s, slot);
-        if (status == SNOW_STATUS_OK)
-            status = name_frame(s, slot);
-    }
+    if (!s->record.kept[slot->index])
+        status = name_frame(s, slot);
     if (status != SNOW_STATUS_OK || !s->encoding)
         return status;
     size_t size = (size_t)s->opts->size[0] * (size_t)s->opts->size[1] * 3;

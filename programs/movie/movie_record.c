@@ -19,7 +19,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define FIRST_LINE "snowglass frames 1\n"
+#define FIRST_LINE "snowglass frames 2\n"
 #define LOOK_LINE "look of "
 #define RECORD_MOST                                                           \
     (INT64_C(1) << 30) /* bytes; the record of a million frames takes a tenth \
@@ -62,6 +62,8 @@ static void print_identity(FILE *out, const char *path) {
 /* An option that names a file (a transfer function, a mask) also records the
  * file's identity. */
 static void print_options(FILE *out, const options *opts) {
+    if (opts->opacity_unit)
+        fprintf(out, "opacity-unit %s\n", opts->opacity_unit);
     for (size_t i = 0; option_table[i].name; i++) {
         const char *text = opts->given[i];
         struct stat what;
@@ -85,31 +87,35 @@ static const char *kernels(const options *opts) {
     return strncmp(isa, "avx", 3) == 0 ? "vector" : isa;
 }
 
-static void print_shots(FILE *out, const shot_list *list) {
-    if (list->looked)
-        fprintf(out, LOOK_LINE "%" PRId64 " steps\n", list->looked);
-    for (int64_t i = 0; i < list->count; i++) {
-        const movie_shot *shot = &list->shots[i];
-        fprintf(out, "frame %" PRId64 " azimuth %.17g time %" PRId64 " ", i,
-                shot->azimuth, shot->time);
-        print_identity(out, shot->path);
-        fprintf(out, "\n");
-    }
-}
-
-/* NULL if out of memory. */
-static char *write_text(const options *opts, const shot_list *list) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
-    if (!out)
-        return NULL;
+/* What all frames have in common. */
+static void print_head(FILE *out, const options *opts, const shot_list *list) {
     fprintf(out, FIRST_LINE "version %s\nkernels %s\n", snow_version(),
             kernels(opts));
     if (process_ranks() > 1 && !opts->deterministic)
         fprintf(out, "ranks %d\n", process_ranks());
     print_options(out, opts);
-    print_shots(out, list);
+    if (list->looked)
+        fprintf(out, LOOK_LINE "%" PRId64 " steps\n", list->looked);
+}
+
+/* The head for `index` -1, else a frame's line from its azimuth on; NULL if out
+ * of memory. */
+static char *text_of(const options *opts, const shot_list *list,
+                     int64_t index) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return NULL;
+    if (index < 0) {
+        print_head(out, opts, list);
+    } else {
+        const movie_shot *shot = &list->shots[index];
+        fprintf(out, "azimuth %.17g time %" PRId64 " ", shot->azimuth,
+                shot->time);
+        print_identity(out, shot->path);
+        fprintf(out, "\n");
+    }
     bool good = !ferror(out);
     if (fclose(out) != 0 || !good) {
         free(text);
@@ -153,19 +159,6 @@ static size_t line_length(const char *text) {
     return length + (text[length] == '\n');
 }
 
-/* Compares the lines before the first frame, advancing both texts.  Returns
- * true if they all agree. */
-static bool agree_on_settings(const char **old, const char **now) {
-    while (**old && **now && !begins(*now, "frame ")) {
-        size_t length = line_length(*old);
-        if (length != line_length(*now) || strncmp(*old, *now, length) != 0)
-            return false;
-        *old += length;
-        *now += length;
-    }
-    return begins(*old, "frame ") && begins(*now, "frame ");
-}
-
 /* Whether two lines of a frame differ only in the size of its file, which has
  * grown, and the time of its last change. */
 static bool has_grown(const char *old, const char *now) {
@@ -186,78 +179,115 @@ static bool has_grown(const char *old, const char *now) {
            strncmp(a, b, ends[0]) == 0;
 }
 
-static int64_t count_frames(const char *text) {
-    int64_t count = 0;
-    for (; begins(text, "frame "); text += line_length(text))
-        count++;
-    return count;
-}
-
-/* Continues along the frames.  One that is not kept, and on which the look of
- * those kept does not depend, may have changed (a broken step was repaired),
- * and there may be more than before.  `changed` is set if anything has changed.
+/* --- what an earlier run left ----------------------------------------------
  */
-static bool agree_on_frames(const char **old, const char **now,
-                            const frame_record *record, int64_t looked,
-                            bool *changed) {
-    /* Steps were added to their file: those before are as they were. */
-    const bool grows = count_frames(*now) > count_frames(*old);
-    if (!record->keeps)
-        looked = 0;
-    for (int64_t i = 0; begins(*old, "frame ") && **now; i++) {
-        size_t length = line_length(*old), other = line_length(*now);
-        bool same = length == other && strncmp(*old, *now, length) == 0;
-        if (!same && (i < looked || record->kept[i]) &&
-            !(grows && has_grown(*old, *now)))
-            return false;
-        *changed |= !same;
-        *old += length;
-        *now += other;
-    }
-    *changed |= begins(*old, "frame ") || **now;
-    return true;
-}
 
-/* Marks the frames of the "done" lines whose files still have the recorded
- * size. A truncated line is the last one, and is ignored. */
-static void mark_kept(const char *done, const movie_place *place, int64_t count,
-                      frame_record *out) {
-    char path[PATH_MAX], end;
-    int64_t index, bytes;
-    struct stat what;
-    while (sscanf(done, "done %" SCNd64 " %" SCNd64 "%c", &index, &bytes,
-                  &end) == 3 &&
-           end == '\n') {
-        done += line_length(done);
-        if (index < 0 || index == INT64_MAX)
+/* A frame's line, the last one of it in a record. */
+typedef struct frame_line {
+    const char *line; /* NULL: none */
+    const char *what; /* from its azimuth on */
+    int64_t count;    /* of frames in all, when it was written */
+    int64_t bytes;    /* 0: not made yet */
+} frame_line;
+
+/* A truncated line is the last one, and is ignored. */
+static void find_lines(const char *text, int64_t count, frame_line *lines,
+                       frame_record *out) {
+    for (; strchr(text, '\n'); text += line_length(text)) {
+        frame_line found = {.line = text};
+        int64_t index;
+        int at = 0;
+        if (sscanf(text,
+                   "frame %" SCNd64 " of %" SCNd64 " bytes %" SCNd64 " %n",
+                   &index, &found.count, &found.bytes, &at) != 3 ||
+            !at || index < 0 || index == INT64_MAX)
             continue;
-        if (index >= out->done)
-            out->done = index + 1;
-        if (index < count && !out->kept[index] &&
-            place_frame(place, index, path, sizeof path) &&
-            stat(path, &what) == 0 && S_ISREG(what.st_mode) &&
-            what.st_size == bytes) {
-            out->kept[index] = true;
-            out->keeps++;
-        }
+        found.what = text + at;
+        if (found.bytes && index >= out->listed)
+            out->listed = index + 1;
+        if (index < count)
+            lines[index] = found;
     }
 }
 
-/* Prints both lines, shortened to the size of a message. */
-static int fail_other(const movie_place *place, const char *old,
-                      const char *now) {
-    bool old_ended = !*old || begins(old, "done ");
+static void mark_kept(const frame_line *lines, const movie_place *place,
+                      int64_t count, frame_record *out) {
+    char path[PATH_MAX];
+    struct stat what;
+    for (int64_t i = 0; i < count; i++) {
+        out->kept[i] = lines[i].bytes &&
+                       place_frame(place, i, path, sizeof path) &&
+                       stat(path, &what) == 0 && S_ISREG(what.st_mode) &&
+                       what.st_size == lines[i].bytes;
+        out->keeps += out->kept[i];
+    }
+}
+
+static bool is_same_line(const char *a, const char *b) {
+    size_t length = line_length(a);
+    return length == line_length(b) && strncmp(a, b, length) == 0;
+}
+
+/* Prints both lines, shortened to the size of a message; not where frames may
+ * be replaced. */
+static int fail_other(const options *opts, const char *old, const char *now) {
     int was = (int)strcspn(old, "\n"), is = (int)strcspn(now, "\n");
+    if (opts->overwrite)
+        return SNOW_STATUS_BAD_OUTPUT;
     return fail_output("%s: its frames were made with other settings ('%.*s' "
                        "then, '%.*s' now); use the same settings, or "
                        "--overwrite without --resume to start again",
-                       place->output,
-                       old_ended   ? 7
-                       : was > 300 ? 300
-                                   : was,
-                       old_ended ? "nothing" : old,
-                       *now ? (is > 300 ? 300 : is) : 7,
-                       *now ? now : "nothing");
+                       opts->output, was > 300 ? 300 : was, old,
+                       is > 300 ? 300 : is, now);
+}
+
+/* Compares what all frames have in common. */
+static int check_head(const options *opts, const char *old, const char *now) {
+    while (*now && is_same_line(old, now)) {
+        old += line_length(old);
+        now += line_length(now);
+    }
+    bool ended = !*old || begins(old, "frame ");
+    return ended && !*now ? CONTINUE
+                          : fail_other(opts, ended ? "nothing" : old,
+                                       *now ? now : "nothing");
+}
+
+/* Compares the frames that are kept, and the steps that their look was chosen
+ * from.  Others may have changed (a broken step was repaired).  Where steps
+ * were added to their file, those before are as they were. */
+static int check_frames(const options *opts, const shot_list *list,
+                        const frame_line *lines, frame_record *out) {
+    int done = CONTINUE;
+    for (int64_t i = 0; i < list->count && done == CONTINUE; i++) {
+        const frame_line *old = &lines[i];
+        if (!old->line || (i >= list->looked && !out->kept[i]))
+            continue;
+        char *now = text_of(NULL, list, i);
+        bool same = now && is_same_line(old->what, now);
+        out->renewed |= !same;
+        if (!same &&
+            !(now && old->count < list->count && has_grown(old->what, now)))
+            done = fail_other(opts, old->line, now ? now : "out of memory");
+        free(now);
+    }
+    return done;
+}
+
+/* Whether a record allows to resume: CONTINUE. */
+static int check_old(const options *opts, const shot_list *list,
+                     const movie_place *place, const char *old,
+                     const frame_line *lines, frame_record *out) {
+    mark_kept(lines, place, list->count, out);
+    int done = check_head(opts, old, out->head);
+    if (done == CONTINUE && out->keeps)
+        done = check_frames(opts, list, lines, out);
+    if (done == CONTINUE && out->listed > list->count)
+        done = fail_other(opts, "more frames", "fewer");
+    if (done != CONTINUE)
+        out->keeps = 0;
+    out->anew = !out->keeps;
+    return done;
 }
 
 /* Checks frames that have no record, or a record that must not be resumed. */
@@ -278,43 +308,34 @@ static int check_other_files(const options *opts, const movie_place *place,
         recorded ? "--resume to continue, " : "");
 }
 
-/* Whether the record allows to resume; if so, marks the frames that are
- * kept. Otherwise `old` and `now` point to the first lines that differ. */
-static bool fits(const shot_list *list, const movie_place *place,
-                 const char **old, const char **now, const char *done,
-                 frame_record *out) {
-    bool changed = false;
-    mark_kept(done, place, list->count, out);
-    if (!agree_on_settings(old, now) ||
-        !agree_on_frames(old, now, out, list->looked, &changed))
-        return false;
-    if (out->done > list->count)
-        return false;
-    out->anew = changed;
-    return true;
+static int fail_list(const shot_list *list) {
+    return fail_memory("out of memory for a list of %" PRId64
+                       " frames; make fewer",
+                       list->count);
 }
 
 /* A record without finished frames counts as none. */
 static int compare(const options *opts, const shot_list *list,
-                   const movie_place *place, const char *old_text,
+                   const movie_place *place, const char *old,
                    frame_record *out) {
-    const char *old = old_text, *now = out->text;
-    const char *done = strstr(old_text, "\ndone ");
-    done = done ? done + 1 : "";
-    if (opts->resume && fits(list, place, &old, &now, done, out))
-        return CONTINUE;
-    if (opts->resume && *done && !opts->overwrite)
-        return fail_other(place, old, now);
-    memset(out->kept, 0, (size_t)list->count * sizeof *out->kept);
-    out->keeps = 0;
-    mark_kept(done, place, 0, out); /* how many frames there were */
-    if (opts->resume && !*done)
-        return CONTINUE;
-    if (*done && !opts->overwrite && place->format)
-        return fail_output("%s: an unfinished movie is in %s; use --resume to "
+    frame_line *lines = calloc((size_t)list->count, sizeof *lines);
+    if (!lines)
+        return fail_list(list);
+    find_lines(old, list->count, lines, out);
+    int done = CONTINUE;
+    if (opts->resume && out->listed)
+        done = check_old(opts, list, place, old, lines, out);
+    else if (out->listed && !opts->overwrite && place->format)
+        done = fail_output("%s: an unfinished movie is in %s; use --resume to "
                            "continue or --overwrite to start again",
                            place->output, place->folder);
-    return check_other_files(opts, place, true);
+    else if (!opts->resume)
+        done = check_other_files(opts, place, true);
+    free(lines);
+    if (done == CONTINUE || !opts->overwrite)
+        return done;
+    memset(out->kept, 0, (size_t)list->count * sizeof *out->kept);
+    return CONTINUE;
 }
 
 /* Opens and locks an existing record; -1 with CONTINUE: there is none. */
@@ -341,17 +362,11 @@ static void keep_look(const char *old, shot_list *list) {
         list->looked = looked;
 }
 
-static int fail_list(const shot_list *list) {
-    return fail_memory("out of memory for a list of %" PRId64
-                       " frames; make fewer",
-                       list->count);
-}
-
 static int describe(const options *opts, const shot_list *list,
                     frame_record *out) {
-    free(out->text);
-    out->text = write_text(opts, list);
-    return out->text ? CONTINUE : fail_list(list);
+    free(out->head);
+    out->head = text_of(opts, list, -1);
+    return out->head ? CONTINUE : fail_list(list);
 }
 
 int record_open(const options *opts, shot_list *list, const movie_place *place,
@@ -395,29 +410,6 @@ static int write_all(int file, const char *text, size_t size) {
     return 0;
 }
 
-static int write_line(int file, int64_t index, int64_t bytes) {
-    char line[64];
-    int length = snprintf(line, sizeof line, "done %" PRId64 " %" PRId64 "\n",
-                          index, bytes);
-    return write_all(file, line, (size_t)length);
-}
-
-/* Repeats the "done" lines of kept frames when the record is written again. */
-static int write_kept(const frame_record *record, const movie_place *place,
-                      int64_t count) {
-    char path[PATH_MAX];
-    struct stat what;
-    for (int64_t i = 0; record->keeps && i < count; i++) {
-        if (!record->kept[i] || !place_frame(place, i, path, sizeof path) ||
-            stat(path, &what) != 0)
-            continue;
-        int number = write_line(record->file, i, (int64_t)what.st_size);
-        if (number != 0)
-            return number;
-    }
-    return 0;
-}
-
 int record_claim(frame_record *record, const movie_place *place) {
     if (record->file >= 0)
         return 0;
@@ -429,34 +421,66 @@ int record_claim(frame_record *record, const movie_place *place) {
     return is_locked_by_others(record->file) ? EAGAIN : 0;
 }
 
-/* Old frames are removed before the record that lists them, so that an
- * interruption in between leaves no unlisted frames.  Frames that must not be
- * replaced did not exist when the run began; another program made them. */
-int record_begin(frame_record *record, const movie_place *place,
-                 int64_t count) {
-    if (!record->anew)
-        return 0;
-    if (!record->keeps && record->replaces)
-        place_remove_frames(place, record->done > count ? record->done : count);
-    int number = ftruncate(record->file, 0) == 0 ? 0 : errno;
+static int write_line(const frame_record *record, const shot_list *list,
+                      int64_t index, int64_t bytes) {
+    char begin[96];
+    char *what = text_of(NULL, list, index);
+    int length = snprintf(begin, sizeof begin,
+                          "frame %" PRId64 " of %" PRId64 " bytes %" PRId64 " ",
+                          index, list->count, bytes);
+    int number = what ? write_all(record->file, begin, (size_t)length) : ENOMEM;
     if (number == 0)
-        number = write_all(record->file, record->text, strlen(record->text));
-    if (number == 0)
-        number = write_kept(record, place, count);
-    if (number == 0 && fsync(record->file) != 0 && errno != EINVAL)
-        number = errno;
-    record->anew = number != 0;
+        number = write_all(record->file, what, strlen(what));
+    free(what);
     return number;
 }
 
-int record_add(frame_record *record, int64_t index, int64_t bytes) {
-    return write_line(record->file, index, bytes);
+/* Old frames are removed before the record that lists them, so that an
+ * interruption in between leaves no unlisted frames.  Frames that must not be
+ * replaced did not exist when the run began; another program made them. */
+static int start_anew(frame_record *record, const movie_place *place,
+                      int64_t count) {
+    if (record->replaces)
+        place_remove_frames(place,
+                            record->listed > count ? record->listed : count);
+    int number = ftruncate(record->file, 0) == 0 ? 0 : errno;
+    return number == 0
+               ? write_all(record->file, record->head, strlen(record->head))
+               : number;
+}
+
+/* The steps of the look, and frames that are kept. */
+static int write_known(frame_record *record, const movie_place *place,
+                       const shot_list *list) {
+    char path[PATH_MAX];
+    struct stat what;
+    int number = 0;
+    for (int64_t i = 0; i < list->count && number == 0; i++) {
+        bool kept = record->kept[i] &&
+                    place_frame(place, i, path, sizeof path) &&
+                    stat(path, &what) == 0;
+        if (kept || i < list->looked)
+            number =
+                write_line(record, list, i, kept ? (int64_t)what.st_size : 0);
+    }
+    if (number == 0 && fsync(record->file) != 0 && errno != EINVAL)
+        number = errno;
+    return number;
+}
+
+int record_add(frame_record *record, const movie_place *place,
+               const shot_list *list, int64_t index, int64_t bytes) {
+    int number = record->anew ? start_anew(record, place, list->count) : 0;
+    if (number == 0 && (record->anew || record->renewed))
+        number = write_known(record, place, list);
+    record->anew = record->renewed = number != 0;
+    return number == 0 ? write_line(record, list, index, bytes) : number;
 }
 
 void record_close(frame_record *record) {
     if (record->file >= 0)
         close(record->file);
-    free(record->text);
+    free(record->head);
     free(record->kept);
     *record = (frame_record){.file = -1};
 }

@@ -1,19 +1,24 @@
 /* movie_record.h - the text file beside frames that records what they were made
  * with:
  *
- *   snowglass frames 1
+ *   snowglass frames 2
  *   version 0.1.0
  *   kernels vector
  *   --size 1024x1024
- *   frame 0 azimuth 0 time 0 of 2883584 1731000000.5 /data/engine.nrrd
- *   frame 1 azimuth 3 ...
- *   done 0 130903
+ *   look of 2 steps
+ *   frame 0 of 2 bytes 0 azimuth 0 time 0 of 2883584 1731000000.5 /run_0.nrrd
+ *   frame 1 of 2 bytes 0 azimuth 0 time 0 of 2883584 1731000001.5 /run_1.nrrd
+ *   frame 0 of 2 bytes 130903 azimuth 0 time 0 of 2883584 1731000000.5 /run...
  *
- * It holds all given options that can change a picture, and for each input the
- * size, the time of the last change and the path.  A frame is kept if all of
- * these are the same.  A "done" line with the frame's size is added after the
- * frame has got its name.  So frames of different settings never mix, and a
- * list of frames may grow at its end (a simulation that continues). */
+ * First stands what holds for all frames: the given options that can change a
+ * picture.  Then each frame has a line with the bytes of its file, and its
+ * input: size, time of the last change and path.  The steps that the look was
+ * chosen from have one from the beginning.  The line is written before the
+ * frame gets its name, so that no frame is without one, whatever ends the run;
+ * the last one of a frame counts.  A frame is kept if its file is there with
+ * these bytes, and refused if its line would be another now.  So frames of
+ * different settings never mix, and a list of frames may grow at its end (a
+ * simulation that continues). */
 #ifndef MOVIE_RECORD_H
 #define MOVIE_RECORD_H
 
@@ -21,14 +26,14 @@
 #include "movie/movie_place.h"
 
 typedef struct frame_record {
-    int file;      /* locked; -1: none yet */
-    char *text;    /* the new content, without "done" lines */
-    bool *kept;    /* per frame: its complete file exists */
-    int64_t keeps; /* how many */
-    int64_t done; /* frames that an earlier record lists, including those beyond
-                     ours */
-    bool anew;    /* the record is to be rewritten */
-    bool replaces; /* existing frames may be replaced */
+    int file;       /* locked; -1: none yet */
+    char *head;     /* the new text before the frames' lines */
+    bool *kept;     /* per frame: its complete file exists */
+    int64_t keeps;  /* how many */
+    int64_t listed; /* frames that an earlier record lists, also beyond ours */
+    bool anew;      /* the record begins anew */
+    bool renewed;   /* files of frames that are kept have grown */
+    bool replaces;  /* existing frames may be replaced */
 } frame_record;
 
 /* Reads an existing record and compares it.  Of a list that has grown the look
@@ -43,12 +48,10 @@ int record_open(const options *opts, shot_list *list, const movie_place *place,
  * or EAGAIN if another run was first. */
 int record_claim(frame_record *record, const movie_place *place);
 
-/* Begins the record, before the first new frame; removes frames that are no
- * longer valid.  Returns 0 or an error number. */
-int record_begin(frame_record *record, const movie_place *place, int64_t count);
-
-/* Records that a frame has its final name.  Returns 0 or an error number. */
-int record_add(frame_record *record, int64_t index, int64_t bytes);
+/* Records a frame that is about to get its name; before the first one, removes
+ * those that are no longer valid.  Returns 0 or an error number. */
+int record_add(frame_record *record, const movie_place *place,
+               const shot_list *list, int64_t index, int64_t bytes);
 
 void record_close(frame_record *record);
 

@@ -174,7 +174,7 @@ run 0 "also of a step that has changed" "$TOOL" movie run/s_%04d.nrrd \
 check "whose frame is the same" cmp before.png auto6.png
 rm auto1.png
 touch -d '2001-01-01' run/s_0020.nrrd
-refused 4 "but not where it depends on that step" "frame 2 .*s_0020" \
+refused 4 "but not where it depends on that step" "frame 2 of .*s_0020" \
     "$TOOL" movie run/s_%04d.nrrd -o 'auto%d.png' "${auto[@]}" --resume
 run 0 "unless it starts again" "$TOOL" movie run/s_%04d.nrrd -o 'auto%d.png' \
     "${auto[@]}" --resume -y --stats -
@@ -182,7 +182,7 @@ prints '"rendered": 7, "kept": 0'
 check "from all steps" bash -c "! grep -q 'the first 6' '$ERR'"
 touch -d '2001-01-01' run/s_0010.nrrd
 # shellcheck disable=SC2086
-refused 4 "nor where a step has changed" "frame 1 .*s_0010" \
+refused 4 "nor where a step has changed" "frame 1 of .*s_0010" \
     movie run/s_%04d.nrrd -o 'y%d.png' $look --resume
 # The look of several steps is that of one where they are alike, shaded or not.
 for name in block slice; do

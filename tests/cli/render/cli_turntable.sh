@@ -118,7 +118,7 @@ run 0 "the same with --resume" turn --frames 6 -o 'a/%d.png' --resume --stats -
 prints '"frames": \{"rendered": 0, "kept": 6\}'
 refused 4 "--resume with other settings" "'--zoom 2' now" \
     turn --frames 6 -o 'a/%d.png' --zoom 2 --resume
-refused 4 "--resume of another turn" "frame 1 azimuth 60 .* then" \
+refused 4 "--resume of another turn" "frame 1 of 6 .* azimuth 60 .* then" \
     turn --frames 5 -o 'a/%d.png' --resume
 refused 4 "--resume of fewer frames" "--elevation 3" \
     turn --frames 6 --elevation 3 -o 'a/%d.png' --resume
@@ -219,6 +219,24 @@ for signal in INT TERM; do
     check "SIG$signal leaves nothing half" clean
 done
 
+# Killed between a frame's line in the record and its name, at any frame: it is
+# made again; killed behind its name, it is kept.
+rm -rf killed && mkdir killed
+run 0 "a short turn" turn --frames 3 -o 'killed/%d.png'
+cp -r killed named
+for lines in 0 1 2; do
+    rm -rf killed && mkdir killed && cp named/?.png killed
+    head -n -$((2 - lines)) named/.%d.png.frames >killed/.%d.png.frames
+    rm -f killed/$((lines + 1)).png killed/$((lines + 2)).png
+    run 0 "after line $lines" turn --frames 3 -o 'killed/%d.png' --resume --stats -
+    prints "\"rendered\": $((2 - lines)), \"kept\": $((lines + 1))"
+    rm killed/$lines.png
+    run 0 "before the name of $lines" turn --frames 3 -o 'killed/%d.png' --resume \
+        --stats -
+    prints '"rendered": 1, "kept": 2'
+    check "the frames are the same bytes" same_frames named killed
+done
+
 # Two runs at one place.
 rm -rf killed && mkdir killed
 # shellcheck disable=SC2086
@@ -263,8 +281,8 @@ rm -rf late
 
 # A record that is damaged.
 mkdir odd
-printf 'snowglass frames 1\ndone 400000000000 5\ndone %s 5\n' \
-    9223372036854775807 >'odd/.%d.png.frames'
+printf 'snowglass frames 2\nframe 400000000000 of 9 bytes 5 x\n%s\n' \
+    'frame 9223372036854775807 of 9 bytes 5 x' >'odd/.%d.png.frames'
 run 0 "beside a record that tells of too many frames" timeout 60 \
     "$TOOL" turntable phantom:cube --dims 8x8x8 -s 9x9 --frames 2 -q -y \
     -o 'odd/%d.png'
