@@ -171,8 +171,6 @@ static snow_status end_receives(snow_combiner *combiner) {
             at += snow_align(snow_active_room(part.last - part.first,
                                               combiner->exchange.pixel_bytes));
         }
-        if ((int64_t)count > combiner->figures.receive_largest)
-            combiner->figures.receive_largest = (int64_t)count;
         snow_active *layer =
             &combiner->layers[combiner->exchange.layer_count++];
         bool good =

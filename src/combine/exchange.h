@@ -75,11 +75,10 @@ typedef struct snow_image_region {
 typedef struct snow_exchange_figures {
     snow_combine method; /* as chosen by AUTO */
     int rounds, radices[SNOW_ROUNDS_MOST];
-    bool counted;            /* whether regions were counted */
-    int64_t active;          /* active pixels of the local image */
-    int64_t scanned, laid;   /* pixels examined; pixels composited */
-    int64_t receive_largest; /* bytes of the largest message received */
-    int64_t early;   /* bytes sent before the local image was finished */
+    bool counted;          /* whether regions were counted */
+    int64_t active;        /* active pixels of the local image */
+    int64_t scanned, laid; /* pixels examined; pixels composited */
+    int64_t early;         /* bytes sent before the local image was finished */
     double begin_at; /* fraction of the picture's pixels after which a rank
                         should begin to draw, so that it can send more of them
                         early: its own are drawn last */
