@@ -4,7 +4,6 @@
 # draws what the tool draws, also of a file that needs a module; its command is
 # the tool.
 . "$(dirname "$0")/../support/shell.sh"
-BUILD=$(realpath "$2")
 SOURCE=$(realpath "$3")
 PYTHON=/usr/bin/python3
 "$PYTHON" -c 'import numpy, tomllib, ensurepip' 2>/dev/null ||
@@ -12,8 +11,14 @@ PYTHON=/usr/bin/python3
 ls /usr/include/python3.*/Python.h >/dev/null 2>&1 ||
     { echo "skip   Python's headers are missing" && exit 77; }
 
-export CCACHE_BASEDIR=$WORK CFLAGS="-O0 -w" CXXFLAGS="-O0 -w"
-run 0 "a wheel is made" "$PYTHON" -B "$HERE/package/wheel.py" "$SOURCE" "$WORK"
+mkdir source
+cp -r "$SOURCE"/{CMakeLists.txt,README.md,LICENSE,CHANGELOG.md,CONTRIBUTING.md,pyproject.toml} \
+    "$SOURCE"/{bench,bindings,cmake,docs,examples,fuzz,include,programs,python,scripts,serve,src,web} \
+    source
+page=build-web/viewer.html # where ./dev web has made it
+[ ! -e "$SOURCE/$page" ] || { mkdir source/build-web && cp "$SOURCE/$page" source/$page; }
+. "$HERE/package/compiled.sh" source
+run 0 "a wheel is made" "$PYTHON" -B "$HERE/package/wheel.py" source "$WORK"
 wheel=$(tail -1 "$OUT")
 check "it serves all later versions of Python" \
     [ "${wheel#*-cp311-abi3-linux}" != "$wheel" ]
@@ -21,27 +26,15 @@ run 0 "it is listed" "$PYTHON" -m zipfile -l "$wheel"
 check "all of it is in the package, but its description" \
     [ -z "$(sed 1d "$OUT" | grep -Ev '^snowglass(/|-[^/]*[.]dist-info/)')" ]
 check "the library is in it once" [ "$(grep -c '/libsnowglass[.]so' "$OUT")" = 1 ]
-rm -rf built stage
+rm -rf source stage
 
-# What is compiled fastest is large.  So the size is that of a package with the
-# library, modules and extension of the build, if that is one to be released; the
-# tool remains, which is smaller when it is optimised.
-if grep -q '^CMAKE_BUILD_TYPE:STRING=Release$' "$BUILD/CMakeCache.txt"; then
-    run 0 "it is unpacked" "$PYTHON" -m zipfile -e "$wheel" whole
-    for file in $(cd whole && find snowglass -name '*.so*'); do
-        name=${file#snowglass/}
-        for from in "$BUILD/$name" "$BUILD/python/snowglass/$name"; do
-            [ ! -e "$from" ] || strip -o "whole/$file" "$from"
-        done
-    done
-    strip whole/snowglass/bin/snowglass
-    run 0 "it is packed" "$PYTHON" -m zipfile -c released.zip whole/*
-    size=$(stat -c %s released.zip)
-    echo "a wheel of this build has $size bytes"
-    check "that is at most 3,000,000" [ "$size" -le 3000000 ]
-else
-    skipped "the size of the wheel" "the build is not Release"
-fi
+run 0 "it is unpacked" "$PYTHON" -m zipfile -e "$wheel" whole
+find whole/snowglass \( -name '*.so*' -o -path '*/bin/*' \) -exec strip {} +
+run 0 "it is packed without names for a debugger" \
+    "$PYTHON" -m zipfile -c released.zip whole/*
+size=$(stat -c %s released.zip)
+echo "that has $size bytes"
+check "at most 3,000,000" [ "$size" -le 3000000 ]
 
 run 0 "an environment is made" "$PYTHON" -m venv --system-site-packages there
 find there | sort >before

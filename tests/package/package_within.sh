@@ -10,24 +10,23 @@ cp -r "$SOURCE"/{CMakeLists.txt,README.md,LICENSE,CHANGELOG.md,CONTRIBUTING.md} 
     snowglass
 hide_project tests/package/within examples/minimal.c examples/array.c
 
-# Plain code is compiled fastest, and gives the same bits; a compiler cache, if
-# one is used, knows it from one place to the next.
-export CCACHE_BASEDIR=$WORK
+. "$HERE/package/compiled.sh" snowglass
+built=snowglass/built
 configure() {
-    cmake -S within -B built -DSNOWGLASS="$WORK/snowglass" \
-        -DPROGRAM="$WORK/minimal.c" -DCMAKE_C_FLAGS="-O0 -w"
+    cmake -S within -B $built -DSNOWGLASS="$WORK/snowglass" \
+        -DPROGRAM="$WORK/minimal.c" -DCMAKE_C_FLAGS="$RELEASE_FLAGS"
 }
 run 0 "it is added" configure
-run 0 "it is built" cmake --build built -j 2
+run 0 "it is built" cmake --build $built -j 2
 grep -E 'error|undefined' "$ERR"
-check "shared: draws" draws "" built/out/shared shared
-check "static: draws" draws "" built/out/static static
-check "static: needs no library of ours" needs_no_snowglass built/out/static
+check "shared: draws" draws "" $built/out/shared shared
+check "static: draws" draws "" $built/out/static static
+check "static: needs no library of ours" needs_no_snowglass $built/out/static
 check "the build type is the project's own" \
-    grep -q '^CMAKE_BUILD_TYPE:STRING=$' built/CMakeCache.txt
+    grep -q '^CMAKE_BUILD_TYPE:STRING=$' $built/CMakeCache.txt
 check "its tests are not the project's" \
-    [ -z "$(grep BUILD_TESTING built/CMakeCache.txt)" ]
-run 0 "the project is installed" cmake --install built --prefix "$WORK/third"
+    [ -z "$(grep BUILD_TESTING $built/CMakeCache.txt)" ]
+run 0 "the project is installed" cmake --install $built --prefix "$WORK/third"
 check "of the library nothing is" [ -z "$(find third -type f 2>/dev/null)" ]
 
 # The core needs zlib and libpng, whose archives are in every system.
@@ -35,12 +34,11 @@ archives() { for name in "$@"; do "$CC" -print-file-name="lib$name.a"; done; }
 if archives png z m c | grep -qv /; then
     skipped "a program without shared libraries" "an archive is missing"
 else
-    run 0 "the core is configured" cmake -S snowglass -B core \
+    run 0 "the core is configured" cmake -S snowglass -B snowglass/core \
         -DSNOW_FORMATS=OFF -DBUILD_TESTING=OFF -DSNOW_MPI=OFF \
-        -DSNOW_PYTHON=OFF \
-        -DCMAKE_BUILD_TYPE=None -DCMAKE_C_FLAGS="-O0 -w"
-    run 0 "the core is built" cmake --build core -j 2
-    run 0 "the core is installed" cmake --install core --prefix "$WORK/fourth"
+        -DSNOW_PYTHON=OFF -DCMAKE_BUILD_TYPE=Release
+    run 0 "the core is built" cmake --build snowglass/core -j 2
+    run 0 "the core is installed" cmake --install snowglass/core --prefix "$WORK/fourth"
     export PKG_CONFIG_PATH
     PKG_CONFIG_PATH=$(dirname "$(find fourth -name snowglass.pc)")
     # shellcheck disable=SC2046

@@ -2,8 +2,8 @@
 its name.
 
 By scikit-build-core, where it is installed.  Else by the same settings of
-pyproject.toml, which are checked to be all that there are: configured, built,
-installed component by component, packed.  Plain code is compiled fastest.
+pyproject.toml, which are checked to be all that there are: configured, built in a
+folder of the sources, installed component by component, packed.
 """
 import os
 import pathlib
@@ -25,7 +25,7 @@ def run(*words):
 def by_backend(source, work):
     from scikit_build_core.build import build_wheel
     os.chdir(source)
-    return build_wheel(str(work), {"build-dir": str(work / "built")})
+    return build_wheel(str(work), {"build-dir": str(source / "built")})
 
 
 def by_hand(source, work):
@@ -33,13 +33,14 @@ def by_hand(source, work):
         project = tomllib.load(file)
     settings = project["tool"]["scikit-build"]
     assert set(settings) == KNOWN, settings
-    run("cmake", "-S", source, "-B", work / "built",
-        "-DCMAKE_BUILD_TYPE=None", *settings["cmake"]["args"])
-    run("cmake", "--build", work / "built", "--parallel", 2, "--target",
+    built = source / "built"
+    run("cmake", "-S", source, "-B", built, "-DCMAKE_BUILD_TYPE=Release",
+        *settings["cmake"]["args"])
+    run("cmake", "--build", built, "--parallel", 2, "--target",
         *settings["build"]["targets"])
     stage = work / "stage"
     for component in settings["install"]["components"]:
-        run("cmake", "--install", work / "built", "--prefix", stage,
+        run("cmake", "--install", built, "--prefix", stage,
             "--component", component)
     version = settings["metadata"]["version"]
     found = re.search(version["regex"], (source / version["input"]).read_text())
