@@ -1,9 +1,9 @@
 # Which tests belong to which tier, and which of them take long.
 #
 # Labels:
-#   release  run by ./dev test --release alone: on an emulated machine what
-#            another test shows on a real one, or with the other MPI what does
-#            not depend on it
+#   release  of those that are `long`, run by ./dev test --release alone: on an
+#            emulated machine what another test shows on a real one, or with the
+#            other MPI what does not depend on it
 #   long     not run by the short tier: it takes long, or repeats with large data
 #            what another test shows with small
 #   late     not run by the short tier either, but under sanitizers by the long
@@ -20,7 +20,7 @@
 # The sanitized builds of the long tier run all but `long` and `plain`.
 set(SNOW_LABEL_release isa_wasm)
 set(SNOW_LABEL_long cli_documents cli_large cli_matrix cli_stream cli_turntable
-    isa_neon mpi_bench mpi_clusters mpi_fail mpi_hosts
+    isa_neon isa_wasm mpi_bench mpi_clusters mpi_fail mpi_hosts
     mpi_insitu mpi_kill mpi_modes mpi_other mpi_overlay mpi_python mpi_serve mpi_stall
     package_abi package_cmake package_copies
     serve_fuzz
