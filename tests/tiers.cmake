@@ -60,6 +60,7 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
 set(SNOW_COSTS
     isa_wasm 320 isa_neon 310 mpi_stall 300 mpi_insitu 280
     mpi_render 260 wasm_page 300 mpi_modes 250
+    package_within 200 package_wheel 200
     mpi_serve 300 serve_browser 245 mpi_fail 240 mpi_comm 230 cli_progress 200 cli_large 190
     test_model_raycast 37 cli_stream 87 test_ranks 62 test_stream 57
     cli_figures 52 oracle_zarr 46 test_modes 44
