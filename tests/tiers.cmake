@@ -63,7 +63,7 @@ set(SNOW_COSTS
     package_within 200 package_wheel 200
     mpi_serve 300 serve_browser 245 mpi_fail 240 mpi_comm 230 cli_progress 200 cli_large 190
     test_model_raycast 37 cli_stream 87 test_ranks 62 test_stream 57
-    cli_figures 52 oracle_zarr 46 test_modes 44
+    cli_figures 25 oracle_zarr 46 test_modes 44
     cli_turntable 41 oracle_vtk 40 cli_render 39 test_stop 37
     test_combine 35 cli_bench 34 cli_interrupt 34
     cli_documents 31 test_raycast 31 cli_matrix 31
