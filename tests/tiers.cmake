@@ -33,21 +33,19 @@ set(SNOW_LABEL_late
     oracle_mrc oracle_netcdf oracle_npy oracle_orientation oracle_pictures
     oracle_seg oracle_series oracle_slice oracle_tiff oracle_vtk oracle_zarr test_comm
     test_darken test_histogram test_model_encodings
-    test_model_raycast test_phantom test_raycast test_splat_isa test_stream
-    test_value_model test_value_truth test_value_views)
+    test_model_raycast test_phantom test_raycast test_splat_isa test_stream)
 file(GLOB formats CONFIGURE_DEPENDS formats/test_*.c)
 list(TRANSFORM formats REPLACE ".*/(.*)[.]c$" "\\1")
 set(SNOW_LABEL_surface ${formats} test_base test_compare test_convert test_image
     test_guard test_live_file test_mask test_message test_npy_pfm test_pictures test_png test_recipe test_save
     test_source test_tf test_volume test_writer test_writer_named)
-set(SNOW_LABEL_threads test_affinity test_combine test_comm test_early
+set(SNOW_LABEL_threads test_affinity test_same_bits test_combine test_comm test_early
     test_pipeline test_frames test_insitu test_insitu_levels test_insitu_marks
-    test_raycast test_value test_value_layer_parts test_value_parts test_value_perspective test_simulated test_stop test_progress test_ranks test_ranks_open test_redistribute
+    test_raycast test_value test_value_layer_parts test_value_parts test_simulated test_stop test_progress test_ranks test_ranks_open test_redistribute
     test_pool_signals test_shares serve_hostile serve_places serve_sockets)
 set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     test_model_raycast test_model_reference test_model_rules test_model_slabs
-    test_value_field test_value_model test_value_truth
-    test_value_views
+    test_truth test_truth_edges test_laws
     test_phantom test_perspective test_camera_points
     cli_documents cli_bench cli_figures cli_ranks cli_stream
     cli_again cli_matrix cli_turntable cli_modules cli_memory cli_progress
@@ -70,12 +68,12 @@ set(SNOW_COSTS
     oracle_dicom 31 test_pipeline 28 cli_measurements 28
     test_ranks_open 28 test_value 27 test_insitu 26
     test_model_picture 22 test_histogram 22 oracle_tiff 22
-    cli_real 22 test_model_encodings 20 test_value_model 20
+    cli_real 22 test_model_encodings 20 test_truth 25 test_same_bits 25
     serve_sockets 20 serve_hostile 20 oracle_orientation 20 oracle_hdf5 20 oracle_netcdf 18 test_comm 17
-    cli_formats 16 cli_config 16 test_gradient_opacity 16 test_value_truth 14
+    cli_formats 16 cli_config 16 test_gradient_opacity 16
     test_api 13 test_kernels 13 cli_usage 12
     test_splat_isa 11 
-    test_phantom 11 oracle_pictures 11 test_value_views 11 test_early 10)
+    test_phantom 11 oracle_pictures 11 test_early 10)
 
 file(GLOB_RECURSE sources *.c *.sh *.py)
 get_property(tests DIRECTORY PROPERTY TESTS)

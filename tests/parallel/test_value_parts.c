@@ -1,10 +1,9 @@
 /* tests/parallel/test_value_parts.c - method shear-warp by parts: slabs of a
- * file and many ranks make the picture of one process, which test_value.c holds
- * against the reference. */
+ * file and many ranks make the picture of one process, which test_truth.c holds
+ * against the truth. */
 #include "reference/model.h"
 #include "support/scenario.h"
 #include "support/volumes.h"
-#include "values/value_model.h"
 
 #include "render/picture.h"
 

@@ -2,9 +2,9 @@
  * footprints equal the reference's, what is even vanishes, and a magnitude is
  * in data units a millimetre.
  *
- * Those of shear-warp, and their bits, are test_value_fade.c's; parts and ranks
- * are test_deterministic.c's and test_ranks.c's. */
-#include "values/pictures.h"
+ * Those of shear-warp are test_truth.c's, their bits test_same_bits.c's; parts
+ * and ranks are test_deterministic.c's and test_ranks.c's. */
+#include "reference/model.h"
 
 #include "classify/count_interesting.h"
 
@@ -82,10 +82,6 @@ static void curves_of_any_shape(void **state) {
         scene.gradients = curves[n % 4].points;
         scene.gradient_count = curves[n % 4].count;
         model_check(&stage, &scene, 1e-3, &exact);
-        scene.settings.method = SNOW_METHOD_SHEAR_WARP;
-        /* Of the teeth of `many` a unit of V is a part of 1/50. */
-        if (curves[n % 4].points != many)
-            value_picture_check(&stage, (int)n, &(value_scene){.base = scene});
         model_free(&scene);
     }
     model_report(&exact);

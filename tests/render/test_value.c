@@ -1,101 +1,14 @@
-/* tests/render/test_value.c - method shear-warp beside the float64 reference of
- * the value model, and what must not change a bit of its pictures. */
-#include <math.h>
-
-#include "classify/values/value_range.h"
-#include "reference/model.h"
+/* tests/render/test_value.c - what a frame keeps from picture to picture by
+ * method shear-warp, and what that leaves to other methods. */
 #include "render/picture.h"
-#include "simd/isa.h"
-#include "values/pictures.h"
+#include "shear_warp/scenes.h"
+
+#include <math.h>
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
-/* Less than a unit of the 15 bits of the image on the lattice, and more than
- * what its warp rounds. */
-#define WARP_BOUND 2e-6
-
 static const snow_opacity_point above[] = {
     {0, 0}, {35, 0}, {70, 0.6}, {100, 0.9}};
-
-static void pictures_are_the_references(void **state) {
-    (void)state;
-    model_stage stage = model_open();
-    for (int n = 0; n < VALUE_PICTURES; n += (int)support_stride(23)) {
-        reference_scene s = value_picture_scene(n);
-        float *picture = model_picture(&stage, &s);
-        double *expected = value_picture_expected(&(value_scene){.base = s});
-        assert_int_equal(snow_frame_stats(stage.frame)->method,
-                         SNOW_METHOD_SHEAR_WARP);
-        value_picture_compare(n, &s, picture, expected);
-        free(picture);
-        free(expected);
-        value_picture_free(&s);
-    }
-    model_close(&stage);
-}
-
-/* --- bits ----------------------------------------------------------------- */
-
-/* Both pictures are freed but the first. */
-static void same_bits(int n, const float *first, float *other, size_t count) {
-    if (memcmp(first, other, count * sizeof *first) != 0)
-        fail_msg("scene %d: other bits", n);
-    free(other);
-}
-
-static void threads_and_encodings_give_the_same_bits(void **state) {
-    (void)state;
-    for (int n = 0; n < VALUE_PICTURES; n += (int)support_stride(23)) {
-        model_stage stage = model_open();
-        reference_scene s = value_picture_scene(n);
-        size_t count = 4 * (size_t)s.view.width * (size_t)s.view.height;
-        s.settings.threads = 1;
-        s.settings.encoding = SNOW_ENCODING_BITMAP;
-        float *first = model_picture(&stage, &s);
-        assert_int_equal(snow_frame_stats(stage.frame)->encoding,
-                         SNOW_ENCODING_BITMAP);
-        for (int threads = 2; threads < 9; threads += 3) {
-            s.settings.threads = threads;
-            same_bits(n, first, model_picture(&stage, &s), count);
-        }
-        s.settings.encoding = SNOW_ENCODING_CRS;
-        same_bits(n, first, model_picture(&stage, &s), count);
-        s.settings.encoding = SNOW_ENCODING_RLE;
-        same_bits(n, first, model_picture(&stage, &s), count);
-        free(first);
-        value_picture_free(&s);
-        model_close(&stage);
-    }
-}
-
-/* The image on the lattice has the same bits; its warp in plain C rounds
- * products and sums apart. */
-static void all_vector_levels_give_the_same_image(void **state) {
-    (void)state;
-    model_stage stage = model_open();
-    for (int n = 0; n < VALUE_PICTURES; n += (int)support_stride(13)) {
-        reference_scene s = value_picture_scene(n);
-        size_t count = 4 * (size_t)s.view.width * (size_t)s.view.height;
-        s.settings.isa = SNOW_ISA_SCALAR;
-        float *plain = model_picture(&stage, &s), *first = NULL;
-        for (snow_isa isa = SNOW_ISA_AVX2; isa <= SNOW_ISA_AVX512; isa++) {
-            if (!snow_isa_runs(isa))
-                continue;
-            s.settings.isa = isa;
-            float *other = model_picture(&stage, &s);
-            for (size_t i = 0; i < count; i++)
-                assert_near(other[i], plain[i], WARP_BOUND);
-            if (first)
-                same_bits(n, first, other, count);
-            else
-                first = other;
-        }
-        free(plain);
-        free(first);
-        value_picture_free(&s);
-    }
-    model_close(&stage);
-}
 
 /* --- what a frame keeps --------------------------------------------------- */
 
@@ -145,7 +58,7 @@ static void only_what_shows_more_is_encoded_anew(void **state) {
     static const snow_opacity_point more[] = {
         {0, 0}, {15, 0}, {70, 0.6}, {100, 0.9}};
     model_stage stage = model_open();
-    reference_scene s = value_picture_scene(0);
+    reference_scene s = noisy_scene(0).base;
     snow_volume *volume = frozen(&stage, &s);
     s.opacities = above;
     s.opacity_count = COUNT(above);
@@ -166,7 +79,7 @@ static void only_what_shows_more_is_encoded_anew(void **state) {
     model_turn(&s, 80, 0, 0, 1);
     assert_true(encodes(&stage, volume, &s));
     snow_volume_close(volume);
-    value_picture_free(&s);
+    free((void *)(uintptr_t)s.voxels);
     model_close(&stage);
 }
 
@@ -177,7 +90,7 @@ static void only_what_shows_more_is_encoded_anew(void **state) {
 static void slices_far_apart_are_left_to_others(void **state) {
     (void)state;
     model_stage stage = model_open();
-    reference_scene s = value_picture_scene(10);
+    reference_scene s = noisy_scene(10).base;
     for (int n = 0; n < 3; n++)
         s.info.matrix[n][2] *= 500;
     s.info.spacing[2] *= 500;
@@ -191,7 +104,7 @@ static void slices_far_apart_are_left_to_others(void **state) {
     free(model_picture(&stage, &s));
     assert_int_equal(snow_frame_stats(stage.frame)->method,
                      SNOW_METHOD_RAYCAST);
-    value_picture_free(&s);
+    free((void *)(uintptr_t)s.voxels);
     model_close(&stage);
 }
 
@@ -219,35 +132,35 @@ static void odd_volumes_are_drawn(void **state) {
     model_close(&stage);
 }
 
-/* One voxel of 3e38, and a look that is visible to its end. */
-static void far_values_of_a_constant_look_take_no_numbers(void **state) {
+/* Where the eye is farther above the first slice than an eighth of the volume's
+ * height, whose middle it looks at. */
+static void an_eye_is_as_near_as_an_eighth(void **state) {
     (void)state;
-    const snow_color_point colors[] = {{2, 0, 0, 0}, {110, 1, 1, 1}};
-    const snow_opacity_point opacities[] = {{18, 0}, {100, 0.7}};
-    const snow_data_range data = {.low = -5, .high = 3e38};
-    snow_context *context = NULL;
-    snow_transfer *transfer = NULL;
-    assert_int_equal(snow_context_new(NULL, &context), SNOW_STATUS_OK);
-    assert_int_equal(
-        snow_transfer_new(context, colors, 2, opacities, 2, &transfer),
-        SNOW_STATUS_OK);
-    const snow_volume_info floats = {.type = SNOW_TYPE_FLOAT32, .slope = 1};
-    snow_value_scale14 scale = snow_value_scale_of(&data, transfer, &floats);
-    assert_near(scale.low, -5, 1e-9);
-    assert_near(scale.high, 110 + 4 * (110 - 18), 1e-9);
-    snow_transfer_free(transfer);
-    snow_context_free(context);
+    model_stage stage = model_open();
+    for (int near = 0; near < 2; near++) {
+        const double height = 1 / (near ? 7.01 : 6.99);
+        warp_scene scene = noisy_scene(1);
+        reference_scene *s = &scene.base;
+        s->view.fov = 60;
+        s->view.has_target = s->view.has_position = s->view.has_up = true;
+        s->view.upward[1] = 1;
+        s->view.azimuth = s->view.elevation = s->view.roll = 0;
+        warp_scene_place(s, (double[]){0.5, 0.5, 0.5}, s->view.target);
+        warp_scene_place(s, (double[]){0.5, 0.5, -height}, s->view.position);
+        free(model_picture(&stage, s));
+        assert_int_equal(snow_frame_stats(stage.frame)->method,
+                         near ? SNOW_METHOD_FOOTPRINT : SNOW_METHOD_SHEAR_WARP);
+        warp_scene_free(&scene);
+    }
+    model_close(&stage);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pictures_are_the_references),
-        cmocka_unit_test(threads_and_encodings_give_the_same_bits),
-        cmocka_unit_test(all_vector_levels_give_the_same_image),
         cmocka_unit_test(only_what_shows_more_is_encoded_anew),
         cmocka_unit_test(slices_far_apart_are_left_to_others),
         cmocka_unit_test(odd_volumes_are_drawn),
-        cmocka_unit_test(far_values_of_a_constant_look_take_no_numbers),
+        cmocka_unit_test(an_eye_is_as_near_as_an_eighth),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,8 +3,9 @@
 #include "reference/model.h"
 #include "render/picture.h"
 #include "render/shear_warp/internal.h"
-#include "values/pictures.h"
-#include "values/scenes.h"
+
+static const snow_quality qualities[] = {
+    SNOW_QUALITY_DRAFT, SNOW_QUALITY_NORMAL, SNOW_QUALITY_HIGH};
 
 /* Every quality, slice axis and mode; turned, tilted and rolled; near, far and
  * in perspective. */
@@ -22,7 +23,7 @@ static reference_scene scene_of(int n, bool large) {
                     n % 3 ? MODEL_PLAIN : MODEL_ANISOTROPIC, (uint64_t)n);
     s.settings.method = SNOW_METHOD_SHEAR_WARP;
     s.settings.threads = 1 + n % 2;
-    s.settings.quality = value_qualities[n % 3];
+    s.settings.quality = qualities[n % 3];
     s.settings.mode = modes[n / 3 % 7];
     s.settings.iso = 60;
     s.settings.shade = n % 7 ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
@@ -108,7 +109,7 @@ static void lines_have_the_bits_of_the_whole(void **state) {
         check_lines(&used, n, &s, n % 2);
         check_lines(&fresh, n, &s, true);
         model_close(&fresh);
-        value_picture_free(&s);
+        free((void *)(uintptr_t)s.voxels);
     }
     model_close(&used);
 }
@@ -160,7 +161,7 @@ static void check_turns(int n, bool frozen) {
     for (int i = 0; i < 2; i++) {
         snow_image_free(whole[i]);
         snow_volume_close(volumes[i]);
-        value_picture_free(&scenes[i]);
+        free((void *)(uintptr_t)scenes[i].voxels);
     }
     model_close(&stage);
 }
@@ -227,7 +228,7 @@ static void lines_take_their_tiles(void **state) {
         assert_true(all > 40);
         assert_true(together >= all);
         assert_true(together < 2 * all);
-        value_picture_free(&s);
+        free((void *)(uintptr_t)s.voxels);
         model_close(&stage);
     }
 }

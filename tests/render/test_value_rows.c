@@ -4,10 +4,11 @@
 #include "reference/model.h"
 #include "render/picture.h"
 #include "simd/isa.h"
-#include "values/pictures.h"
-#include "values/scenes.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
+
+static const snow_quality qualities[] = {
+    SNOW_QUALITY_DRAFT, SNOW_QUALITY_NORMAL, SNOW_QUALITY_HIGH};
 
 static const snow_type types[] = {SNOW_TYPE_UINT8, SNOW_TYPE_INT16,
                                   SNOW_TYPE_UINT16, SNOW_TYPE_INT8};
@@ -27,7 +28,7 @@ static reference_scene rows_scene(int n) {
                     n % 3 ? MODEL_PLAIN : MODEL_ANISOTROPIC, (uint64_t)n);
     s.settings.method = SNOW_METHOD_SHEAR_WARP;
     s.settings.threads = 2;
-    s.settings.quality = value_qualities[n / 9 % 3];
+    s.settings.quality = qualities[n / 9 % 3];
     s.settings.shade = n % 7 ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
     s.opacities = looks[n % 2];
     s.opacity_count = 3;
@@ -78,7 +79,7 @@ static void rows_in_place_give_the_bits_of_copies(void **state) {
             if (snow_isa_runs(isa))
                 check(&stage, n, &s);
         }
-        value_picture_free(&s);
+        free((void *)(uintptr_t)s.voxels);
     }
     model_close(&stage);
 }
