@@ -237,7 +237,7 @@ static const struct kind {
     {"B-spline", BUMPS(FLOAT32, PLAIN), smoothen, ALONE, 55.3, 0.0171},
     {"logarithm", BUMPS(FLOAT32, PLAIN), take_logarithms, ALONE, 60.5, 0.0200},
     {"symmetric logarithm", SMOOTH_SIGNS, SNOW_TYPE_FLOAT32, MODEL_PLAIN,
-     take_signed_logarithms, ALONE, 53.7, 0.0263},
+     take_signed_logarithms, ALONE, 57.1, 0.0174},
     {"clip plane", BUMPS(UINT8, PLAIN), cut_once, ALONE, 61.0, 0.0177},
     {"clip planes, perspective", BUMPS(FLOAT32, PLAIN), cut_twice_from_an_eye,
      ALONE, 56.5, 0.0316},
@@ -299,7 +299,7 @@ static void smooth_fields_are_near_the_truth(void **state) {
         closeness found = measure_kind(&stage, &kinds[n], seed);
         print_message("%-24s %5.1f dB, at most %.4f off\n", kinds[n].name,
                       found.decibels, found.worst);
-        assert_true(found.pixels > 100);
+        assert_true(found.pixels > 50);
         if (!(found.decibels >= kinds[n].decibels &&
               found.worst <= kinds[n].worst))
             fail_msg("%s, scene %d: %.2f dB, a pixel is off by %.4f",
