@@ -464,7 +464,7 @@ class Volume(_snowglass.Volume):
         image._background = (20 / 255,) * 3 if mode in ("over", "iso") \
             else (0.0,) * 3
 
-    def _caption(self, title: str) -> Optional[str]:
+    def _caption(self, title: str = "") -> Optional[str]:
         """Quantity and unit, as a title "quantity (unit)" has them, else of the
         data.  The unit of a CT is known by its values where no modality is
         named."""

@@ -440,7 +440,7 @@ class Stumbles(InFolder):
         same(sg.render(ct, affine=affine, medical=True, slope=2, memory=None),
              sg.Volume(ct, affine=affine, medical=True, slope=2).render())
         same(sg.render(ct, axes="xyz"), sg.Volume(ct, axes="xyz").render())
-        same(sg.render("phantom:head", dims=(32, 32, 32), memory=2 ** 30, axes=True),
+        same(sg.render("phantom:head", dims=(32, 32, 32), memory=2 ** 30, box="axes"),
              sg.render("phantom:head", dims=(32, 32, 32)))
         with self.assertRaises(MemoryError):
             sg.render("phantom:head", memory=1000)
