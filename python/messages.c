@@ -28,28 +28,29 @@ static bool is_value(const char *text, bool begins) {
 
 /* Whether numbers are given as a tuple. */
 static bool is_tuple(const char *name) {
-    static const char *const names[] = {"dims", "spacing", "crop", "size"};
+    static const char *const names[] = {"dims", "spacing", "crop",
+                                        "size", "range",   "window"};
     size_t n = 0;
     while (n < sizeof names / sizeof *names && strcmp(names[n], name) != 0)
         n++;
     return n < sizeof names / sizeof *names;
 }
 
-/* Writes XxYxZ as (x, y, z), 64x64x32 as (64, 64, 32) and 0:64,0:64,0:32 as
- * ((0, 64), (0, 64), (0, 32)); returns what was read. */
+/* Writes XxYxZ as (x, y, z), 64x64x32 as (64, 64, 32), 0,9 as (0, 9) and
+ * 0:64,0:64,0:32 as ((0, 64), (0, 64), (0, 32)); returns what was read. */
 static size_t write_tuple(const char *from, char **to) {
     const size_t length = strspn(from, "0123456789.e+-xXYZWH:,");
     /* What ends a sentence is not of the number. */
     const size_t end =
         length && strchr(".,:", from[length - 1]) ? length - 1 : length;
     const bool pairs = memchr(from, ':', end) != NULL;
-    if (!memchr(from, 'x', end) && !pairs)
+    if (!memchr(from, 'x', end) && !memchr(from, ',', end) && !pairs)
         return 0;
     *to += sprintf(*to, pairs ? "((" : "(");
     for (size_t n = 0; n < end; n++)
-        if (from[n] == ',')
+        if (from[n] == ',' && pairs)
             *to += sprintf(*to, "), (");
-        else if (from[n] == 'x' || from[n] == ':')
+        else if (strchr("x:,", from[n]))
             *to += sprintf(*to, ", ");
         else if (from[n] >= 'A' && from[n] <= 'Z')
             *(*to)++ = (char)(from[n] - 'A' + 'a');

@@ -453,7 +453,7 @@ class Stumbles(InFolder):
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             sg.Volume(ct, intercept=-1024).render("ct-bone", size=16)
-            sg.Volume(ct).render("ct-bone", range=(1174, 2524), size=16)
+            sg.Volume(ct).render(preset="ct-bone", range=(1174, 2524), size=16)
 
     def test_messages_name_arguments_and_not_options(self):
         numpy.save("a.npy", ball())
