@@ -28,8 +28,8 @@ static const struct {
     {read_choice, "{'type': 'string'}"},
     {read_real, "{'type': 'number'}"},
     {read_strength, "{'type': 'number'}"},
-    {read_kernel, "{'type': 'string', 'pattern':"
-                  "'^(auto|tent|gauss|bspline|box)(:[2-9])?$'}"},
+    {read_kernel, "{'anyOf': [{'type': 'string', 'pattern':"
+                  "'^(auto|tent|gauss|bspline|box)(:[2-9])?$'}]}"},
     {read_legend, "{'anyOf': [{'type': 'boolean'}, {'type': 'string'}]}"},
     {read_annotate, "{'anyOf': [{'enum': ['step', 'time']}, {'type': 'string',"
                     "'pattern': '^time='}]}"},
