@@ -132,25 +132,6 @@ void snow_value_table_scale(snow_value_table *table, double most,
     table->full = (float)full;
 }
 
-/* All entries; again where all are faint. */
-static snow_status fill_entries(snow_context *context,
-                                const snow_value_look *look,
-                                snow_value_table *table) {
-    table_job job = {.look = look, .table = table};
-    snow_work_fn *work = table->nodes ? fill_row : fill_rows;
-    int items =
-        table->nodes ? look->nodes : (look->nodes + ENTRIES - 1) / ENTRIES;
-    float most = 0;
-    snow_value_table_scale(table, 1, 0);
-    SNOW_TRY(snow_parallel(context, look->threads, items, work, &job));
-    for (int n = 0; n < look->nodes; n++)
-        most = job.most[n] > most ? job.most[n] : most;
-    snow_value_table_scale(table, most, FAINTEST);
-    return table->faint
-               ? snow_parallel(context, look->threads, items, work, &job)
-               : SNOW_STATUS_OK;
-}
-
 /* --- invisible runs ------------------------------------------------------- */
 
 /* Keeps the longest runs; they stay rising. */
@@ -172,25 +153,18 @@ void snow_value_table_hide(snow_value_table *table, snow_value_run run) {
     table->runs[count - 1] = run;
 }
 
-/* The last node up to which all looks from `node` on are invisible; below it
- * where not even its own is. */
-static int blind_until(const snow_value_table *table,
-                       const snow_value_look *look, int node) {
-    int64_t n = table->look_of[node];
-    int64_t end = (int64_t)table->look_count;
-    while (n < end && !(table->looks[4 * n + 3] > 0))
-        n++;
-    int last = node - 1;
-    while (last + 1 < look->nodes && table->look_of[last + 1] < n)
-        last++;
-    return last;
-}
-
 static void find_runs(const snow_value_look *look, snow_value_table *table) {
     const uint8_t *node_of = table->node_of;
     table->run_count = 0;
     for (int v = 0; v <= SNOW_VALUE_MOST;) {
-        int last = blind_until(table, look, node_of[v]), end = v;
+        /* The last node up to which all looks from here on are invisible;
+         * below the one of v where not even its own is. */
+        int64_t n = table->look_of[node_of[v]];
+        while (n < (int64_t)table->look_count && !(table->looks[4 * n + 3] > 0))
+            n++;
+        int last = node_of[v] - 1, end = v;
+        while (last + 1 < look->nodes && table->look_of[last + 1] < n)
+            last++;
         while (end <= SNOW_VALUE_MOST && node_of[end] <= last)
             end++;
         if (end > v)
@@ -228,13 +202,6 @@ static snow_status take_key(snow_context *context, const snow_transfer *t,
     return SNOW_STATUS_OK;
 }
 
-/* But for the length of rays, and what entries keep. */
-static bool same_looks(const snow_value_look *a, const snow_value_look *b) {
-    return a->nodes == b->nodes && a->steps == b->steps &&
-           a->threshold == b->threshold &&
-           snow_value_same_scale(&a->scale, &b->scale);
-}
-
 snow_status snow_value_table_make(snow_context *context,
                                   const snow_value_look *look,
                                   snow_value_table *table) {
@@ -242,7 +209,12 @@ snow_status snow_value_table_make(snow_context *context,
     bool same;
     SNOW_TRY(take_key(context, look->transfer, table, &same));
     const snow_value_look *made = &table->made;
-    const bool known = same && same_looks(look, made);
+    /* The looks serve again, whatever the length of rays and what entries keep.
+     */
+    const bool known = same && look->nodes == made->nodes &&
+                       look->steps == made->steps &&
+                       look->threshold == made->threshold &&
+                       snow_value_same_scale(&look->scale, &made->scale);
     if (known && look->exponent == made->exponent &&
         look->placed == made->placed)
         return SNOW_STATUS_OK;
@@ -252,7 +224,19 @@ snow_status snow_value_table_make(snow_context *context,
     if (anew)
         memset(table->entries, 0, entries * sizeof *table->entries);
     SNOW_TRY(snow_value_looks_make(context, look, known, table));
-    SNOW_TRY(fill_entries(context, look, table));
+    /* All entries; again where all are faint. */
+    table_job job = {.look = look, .table = table};
+    snow_work_fn *work = table->nodes ? fill_row : fill_rows;
+    int items =
+        table->nodes ? look->nodes : (look->nodes + ENTRIES - 1) / ENTRIES;
+    float most = 0;
+    snow_value_table_scale(table, 1, 0);
+    SNOW_TRY(snow_parallel(context, look->threads, items, work, &job));
+    for (int n = 0; n < look->nodes; n++)
+        most = job.most[n] > most ? job.most[n] : most;
+    snow_value_table_scale(table, most, FAINTEST);
+    if (table->faint)
+        SNOW_TRY(snow_parallel(context, look->threads, items, work, &job));
     find_runs(look, table);
     table->made = *look;
     return SNOW_STATUS_OK;
