@@ -252,19 +252,6 @@ static void do_alone(snow_monitor *monitor, int64_t items, snow_work_fn *work,
     }
 }
 
-static void do_together(snow_pool *pool, snow_monitor *monitor, int threads,
-                        int64_t items, snow_work_fn *work, void *job) {
-    pthread_mutex_lock(&pool->lock);
-    fill_batch(&pool->call, monitor, threads, items, work, job);
-    pool->call.skips = monitor != NULL;
-    wake_threads(pool, &pool->call);
-    pthread_mutex_unlock(&pool->lock);
-    take_all(&pool->call);
-    pthread_mutex_lock(&pool->lock);
-    close_batch(pool, &pool->call);
-    pthread_mutex_unlock(&pool->lock);
-}
-
 snow_status snow_parallel(snow_context *context, int threads, int64_t items,
                           snow_work_fn *work, void *job) {
     snow_monitor *monitor = context->monitor;
@@ -272,9 +259,17 @@ snow_status snow_parallel(snow_context *context, int threads, int64_t items,
         threads = (int)items;
     snow_pool *pool = threads > 1 ? pool_for(context, threads) : NULL;
     snow_monitor_batch(monitor);
-    if (pool && pool->count)
-        do_together(pool, monitor, threads, items, work, job);
-    else
+    if (pool && pool->count) {
+        pthread_mutex_lock(&pool->lock);
+        fill_batch(&pool->call, monitor, threads, items, work, job);
+        pool->call.skips = monitor != NULL;
+        wake_threads(pool, &pool->call);
+        pthread_mutex_unlock(&pool->lock);
+        take_all(&pool->call);
+        pthread_mutex_lock(&pool->lock);
+        close_batch(pool, &pool->call);
+        pthread_mutex_unlock(&pool->lock);
+    } else
         do_alone(monitor, items, work, job);
     snow_monitor_batch(monitor);
     return snow_monitor_status(monitor);

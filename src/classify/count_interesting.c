@@ -261,18 +261,6 @@ static void add_worker(counting *c) {
         all->rays->sums[n] += c->rays[n];
 }
 
-static void free_workers(snow_context *context, counting *workers,
-                         int threads) {
-    for (int n = 0; n < threads; n++) {
-        snow_release(context, workers[n].spans.seen);
-        if (n > 0) {
-            snow_release(context, workers[n].counts);
-            snow_release(context, workers[n].rays);
-        }
-    }
-    snow_release(context, workers);
-}
-
 static snow_status count_blocks(const snow_interesting_walk *walk,
                                 snow_block_counts *block_counts,
                                 const int64_t *columns, counting *workers) {
@@ -308,7 +296,14 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
     snow_status status = find_columns(context, block_counts, &columns);
     if (status == SNOW_STATUS_OK)
         status = count_blocks(&walk, block_counts, columns, workers);
-    free_workers(context, workers, threads);
+    for (int n = 0; n < threads; n++) {
+        snow_release(context, workers[n].spans.seen);
+        if (n > 0) {
+            snow_release(context, workers[n].counts);
+            snow_release(context, workers[n].rays);
+        }
+    }
+    snow_release(context, workers);
     snow_release(context, columns);
     return status;
 }

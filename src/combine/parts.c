@@ -91,18 +91,6 @@ static void write_part(void *of, int64_t item, int worker) {
                                     what->active, run->pixel_bytes);
 }
 
-/* What a part that is written took. */
-static void count_part(snow_combiner *combiner, const snow_part_to_send *what) {
-    snow_exchange_figures *figures = &combiner->figures;
-    if (combiner->exchange.level == 0) {
-        figures->active += what->active;
-        if (combiner->counted_bins)
-            snow_counts_add(combiner, what->part, mask_of(combiner, what));
-    }
-    figures->scanned += what->scanned;
-    figures->laid += what->laid;
-}
-
 /* Writes the messages of the first `count` awaited parts. */
 void snow_parts_write(snow_combiner *combiner, int count, int workers) {
     snow_exchange_state *run = &combiner->exchange;
@@ -113,8 +101,17 @@ void snow_parts_write(snow_combiner *combiner, int count, int workers) {
             what->part.last - what->part.first, run->pixel_bytes));
     }
     share_work(combiner, workers, count, write_part, combiner);
-    for (int i = 0; i < count; i++)
-        count_part(combiner, &combiner->parts[i]);
+    for (int i = 0; i < count; i++) {
+        snow_exchange_figures *figures = &combiner->figures;
+        if (combiner->exchange.level == 0) {
+            figures->active += combiner->parts[i].active;
+            if (combiner->counted_bins)
+                snow_counts_add(combiner, combiner->parts[i].part,
+                                mask_of(combiner, &combiner->parts[i]));
+        }
+        figures->scanned += combiner->parts[i].scanned;
+        figures->laid += combiner->parts[i].laid;
+    }
 }
 
 /* --- the region ----------------------------------------------------------- */

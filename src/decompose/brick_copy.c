@@ -54,17 +54,6 @@ static void copy_block(const copy_params *o, size_t value) {
     }
 }
 
-/* Rows that are contiguous in memory. */
-static void copy_rows(const copy_params *o, size_t value) {
-    int64_t bytes = (int64_t)value;
-    for (int64_t z = 0; z < o->count[2]; z++)
-        for (int64_t y = 0; y < o->count[1]; y++)
-            memcpy(o->to + (z * o->to_step[2] + y * o->to_step[1]) * bytes,
-                   o->from +
-                       (z * o->from_step[2] + y * o->from_step[1]) * bytes,
-                   (size_t)(o->count[0] * bytes));
-}
-
 /* The block of a copy that begins at `at`. */
 static copy_params block_at(const copy_params *o, const int64_t at[3],
                             size_t value) {
@@ -80,7 +69,14 @@ static copy_params block_at(const copy_params *o, const int64_t at[3],
 
 static void copy(const copy_params *o, size_t value) {
     if (o->from_step[0] == 1) {
-        copy_rows(o, value);
+        /* Rows that are contiguous in memory. */
+        int64_t bytes = (int64_t)value;
+        for (int64_t z = 0; z < o->count[2]; z++)
+            for (int64_t y = 0; y < o->count[1]; y++)
+                memcpy(o->to + (z * o->to_step[2] + y * o->to_step[1]) * bytes,
+                       o->from +
+                           (z * o->from_step[2] + y * o->from_step[1]) * bytes,
+                       (size_t)(o->count[0] * bytes));
         return;
     }
     int64_t at[3];

@@ -114,25 +114,20 @@ static bool suffices(const row *r, int64_t most) {
     return at == r->items;
 }
 
-/* The smallest possible cost of the most expensive run. */
-static int64_t least_cost(const row *r) {
-    int64_t low = r->sums[r->items] / r->parts, high = r->sums[r->items];
-    while (low < high) {
-        int64_t middle = low + (high - low) / 2;
-        if (suffices(r, middle))
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    return low;
-}
-
 /* Many partitions have the least cost, and runs filled completely would leave
  * nothing for the last ranks. So each border goes where it would be ideal, or
  * as near to there as the cost permits. starts[part] is first the earliest
  * border from which the parts behind it suffice. */
 static void partition(const row *r, int64_t *starts) {
-    int64_t most = least_cost(r);
+    /* The smallest possible cost of the most expensive run. */
+    int64_t most = r->sums[r->items] / r->parts, high = r->sums[r->items];
+    while (most < high) {
+        int64_t middle = most + (high - most) / 2;
+        if (suffices(r, middle))
+            high = middle;
+        else
+            most = middle + 1;
+    }
     starts[r->parts] = r->items;
     for (int part = r->parts - 1; part > 0; part--)
         starts[part] = reach_back(r, starts[part + 1], most);

@@ -27,8 +27,9 @@
 
 /* --- cells ---------------------------------------------------------------- */
 
-/* The sum of a cell whose voxels are all opaque stays below 2^32. */
-static void choose_whole(snow_ray_grid *g) {
+static void fill_closes(snow_ray_grid *g) {
+    const double faint = log(FAINT);
+    /* The sum of a cell whose voxels are all opaque stays below 2^32. */
     int64_t voxels = g->cell[0] * g->cell[1] * g->cell[2];
     for (int i = 0; i < 3; i++)
         if (g->view.axes[i] == 2)
@@ -36,11 +37,6 @@ static void choose_whole(snow_ray_grid *g) {
     assert(voxels < INT32_MAX);
     const int64_t most = UINT32_MAX / voxels;
     g->whole = (uint32_t)(most < WHOLE_MOST ? most : WHOLE_MOST);
-}
-
-static void fill_closes(snow_ray_grid *g) {
-    const double faint = log(FAINT);
-    choose_whole(g);
     for (int n = 0; n < SNOW_RAY_STEPS; n++) {
         const double through = 1 - (double)n / (SNOW_RAY_STEPS - 1);
         const double part =

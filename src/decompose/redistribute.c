@@ -145,15 +145,6 @@ static snow_status take_box_table(snow_comm *comm, const snow_box *held,
     return status;
 }
 
-static snow_status add_portion(snow_context *context, traffic *t,
-                               const portion *p) {
-    SNOW_TRY(SNOW_RESERVE(context, t->portions, t->portion_count,
-                          t->portion_count + 1));
-    t->portions[t->portion_count++] = *p;
-    t->voxels += snow_box_voxels(&p->box);
-    return SNOW_STATUS_OK;
-}
-
 /* Adds a message: the voxels of a wanted box that a rank holds, in the order of
  * its boxes. */
 static snow_status add_block_message(snow_context *context, traffic *t,
@@ -165,7 +156,10 @@ static snow_status add_block_message(snow_context *context, traffic *t,
         part = (portion){.brick = n, .of = held[n]};
         if (!snow_box_intersect(&held[n], wanted, &part.box))
             continue;
-        SNOW_TRY(add_portion(context, t, &part));
+        SNOW_TRY(SNOW_RESERVE(context, t->portions, t->portion_count,
+                              t->portion_count + 1));
+        t->portions[t->portion_count++] = part;
+        t->voxels += snow_box_voxels(&part.box);
         p.portions++;
     }
     if (!p.portions)
@@ -359,16 +353,6 @@ static snow_status start_sending(snow_voxels *voxels, const snow_brick *bricks,
     return SNOW_STATUS_OK;
 }
 
-static void keep_own(const snow_voxels *voxels, const snow_brick *bricks,
-                     int round, size_t value, void *dense) {
-    const traffic *t = &voxels->kept;
-    snow_box box;
-    for (size_t i = 0; i < t->portion_count; i++)
-        if (part_of(&t->portions[i], round, voxels->rounds, &box))
-            snow_brick_copy(&bricks[t->portions[i].brick], value, &box,
-                            &voxels->wanted, dense);
-}
-
 /* Copies the voxels of a message to their places. */
 static void unpack(const snow_voxels *voxels, const block_message *p, int round,
                    size_t value, void *dense) {
@@ -409,7 +393,12 @@ static snow_status move_round(snow_voxels *voxels, const snow_brick *bricks,
                               int round, size_t value, void *dense) {
     SNOW_TRY(start_receiving(voxels, round, value));
     SNOW_TRY(start_sending(voxels, bricks, round, value));
-    keep_own(voxels, bricks, round, value, dense);
+    const traffic *t = &voxels->kept;
+    snow_box box;
+    for (size_t i = 0; i < t->portion_count; i++)
+        if (part_of(&t->portions[i], round, voxels->rounds, &box))
+            snow_brick_copy(&bricks[t->portions[i].brick], value, &box,
+                            &voxels->wanted, dense);
     SNOW_TRY(finish_receiving(voxels, round, value, dense));
     SNOW_TRY(snow_comm_wait_all(
         voxels->comm, voxels->messages + voxels->received.block_message_count,

@@ -68,20 +68,16 @@ snow_status snow_sparse_lend(snow_sparse *s, size_t voxels, float **samples) {
     return SNOW_STATUS_OK;
 }
 
-/* Appends samples to IA; they may be there already. */
-static snow_status add_samples(snow_sparse *s, const float *samples,
-                               size_t count) {
-    float *end;
-    SNOW_TRY(snow_sparse_lend(s, count, &end));
-    if (samples != end)
-        memcpy(end, samples, count * (size_t)s->channels * sizeof *samples);
-    s->ia_voxels += count;
-    return SNOW_STATUS_OK;
-}
-
 snow_status snow_sparse_add_row_block(snow_sparse *s,
                                       const snow_row_block *row_block) {
-    SNOW_TRY(add_samples(s, row_block->samples, row_block->count));
+    /* Appends samples to IA; they may be there already. */
+    float *end;
+    SNOW_TRY(snow_sparse_lend(s, row_block->count, &end));
+    if (row_block->samples != end)
+        memcpy(end, row_block->samples,
+               row_block->count * (size_t)s->channels *
+                   sizeof *row_block->samples);
+    s->ia_voxels += row_block->count;
     size_t begin = 0;
     for (int64_t row = 0; row < row_block->rows; row++) {
         memset(s->mask, 0, snow_mask_words(s) * sizeof *s->mask);

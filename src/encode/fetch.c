@@ -108,19 +108,6 @@ static void fill_row(const snow_fetch *f, int64_t slice, size_t row,
     }
 }
 
-/* Fills the block with slices from `slice` on. */
-static void fill_block(snow_fetch *f, int64_t slice) {
-    int64_t left = f->slices - slice, line = LINE / (int64_t)f->size;
-    f->block_first = slice;
-    f->block_count = left < f->capacity ? left : f->capacity;
-    for (int64_t n = 0; n < f->block_count; n += line) {
-        int64_t some = f->block_count - n < line ? f->block_count - n : line;
-        for (size_t row = 0; row < f->rows; row++)
-            fill_row(f, slice + n, row, (size_t)some,
-                     f->block + (size_t)n * f->slice_pitch);
-    }
-}
-
 /* --- slices --------------------------------------------------------------- */
 
 static void slice_of_volume(snow_fetch *f, int64_t slice, snow_rows *out) {
@@ -137,7 +124,18 @@ static void slice_of_volume(snow_fetch *f, int64_t slice, snow_rows *out) {
 }
 
 void snow_fetch_slice(snow_fetch *f, int64_t slice, snow_rows *out) {
-    if (f->transposed && slice >= f->block_first + f->block_count)
-        fill_block(f, slice);
+    if (f->transposed && slice >= f->block_first + f->block_count) {
+        /* Fills the block with slices from `slice` on. */
+        int64_t left = f->slices - slice, line = LINE / (int64_t)f->size;
+        f->block_first = slice;
+        f->block_count = left < f->capacity ? left : f->capacity;
+        for (int64_t n = 0; n < f->block_count; n += line) {
+            int64_t some =
+                f->block_count - n < line ? f->block_count - n : line;
+            for (size_t row = 0; row < f->rows; row++)
+                fill_row(f, slice + n, row, (size_t)some,
+                         f->block + (size_t)n * f->slice_pitch);
+        }
+    }
     slice_of_volume(f, slice, out);
 }

@@ -56,21 +56,18 @@ static snow_status rle_add_row(snow_sparse *s, const uint64_t *mask) {
     return add_voxels(s, interesting, columns - begun);
 }
 
-/* Goes to the run of the next voxel; a slice's first is uninteresting. */
-static void find_run(snow_walk *walk) {
-    while (!walk->run) {
-        walk->run_interesting = walk->started && !walk->run_interesting;
-        walk->started = true;
-        walk->run = *walk->ea++;
-    }
-}
-
 static size_t rle_next_row(snow_walk *walk, snow_span *spans) {
     uint32_t columns = (uint32_t)walk->sparse->columns;
     size_t count = 0;
     /* walk->run is the rest of the last run of the row before. */
     for (uint32_t column = 0; column < columns;) {
-        find_run(walk);
+        /* Goes to the run of the next voxel; a slice's first is uninteresting.
+         */
+        while (!walk->run) {
+            walk->run_interesting = walk->started && !walk->run_interesting;
+            walk->started = true;
+            walk->run = *walk->ea++;
+        }
         uint32_t left = columns - column;
         uint32_t take = walk->run < left ? walk->run : left;
         if (walk->run_interesting)

@@ -306,15 +306,6 @@ static snow_status keep_first(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-static void note_magnitude(snow_context *context, const snow_volume_info *info,
-                           const snow_volume_options *options) {
-    if (!options->component && !options->each_time)
-        snow_notify(context,
-                    "the magnitude of the %lld components is used; "
-                    "--component N selects one (from 0, or x, y, z)",
-                    (long long)info->components);
-}
-
 snow_status snow_components_read(snow_context *context, snow_component_fn *read,
                                  void *user, bool once,
                                  const snow_volume_options *options,
@@ -324,7 +315,11 @@ snow_status snow_components_read(snow_context *context, snow_component_fn *read,
     if (status == SNOW_STATUS_OK && info->magnitude && once)
         status = keep_first(context, options, info);
     if (status == SNOW_STATUS_OK && info->magnitude) {
-        note_magnitude(context, info, options);
+        if (!options->component && !options->each_time)
+            snow_notify(context,
+                        "the magnitude of the %lld components is used; "
+                        "--component N selects one (from 0, or x, y, z)",
+                        (long long)info->components);
         if (out)
             status = add_others(context, read, user, options, info->components,
                                 &volume);

@@ -113,15 +113,6 @@ typedef struct exr_content {
     int count; /* number of channels */
 } exr_content;
 
-static exr_content content_of(const snow_image *image,
-                              const snow_image *depth) {
-    bool values = image->channels == 1;
-    return (exr_content){.image = image,
-                         .depth = depth,
-                         .channels = values ? value_channels : channels,
-                         .count = (values ? 1 : 4) + (depth != NULL)};
-}
-
 static exr_result_t begin_part(exr_file *file, const exr_content *content) {
     int part = 0;
     exr_result_t code =
@@ -225,7 +216,12 @@ static snow_status write_exr(const snow_image *image,
                              snow_writer *writer) {
     exr_file file = {.context = image->context,
                      .store = {.context = image->context}};
-    const exr_content content = content_of(image, options->depth);
+    bool values = image->channels == 1;
+    const exr_content content =
+        (exr_content){.image = image,
+                      .depth = options->depth,
+                      .channels = values ? value_channels : channels,
+                      .count = (values ? 1 : 4) + (options->depth != NULL)};
     snow_status status = make_file(&file, &content);
     if (file.exr)
         exr_finish(&file.exr);

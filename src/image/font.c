@@ -92,17 +92,6 @@ static const char bases[] = "AAAAAAACEEEEIIIIDNOOOOO OUUUUYPs"
 static const char marked[] = "gactdr ,gacdgacd tgactd  gacda  "
                              "gactdr ,gacdgacd tgactd  gacda d";
 
-/* Above a small letter 6 wide: grave, acute, circumflex, tilde, diaeresis and
- * ring; and the cedilla. */
-static const char *mark_named(char name) {
-    static const char names[] = "gactdr,";
-    static const char *const marks[] = {"-2c4a",     "-4c2a",  "-1a3c5a",
-                                        "~0a2c4a6c", ".1b.5b", "o1a1d5d5a",
-                                        "-303z2y"};
-    const char *at = strchr(names, name);
-    return at && *at ? marks[at - names] : "";
-}
-
 /* A mark belongs over the glyph's middle, and higher over a capital. */
 typedef struct marked_letter {
     const char *glyph, *mark;
@@ -133,7 +122,14 @@ static marked_letter next_letter(const char **text) {
     if (code >= 0xc0 && code <= 0xff) {
         char base = bases[code - 0xc0], mark = marked[code - 0xc0];
         found.glyph = base == 'i' ? "-0800" : glyphs[base - 32];
-        found.mark = mark_named(mark);
+        /* Above a small letter 6 wide: grave, acute, circumflex, tilde,
+         * diaeresis and ring; and the cedilla. */
+        static const char names[] = "gactdr,";
+        static const char *const marks[] = {"-2c4a",     "-4c2a",  "-1a3c5a",
+                                            "~0a2c4a6c", ".1b.5b", "o1a1d5d5a",
+                                            "-303z2y"};
+        const char *at = strchr(names, mark);
+        found.mark = at && *at ? marks[at - names] : "";
         found.lift = base < 'a' && mark != ',' ? 3 : 0;
     }
     for (size_t n = 0; n < sizeof symbols / sizeof *symbols; n++)

@@ -219,17 +219,6 @@ static void move_to_steps(const snow_value_look *look,
     }
 }
 
-static void find_nodes(const snow_value_look *look, snow_value_table *table) {
-    for (int v = 0, node = 0; v <= SNOW_VALUE_MOST; v++) {
-        while (node + 1 < look->nodes &&
-               table->at[node + 1] - v <= v - table->at[node])
-            node++;
-        table->node_of[v] = table->nodes
-                                ? (uint8_t)node
-                                : (uint8_t)((v * table->scale + 0x4000) >> 15);
-    }
-}
-
 /* Evenly placed nodes, and the looks that steps from one to another meet. */
 static snow_status place_evenly(snow_context *context,
                                 const snow_value_look *look,
@@ -265,8 +254,16 @@ snow_status snow_value_looks_make(snow_context *context,
         measure_nodes(look, table);
     if (!known && table->nodes && !table->measured)
         move_to_steps(look, table);
-    if (table->measured || !known)
-        find_nodes(look, table);
+    if (table->measured || !known) {
+        for (int v = 0, node = 0; v <= SNOW_VALUE_MOST; v++) {
+            while (node + 1 < look->nodes &&
+                   table->at[node + 1] - v <= v - table->at[node])
+                node++;
+            table->node_of[v] =
+                table->nodes ? (uint8_t)node
+                             : (uint8_t)((v * table->scale + 0x4000) >> 15);
+        }
+    }
     for (int node = 0; node < look->nodes; node++)
         table->look_of[node] = (int)(table->at[node] / table->step + 0.5);
     SNOW_TRY(fill_looks(context, look, table));

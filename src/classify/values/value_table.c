@@ -31,17 +31,6 @@ typedef struct table_job {
     float most[SNOW_VALUE_PITCH]; /* alpha, of each row */
 } table_job;
 
-/* The looks next to one, down and up, that show something. */
-static void find_seen(const snow_value_table *table, int64_t from,
-                      int64_t seen[2]) {
-    seen[0] = seen[1] = from;
-    while (seen[0] >= 0 && !(table->looks[4 * seen[0] + 3] > 0))
-        seen[0]--;
-    while (seen[1] < (int64_t)table->look_count &&
-           !(table->looks[4 * seen[1] + 3] > 0))
-        seen[1]++;
-}
-
 /* Up to ENTRIES entries of a row. */
 static void fill_some(const table_job *job, int64_t first, const int *backs,
                       int count, uint64_t *row, float *most) {
@@ -75,7 +64,13 @@ static void fill_row(void *of, int64_t front, int worker) {
     int backs[ENTRIES], count = 0;
     float most = 0;
     (void)worker;
-    find_seen(table, first, seen);
+    /* The looks next to one, down and up, that show something. */
+    seen[0] = seen[1] = first;
+    while (seen[0] >= 0 && !(table->looks[4 * seen[0] + 3] > 0))
+        seen[0]--;
+    while (seen[1] < (int64_t)table->look_count &&
+           !(table->looks[4 * seen[1] + 3] > 0))
+        seen[1]++;
     for (int back = 0; back < look->nodes; back++) {
         int64_t last = table->look_of[back];
         row[back] = 0;

@@ -61,20 +61,6 @@ static void begin_row(level_cells *to, int64_t place) {
     memset(to->covered + first, 0, count * sizeof *to->covered);
 }
 
-/* The cells of the level below that those of a box are refined from. */
-static snow_box refined_from(const snow_box *box, const int64_t ratio[3],
-                             const int64_t cells[3]) {
-    snow_box out;
-    for (int i = 0; i < 3; i++) {
-        int64_t first = box->first[i] / ratio[i] - SNOW_REFINE_REACH;
-        int64_t end = (box->first[i] + box->count[i] - 1) / ratio[i] +
-                      SNOW_REFINE_REACH + 1;
-        out.first[i] = first > 0 ? first : 0;
-        out.count[i] = (end < cells[i] ? end : cells[i]) - out.first[i];
-    }
-    return out;
-}
-
 static snow_box divided(const snow_box *box, const int64_t ratio[3]) {
     snow_box out = *box;
     for (int i = 0; i < 3; i++) {
@@ -91,7 +77,18 @@ static void place_levels(gathering *g, snow_box needed[AMR_MOST_LEVELS]) {
     for (int l = grid->finest; l > 0; l--) {
         int64_t cells[3];
         snow_amr_cells(grid, l - 1, cells);
-        needed[l - 1] = refined_from(&needed[l], grid->ratio[l], cells);
+        /* The cells of the level below that those of a box are refined from. */
+        snow_box out;
+        for (int i = 0; i < 3; i++) {
+            int64_t first =
+                needed[l].first[i] / grid->ratio[l][i] - SNOW_REFINE_REACH;
+            int64_t end = (needed[l].first[i] + needed[l].count[i] - 1) /
+                              grid->ratio[l][i] +
+                          SNOW_REFINE_REACH + 1;
+            out.first[i] = first > 0 ? first : 0;
+            out.count[i] = (end < cells[i] ? end : cells[i]) - out.first[i];
+        }
+        needed[l - 1] = out;
     }
     g->around = needed[0];
     for (int l = 0; l < grid->finest; l++) {
@@ -118,15 +115,6 @@ static snow_status make_room(gathering *g) {
     g->taken =
         snow_allocate_clear(context, (size_t)snow_box_voxels(&g->box) / 8 + 1);
     return g->taken ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
-}
-
-static void release(gathering *g) {
-    for (int l = 0; l < g->grid->finest; l++) {
-        snow_release(g->grid->context, g->levels[l].values);
-        snow_release(g->grid->context, g->levels[l].shares);
-        snow_release(g->grid->context, g->levels[l].begun);
-    }
-    snow_release(g->grid->context, g->taken);
 }
 
 /* --- voxels --------------------------------------------------------------- */
@@ -365,7 +353,12 @@ snow_status snow_amr_read(const amr_grid *grid,
         status = go_down(&g, needed);
     if (status == SNOW_STATUS_OK)
         status = go_up(&g, needed);
-    release(&g);
+    for (int l = 0; l < g.grid->finest; l++) {
+        snow_release(g.grid->context, g.levels[l].values);
+        snow_release(g.grid->context, g.levels[l].shares);
+        snow_release(g.grid->context, g.levels[l].begun);
+    }
+    snow_release(g.grid->context, g.taken);
     if (status == SNOW_STATUS_OK)
         *out = g.out;
     else

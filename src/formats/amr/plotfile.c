@@ -99,16 +99,6 @@ static bool is_wanted(const reading *r, const char *name, int64_t number,
                                               : snow_same_name(name, asked));
 }
 
-static void list_name(reading *r) {
-    const size_t used = strlen(r->list), length = strlen(r->line);
-    const char *between = used ? ", " : "";
-    if (used + length + 8 < sizeof r->list)
-        snprintf(r->list + used, sizeof r->list - used, "%s%s", between,
-                 r->line);
-    else if (used > 3 && strcmp(r->list + used - 3, "...") != 0)
-        memcpy(r->list + used, " ...", 5);
-}
-
 /* The number that the options ask for; that of a name once it is found. */
 static snow_status wanted_component(reading *r, int64_t *out) {
     const snow_volume_options *options = r->options;
@@ -146,7 +136,13 @@ static snow_status take_components(reading *r) {
     SNOW_TRY(wanted_component(r, &wanted));
     for (int64_t i = 0; i < file->components; i++) {
         SNOW_TRY(next_line(r, "the names of its components"));
-        list_name(r);
+        const size_t used = strlen(r->list), length = strlen(r->line);
+        const char *between = used ? ", " : "";
+        if (used + length + 8 < sizeof r->list)
+            snprintf(r->list + used, sizeof r->list - used, "%s%s", between,
+                     r->line);
+        else if (used > 3 && strcmp(r->list + used - 3, "...") != 0)
+            memcpy(r->list + used, " ...", 5);
         if (i < SNOW_CHANNELS_MAX)
             snow_copy_name(r->line, r->named[i].name, sizeof r->named[i].name);
         if (is_wanted(r, r->line, i, wanted)) {
@@ -186,18 +182,6 @@ static snow_status take_domain(reading *r, int level, const int64_t *ends) {
             grid->cells[i] = cells;
     }
     return SNOW_STATUS_OK;
-}
-
-static snow_status take_domains(reading *r) {
-    int64_t ends[9 * AMR_MOST_LEVELS];
-    const int each = 3 * r->file.axes, levels = r->file.grid.levels;
-    SNOW_TRY(next_line(r, "the domains of its levels"));
-    int count = snow_amr_integers(r->line, ends, 9 * AMR_MOST_LEVELS);
-    if (count != each * levels)
-        return refuse(r, "the domains of its levels");
-    for (int l = 0; l < levels; l++)
-        SNOW_TRY(take_domain(r, l, ends + each * l));
-    return snow_amr_check(&r->file.grid);
 }
 
 /* The world, axis by axis; an axis that is missing has the size of x. */
@@ -248,7 +232,15 @@ static snow_status take_front(reading *r) {
     SNOW_TRY(take_point(r, "the low corner of its domain", r->low));
     SNOW_TRY(take_point(r, "the high corner of its domain", r->high));
     SNOW_TRY(next_line(r, "the ratios of its levels"));
-    SNOW_TRY(take_domains(r));
+    int64_t ends[9 * AMR_MOST_LEVELS];
+    const int each = 3 * r->file.axes, levels = r->file.grid.levels;
+    SNOW_TRY(next_line(r, "the domains of its levels"));
+    int count = snow_amr_integers(r->line, ends, 9 * AMR_MOST_LEVELS);
+    if (count != each * levels)
+        return refuse(r, "the domains of its levels");
+    for (int l = 0; l < levels; l++)
+        SNOW_TRY(take_domain(r, l, ends + each * l));
+    SNOW_TRY(snow_amr_check(&r->file.grid));
     SNOW_TRY(place(r));
     return take_rest(r);
 }

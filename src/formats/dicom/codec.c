@@ -59,15 +59,6 @@ typedef struct jpeg_signs {
     bool transform;     /* Adobe's, with an unknown transform */
 } jpeg_signs;
 
-static void read_sign(int marker, const unsigned char *data, size_t length,
-                      jpeg_signs *signs) {
-    if (marker == 0xe0 && length >= 14 && !memcmp(data, "JFIF", 5)) {
-        signs->jfif = true;
-        signs->version |= data[5] != 1;
-    } else if (marker == 0xee && length >= 12 && !memcmp(data, "Adobe", 5))
-        signs->transform = data[11] > 1;
-}
-
 /* Adobe's transform is used if there are three components, and no JFIF that
  * defines them. */
 static bool warns(const jpeg_signs *signs, uint32_t samples) {
@@ -91,7 +82,13 @@ static bool has_scan(const unsigned char *bytes, size_t size, bool ls,
         bool bare = marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd9);
         if (bare || length < 2 || length > size - at - 2)
             return false;
-        read_sign(marker, bytes + at + 4, length - 2, &signs);
+        const unsigned char *data = bytes + at + 4;
+        if (marker == 0xe0 && (length - 2) >= 14 && !memcmp(data, "JFIF", 5)) {
+            signs.jfif = true;
+            signs.version |= data[5] != 1;
+        } else if (marker == 0xee && (length - 2) >= 12 &&
+                   !memcmp(data, "Adobe", 5))
+            signs.transform = data[11] > 1;
         tables |= marker == 0xc4;
         if (marker == 0xf7 && !ls)
             return false;

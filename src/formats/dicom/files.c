@@ -72,16 +72,6 @@ static bool is_copy(const collection *c, const dicom_image *image) {
     return false;
 }
 
-static snow_status add_frames(collection *c, dicom_reader *reader,
-                              const dicom_image *image) {
-    for (int64_t n = 0; n < image->frames; n++) {
-        SNOW_TRY(SNOW_RESERVE(c->context, c->frames, c->frame_count,
-                              c->frame_count + 1));
-        snow_dicom_read_frame(reader, image, n, &c->frames[c->frame_count++]);
-    }
-    return SNOW_STATUS_OK;
-}
-
 /* If `series` is given, images of others are left out. */
 static snow_status add_image(collection *c, dicom_reader *reader, char *path,
                              const char *series) {
@@ -107,7 +97,11 @@ static snow_status add_image(collection *c, dicom_reader *reader, char *path,
     size_t first = c->frame_count;
     if (c->gaps && path)
         SNOW_TRY(snow_dicom_find_cut(reader, kept, &lost));
-    SNOW_TRY(add_frames(c, reader, kept));
+    for (int64_t n = 0; n < kept->frames; n++) {
+        SNOW_TRY(SNOW_RESERVE(c->context, c->frames, c->frame_count,
+                              c->frame_count + 1));
+        snow_dicom_read_frame(reader, kept, n, &c->frames[c->frame_count++]);
+    }
     for (size_t i = first; i < c->frame_count; i++)
         c->frames[i].lost = lost;
     return SNOW_STATUS_OK;

@@ -143,18 +143,6 @@ static void take_row(const decoder *d, const dicom_frame *frame,
     }
 }
 
-/* Errors name the file that contains the frame. */
-static snow_status take_words(decoder *d, const dicom_frame *frame) {
-    const char *path = frame->image->path;
-    snow_status status = open_image(d, frame->image);
-    if (status == SNOW_STATUS_OK)
-        status = snow_dicom_read_words(&d->reader, frame->image, frame->number,
-                                       d->bytes, &d->words);
-    if (status != SNOW_STATUS_OK && path)
-        snow_fail_in_file(d->input->context, status, path);
-    return status;
-}
-
 static snow_status take_frame(decoder *d, const dicom_frame *frame,
                               double *out) {
     const snow_region *w = d->window;
@@ -162,7 +150,15 @@ static snow_status take_frame(decoder *d, const dicom_frame *frame,
         out[i] = NAN;
     if (frame->lost)
         return SNOW_STATUS_OK;
-    SNOW_TRY(take_words(d, frame));
+    /* Errors name the file that contains the frame. */
+    const char *path = frame->image->path;
+    snow_status status = open_image(d, frame->image);
+    if (status == SNOW_STATUS_OK)
+        status = snow_dicom_read_words(&d->reader, frame->image, frame->number,
+                                       d->bytes, &d->words);
+    if (status != SNOW_STATUS_OK && path)
+        snow_fail_in_file(d->input->context, status, path);
+    SNOW_TRY(status);
     const dicom_image *image = frame->image;
     size_t size = (size_t)d->words.size;
     size_t samples = (size_t)image->samples, columns = (size_t)image->columns;

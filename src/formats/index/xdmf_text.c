@@ -149,19 +149,6 @@ static void begin_grid(xdmf_file *f, const char **attributes) {
     }
 }
 
-/* A grid's own time, or a list of those of a collection. */
-static void begin_time(xdmf_file *f, const char **attributes) {
-    const char *value = snow_index_attribute(attributes, "Value");
-    const char *kind = snow_index_attribute(attributes, "TimeType");
-    const bool collects = f->collections & 1;
-    if (value && !collects)
-        (void)snow_parse_double(value, &f->now.time);
-    const bool even = snow_xdmf_is(kind, "hyperslab");
-    f->in_times = collects && (even || snow_xdmf_is(kind, "list"));
-    if (f->in_times)
-        f->even_times = even;
-}
-
 static snow_status begin_element(void *user, const char *name,
                                  const char **attributes) {
     xdmf_file *f = user;
@@ -176,26 +163,31 @@ static snow_status begin_element(void *user, const char *name,
     } else if (!strcmp(name, "DataItem")) {
         return begin_item(f, attributes);
     } else if (!strcmp(name, "Time")) {
-        begin_time(f, attributes);
+        /* A grid's own time, or a list of those of a collection. */
+        const char *value = snow_index_attribute(attributes, "Value");
+        const char *kind = snow_index_attribute(attributes, "TimeType");
+        const bool collects = f->collections & 1;
+        if (value && !collects)
+            (void)snow_parse_double(value, &f->now.time);
+        const bool even = snow_xdmf_is(kind, "hyperslab");
+        f->in_times = collects && (even || snow_xdmf_is(kind, "list"));
+        if (f->in_times)
+            f->even_times = even;
     }
     return SNOW_STATUS_OK;
-}
-
-/* Keeps a text without blanks at its ends. */
-static void trim(xdmf_item *item) {
-    char *text = item->text;
-    size_t begin = strspn(text, " \t\r\n"), end = strlen(text);
-    while (end > begin && strchr(" \t\r\n", text[end - 1]))
-        end--;
-    memmove(text, text + begin, end - begin);
-    text[end - begin] = 0;
 }
 
 static void end_item(xdmf_file *f) {
     xdmf_grid *grid = &f->now.grid;
     f->in_item = false;
     f->item.length = f->used - f->item.numbers;
-    trim(&f->item);
+    /* Keeps a text without blanks at its ends. */
+    char *text = f->item.text;
+    size_t begin = strspn(text, " \t\r\n"), end = strlen(text);
+    while (end > begin && strchr(" \t\r\n", text[end - 1]))
+        end--;
+    memmove(text, text + begin, end - begin);
+    text[end - begin] = 0;
     if (f->in_times) {
         f->times = f->item;
     } else if (f->in_geometry && grid->item_count < XDMF_MOST_ITEMS) {

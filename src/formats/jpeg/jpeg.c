@@ -200,15 +200,6 @@ static snow_status describe(jpeg_reader *reader, snow_volume_info *info) {
 
 /* --- pixels --------------------------------------------------------------- */
 
-static void put_row(const jpeg_reader *reader, int64_t channel,
-                    const snow_region *region, unsigned char *out) {
-    int samples = reader->info.output_components;
-    const unsigned char *from =
-        reader->row + region->first[0] * samples + channel;
-    for (int64_t x = 0; x < region->count[0]; x++)
-        out[x] = from[x * samples];
-}
-
 static snow_status decode(jpeg_reader *reader, int64_t channel,
                           const snow_region *region, unsigned char *out) {
     struct jpeg_decompress_struct *info = &reader->info;
@@ -222,8 +213,13 @@ static snow_status decode(jpeg_reader *reader, int64_t channel,
     for (int64_t y = 0; y < info->image_height; y++) {
         int64_t wanted = y - region->first[1];
         jpeg_read_scanlines(info, &reader->row, 1);
-        if (wanted >= 0 && wanted < region->count[1])
-            put_row(reader, channel, region, out + wanted * region->count[0]);
+        if (wanted >= 0 && wanted < region->count[1]) {
+            int samples = reader->info.output_components;
+            const unsigned char *from =
+                reader->row + region->first[0] * samples + channel;
+            for (int64_t x = 0; x < region->count[0]; x++)
+                (out + wanted * region->count[0])[x] = from[x * samples];
+        }
     }
     jpeg_finish_decompress(info);
     take(info, reader->copied - reader->bytes.bytes_in_buffer);

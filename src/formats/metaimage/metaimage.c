@@ -105,17 +105,6 @@ static snow_status read_member(const reading *r, const char *name,
     return status;
 }
 
-/* Refuses a series whose last file is missing or too small, before memory is
- * allocated for all. */
-static snow_status check_member(const reading *r, const char *name,
-                                uint64_t bytes) {
-    snow_source *data;
-    SNOW_TRY(open_data(r->source, r->header, name, &data));
-    snow_status status = begin_part(data, r->header, bytes);
-    snow_source_close(data);
-    return status;
-}
-
 /* For files that each hold the first `axes` axes. */
 static snow_status plan_series(const reading *r, int axes, series *out) {
     const metaimage_header *header = r->header;
@@ -219,7 +208,13 @@ static snow_status read_pattern(const reading *r, snow_volume **out) {
                          "like slice%%03d.raw with first number, last and "
                          "step",
                          header->data, (long long)files.count);
-    SNOW_TRY(check_member(r, name, files.bytes));
+    /* Refuses a series whose last file is missing or too small, before memory
+     * is allocated for all. */
+    snow_source *data;
+    SNOW_TRY(open_data(r->source, r->header, name, &data));
+    snow_status status = begin_part(data, r->header, files.bytes);
+    snow_source_close(data);
+    SNOW_TRY(status);
     for (int64_t i = files.first; i < files.end; i++) {
         if (!name_of(pattern, first + i * step, name, sizeof name))
             return snow_fail(context, SNOW_STATUS_BAD_INPUT,

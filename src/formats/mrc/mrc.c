@@ -211,16 +211,6 @@ static void set_matrix(snow_context *context, const mrc_header *header,
     place_origin(header, info);
 }
 
-/* A stack of volumes has MZ sections for each. */
-static void count_volumes(const mrc_header *header, snow_volume_info *info) {
-    int32_t sections = whole(header, 10);
-    if (whole(header, 23) >= VOLUME_STACK && sections > 0 &&
-        info->dims[2] % sections == 0) {
-        info->times = info->dims[2] / sections;
-        info->dims[2] = sections;
-    }
-}
-
 static snow_status parse_header(snow_context *context, const mrc_header *header,
                                 const snow_volume_options *options,
                                 snow_volume_info *info, snow_array *array,
@@ -247,7 +237,13 @@ static snow_status parse_header(snow_context *context, const mrc_header *header,
     array->big_endian = header->big_endian;
     for (int i = 0; i < 3; i++)
         info->dims[i] = whole(header, 1 + i);
-    count_volumes(header, info);
+    /* A stack of volumes has MZ sections for each. */
+    int32_t sections = whole(header, 10);
+    if (whole(header, 23) >= VOLUME_STACK && sections > 0 &&
+        info->dims[2] % sections == 0) {
+        info->times = info->dims[2] / sections;
+        info->dims[2] = sections;
+    }
     set_matrix(context, header, options, order, info);
     return SNOW_STATUS_OK;
 }

@@ -260,19 +260,6 @@ static snow_status check_type(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* A slope that is 0, infinite or NaN means no scaling. */
-static snow_status check_scaling(snow_context *context, nifti_header *header) {
-    if (header->slope == 0 || !isfinite(header->slope)) {
-        header->slope = 1;
-        header->intercept = 0;
-    }
-    if (!isfinite(header->intercept))
-        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "the intercept is %g (scl_inter); correct the header",
-                         header->intercept);
-    return SNOW_STATUS_OK;
-}
-
 /* Version 2 ends its magic like PNG, with bytes that a transfer as text
  * changes. */
 static snow_status check_transfer(snow_context *context,
@@ -310,7 +297,15 @@ snow_status nifti_header_parse(snow_context *context,
     read_fields(bytes, &header);
     SNOW_TRY(check_dims(context, &header));
     SNOW_TRY(check_type(context, &header));
-    SNOW_TRY(check_scaling(context, &header));
+    /* A slope that is 0, infinite or NaN means no scaling. */
+    if (header.slope == 0 || !isfinite(header.slope)) {
+        header.slope = 1;
+        header.intercept = 0;
+    }
+    if (!isfinite(header.intercept))
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "the intercept is %g (scl_inter); correct the header",
+                         header.intercept);
     SNOW_TRY(read_offset(context, bytes, &header));
     *out = header;
     return SNOW_STATUS_OK;

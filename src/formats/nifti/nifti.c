@@ -158,17 +158,6 @@ static snow_status open_other(const snow_source *source, const char *wanted,
     return status;
 }
 
-/* The header was opened first: its voxels are in the .img file. */
-static snow_status read_beside(snow_source *source, const nifti_header *header,
-                               const snow_volume_options *options,
-                               snow_volume_info *info, snow_volume **out) {
-    snow_source *image;
-    SNOW_TRY(open_other(source, "img", &image));
-    snow_status status = read_voxels(image, header, options, 0, info, out);
-    snow_source_close(image);
-    return status;
-}
-
 /* The .img file was opened: its header is beside it. */
 static snow_status read_image(snow_source *image,
                               const snow_volume_options *options,
@@ -206,8 +195,13 @@ static snow_status read_nifti(snow_source *source,
         !nifti_header_size(bytes, size))
         return read_image(source, options, info, out);
     SNOW_TRY(read_header(source, &header, &taken));
-    if (header.pair)
-        return read_beside(source, &header, options, info, out);
+    if (header.pair) {
+        snow_source *image;
+        SNOW_TRY(open_other(source, "img", &image));
+        snow_status status = read_voxels(image, &header, options, 0, info, out);
+        snow_source_close(image);
+        return status;
+    }
     return read_voxels(source, &header, options, taken, info, out);
 }
 

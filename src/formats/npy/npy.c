@@ -86,21 +86,6 @@ static snow_status refuse_archive(snow_source *source) {
                      ".npy files");
 }
 
-/* Finds x, y and z, and the requested component or channel and time step. */
-static snow_status pick(snow_context *context,
-                        const snow_volume_options *options, int axes,
-                        const layout *lay, snow_volume_info *info,
-                        snow_array *array) {
-    static const snow_axis_hint none[NPY_MOST_AXES];
-    int64_t channel;
-    snow_axes roles;
-    snow_axes_assign(axes, lay->size, none, &roles);
-    SNOW_TRY(snow_volume_pick_axes(context, options, &roles, lay->size, info,
-                                   &channel));
-    snow_array_place(&roles, lay->step, channel, info, array);
-    return SNOW_STATUS_OK;
-}
-
 static snow_status read_npy(snow_source *source,
                             const snow_volume_options *options,
                             snow_volume_info *info, snow_volume **out) {
@@ -126,7 +111,15 @@ static snow_status read_npy(snow_source *source,
                          "its shape is empty or too large for any file; save "
                          "the array again");
     array.all = lay.all;
-    SNOW_TRY(pick(context, options, header.axes, &lay, info, &array));
+    /* Finds x, y and z, and the requested component or channel and time step.
+     */
+    static const snow_axis_hint none[NPY_MOST_AXES];
+    int64_t channel;
+    snow_axes roles;
+    snow_axes_assign(header.axes, lay.size, none, &roles);
+    SNOW_TRY(snow_volume_pick_axes(context, options, &roles, lay.size, info,
+                                   &channel));
+    snow_array_place(&roles, lay.step, channel, info, &array);
     return snow_array_read(source, options, &array, info, out);
 }
 

@@ -73,18 +73,6 @@ static void trim_end(char *line) {
     line[length] = 0;
 }
 
-/* A second field of the same name contradicts the first or is redundant.
- * Readers differ in which one they use, so the file is refused. */
-static snow_status take_field(snow_context *context, nrrd_text *text,
-                              nrrd_field field, const char *value) {
-    if (text->value[field])
-        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "the header's field \"%s\" occurs twice; delete one",
-                         snow_nrrd_field_name(field));
-    return append(context, text, value + strspn(value, " \t"),
-                  &text->value[field]);
-}
-
 /* The colour of a segment: three shares. */
 static bool read_color(const char *text, double color[4]) {
     char words[3][32];
@@ -137,8 +125,15 @@ static snow_status take_line(snow_context *context, nrrd_text *text,
     const char *colon = strchr(line, ':');
     if (colon && colon[1] != '=') {
         nrrd_field field = field_named(line, (size_t)(colon - line));
-        if (field != NRRD_FIELD_COUNT)
-            return take_field(context, text, field, colon + 1);
+        if (field != NRRD_FIELD_COUNT) {
+            if (text->value[field])
+                return snow_fail(
+                    context, SNOW_STATUS_BAD_INPUT,
+                    "the header's field \"%s\" occurs twice; delete one",
+                    snow_nrrd_field_name(field));
+            return append(context, text, (colon + 1) + strspn(colon + 1, " \t"),
+                          &text->value[field]);
+        }
     }
     if (strstr(line, ":="))
         return take_segment(context, text, line);

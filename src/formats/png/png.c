@@ -133,18 +133,6 @@ static void begin_reading(png_reader *reader, const png_shape *shape) {
     png_read_update_info(png, reader->info);
 }
 
-static void put_row(const unsigned char *row, const png_shape *shape,
-                    int64_t channel, const snow_region *region,
-                    unsigned char *out) {
-    size_t size = shape->depth == 16 ? 2 : 1;
-    for (int64_t x = 0; x < region->count[0]; x++)
-        memcpy(out + (size_t)x * size,
-               row +
-                   (size_t)((region->first[0] + x) * shape->samples + channel) *
-                       size,
-               size);
-}
-
 /* Rows after the box are read as well: the checksum comes last. */
 static void read_rows(png_reader *reader, const png_shape *shape,
                       int64_t channel, const snow_region *region,
@@ -160,10 +148,18 @@ static void read_rows(png_reader *reader, const png_shape *shape,
             int64_t wanted = y - region->first[1];
             png_read_row(reader->png, row, NULL);
             if (pass == reader->passes - 1 && wanted >= 0 &&
-                wanted < region->count[1])
-                put_row(row, shape, channel, region,
-                        out + (size_t)(wanted * region->count[0]) *
-                                  (shape->depth == 16 ? 2 : 1));
+                wanted < region->count[1]) {
+                size_t size = shape->depth == 16 ? 2 : 1;
+                for (int64_t x = 0; x < region->count[0]; x++)
+                    memcpy(
+                        (out + (size_t)(wanted * region->count[0]) *
+                                   (shape->depth == 16 ? 2 : 1)) +
+                            (size_t)x * size,
+                        row + (size_t)((region->first[0] + x) * shape->samples +
+                                       channel) *
+                                  size,
+                        size);
+            }
         }
     png_read_end(reader->png, NULL);
 }

@@ -67,18 +67,6 @@ bool snow_raw_parse_type(const char *word, size_t length, snow_type *type,
     return true;
 }
 
-static void say_found(snow_context *context, const char *path,
-                      const snow_volume_options *options, bool sizes,
-                      const char *kind) {
-    snow_notify(context,
-                "%s: read as %lldx%lldx%lld %s, %s endian; its name gives the "
-                "%s%s%s",
-                path, (long long)options->dims[0], (long long)options->dims[1],
-                (long long)options->dims[2], snow_type_name(options->type),
-                options->endian == SNOW_ENDIAN_BIG ? "big" : "little",
-                sizes ? "sizes" : "", sizes && *kind ? " and the " : "", kind);
-}
-
 /* Fills missing options from the words of the name. */
 static void read_name(snow_context *context, const char *path,
                       snow_volume_options *options) {
@@ -104,11 +92,17 @@ static void read_name(snow_context *context, const char *path,
         !options->endian && found.endian && options->type == found.type;
     if (endian)
         options->endian = found.endian;
-    if (options->dims[0] && options->type && (dims || type || endian))
-        say_found(context, path, options, dims,
-                  type     ? "type"
-                  : endian ? "byte order"
-                           : "");
+    if (options->dims[0] && options->type && (dims || type || endian)) {
+        const char *kind = type ? "type" : endian ? "byte order" : "";
+        snow_notify(
+            context,
+            "%s: read as %lldx%lldx%lld %s, %s endian; its name gives the "
+            "%s%s%s",
+            path, (long long)options->dims[0], (long long)options->dims[1],
+            (long long)options->dims[2], snow_type_name(options->type),
+            options->endian == SNOW_ENDIAN_BIG ? "big" : "little",
+            dims ? "sizes" : "", dims && *kind ? " and the " : "", kind);
+    }
 }
 
 /* Sizes or the type are missing: the user forgot them if the file is meant as

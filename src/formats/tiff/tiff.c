@@ -76,16 +76,6 @@ static snow_status count_pages(snow_tiff *file, tiff_plan *plan) {
     }
 }
 
-/* ImageJ writes one page followed by all images if they exceed 4 GB. */
-static void find_raw(tiff_plan *plan) {
-    plan->raw = plan->images == 1 && plan->shape.imagej &&
-                plan->shape.images > 1 && plan->page.coding == TIFF_PLAIN &&
-                plan->page.compression == COMPRESSION_NONE &&
-                !plan->page.separate;
-    if (plan->raw)
-        plan->images = plan->shape.images;
-}
-
 /* Programs often call slices times, or channels, of which ImageJ shows at most
  * seven: a volume of one slice is hardly meant. */
 static void take_for_slices(snow_context *context, tiff_plan *plan) {
@@ -184,20 +174,6 @@ static void take_resolution(snow_tiff *file, tiff_plan *plan) {
         memcpy(shape->unit, "mm", 3);
 }
 
-/* Slices whose distance is not given are as far apart as pixels. */
-static void set_spacing(snow_tiff *file, tiff_plan *plan,
-                        snow_volume_info *info) {
-    tiff_shape *shape = &plan->shape;
-    take_resolution(file, plan);
-    for (int i = 0; i < 3; i++)
-        if (shape->spacing[i] > 0 && isfinite(shape->spacing[i]))
-            info->matrix[i][i] = shape->spacing[i];
-        else if (i == 2)
-            info->matrix[2][2] = info->matrix[0][0];
-    snow_image_turn(info->matrix);
-    memcpy(info->unit, shape->unit, sizeof info->unit);
-}
-
 /* Samples that are colours have known names. */
 static void tell_channels(const tiff_plan *plan, snow_volume_info *info) {
     const tiff_shape *shape = &plan->shape;
@@ -220,10 +196,25 @@ static snow_status make_plan(snow_tiff *file, tiff_plan *plan,
     SNOW_TRY(snow_tiff_describe(file, &plan->page));
     TIFFGetField(file->tiff, TIFFTAG_IMAGEDESCRIPTION, &text);
     snow_tiff_read_text(text, &plan->shape);
-    set_spacing(file, plan, info);
+    /* Slices whose distance is not given are as far apart as pixels. */
+    tiff_shape *shape = &plan->shape;
+    take_resolution(file, plan);
+    for (int i = 0; i < 3; i++)
+        if (shape->spacing[i] > 0 && isfinite(shape->spacing[i]))
+            info->matrix[i][i] = shape->spacing[i];
+        else if (i == 2)
+            info->matrix[2][2] = info->matrix[0][0];
+    snow_image_turn(info->matrix);
+    memcpy(info->unit, shape->unit, sizeof info->unit);
     snow_tiff_read_channels(file, &plan->page, &plan->shape);
     SNOW_TRY(count_pages(file, plan));
-    find_raw(plan);
+    /* ImageJ writes one page followed by all images if they exceed 4 GB. */
+    plan->raw = plan->images == 1 && plan->shape.imagej &&
+                plan->shape.images > 1 && plan->page.coding == TIFF_PLAIN &&
+                plan->page.compression == COMPRESSION_NONE &&
+                !plan->page.separate;
+    if (plan->raw)
+        plan->images = plan->shape.images;
     share_images(file->context, plan);
     info->dims[0] = plan->page.width;
     info->dims[1] = plan->page.height;

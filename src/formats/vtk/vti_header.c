@@ -259,16 +259,6 @@ static void begin_array(vti_text *text, const char **attributes) {
         stop(text, SNOW_STATUS_OK);
 }
 
-static void begin_appended(vti_text *text, const char **attributes) {
-    const char *encoding = snow_vti_attribute(attributes, "encoding");
-    text->header->raw = encoding && !strcmp(encoding, "raw");
-    if (!text->header->raw && (!encoding || strcmp(encoding, "base64") != 0))
-        refuse(text, "its appended data are neither raw nor base64; write the "
-                     "file again");
-    else if (text->choice)
-        stop(text, SNOW_STATUS_OK);
-}
-
 static void XMLCALL begin_element(void *user, const char *name,
                                   const char **attributes) {
     vti_text *text = user;
@@ -288,8 +278,17 @@ static void XMLCALL begin_element(void *user, const char *name,
         begin_section(text, attributes, false);
     else if (!strcmp(name, "DataArray"))
         begin_array(text, attributes);
-    else if (!strcmp(name, "AppendedData"))
-        begin_appended(text, attributes);
+    else if (!strcmp(name, "AppendedData")) {
+        const char *encoding = snow_vti_attribute(attributes, "encoding");
+        text->header->raw = encoding && !strcmp(encoding, "raw");
+        if (!text->header->raw &&
+            (!encoding || strcmp(encoding, "base64") != 0))
+            refuse(text,
+                   "its appended data are neither raw nor base64; write the "
+                   "file again");
+        else if (text->choice)
+            stop(text, SNOW_STATUS_OK);
+    }
 }
 
 static void XMLCALL end_element(void *user, const char *name) {

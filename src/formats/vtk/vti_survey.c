@@ -200,15 +200,6 @@ static snow_status take_time(snow_source *source, snow_seekable *bytes,
     return status == SNOW_STATUS_NO_MEMORY ? status : SNOW_STATUS_OK;
 }
 
-static snow_status take_coordinates(snow_source *source, snow_seekable *bytes,
-                                    const survey *s, vti_small *out) {
-    for (int i = 0; i < 3; i++)
-        if (s->axis[i].found && s->sized)
-            SNOW_TRY(read_array(source, bytes, s, &s->axis[i], s->points[i],
-                                "its coordinates", &out->coordinates[i]));
-    return SNOW_STATUS_OK;
-}
-
 static snow_status take_all(snow_source *source, snow_seekable *bytes,
                             survey *s, vti_small *out) {
     snow_context *context = snow_source_context(source);
@@ -224,7 +215,11 @@ static snow_status take_all(snow_source *source, snow_seekable *bytes,
     if (status != SNOW_STATUS_OK)
         return status;
     SNOW_TRY(take_time(source, bytes, s, out));
-    return take_coordinates(source, bytes, s, out);
+    for (int i = 0; i < 3; i++)
+        if (s->axis[i].found && s->sized)
+            SNOW_TRY(read_array(source, bytes, s, &s->axis[i], s->points[i],
+                                "its coordinates", &out->coordinates[i]));
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_vti_survey(snow_source *source, snow_seekable *bytes,

@@ -96,17 +96,6 @@ static snow_status take_type(const zarr_store *store, const char *path,
 
 /* --- version 2 ------------------------------------------------------------ */
 
-/* "<f8": the byte order, the kind, the number of bytes. */
-static snow_status take_dtype(const zarr_store *store, const char *path,
-                              const json_t *meta, zarr_array *array) {
-    const char *given = json_string_value(json_object_get(meta, "dtype"));
-    bool right = given && strlen(given) == 3 && strchr("<>|", *given) &&
-                 given[2] >= '1' && given[2] <= '8';
-    array->big_endian = right && *given == '>';
-    return take_type(store, path, right ? given[1] : '?',
-                     right ? (size_t)(given[2] - '0') : 0, given, array);
-}
-
 /* Filters come before the compressor, in the order of writing. */
 static snow_status take_coders_2(const zarr_store *store, const char *path,
                                  const json_t *meta, zarr_array *array) {
@@ -162,7 +151,13 @@ static snow_status describe_2(const zarr_store *store, const char *path,
         return snow_zarr_fail(
             store, path, "lacks a chunk size for some axes; correct .zarray");
     memcpy(array->file, array->chunk, sizeof array->file);
-    SNOW_TRY(take_dtype(store, path, meta, array));
+    /* "<f8": the byte order, the kind, the number of bytes. */
+    const char *given = json_string_value(json_object_get(meta, "dtype"));
+    bool right = given && strlen(given) == 3 && strchr("<>|", *given) &&
+                 given[2] >= '1' && given[2] <= '8';
+    array->big_endian = right && *given == '>';
+    SNOW_TRY(take_type(store, path, right ? given[1] : '?',
+                       right ? (size_t)(given[2] - '0') : 0, given, array));
     SNOW_TRY(take_order(store, path, meta, array));
     SNOW_TRY(take_separator(
         store, path, json_object_get(meta, "dimension_separator"), '.', array));
