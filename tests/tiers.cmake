@@ -33,7 +33,7 @@ set(SNOW_LABEL_late
     oracle_mrc oracle_netcdf oracle_npy oracle_orientation oracle_pictures
     oracle_seg oracle_series oracle_slice oracle_tiff oracle_vtk oracle_zarr test_comm
     test_darken test_histogram test_model_encodings
-    test_model_raycast test_phantom test_raycast test_splat_isa test_stream)
+    test_model_raycast test_phantom test_raycast test_splat_threads test_stream)
 file(GLOB formats CONFIGURE_DEPENDS formats/test_*.c)
 list(TRANSFORM formats REPLACE ".*/(.*)[.]c$" "\\1")
 set(SNOW_LABEL_surface ${formats} test_base test_compare test_convert test_image
@@ -72,7 +72,7 @@ set(SNOW_COSTS
     serve_sockets 20 serve_hostile 20 oracle_orientation 20 oracle_hdf5 20 oracle_netcdf 18 test_comm 17
     cli_formats 16 cli_config 16 test_gradient_opacity 16
     test_api 13 test_kernels 13 cli_usage 12
-    test_splat_isa 11 
+    test_splat_threads 11 
     test_phantom 11 oracle_pictures 11 test_early 10)
 
 file(GLOB_RECURSE sources *.c *.sh *.py)

@@ -2,7 +2,6 @@
  * tables. */
 #include "splat/kernel.h"
 
-#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -160,36 +159,7 @@ float snow_scaled_kernel_box(const snow_scaled_kernel *scaled_kernel,
     return (float)(1 / ceil(width - fraction));
 }
 
-int snow_scaled_kernel_taps(const snow_scaled_kernel *scaled_kernel) {
-    return (int)fmin(ceil(2 * scaled_kernel->half - EDGE), INT_MAX);
-}
-
-double snow_scaled_kernel_phase_reach(const snow_scaled_kernel *scaled_kernel) {
-    return scaled_kernel->half + EDGE -
-           (snow_scaled_kernel_taps(scaled_kernel) - 1);
-}
-
-void snow_scaled_kernel_phase(const snow_scaled_kernel *scaled_kernel,
-                              double phase, double *weights) {
-    double sum = 0;
-    int taps = snow_scaled_kernel_taps(scaled_kernel);
-    double below_one = fmin(phase, 1 - 1e-9); /* 1 is the end of the phases */
-    for (int n = 0; n < taps; n++) {
-        double from_left = below_one + (taps - 1 - n),
-               width = 2 * scaled_kernel->half;
-        double t = from_left - scaled_kernel->half - EDGE;
-        weights[n] = from_left < width
-                         ? kernels[scaled_kernel->kernel].value(
-                               scaled_kernel->support, t / scaled_kernel->wide)
-                         : 0;
-        sum += weights[n];
-    }
-    for (int n = 0; n < taps; n++)
-        weights[n] /= sum;
-}
-
-bool snow_scaled_kernel_same(const snow_scaled_kernel *a,
-                             const snow_scaled_kernel *b) {
+static bool is_same(const snow_scaled_kernel *a, const snow_scaled_kernel *b) {
     return a->kernel == b->kernel && a->support == b->support &&
            a->half == b->half && a->wide == b->wide;
 }
@@ -198,7 +168,7 @@ snow_status
 snow_scaled_kernel_table_make(snow_context *context,
                               const snow_scaled_kernel *scaled_kernel,
                               snow_scaled_kernel_table *out) {
-    if (out->cells && snow_scaled_kernel_same(scaled_kernel, &out->made_for))
+    if (out->cells && is_same(scaled_kernel, &out->made_for))
         return SNOW_STATUS_OK;
     /* A wide kernel is smooth: fewer cells per voxel suffice. A widened one of
      * support 2 has steep kinks within cells, where the number of voxels in

@@ -26,9 +26,6 @@
 
 #define SNOW_FOOTPRINT_MOST 9
 
-/* The most voxels in reach along an axis for which weights by phase exist. */
-#define SNOW_PHASE_TAPS_MOST 64
-
 /* A kernel of one view and grid axis. */
 typedef struct snow_scaled_kernel {
     snow_kernel kernel;
@@ -55,15 +52,6 @@ double snow_scaled_kernel_reach(const snow_scaled_kernel *scaled_kernel);
 double snow_scaled_kernel_weight(const snow_scaled_kernel *scaled_kernel,
                                  double t);
 
-/* For the gather form: the voxels in reach of a point at grid position u are i
- * to i + taps - 1 with i = floor(s), s = u + reach; its phase is s - i. These
- * give the number of voxels in reach at most, reach, and the weights at a phase
- * of 0 to 1 (not for the box, nor above SNOW_PHASE_TAPS_MOST voxels). */
-int snow_scaled_kernel_taps(const snow_scaled_kernel *scaled_kernel);
-double snow_scaled_kernel_phase_reach(const snow_scaled_kernel *scaled_kernel);
-void snow_scaled_kernel_phase(const snow_scaled_kernel *scaled_kernel,
-                              double phase, double *weights);
-
 /* The weight as a table: cell c spans the distances from c / scale - shift and
  * holds the weight at its beginning and the rise to its end. Smooth kernels are
  * accurate to about 1e-5 of their peak, and kinks at 0 and at the ends fall
@@ -80,10 +68,6 @@ typedef struct snow_scaled_kernel_table {
     float scale; /* cells per voxel */
     snow_scaled_kernel made_for;
 } snow_scaled_kernel_table;
-
-/* Returns whether two scaled kernels are equal. */
-bool snow_scaled_kernel_same(const snow_scaled_kernel *a,
-                             const snow_scaled_kernel *b);
 
 /* Makes the table unless it is for this kernel already; the record begins as
  * zeros. Errors: SNOW_STATUS_NO_MEMORY. Free with snow_release(context,

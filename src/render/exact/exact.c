@@ -2,9 +2,7 @@
  * lines 02 to 13 of figure 8 of the paper, whose numbers stand in the comments.
  *
  *   original, tested   a voxel row is classified and splatted, slice by slice
- *   footprint          the slab is encoded, and its interesting voxels scatter;
- *                      or, where the instruction set has loops for it, pixels
- *                      gather: the same sums (splat/gather.h)
+ *   footprint          the slab is encoded, and its interesting voxels scatter
  *
  * In perspective footprints differ from voxel to voxel (splat/perspective.h),
  * and are thrown by one thread.
@@ -15,18 +13,12 @@
  * order however bands are cut: the number of threads cannot change a bit. */
 #include "render/modes/depth.h"
 #include "render/picture.h"
-#include "splat/gather.h"
 #include "splat/perspective.h"
 
 #include <string.h>
 
-#define GROUP_SLICES 8     /* of one sparse matrix */
-#define GATHER_ROWS 8      /* image rows of a band where pixels gather */
-#define CLOSE_SLICES 4     /* after so many, opaque pixels are looked for */
-#define BANDS_PER_THREAD 4 /* where voxels scatter */
-/* That slices spread out at once may take; and the part of a limit. */
-#define SPREAD_BYTES ((uint64_t)32 << 20)
-#define SPREAD_PART 8
+#define GROUP_SLICES 8 /* of one sparse matrix */
+#define BANDS_PER_THREAD 4
 
 typedef enum stage { CLASSIFY, SHADE, ENCODE, SPLAT, COMPOSITE, STAGES } stage;
 
@@ -34,12 +26,10 @@ typedef enum stage { CLASSIFY, SHADE, ENCODE, SPLAT, COMPOSITE, STAGES } stage;
 typedef struct worker {
     snow_row_block row_block;
     snow_span *spans; /* of one row */
-    snow_sheet sheet; /* scatter: a band; gather: only its memory is used */
+    snow_sheet sheet; /* of a band */
     snow_splatter splatter;
     snow_perspective_splatter eye; /* in perspective: instead */
-    snow_run *runs;                /* gathering: of GATHER_ROWS rows */
-    snow_places places;
-    int64_t kept; /* voxels splatted of row blocks */
+    int64_t kept;                  /* voxels splatted of row blocks */
     snow_status status;
     double seconds[STAGES];
 } worker;
@@ -48,16 +38,11 @@ struct snow_exact {
     snow_context *context;
     snow_classifier classifier;
     snow_shader shader;
-    snow_gatherer gatherer;
-    bool gathers; /* the picture at work */
     snow_encoding encoding;
     snow_sparse *groups; /* EA, IA, PA of GROUP_SLICES slices each */
-    snow_dense *dense;   /* gathering: slices spread out */
-    uint16_t
-        *not_opaque; /* gathering: pixels that are not opaque, row by row */
     worker *workers;
-    int64_t group_count, dense_count, worker_count; /* that were ever made */
-    int64_t groups_used, dense_used;                /* by this picture */
+    int64_t group_count, worker_count; /* that were ever made */
+    int64_t groups_used;               /* by this picture */
     int threads, bands;
 };
 
@@ -66,7 +51,6 @@ typedef struct pass {
     snow_exact *exact;
     const snow_job *job;
     snow_encoding encoding;
-    int64_t first, count; /* gathering: slices from the viewer */
 } pass;
 
 /* The frame's buffers are made when a picture needs them. */
@@ -86,23 +70,16 @@ void snow_exact_free(snow_exact *exact) {
     snow_context *context = exact->context;
     for (int64_t n = 0; n < exact->group_count; n++)
         snow_sparse_fini(&exact->groups[n]);
-    for (int64_t n = 0; n < exact->dense_count; n++)
-        snow_dense_fini(context, &exact->dense[n]);
     for (int64_t n = 0; n < exact->worker_count; n++) {
         worker *w = &exact->workers[n];
         snow_row_block_free(context, &w->row_block);
         snow_release(context, w->spans);
         snow_release(context, w->sheet.pixels);
-        snow_release(context, w->runs);
-        snow_release(context, w->places.window);
         snow_splatter_fini(context, &w->splatter);
         snow_perspective_splatter_fini(context, &w->eye);
     }
     snow_release(context, exact->groups);
-    snow_release(context, exact->dense);
-    snow_release(context, exact->not_opaque);
     snow_release(context, exact->workers);
-    snow_gatherer_fini(context, &exact->gatherer);
     snow_classifier_fini(context, &exact->classifier);
     snow_release(context, exact);
 }
@@ -137,20 +114,7 @@ static void cut(snow_exact *exact, const snow_job *job) {
     int64_t threads = p->perspective ? 1 : job->settings.threads;
     exact->groups_used = parts_of(job->stored_slab.count, GROUP_SLICES);
     exact->bands = 1;
-    exact->dense_used = 0;
-    if (exact->gathers) {
-        exact->bands = (int)parts_of(p->height, GATHER_ROWS);
-        uint64_t part = exact->context->limit / SPREAD_PART;
-        uint64_t fit =
-            (exact->context->limit && part < SPREAD_BYTES ? part
-                                                          : SPREAD_BYTES) /
-            snow_dense_bytes(&exact->gatherer.shape);
-        /* Threads wait for each other between spreading and gathering: seldom
-         * where slices are spread by the dozen.  One thread has no one to wait
-         * for, and finds a single slice in its cache. */
-        int64_t wanted = threads > 1 ? job->stored_slab.count : 1;
-        exact->dense_used = fit > 1 ? smaller(wanted, (int64_t)fit) : 1;
-    } else if (threads > 1)
+    if (threads > 1)
         exact->bands = (int)smaller(BANDS_PER_THREAD * threads, p->height);
     int64_t most =
         exact->bands > exact->groups_used ? exact->bands : exact->groups_used;
@@ -181,39 +145,9 @@ static snow_status prepare_worker(snow_exact *exact, const snow_job *job,
     /* Here and not where a thread needs it, so that what is taken does not
      * depend on which thread does what. */
     size_t row = (size_t)p->width * (size_t)job->channels;
-    if (!exact->gathers) {
-        size_t rows = (size_t)parts_of(p->height, exact->bands);
-        SNOW_TRY(SNOW_RESERVE(context, w->sheet.pixels, 0, rows * row));
-        return prepare_splatter(context, job, w);
-    }
-    size_t runs = (size_t)p->width / 2 + 1;
-    SNOW_TRY(snow_places_make(context, p->width, &w->places));
-    SNOW_TRY(SNOW_RESERVE(context, w->sheet.pixels, 0, GATHER_ROWS * row));
-    return SNOW_RESERVE(context, w->runs, 0, GATHER_ROWS * runs);
-}
-
-static size_t open_row(const snow_job *job) {
-    return (size_t)parts_of(job->stored.width, SNOW_GATHER_CHUNK);
-}
-
-/* All pixels are open. */
-static snow_status find_not_opaque(snow_exact *exact, const snow_job *job) {
-    size_t masks = (size_t)job->stored.height * open_row(job);
-    SNOW_TRY(SNOW_RESERVE(exact->context, exact->not_opaque, 0, masks));
-    memset(exact->not_opaque, 0xff, masks * sizeof *exact->not_opaque);
-    return SNOW_STATUS_OK;
-}
-
-/* Loops for gathering exist for this picture, and it is the method that may
- * use them: original and tested stay what they are compared as. */
-static snow_status choose_loops(snow_exact *exact, const snow_job *job) {
-    const snow_settings *settings = &job->settings;
-    exact->gathers = false;
-    if (settings->method != SNOW_METHOD_FOOTPRINT || job->stored.perspective)
-        return SNOW_STATUS_OK;
-    return snow_gatherer_make(exact->context, &job->stored, settings->kernel,
-                              settings->footprint, job->channels, settings->isa,
-                              &exact->gatherer, &exact->gathers);
+    size_t rows = (size_t)parts_of(p->height, exact->bands);
+    SNOW_TRY(SNOW_RESERVE(context, w->sheet.pixels, 0, rows * row));
+    return prepare_splatter(context, job, w);
 }
 
 /* Makes room and tables for a job. */
@@ -238,7 +172,6 @@ static snow_status prepare_tables(snow_picture *picture, snow_job *job) {
     /* Normals are made for the voxels that are kept. */
     SNOW_TRY(
         snow_shader_init(context, job->volume, p, settings, &exact->shader));
-    SNOW_TRY(choose_loops(exact, job));
     cut(exact, job);
     SNOW_TRY(more_records(context, &exact->groups, &exact->group_count,
                           exact->groups_used, sizeof *exact->groups));
@@ -248,12 +181,7 @@ static snow_status prepare_tables(snow_picture *picture, snow_job *job) {
                           exact->threads, sizeof *exact->workers));
     for (int n = 0; n < exact->threads; n++)
         SNOW_TRY(prepare_worker(exact, job, &exact->workers[n]));
-    SNOW_TRY(more_records(context, &exact->dense, &exact->dense_count,
-                          exact->dense_used, sizeof *exact->dense));
-    for (int64_t n = 0; n < exact->dense_used; n++)
-        SNOW_TRY(
-            snow_dense_make(context, &exact->gatherer.shape, &exact->dense[n]));
-    return exact->gathers ? find_not_opaque(exact, job) : SNOW_STATUS_OK;
+    return SNOW_STATUS_OK;
 }
 
 /* --- work and time -------------------------------------------------------- */
@@ -525,112 +453,6 @@ static void scatter_item(void *data, int64_t item, int number) {
         w->status = scatter_band(work, item, w);
 }
 
-/* --- gathering footprints ------------------------------------------------- */
-
-/* Lines 08 to 12, first half: the interesting voxels of one slice, out of EA
- * and IA, to where its pixels gather them. */
-static void spread_item(void *data, int64_t item, int number) {
-    pass *work = data;
-    worker *w = &work->exact->workers[number];
-    snow_dense *dense = &work->exact->dense[item];
-    double mark = snow_seconds();
-    snow_walk walk;
-    walk_slice(work, nth_slice(work->job, work->first + item), &walk);
-    snow_dense_begin(dense);
-    for (int64_t row = 0; row < work->job->stored.rows && !stops(work, w);
-         row++) {
-        size_t spans;
-        const float *samples = walk_row(work, &walk, w, &spans);
-        snow_dense_add_row(dense, w->spans, spans, samples);
-    }
-    snow_dense_end(dense);
-    snow_lap(&mark, &w->seconds[SPLAT]);
-}
-
-/* Line 13 for one row of slice n: a run of what it has gathered goes into the
- * local image. */
-static void composite_run(const pass *work, int64_t n, int y, float *gathered,
-                          snow_run run) {
-    const snow_exact *exact = work->exact;
-    const snow_job *job = work->job;
-    int64_t slice = nth_slice(job, work->first + n);
-    int count = run.end - run.first;
-    size_t channels = (size_t)job->channels;
-    float *row = job->pixels + (size_t)y * (size_t)job->stored.width * channels;
-    float *back = gathered + (size_t)run.first * channels;
-    if (job->clip.cuts)
-        snow_clip_pixels(&job->clip, &job->placement,
-                         slice + job->clip.stored[2], run.first, y, count,
-                         job->channels, back);
-    if (job->depths)
-        snow_depth_note(job, slice, run.first, y, count, back);
-    snow_job_composite(job)(row + (size_t)run.first * channels, back,
-                            (size_t)count);
-    /* Opaque pixels gather no more: looked for every few slices, the same ones
-     * however many are spread at once.  Not where something else than over is
-     * laid, to which opacity is nothing. */
-    const bool closes = !work->job->composite &&
-                        (work->first + n) % CLOSE_SLICES == CLOSE_SLICES - 1;
-    if (closes)
-        snow_gather_close(row, run, job->channels,
-                          exact->not_opaque + (size_t)y * open_row(job));
-}
-
-/* Second half and line 13, for one slice and band: pixels gather, row by row,
- * and each row goes into the local image. */
-static void gather_slice(const pass *work, worker *w, int64_t n, int top,
-                         int bottom) {
-    const snow_exact *exact = work->exact;
-    const snow_job *job = work->job;
-    const snow_dense *dense = &exact->dense[n];
-    int64_t slice = nth_slice(job, work->first + n);
-    size_t room = snow_block_bytes(w->runs) / sizeof *w->runs / GATHER_ROWS;
-    size_t stride = (size_t)job->stored.width * (size_t)job->channels;
-    int first, end, counts[GATHER_ROWS];
-    snow_gather_rows(&exact->gatherer, dense, slice, &first, &end);
-    first = first > top ? first : top;
-    end = end < bottom ? end : bottom;
-    if (first >= end)
-        return;
-    double mark = snow_seconds();
-    for (int y = first; y < end; y++) {
-        size_t line = (size_t)(y - top);
-        counts[line] = snow_gather_row(
-            &exact->gatherer, dense, slice, y,
-            exact->not_opaque + (size_t)y * open_row(job), &w->places,
-            w->sheet.pixels + line * stride, w->runs + line * room);
-    }
-    snow_lap(&mark, &w->seconds[SPLAT]);
-    for (int y = first; y < end; y++) {
-        size_t line = (size_t)(y - top);
-        for (int i = 0; i < counts[line]; i++)
-            composite_run(work, n, y, w->sheet.pixels + line * stride,
-                          w->runs[line * room + (size_t)i]);
-    }
-    snow_lap(&mark, &w->seconds[COMPOSITE]);
-}
-
-static void gather_item(void *data, int64_t item, int number) {
-    pass *work = data;
-    int top = (int)item * GATHER_ROWS;
-    int bottom = (int)smaller(top + GATHER_ROWS, work->job->stored.height);
-    for (int64_t n = 0; n < work->count; n++)
-        gather_slice(work, &work->exact->workers[number], n, top, bottom);
-}
-
-/* Line 07, from front to back: some slices at a time. */
-static snow_status gather_slab(pass *work) {
-    int64_t slices = work->job->stored_slab.count;
-    for (work->first = 0; work->first < slices; work->first += work->count) {
-        work->count = smaller(work->exact->dense_used, slices - work->first);
-        snow_monitor_report(work->exact->context->monitor, SNOW_STAGE_RENDER,
-                            (double)work->first, (double)slices);
-        SNOW_TRY(run(work, work->count, spread_item));
-        SNOW_TRY(run(work, work->exact->bands, gather_item));
-    }
-    return SNOW_STATUS_OK;
-}
-
 /* --- the whole ------------------------------------------------------------ */
 
 static snow_status encode_slab(snow_picture *p, snow_job *job) {
@@ -644,17 +466,16 @@ static snow_status encode_slab(snow_picture *p, snow_job *job) {
                     &exact->workers[0].row_block, exact->workers[0].spans);
     job->stats->encoding = exact->encoding;
     snow_monitor_next(exact->context->monitor, SNOW_STAGE_ENCODE, 0, 1);
-    pass work = {exact, job, exact->encoding, 0, 0};
+    pass work = {exact, job, exact->encoding};
     return run(&work, exact->groups_used, encode_item);
 }
 
 static snow_status splat_and_composite(snow_picture *p, snow_job *job) {
     snow_exact *exact = p->frame->exact;
-    pass work = {exact, job, exact->encoding, 0, 0};
-    if (!exact->gathers && exact->bands > 1) /* else slices are reported */
+    pass work = {exact, job, exact->encoding};
+    if (exact->bands > 1) /* else slices are reported */
         snow_monitor_next(exact->context->monitor, SNOW_STAGE_RENDER, 0, 1);
-    return exact->gathers ? gather_slab(&work)
-                          : run(&work, exact->bands, scatter_item);
+    return run(&work, exact->bands, scatter_item);
 }
 
 /* --- counts --------------------------------------------------------------- */

@@ -1,22 +1,6 @@
-/* tests/stages/test_splat_isa.c - the exact method on every level of
- * instructions and any number of threads.
- *
- * The vector loops sum footprints pixel by pixel, the scalar ones voxel by
- * voxel: the same products in another order, and tables of another pitch.  They
- * are held against each other on random runs of random samples. */
+/* tests/stages/test_splat_threads.c - the exact methods by any number of
+ * threads, on random runs of random samples, and in memory that is there. */
 #include "reference/model.h"
-
-#include "simd/isa.h"
-
-#include <math.h>
-
-/* Half of what the model's tests allow a picture to be off from the model:
- * where a widened tent or cut Gauss gains or loses a voxel in reach both kinds
- * of loops are off by up to 4e-4, and most others by rounding. */
-#define BOUND 8e-4
-#define USUAL 2e-5 /* kernels that are not widened, and have no jumps */
-
-static const snow_isa levels[] = {SNOW_ISA_AVX2, SNOW_ISA_AVX512};
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
@@ -61,96 +45,6 @@ static void random_view(uint64_t *random, int n, reference_scene *scene) {
     scene->view.height = 1 + (int)(support_uniform(random) * 50);
 }
 
-static size_t floats_of(const reference_scene *scene) {
-    return (size_t)scene->view.width * (size_t)scene->view.height * 4;
-}
-
-static float *picture_on(const model_stage *stage, reference_scene *scene,
-                         snow_isa isa) {
-    scene->settings.isa = isa;
-    return model_picture(stage, scene);
-}
-
-static double distance(const float *a, const float *b, size_t floats) {
-    double largest = 0;
-    for (size_t n = 0; n < floats; n++) {
-        double difference = fabs((double)a[n] - (double)b[n]);
-        if (!(difference <= largest))
-            largest = difference;
-    }
-    return largest;
-}
-
-/* Whether kernels of this scene are neither widened nor jump. */
-static bool is_usual(const reference_scene *scene) {
-    return scene->view.zoom >= 8 &&
-           (scene->settings.kernel == SNOW_KERNEL_BSPLINE ||
-            scene->settings.kernel == SNOW_KERNEL_TENT);
-}
-
-static void every_level_gives_the_scalar_picture(void **state) {
-    (void)state;
-    model_stage stage = model_open();
-    uint64_t random = 31;
-    double largest = 0, usual = 0;
-    int seen = 0;
-    for (int n = 0; n < 4 * 8 * 24; n += (int)support_stride(13)) {
-        reference_scene scene = random_scene(&random, n / 2 % 2 == 0);
-        random_view(&random, n, &scene);
-        scene.settings.kernel = (snow_kernel)(n / 8 % 4);
-        scene.settings.footprint = 2 + n / 32 % 8;
-        scene.settings.encoding = (snow_encoding)(n % 4);
-        float *scalar = picture_on(&stage, &scene, SNOW_ISA_SCALAR);
-        for (size_t level = 0; level < COUNT(levels); level++) {
-            if (!snow_isa_runs(levels[level]))
-                continue;
-            float *picture = picture_on(&stage, &scene, levels[level]);
-            double off = distance(picture, scalar, floats_of(&scene));
-            if (!(off < (is_usual(&scene) ? USUAL : BOUND)))
-                fail_msg("level %s is off by %g: %s",
-                         snow_isa_name(levels[level]), off,
-                         model_words(&scene));
-            largest = fmax(largest, off);
-            usual = is_usual(&scene) ? fmax(usual, off) : usual;
-            free(picture);
-        }
-        for (size_t i = 0; i < floats_of(&scene); i++)
-            if (scalar[i] > 0.01f) {
-                seen++;
-                break;
-            }
-        free(scalar);
-        model_free(&scene);
-    }
-    print_message("             levels differ by up to %.2g, %.2g where no "
-                  "kernel is widened; %d pictures show something\n",
-                  largest, usual, seen);
-    assert_true(seen * (int)support_stride(13) > 4 * 8 * 24 / 2);
-    model_close(&stage);
-}
-
-static void vector_levels_give_the_same_bits(void **state) {
-    (void)state;
-    if (!snow_isa_runs(SNOW_ISA_AVX512))
-        skip();
-    model_stage stage = model_open();
-    uint64_t random = 32;
-    for (int n = 0; n < 300; n += (int)support_stride(13)) {
-        reference_scene scene = random_scene(&random, n % 2 == 0);
-        random_view(&random, n, &scene);
-        scene.settings.kernel = (snow_kernel)(n % 4);
-        scene.settings.footprint = 2 + n / 4 % 8;
-        float *narrow = picture_on(&stage, &scene, SNOW_ISA_AVX2);
-        float *wide = picture_on(&stage, &scene, SNOW_ISA_AVX512);
-        if (memcmp(narrow, wide, floats_of(&scene) * sizeof *wide) != 0)
-            fail_msg("other bits: %s", model_words(&scene));
-        free(narrow);
-        free(wide);
-        model_free(&scene);
-    }
-    model_close(&stage);
-}
-
 static uint64_t checksum(const model_stage *stage,
                          const reference_scene *scene) {
     snow_image *image = model_image(stage, scene);
@@ -163,15 +57,12 @@ static uint64_t checksum(const model_stage *stage,
 static const struct {
     snow_method method;
     snow_encoding encoding;
-    snow_isa isa;
 } ways[] = {
-    {SNOW_METHOD_ORIGINAL, SNOW_ENCODING_AUTO, SNOW_ISA_AUTO},
-    {SNOW_METHOD_TESTED, SNOW_ENCODING_AUTO, SNOW_ISA_AUTO},
-    {SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_CRS, SNOW_ISA_AUTO},
-    {SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_BITMAP, SNOW_ISA_AUTO},
-    {SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_RLE, SNOW_ISA_AUTO},
-    {SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_CRS, SNOW_ISA_SCALAR},
-    {SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_RLE, SNOW_ISA_SCALAR},
+    {SNOW_METHOD_ORIGINAL, SNOW_ENCODING_AUTO},
+    {SNOW_METHOD_TESTED, SNOW_ENCODING_AUTO},
+    {SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_CRS},
+    {SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_BITMAP},
+    {SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_RLE},
 };
 
 /* Fails unless all numbers of threads give the picture and figures of one. */
@@ -180,7 +71,6 @@ static void check_threads(const model_stage *stage, reference_scene *scene) {
     for (size_t w = 0; w < COUNT(ways); w++) {
         scene->settings.method = ways[w].method;
         scene->settings.encoding = ways[w].encoding;
-        scene->settings.isa = ways[w].isa;
         scene->settings.threads = 1;
         uint64_t expected = checksum(stage, scene);
         snow_stats alone = *snow_frame_stats(stage->frame);
@@ -241,7 +131,6 @@ static void a_second_picture_takes_no_memory_but_its_own(void **state) {
         model_turn(&scene, n % 3 * 30, n % 3 * 20, 0, 1);
         scene.settings.method = ways[n / 4].method;
         scene.settings.encoding = ways[n / 4].encoding;
-        scene.settings.isa = ways[n / 4].isa;
         scene.settings.threads = n % 2 ? 1 : 3;
         snow_volume *volume;
         snow_transfer *transfer;
@@ -276,8 +165,6 @@ static void a_second_picture_takes_no_memory_but_its_own(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_level_gives_the_scalar_picture),
-        cmocka_unit_test(vector_levels_give_the_same_bits),
         cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
         cmocka_unit_test(a_second_picture_takes_no_memory_but_its_own),
     };
