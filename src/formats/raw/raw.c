@@ -131,7 +131,7 @@ static snow_status refuse_unspecified(snow_source *source,
                         : 0;
     if (left >= 0)
         snprintf(length, sizeof length, " of %lld bytes", (long long)left);
-    snow_raw_advise(name, here, options, advice);
+    snow_raw_list_fitting(here, options, advice);
     return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                      "is raw data%s; give --dims XxYxZ and --type (uint8, "
                      "int16, float32, ...)%s",
@@ -153,7 +153,7 @@ static snow_status check_size(snow_source *source,
         (uint64_t)left - all->offset == bytes)
         return SNOW_STATUS_OK;
     uint64_t here = (uint64_t)left - all->offset;
-    snow_raw_advise(snow_source_name(source), here, all, advice);
+    snow_raw_list_fitting(here, all, advice);
     if (here > bytes) {
         *noted = *advice != 0;
         if (*noted)

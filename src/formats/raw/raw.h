@@ -4,8 +4,9 @@
 
 #include "formats/write.h"
 
-/* Room for what snow_raw_advise writes. */
-#define RAW_ADVICE_BYTES 640
+/* Capacity for what snow_raw_list_fitting writes: four times three numbers of
+ * 19 digits and types. */
+#define RAW_ADVICE_BYTES 512
 
 /* Words that a name is split into, and what separates them. */
 #define RAW_BETWEEN "_.- "
@@ -17,11 +18,10 @@ bool snow_raw_parse_dims(const char *word, size_t length, int64_t dims[3]);
 bool snow_raw_parse_type(const char *word, size_t length, snow_type *type,
                          snow_endian *endian);
 
-/* Writes which dims and types hold `bytes` bytes exactly, and what the name
- * suggests, as clauses that each begin with "; ".  `options` has what is known:
- * dims or type may be 0. */
-void snow_raw_advise(const char *name, uint64_t bytes,
-                     const snow_volume_options *options,
-                     char out[RAW_ADVICE_BYTES]);
+/* Writes which dims and types hold `bytes` bytes exactly, as a clause that
+ * begins with "; ", or nothing.  `options` has what is known: dims or type may
+ * be 0. */
+void snow_raw_list_fitting(uint64_t bytes, const snow_volume_options *options,
+                           char out[RAW_ADVICE_BYTES]);
 
 #endif

@@ -204,44 +204,29 @@ for file in large.nrrd large.mha; do
     says "$file: has 8 bytes left where the voxels need 729000000000000"
 done
 
-# A raw file of the wrong size: its bytes, what fits, what its name suggests.
+# A raw file of the wrong size: its bytes, and what fits.
 zeros() { head -c "$1" /dev/zero >"$2"; }
 zeros 1000000 head_100x100x113_uint8.raw
 refused 3 "a raw file that is shorter than its name says" \
     "has 1000000 bytes .* need 1130000 .100x100x113 uint8.*fits: 100x100x100 uint8$" \
     "$TOOL" -q head_100x100x113_uint8.raw -o z.png
-zeros 640000 foo_80_80_50_16bit.raw
-refused 2 "a raw file whose name needs a guess" \
-    "raw data of 640000 bytes.*its name suggests --dims 80x80x50 --type uint16 or int16, which fits$" \
-    "$TOOL" foo_80_80_50_16bit.raw -o z.png
-gzip -k foo_80_80_50_16bit.raw
-refused 2 "a compressed one" \
-    "is raw data; give --dims.*; its name suggests --dims 80x80x50 --type uint16 or int16$" \
-    "$TOOL" foo_80_80_50_16bit.raw.gz -o z.png
 zeros 327680 half_u16.raw
 refused 2 "a raw file without dims" \
     "^snowglass: half_u16.raw: is raw data of 327680 bytes; give --dims.*; what fits: 64x64x40 uint16$" \
     "$TOOL" half_u16.raw -o z.png
 check "no dims are made up" [ "$(grep -c . "$ERR")" = 1 ]
-refused 2 "the same, with its type given" "; what fits: 64x64x20 float32; its name suggests --type uint16$" \
+refused 2 "the same, with its type given" "; what fits: 64x64x20 float32$" \
     "$TOOL" half_u16.raw --type float32 -o z.png
 zeros 1009 plain.raw
 refused 2 "bytes that fit nothing usual" \
     "is raw data of 1009 bytes; give --dims XxYxZ and --type .uint8, int16, float32, \.\.\..$" \
     "$TOOL" plain.raw --type uint8 -o z.png
-refused 3 "dims other than those of its name" \
-    "need 1000000 .*its name suggests --dims 80x80x50 --type uint16 or int16, which fits$" \
-    "$TOOL" foo_80_80_50_16bit.raw --dims 100x100x100 --type uint8 -o z.png
 zeros 640000 plain.raw
 refused 3 "slices and a type that fit" \
     "fits: 80x80x50 uint16 or int16, 80x80x25 float32$" \
     "$TOOL" plain.raw --dims 80x80x50 --type float32 -o z.png
 zeros 64352 plain.raw
-run 0 "a raw file with a header" \
-    "$TOOL" info plain.raw --dims 40x40x40 --type uint8
-says "plain.raw: has 64352 bytes where the voxels need 64000; a header of 352 bytes would be skipped by --offset 352"
-check "once" [ "$(wc -l <"$ERR")" = 1 ]
-run 7 "its picture" "$TOOL" plain.raw --dims 40x40x40 --type uint8 -s 9x9 \
+run 7 "a picture of a raw file with a header" "$TOOL" plain.raw --dims 40x40x40 --type uint8 -s 9x9 \
     -o long.png
 check "one note on its size" [ "$(grep -c 'plain.raw: has\|plain.raw: .* ignored' "$ERR")" = 1 ]
 zeros 64007 odd.raw
