@@ -330,16 +330,6 @@ void answer_recipe_text(outbox *box, uint64_t client, const json_t *tree) {
     free(text);
 }
 
-static void answer_recipe(drawing *d, viewer_state *s, outbox *box,
-                          uint64_t client) {
-    json_t *newest = state_recipe(s);
-    json_t *tree =
-        drawing_apply(d, newest) == CONTINUE ? recipe_file_tree(d) : NULL;
-    answer_recipe_text(box, client, tree);
-    json_decref(tree);
-    json_decref(newest);
-}
-
 static void answer_fit(drawing *d, viewer_state *s, outbox *box,
                        uint64_t client) {
     uint32_t revision;
@@ -507,9 +497,14 @@ static bool answer_state(drawing *d, viewer_state *s, outbox *box,
         answer_command(d, s, box, question->client, VERB_RENDER);
     else if (strcmp(what, "movie-command") == 0)
         answer_command(d, s, box, question->client, VERB_TURNTABLE);
-    else if (strcmp(what, "recipe") == 0)
-        answer_recipe(d, s, box, question->client);
-    else if (strcmp(what, "fit") == 0)
+    else if (strcmp(what, "recipe") == 0) {
+        json_t *newest = state_recipe(s);
+        json_t *tree =
+            drawing_apply(d, newest) == CONTINUE ? recipe_file_tree(d) : NULL;
+        answer_recipe_text(box, question->client, tree);
+        json_decref(tree);
+        json_decref(newest);
+    } else if (strcmp(what, "fit") == 0)
         answer_fit(d, s, box, question->client);
     else if (strcmp(what, "thumbnail") == 0)
         answer_thumbnail(d, s, box, question->client, question->tree);

@@ -128,13 +128,6 @@ static char *fault_of(viewer_state *s, const json_t *recipe) {
     return beyond ? strdup(beyond) : NULL;
 }
 
-/* A step back, a link: crop and camera come together, and fit. */
-static void note_crop(viewer_state *s, const json_t *changes) {
-    if (json_object_get(changes, "crop"))
-        s->crop_is_alone = !json_object_get(changes, "zoom") &&
-                           !json_object_get(changes, "target");
-}
-
 char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision) {
     pthread_mutex_lock(&s->lock);
     json_t *recipe = json_deep_copy(s->recipe);
@@ -146,7 +139,10 @@ char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision) {
         json_decref(s->recipe);
         s->recipe = recipe;
         s->changed_at = seconds();
-        note_crop(s, changes);
+        /* A step back, a link: crop and camera come together, and fit. */
+        if (json_object_get(changes, "crop"))
+            s->crop_is_alone = !json_object_get(changes, "zoom") &&
+                               !json_object_get(changes, "target");
         s->revision++;
         pthread_cond_signal(&s->changed);
     }
@@ -250,15 +246,6 @@ static viewer_question *same_pane(viewer_state *s, uint64_t client,
     return NULL;
 }
 
-/* The newer one of two thumbnails of a pane is made; one that is asked again is
- * the older. */
-static void keep_newer(viewer_question *waiting, json_t *tree) {
-    bool older = json_is_true(json_object_get(tree, "again"));
-    json_decref(older ? tree : waiting->tree);
-    if (!older)
-        waiting->tree = tree;
-}
-
 bool state_ask(viewer_state *s, uint64_t client, json_t *tree) {
     const char *what = json_string_value(json_object_get(tree, "what"));
     bool waits = what && strcmp(what, "thumbnail") == 0;
@@ -266,9 +253,14 @@ bool state_ask(viewer_state *s, uint64_t client, json_t *tree) {
     viewer_question *same = waits ? same_pane(s, client, tree) : NULL;
     bool room = same || (s->count < STATE_QUESTIONS_MOST &&
                          questions_of(s, client) < STATE_QUESTIONS_OF_PAGE);
-    if (same)
-        keep_newer(same, tree);
-    else if (room)
+    if (same) {
+        /* The newer one of two thumbnails of a pane is made; one that is asked
+         * again is the older. */
+        bool older = json_is_true(json_object_get(tree, "again"));
+        json_decref(older ? tree : same->tree);
+        if (!older)
+            same->tree = tree;
+    } else if (room)
         s->questions[(s->first + s->count++) % STATE_QUESTIONS_MOST] =
             (viewer_question){client, tree, waits};
     s->urgent += room && !waits;
@@ -298,12 +290,6 @@ static viewer_work next_picture(const viewer_state *s, uint32_t drawn,
         return WORK_NONE;
     *due = s->changed_at + (level ? STATE_HIGH_SECONDS : STATE_NORMAL_SECONDS);
     return level ? WORK_HIGH : WORK_NORMAL;
-}
-
-static void wait_until(viewer_state *s, double due) {
-    struct timespec at = {.tv_sec = (time_t)due};
-    at.tv_nsec = (long)((due - (double)at.tv_sec) * 1e9);
-    pthread_cond_timedwait(&s->changed, &s->lock, &at);
 }
 
 /* The place of the next question, from the first, or -1.  Thumbnails come after
@@ -344,9 +330,11 @@ static viewer_work choose(viewer_state *s, uint32_t drawn, int level,
 }
 
 static void wait_for_change(viewer_state *s, double due) {
-    if (due > 0)
-        wait_until(s, due);
-    else
+    if (due > 0) {
+        struct timespec at = {.tv_sec = (time_t)due};
+        at.tv_nsec = (long)((due - (double)at.tv_sec) * 1e9);
+        pthread_cond_timedwait(&s->changed, &s->lock, &at);
+    } else
         pthread_cond_wait(&s->changed, &s->lock);
 }
 

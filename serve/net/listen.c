@@ -176,14 +176,6 @@ static void set(listener *l, client *c, const message *m) {
         send_state(l, 0, c->id);
 }
 
-static void set_moving(listener *l, client *c, bool on) {
-    bool moving = false;
-    c->moving = on;
-    for (const client *other = l->clients; other; other = other->next)
-        moving = moving || other->moving;
-    state_set_moving(l->state, moving);
-}
-
 static int take(listener *l, client *c, message *m) {
     if (!c->id && m->kind != MESSAGE_HELLO)
         return close_with(c->wsi, CLOSE_SECRET, "hello comes first.");
@@ -194,7 +186,11 @@ static int take(listener *l, client *c, message *m) {
         set(l, c, m);
         break;
     case MESSAGE_MOVING:
-        set_moving(l, c, m->on);
+        bool moving = false;
+        c->moving = m->on;
+        for (const client *other = l->clients; other; other = other->next)
+            moving = moving || other->moving;
+        state_set_moving(l->state, moving);
         break;
     case MESSAGE_ACK:
         if (client_acknowledge(c))
@@ -231,17 +227,6 @@ static int receive(listener *l, client *c, const void *bytes, size_t length) {
     return done;
 }
 
-static void leave(listener *l, client *c) {
-    for (client **at = &l->clients; *at; at = &(*at)->next) {
-        if (*at != c)
-            continue;
-        *at = c->next;
-        count_clients(l, -1);
-        break;
-    }
-    client_free(c, l->box);
-}
-
 /* Gives each page what is meant for it. */
 static void distribute(listener *l) {
     for (parcel *p = outbox_take(l->box), *next; p; p = next) {
@@ -257,14 +242,6 @@ static void distribute(listener *l) {
                             LWS_TO_KILL_ASYNC);
         else if (client_has_more(c))
             lws_callback_on_writable(c->wsi);
-}
-
-static int write_to(listener *l, client *c) {
-    if (c->too_slow || !client_send(c, l->box))
-        return -1;
-    if (client_has_more(c))
-        lws_callback_on_writable(c->wsi);
-    return 0;
 }
 
 /* --- what lws calls
@@ -323,10 +300,21 @@ static int serve_socket(struct lws *wsi, enum lws_callback_reasons reason,
     case LWS_CALLBACK_RECEIVE:
         return receive(l, c, in, length);
     case LWS_CALLBACK_SERVER_WRITEABLE:
-        return write_to(l, c);
+        if (c->too_slow || !client_send(c, l->box))
+            return -1;
+        if (client_has_more(c))
+            lws_callback_on_writable(c->wsi);
+        return 0;
     case LWS_CALLBACK_CLOSED:
         forget_silent(l, wsi);
-        leave(l, c);
+        for (client **at = &l->clients; *at; at = &(*at)->next) {
+            if (*at != c)
+                continue;
+            *at = c->next;
+            count_clients(l, -1);
+            break;
+        }
+        client_free(c, l->box);
         return 0;
     case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
         distribute(l);
