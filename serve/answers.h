@@ -6,15 +6,24 @@
 #include "outbox.h"
 #include "state.h"
 
-/* For all pages, also those that come later: the volume, its views, the names
+/* --- description.c ---
+ *
+ * For all pages, also those that come later: the volume, its views, the names
  * that a recipe may hold; the transfer function; figures of the last
  * picture. */
 void answer_info(drawing *d, outbox *box);
 void answer_look(drawing *d, outbox *box);
 void answer_figures(drawing *d, double hidden, outbox *box);
 
-/* The step that a simulation has drawn; a recipe, as a text. */
+/* The step that a simulation has drawn. */
 void answer_step(outbox *box, int64_t step);
+
+/* --- answers.c ---
+ *
+ * Sends a tree, which it frees. */
+void answer_put(outbox *box, uint64_t client, parcel_topic about, json_t *tree);
+
+/* A recipe, as a text. */
 void answer_recipe_text(outbox *box, uint64_t client, const json_t *tree);
 
 /* Answers one page.  SNOW_STATUS_NO_MEMORY: had no room, and has answered
