@@ -118,6 +118,43 @@ static void a_single_slice_is_one_spacing_thick(void **state) {
         }
 }
 
+/* --- splines -------------------------------------------------------------- */
+
+static int parabola_axis;
+
+static double parabola(const double at[3]) {
+    double x = at[parabola_axis] - 4;
+    return 10 + x * x;
+}
+
+/* The cubic B-spline has the variance 1/3, and so lifts a parabola by it: in
+ * the plane everywhere, and along the slices' axis at its vertex, which is a
+ * slice. */
+static void a_spline_lifts_a_parabola_by_a_third(void **state) {
+    (void)state;
+    static const snow_color_point grey[] = {{0, 0, 0, 0}, {20, 1, 1, 1}};
+    for (int n = 0; n < 7; n++) {
+        const double aside = n < 6 ? 0.25 * (n / 2) : 0;
+        double rgba[4];
+        parabola_axis = n < 6 ? n % 2 : 2;
+        warp_scene scene = formula_scene((int64_t[]){9, 9, 9}, parabola, 1);
+        snow_view *view = &scene.base.view;
+        scene.base.settings.mode = SNOW_MODE_MINIP;
+        scene.base.settings.quality = SNOW_QUALITY_HIGH; /* four samples */
+        scene.base.settings.kernel = SNOW_KERNEL_BSPLINE;
+        scene.base.settings.footprint = 4;
+        scene.base.colors = grey;
+        scene.base.color_count = 2;
+        view->has_target = true;
+        for (int c = 0; c < 3; c++)
+            view->target[c] = 4;
+        view->target[parabola_axis] += aside;
+        formula_scene_middle(&scene, rgba);
+        assert_near(rgba[0], (10 + aside * aside + 1.0 / 3) / 20, 5e-4);
+        model_free(&scene.base);
+    }
+}
+
 /* --- labels --------------------------------------------------------------- */
 
 static const snow_color_point names[] = {{0, 1, 0, 0},   {1.5, 1, 0, 0},
@@ -260,6 +297,7 @@ int main(void) {
         cmocka_unit_test(planes_cut_exactly),
         cmocka_unit_test(cut_values_are_those_of_the_uncut_field),
         cmocka_unit_test(a_single_slice_is_one_spacing_thick),
+        cmocka_unit_test(a_spline_lifts_a_parabola_by_a_third),
         cmocka_unit_test(labels_do_not_mix),
         cmocka_unit_test(labels_are_lit_by_their_membership),
         cmocka_unit_test(gradient_opacity_does_not_depend_on_slabs),

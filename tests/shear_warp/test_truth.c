@@ -308,9 +308,31 @@ static void smooth_fields_are_near_the_truth(void **state) {
     model_close(&stage);
 }
 
+static void each_quality_is_nearer_than_the_one_below(void **state) {
+    (void)state;
+    uint64_t random = 7 + 2 * (support_seed() % SCENES);
+    double before = 0;
+    model_stage stage = model_open();
+    for (int n = 0; n < 8; n++)
+        support_random(&random);
+    warp_scene scene =
+        smooth_scene(SMOOTH_BUMPS, SNOW_TYPE_FLOAT32, MODEL_PLAIN, &random);
+    static const snow_quality rising[] = {
+        SNOW_QUALITY_DRAFT, SNOW_QUALITY_NORMAL, SNOW_QUALITY_HIGH};
+    for (int n = 0; n < 3; n++) {
+        scene.base.settings.quality = rising[n];
+        closeness found = closeness_of(&stage, &scene);
+        assert_true(found.decibels > before);
+        before = found.decibels;
+    }
+    warp_scene_free(&scene);
+    model_close(&stage);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(smooth_fields_are_near_the_truth),
+        cmocka_unit_test(each_quality_is_nearer_than_the_one_below),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
