@@ -189,7 +189,9 @@ static void slabs_of_both_files_make_the_same_bits(void **state) {
     snow_frame *frame;
     double most = 0;
     assert_int_equal(snow_frame_new(place->context, &frame), SNOW_STATUS_OK);
-    for (int n = 0; n < 24; n += (int)support_stride(7)) {
+    for (int n = 0; n < 24; n++) {
+        if (!support_takes((size_t)n, 7))
+            continue;
         reference_scene base, layer;
         scenario p = open_pair(place, n, 29, &base, &layer);
         snow_volume_options options = {.size = sizeof options};
@@ -230,7 +232,10 @@ static void ranks_make_the_picture_of_one(void **state) {
     support_place *place = *state;
     double most = 0, seen = 0;
     int scenes = 0;
-    for (int n = 0; n < 24; n += (int)support_stride(11), scenes++) {
+    for (int n = 0; n < 24; n++) {
+        if (!support_takes((size_t)n, 11))
+            continue;
+        scenes++;
         reference_scene base, layer;
         scenario p = open_pair(place, n, 24, &base, &layer);
         double strongest;
@@ -255,7 +260,9 @@ static void ranks_make_the_picture_of_one(void **state) {
 
 static void deterministic_pictures_have_the_same_bytes(void **state) {
     support_place *place = *state;
-    for (int n = 0; n < 16; n += (int)support_stride(9)) {
+    for (int n = 0; n < 16; n++) {
+        if (!support_takes((size_t)n, 9))
+            continue;
         reference_scene base, layer;
         scenario p = open_pair(place, n, n % 2 ? 24 : 47, &base, &layer);
         double strongest;

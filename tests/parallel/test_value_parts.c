@@ -183,7 +183,9 @@ static void check_slabs(support_place *place, scene_fn *scene) {
     static const int slices[] = {1, 7, 12, 1000};
     snow_frame *frame;
     assert_int_equal(snow_frame_new(place->context, &frame), SNOW_STATUS_OK);
-    for (int n = 0; n < 48; n += (int)support_stride(13)) {
+    for (int n = 0; n < 48; n++) {
+        if (!support_takes((size_t)n, 13))
+            continue;
         reference_scene s = scene(n, 29);
         snow_volume *volume;
         assert_int_equal(
@@ -249,7 +251,10 @@ static void check_ranks(scene_fn *scene) {
     snow_context *context = support_context();
     double most = 0, seen = 0;
     int scenes = 0;
-    for (int n = 0; n < 72; n += (int)support_stride(29), scenes++) {
+    for (int n = 0; n < 72; n++) {
+        if (!support_takes((size_t)n, 19))
+            continue;
+        scenes++;
         reference_scene s = scene(n, 24);
         snow_transfer *transfer = model_transfer(context, &s);
         scenario p = scenario_of(&s, n, transfer);
@@ -289,7 +294,9 @@ static void ranks_project_what_one_does(void **state) {
 static void deterministic_pictures_have_the_same_bytes(void **state) {
     (void)state;
     snow_context *context = support_context();
-    for (int n = 0; n < 36; n += (int)support_stride(23)) {
+    for (int n = 0; n < 36; n++) {
+        if (!support_takes((size_t)n, 19))
+            continue;
         reference_scene s = numbered(n, n % 2 ? 24 : 47);
         snow_transfer *transfer = model_transfer(context, &s);
         scenario p = scenario_of(&s, n, transfer);

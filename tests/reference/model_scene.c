@@ -113,7 +113,7 @@ static void *allocate_voxels(const int64_t dims[3], snow_type type) {
 static void fill_voxels(reference_scene *scene, uint64_t seed) {
     const snow_volume_info *info = &scene->info;
     void *voxels = allocate_voxels(info->dims, info->type);
-    uint64_t state = (seed + support_seed() * 65537) * 2 + 1;
+    uint64_t state = (seed + support_voxel_seed() * 65537) * 2 + 1;
     size_t at = 0;
     for (int64_t k = 0; k < info->dims[2]; k++)
         for (int64_t j = 0; j < info->dims[1]; j++)

@@ -120,8 +120,9 @@ static void bytes_are_those_of_the_png(void **state) {
         {.name = "occlusion", .settings = {.occlusion = 0.7}},
     };
     for (size_t n = 0; n < sizeof scenes / sizeof *scenes; n++)
-        for (size_t look = support_start(n, 7); look < 8;
-             look += support_stride(7)) {
+        for (size_t look = 0; look < 8; look++) {
+            if (!support_takes(look + n, 7))
+                continue;
             scene s = scenes[n];
             s.settings.size = sizeof s.settings;
             s.background = (int)(look % 4) - 1;

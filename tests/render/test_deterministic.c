@@ -1,5 +1,6 @@
 /* tests/render/test_deterministic.c - parts of a volume: what they need of
- * their neighbours, and that their local images make up the whole picture. */
+ * their neighbours, and in which order they are seen.  That their local images
+ * make up the whole picture test_ranks shows. */
 #include "reference/model.h"
 
 #include "composite/over.h"
@@ -404,7 +405,7 @@ static void cut_grid(stage *s, int nx, int ny, int nz) {
     }
 }
 
-/* A k-d tree of five leaves that are no grid. */
+/* Five leaves of a k-d tree, that are no grid. */
 static void cut_unevenly(stage *s) {
     const int64_t *d = s->whole->info.dims;
     const snow_box boxes[] = {
@@ -418,169 +419,12 @@ static void cut_unevenly(stage *s) {
     memcpy(s->boxes, boxes, sizeof boxes);
 }
 
-#define CUTS 9
-
-static void cut(stage *s, int how) {
-    const int64_t *d = s->whole->info.dims;
-    if (how == 8)
-        cut_unevenly(s);
-    else if (how == 7)
-        cut_grid(s, 2, 2, 2);
-    else if (how == 6)
-        cut_grid(s, 3, 1, 2);
-    else
-        cut_grid(s,
-                 how == 0   ? (int)d[0]
-                 : how == 3 ? 3
-                            : 1,
-                 how == 1   ? (int)d[1]
-                 : how == 4 ? 3
-                            : 1,
-                 how == 2   ? (int)d[2]
-                 : how == 5 ? 3
-                            : 1);
-}
-
-static void front_to_back(const stage *s, int *order) {
-    snow_placement p;
-    snow_viewer viewer;
-    assert_int_equal(
-        snow_placement_make(s->context, &s->whole->info, &s->scene.view, &p),
-        SNOW_STATUS_OK);
-    snow_clip_viewer(&p, &viewer);
-    assert_int_equal(
-        snow_order_boxes(s->context, s->boxes, s->count, &viewer, order),
-        SNOW_STATUS_OK);
-}
-
-/* --- intermediate images -------------------------------------------------- */
+/* --- pictures of parts ---------------------------------------------------- */
 
 typedef struct flat {
     int width, height, channels;
     float *pixels;
 } flat;
-
-/* The whole's range of values, which the numbers of all parts are of. */
-static snow_data_range range_of(const stage *s) {
-    snow_value_path *path = NULL;
-    snow_data_range range;
-    assert_int_equal(snow_value_path_new(s->context, &path), SNOW_STATUS_OK);
-    assert_int_equal(snow_value_measure(path, s->whole, s->transfer, 1, &range),
-                     SNOW_STATUS_OK);
-    snow_value_path_free(path);
-    return range;
-}
-
-static flat pack(const snow_shear_warp_image *image) {
-    flat out = {image->width, image->height, image->channels, NULL};
-    size_t line = (size_t)(out.width * out.channels);
-    if (image->width)
-        snow_shear_warp_clear(image, 0, 0, 0, image->tiles,
-                              (image->height + image->tile_height - 1) /
-                                  image->tile_height);
-    out.pixels = calloc((size_t)out.height + 1, line * sizeof(float));
-    assert_non_null(out.pixels);
-    for (int y = 0; y < out.height; y++)
-        memcpy(out.pixels + (size_t)y * line,
-               image->pixels + (size_t)y * image->stride, line * sizeof(float));
-    return out;
-}
-
-/* The intermediate image of a volume, packed. */
-static flat splat(const stage *s, const snow_volume *volume) {
-    snow_value_path *path = NULL;
-    snow_shear_warp_image image;
-    snow_stats stats;
-    snow_job job;
-    const snow_request request = {.volume = volume,
-                                  .transfer = s->transfer,
-                                  .view = &s->scene.view,
-                                  .settings = &s->settings};
-    snow_status status = snow_job_begin(s->context, &request, &stats, &job);
-    const snow_value_params params = {.volume = volume,
-                                      .transfer = s->transfer,
-                                      .counted = s->transfer,
-                                      .view = job.view,
-                                      .settings = &job.settings,
-                                      .placement = &job.placement,
-                                      .stored = &job.stored,
-                                      .clip = &job.clip,
-                                      .slab = job.slab,
-                                      .channels = job.channels,
-                                      .shared = true};
-    const snow_data_range range = range_of(s);
-    if (status == SNOW_STATUS_OK)
-        status = snow_value_path_new(s->context, &path);
-    snow_value_set_range(path, &range);
-    if (status == SNOW_STATUS_OK)
-        status = snow_value_begin(path, &params, &stats);
-    if (status == SNOW_STATUS_OK)
-        status = snow_value_encode(path, &params, &stats);
-    if (status == SNOW_STATUS_OK)
-        status = snow_value_draw(path, &params, &stats, &image, NULL);
-    if (status != SNOW_STATUS_OK)
-        fail_msg("%s", snow_context_message(s->context));
-    flat out = pack(&image);
-    snow_value_path_free(path);
-    return out;
-}
-
-/* The parts' intermediate images laid over one another. */
-static flat splat_parts(const stage *s) {
-    int order[MOST_PARTS];
-    front_to_back(s, order);
-    flat all = splat(s, s->parts[order[0]]);
-    for (int n = 1; n < s->count; n++) {
-        flat one = splat(s, s->parts[order[n]]);
-        assert_int_equal(one.width, all.width);
-        assert_int_equal(one.height, all.height);
-        snow_over_of(all.channels)(all.pixels, one.pixels,
-                                   (size_t)(all.width * all.height));
-        free(one.pixels);
-    }
-    return all;
-}
-
-/* What a sweep came to. */
-typedef struct summary {
-    int clear, opaque;
-    double clear_most, opaque_most, strongest;
-} part_summary;
-
-/* Rounding of over. */
-#define BOUND_OVER 2e-6
-/* Planes of 15 bits are rounded at each slab, of which there are up to 24, and
- * for each part once more. */
-#define BOUND_VALUES(parts) ((24 * 0.5 + (parts)) / 32767)
-
-static void compare(const stage *s, const flat *whole, const flat *parts,
-                    double bound, part_summary *summary) {
-    assert_int_equal(whole->width, parts->width);
-    size_t count = (size_t)(whole->width * whole->height * whole->channels);
-    double most = 0, strongest = 0;
-    for (size_t n = 0; n < count; n++) {
-        double gap = fabs((double)whole->pixels[n] - (double)parts->pixels[n]);
-        most = gap <= most ? most : gap;
-        if (n % (size_t)whole->channels == (size_t)whole->channels - 1)
-            strongest = fmax(strongest, (double)whole->pixels[n]);
-    }
-    bool opaque = strongest > 1 - 0.5 / 255 - 1e-5;
-    /* What shines through where a ray ends, which it does later in parts. */
-    if (!(most <= bound + (opaque ? 0.5 / 255 : 0)))
-        fail_msg("%d parts (first %lld %lld %lld) differ by %g, strongest "
-                 "opacity %g: quality %d fov "
-                 "%g: %s",
-                 s->count, (long long)s->boxes[0].count[0],
-                 (long long)s->boxes[0].count[1],
-                 (long long)s->boxes[0].count[2], most, strongest,
-                 (int)s->settings.quality, s->scene.view.fov,
-                 model_words(&s->scene));
-    summary->clear += !opaque;
-    summary->opaque += opaque;
-    double *of = opaque ? &summary->opaque_most : &summary->clear_most;
-    *of = fmax(*of, most);
-    summary->strongest += strongest;
-}
 
 static const double turns[][3] = {
     {0, 0, 0},       {180, 0, 0},  {90, 0, 0},   {-90, 0, 30},
@@ -616,60 +460,6 @@ static reference_scene scene_of(int n, double fov) {
     return scene;
 }
 
-/* The same with a kernel of values. */
-static reference_scene valued_scene(int n, double fov) {
-    reference_scene scene = scene_of(n, fov);
-    bool cubic = scene.settings.kernel == SNOW_KERNEL_BSPLINE;
-    scene.settings.kernel = cubic ? SNOW_KERNEL_BSPLINE : SNOW_KERNEL_TENT;
-    scene.settings.footprint = cubic ? 4 : 2;
-    return scene;
-}
-
-static void sweep(const char *title, int scenes, double fov) {
-    part_summary summary = {0};
-    for (int n = 0; n < scenes; n += (int)support_stride(13)) {
-        stage s = {.scene = valued_scene(n, fov)};
-        open_whole(&s);
-        snow_placement p;
-        assert_int_equal(
-            snow_placement_make(s.context, &s.whole->info, &s.scene.view, &p),
-            SNOW_STATUS_OK);
-        if (snow_value_fits(&s.whole->info, &p, &s.settings)) {
-            flat whole = splat(&s, s.whole);
-            for (int how = n % 2; how < CUTS; how += 2) {
-                cut(&s, how);
-                open_parts(&s);
-                flat parts = splat_parts(&s);
-                compare(&s, &whole, &parts, BOUND_VALUES(s.count), &summary);
-                free(parts.pixels);
-                close_parts(&s);
-            }
-            free(whole.pixels);
-        }
-        close_stage(&s);
-        model_free(&s.scene);
-    }
-    int all = summary.clear + summary.opaque;
-    print_message("             %s: %d pictures differ by up to %.2g, %d with "
-                  "opaque pixels by %.2g; strongest opacity %.2f in the mean\n",
-                  title, summary.clear, summary.clear_most, summary.opaque,
-                  summary.opaque_most, summary.strongest / all);
-    assert_true(summary.clear * (int)support_stride(13) > scenes &&
-                summary.strongest / all > 0.3);
-}
-
-static void parts_make_up_the_intermediate_image(void **state) {
-    (void)state;
-    sweep("parallel", 110, 0);
-}
-
-static void so_they_do_in_perspective(void **state) {
-    (void)state;
-    sweep("perspective", 66, 30);
-}
-
-/* --- pictures of the exact methods ---------------------------------------- */
-
 static flat shoot(const stage *s, const snow_volume *volume) {
     snow_frame *frame = NULL;
     snow_image *image = NULL;
@@ -687,49 +477,6 @@ static flat shoot(const stage *s, const snow_volume *volume) {
     snow_frame_free(frame);
     return out;
 }
-
-static flat shoot_parts(const stage *s) {
-    int order[MOST_PARTS];
-    front_to_back(s, order);
-    flat all = shoot(s, s->parts[order[0]]);
-    for (int n = 1; n < s->count; n++) {
-        flat one = shoot(s, s->parts[order[n]]);
-        snow_over_of(all.channels)(all.pixels, one.pixels,
-                                   (size_t)(all.width * all.height));
-        free(one.pixels);
-    }
-    return all;
-}
-
-static void parts_by_exact_methods_make_up_the_picture(void **state) {
-    (void)state;
-    static const snow_method methods[] = {
-        SNOW_METHOD_ORIGINAL, SNOW_METHOD_TESTED, SNOW_METHOD_FOOTPRINT};
-    part_summary summary = {0};
-    for (int n = 0; n < 66; n += (int)support_stride(13)) {
-        stage s = {.scene = scene_of(n, n % 4 == 3 ? 40 : 0)};
-        s.scene.settings.method = methods[n % 3];
-        s.scene.settings.quality = SNOW_QUALITY_NORMAL;
-        open_whole(&s);
-        flat whole = shoot(&s, s.whole);
-        for (int how = n % 3; how < CUTS; how += 3) {
-            cut(&s, how);
-            open_parts(&s);
-            flat parts = shoot_parts(&s);
-            compare(&s, &whole, &parts, BOUND_OVER, &summary);
-            free(parts.pixels);
-            close_parts(&s);
-        }
-        free(whole.pixels);
-        close_stage(&s);
-        model_free(&s.scene);
-    }
-    print_message("             %d pictures differ by up to %.2g\n",
-                  summary.clear + summary.opaque,
-                  fmax(summary.clear_most, summary.opaque_most));
-}
-
-/* --- pictures of parts ---------------------------------------------------- */
 
 static void a_part_that_is_the_whole_gives_the_same_bits(void **state) {
     (void)state;
@@ -856,7 +603,10 @@ static void boxes_are_ordered_from_front_to_back(void **state) {
             if (n % 3 == axis) /* beside, or between the boxes */
                 viewer.eye[axis] = support_uniform(&seed) * 12;
         }
-        cut(&s, 6 + n % 3);
+        if (n % 3 == 2)
+            cut_unevenly(&s);
+        else
+            cut_grid(&s, 2 + n % 3, 2 - n % 3, 2);
         assert_int_equal(
             snow_order_boxes(s.context, s.boxes, s.count, &viewer, order),
             SNOW_STATUS_OK);
@@ -936,9 +686,6 @@ int main(void) {
         cmocka_unit_test(a_gradient_opacity_needs_those_of_shading),
         cmocka_unit_test(wide_pixels_need_more_ghosts),
         cmocka_unit_test(every_turn_needs_no_more_than_the_bound),
-        cmocka_unit_test(parts_make_up_the_intermediate_image),
-        cmocka_unit_test(so_they_do_in_perspective),
-        cmocka_unit_test(parts_by_exact_methods_make_up_the_picture),
         cmocka_unit_test(a_part_that_is_the_whole_gives_the_same_bits),
         cmocka_unit_test(a_part_without_voxels_of_its_own_is_transparent),
         cmocka_unit_test(a_part_with_too_few_ghosts_is_refused),

@@ -132,10 +132,11 @@ static void random_voxels_of_every_density_and_width(void **state) {
     static const int64_t widths[] = {1,  7,   8,   9,   63, 64,
                                      65, 255, 256, 257, 300};
     model_stage stage = model_open();
-    uint64_t random = 21;
     for (size_t d = 0; d < sizeof densities / sizeof *densities; d++)
-        for (size_t w = support_start(d, 4); w < sizeof widths / sizeof *widths;
-             w += support_stride(4)) {
+        for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
+            if (!support_takes(w + d, 4))
+                continue;
+            uint64_t random = support_scene_random(21, w + d);
             reference_scene scene =
                 small_scene(d % 2 == 0 ? (int64_t[]){widths[w], 5, 3}
                                        : (int64_t[]){3, widths[w], 4},
@@ -160,8 +161,9 @@ static void runs_around_the_longest_that_a_byte_holds(void **state) {
                                       509, 510, 511, 512, 765, 766};
     model_stage stage = model_open();
     for (size_t a = 0; a < sizeof lengths / sizeof *lengths; a++)
-        for (size_t b = support_start(a, 11);
-             b < sizeof lengths / sizeof *lengths; b += support_stride(11)) {
+        for (size_t b = 0; b < sizeof lengths / sizeof *lengths; b++) {
+            if (!support_takes(b + a, 11))
+                continue;
             /* Lengths a and b take turns; every second row begins with an
              * interesting run. */
             reference_scene scene = small_scene((int64_t[]){1600, 2, 2}, false);
@@ -184,8 +186,9 @@ static void runs_around_the_longest_that_a_byte_holds(void **state) {
 static void runs_that_pass_from_row_to_row(void **state) {
     (void)state;
     model_stage stage = model_open();
-    for (int64_t length = 240; length <= 520;
-         length += 5 * (int64_t)support_stride(3)) {
+    for (int64_t length = 240; length <= 520; length += 5) {
+        if (!support_takes((size_t)length / 5, 7))
+            continue;
         reference_scene scene = small_scene((int64_t[]){50, 30, 2}, false);
         for (size_t n = 0; n < voxel_count(&scene); n++)
             model_voxels(&scene)[n] = (int64_t)n / length % 2 == 0;
@@ -215,7 +218,9 @@ static void one_voxel_anywhere(void **state) {
     (void)state;
     model_stage stage = model_open();
     reference_scene scene = small_scene((int64_t[]){65, 3, 3}, true);
-    for (size_t n = 0; n < voxel_count(&scene); n += 4 * support_stride(13)) {
+    for (size_t n = 0; n < voxel_count(&scene); n += 4) {
+        if (!support_takes(n / 4, 13))
+            continue;
         model_voxels(&scene)[n] = 1;
         assert_true(check_sides(&stage, &scene));
         model_voxels(&scene)[n] = 0;
@@ -227,8 +232,10 @@ static void one_voxel_anywhere(void **state) {
 static void every_kernel_footprint_threshold_and_view(void **state) {
     (void)state;
     model_stage stage = model_open();
-    uint64_t random = 22;
-    for (int n = 0; n < 4 * 8 * 6; n += (int)support_stride(13)) {
+    for (int n = 0; n < 4 * 8 * 6; n++) {
+        if (!support_takes((size_t)n, 13))
+            continue;
+        uint64_t random = support_scene_random(22, (size_t)n);
         reference_scene scene =
             model_scene((int64_t[]){17, 12, 14},
                         n % 2 ? SNOW_TYPE_INT16 : SNOW_TYPE_FLOAT32, n % 3 == 0,

@@ -73,12 +73,14 @@ static reference_scene drawn_scene(uint64_t *state) {
 static void every_kernel_and_footprint_from_every_side(void **state) {
     (void)state;
     model_stage stage = model_open();
-    uint64_t random = 1;
     model_summary summary = {0};
     for (size_t k = 0; k < COUNT(kernels); k++)
         for (int footprint = 2; footprint <= 9; footprint++)
-            for (size_t n = support_start(k + (size_t)footprint, 23);
-                 n < COUNT(stands) * COUNT(zooms); n += support_stride(23)) {
+            for (size_t n = 0; n < COUNT(stands) * COUNT(zooms); n++) {
+                if (!support_takes(n + k + (size_t)footprint, 19))
+                    continue;
+                uint64_t random =
+                    support_scene_random(1, n + k + (size_t)footprint);
                 reference_scene scene = drawn_scene(&random);
                 scene.settings.kernel = kernels[k];
                 scene.settings.footprint = footprint;
@@ -105,10 +107,12 @@ static void pixels_that_lie_on_the_grid(void **state) {
     (void)state;
     static const double lengths[] = {1, 0.5, 2, 0.25, 4};
     model_stage stage = model_open();
-    uint64_t random = 7;
     model_summary summary = {0};
     size_t pictures = COUNT(kernels) * 8 * COUNT(lengths) * 9;
-    for (size_t n = 0; n < pictures; n += support_stride(23)) {
+    for (size_t n = 0; n < pictures; n++) {
+        if (!support_takes(n, 19))
+            continue;
+        uint64_t random = support_scene_random(7, n);
         reference_scene scene = drawn_scene(&random);
         size_t rest = n / 9;
         /* Odd and even sizes move pixels by half a voxel. */
@@ -133,10 +137,11 @@ static void pixels_that_lie_on_the_grid(void **state) {
 static void every_type_matrix_threshold_and_shading(void **state) {
     (void)state;
     model_stage stage = model_open();
-    uint64_t random = 2;
     model_summary summary = {0};
-    size_t n = 0;
-    for (; n < COUNT(types) * MODEL_MATRICES * 12; n += support_stride(13)) {
+    for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 12; n++) {
+        if (!support_takes(n, 13))
+            continue;
+        uint64_t random = support_scene_random(2, n);
         reference_scene drawn = drawn_scene(&random);
         size_t rest = n / COUNT(types) / MODEL_MATRICES;
         reference_scene scene =
@@ -211,8 +216,10 @@ static void small_kernels_that_are_widened_a_little(void **state) {
     (void)state;
     model_stage stage = model_open();
     model_summary summary = {0};
-    uint64_t random = 5;
-    for (int n = 0; n < 600; n += (int)support_stride(13)) {
+    for (int n = 0; n < 600; n++) {
+        if (!support_takes((size_t)n, 13))
+            continue;
+        uint64_t random = support_scene_random(5, (size_t)n);
         reference_scene scene = model_blank((int64_t[]){40, 40, 1}, 1);
         for (int at = 0; at < 40 * 40; at++)
             model_voxels(&scene)[at] = support_uniform(&random) < 0.1;

@@ -121,11 +121,12 @@ static void report(const char *what, const mode_summary *t) {
 /* In units of colour, or of a hundredth of the data's range. */
 static void exact_pictures(double fov_share) {
     model_stage stage = model_open();
-    uint64_t random = 11;
     for (size_t m = 0; m < COUNT(modes); m++) {
         mode_summary t = {0};
-        for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 3;
-             n += support_stride(13)) {
+        for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 3; n++) {
+            if (!support_takes(n + 7 * m, 13))
+                continue;
+            uint64_t random = support_scene_random(11 + m, n);
             reference_scene scene = mode_scene(&random, n, modes[m]);
             if (fov_share > 0)
                 scene.view.fov = fovs[draw(&random, COUNT(fovs))];
@@ -179,10 +180,11 @@ static void compare_depth(const model_stage *stage,
 static void depths_of_over(void **state) {
     (void)state;
     model_stage stage = model_open();
-    uint64_t random = 31;
     mode_summary t = {0};
-    for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 3;
-         n += support_stride(13)) {
+    for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 3; n++) {
+        if (!support_takes(n, 13))
+            continue;
+        uint64_t random = support_scene_random(31, n);
         reference_scene scene = mode_scene(&random, n, SNOW_MODE_OVER);
         scene.settings.depth = 1;
         if (n % 3 == 1) /* its depths are those of footprints, too */
@@ -359,7 +361,9 @@ static void threads_and_encodings_change_no_bit(void **state) {
             settings.threads = 1;
             double fov = n >= 2 ? 40 : 0;
             uint64_t first = sum_of(&stage, volume, &settings, fov);
-            for (int way = 0; way < 9; way += (int)support_stride(4)) {
+            for (int way = 0; way < 9; way++) {
+                if (!support_takes((size_t)(way + n + 4 * mode), 7))
+                    continue;
                 settings.threads = 1 + way % 3;
                 settings.encoding = (snow_encoding)(1 + way / 3);
                 assert_true(sum_of(&stage, volume, &settings, fov) == first);

@@ -183,12 +183,14 @@ static reference_scene drawn_scene(uint64_t *state) {
 static void every_kernel_and_method_from_every_side(void **state) {
     (void)state;
     model_stage stage = model_open();
-    uint64_t random = 1;
     model_summary summary = {0};
     for (int kernel = 0; kernel < 4; kernel++)
         for (size_t f = 0; f < COUNT(fovs); f++)
-            for (size_t n = support_start((size_t)kernel + f, 13);
-                 n < COUNT(stands) * COUNT(zooms); n += support_stride(13)) {
+            for (size_t n = 0; n < COUNT(stands) * COUNT(zooms); n++) {
+                if (!support_takes(n + (size_t)kernel + f, 13))
+                    continue;
+                uint64_t random =
+                    support_scene_random(1, n + (size_t)kernel + f);
                 reference_scene scene = drawn_scene(&random);
                 scene.settings.kernel = (snow_kernel)kernel;
                 scene.settings.footprint = 2 + (int)draw(&random, 6);

@@ -72,7 +72,9 @@ static void check(const model_stage *stage, int n, reference_scene *s) {
 static void rows_in_place_give_the_bits_of_copies(void **state) {
     (void)state;
     model_stage stage = model_open();
-    for (int n = 0; n < 216; n += (int)support_stride(23)) {
+    for (int n = 0; n < 216; n++) {
+        if (!support_takes((size_t)n, 19))
+            continue;
         reference_scene s = rows_scene(n);
         for (snow_isa isa = SNOW_ISA_SCALAR; isa <= SNOW_ISA_AVX512; isa++) {
             s.settings.isa = isa;

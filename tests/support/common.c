@@ -28,6 +28,10 @@ double support_uniform(uint64_t *state) {
     return (double)(support_random(state) >> 11) * 0x1p-53;
 }
 
+/* Of so many scenes one is taken by the short tier, and this many by the long
+ * one. */
+#define LONG_SHARE 2
+
 static bool is_short(void) {
     const char *tier = getenv("SNOW_TIER");
     if (!tier || !*tier || strcmp(tier, "short") == 0)
@@ -35,6 +39,23 @@ static bool is_short(void) {
     if (strcmp(tier, "long") != 0 && strcmp(tier, "release") != 0)
         fail_msg("SNOW_TIER is '%s': short, long or release", tier);
     return false;
+}
+
+bool support_takes(size_t scene, size_t one_of) {
+    size_t share = is_short() ? 1 : LONG_SHARE;
+    return support_is_release() ||
+           (scene + share * support_seed()) % one_of < share;
+}
+
+bool support_takes_ranks(int ranks, int most) {
+    return ranks < 5 || ranks == most || support_takes((size_t)ranks, 13);
+}
+
+uint64_t support_scene_random(uint64_t sweep, size_t scene) {
+    uint64_t state = sweep * 65537 + scene + 1;
+    for (int n = 0; n < 4; n++) /* small states are alike at first */
+        (void)support_random(&state);
+    return state;
 }
 
 size_t support_stride(size_t stride) {
@@ -57,4 +78,8 @@ bool support_is_release(void) {
 uint64_t support_seed(void) {
     const char *seed = getenv("SNOW_SEED");
     return seed ? strtoull(seed, NULL, 10) : 0;
+}
+
+uint64_t support_voxel_seed(void) {
+    return support_is_release() ? support_seed() : 0;
 }

@@ -20,8 +20,10 @@ static int slice_axis(snow_context *context, const scenario *p) {
     return placement.slice_axis;
 }
 
-/* Halves a box until each rank has one. */
-static void halve(snow_box box, int first, int count, snow_box *boxes) {
+/* Cuts a box in two until each rank has one: by the number of ranks, or by half
+ * of that. */
+static void halve(snow_box box, int first, int count, bool uneven,
+                  snow_box *boxes) {
     int longest = 0;
     boxes[first] = box;
     if (count == 1)
@@ -31,10 +33,12 @@ static void halve(snow_box box, int first, int count, snow_box *boxes) {
             longest = axis;
     snow_box low = box, high = box;
     low.count[longest] = box.count[longest] * (count / 2) / count;
+    if (uneven)
+        low.count[longest] = (low.count[longest] + 1) / 2;
     high.first[longest] += low.count[longest];
     high.count[longest] -= low.count[longest];
-    halve(low, first, count / 2, boxes);
-    halve(high, first + count / 2, count - count / 2, boxes);
+    halve(low, first, count / 2, uneven, boxes);
+    halve(high, first + count / 2, count - count / 2, uneven, boxes);
 }
 
 void scenario_partition(snow_context *context, scenario *p, int ranks) {
@@ -43,8 +47,8 @@ void scenario_partition(snow_context *context, scenario *p, int ranks) {
     if (p->cut == ALONG_OTHER)
         axis = (axis + 1) % 3;
     snow_box all = {{0, 0, 0}, {dims[0], dims[1], dims[2]}};
-    if (p->cut == BRICKS) {
-        halve(all, 0, ranks, p->boxes);
+    if (p->cut == BRICKS || p->cut == UNEVEN) {
+        halve(all, 0, ranks, p->cut == UNEVEN, p->boxes);
         return;
     }
     for (int rank = 0; rank < ranks; rank++) {

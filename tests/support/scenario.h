@@ -19,6 +19,7 @@ typedef enum partitioning {
     ALONG_SLICES, /* slabs along the view's slice axis */
     ALONG_OTHER,  /* along another axis */
     BRICKS,       /* a k-d tree */
+    UNEVEN,       /* another one, of large and small bricks */
     GROUPED,      /* slabs along the slice axis, of whole groups */
     PARTITIONINGS
 } partitioning;

@@ -34,6 +34,21 @@ double support_uniform(uint64_t *state);
  * short (also where it is not set), long or release.  One program serves all.
  */
 
+/* Whether scene number `scene` of a sweep is drawn: of each `one_of` in a row
+ * the short tier takes one, the long tier two, the release tier all.  Which
+ * ones is said by the seed (support_seed), so that as many seeds meet every
+ * scene. `one_of` should have no divisor in common with the cycles that the
+ * number drives: then each of their values comes up with each seed. */
+bool support_takes(size_t scene, size_t one_of);
+
+/* The same for a number of ranks: the first four and `most` are always taken.
+ */
+bool support_takes_ranks(int ranks, int most);
+
+/* The state of a generator for scene number `scene` of sweep number `sweep`, so
+ * that a scene is the same whichever others are drawn. */
+uint64_t support_scene_random(uint64_t sweep, size_t scene);
+
 /* The step of a loop over scenes: `stride` in the short tier, else 1.  It
  * should have no divisor in common with the cycles that the loop's number
  * drives, so that each of their values still comes up. */
@@ -49,8 +64,11 @@ int64_t support_sweep(int64_t full, int64_t brief);
 /* Whether what takes hours in all is done too. */
 bool support_is_release(void);
 
-/* Added to the seeds of scenes: the environment variable SNOW_SEED, 0 where it
- * is not set.  The release tier runs sweeps with several. */
+/* The environment variable SNOW_SEED, 0 where it is not set: it chooses the scenes
+ * of sweeps.  The release tier draws all of them, and there it is added to the
+ * seeds of voxels, for which it is 0 elsewhere: so the scenes of all seeds are
+ * few enough to be drawn once before a sweep lands. */
 uint64_t support_seed(void);
+uint64_t support_voxel_seed(void);
 
 #endif

@@ -194,7 +194,7 @@ static void every_type_gives_the_same_function_for_any_cut(void **state) {
                    .voxels = (unsigned char *)memory};
         fill((snow_type)type, (unsigned char *)memory, VOXELS, &random);
         check(context, &w, 1 + type % 5, &random);
-        if (type % (int)support_stride(3) == 0)
+        if (support_takes((size_t)type, 3))
             check(context, &w, 3 * type + 3, &random);
     }
     snow_context_free(context);
@@ -237,7 +237,7 @@ static void padding_is_counted_where_it_is(void **state) {
     fill(SNOW_TYPE_FLOAT32, (unsigned char *)values, VOXELS, &random);
     for (int i = 0; i < VOXELS; i++)
         values[i] = i < VOXELS / 3 ? -1 : values[i] < 50 ? 3 : values[i];
-    for (int i = 0; i < 20; i += (int)support_stride(7))
+    for (int i = 0; i < 3; i++)
         check(context, &w, 6, &random);
     snow_context_free(context);
 }
