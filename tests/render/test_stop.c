@@ -1,10 +1,6 @@
 /* tests/render/test_stop.c - a picture that is stopped ends with its status,
  * leaves nothing behind, and the next one has the bits of one that was never
- * stopped.
- *
- * With arguments it measures instead: `test_stop VOLUME [STOPS [SIDE [WAY]]]`
- * says for each way to draw a volume how long the longest of many stops took,
- * from the question before it. */
+ * stopped. */
 #include "support/folder.h"
 #include "support/support.h"
 
@@ -14,7 +10,6 @@
 #include "image/image.h"
 #include "render/picture.h"
 
-#include <math.h>
 #include <sched.h>
 #include <snowglass/ranks.h>
 #include <stdatomic.h>
@@ -261,9 +256,8 @@ static void stop_ways(const char *path, int threads, bool streamed) {
         int count = all.asked + 1000000;
         assert_true(count >= 2);
         const int at[] = {1, 2, count / 3, 2 * count / 3, count - 1, count};
-        for (size_t k = support_start(n, 5); k < sizeof at / sizeof *at;
-             k += support_stride(5))
-            if (at[k] > 0)
+        for (size_t k = 0; k < sizeof at / sizeof *at; k++)
+            if (at[k] > 0 && support_takes(k + n, 5))
                 stop_at(&s, at[k], whole, k % 2);
         snow_image_free(whole);
         scene_free(&s);
@@ -486,136 +480,7 @@ static void pictures_under_way_stop_one_by_one(void **state) {
     stop_crews(3, 1, true);
 }
 
-/* --- how long it takes ---------------------------------------------------- */
-
-/* With one thread its own processor time counts, which other programs on the
- * machine do not add to. */
-static double clock_of(const scene *s) {
-    return s->settings.threads == 1 ? snow_thread_seconds() : snow_seconds();
-}
-
-#define QUESTIONS_MOST 65536
-
-/* When questions were asked. */
-typedef struct questions {
-    const scene *s;
-    int asked, at;
-    double before, when[QUESTIONS_MOST];
-} questions;
-
-static bool note(void *user) {
-    questions *q = user;
-    if (q->asked < QUESTIONS_MOST)
-        q->when[q->asked] = clock_of(q->s);
-    return ++q->asked == q->at;
-}
-
-static snow_status draw_noted(const scene *s, snow_frame *frame, questions *q,
-                              int at) {
-    snow_settings settings = s->settings;
-    snow_image *image = NULL;
-    settings.stop = note;
-    settings.stop_user = q;
-    q->s = s;
-    q->at = at;
-    q->asked = 0;
-    q->before = clock_of(s);
-    snow_status status = snow_frame_render(frame, s->volume, s->transfer,
-                                           &s->view, &settings, &image);
-    snow_image_free(image);
-    return status;
-}
-
-/* The time from question at - 1, behind which a stop may come, to the end of a
- * picture that is stopped at question `at`; the least of three, 0: it was not
- * asked so often. */
-static double stop_seconds(const scene *s, questions *q, int at, bool encoded) {
-    double least = INFINITY;
-    for (int n = 0; n < 3; n++) {
-        snow_frame *frame;
-        assert_int_equal(snow_frame_new(s->context, &frame), SNOW_STATUS_OK);
-        if (encoded)
-            snow_image_free(draw_whole(s, frame));
-        snow_status status = draw_noted(s, frame, q, at);
-        double end = clock_of(s);
-        double from = at > 1 ? q->when[at - 2] : q->before;
-        snow_frame_free(frame);
-        if (status == SNOW_STATUS_OK)
-            return 0;
-        least = end - from < least ? end - from : least;
-    }
-    return least;
-}
-
-/* The question with the longest time before it. */
-static int slowest(questions *q) {
-    int found = 0;
-    double most = -1;
-    for (int n = 0; n < q->asked && n < QUESTIONS_MOST; n++) {
-        double gap = q->when[n] - (n ? q->when[n - 1] : q->before);
-        if (gap > most) {
-            most = gap;
-            found = n + 1;
-        }
-    }
-    return found;
-}
-
-/* The longest of stops all over a picture, and at its slowest question. */
-static double longest(const scene *s, int stops, bool encoded,
-                      double *seconds) {
-    static questions q;
-    snow_frame *frame;
-    assert_int_equal(snow_frame_new(s->context, &frame), SNOW_STATUS_OK);
-    if (encoded)
-        snow_image_free(draw_whole(s, frame));
-    assert_int_equal(draw_noted(s, frame, &q, 0), SNOW_STATUS_OK);
-    *seconds = clock_of(s) - q.before;
-    snow_frame_free(frame);
-    int all = q.asked < QUESTIONS_MOST ? q.asked : QUESTIONS_MOST;
-    double most = stop_seconds(s, &q, slowest(&q), encoded);
-    for (int n = 0; n < stops; n++) {
-        int at = 1 + (int)((int64_t)(all - 1) * n / stops);
-        double took = stop_seconds(s, &q, at, encoded);
-        most = took > most ? took : most;
-    }
-    return most;
-}
-
-static void measure(const char *path, int stops, int side, const char *only,
-                    int threads_most) {
-    for (size_t n = 0; n < WAYS; n++)
-        for (int threads = 1; threads <= threads_most; threads++) {
-            scene s;
-            double seconds[2], most[2];
-            if (only && !strstr(ways[n].name, only))
-                continue;
-            scene_new(path, &ways[n], threads, false, side, &s);
-            for (int encoded = 0; encoded < 2; encoded++)
-                most[encoded] = longest(&s, stops, encoded, &seconds[encoded]);
-            printf("%-24s %d thread%s: a picture takes %8.1f ms, the longest "
-                   "stop %5.1f ms; encoded before %8.1f ms, %5.1f ms\n",
-                   ways[n].name, threads, threads > 1 ? "s" : " ",
-                   1e3 * seconds[0], 1e3 * most[0], 1e3 * seconds[1],
-                   1e3 * most[1]);
-            fflush(stdout);
-            scene_free(&s);
-        }
-}
-
-static void stops_are_quick(void **state) {
-    char folder[SUPPORT_FOLDER_BYTES];
-    (void)state;
-    support_folder_make(folder);
-    const char *path = support_folder_path(folder, "v.nrrd");
-    const int64_t side = support_sweep(64, 32);
-    write_volume(path, (const int64_t[3]){side, side, side});
-    measure(path, (int)support_sweep(2, 1), (int)support_sweep(96, 48), NULL,
-            1);
-    support_folder_remove(folder);
-}
-
-int main(int argc, char **argv) {
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_item_is_begun_after_a_stop),
         cmocka_unit_test(pictures_stop_on_one_thread),
@@ -623,12 +488,6 @@ int main(int argc, char **argv) {
         cmocka_unit_test(pictures_of_a_file_stop),
         cmocka_unit_test(pictures_of_ranks_stop_on_all),
         cmocka_unit_test(pictures_under_way_stop_one_by_one),
-        cmocka_unit_test(stops_are_quick),
     };
-    if (argc > 1) {
-        measure(argv[1], argc > 2 ? atoi(argv[2]) : 20,
-                argc > 3 ? atoi(argv[3]) : 512, argc > 4 ? argv[4] : NULL, 2);
-        return 0;
-    }
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
