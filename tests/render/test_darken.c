@@ -113,11 +113,12 @@ static void what_lies_behind_is_darker_by_the_formula(void **state) {
     }
 }
 
+/* By depths and by occlusion: both. */
 static void threads_darken_alike(void **state) {
     (void)state;
     model_stage stage = model_open();
     reference_scene scene = scene_of(0);
-    scene.settings.depth_darkening = 1;
+    scene.settings.depth_darkening = scene.settings.occlusion = 1;
     scene.settings.threads = 1;
     float *one = model_picture(&stage, &scene);
     scene.settings.threads = 3;
@@ -135,7 +136,7 @@ static void projections_have_nothing_behind(void **state) {
     reference_scene scene = scene_of(0);
     scene.settings.mode = SNOW_MODE_MIP;
     float *plain = model_picture(&stage, &scene);
-    scene.settings.depth_darkening = 1;
+    scene.settings.depth_darkening = scene.settings.occlusion = 1;
     float *dark = model_picture(&stage, &scene);
     assert_memory_equal(plain, dark, COUNT * 4 * sizeof *plain);
     free(plain);
