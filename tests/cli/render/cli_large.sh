@@ -1,6 +1,7 @@
 #!/bin/bash
-# A volume of more than 2^31 voxels, raw and NRRD: the last block of a sparse
-# file of 2.2 GB lies where a box of it lies, and no voxel is counted twice.
+# A volume of more than 2^31 voxels, raw and NRRD, in memory and in slabs of its
+# file: the last block of a sparse file of 2.2 GB lies where a box of it lies, no
+# voxel is counted twice, and slabs need 300 MB.
 . "$(dirname "$0")/../../support/shell.sh"
 
 skip() {
@@ -10,6 +11,23 @@ skip() {
 [ "$(free_gigabytes)" -ge 6 ] ||
     skip "less than 6 GB of free memory"
 grep -aq __asan_init "$TOOL" && skip "the sanitizer needs more memory"
+
+# slabs NAME COMMAND...: within the limit of memory, whatever else the process
+# holds.
+cat >peak.py <<'END'
+import resource, subprocess, sys
+code = subprocess.call(sys.argv[2:])
+with open(sys.argv[1], "w") as file:
+    file.write(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss))
+sys.exit(code)
+END
+slabs() {
+    local name=$1
+    shift
+    run 0 "$name" python3 peak.py kilobytes "$@" --memory 300M
+    check "$name: within the limit, $(cat kilobytes) KB of the process" \
+        test "$(cat kilobytes)" -lt $((300 * 1024))
+}
 
 n=1300 from=1200 side=60
 truncate -s $((n * n * n)) big.raw || skip "no sparse files"
@@ -32,24 +50,34 @@ seen=(-s 96x96 --position 1500,1650,1800 --target 1230,1230,1230
 box=--crop=1150:1300,1150:1300,1150:1300
 raw=(--dims ${n}x${n}x${n} --type uint8)
 
-exact=(--method footprint)
-
 run 0 "the whole, raw" "$TOOL" render -q big.raw "${raw[@]}" "${seen[@]}" \
     --zoom 5.2 -o whole.png --stats whole.json
-run 0 "the whole, NRRD, exact" "$TOOL" render -q big.nhdr "${seen[@]}" \
-    --zoom 5.2 "${exact[@]}" -o exact.png --stats exact.json
+slabs "in slabs" "$TOOL" render -q big.nhdr "${seen[@]}" --zoom 5.2 \
+    -o slabs.png --stats slabs.json
+check "they make the same bits" cmp whole.png slabs.png
+slabs "footprints in slabs" "$TOOL" render -q big.nhdr "${seen[@]}" --zoom 5.2 \
+    --method footprint -o exact.png --stats exact.json
+# Where addresses are limited it stays in its file by itself.
+run 0 "the largest values" bash -c "ulimit -v 1000000 && exec '$TOOL' render \
+    big.nhdr ${seen[*]} --zoom 5.2 --mode mip -v -o mip.png"
+says 'big.nhdr: stays in its file'
+
 run 0 "a box of it" "$TOOL" render -q big.raw "${raw[@]}" "${seen[@]}" "$box" \
     --zoom 0.6 -o box.png
 run 0 "a box of it, exact" "$TOOL" render -q big.nhdr "${seen[@]}" "$box" \
-    --zoom 0.6 "${exact[@]}" -o exact_box.png
+    --zoom 0.6 --method footprint -o exact_box.png
+run 0 "the largest values of a box" "$TOOL" render -q big.nhdr "${seen[@]}" \
+    "$box" --zoom 0.6 --mode mip -o mip_box.png
 run 0 "the exact pictures are the same" "$TOOL" compare exact.png \
     exact_box.png --tolerance 1/255
 # The intermediate image lies elsewhere under the block.
 run 0 "the fast ones look the same" "$TOOL" compare whole.png box.png \
     --tolerance 20/255
+run 0 "the largest values too" "$TOOL" compare mip.png mip_box.png \
+    --tolerance 20/255
 check "every voxel is counted once" python3 - <<EOF
 import json
-for name in ("whole.json", "exact.json"):
+for name in ("whole.json", "slabs.json", "exact.json"):
     told = json.load(open(name))
     voxels, kept = $n**3, $side**3
     assert abs(told["sparse_ratio"] - (1 - kept / voxels)) < 1e-12, told

@@ -1,20 +1,9 @@
 #!/bin/bash
-# Volumes larger than memory: a sparse file of 1.5 GB (3 GB before a release) is
-# rendered within 300 MB,
-# as raw and as NRRD, and pictures are those of the volume in memory, bit for
-# bit; packed files, slices in files of their own, turntables, movies; and what
-# cannot be done so, or does not fit even then, ends with one line.
+# Volumes larger than the memory that is allowed: pictures are those of the volume
+# in memory, bit for bit; packed files, slices in files of their own, turntables,
+# movies; and what cannot be done so, or does not fit even then, ends with one
+# line.  cli_large.sh has a large one.
 . "$(dirname "$0")/../../support/shell.sh"
-
-# peak COMMAND...: runs it, and leaves its most kilobytes in $PEAK.
-cat >peak.py <<'EOF2'
-import resource, subprocess, sys
-code = subprocess.call(sys.argv[2:])
-with open(sys.argv[1], "w") as file:
-    file.write(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss))
-sys.exit(code)
-EOF2
-peak() { python3 peak.py kilobytes "$@"; }
 
 same() { # NAME A B
     check "$1: bit for bit" cmp "$2" "$3"
@@ -26,7 +15,6 @@ same() { # NAME A B
 "$TOOL" convert a.nrrd -q --type float32 -o a_f32.nrrd
 look=(-s 96x96 --preset linear --opacity 120:0,250:1 --colormap viridis --shade phong)
 views=("-z" "left --azimuth 30 --perspective")
-long_tier && views+=("+y --elevation 20")
 for view in "${views[@]}"; do
     # shellcheck disable=SC2086
     run 0 "$view, whole" "$TOOL" render a.nrrd "${look[@]}" --view $view -q \
@@ -61,31 +49,25 @@ says 'a.nrrd: stays in its file'
 same "occlusion" whole.png slabs.png
 
 # Other modes; of the surface slabs that hold nothing of it too.
-# In the short tier three, each from one of the eyes; test_stream has all.
-eyes=("--view -z" "--view left --azimuth 30 --perspective")
-for mode in mip sum iso $(long_tier && echo minip mean); do
+# Each from one of the eyes; test_stream has all.
+for mode in mip sum iso; do
     value=()
     [ "$mode" = iso ] && value=(--iso 120)
-    long_tier || case $mode in
-    mip | iso) chosen=("${eyes[1]}") ;;
-    *) chosen=("${eyes[0]}") ;;
+    case $mode in
+    mip | iso) eye="--view left --azimuth 30 --perspective" ;;
+    *) eye="--view -z" ;;
     esac
-    long_tier && chosen=("${eyes[@]}")
-    for eye in "${chosen[@]}"; do
-        # shellcheck disable=SC2086
-        run 0 "$mode $eye, whole" "$TOOL" render a_f32.nrrd -s 96x96 $eye -q \
-            -m $mode "${value[@]}" -o whole.npy -y
-        # shellcheck disable=SC2086
-        run 0 "$mode $eye, in slabs" "$TOOL" render a_f32.nrrd -s 96x96 $eye \
-            -v -m $mode "${value[@]}" -o slabs.npy -y --memory 46M
-        says 'a_f32.nrrd: stays in its file'
-        case $mode in # sums are added up from another slice on
-        mean | sum) near=(--tolerance 0.05) ;;
-        *) near=() ;;
-        esac
-        run 0 "$mode $eye is the same" "$TOOL" compare whole.npy slabs.npy \
-            "${near[@]}"
-    done
+    # shellcheck disable=SC2086
+    run 0 "$mode $eye, whole" "$TOOL" render a_f32.nrrd -s 96x96 $eye -q \
+        -m $mode "${value[@]}" -o whole.npy -y
+    # shellcheck disable=SC2086
+    run 0 "$mode $eye, in slabs" "$TOOL" render a_f32.nrrd -s 96x96 $eye \
+        -v -m $mode "${value[@]}" -o slabs.npy -y --memory 46M
+    says 'a_f32.nrrd: stays in its file'
+    near=()
+    [ "$mode" = sum ] && near=(--tolerance 0.05) # another order of adding
+    run 0 "$mode $eye is the same" "$TOOL" compare whole.npy slabs.npy \
+        "${near[@]}"
 done
 run 0 "bytes of a surface, whole" "$TOOL" render a.nrrd -s 96x96 -q -m iso \
     --iso 120 -o whole.npy -y --depth whole.depth.npy
@@ -105,15 +87,13 @@ run 0 "a turntable of a surface in slabs" "$TOOL" turntable a.nrrd -s 96x96 \
     -q -m iso --iso 120 --frames 2 -o 'i_%d.npy' --memory 11M
 same "its first frame" i_0.npy slabs_iso.npy
 
-if long_tier; then # test_stream has a small one
-    "$TOOL" convert a.nrrd -q -o a.nii.gz
-    run 0 "a packed file, whole" "$TOOL" render a.nii.gz "${look[@]}" -q \
-        -o whole.png -y
-    run 0 "a packed file in slabs" "$TOOL" render a.nii.gz "${look[@]}" \
-        -o slabs.png -y --memory 11M
-    says 'note: a.nii.gz is smaller than its voxels and is unpacked again for each'
-    same "a packed file" whole.png slabs.png
-fi
+"$TOOL" convert a.nrrd -q -o a.nii.gz
+run 0 "a packed file, whole" "$TOOL" render a.nii.gz "${look[@]}" -q \
+    -o whole.png -y
+run 0 "a packed file in slabs" "$TOOL" render a.nii.gz "${look[@]}" \
+    -o slabs.png -y --memory 11M
+says 'note: a.nii.gz is smaller than its voxels and is unpacked again for each'
+same "a packed file" whole.png slabs.png
 
 run 0 "a turntable, whole" "$TOOL" turntable a.nrrd "${look[@]}" -q \
     --frames 2 -o 'w_%d.png'
@@ -165,14 +145,11 @@ refused 5 "a deterministic picture by an exact method" \
 refused 5 "the range of all steps" 'and the range of all steps needs all' \
     "$TOOL" movie a.nrrd a.nrrd -s 64x64 -o 'n_%d.png' --memory 11M
 check "nothing is left" test ! -e none.png -a ! -e n_0.png
-for method in $(long_tier && echo footprint original); do
-    run 0 "$method" "$TOOL" render a.nrrd "${small[@]}" -q --method "$method" \
-        -o exact.npy -y
-    run 0 "$method under a limit" "$TOOL" render a.nrrd "${small[@]}" -q \
-        --method "$method" --memory 11M -o slabs.npy -y
-    run 0 "is nearly the same" "$TOOL" compare exact.npy slabs.npy \
-        --tolerance 4e-6
-done
+run 0 "footprints" "$TOOL" render a.nrrd "${small[@]}" -q --method footprint \
+    -o exact.npy -y
+run 0 "footprints under a limit" "$TOOL" render a.nrrd "${small[@]}" -q \
+    --method footprint --memory 11M -o slabs.npy -y
+run 0 "are nearly the same" "$TOOL" compare exact.npy slabs.npy --tolerance 4e-6
 
 # --- slices in files of their own --------------------------------------------
 
@@ -199,76 +176,8 @@ if [ -f "$DATA/classic/cthead-8bit_99tif.tar.gz" ]; then
     same "TIFF files" whole.png slabs.png
 fi
 
-# --- a large one -------------------------------------------------------------
+# --- pipes, and few pixels ---------------------------------------------------
 
-done_here() {
-    skipped "a large file" "$1"
-    finish
-    exit
-}
-long_tier || done_here "left to the long tier"
-grep -aq __asan_init "$TOOL" && done_here "the sanitizer needs more memory"
-x=1024 y=1024 z=750
-release_tier && z=1500
-truncate -s $((2 * x * y * z)) big.raw || done_here "no sparse files"
-python3 - <<EOF
-import array
-side = 80
-rows = [[array.array("H", [max(0, min(4000, int((40 - ((i - 40)**2 +
-         (j - 40)**2 + (k - 40)**2)**0.5) * 120))) for i in range(side)])
-         .tobytes() for j in range(side)] for k in range(side)]
-with open("big.raw", "r+b") as file:
-    for a, b, c in ((100, 100, 100), (700, 150, 300), (400, 700, 630)):
-        for k in range(side):
-            for j in range(side):
-                file.seek(2 * (((c + k) * $y + b + j) * $x + a))
-                file.write(rows[k][j])
-EOF
-[ "$(du -m big.raw | cut -f1)" -lt 100 ] || done_here "no sparse files"
-printf 'NRRD0004\ntype: uint16\ndimension: 3\nsizes: %d %d %d\n' \
-    $x $y $z >big.nhdr
-printf 'encoding: raw\nendian: little\ndata file: big.raw\n' >>big.nhdr
-raw=(--dims ${x}x${y}x${z} --type uint16)
-
-run 0 "raw data" peak "$TOOL" render big.raw "${raw[@]}" --view iso \
-    -s 256x256 -q -o raw.png --memory 300M --stats raw.json
-check "within the limit, $(cat kilobytes) KB of the process" \
-    test "$(cat kilobytes)" -lt $((300 * 1024))
-run 0 "NRRD" peak "$TOOL" render big.nhdr --view +y -s 256x256 -q \
-    -o nrrd.png --memory 300M --stats nrrd.json
-check "within the limit, $(cat kilobytes) KB of the process" \
-    test "$(cat kilobytes)" -lt $((300 * 1024))
-check "every voxel is counted once" python3 - <<EOF
-import json
-raw, nrrd = (json.load(open(name)) for name in ("raw.json", "nrrd.json"))
-assert raw["sparse_ratio"] == nrrd["sparse_ratio"], raw
-kept = (1 - raw["sparse_ratio"]) * $x * $y * $z / 3
-assert 0.7 * 268083 < kept < 268083, kept # a ball of radius 40
-EOF
-
-for eye in "--view iso" "--view +x --perspective"; do
-    # shellcheck disable=SC2086
-    run 0 "largest values of it, $eye" peak "$TOOL" render big.nhdr -m mip \
-        $eye -s 256x256 -q -o mip.png -y --memory 300M
-    check "within the limit, $(cat kilobytes) KB of the process" \
-        test "$(cat kilobytes)" -lt $((300 * 1024))
-done
-run 0 "a surface of it" peak "$TOOL" render big.nhdr -m iso --iso 2000 \
-    --view iso -s 256x256 -q -o iso.png --memory 300M
-check "within the limit, $(cat kilobytes) KB of the process" \
-    test "$(cat kilobytes)" -lt $((300 * 1024))
-
-# By itself, where addresses are limited.
-run 0 "by itself" bash -c "ulimit -v 1000000 &&
-    exec '$TOOL' render big.nhdr --view iso -s 256x256 -v -o itself.png"
-says 'big.nhdr: stays in its file'
-same "by itself" raw.png itself.png
-
-if [ "$(free_gigabytes)" -ge 5 ]; then
-    run 0 "the same in memory" "$TOOL" render big.nhdr --view iso -s 256x256 \
-        -q -o memory.png
-    same "all in memory" raw.png memory.png
-fi
 # Pipes can be read once only: they are not looked at beforehand.
 run 0 "a volume of a file" "$TOOL" phantom head --dims 48x48x48 -o pipe.nrrd
 run 0 "its picture" "$TOOL" render -q pipe.nrrd -o file.npy
