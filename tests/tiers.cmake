@@ -21,7 +21,7 @@
 set(SNOW_LABEL_release isa_wasm)
 set(SNOW_LABEL_long cli_documents cli_large cli_matrix cli_stream cli_turntable
     isa_neon isa_wasm mpi_bench mpi_clusters mpi_fail mpi_hosts
-    mpi_insitu mpi_kill mpi_modes mpi_other mpi_overlay mpi_python mpi_serve mpi_stall
+    mpi_insitu mpi_kill mpi_other mpi_overlay mpi_python mpi_serve mpi_stall
     package_abi package_cmake package_copies
     serve_fuzz
     package_layout package_manual package_pkgconfig package_recipes package_site package_wheel
@@ -57,7 +57,7 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
 # at the end.
 set(SNOW_COSTS
     isa_wasm 320 isa_neon 310 mpi_stall 300 mpi_insitu 280
-    mpi_render 260 wasm_page 300 mpi_modes 250
+    mpi_render 260 wasm_page 300
     package_within 200 package_wheel 200
     mpi_serve 300 serve_browser 245 mpi_fail 240 mpi_comm 230 cli_progress 200 cli_large 190
     test_model_raycast 37 cli_stream 87 test_ranks 62 test_stream 57

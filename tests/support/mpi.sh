@@ -55,3 +55,40 @@ if is_open_mpi; then
 else
     COUNTS="1 2 4" MOST=4
 fi
+
+# as_one NAME RANKS TOLERANCE OPTION...: a picture by so many ranks is that of one
+# process; with tolerance "bits" its file is.  $WAY holds what only ranks know.
+as_one() {
+    local name=$1 ranks=$2 tolerance=$3
+    shift 3
+    run 0 "$name alone" "$TOOL" "$@" -q -y -o one.npy
+    # shellcheck disable=SC2086
+    run 0 "$name by $ranks" launch "$ranks" "$MPI_TOOL" "$@" -q -y \
+        -o many.npy ${WAY-}
+    if [ "$tolerance" = bits ]; then
+        check "$name by $ranks has the same bits" cmp -s one.npy many.npy
+    else
+        run 0 "$name by $ranks is as by one" "$TOOL" compare one.npy many.npy \
+            --tolerance "$tolerance"
+    fi
+}
+
+# frames_as_one NAME RANKS VERB OPTION...: the same for a turntable or a movie.
+# Frames lie on a background, since a transparent pixel is rounded twice: its
+# colour, and its alpha; they differ by a step of 8 bits, and by the rounding of
+# floats.
+frames_as_one() {
+    local name=$1 ranks=$2 frame
+    shift 2
+    rm -f one_*.png many_*.png
+    run 0 "$name alone" "$TOOL" "$@" -s 64x64 -q -y --background black \
+        -o one_%d.png
+    # shellcheck disable=SC2086
+    run 0 "$name by $ranks" launch "$ranks" "$MPI_TOOL" "$@" -s 64x64 -q -y \
+        --background black -o many_%d.png ${WAY-}
+    check "$name has frames" [ -e one_1.png ]
+    for frame in one_*.png; do
+        run 0 "$name, $frame" "$TOOL" compare "$frame" "many_${frame#one_}" \
+            --tolerance 1.001/255
+    done
+}
