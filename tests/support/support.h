@@ -64,10 +64,10 @@ int64_t support_sweep(int64_t full, int64_t brief);
 /* Whether what takes hours in all is done too. */
 bool support_is_release(void);
 
-/* The environment variable SNOW_SEED, 0 where it is not set: it chooses the scenes
- * of sweeps.  The release tier draws all of them, and there it is added to the
- * seeds of voxels, for which it is 0 elsewhere: so the scenes of all seeds are
- * few enough to be drawn once before a sweep lands. */
+/* The environment variable SNOW_SEED, 0 where it is not set: it chooses the
+ * scenes of sweeps.  The release tier draws all of them, and there it is added
+ * to the seeds of voxels, for which it is 0 elsewhere: so the scenes of all
+ * seeds are few enough to be drawn once before a sweep lands. */
 uint64_t support_seed(void);
 uint64_t support_voxel_seed(void);
 
