@@ -74,6 +74,24 @@ static void a_hole_in_the_plane_reaches_half_a_voxel(void **state) {
     model_free(&scene.base);
 }
 
+static double fourth_slice(const double at[3]) {
+    return at[2] == 4 ? 10 : 0;
+}
+
+/* Of both slabs beside it half is seen, though one of their sheets shows
+ * nothing. */
+static void a_single_slice_that_is_seen_fills_half_of_both_slabs(void **state) {
+    (void)state;
+    static const snow_opacity_point step[] = {{5, 0}, {5, 0.5}};
+    warp_scene made = formula_scene(dims, fourth_slice, 0);
+    warp_scene scene = with_opacities(&made, step, 2);
+    for (int n = 0; n < QUALITIES; n++) {
+        scene.base.settings.quality = qualities[n];
+        assert_near(middle_alpha(&scene), 0.5, 0.02);
+    }
+    model_free(&made.base);
+}
+
 static void planes_cut_exactly(void **state) {
     (void)state;
     warp_scene scene = formula_scene(dims, constant, 0.2);
@@ -294,6 +312,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_slab_beside_a_hole_is_empty),
         cmocka_unit_test(a_hole_in_the_plane_reaches_half_a_voxel),
+        cmocka_unit_test(a_single_slice_that_is_seen_fills_half_of_both_slabs),
         cmocka_unit_test(planes_cut_exactly),
         cmocka_unit_test(cut_values_are_those_of_the_uncut_field),
         cmocka_unit_test(a_single_slice_is_one_spacing_thick),
