@@ -79,21 +79,6 @@ static bool is_switch(const char *key) {
     return false;
 }
 
-static void merge(const viewer_state *s, json_t *recipe,
-                  const json_t *changes) {
-    const char *key;
-    json_t *value;
-    json_object_foreach((json_t *)changes, key, value) {
-        json_t *file = json_object_get(s->files, key);
-        if (json_is_null(value) || (is_switch(key) && !file))
-            json_object_del(recipe, key);
-        else if (is_switch(key))
-            json_object_set(recipe, key, file);
-        else
-            json_object_set_new(recipe, key, json_deep_copy(value));
-    }
-}
-
 /* What a recipe may have, and a page cannot show; or NULL. */
 static const char *beyond_pages(const snow_recipe *recipe) {
     if (recipe->steps && strcmp(recipe->steps, "last") != 0)
@@ -131,7 +116,17 @@ static char *fault_of(viewer_state *s, const json_t *recipe) {
 char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision) {
     pthread_mutex_lock(&s->lock);
     json_t *recipe = json_deep_copy(s->recipe);
-    merge(s, recipe, changes);
+    const char *key;
+    json_t *value;
+    json_object_foreach((json_t *)changes, key, value) {
+        json_t *file = json_object_get(s->files, key);
+        if (json_is_null(value) || (is_switch(key) && !file))
+            json_object_del(recipe, key);
+        else if (is_switch(key))
+            json_object_set(recipe, key, file);
+        else
+            json_object_set_new(recipe, key, json_deep_copy(value));
+    }
     char *fault = fault_of(s, recipe);
     if (fault) {
         json_decref(recipe);
@@ -224,35 +219,23 @@ void state_set_watchers(viewer_state *s, int count) {
     pthread_mutex_unlock(&s->lock);
 }
 
-static int questions_of(const viewer_state *s, uint64_t client) {
-    int count = 0;
-    for (int i = 0; i < s->count; i++)
-        count += s->questions[(s->first + i) % STATE_QUESTIONS_MOST].client ==
-                 client;
-    return count;
-}
-
-/* The thumbnail of the same pane that a client waits for, or NULL. */
-static viewer_question *same_pane(viewer_state *s, uint64_t client,
-                                  const json_t *tree) {
-    const json_t *pane = json_object_get(tree, "pane");
-    for (int i = 0; i < s->count; i++) {
-        viewer_question *q =
-            &s->questions[(s->first + i) % STATE_QUESTIONS_MOST];
-        if (q->waits && q->client == client &&
-            json_equal(json_object_get(q->tree, "pane"), pane))
-            return q;
-    }
-    return NULL;
-}
-
 bool state_ask(viewer_state *s, uint64_t client, json_t *tree) {
     const char *what = json_string_value(json_object_get(tree, "what"));
     bool waits = what && strcmp(what, "thumbnail") == 0;
     pthread_mutex_lock(&s->lock);
-    viewer_question *same = waits ? same_pane(s, client, tree) : NULL;
+    const json_t *pane = json_object_get(tree, "pane");
+    viewer_question *same = NULL; /* a thumbnail of the same pane */
+    int own = 0;
+    for (int i = 0; i < s->count; i++) {
+        viewer_question *q =
+            &s->questions[(s->first + i) % STATE_QUESTIONS_MOST];
+        own += q->client == client;
+        if (waits && !same && q->waits && q->client == client &&
+            json_equal(json_object_get(q->tree, "pane"), pane))
+            same = q;
+    }
     bool room = same || (s->count < STATE_QUESTIONS_MOST &&
-                         questions_of(s, client) < STATE_QUESTIONS_OF_PAGE);
+                         own < STATE_QUESTIONS_OF_PAGE);
     if (same) {
         /* The newer one of two thumbnails of a pane is made; one that is asked
          * again is the older. */

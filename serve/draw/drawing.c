@@ -1,6 +1,7 @@
 /* drawing.c - implements drawing.h over the tool's render_state. */
 #include "draw/drawing.h"
 #include "commands/commands.h"
+#include "draw/kept.h"
 #include "draw/mixed.h"
 #include "draw/ranks.h"
 #include "draw/slices.h"
@@ -19,16 +20,11 @@
 /* What a volume is opened by, and what a look is made of besides. */
 static const char *const data_keys[] = {"crop", "component", "labels", "clip",
                                         "time", "mask",      NULL};
-static const char *const base_keys[] = {
-    "crop", "channel", "component", "labels", "time", "mask", NULL};
 static const char *const overlay_keys[] = {"overlay", "labels", "time", NULL};
 static const char *const overlay_look_keys[] = {"overlay-look", NULL};
 static const char *const look_keys[] = {
     "preset", "colormap", "scale", "opacity", "gradient-opacity",
     "range",  "window",   "mode",  "channel", NULL};
-
-/* The smallest side of a draft that is drawn in a hurry. */
-#define SIDE_LEAST 64
 
 /* A turn is framed from these angles on. */
 #define TURN_SIDES 4
@@ -78,23 +74,12 @@ static int make_options(drawing *d, const json_t *given, options *out) {
     return done == CONTINUE ? check_settings(out) : done;
 }
 
-/* Some keys of a recipe as a text that changes with them. */
-static char *key_of(const json_t *recipe, const char *const *names) {
-    json_t *some = json_object();
-    for (; *names; names++)
-        if (json_object_get(recipe, *names))
-            json_object_set(some, *names, json_object_get(recipe, *names));
-    char *text = json_dumps(some, JSON_COMPACT | JSON_SORT_KEYS);
-    json_decref(some);
-    return text;
-}
-
 /* What stays the same while points of opacity are dragged; NULL: there are
  * none. */
 static char *color_key_of(const json_t *recipe) {
     json_t *without = json_copy((json_t *)recipe);
     bool dragged = json_object_del(without, "opacity") == 0;
-    char *text = dragged ? key_of(without, look_keys) : NULL;
+    char *text = dragged ? kept_key_of(without, look_keys) : NULL;
     json_decref(without);
     return text;
 }
@@ -110,17 +95,9 @@ static char *spread_key_of(const json_t *recipe) {
     bool dragged = false;
     for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
         dragged |= json_object_del(without, ends[i]) == 0;
-    char *text = dragged && !stay ? key_of(without, look_keys) : NULL;
+    char *text = dragged && !stay ? kept_key_of(without, look_keys) : NULL;
     json_decref(without);
     return text;
-}
-
-/* Replaces a key; whether it is another. */
-static bool take_key(char **key, char *now) {
-    bool other = !*key || !now || strcmp(*key, now) != 0;
-    free(*key);
-    *key = now;
-    return other;
 }
 
 /* --- volume, look, view ------------------------------------------------------
@@ -140,103 +117,6 @@ static int reopen(drawing *d) {
     return done == CONTINUE ? mixed_note(d) : done;
 }
 
-static size_t count_clips(const snow_volume_options *data) {
-    size_t count = 0;
-    while (count < SNOW_CLIPS_MAX &&
-           (data->clip[count][0] != 0 || data->clip[count][1] != 0 ||
-            data->clip[count][2] != 0))
-        count++;
-    return count;
-}
-
-static void close_bases(drawing *d) {
-    for (int n = 0; n < SNOW_CHANNELS_MAX; n++) {
-        snow_volume_close(d->base[n]);
-        d->base[n] = NULL;
-    }
-}
-
-static snow_status open_base(drawing *d, int n) {
-    const channel_list *list = &d->state.channels.list;
-    snow_volume_options data = list->count
-                                   ? channels_data(&d->opts, &list->picks[n])
-                                   : data_options(&d->opts);
-    memset(data.clip, 0, sizeof data.clip);
-    return snow_volume_open(d->state.context, d->opts.operands[0], &data,
-                            &d->base[n]);
-}
-
-/* The volumes without clip planes: those that were shown before there were any,
- * or opened once; false where they stay in their file, or do not fit. */
-static bool find_bases(drawing *d) {
-    snow_status status = SNOW_STATUS_OK;
-    if (d->base[0] || d->state.plan.streams)
-        return d->base[0];
-    if (d->plain_key && d->base_key && !strcmp(d->plain_key, d->base_key)) {
-        for (int n = 0; n < mixed_count(d); n++) {
-            d->base[n] = *mixed_volume(d, n);
-            *mixed_volume(d, n) = NULL;
-        }
-        take_key(&d->plain_key, NULL);
-        return true;
-    }
-    for (int n = 0; n < mixed_count(d) && status == SNOW_STATUS_OK; n++)
-        status = open_base(d, n);
-    if (status != SNOW_STATUS_OK)
-        close_bases(d);
-    return status == SNOW_STATUS_OK;
-}
-
-/* Where clip planes move, the volumes without them are kept, and read only
- * once. What needs more memory than there is, stays in its file or is that of
- * many ranks is opened as ever. */
-static bool reclip(drawing *d) {
-    render_state *s = &d->state;
-    snow_volume_options data = data_options(&d->opts);
-    size_t count = count_clips(&data);
-    snow_volume *made[SNOW_CHANNELS_MAX] = {NULL};
-    bool all = true;
-    if (process_ranks() > 1 || !s->volume || !count || data.mask ||
-        !find_bases(d))
-        return false;
-    for (int n = 0; n < mixed_count(d); n++)
-        all = all && snow_volume_clip(d->base[n], d->opts.clip[0], count,
-                                      &made[n]) == SNOW_STATUS_OK;
-    for (int n = 0; n < mixed_count(d); n++) {
-        snow_volume **shown = mixed_volume(d, n);
-        snow_volume_close(all ? *shown : made[n]);
-        *shown = all ? made[n] : *shown;
-    }
-    if (all)
-        s->whole = *snow_volume_get_info(s->volume);
-    return all;
-}
-
-bool drawing_is_clipped(const drawing *d) {
-    snow_volume_options data = data_options(&d->opts);
-    return count_clips(&data) > 0;
-}
-
-snow_volume *drawing_unclipped(drawing *d, int n) {
-    return drawing_is_clipped(d) && find_bases(d) ? d->base[n]
-                                                  : *mixed_volume(d, n);
-}
-
-/* Forgets the volume without clip planes where another is meant, or none. */
-static void drop_base(drawing *d, char *key) {
-    if (take_key(&d->base_key, key))
-        close_bases(d);
-}
-
-/* What the volumes without clip planes are made of. */
-static char *base_key_of(const drawing *d, const json_t *recipe) {
-    json_t *tree = json_copy((json_t *)recipe);
-    json_object_set_new(tree, "channel", mixed_tree(d));
-    char *key = key_of(tree, base_keys);
-    json_decref(tree);
-    return key;
-}
-
 snow_status drawing_new_transfer(drawing *d, const snow_look *look,
                                  snow_transfer **out) {
     return process_ranks() > 1
@@ -250,7 +130,7 @@ static snow_comm *comm_of_all(void) {
     return process_ranks() > 1 ? process_comm() : NULL;
 }
 
-static int restyle(drawing *d) {
+int drawing_restyle(drawing *d) {
     snow_transfer *made = NULL;
     snow_look look = look_options(&d->opts);
     if (d->state.channels.list.count)
@@ -298,9 +178,10 @@ static bool restyle_quickly(drawing *d, bool spread) {
 /* Forgets of the overlay what a recipe changes; whether that is its look. */
 static bool drop_overlay(drawing *d, const json_t *recipe, bool other_data) {
     layers *all[] = {&d->state.layers, &d->slice_layers};
-    const bool file = take_key(&d->overlay_key, key_of(recipe, overlay_keys));
-    const bool look =
-        take_key(&d->overlay_look_key, key_of(recipe, overlay_look_keys));
+    const bool file =
+        kept_take_key(&d->overlay_key, kept_key_of(recipe, overlay_keys));
+    const bool look = kept_take_key(&d->overlay_look_key,
+                                    kept_key_of(recipe, overlay_look_keys));
     for (int i = 0; i < 2; i++) {
         if (file)
             layers_close(all[i]);
@@ -381,10 +262,12 @@ static int apply(drawing *d, const json_t *recipe) {
         forget(d);
         return done;
     }
-    bool other_data = take_key(&d->data_key, key_of(recipe, data_keys)) || anew;
-    bool other_look = take_key(&d->look_key, key_of(recipe, look_keys));
-    bool other_colors = take_key(&d->color_key, color_key_of(recipe));
-    bool other_shape = take_key(&d->spread_key, spread_key_of(recipe));
+    bool other_data =
+        kept_take_key(&d->data_key, kept_key_of(recipe, data_keys)) || anew;
+    bool other_look =
+        kept_take_key(&d->look_key, kept_key_of(recipe, look_keys));
+    bool other_colors = kept_take_key(&d->color_key, color_key_of(recipe));
+    bool other_shape = kept_take_key(&d->spread_key, spread_key_of(recipe));
     bool overlaid = drop_overlay(d, recipe, other_data);
     bool clips = json_object_get(recipe, "clip") != NULL;
     if (other_data || rearranged)
@@ -392,21 +275,21 @@ static int apply(drawing *d, const json_t *recipe) {
     if (d->state.plan.streams && (other_data || other_look || overlaid))
         drop_frame(d);
     anew |= other_look && d->state.channels.list.count && process_ranks() > 1;
-    drop_base(d, clips ? base_key_of(d, recipe) : NULL);
+    kept_drop(d, clips ? kept_base_key(d, recipe) : NULL);
     if (other_data)
         mixed_forget(d);
-    bool clipped = other_data && !anew && reclip(d);
+    bool clipped = other_data && !anew && kept_clip(d);
     if (anew || (other_data && !clipped) || !d->state.volume) {
         done = reopen(d);
     } else {
         if (clipped || !d->state.transfer ||
             (other_look && ((other_colors && other_shape) ||
                             !restyle_quickly(d, other_colors))))
-            done = restyle(d);
+            done = drawing_restyle(d);
         if (done == CONTINUE)
             done = open_overlay(d);
     }
-    take_key(&d->plain_key, clips ? NULL : base_key_of(d, recipe));
+    kept_take_key(&d->plain_key, clips ? NULL : kept_base_key(d, recipe));
     d->look_is_new |= overlaid;
     if (done == CONTINUE)
         done = place(d);
@@ -436,12 +319,12 @@ int drawing_open(const options *first, json_t *recipe, drawing *out) {
 void drawing_empty(drawing *d) {
     render_state *s = &d->state;
     drop_frame(d);
-    drop_base(d, NULL);
+    kept_drop(d, NULL);
     slices_forget(d);
     snow_transfer_free(d->slice_look);
     d->slice_look = NULL;
     channels_close(&d->slice_channels);
-    take_key(&d->slice_key, NULL);
+    kept_take_key(&d->slice_key, NULL);
     mixed_forget(d);
     channels_close(&s->channels);
     layers_close(&s->layers);
@@ -513,130 +396,4 @@ void drawing_middle(const drawing *d, double middle[3], double *radius) {
     *radius = 0;
     for (int corner = 0; corner < 4; corner++)
         *radius = fmax(*radius, sqrt(square[corner]));
-}
-
-/* --- pictures
- * ------------------------------------------------------------------ */
-
-static int shrunk(int side, int shrink) {
-    int small = side >> shrink;
-    return small >= SIDE_LEAST ? small : side < SIDE_LEAST ? side : SIDE_LEAST;
-}
-
-/* Shear-warp draws voxel by voxel: where a pixel is as large as two of them,
- * one of fewer pixels takes as long. */
-static int useful_shrink(const drawing *d, int shrink) {
-    const snow_view *view = &d->state.view;
-    const double *step = d->state.whole.spacing;
-    double middle[3], radius;
-    drawing_middle(d, middle, &radius);
-    const double voxels =
-        2 * radius / view->zoom / fmin(step[0], fmin(step[1], step[2]));
-    while (shrink > 0 && d->state.stats.method == SNOW_METHOD_SHEAR_WARP &&
-           fmin(view->width, view->height) / (1 << shrink) < voxels / 2)
-        shrink--;
-    return shrink;
-}
-
-/* Letters and bars, as `snowglass render` draws them. */
-static int annotate(drawing *d, const paint_given *painted,
-                    const snow_image *image, snow_overlay **out) {
-    render_state *s = &d->state;
-    const picture_annotations annotations = {
-        &d->opts,
-        s->whole,
-        s->view,
-        s->transfer,
-        {painted->range[0], painted->range[1]},
-        &s->channels,
-        layers_legend(&s->layers, false)};
-    snow_status status = annotations_make(&annotations, s->view.azimuth, -1,
-                                          image, s->context, out);
-    return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_status(s->context, status);
-}
-
-static int draw(drawing *d, snow_image **image, paint_given *painted) {
-    render_state *s = &d->state;
-    const int channels = s->channels.list.count;
-    s->fault = 0;
-    int done = d->draw ? d->draw(d, image)
-                       : render_state_draw(s, s->view.azimuth, image);
-    d->look_is_new |= s->channels.list.count != channels; /* some gave way */
-    if (done != CONTINUE)
-        return done;
-    done =
-        paint_values(&d->opts, s->context, s->transfer, false, image, painted);
-    if (done == CONTINUE)
-        return CONTINUE;
-    snow_image_free(*image);
-    *image = NULL;
-    return done;
-}
-
-int drawing_render(drawing *d, snow_quality quality, int shrink,
-                   snow_stop_fn *stop, void *user, snow_image **image,
-                   snow_overlay **overlay) {
-    render_state *s = &d->state;
-    const snow_view view = s->view;
-    paint_given painted;
-    *image = NULL;
-    *overlay = NULL;
-    shrink = useful_shrink(d, shrink);
-    ranks_tell(d, RANKS_RENDER, json_pack("[i,i]", (int)quality, shrink));
-    s->settings.quality = quality;
-    s->settings.stop = stop;
-    s->settings.stop_user = user;
-    s->view.width = shrunk(view.width, shrink);
-    s->view.height = shrunk(view.height, shrink);
-    int done = quality != SNOW_QUALITY_DRAFT && d->look_is_quick ? restyle(d)
-                                                                 : CONTINUE;
-    if (done == CONTINUE)
-        done = draw(d, image, &painted);
-    if (done == CONTINUE && *image)
-        done = annotate(d, &painted, *image, overlay);
-    s->view = view;
-    if (done == CONTINUE)
-        return CONTINUE;
-    snow_image_free(*image);
-    *image = NULL;
-    return done;
-}
-
-/* --- the command
- * ----------------------------------------------------------------- */
-
-void drawing_name_output(const char *input, const char *slice, char out[100]) {
-    const char *slash = strrchr(input, '/'), *colon = strchr(input, ':');
-    const char *base = slash ? slash + 1 : colon ? colon + 1 : input;
-    size_t length = strcspn(base, ".");
-    if (length == 0 || length > 64)
-        snprintf(out, 100, "picture.png");
-    else
-        snprintf(out, 100, "%.*s%s%.16s.png", (int)length, base,
-                 *slice ? "-" : "", slice);
-}
-
-void drawing_options(const drawing *d, options *out) {
-    *out = d->opts;
-    out->quality = "high";
-    if (strcmp(out->mode, "over") != 0)
-        layers_leave_out(out);
-    mixed_settle(d, out);
-}
-
-char *drawing_command(const drawing *d, unsigned verb) {
-    static options opts; /* large; one thread draws */
-    char output[100];
-    drawing_options(d, &opts);
-    drawing_name_output(opts.operands[0], "", output);
-    if (verb == VERB_TURNTABLE)
-        memcpy(strrchr(output, '.'), ".mp4", 4);
-    opts.output = output;
-    json_t *tree = config_tree(&opts, verb_of(verb));
-    if (!tree)
-        return NULL;
-    char *text = config_command(&opts, verb_of(verb), tree);
-    json_decref(tree);
-    return text;
 }

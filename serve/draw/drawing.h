@@ -102,7 +102,12 @@ void drawing_middle(const drawing *d, double middle[3], double *radius);
  * that set the camera's target and zoom, a new reference. */
 json_t *drawing_fit(drawing *d);
 
-/* By all ranks.  Renders with a quality at a size of 1 / 2^shrink of the
+/* By all ranks.  Makes the look of the present recipe anew. */
+int drawing_restyle(drawing *d);
+
+/* --- pictures.c ---
+ *
+ * By all ranks.  Renders with a quality at a size of 1 / 2^shrink of the
  * recipe's, unless `stop` says so: SNOW_STATUS_STOPPED.  With values painted.
  * The picture is NULL on all ranks but the first. */
 int drawing_render(drawing *d, snow_quality quality, int shrink,

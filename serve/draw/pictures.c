@@ -1,0 +1,144 @@
+/* pictures.c - pictures of a drawing, and the command that makes one; see
+ * drawing.h. */
+#include "commands/commands.h"
+#include "draw/drawing.h"
+#include "draw/mixed.h"
+#include "draw/ranks.h"
+#include "options/config.h"
+#include "picture/annotations.h"
+#include "picture/paint.h"
+#include "run/log.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* The smallest side of a draft that is drawn in a hurry. */
+#define SIDE_LEAST 64
+
+/* --- pictures
+ * ------------------------------------------------------------------ */
+
+static int shrunk(int side, int shrink) {
+    int small = side >> shrink;
+    return small >= SIDE_LEAST ? small : side < SIDE_LEAST ? side : SIDE_LEAST;
+}
+
+/* Shear-warp draws voxel by voxel: where a pixel is as large as two of them,
+ * one of fewer pixels takes as long. */
+static int useful_shrink(const drawing *d, int shrink) {
+    const snow_view *view = &d->state.view;
+    const double *step = d->state.whole.spacing;
+    double middle[3], radius;
+    drawing_middle(d, middle, &radius);
+    const double voxels =
+        2 * radius / view->zoom / fmin(step[0], fmin(step[1], step[2]));
+    while (shrink > 0 && d->state.stats.method == SNOW_METHOD_SHEAR_WARP &&
+           fmin(view->width, view->height) / (1 << shrink) < voxels / 2)
+        shrink--;
+    return shrink;
+}
+
+/* Letters and bars, as `snowglass render` draws them. */
+static int annotate(drawing *d, const paint_given *painted,
+                    const snow_image *image, snow_overlay **out) {
+    render_state *s = &d->state;
+    const picture_annotations annotations = {
+        &d->opts,
+        s->whole,
+        s->view,
+        s->transfer,
+        {painted->range[0], painted->range[1]},
+        &s->channels,
+        layers_legend(&s->layers, false)};
+    snow_status status = annotations_make(&annotations, s->view.azimuth, -1,
+                                          image, s->context, out);
+    return status == SNOW_STATUS_OK ? CONTINUE
+                                    : fail_status(s->context, status);
+}
+
+static int draw(drawing *d, snow_image **image, paint_given *painted) {
+    render_state *s = &d->state;
+    const int channels = s->channels.list.count;
+    s->fault = 0;
+    int done = d->draw ? d->draw(d, image)
+                       : render_state_draw(s, s->view.azimuth, image);
+    d->look_is_new |= s->channels.list.count != channels; /* some gave way */
+    if (done != CONTINUE)
+        return done;
+    done =
+        paint_values(&d->opts, s->context, s->transfer, false, image, painted);
+    if (done == CONTINUE)
+        return CONTINUE;
+    snow_image_free(*image);
+    *image = NULL;
+    return done;
+}
+
+int drawing_render(drawing *d, snow_quality quality, int shrink,
+                   snow_stop_fn *stop, void *user, snow_image **image,
+                   snow_overlay **overlay) {
+    render_state *s = &d->state;
+    const snow_view view = s->view;
+    paint_given painted;
+    *image = NULL;
+    *overlay = NULL;
+    shrink = useful_shrink(d, shrink);
+    ranks_tell(d, RANKS_RENDER, json_pack("[i,i]", (int)quality, shrink));
+    s->settings.quality = quality;
+    s->settings.stop = stop;
+    s->settings.stop_user = user;
+    s->view.width = shrunk(view.width, shrink);
+    s->view.height = shrunk(view.height, shrink);
+    int done = quality != SNOW_QUALITY_DRAFT && d->look_is_quick
+                   ? drawing_restyle(d)
+                   : CONTINUE;
+    if (done == CONTINUE)
+        done = draw(d, image, &painted);
+    if (done == CONTINUE && *image)
+        done = annotate(d, &painted, *image, overlay);
+    s->view = view;
+    if (done == CONTINUE)
+        return CONTINUE;
+    snow_image_free(*image);
+    *image = NULL;
+    return done;
+}
+
+/* --- the command
+ * ----------------------------------------------------------------- */
+
+void drawing_name_output(const char *input, const char *slice, char out[100]) {
+    const char *slash = strrchr(input, '/'), *colon = strchr(input, ':');
+    const char *base = slash ? slash + 1 : colon ? colon + 1 : input;
+    size_t length = strcspn(base, ".");
+    if (length == 0 || length > 64)
+        snprintf(out, 100, "picture.png");
+    else
+        snprintf(out, 100, "%.*s%s%.16s.png", (int)length, base,
+                 *slice ? "-" : "", slice);
+}
+
+void drawing_options(const drawing *d, options *out) {
+    *out = d->opts;
+    out->quality = "high";
+    if (strcmp(out->mode, "over") != 0)
+        layers_leave_out(out);
+    mixed_settle(d, out);
+}
+
+char *drawing_command(const drawing *d, unsigned verb) {
+    static options opts; /* large; one thread draws */
+    char output[100];
+    drawing_options(d, &opts);
+    drawing_name_output(opts.operands[0], "", output);
+    if (verb == VERB_TURNTABLE)
+        memcpy(strrchr(output, '.'), ".mp4", 4);
+    opts.output = output;
+    json_t *tree = config_tree(&opts, verb_of(verb));
+    if (!tree)
+        return NULL;
+    char *text = config_command(&opts, verb_of(verb), tree);
+    json_decref(tree);
+    return text;
+}
