@@ -2,6 +2,7 @@
  * that the test moves. */
 #include "support/support.h"
 
+#include <math.h>
 #include <time.h>
 
 static double clock_seconds = 1000; /* in seconds */
