@@ -26,7 +26,7 @@ begin() {
 # stalled WHEN COMMAND...
 stalled() {
     local started
-    begin "$@" --timeout 3
+    begin "$@" --timeout 9
     started=$(date +%s)
     wait "$job"
     check "$NAME: the job fails" [ $? -ne 0 ]
