@@ -1,35 +1,44 @@
-# Manual pages, completions and the schema of recipes, made at build time from
-# the tool's table of options, the public headers and the documents by a program
-# that is not installed.  A build for
-# another machine takes the program of a native build: -DSNOW_MANUAL=PATH.
+# Manual pages, completions and the schema of recipes, made at build time by the
+# scripts in scripts/manual/ from the tool's table of options, which a program
+# that is not installed writes, the public headers and the documents.  A build
+# for another machine takes the table of a native build: -DSNOW_MANUAL=PATH.
 set(default ON)
 if(CMAKE_CROSSCOMPILING OR SNOW_SANITIZE)
   set(default OFF)
 endif()
 set(SNOW_MANUAL ${default} CACHE STRING
-    "manual pages and completions: ON, OFF, or the program that writes them")
+    "manual pages and completions: ON, OFF, or the table of options as JSON")
 if(NOT SNOW_MANUAL)
   return()
 endif()
-
-set(program ${SNOW_MANUAL})
-if(NOT EXISTS "${SNOW_MANUAL}")
-  file(GLOB sources CONFIGURE_DEPENDS programs/manual/*.c)
-  snow_tool(snowglass_manual snowglass-manual ${sources})
-  set(program snowglass_manual)
+find_package(Python3 3.9 QUIET COMPONENTS Interpreter)
+if(NOT Python3_Interpreter_FOUND)
+  message(STATUS "Without manual pages and completions: there is no Python 3")
+  return()
 endif()
 
+get_filename_component(table "${SNOW_MANUAL}" ABSOLUTE)
+if(NOT EXISTS "${table}")
+  set(table ${PROJECT_BINARY_DIR}/table.json)
+  snow_tool(snowglass_table snowglass-table programs/manual/table.c)
+  add_custom_command(OUTPUT ${table} COMMAND snowglass_table > ${table}
+                     DEPENDS snowglass_table VERBATIM)
+endif()
+file(GLOB scripts CONFIGURE_DEPENDS scripts/manual/*.py)
+
 set(SNOW_MANUAL_FILES "")
-# snow_manual(COMPONENT FOLDER FILE WORD...): what these words write is installed
-# in the folder.  Words may be files of the sources.
+# snow_manual(COMPONENT FOLDER FILE WORD...): what the scripts write for these
+# words is installed in the folder.  Words may be files of the sources.
 function(snow_manual component folder file)
   set(out ${PROJECT_BINARY_DIR}/manual/${folder}/${file})
   get_filename_component(place ${out} DIRECTORY)
   file(MAKE_DIRECTORY ${place})
   set(files ${ARGN})
   list(FILTER files INCLUDE REGEX "[.](h|md)$")
-  add_custom_command(OUTPUT ${out} COMMAND ${program} ${ARGN} > ${out}
-                     DEPENDS ${program} ${files} VERBATIM
+  add_custom_command(OUTPUT ${out} VERBATIM
+                     COMMAND Python3::Interpreter -B scripts/manual ${table}
+                             ${ARGN} > ${out}
+                     DEPENDS ${table} ${scripts} ${files}
                      WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   set(SNOW_MANUAL_FILES ${SNOW_MANUAL_FILES} ${out} PARENT_SCOPE)
   if(SNOW_INSTALL)

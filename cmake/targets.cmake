@@ -52,7 +52,7 @@ function(snow_link_archive target)
 endfunction()
 
 function(snow_install_program target)
-  if(NOT SNOW_INSTALL OR target STREQUAL snowglass_manual) # of the build
+  if(NOT SNOW_INSTALL OR target STREQUAL snowglass_table) # of the build
     return()
   endif()
   set(component snowglass_runtime)

@@ -33,6 +33,7 @@ class Snowglass(CMakePackage):
     depends_on("cxx", type="build", when="+gdcm")
     depends_on("cmake@3.20:", type="build")
     depends_on("pkgconfig", type="build")
+    depends_on("python@3.9:", type="build")  # manual pages, completions
     depends_on("zlib-api")
     depends_on("libpng")
     depends_on("jansson")

@@ -3,7 +3,7 @@
 # completions and the schema of recipes say what the tool does.
 . "$(dirname "$0")/../support/shell.sh"
 MADE=$2/manual
-[ -d "$MADE" ] || { echo "built with -DSNOW_MANUAL=OFF" && exit 77; }
+[ -d "$MADE" ] || { echo "built without manual pages" && exit 77; }
 place() { find "$MADE" -path "*/$1"; }
 page() { place "man1/snowglass$1.1"; }
 bash_file=$(place completions/snowglass)

@@ -2,16 +2,17 @@
 # tests/package/package_site.sh - `script TOOL BUILD SOURCE`: the site of the
 # documents is made, its links lead somewhere, and its references are whole.
 . "$(dirname "$0")/../support/shell.sh"
-MANUAL=$2/snowglass-manual SOURCE=$3
-[ -x "$MANUAL" ] || { echo "skip   built with -DSNOW_MANUAL=OFF" && exit 77; }
+TABLE=$2/table.json SOURCE=$3
+[ -f "$TABLE" ] || { echo "skip   built without manual pages" && exit 77; }
 PYTHON=/usr/bin/python3
 "$PYTHON" -c 'import markdown' 2>/dev/null ||
     { echo "skip   there is no python3-markdown" && exit 77; }
 
 # A copy, since documents are spoilt below.
 (cd "$SOURCE" && cp -r --parents ./*.md LICENSE docs include examples/minimal.c \
-    python/snowglass src/README.md bench/peers/README.md scripts/site "$WORK")
-make_site() { "$PYTHON" -B scripts/site "$MANUAL" "$WORK/site" "$@"; }
+    python/snowglass src/README.md bench/peers/README.md scripts/site scripts/manual \
+    "$WORK")
+make_site() { "$PYTHON" -B scripts/site "$TABLE" "$WORK/site" "$@"; }
 run 0 "the site is made" make_site
 prints '^site: [0-9]{2} pages, [0-9]{4} links, 0 faults$'
 page() { cat "site/$1"; }
@@ -24,7 +25,7 @@ check "the chart is of the table" grep -qE \
     site/docs/measurements/peers.html
 
 lacking=
-for option in $("$MANUAL" man render | sed -nE 's/^\\fB.*\\-\\-([a-z\\-]+)\\fR.*/\1/p' |
+for option in $("$PYTHON" -B scripts/manual "$TABLE" man render | sed -nE 's/^\\fB.*\\-\\-([a-z\\-]+)\\fR.*/\1/p' |
     tr -d '\\'); do
     grep -q -- "--$option" site/docs/options.html || lacking+=" --$option"
 done
@@ -83,6 +84,6 @@ says 'index.html links to docs/usage.html#no-part, an anchor'
 says 'zarr.html takes https://example.org/a.png from elsewhere'
 mkdir other && touch other/mine
 run 1 "a folder of other files is left alone" "$PYTHON" -B scripts/site \
-    "$MANUAL" other
+    "$TABLE" other
 check "all of it" [ -e other/mine ]
 finish
