@@ -85,7 +85,7 @@ const option_row option_table[] = {
      "original: the same with every voxel (default auto: shear-warp)"},
 
     {"kernel", 0, "auto|tent|gauss|bspline|box|NAME:N", TOPIC_KERNEL, PICTURE, read_kernel,
-     FIELD(kernel), 2, 9, "reconstruction kernel, and its support N in voxels, 2 to 9, "
+     FIELD(kernel), 2, 9, "reconstruction kernel; N is its support in voxels, 2 to 9, "
      "such as gauss:5 or auto:3 (default 2 for tent and box, otherwise 4). shear-warp "
      "and raycast support tent and bspline; with gauss and box, and another N, "
      "footprint makes the picture (default auto: tent; bspline with footprint and "
