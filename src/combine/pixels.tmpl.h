@@ -73,9 +73,8 @@ TARGET static inline float *PIXELS_NAME(pack)(float *out, const float *pixels,
     int count =
         PIXELS_NAME(list)(bits, (uint32_t)__builtin_ctzll(bits), places);
     for (int i = 0; i < count; i += PIXELS_EACH)
-        V(store)
-    (out + i * PIXELS_CHANNELS,
-     VC(gather, PIXELS_CHANNELS)(pixels, places + i));
+        V(store)(out + i * PIXELS_CHANNELS,
+                 VC(gather, PIXELS_CHANNELS)(pixels, places + i));
     return out + count * PIXELS_CHANNELS;
 #else
     for (; bits; bits >>= PIXELS_EACH, pixels += LANES)

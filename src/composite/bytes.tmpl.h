@@ -36,8 +36,8 @@ NAME(floats)(const float *row, int count, uint32_t *levels) {
         V(vec) v = V(load)(row + n);
         missing |= v != v;
         v = V(min)(V(max)(v, zero), one);
-        NAME(ints)
-        level = __builtin_convertvector(V(fma)(v, most, half), NAME(ints));
+        NAME(ints) level =
+            __builtin_convertvector(V(fma)(v, most, half), NAME(ints));
         V(vec) above = __builtin_convertvector(level, V(vec));
         level += V(add)(V(mul)(v, more), V(sub)(half, above)) < v;
         memcpy(levels + n, &level, sizeof level);

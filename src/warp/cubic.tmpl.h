@@ -14,7 +14,7 @@
 
 /* Weights along x in the lanes of a part of a run, as cubic polynomials. */
 TARGET static inline __attribute__((always_inline)) V(vec)
-    WARP_NAME(_along_x)(int part, V(vec) f) {
+WARP_NAME(_along_x)(int part, V(vec) f) {
     float lanes[4][LANES];
     for (int i = 0; i < LANES; i++)
         for (int power = 0; power < 4; power++)
@@ -28,8 +28,8 @@ TARGET static inline __attribute__((always_inline)) V(vec)
 
 /* A pixel's weighted run, added up to one vector. */
 TARGET static inline __attribute__((always_inline)) V(vec)
-    WARP_NAME(_run)(const float *run, size_t stride, const float *along_y,
-                    V(vec) across) {
+WARP_NAME(_run)(const float *run, size_t stride, const float *along_y,
+                V(vec) across) {
     V(vec) part[WARP_VECTORS];
     for (int n = 0; n < WARP_VECTORS; n++) {
         V(vec) sum = V(mul)(V(set1)(along_y[0]), V(load)(run + n * LANES));

@@ -9,7 +9,7 @@
 
 /* (1 - part) a + part b */
 TARGET static inline __attribute__((always_inline)) V(vec)
-    WARP_NAME(_mixed)(V(vec) a, V(vec) b, V(vec) part) {
+WARP_NAME(_mixed)(V(vec) a, V(vec) b, V(vec) part) {
     return V(add)(a, V(mul)(part, V(sub)(b, a)));
 }
 
@@ -26,7 +26,7 @@ WARP_NAME(_mix)(const snow_intermediate_view *plane, const warp_group *group,
         VC(load_pairs, WARP_CHANNELS)
         (plane->pixels + plane->stride, group->at + n, &left, &right);
         below = WARP_NAME(_mixed)(left, right, across);
-        V(store)
-        (pixels + n * WARP_CHANNELS, WARP_NAME(_mixed)(above, below, down));
+        V(store)(pixels + n * WARP_CHANNELS,
+                 WARP_NAME(_mixed)(above, below, down));
     }
 }

@@ -47,7 +47,7 @@ WARP_NAME(_group)(const snow_intermediate_view *plane, int count,
 
 /* The places of a group that begins at (x, y). */
 TARGET static inline __attribute__((always_inline)) void
-WARP_NAME(_step)(const V(wide) * steps, uint64_t start, uint64_t *places) {
+WARP_NAME(_step)(const V(wide) *steps, uint64_t start, uint64_t *places) {
     for (int n = 0; n < 2 * GROUP / LANES; n++) {
         V(wide) place = steps[n] + start;
         memcpy(places + n * LANES / 2, &place, sizeof place);

@@ -15,18 +15,17 @@ TARGET static void NAME(words)(const word_input *in, word_output *out) {
         V(store)(out->lanes[SET1] + at, V(set1)(in->a[3]));
         V(store)(out->lanes[ALPHA2] + at, V(alpha2)(a));
         V(store)(out->lanes[ALPHA4] + at, V(alpha4)(a));
-        V(store)
-        (out->lanes[GATHER4] + at, V(gather4)(in->table, in->entries + at / 4));
-        V(store)
-        (out->lanes[GATHER2] + at, V(gather2)(in->table, in->entries + at / 2));
-        V(store)
-        (out->lanes[FRACTIONS1] + at, V(fractions1)(in->places + at));
+        V(store)(out->lanes[GATHER4] + at,
+                 V(gather4)(in->table, in->entries + at / 4));
+        V(store)(out->lanes[GATHER2] + at,
+                 V(gather2)(in->table, in->entries + at / 2));
+        V(store)(out->lanes[FRACTIONS1] + at, V(fractions1)(in->places + at));
 #if LANES <= 8
         V(vec) left, right;
-        V(store)
-        (out->lanes[FRACTIONS2] + at, V(fractions2)(in->places + at / 2));
-        V(store)
-        (out->lanes[FRACTIONS4] + at, V(fractions4)(in->places + at / 4));
+        V(store)(out->lanes[FRACTIONS2] + at,
+                 V(fractions2)(in->places + at / 2));
+        V(store)(out->lanes[FRACTIONS4] + at,
+                 V(fractions4)(in->places + at / 4));
         V(load_pairs2)(in->table, in->at + at / 2, &left, &right);
         V(store)(out->left2 + at, left);
         V(store)(out->right2 + at, right);

@@ -136,8 +136,8 @@ static inline float shaded(float color, double factor, double white) {
 void snow_shade_gradients(const snow_shader *shader,
                           const double gradients[3][SHADE_BLOCK], int count,
                           int channels, float *samples) {
-    SNOW_OF_ISA(shader->isa, shade_block)
-    (shader, gradients, count, channels, samples);
+    SNOW_OF_ISA(shader->isa, shade_block)(shader, gradients, count, channels,
+                                          samples);
 }
 
 void snow_shade_row_block(const snow_shader *shader, int channels,

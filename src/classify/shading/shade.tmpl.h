@@ -80,9 +80,9 @@ TARGET static void NAME(light_block)(const snow_shader *s,
     for (int n = 0; n < s->lights.count; n++) {
         const double diffuse = s->diffuse * s->lights.share[n];
         const double specular = s->specular * s->lights.share[n];
-        NAME(cosines)
-        (s->to[n], s->half[n], (const double(*)[SHADE_BLOCK])normal, count,
-         lambert, highlight);
+        NAME(cosines)(s->to[n], s->half[n],
+                      (const double(*)[SHADE_BLOCK])normal, count, lambert,
+                      highlight);
         if (specular > 0)
             NAME(to_power)(s, count, highlight);
         for (int i = 0; i < count; i++) {

@@ -23,8 +23,7 @@ TARGET static inline void NAME(collect)(const snow_value_table *table,
             at[w] += ways->apart[first + w];
         }
         for (int k = 0; k < GROUPS; k++) {
-            V(vec)
-            here =
+            V(vec) here =
                 V(mul)(V(gather4)(table->looks, looks + k * EACH), through[k]);
             sum[k] = V(add)(sum[k], here);
             places[k] =

@@ -47,8 +47,8 @@ static void fill_some(const table_job *job, int64_t first, const int *backs,
     for (int w = 0; w < ENTRIES; w++)
         for (int c = 0; c < 5; c++)
             sums[c][w] = c < 4 ? ways.sum[w][c] : ways.places[w][3];
-    SNOW_OF_ISA(look->isa, pack)
-    (sums, (float)look->steps, job->table->full, look->placed, entries);
+    SNOW_OF_ISA(look->isa, pack)(sums, (float)look->steps, job->table->full,
+                                 look->placed, entries);
     for (int w = 0; w < count; w++) {
         *most = sums[3][w] > *most ? sums[3][w] : *most;
         row[backs[w]] = entries[w];
@@ -100,10 +100,10 @@ static void fill_rows(void *of, int64_t item, int worker) {
         float sums[5][ENTRIES];
         uint64_t entries[ENTRIES];
         const int first = front + apart; /* the back of entry 0 */
-        SNOW_OF_ISA(look->isa, collect_diagonal)
-        (job->table, look->steps, front, apart, sums);
-        SNOW_OF_ISA(look->isa, pack)
-        (sums, (float)look->steps, job->table->full, look->placed, entries);
+        SNOW_OF_ISA(look->isa, collect_diagonal)(job->table, look->steps, front,
+                                                 apart, sums);
+        SNOW_OF_ISA(look->isa, pack)(sums, (float)look->steps, job->table->full,
+                                     look->placed, entries);
         for (int w = first < 0 ? -first : 0; w < count && first + w < nodes;
              w++) {
             row[w * SNOW_VALUE_PITCH + first + w] = entries[w];

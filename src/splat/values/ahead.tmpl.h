@@ -104,8 +104,8 @@ TARGET VALUE_STAGE void NAME(look_ahead)(const snow_value_splat *p, int n,
     uint32_t any = 0;
     for (int phase = first; phase < end; phase++) {
         value_slab *slab = &slabs[phase - first];
-        NAME(activate)
-        (p, n, phase, tile, &room->phase[phase], room->cells[phase], slab, eye);
+        NAME(activate)(p, n, phase, tile, &room->phase[phase],
+                       room->cells[phase], slab, eye);
         any |= slab->rows;
     }
     uint64_t here = (uint64_t)any << 1;

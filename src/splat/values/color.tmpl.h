@@ -6,8 +6,8 @@
 
 /* --- light ---------------------------------------------------------------- */
 
-TARGET VALUE_LEAF V(vec)
-    NAME(dot)(const float by[3], V(vec) u, V(vec) v, V(vec) p) {
+TARGET VALUE_LEAF V(vec) NAME(dot)(const float by[3], V(vec) u, V(vec) v,
+                                   V(vec) p) {
     V(vec) sum = V(mul)(V(set1)(by[0]), u);
     sum = V(add)(sum, V(mul)(V(set1)(by[1]), v));
     return V(add)(sum, V(mul)(V(set1)(by[2]), p));
@@ -66,8 +66,8 @@ TARGET VALUE_LEAF V(row) NAME(row_power)(V(row) base, uint32_t power) {
 }
 
 /* The shine of 32 samples, of 15 bits; `half` is n . h, times 32767. */
-TARGET VALUE_LEAF V(row)
-    NAME(shine)(const snow_value_light *l, const V(vec) half[GROUPS]) {
+TARGET VALUE_LEAF V(row) NAME(shine)(const snow_value_light *l,
+                                     const V(vec) half[GROUPS]) {
     const uint32_t power = l->power >> SNOW_VALUE_ROOTS;
     V(vec) base[GROUPS], result[GROUPS];
     if (power && power <= POWER_MOST && power << SNOW_VALUE_ROOTS == l->power)
@@ -88,7 +88,7 @@ TARGET VALUE_LEAF V(row)
 TARGET VALUE_LEAF void NAME(add_light)(const snow_value_light *l, int n,
                                        const V(vec) light[GROUPS],
                                        const V(vec) half[GROUPS], float unit,
-                                       V(row) * color, V(row) * white) {
+                                       V(row) *color, V(row) *white) {
     const V(row) zero = V(row_set1)(0);
     const int16_t diffuse = (int16_t)(l->diffuse[n] * unit + 0.5F);
     const int16_t specular = (int16_t)(l->specular[n] * 32767 + 0.5F);
@@ -102,8 +102,8 @@ TARGET VALUE_LEAF void NAME(add_light)(const snow_value_light *l, int n,
 /* The squares of the lengths of LANES gradients. */
 TARGET VALUE_LEAF V(vec) NAME(square_length)(const snow_value_light *l,
                                              V(vec) u, V(vec) v, V(vec) p) {
-    V(vec)
-    length = NAME(dot)(l->metric, V(mul)(u, u), V(mul)(v, v), V(mul)(p, p));
+    V(vec) length =
+        NAME(dot)(l->metric, V(mul)(u, u), V(mul)(v, v), V(mul)(p, p));
     if (!l->square)
         length = V(add)(length, NAME(dot)(l->metric + 3, V(mul)(u, v),
                                           V(mul)(u, p), V(mul)(v, p)));
@@ -115,9 +115,8 @@ TARGET VALUE_LEAF V(vec) NAME(square_length)(const snow_value_light *l,
 TARGET VALUE_LEAF void NAME(light)(const snow_value_light *l,
                                    const snow_value_rays *rays,
                                    float slope[2][2], const value_queue *q,
-                                   int n, const V(row) slopes[3],
-                                   V(row) * color, V(row) * white,
-                                   const bool eye) {
+                                   int n, const V(row) slopes[3], V(row) *color,
+                                   V(row) *white, const bool eye) {
     const float unit = l->bright ? 16383.5F : 32767.0F;
     V(vec) g[3][GROUPS], ray[2][GROUPS], to[3][GROUPS];
     for (int axis = 0; axis < 3; axis++)
@@ -126,14 +125,13 @@ TARGET VALUE_LEAF void NAME(light)(const snow_value_light *l,
         V(row_widen)(V(row_load)(q->ray[axis] + n), ray[axis]);
     for (int k = 0; k < GROUPS; k++) {
         V(vec) u = g[0][k], v = g[1][k], p = g[2][k], face[3];
-        V(vec)
-        inverse = V(mul)(V(row_rsqrt)(NAME(square_length)(l, u, v, p)),
-                         V(set1)(32767));
+        V(vec) inverse = V(mul)(V(row_rsqrt)(NAME(square_length)(l, u, v, p)),
+                                V(set1)(32767));
         if (eye)
-            NAME(face_eye)
-        (l, rays, NAME(ways_of)(slope[0], ray[0][k]),
-         NAME(ways_of)(slope[1], ray[1][k]), u, v, p, face);
-        else NAME(face)(l, u, v, p, face);
+            NAME(face_eye)(l, rays, NAME(ways_of)(slope[0], ray[0][k]),
+                           NAME(ways_of)(slope[1], ray[1][k]), u, v, p, face);
+        else
+            NAME(face)(l, u, v, p, face);
         for (int way = 0; way < (l->distant ? 3 : 1); way++)
             to[way][k] = V(mul)(V(row_turn)(face[way], face[0]), inverse);
     }
@@ -160,9 +158,9 @@ TARGET VALUE_LEAF V(row) NAME(split)(V(row) color[4]) {
 }
 
 /* The places of 32 samples in the table. */
-TARGET VALUE_LEAF V(row)
-    NAME(entries)(const snow_value_table *table, const int16_t *front,
-                  const int16_t *back) {
+TARGET VALUE_LEAF V(row) NAME(entries)(const snow_value_table *table,
+                                       const int16_t *front,
+                                       const int16_t *back) {
     if (table->nodes) {
         int16_t index[32];
         for (int n = 0; n < 32; n++)
@@ -196,11 +194,11 @@ TARGET VALUE_LEAF void NAME(slopes)(const value_queue *q, int n, V(row) place,
 
 /* The places of the opacity in a slab, of which these are the places in what is
  * left of it; a whole one keeps its own. */
-TARGET VALUE_LEAF V(row)
-    NAME(place_within)(const value_queue *q, int n, V(row) place) {
+TARGET VALUE_LEAF V(row) NAME(place_within)(const value_queue *q, int n,
+                                            V(row) place) {
     V(row) part = V(row_load)(q->part + n);
-    V(row)
-    within = V(row_add)(V(row_load)(q->from + n), V(row_mulhrs)(place, part));
+    V(row) within =
+        V(row_add)(V(row_load)(q->from + n), V(row_mulhrs)(place, part));
     return V(row_choose)(V(row_gt)(part, V(row_set1)(INT16_MAX - 1)), place,
                          within);
 }
@@ -242,9 +240,9 @@ TARGET VALUE_STAGE void NAME(look_up)(const snow_value_splat *p, value_queue *q,
             for (int c = 0; c < 4; c++)
                 color[c] = V(row_load)(q->color[c] + n);
         else
-            V(row_gather)
-        (p->table->entries, NAME(entries)(p->table, q->front + n, q->back + n),
-         color);
+            V(row_gather)(p->table->entries,
+                          NAME(entries)(p->table, q->front + n, q->back + n),
+                          color);
         if (sloped && !p->surface)
             place = NAME(split)(color);
         if (sloped)
@@ -284,8 +282,8 @@ TARGET VALUE_STAGE void NAME(light_all)(const snow_value_splat *p,
                     slopes[axis],
                     NAME(mix)(V(row_load)(q->border[axis] + n),
                               V(row_load)(q->border[3 + axis] + n), place));
-            NAME(light)
-            (&light, p->rays, slope, q, n, slopes, &color, &white, eye);
+            NAME(light)(&light, p->rays, slope, q, n, slopes, &color, &white,
+                        eye);
             V(row_store)(q->light + n, color);
             V(row_store)(q->white + n, white);
         }
@@ -303,8 +301,8 @@ TARGET VALUE_STAGE void NAME(shade)(const snow_value_light *l, value_queue *q,
             V(row) lit = V(row_mulhrs)(V(row_load)(q->color[c] + n), light);
             if (l->bright)
                 lit = V(row_adds)(lit, lit);
-            V(row_store)
-            (q->color[c] + n, V(row_min)(V(row_adds)(lit, shine), alpha));
+            V(row_store)(q->color[c] + n,
+                         V(row_min)(V(row_adds)(lit, shine), alpha));
         }
     }
 }

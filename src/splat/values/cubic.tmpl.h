@@ -18,7 +18,7 @@ static inline void NAME(spline)(double at, float out[4]) {
 /* Mixes the four voxels of 32 numbers along u to line `at`. */
 TARGET VALUE_INLINE void NAME(mix_parts_along)(const NAME(part) parts[4],
                                                float (*u)[32], bool weigh,
-                                               int at, NAME(lines) * out) {
+                                               int at, NAME(lines) *out) {
     int16_t voxels[4][32], weights[4][32];
     for (int x = 0; x < 4; x++) {
         V(row_store)(voxels[x], parts[x].value);
@@ -39,9 +39,9 @@ TARGET VALUE_INLINE void NAME(mix_parts_along)(const NAME(part) parts[4],
 }
 
 /* Row `row` of voxels, mixed along u. */
-TARGET VALUE_INLINE void NAME(mix_line)(const NAME(source) * s, int64_t row,
+TARGET VALUE_INLINE void NAME(mix_line)(const NAME(source) *s, int64_t row,
                                         float (*u)[32], bool weigh,
-                                        const bool between, NAME(lines) * out) {
+                                        const bool between, NAME(lines) *out) {
     NAME(part) parts[4];
     int at = (int)(row & 3);
     if (out->row[at] == row)
@@ -65,7 +65,7 @@ TARGET VALUE_INLINE void NAME(mix_lines)(float (*lines)[32], int64_t row,
 }
 
 /* Four lines to a row of a sheet; `weigh`: there may be holes. */
-TARGET VALUE_INLINE void NAME(mix_row)(NAME(lines) * lines, int64_t at,
+TARGET VALUE_INLINE void NAME(mix_row)(NAME(lines) *lines, int64_t at,
                                        const float v[4], bool weigh,
                                        int16_t *out) {
     NAME(mix_lines)(lines->values, at, v, out);
@@ -77,7 +77,7 @@ TARGET VALUE_INLINE void NAME(mix_row)(NAME(lines) * lines, int64_t at,
 }
 
 /* As NAME(fill). */
-TARGET static void NAME(fill_cubic)(const NAME(source) * s, int64_t first,
+TARGET static void NAME(fill_cubic)(const NAME(source) *s, int64_t first,
                                     uint64_t rows,
                                     const snow_value_place *place,
                                     int16_t (*out)[32], bool weigh,

@@ -76,9 +76,10 @@ TARGET static void NAME(find_cells)(const snow_value_store *s,
             if (!out->any[run])
                 memset(out->cells[run], 0, sizeof out->cells[run]);
             out->any[run] = true;
-            NAME(pick_cells)
-            (s, s->masks + snow_value_mask_at(s, run, sheet->slice + n) + first,
-             u, v, alive & (uint32_t)within, out->cells[run]);
+            NAME(pick_cells)(
+                s,
+                s->masks + snow_value_mask_at(s, run, sheet->slice + n) + first,
+                u, v, alive & (uint32_t)within, out->cells[run]);
         }
     }
 }
@@ -106,11 +107,10 @@ TARGET static uint32_t NAME(activate_eye)(const snow_value_splat *p, int n,
         if (of->sheet == n + side)
             continue;
         of->sheet = n + side;
-        NAME(find_cells)
-        (s, p->sheets + n + side,
-         value_lanes_of(p->rays, n + side, phase, 0, tile[0]),
-         value_lanes_of(p->rays, n + side, phase, 1, tile[1]), state->alive,
-         of);
+        NAME(find_cells)(s, p->sheets + n + side,
+                         value_lanes_of(p->rays, n + side, phase, 0, tile[0]),
+                         value_lanes_of(p->rays, n + side, phase, 1, tile[1]),
+                         state->alive, of);
     }
     for (int run = 0; run < s->run_count; run++)
         if (!cells[0].any[run] && !cells[1].any[run])
@@ -163,7 +163,7 @@ static inline void NAME(clip_eye)(const snow_value_splat *p, int n, int phase,
 
 /* Voxels of a row on both sides of the lanes: of a slice, between it and the
  * next one, or the difference of two of them. */
-TARGET VALUE_INLINE void NAME(voxels_under)(const NAME(source) * s,
+TARGET VALUE_INLINE void NAME(voxels_under)(const NAME(source) *s,
                                             const snow_value_lanes *u,
                                             int64_t row, const bool between,
                                             const bool difference,
@@ -172,12 +172,11 @@ TARGET VALUE_INLINE void NAME(voxels_under)(const NAME(source) * s,
     int span = u->at[31] + 2;
     for (int end = 0; end <= difference; end++) {
         V(row) here[2], next[2];
-        V(row_pairs)
-        (NAME(line)(s, end, 0, row, u->first, span, room), u->at, span, here);
+        V(row_pairs)(NAME(line)(s, end, 0, row, u->first, span, room), u->at,
+                     span, here);
         if (between) {
-            V(row_pairs)
-            (NAME(line)(s, end, 1, row, u->first, span, room), u->at, span,
-             next);
+            V(row_pairs)(NAME(line)(s, end, 1, row, u->first, span, room),
+                         u->at, span, next);
             here[0] = NAME(toward)(here[0], next[0], s->toward);
             here[1] = NAME(toward)(here[1], next[1], s->toward);
         }
@@ -189,9 +188,10 @@ TARGET VALUE_INLINE void NAME(voxels_under)(const NAME(source) * s,
             out[n] = V(row_adds)(out[n], out[n]);
 }
 
-TARGET VALUE_INLINE V(row)
-    NAME(along_lanes)(const NAME(source) * s, const snow_value_lanes *u,
-                      int64_t row, const bool between, const bool difference) {
+TARGET VALUE_INLINE V(row) NAME(along_lanes)(const NAME(source) *s,
+                                             const snow_value_lanes *u,
+                                             int64_t row, const bool between,
+                                             const bool difference) {
     V(row) ends[2];
     NAME(voxels_under)(s, u, row, between, difference, ends);
     return NAME(mix)(ends[0], ends[1], V(row_load)(u->weight));
@@ -207,7 +207,7 @@ static inline int64_t NAME(voxel_row)(const snow_value_store *s,
 
 /* Rows of a sheet, a bit each, into `out`; bit 0 is lane `first` of v. */
 TARGET VALUE_INLINE void
-NAME(fill_eye)(const NAME(source) * s, const snow_value_store *store,
+NAME(fill_eye)(const NAME(source) *s, const snow_value_store *store,
                const snow_value_lanes *u, const snow_value_lanes *v, int first,
                uint64_t rows, int16_t (*out)[32], const bool between,
                const bool difference) {
@@ -216,13 +216,12 @@ NAME(fill_eye)(const NAME(source) * s, const snow_value_store *store,
     for (; rows; rows &= rows - 1) {
         int n = __builtin_ctzll(rows);
         int64_t row = NAME(voxel_row)(store, v, first + n);
-        V(row)
-        above = row == last + 1
-                    ? below
-                    : NAME(along_lanes)(s, u, row, between, difference);
+        V(row) above = row == last + 1
+                           ? below
+                           : NAME(along_lanes)(s, u, row, between, difference);
         below = NAME(along_lanes)(s, u, row + 1, between, difference);
-        V(row_store)
-        (out[n], NAME(mix)(above, below, V(row_set1)(v->weight[first + n])));
+        V(row_store)(
+            out[n], NAME(mix)(above, below, V(row_set1)(v->weight[first + n])));
         last = row;
     }
 }
@@ -247,16 +246,16 @@ static inline bool NAME(near_holes_eye)(const snow_value_store *s,
 }
 
 /* As NAME(parts_along). */
-TARGET VALUE_INLINE NAME(part)
-    NAME(parts_under)(const NAME(source) * s, const snow_value_lanes *u,
-                      int64_t row, bool between) {
+TARGET VALUE_INLINE NAME(part) NAME(parts_under)(const NAME(source) *s,
+                                                 const snow_value_lanes *u,
+                                                 int64_t row, bool between) {
     const int16_t *values = s->values + u->first;
     V(row) here[2], next[2], weight = V(row_load)(u->weight);
     NAME(part) ends[2];
     V(row_pairs)(values + s->slice[row], u->at, u->at[31] + 2, here);
     if (between)
-        V(row_pairs)
-    (values + s->slice[row + s->next], u->at, u->at[31] + 2, next);
+        V(row_pairs)(values + s->slice[row + s->next], u->at, u->at[31] + 2,
+                     next);
     for (int n = 0; n < 2; n++) {
         ends[n] = NAME(part_of)(here[n]);
         if (!between)
@@ -270,7 +269,7 @@ TARGET VALUE_INLINE NAME(part)
 }
 
 /* As NAME(fill_holes); bit 0 of `rows` is lane `first` of v. */
-TARGET static void NAME(fill_holes_eye)(const NAME(source) * s,
+TARGET static void NAME(fill_holes_eye)(const NAME(source) *s,
                                         const snow_value_store *store,
                                         const snow_value_lanes *u,
                                         const snow_value_lanes *v, int first,
@@ -288,11 +287,11 @@ TARGET static void NAME(fill_holes_eye)(const NAME(source) * s,
 /* --- kernel bspline ------------------------------------------------------- */
 
 /* As NAME(mix_line). */
-TARGET VALUE_INLINE void NAME(mix_line_eye)(const NAME(source) * s,
+TARGET VALUE_INLINE void NAME(mix_line_eye)(const NAME(source) *s,
                                             const snow_value_lanes *lanes,
                                             int64_t row, float (*u)[32],
                                             bool weigh, const bool between,
-                                            NAME(lines) * out) {
+                                            NAME(lines) *out) {
     const int16_t *values = s->values + lanes->first - 1;
     int span = lanes->at[31] + 2, at = (int)(row & 3);
     NAME(part) parts[4];
@@ -303,8 +302,8 @@ TARGET VALUE_INLINE void NAME(mix_line_eye)(const NAME(source) * s,
     for (int x = 0; x < 4; x += 2) {
         V(row_pairs)(values + s->slice[row] + x, lanes->at, span, here + x);
         if (between)
-            V(row_pairs)
-        (values + s->slice[row + s->next] + x, lanes->at, span, next + x);
+            V(row_pairs)(values + s->slice[row + s->next] + x, lanes->at, span,
+                         next + x);
     }
     for (int x = 0; x < 4; x++) {
         parts[x] = NAME(part_of)(here[x]);
@@ -319,7 +318,7 @@ TARGET VALUE_INLINE void NAME(mix_line_eye)(const NAME(source) * s,
 
 /* As NAME(fill_cubic); bit 0 of `rows` is lane `first` of v. */
 TARGET static void NAME(fill_cubic_eye)(
-    const NAME(source) * s, const snow_value_store *store,
+    const NAME(source) *s, const snow_value_store *store,
     const snow_value_lanes *across, const snow_value_lanes *down, double step,
     int first, uint64_t rows, int16_t (*out)[32], bool weigh, bool between) {
     NAME(lines) lines;
@@ -360,11 +359,11 @@ TARGET static void NAME(cross_holes_eye)(const snow_value_splat *p, int n,
     for (int side = 0; side < 2; side++) {
         NAME(set_slices)(&from, slices[side], slices[side]);
         if (s->cubic)
-            NAME(fill_cubic_eye)
-        (&from, s, u, v, step, 1, across, beside[side], out->holes,
-         sheet->between_across);
-        else NAME(fill_holes_eye)(&from, s, u, v, 1, across, beside[side],
-                                  partial[side], sheet->between_across);
+            NAME(fill_cubic_eye)(&from, s, u, v, step, 1, across, beside[side],
+                                 out->holes, sheet->between_across);
+        else
+            NAME(fill_holes_eye)(&from, s, u, v, 1, across, beside[side],
+                                 partial[side], sheet->between_across);
     }
     for (; across; across &= across - 1) {
         int r = __builtin_ctz(across);
@@ -407,14 +406,15 @@ TARGET VALUE_ONCE void NAME(sample_eye)(const snow_value_splat *p, int n,
     NAME(begin)(s, sheet, &rows, &across, out, &from);
     uint32_t partial[SHEET_ROWS];
     if (s->cubic)
-        NAME(fill_cubic_eye)
-    (&from, s, u, v, p->rays->sheets[n].step, 0, rows, out->values, out->holes,
-     sheet->between);
-    else if (out->holes) NAME(fill_holes_eye)(
-        &from, s, u, v, 0, rows, out->values, partial, sheet->between);
+        NAME(fill_cubic_eye)(&from, s, u, v, p->rays->sheets[n].step, 0, rows,
+                             out->values, out->holes, sheet->between);
+    else if (out->holes)
+        NAME(fill_holes_eye)(&from, s, u, v, 0, rows, out->values, partial,
+                             sheet->between);
     else if (sheet->between)
         NAME(fill_eye)(&from, s, u, v, 0, rows, out->values, true, false);
-    else NAME(fill_eye)(&from, s, u, v, 0, rows, out->values, false, false);
+    else
+        NAME(fill_eye)(&from, s, u, v, 0, rows, out->values, false, false);
     if (!across)
         return;
     NAME(begin_across)(sheet, &from);

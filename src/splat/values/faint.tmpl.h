@@ -4,8 +4,8 @@
 /* LANES numbers of a plane: what shines through, times the colour. */
 TARGET VALUE_INLINE void NAME(add_faint)(float *plane, const int16_t *color,
                                          V(vec) through) {
-    V(store)
-    (plane, V(add)(V(load)(plane), V(mul)(through, V(row_floats)(color))));
+    V(store)(plane,
+             V(add)(V(load)(plane), V(mul)(through, V(row_floats)(color))));
 }
 
 /* As NAME(blend). */
@@ -29,8 +29,8 @@ TARGET static int NAME(blend_faint)(const snow_value_splat *p,
             for (int c = 0; c < channels - 1; c++)
                 NAME(add_faint)((*plane)[c][row] + n, color[c] + n, through);
             NAME(add_faint)(alpha, color[3] + n, through);
-            V(row_round)
-            (alphas + n, V(mul)(V(load)(alpha), V(set1)(INT16_MAX)));
+            V(row_round)(alphas + n,
+                         V(mul)(V(load)(alpha), V(set1)(INT16_MAX)));
         }
         count += __builtin_popcount(mask);
         state->open[row] &=

@@ -19,22 +19,22 @@ TARGET VALUE_INLINE NAME(part) NAME(part_of)(V(row) voxels) {
 }
 
 /* As NAME(pair) of a slice or between it and the next one, and weights. */
-TARGET VALUE_INLINE NAME(part)
-    NAME(parts)(const NAME(source) * s, int64_t row, int by, bool between) {
+TARGET VALUE_INLINE NAME(part) NAME(parts)(const NAME(source) *s, int64_t row,
+                                           int by, bool between) {
     const int16_t *values = s->values + s->column + by;
     NAME(part) here = NAME(part_of)(V(row_load)(values + s->slice[row]));
     if (between) {
-        NAME(part)
-        next = NAME(part_of)(V(row_load)(values + s->slice[row + s->next]));
+        NAME(part) next =
+            NAME(part_of)(V(row_load)(values + s->slice[row + s->next]));
         here.value = NAME(toward)(here.value, next.value, s->toward);
         here.weight = NAME(toward)(here.weight, next.weight, s->toward);
     }
     return here;
 }
 
-TARGET VALUE_INLINE NAME(part)
-    NAME(parts_along)(const NAME(source) * s, int64_t row, V(row) weight,
-                      bool between) {
+TARGET VALUE_INLINE NAME(part) NAME(parts_along)(const NAME(source) *s,
+                                                 int64_t row, V(row) weight,
+                                                 bool between) {
     NAME(part) a = NAME(parts)(s, row, 0, between);
     NAME(part) b = NAME(parts)(s, row, 1, between);
     return (NAME(part)){NAME(mix)(a.value, b.value, weight),
@@ -58,7 +58,7 @@ TARGET VALUE_INLINE uint32_t NAME(mix_parts)(NAME(part) above, NAME(part) below,
 
 /* As NAME(fill); a bit in `partial` for each number whose weights are not
  * full. */
-TARGET static void NAME(fill_holes)(const NAME(source) * s, int64_t first,
+TARGET static void NAME(fill_holes)(const NAME(source) *s, int64_t first,
                                     uint64_t rows,
                                     const snow_value_place *place,
                                     int16_t (*out)[32], uint32_t *partial,
@@ -89,11 +89,11 @@ TARGET static void NAME(cross_holes)(const snow_value_splat *p, int n,
     for (int side = 0; side < 2; side++) {
         NAME(set_slices)(&from, slices[side], slices[side]);
         if (p->store->cubic)
-            NAME(fill_cubic)
-        (&from, row, across, place, beside[side], out->holes,
-         sheet->between_across);
-        else NAME(fill_holes)(&from, row, across, place, beside[side],
-                              partial[side], sheet->between_across);
+            NAME(fill_cubic)(&from, row, across, place, beside[side],
+                             out->holes, sheet->between_across);
+        else
+            NAME(fill_holes)(&from, row, across, place, beside[side],
+                             partial[side], sheet->between_across);
     }
     for (; across; across &= across - 1) {
         int r = __builtin_ctz(across);

@@ -37,7 +37,7 @@ static inline bool NAME(is_cut)(const value_slab *slab) {
 
 /* The active samples of a row that are in a slab, and their parts of it. */
 TARGET VALUE_INLINE uint32_t NAME(inside)(const value_slab *slab, int row,
-                                          bool cuts, V(row) * part) {
+                                          bool cuts, V(row) *part) {
     V(row) from;
     uint32_t mask = slab->active[row];
     *part = V(row_set1)(INT16_MAX);
@@ -82,8 +82,7 @@ TARGET static bool NAME(measure_rays)(const snow_value_splat *p, int phase,
         }
         for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
             int row = __builtin_ctz(rows);
-            NAME(add_lengths)
-            (slab, row, NAME(is_cut)(slab), (*plane)[3][row]);
+            NAME(add_lengths)(slab, row, NAME(is_cut)(slab), (*plane)[3][row]);
         }
     }
     for (int row = 0; row < SNOW_VALUE_ROWS; row++)
@@ -128,9 +127,9 @@ TARGET static bool NAME(find_rays)(const snow_value_splat *p, int phase,
 TARGET VALUE_INLINE void NAME(keep_best)(int16_t *pixels, V(row) x, V(row) y,
                                          uint32_t mask, const bool least) {
     V(row) here = V(row_load)(pixels);
-    V(row)
-    best = least ? V(row_subs)(V(row_set1)(SNOW_VALUE_MOST), V(row_min)(x, y))
-                 : V(row_max)(x, y);
+    V(row) best =
+        least ? V(row_subs)(V(row_set1)(SNOW_VALUE_MOST), V(row_min)(x, y))
+              : V(row_max)(x, y);
     V(row_store)(pixels, V(row_choose)(mask, V(row_max)(best, here), here));
 }
 
@@ -182,13 +181,12 @@ NAME(project)(const snow_value_splat *p, int n, int phase, const int tile[2],
         uint32_t mask = NAME(ends)(f, b, slab, row, cuts, &x, &y, &from, &part);
         any |= mask;
         if (reduction == SNOW_VALUE_SUM) {
-            NAME(keep_sum)
-            ((snow_value_faint_plane *)planes + phase, row, x, y, part, mask,
-             cuts, p->store->holes);
+            NAME(keep_sum)((snow_value_faint_plane *)planes + phase, row, x, y,
+                           part, mask, cuts, p->store->holes);
         } else {
             int16_t *pixels = ((snow_value_plane *)planes)[phase][0][row];
-            NAME(keep_best)
-            (pixels, x, y, mask, reduction == SNOW_VALUE_SMALLEST);
+            NAME(keep_best)(pixels, x, y, mask,
+                            reduction == SNOW_VALUE_SMALLEST);
             NAME(close_best)(pixels, row, state);
         }
     }
@@ -210,9 +208,8 @@ NAME(project_phases)(const snow_value_splat *p, int first, int end,
         if (turn >= list.count)
             break;
         for (; seen < list.count && seen <= turn + AHEAD; seen++)
-            NAME(look_ahead)
-        (p, list.slabs[seen], first, end, tile, room,
-         room->slab[seen % AHEAD_RING], false, eye);
+            NAME(look_ahead)(p, list.slabs[seen], first, end, tile, room,
+                             room->slab[seen % AHEAD_RING], false, eye);
         for (int phase = first; phase < end; phase++)
             drawn |= NAME(project)(
                 p, list.slabs[turn], phase, tile, planes, room,
@@ -230,11 +227,10 @@ TARGET static void NAME(lengthen_sums)(const snow_value_splat *p,
     const value_phase *state = &room->phase[phase];
     for (int row = 0; row < SNOW_VALUE_ROWS; row++) {
         int16_t lines[32];
-        V(row_store)
-        (lines, V(row_set1)((int16_t)(state->line + row * state->lines)));
+        V(row_store)(lines,
+                     V(row_set1)((int16_t)(state->line + row * state->lines)));
         for (int n = 0; n < 32; n += LANES) {
-            V(vec)
-            way = V(sqrt)(NAME(square_of)(
+            V(vec) way = V(sqrt)(NAME(square_of)(
                 p->rays->metric,
                 NAME(ways_of)(room->slope[0],
                               V(row_floats)(state->columns + n)),
@@ -274,8 +270,8 @@ NAME(project_tile)(const snow_value_splat *p, int x, int y, void *memory,
                                       reduction, eye);
     }
     for (int phase = 0; phase < p->phases && sums && eye; phase++)
-        NAME(lengthen_sums)
-    (p, room, phase, (snow_value_faint_plane *)memory + phase);
+        NAME(lengthen_sums)(p, room, phase,
+                            (snow_value_faint_plane *)memory + phase);
     return drawn;
 }
 

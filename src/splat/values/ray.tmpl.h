@@ -3,8 +3,8 @@
 #include "classify/opacity_power.tmpl.h"
 
 /* a . (uu vv 11 uv u1 v1) of LANES ways (u, v, 1). */
-TARGET VALUE_INLINE V(vec)
-    NAME(square_of)(const float a[6], V(vec) u, V(vec) v) {
+TARGET VALUE_INLINE V(vec) NAME(square_of)(const float a[6], V(vec) u,
+                                           V(vec) v) {
     V(vec) sum = V(add)(V(mul)(V(set1)(a[0]), V(mul)(u, u)), V(set1)(a[2]));
     sum = V(add)(sum, V(mul)(V(set1)(a[1]), V(mul)(v, v)));
     sum = V(add)(sum, V(mul)(V(set1)(a[3]), V(mul)(u, v)));
@@ -22,18 +22,17 @@ TARGET VALUE_INLINE void NAME(face_eye)(const snow_value_light *l,
                                         const snow_value_rays *rays,
                                         V(vec) across, V(vec) down, V(vec) u,
                                         V(vec) v, V(vec) p, V(vec) out[3]) {
-    V(vec)
-    inverse = V(row_rsqrt)(NAME(square_of)(rays->metric, across, down));
+    V(vec) inverse = V(row_rsqrt)(NAME(square_of)(rays->metric, across, down));
     V(vec) eye = V(add)(V(add)(V(mul)(across, u), V(mul)(down, v)), p);
     eye = V(mul)(V(mul)(eye, V(set1)(rays->toward)), inverse);
     out[0] = eye;
     if (!l->distant)
         return;
-    V(vec)
-    aside = V(mul)(NAME(dot)(rays->aside, across, down, V(set1)(1)), inverse);
+    V(vec) aside =
+        V(mul)(NAME(dot)(rays->aside, across, down, V(set1)(1)), inverse);
     /* |l + e|^2 = 2 + 2 l . e */
-    V(vec)
-    way = V(max)(V(add)(V(add)(aside, aside), V(set1)(2)), V(set1)(1e-9F));
+    V(vec) way =
+        V(max)(V(add)(V(add)(aside, aside), V(set1)(2)), V(set1)(1e-9F));
     out[1] = NAME(dot)(l->light, u, v, p);
     out[2] = V(mul)(V(add)(out[1], eye), V(row_rsqrt)(way));
 }
@@ -44,8 +43,7 @@ TARGET VALUE_INLINE void NAME(shares)(const snow_value_rays *rays,
                                       float slope[2][2], const value_queue *q,
                                       int n, bool cuts, float out[32]) {
     for (int at = 0; at < 32; at += LANES) {
-        V(vec)
-        way = V(sqrt)(NAME(square_of)(
+        V(vec) way = V(sqrt)(NAME(square_of)(
             rays->metric,
             NAME(ways_of)(slope[0], V(row_floats)(q->ray[0] + n + at)),
             NAME(ways_of)(slope[1], V(row_floats)(q->ray[1] + n + at))));

@@ -15,7 +15,7 @@ typedef struct NAME(source) {
 } NAME(source);
 
 /* Sets the slices that are read; `after` may be the same. */
-static inline void NAME(set_slices)(NAME(source) * s, int64_t slice,
+static inline void NAME(set_slices)(NAME(source) *s, int64_t slice,
                                     int64_t after) {
     const snow_value_store *store = s->store;
     s->begin[0] = slice * store->slice_step;
@@ -26,20 +26,19 @@ static inline void NAME(set_slices)(NAME(source) * s, int64_t slice,
     s->after = snow_value_at(store, after);
 }
 
-static inline NAME(source)
-    NAME(source_of)(const snow_value_store *store, int64_t slice) {
-    NAME(source)
-    s = {.store = store,
-         .values = store->values,
-         .next = store->rows + 2 * store->margin};
+static inline NAME(source) NAME(source_of)(const snow_value_store *store,
+                                           int64_t slice) {
+    NAME(source) s = {.store = store,
+                      .values = store->values,
+                      .next = store->rows + 2 * store->margin};
     NAME(set_slices)(&s, slice, slice);
     return s;
 }
 
 /* Where a row of stored values begins: of the slice, or of `after` where `end`
  * is 1, or of the next one of either where `on` is 1. */
-TARGET VALUE_LEAF int64_t NAME(place_of)(const NAME(source) * s, int end,
-                                         int on, int64_t row) {
+TARGET VALUE_LEAF int64_t NAME(place_of)(const NAME(source) *s, int end, int on,
+                                         int64_t row) {
     const snow_value_store *store = s->store;
     if (store->in_place)
         return s->begin[end] + on * store->slice_step + row * store->row_step;
@@ -53,10 +52,11 @@ TARGET VALUE_LEAF V(row) NAME(load_stored)(const unsigned char *stored,
     return V(row_load)((const int16_t *)(const void *)(stored + 2 * place));
 }
 
-TARGET VALUE_LEAF V(row)
-    NAME(by_rule)(V(row) stored, const snow_value_rule *rule, const int kind) {
-    V(row)
-    t = V(row_add)(V(row_mul)(stored, V(row_set1)((int16_t)rule->factor)),
+TARGET VALUE_LEAF V(row) NAME(by_rule)(V(row) stored,
+                                       const snow_value_rule *rule,
+                                       const int kind) {
+    V(row) t =
+        V(row_add)(V(row_mul)(stored, V(row_set1)((int16_t)rule->factor)),
                    V(row_set1)((int16_t)rule->offset));
     if (kind == SNOW_VALUE_BYTES)
         return t;
@@ -92,14 +92,13 @@ TARGET static V(row) NAME(load_some)(const snow_value_store *s, int64_t place) {
 
 /* 32 numbers of a row of the volume from `column` on, of which those within its
  * columns are right. */
-TARGET VALUE_LEAF V(row)
-    NAME(row_inside)(const snow_value_store *s, int64_t place, int64_t column,
-                     const int kind) {
+TARGET VALUE_LEAF V(row) NAME(row_inside)(const snow_value_store *s,
+                                          int64_t place, int64_t column,
+                                          const int kind) {
     int64_t at = place + column;
-    V(row)
-    stored = at >= 0 && at + 32 <= s->native_count
-                 ? NAME(load_stored)(s->stored, at, kind)
-                 : NAME(load_some)(s, at);
+    V(row) stored = at >= 0 && at + 32 <= s->native_count
+                        ? NAME(load_stored)(s->stored, at, kind)
+                        : NAME(load_some)(s, at);
     return NAME(by_rule)(stored, &s->rule, kind);
 }
 
@@ -127,7 +126,7 @@ TARGET VALUE_INLINE void NAME(pair_inside)(const snow_value_store *s,
 
 /* The same of a row above the first or below the last one, which is odd within
  * the columns, and beyond them as the row at the side. */
-TARGET static void NAME(pair_beyond)(const NAME(source) * from, int end, int on,
+TARGET static void NAME(pair_beyond)(const NAME(source) *from, int end, int on,
                                      int64_t row, int64_t column, int kind,
                                      V(row) out[2]) {
     const snow_value_store *s = from->store;
@@ -151,7 +150,7 @@ TARGET static void NAME(pair_beyond)(const NAME(source) * from, int end, int on,
 
 /* 32 numbers of a row from `column` on, and from the next one on, wherever they
  * are; `sided`: some may be beyond a side. */
-TARGET VALUE_LEAF void NAME(pair)(const NAME(source) * s, int end, int on,
+TARGET VALUE_LEAF void NAME(pair)(const NAME(source) *s, int end, int on,
                                   int64_t row, int64_t column, const int kind,
                                   const bool sided, V(row) out[2]) {
     if (kind == SNOW_VALUE_NUMBERS) {
@@ -163,8 +162,8 @@ TARGET VALUE_LEAF void NAME(pair)(const NAME(source) * s, int end, int on,
     } else if (sided && (row < 0 || row >= s->store->rows)) {
         NAME(pair_beyond)(s, end, on, row, column, kind, out);
     } else if (sided) {
-        NAME(pair_inside)
-        (s->store, NAME(place_of)(s, end, on, row), column, kind, out);
+        NAME(pair_inside)(s->store, NAME(place_of)(s, end, on, row), column,
+                          kind, out);
     } else {
         int64_t place = NAME(place_of)(s, end, on, row) + column;
         for (int n = 0; n < 2; n++)
@@ -178,7 +177,7 @@ TARGET VALUE_LEAF void NAME(pair)(const NAME(source) * s, int end, int on,
 #define LINE_NUMBERS (32 * SNOW_VALUE_SPREAD_MOST + 128)
 
 /* `count` numbers of a row from `column` on: where they are, or in `room`. */
-TARGET static const int16_t *NAME(line)(const NAME(source) * s, int end, int on,
+TARGET static const int16_t *NAME(line)(const NAME(source) *s, int end, int on,
                                         int64_t row, int64_t column, int count,
                                         int16_t *room) {
     const snow_value_kind kind = s->store->kind;
@@ -188,10 +187,11 @@ TARGET static const int16_t *NAME(line)(const NAME(source) * s, int end, int on,
     for (int n = 0; n < count; n += 32) {
         V(row) both[2];
         if (kind == SNOW_VALUE_BYTES)
-            NAME(pair)
-        (s, end, on, row, column + n, SNOW_VALUE_BYTES, true, both);
-        else NAME(pair)(s, end, on, row, column + n, SNOW_VALUE_WORDS, true,
-                        both);
+            NAME(pair)(s, end, on, row, column + n, SNOW_VALUE_BYTES, true,
+                       both);
+        else
+            NAME(pair)(s, end, on, row, column + n, SNOW_VALUE_WORDS, true,
+                       both);
         V(row_store)(room + n, both[0]);
     }
     return room;

@@ -10,9 +10,8 @@ TARGET VALUE_LEAF void NAME(set_masks)(uint32_t *to, V(row) low, V(row) high) {
 }
 
 TARGET VALUE_LEAF void NAME(copy_masks)(uint32_t *to, const uint32_t *from) {
-    NAME(set_masks)
-    (to, V(row_load)((const int16_t *)(const void *)from),
-     V(row_load)((const int16_t *)(const void *)(from + 16)));
+    NAME(set_masks)(to, V(row_load)((const int16_t *)(const void *)from),
+                    V(row_load)((const int16_t *)(const void *)(from + 16)));
 }
 
 /* Ors the cells of a sheet under a tile that are not wholly within a run. */
@@ -109,10 +108,10 @@ TARGET VALUE_LEAF V(row) NAME(toward)(V(row) a, V(row) b, int16_t toward) {
 
 /* One row of voxels, mixed along u: of a slice or between it and the next one;
  * or the difference of two of them. */
-TARGET VALUE_LEAF V(row)
-    NAME(along)(const NAME(source) * s, int64_t row, V(row) weight,
-                const bool between, const bool difference, const int kind,
-                const bool sided) {
+TARGET VALUE_LEAF V(row) NAME(along)(const NAME(source) *s, int64_t row,
+                                     V(row) weight, const bool between,
+                                     const bool difference, const int kind,
+                                     const bool sided) {
     V(row) ends[2][2], next[2];
     for (int end = 0; end <= difference; end++) {
         NAME(pair)(s, end, 0, row, s->column, kind, sided, ends[end]);
@@ -131,7 +130,7 @@ TARGET VALUE_LEAF V(row)
 }
 
 TARGET VALUE_LEAF void
-NAME(fill_rows_of)(const NAME(source) * from, int64_t first, uint64_t rows,
+NAME(fill_rows_of)(const NAME(source) *from, int64_t first, uint64_t rows,
                    const snow_value_place *place, int16_t (*out)[32],
                    const bool between, const bool difference, const int kind,
                    const bool sided) {
@@ -143,9 +142,8 @@ NAME(fill_rows_of)(const NAME(source) * from, int64_t first, uint64_t rows,
         const int begin = __builtin_ctzll(rows);
         V(row) above = V(row_set1)(0);
         for (int row = begin;; row++) {
-            V(row)
-            here = NAME(along)(&s, first + row, u, between, difference, kind,
-                               sided);
+            V(row) here = NAME(along)(&s, first + row, u, between, difference,
+                                      kind, sided);
             if (row > begin)
                 V(row_store)(out[row - 1], NAME(mix)(above, here, v));
             above = here;
@@ -157,14 +155,14 @@ NAME(fill_rows_of)(const NAME(source) * from, int64_t first, uint64_t rows,
 }
 
 /* The same as a function of its own, where all kinds would be a lot of code. */
-TARGET VALUE_INLINE void NAME(fill_rows)(const NAME(source) * from,
+TARGET VALUE_INLINE void NAME(fill_rows)(const NAME(source) *from,
                                          int64_t first, uint64_t rows,
                                          const snow_value_place *place,
                                          int16_t (*out)[32], const bool between,
                                          const bool difference, const int kind,
                                          const bool sided) {
-    NAME(fill_rows_of)
-    (from, first, rows, place, out, between, difference, kind, sided);
+    NAME(fill_rows_of)(from, first, rows, place, out, between, difference, kind,
+                       sided);
 }
 
 /* Rows of bytes in place, and which lanes are beyond their ends: of the 32
@@ -177,13 +175,12 @@ typedef struct NAME(bytes) {
     uint32_t beyond[2][2]; /* lanes: [end][voxel or next] */
 } NAME(bytes);
 
-static inline NAME(bytes) NAME(bytes_of)(const NAME(source) * s) {
+static inline NAME(bytes) NAME(bytes_of)(const NAME(source) *s) {
     const int64_t columns = s->store->columns;
-    NAME(bytes)
-    r = {.rule = s->store->rule,
-         .apart = s->begin[1] - s->begin[0],
-         .ends = {-s->column, columns - 1 - s->column},
-         .inside = columns > 1};
+    NAME(bytes) r = {.rule = s->store->rule,
+                     .apart = s->begin[1] - s->begin[0],
+                     .ends = {-s->column, columns - 1 - s->column},
+                     .inside = columns > 1};
     for (int n = 0; n < 2; n++) {
         r.beyond[0][n] = NAME(first_lanes)(-s->column - n);
         r.beyond[1][n] = ~NAME(first_lanes)(columns - s->column - n);
@@ -192,7 +189,7 @@ static inline NAME(bytes) NAME(bytes_of)(const NAME(source) * s) {
 }
 
 /* The number beyond an end of a row, from the two voxels there. */
-static inline int NAME(byte_beyond)(const NAME(bytes) * r,
+static inline int NAME(byte_beyond)(const NAME(bytes) *r,
                                     const unsigned char *end,
                                     ptrdiff_t inside) {
     return snow_value_beyond(snow_value_by_rule(&r->rule, end[0]),
@@ -201,7 +198,7 @@ static inline int NAME(byte_beyond)(const NAME(bytes) * r,
 
 /* Numbers from `at` on, and from the next voxel on, or differences to those
  * `apart` behind, where lanes are beyond the row's ends. */
-TARGET VALUE_INLINE void NAME(end_bytes)(const NAME(bytes) * r,
+TARGET VALUE_INLINE void NAME(end_bytes)(const NAME(bytes) *r,
                                          const unsigned char *at,
                                          V(row) numbers[2],
                                          const bool difference) {
@@ -222,9 +219,10 @@ TARGET VALUE_INLINE void NAME(end_bytes)(const NAME(bytes) * r,
 
 /* A row of bytes mixed along u, or the difference to that which is `apart`
  * behind: numbers are sums and products, and so are differences of them. */
-TARGET VALUE_LEAF V(row)
-    NAME(along_bytes)(const NAME(bytes) * r, const unsigned char *at,
-                      V(row) weight, const bool difference, const bool sided) {
+TARGET VALUE_LEAF V(row) NAME(along_bytes)(const NAME(bytes) *r,
+                                           const unsigned char *at,
+                                           V(row) weight, const bool difference,
+                                           const bool sided) {
     const V(row) factor = V(row_set1)((int16_t)r->rule.factor);
     V(row) n[2];
     for (int k = 0; k < 2; k++) {
@@ -242,7 +240,7 @@ TARGET VALUE_LEAF V(row)
 
 /* Rows of bytes in place, none beyond the first or last. */
 TARGET VALUE_INLINE void
-NAME(fill_bytes_by)(const NAME(source) * s, int64_t first, uint64_t rows,
+NAME(fill_bytes_by)(const NAME(source) *s, int64_t first, uint64_t rows,
                     const snow_value_place *place, int16_t (*out)[32],
                     const bool difference, const bool sided) {
     const NAME(bytes) r = NAME(bytes_of)(s);
@@ -279,7 +277,7 @@ VALUE_FILL_BYTES(difference_sided, true, true)
 
 /* Whether 33 bytes from the column on may be read in all rows from `first` on
  * that are set, and in the one behind. */
-static inline bool NAME(readable)(const NAME(source) * s, int64_t first,
+static inline bool NAME(readable)(const NAME(source) *s, int64_t first,
                                   uint64_t rows) {
     const snow_value_store *store = s->store;
     const int64_t low = first + __builtin_ctzll(rows);
@@ -314,7 +312,7 @@ VALUE_FILL(sided_words, fill_rows, SNOW_VALUE_WORDS, true)
 #undef VALUE_FILL
 
 /* Rows of a sheet, a bit each from row `first` on, into `out`. */
-TARGET static void NAME(fill)(const NAME(source) * s, int64_t first,
+TARGET static void NAME(fill)(const NAME(source) *s, int64_t first,
                               uint64_t rows, const snow_value_place *place,
                               int16_t (*out)[32], bool between,
                               bool difference) {
@@ -362,7 +360,7 @@ static inline bool NAME(near_holes)(const snow_value_store *s,
 TARGET VALUE_INLINE void NAME(begin)(const snow_value_store *s,
                                      const snow_value_sheet *sheet,
                                      uint64_t *rows, uint32_t *across,
-                                     value_rows *out, NAME(source) * from) {
+                                     value_rows *out, NAME(source) *from) {
     *rows &= ~out->has;
     *across &= ~out->has_across;
     out->has |= *rows;
@@ -372,7 +370,7 @@ TARGET VALUE_INLINE void NAME(begin)(const snow_value_store *s,
 }
 
 TARGET VALUE_INLINE void NAME(begin_across)(const snow_value_sheet *sheet,
-                                            NAME(source) * from) {
+                                            NAME(source) *from) {
     NAME(set_slices)(from, sheet->before, sheet->after);
     from->twice = sheet->one_sided;
 }
@@ -400,18 +398,20 @@ TARGET VALUE_ONCE void NAME(sample_all)(const snow_value_splat *p, int n,
     from.column = column;
     uint32_t partial[SHEET_ROWS];
     if (s->cubic)
-        NAME(fill_cubic)
-    (&from, first - 1, rows, place, out->values, out->holes, sheet->between);
-    else if (out->holes) NAME(fill_holes)(&from, first - 1, rows, place,
-                                          out->values, partial, sheet->between);
-    else NAME(fill)(&from, first - 1, rows, place, out->values, sheet->between,
-                    false);
+        NAME(fill_cubic)(&from, first - 1, rows, place, out->values, out->holes,
+                         sheet->between);
+    else if (out->holes)
+        NAME(fill_holes)(&from, first - 1, rows, place, out->values, partial,
+                         sheet->between);
+    else
+        NAME(fill)(&from, first - 1, rows, place, out->values, sheet->between,
+                   false);
     if (!across)
         return;
     NAME(begin_across)(sheet, &from);
     if (!s->cubic)
-        NAME(fill)
-    (&from, first, across, place, out->across, sheet->between_across, true);
+        NAME(fill)(&from, first, across, place, out->across,
+                   sheet->between_across, true);
     if (out->holes || s->cubic)
         NAME(cross_holes)(p, n, from, first, across, place, out);
 }

@@ -36,7 +36,7 @@ TARGET VALUE_INLINE uint32_t NAME(see)(const snow_value_table *table,
 /* Ends of the part of a slab that is inside; the lanes that have any. */
 TARGET VALUE_INLINE uint32_t NAME(clip)(const value_cut cut[2],
                                         const value_clip *clip, int row,
-                                        V(row) * from, V(row) * part) {
+                                        V(row) *from, V(row) *part) {
     V(row) to = V(row_set1)(INT16_MAX);
     *from = V(row_set1)(0);
     if (cut[0].cuts) {
@@ -70,8 +70,8 @@ TARGET VALUE_LEAF V(row) NAME(slope)(const int16_t *before, const int16_t *here,
 TARGET VALUE_INLINE uint32_t NAME(ends)(const value_rows *f,
                                         const value_rows *b,
                                         const value_slab *slab, int row,
-                                        bool cuts, V(row) * x, V(row) * y,
-                                        V(row) * from, V(row) * part) {
+                                        bool cuts, V(row) *x, V(row) *y,
+                                        V(row) *from, V(row) *part) {
     const V(row) zero = V(row_set1)(0), most = V(row_set1)(SNOW_VALUE_MOST);
     const V(row) none = V(row_set1)(SNOW_VALUE_HOLE);
     const bool holes = f->holes || b->holes;
@@ -150,11 +150,11 @@ TARGET VALUE_LEAF int NAME(collect_by)(const snow_value_splat *p,
             V(row_compress)(q->part + count, part, mask);
         }
         if (eye) {
-            V(row_compress)
-            (q->ray[0] + count, V(row_load)(state->columns), mask);
-            V(row_store)
-            (q->ray[1] + count,
-             V(row_set1)((int16_t)(state->line + row * state->lines)));
+            V(row_compress)(q->ray[0] + count, V(row_load)(state->columns),
+                            mask);
+            V(row_store)(
+                q->ray[1] + count,
+                V(row_set1)((int16_t)(state->line + row * state->lines)));
         }
         for (int side = 0; sloped && side < 2; side++) {
             const int16_t *at = side ? back : front;
@@ -164,13 +164,12 @@ TARGET VALUE_LEAF int NAME(collect_by)(const snow_value_splat *p,
             const value_beside *by = eye ? &beside[side] : &own;
             const int on = eye ? 32 * row : 0;
             for (int axis = 0; axis < 2; axis++)
-                V(row_compress)
-            (slopes[axis] + count,
-             NAME(slope)(by->at[2 * axis + 1] + on, at, by->at[2 * axis] + on,
-                         by->holes),
-             mask);
-            V(row_compress)
-            (slopes[2] + count, V(row_load)((side ? b : f)->across[row]), mask);
+                V(row_compress)(slopes[axis] + count,
+                                NAME(slope)(by->at[2 * axis + 1] + on, at,
+                                            by->at[2 * axis] + on, by->holes),
+                                mask);
+            V(row_compress)(slopes[2] + count,
+                            V(row_load)((side ? b : f)->across[row]), mask);
         }
         count += __builtin_popcount(mask);
     }
@@ -207,8 +206,8 @@ TARGET VALUE_STAGE int NAME(blend)(snow_value_plane *plane, value_phase *state,
         for (int c = 0; c < channels - 1; c++) {
             int16_t *at = (*plane)[c][row];
             V(row) color = V(row_expand)(q->color[c] + count, mask);
-            V(row_store)
-            (at, V(row_add)(V(row_load)(at), V(row_mulhrs)(through, color)));
+            V(row_store)(
+                at, V(row_add)(V(row_load)(at), V(row_mulhrs)(through, color)));
         }
         alpha = V(row_add)(
             alpha,
@@ -282,8 +281,8 @@ TARGET VALUE_STAGE int NAME(gather)(const snow_value_splat *p, int n, int first,
             NAME(sample)(p, n + 1, phase, tile, 0, slab->rows, b, eye);
         }
         for (int side = 0; sloped && eye && side < 2; side++)
-            NAME(sample_beside)
-        (p, n + side, phase, tile, slab->rows, room->rows, &beside[side]);
+            NAME(sample_beside)(p, n + side, phase, tile, slab->rows,
+                                room->rows, &beside[side]);
         const int begin = count;
         count = NAME(collect)(p, f, b, beside, state, slab, &room->queue, count,
                               sloped, cuts, eye, plain);
@@ -368,9 +367,9 @@ static void NAME(open)(const snow_value_splat *p, int x, int y,
 }
 
 /* Alphas of a row of a plane. */
-TARGET static inline V(row)
-    NAME(alphas)(const snow_value_splat *p, const void *planes, int phase,
-                 int row) {
+TARGET static inline V(row) NAME(alphas)(const snow_value_splat *p,
+                                         const void *planes, int phase,
+                                         int row) {
     const snow_value_plane *words = (const snow_value_plane *)planes + phase;
     const snow_value_faint_plane *floats =
         (const snow_value_faint_plane *)planes + phase;
@@ -378,8 +377,8 @@ TARGET static inline V(row)
     if (!p->floats)
         return V(row_load)((*words)[3][row]);
     for (int n = 0; n < 32; n += LANES)
-        V(row_round)
-    (alphas + n, V(mul)(V(load)((*floats)[3][row] + n), V(set1)(INT16_MAX)));
+        V(row_round)(alphas + n, V(mul)(V(load)((*floats)[3][row] + n),
+                                        V(set1)(INT16_MAX)));
     return V(row_load)(alphas);
 }
 
@@ -429,9 +428,8 @@ TARGET VALUE_INLINE bool NAME(phases)(const snow_value_splat *p, int first,
                 NAME(ask_masks_eye)(p, slabs[seen + 2], first, tile);
             else if (asks)
                 NAME(ask_masks)(p, slabs[seen + 2], first, tile);
-            NAME(look_ahead)
-            (p, slabs[seen], first, end, tile, room,
-             room->slab[seen % AHEAD_RING], sloped, eye);
+            NAME(look_ahead)(p, slabs[seen], first, end, tile, room,
+                             room->slab[seen % AHEAD_RING], sloped, eye);
         }
         drawn |= draw(p, slabs[turn], first, end, tile, planes, room,
                       room->slab[turn % AHEAD_RING]);
@@ -460,9 +458,8 @@ TARGET VALUE_INLINE bool NAME(phases_eye)(const snow_value_splat *p,
                 first + TOGETHER < p->phases ? first + TOGETHER : p->phases;
             for (int n = 0; n < ASKED_RING; n++)
                 room->asked[n].sheet = -1;
-            NAME(look_ahead)
-            (p, list.slabs[turn], first, end, tile, room, room->slab[0], sloped,
-             true);
+            NAME(look_ahead)(p, list.slabs[turn], first, end, tile, room,
+                             room->slab[0], sloped, true);
             drawn |= draw(p, list.slabs[turn], first, end, tile, planes, room,
                           room->slab[0]);
         }
