@@ -80,7 +80,7 @@ static bool is_for_all(const verb_row *verb) {
 
 /* Without MPI each process of a parallel job makes the whole picture; a job
  * whose processes have different inputs may mean that. */
-static void remark_launcher(const options *opts) {
+static void warn_launcher(const options *opts) {
     const char *launcher;
     long rank, ranks = launcher_ranks(&launcher, &rank);
     if (ranks > 1 && rank == 0 && !process_mpi() && opts->verbosity >= 0)
@@ -125,7 +125,7 @@ static int run_command(command *c) {
         return done;
     }
     if (is_for_all(verb))
-        remark_launcher(opts);
+        warn_launcher(opts);
     double begin = seconds_now();
     done = run_verb(verb, opts);
     if (done == SNOW_STATUS_OK || done == EXIT_EMPTY) {

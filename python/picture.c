@@ -60,11 +60,11 @@ static snow_status copy_depth(const volume_object *o, snow_image **out) {
 typedef struct request {
     volume_object *volume;
     transfer_object *transfer;
-    snow_inlay layers[SNOW_INLAYS_MOST + 1]; /* channels, then an overlay */
+    snow_layer layers[SNOW_LAYERS_MOST + 1]; /* channels, then an overlay */
     int count, mixing;                       /* of them, of which channels */
     bool mixed; /* the volume is one of channels, too */
     double
-        shares[SNOW_INLAYS_MOST + 2]; /* of light: the volume's, the layers' */
+        shares[SNOW_LAYERS_MOST + 2]; /* of light: the volume's, the layers' */
     snow_view view;
     snow_settings settings;
     const double *azimuths; /* all that are to fit */
@@ -97,7 +97,7 @@ static snow_status draw_apart(request *r, bool added, int64_t index) {
     if (!status)
         status = light_add(context, one, r->shares[0], &sum);
     for (int n = 0; n < r->mixing && !status; n++) {
-        const snow_inlay *layer = &r->layers[n];
+        const snow_layer *layer = &r->layers[n];
         snow_image_free(one);
         one = NULL;
         status = draw_one(r, layer->volume, layer->transfer, index, &one);
@@ -122,7 +122,7 @@ static snow_status draw(request *r) {
     if (!o->frame)
         status = snow_frame_new(o->context->context, &o->frame);
     if (!status)
-        status = snow_frame_set_inlays(o->frame, r->layers + apart,
+        status = snow_frame_set_layers(o->frame, r->layers + apart,
                                        r->count - apart);
     if (!status && r->fit)
         status = snow_view_fit(
@@ -206,7 +206,7 @@ static PyObject *answer(PyObject *type, const request *r, PyObject *image,
  * whose lock is held, channels first; false with an exception. */
 static bool read_layers(PyObject *given, request *r) {
     const Py_ssize_t count = PyTuple_Size(given);
-    if (count > SNOW_INLAYS_MOST + 1)
+    if (count > SNOW_LAYERS_MOST + 1)
         PyErr_SetString(PyExc_ValueError, "too many channels");
     for (Py_ssize_t n = 0; n < count && !PyErr_Occurred(); n++) {
         PyObject *volume, *transfer;
@@ -218,7 +218,7 @@ static bool read_layers(PyObject *given, request *r) {
         if (!volume_is_open((volume_object *)volume))
             return false;
         r->layers[n] =
-            (snow_inlay){((volume_object *)volume)->volume,
+            (snow_layer){((volume_object *)volume)->volume,
                          ((transfer_object *)transfer)->transfer, mixes};
         r->mixing += mixes;
     }

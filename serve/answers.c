@@ -16,7 +16,7 @@
 
 #define THUMBNAIL_SIDE 96
 
-void answer_put(outbox *box, uint64_t client, parcel_topic about,
+void answer_put(outbox *box, uint64_t client, message_topic about,
                 json_t *tree) {
     char *text = json_dumps(tree, JSON_COMPACT | JSON_REAL_PRECISION(17));
     outbox_put_text(box, client, about, text);
@@ -25,7 +25,7 @@ void answer_put(outbox *box, uint64_t client, parcel_topic about,
 }
 
 void answer_said(outbox *box, uint64_t client, const char *line) {
-    answer_put(box, client, PARCEL_PLAIN,
+    answer_put(box, client, MESSAGE_PLAIN,
                json_pack("{s:s, s:s}", "t", "said", "text", line));
 }
 
@@ -48,7 +48,7 @@ static int answer_histogram(drawing *d, outbox *box, uint64_t client,
     json_t *list = json_array();
     for (int i = 0; i < VALUES_BINS; i++)
         json_array_append_new(list, json_integer((json_int_t)counts[i]));
-    answer_put(box, client, PARCEL_PLAIN,
+    answer_put(box, client, MESSAGE_PLAIN,
                json_pack("{s:s, s:f, s:f, s:o}", "t", "histogram", "lo", low,
                          "hi", high, "counts", list));
     return CONTINUE;
@@ -60,7 +60,7 @@ static void answer_command(drawing *d, viewer_state *s, outbox *box,
     int done = drawing_apply(d, recipe);
     char *command = done == CONTINUE ? drawing_command(d, verb) : NULL;
     if (command)
-        answer_put(box, client, PARCEL_PLAIN,
+        answer_put(box, client, MESSAGE_PLAIN,
                    json_pack("{s:s, s:s}", "t", "command", "text", command));
     free(command);
     json_decref(recipe);
@@ -70,7 +70,7 @@ static void answer_command(drawing *d, viewer_state *s, outbox *box,
 void answer_recipe_text(outbox *box, uint64_t client, const json_t *tree) {
     char *text = tree ? json_dumps(tree, JSON_INDENT(2) | JSON_FORM) : NULL;
     if (text)
-        answer_put(box, client, PARCEL_PLAIN,
+        answer_put(box, client, MESSAGE_PLAIN,
                    json_pack("{s:s, s:s}", "t", "recipe", "text", text));
     free(text);
 }
@@ -88,7 +88,7 @@ static void answer_fit(drawing *d, viewer_state *s, outbox *box,
                         ? "The camera stands at a position that was given: "
                           "choose a view to frame all."
                         : "Nothing is visible that could be framed.");
-    outbox_put(box, state_parcel(s, 0, 0));
+    outbox_put(box, state_message(s, 0, 0));
     json_decref(keys);
     json_decref(recipe);
 }
@@ -124,7 +124,7 @@ static void answer_thumbnail(drawing *d, viewer_state *s, outbox *box,
     if (done != CONTINUE)
         return;
     snow_image_options form = picture_form(&d->opts);
-    parcel *made = pack_small(image, &form, false, (int)pane, 0);
+    outgoing *made = pack_small(image, &form, false, (int)pane, 0);
     if (made)
         made->client = client;
     outbox_put(box, made);
@@ -133,7 +133,7 @@ static void answer_thumbnail(drawing *d, viewer_state *s, outbox *box,
 
 static void put_no_slice(outbox *box, uint64_t client, json_int_t pane) {
     if (pane >= 1 && pane <= 3)
-        answer_put(box, client, PARCEL_PLAIN,
+        answer_put(box, client, MESSAGE_PLAIN,
                    json_pack("{s:s, s:I}", "t", "slice", "pane", pane));
 }
 
@@ -163,7 +163,7 @@ static int answer_slice(drawing *d, outbox *box, uint64_t client,
         return CONTINUE;
     if (read_slice(tree, &asked))
         done = slices_draw(d, &asked, &image, &form);
-    parcel *made =
+    outgoing *made =
         image ? pack_small(image, &form, exact, (int)pane, (uint32_t)n) : NULL;
     if (made)
         made->client = client;
@@ -179,7 +179,7 @@ static int answer_slice_command(drawing *d, outbox *box, uint64_t client,
     slice_asked asked;
     char *command = read_slice(tree, &asked) ? slices_command(d, &asked) : NULL;
     if (command)
-        answer_put(box, client, PARCEL_PLAIN,
+        answer_put(box, client, MESSAGE_PLAIN,
                    json_pack("{s:s, s:s}", "t", "command", "text", command));
     free(command);
     return CONTINUE;
@@ -193,7 +193,7 @@ static void read_at(const json_t *tree, int64_t index[3]) {
 
 static void put_value(outbox *box, uint64_t client, const int64_t at[3],
                       double value) {
-    answer_put(box, client, PARCEL_PLAIN,
+    answer_put(box, client, MESSAGE_PLAIN,
                json_pack("{s:s, s:o, s:o}", "t", "value", "at",
                          json_sizes(at, 3), "value", json_number(value)));
 }
@@ -229,7 +229,7 @@ static int answer_depth(drawing *d, outbox *box, uint64_t client,
     if (x < 0 || x > 1 || y < 0 || y > 1 ||
         pick_depth(d, x, y, &depth) != CONTINUE)
         return CONTINUE;
-    answer_put(box, client, PARCEL_PLAIN,
+    answer_put(box, client, MESSAGE_PLAIN,
                json_pack("{s:s, s:f, s:f, s:o}", "t", "depth", "x", x, "y", y,
                          "depth", json_number(depth)));
     return CONTINUE;

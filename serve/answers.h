@@ -21,7 +21,8 @@ void answer_step(outbox *box, int64_t step);
 /* --- answers.c ---
  *
  * Sends a tree, which it frees. */
-void answer_put(outbox *box, uint64_t client, parcel_topic about, json_t *tree);
+void answer_put(outbox *box, uint64_t client, message_topic about,
+                json_t *tree);
 
 /* A recipe, as a text. */
 void answer_recipe_text(outbox *box, uint64_t client, const json_t *tree);

@@ -84,10 +84,10 @@ static const char *stored_type(const drawing *d) {
         memset(data.clip, 0, sizeof data.clip);
         data.mask = NULL;
         /* What is said of the file was said when it was opened. */
-        hear_warnings(&d->opts, d->state.context, false);
+        show_warnings(&d->opts, d->state.context, false);
         (void)snow_volume_inspect(d->state.context, d->opts.operands[0], &data,
                                   &info);
-        hear_warnings(&d->opts, d->state.context, true);
+        show_warnings(&d->opts, d->state.context, true);
     }
     return snow_type_name(info.type);
 }
@@ -136,7 +136,7 @@ void answer_info(drawing *d, outbox *box) {
         json_boolean(info->hounsfield ||
                      (info->medical && ends[0] < ends[1] &&
                       snow_are_hounsfield(info, ends[0], ends[1]))));
-    answer_put(box, 0, PARCEL_INFO, tree);
+    answer_put(box, 0, MESSAGE_INFO, tree);
 }
 
 /* --- the look
@@ -238,7 +238,7 @@ void answer_look(drawing *d, outbox *box) {
         return;
     snow_transfer_domain(transfer, &low, &high);
     answer_put(
-        box, 0, PARCEL_LOOK,
+        box, 0, MESSAGE_LOOK,
         json_pack(
             "{s:s, s:f, s:f, s:I, s:o, s:o, s:o, s:s, s:b, s:o, s:o, s:o}", "t",
             "look", "low", low, "high", high, "count",
@@ -254,7 +254,7 @@ void answer_look(drawing *d, outbox *box) {
 
 void answer_figures(drawing *d, double hidden, outbox *box) {
     const snow_stats *stats = &d->state.stats;
-    answer_put(box, 0, PARCEL_FIGURES,
+    answer_put(box, 0, MESSAGE_FIGURES,
                json_pack("{s:s, s:o, s:I, s:s}", "t", "figures", "sparse",
                          isnan(hidden) ? json_null() : json_real(hidden),
                          "interesting", (json_int_t)stats->interesting,
@@ -262,6 +262,6 @@ void answer_figures(drawing *d, double hidden, outbox *box) {
 }
 
 void answer_step(outbox *box, int64_t step) {
-    answer_put(box, 0, PARCEL_FIGURES,
+    answer_put(box, 0, MESSAGE_FIGURES,
                json_pack("{s:s, s:I}", "t", "step", "step", (json_int_t)step));
 }

@@ -28,9 +28,9 @@ struct live {
     json_t *recipe;
     char *output; /* that it began with, by which pages name the pictures */
     live_files files;
-    drawing drawing;   /* of the grid and the look in the pictures' text */
-    json_t *told;      /* the text of the last picture */
-    uint32_t told_for; /* the state whose look pages know */
+    drawing drawing;       /* of the grid and the look in the pictures' text */
+    json_t *reported;      /* the text of the last picture */
+    uint32_t reported_for; /* the state whose look pages know */
 };
 
 /* --- the recipe ----------------------------------------------------------- */
@@ -86,7 +86,7 @@ void live_free(live *l) {
     snow_volume_close(l->drawing.state.volume);
     snow_context_free(l->drawing.state.context);
     live_files_close(&l->files);
-    json_decref(l->told);
+    json_decref(l->reported);
     json_decref(l->recipe);
     free(l->output);
     free(l->path);
@@ -112,7 +112,7 @@ static void save_recipe(live *l, json_t *recipe) {
     json_decref(recipe);
 }
 
-/* --- what pages hear ------------------------------------------------------ */
+/* --- what pages are sent -------------------------------------------------- */
 
 static bool read_numbers(const json_t *list, double *out, size_t count) {
     for (size_t i = 0; i < count; i++) {
@@ -125,10 +125,10 @@ static bool read_numbers(const json_t *list, double *out, size_t count) {
 }
 
 /* The grid of the simulation; false where the picture has none. */
-static bool read_grid(const json_t *told, snow_volume_info *out) {
+static bool read_grid(const json_t *reported, snow_volume_info *out) {
     double dims[3], matrix[12];
-    if (!read_numbers(json_object_get(told, "dims"), dims, 3) ||
-        !read_numbers(json_object_get(told, "matrix"), matrix, 12))
+    if (!read_numbers(json_object_get(reported, "dims"), dims, 3) ||
+        !read_numbers(json_object_get(reported, "matrix"), matrix, 12))
         return false;
     snow_volume_info_init(out);
     for (int i = 0; i < 3; i++) {
@@ -169,7 +169,7 @@ static snow_status make_look(live *l, double ends[2]) {
                                          "frames", "fps",    "tf"};
     snow_opacity_point points[POINTS_MOST];
     drawing *d = &l->drawing;
-    const json_t *list = json_object_get(l->told, "opacity");
+    const json_t *list = json_object_get(l->reported, "opacity");
     json_t *tree = json_copy(l->recipe);
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         json_object_del(tree, others[i]);
@@ -198,15 +198,15 @@ static snow_status make_look(live *l, double ends[2]) {
 /* How often values of the simulation occur, where a picture says so. */
 static void put_counts(const live *l, outbox *box, uint64_t client) {
     double ends[2], counts[COUNTS];
-    json_t *list = json_object_get(l->told, "counts");
-    json_t *pair = json_object_get(l->told, "ends");
+    json_t *list = json_object_get(l->reported, "counts");
+    json_t *pair = json_object_get(l->reported, "ends");
     if (!read_numbers(pair, ends, 2) || !(ends[0] < ends[1]) ||
         !read_numbers(list, counts, COUNTS))
         return;
     json_t *tree = json_pack("{s:s, s:f, s:f, s:O}", "t", "histogram", "lo",
                              ends[0], "hi", ends[1], "counts", list);
     char *text = json_dumps(tree, JSON_COMPACT | JSON_FORM);
-    outbox_put_text(box, client, PARCEL_COUNTS, text);
+    outbox_put_text(box, client, MESSAGE_COUNTS, text);
     free(text);
     json_decref(tree);
 }
@@ -216,23 +216,24 @@ static bool same(const json_t *a, const json_t *b, const char *key) {
 }
 
 /* What is new in a picture's comment. */
-static void tell(live *l, json_t *told, uint32_t revision, outbox *box) {
+static void tell(live *l, json_t *reported, uint32_t revision, outbox *box) {
     double ends[2];
     snow_volume_info grid;
-    json_t *before = l->told;
-    if (!read_grid(told, &grid) ||
-        !read_numbers(json_object_get(told, "range"), ends, 2)) {
-        json_decref(told);
+    json_t *before = l->reported;
+    if (!read_grid(reported, &grid) ||
+        !read_numbers(json_object_get(reported, "range"), ends, 2)) {
+        json_decref(reported);
         return;
     }
     l->drawing.state.whole = grid;
-    l->told = told;
-    bool looks_alike = before && l->told_for == revision &&
-                       same(told, before, "range") &&
-                       same(told, before, "opacity");
-    bool alike = before && same(told, before, "dims") &&
-                 same(told, before, "matrix") && same(told, before, "range");
-    l->told_for = revision;
+    l->reported = reported;
+    bool looks_alike = before && l->reported_for == revision &&
+                       same(reported, before, "range") &&
+                       same(reported, before, "opacity");
+    bool alike = before && same(reported, before, "dims") &&
+                 same(reported, before, "matrix") &&
+                 same(reported, before, "range");
+    l->reported_for = revision;
     snow_status status = looks_alike ? SNOW_STATUS_OK : make_ends(l, ends);
     if (!looks_alike && status == SNOW_STATUS_OK)
         status = make_look(l, ends);
@@ -244,7 +245,7 @@ static void tell(live *l, json_t *told, uint32_t revision, outbox *box) {
         answer_look(&l->drawing, box);
     }
     put_counts(l, box, 0);
-    answer_step(box, json_integer_value(json_object_get(told, "step")));
+    answer_step(box, json_integer_value(json_object_get(reported, "step")));
     json_decref(before);
 }
 
@@ -253,22 +254,22 @@ static void tell(live *l, json_t *told, uint32_t revision, outbox *box) {
 static void show(live *l, viewer_state *s, outbox *box) {
     size_t length = 0;
     uint32_t size[2], revision = state_revision(s);
-    json_t *told = NULL;
+    json_t *reported = NULL;
     unsigned char *bytes = live_files_next(&l->files, &length);
-    parcel *p = NULL;
-    if (bytes && live_file_read(bytes, length, size, &told))
-        p = parcel_new(FRAME_HEAD_BYTES + length);
+    outgoing *p = NULL;
+    if (bytes && live_file_read(bytes, length, size, &reported))
+        p = outgoing_new(FRAME_HEAD_BYTES + length);
     if (p) {
         const frame_head head = {
             .level = 2, .kind = FRAME_PNG, .width = size[0], .height = size[1]};
         frame_head_write(&head, p->bytes);
         memcpy(p->bytes + FRAME_HEAD_BYTES, bytes, length);
-        p->topic = PARCEL_PICTURE;
+        p->topic = MESSAGE_PICTURE;
         p->revision = revision;
-        tell(l, told, revision, box);
+        tell(l, reported, revision, box);
         outbox_put(box, p);
     } else {
-        json_decref(told);
+        json_decref(reported);
     }
     free(bytes);
 }
@@ -278,7 +279,7 @@ static void frame_all(viewer_state *s, outbox *box) {
     json_t *keys = json_pack("{s:n, s:n}", "zoom", "target");
     free(state_set(s, keys, &revision));
     json_decref(keys);
-    outbox_put(box, state_parcel(s, 0, 0));
+    outbox_put(box, state_message(s, 0, 0));
 }
 
 static void answer(const live *l, viewer_state *s, outbox *box,

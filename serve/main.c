@@ -48,13 +48,13 @@ typedef struct viewer {
 /* A signal ends the serving in order. */
 static listener *stopped_by_signal;
 
-static void hear_signal(int number) {
+static void note_signal(int number) {
     (void)number;
     listener_stop(stopped_by_signal);
 }
 
-static void hear_signals(listener *l) {
-    struct sigaction action = {.sa_handler = hear_signal};
+static void watch_signals(listener *l) {
+    struct sigaction action = {.sa_handler = note_signal};
     sigemptyset(&action.sa_mask);
     stopped_by_signal = l;
     sigaction(SIGINT, &action, NULL);
@@ -63,8 +63,8 @@ static void hear_signals(listener *l) {
     signal(SIGPIPE, SIG_IGN);
 }
 
-/* From here on pages hear what the library says. */
-static void hear_line(void *user, const char *line) {
+/* From here on pages are sent what the library says. */
+static void show_line(void *user, const char *line) {
     answer_said(user, 0, line);
 }
 
@@ -224,7 +224,7 @@ static int draw_all(viewer *v) {
 }
 
 static int serve(viewer *v) {
-    hear_signals(v->listener);
+    watch_signals(v->listener);
     renderer_begin(&v->drawing, v->state, v->box);
     int done = print_url(v);
     if (done != SNOW_STATUS_OK)
@@ -232,7 +232,7 @@ static int serve(viewer *v) {
     v->pack = packer_new(v->box);
     if (v->pack)
         v->renderer = renderer_new(&v->drawing, v->state, v->box, v->pack);
-    say_to(hear_line, v->box);
+    say_to(show_line, v->box);
     if (v->renderer && start_listening(v))
         return draw_all(v);
     say_to(NULL, NULL);
@@ -240,11 +240,11 @@ static int serve(viewer *v) {
 }
 
 static int serve_live(viewer *v) {
-    hear_signals(v->listener);
+    watch_signals(v->listener);
     int done = print_url(v);
     if (done != SNOW_STATUS_OK)
         return done;
-    say_to(hear_line, v->box);
+    say_to(show_line, v->box);
     if (!start_listening(v)) {
         say_to(NULL, NULL);
         return fail_start();

@@ -9,8 +9,8 @@ struct outbox {
     pthread_mutex_t lock;
     void (*wake)(void *user);
     void *user;
-    parcel *first, **end;
-    parcel *newest[PARCEL_TOPICS];
+    outgoing *first, **end;
+    outgoing *newest[MESSAGE_TOPICS];
     int fast, thin, quality;
 };
 
@@ -26,7 +26,7 @@ outbox *outbox_new(void (*wake)(void *user), void *user) {
 }
 
 /* Under the lock. */
-static void drop(parcel *p) {
+static void drop(outgoing *p) {
     if (p && --p->owners == 0)
         free(p);
 }
@@ -34,42 +34,42 @@ static void drop(parcel *p) {
 void outbox_free(outbox *box) {
     if (!box)
         return;
-    for (parcel *p = box->first, *next; p; p = next) {
+    for (outgoing *p = box->first, *next; p; p = next) {
         next = p->next;
         drop(p);
     }
-    for (int i = 0; i < PARCEL_TOPICS; i++)
+    for (int i = 0; i < MESSAGE_TOPICS; i++)
         drop(box->newest[i]);
     pthread_mutex_destroy(&box->lock);
     free(box);
 }
 
-parcel *parcel_new(size_t length) {
-    parcel *p = malloc(sizeof *p + length);
+outgoing *outgoing_new(size_t length) {
+    outgoing *p = malloc(sizeof *p + length);
     if (p)
-        *p = (parcel){.owners = 1, .length = length};
+        *p = (outgoing){.owners = 1, .length = length};
     return p;
 }
 
-void parcel_release(outbox *box, parcel *p) {
+void outgoing_release(outbox *box, outgoing *p) {
     pthread_mutex_lock(&box->lock);
     drop(p);
     pthread_mutex_unlock(&box->lock);
 }
 
-parcel *parcel_share(outbox *box, parcel *p) {
+outgoing *outgoing_share(outbox *box, outgoing *p) {
     pthread_mutex_lock(&box->lock);
     p->owners++;
     pthread_mutex_unlock(&box->lock);
     return p;
 }
 
-/* Under the lock: takes what a parcel replaces out of the list.  Two states
+/* Under the lock: takes what a message replaces out of the list.  Two states
  * that each leave out another page become one for all, as neither has the
  * other's. */
-static void replace(outbox *box, parcel *by) {
-    for (parcel **at = &box->first; *at;) {
-        parcel *p = *at;
+static void replace(outbox *box, outgoing *by) {
+    for (outgoing **at = &box->first; *at;) {
+        outgoing *p = *at;
         if (p->topic != by->topic || p->client != by->client) {
             at = &p->next;
             continue;
@@ -83,11 +83,11 @@ static void replace(outbox *box, parcel *by) {
     }
 }
 
-void outbox_put(outbox *box, parcel *p) {
+void outbox_put(outbox *box, outgoing *p) {
     if (!p)
         return;
     pthread_mutex_lock(&box->lock);
-    if (p->topic != PARCEL_PLAIN && p->client == 0) {
+    if (p->topic != MESSAGE_PLAIN && p->client == 0) {
         replace(box, p);
         drop(box->newest[p->topic]);
         box->newest[p->topic] = p;
@@ -100,9 +100,9 @@ void outbox_put(outbox *box, parcel *p) {
     box->wake(box->user);
 }
 
-void outbox_put_text(outbox *box, uint64_t client, parcel_topic topic,
+void outbox_put_text(outbox *box, uint64_t client, message_topic topic,
                      const char *text) {
-    parcel *p = text ? parcel_new(strlen(text)) : NULL;
+    outgoing *p = text ? outgoing_new(strlen(text)) : NULL;
     if (!p)
         return;
     memcpy(p->bytes, text, p->length);
@@ -121,9 +121,9 @@ void outbox_set_audience(outbox *box, int fast, int thin, int quality) {
     pthread_mutex_unlock(&box->lock);
 }
 
-bool outbox_has_audience(outbox *box, parcel_topic about) {
+bool outbox_has_audience(outbox *box, message_topic about) {
     pthread_mutex_lock(&box->lock);
-    bool has = about == PARCEL_THIN_PICTURE ? box->thin > 0 : box->fast > 0;
+    bool has = about == MESSAGE_THIN_PICTURE ? box->thin > 0 : box->fast > 0;
     pthread_mutex_unlock(&box->lock);
     return has;
 }
@@ -135,18 +135,18 @@ int outbox_quality(outbox *box) {
     return quality;
 }
 
-parcel *outbox_take(outbox *box) {
+outgoing *outbox_take(outbox *box) {
     pthread_mutex_lock(&box->lock);
-    parcel *first = box->first;
+    outgoing *first = box->first;
     box->first = NULL;
     box->end = &box->first;
     pthread_mutex_unlock(&box->lock);
     return first;
 }
 
-parcel *outbox_newest(outbox *box, parcel_topic topic) {
+outgoing *outbox_newest(outbox *box, message_topic topic) {
     pthread_mutex_lock(&box->lock);
-    parcel *p = box->newest[topic];
+    outgoing *p = box->newest[topic];
     if (p)
         p->owners++;
     pthread_mutex_unlock(&box->lock);

@@ -46,9 +46,9 @@ static double seconds(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static parcel *parcel_of(const frame_head *head, const void *bytes,
-                         size_t length) {
-    parcel *made = parcel_new(FRAME_HEAD_BYTES + length);
+static outgoing *outgoing_of(const frame_head *head, const void *bytes,
+                             size_t length) {
+    outgoing *made = outgoing_new(FRAME_HEAD_BYTES + length);
     if (!made)
         return NULL;
     frame_head_write(head, made->bytes);
@@ -59,11 +59,11 @@ static parcel *parcel_of(const frame_head *head, const void *bytes,
 /* --- JPEG and WebP ----------------------------------------------------------
  */
 
-static parcel *finish(frame_head *head, int kind, double begin,
-                      const void *bytes, size_t length) {
+static outgoing *finish(frame_head *head, int kind, double begin,
+                        const void *bytes, size_t length) {
     head->kind = kind;
     head->pack_us = (uint32_t)(1e6 * (seconds() - begin));
-    return parcel_of(head, bytes, length);
+    return outgoing_of(head, bytes, length);
 }
 
 /* Grey takes less time, here and in the page, and a fifth fewer bytes; fine
@@ -75,12 +75,12 @@ static int sampling_of(const unsigned char *rgb, size_t pixels, bool fine) {
     return !differ ? TJSAMP_GRAY : fine ? TJSAMP_444 : TJSAMP_420;
 }
 
-static parcel *compress_jpeg(const unsigned char *rgb, int quality,
-                             frame_head *head, double begin) {
+static outgoing *compress_jpeg(const unsigned char *rgb, int quality,
+                               frame_head *head, double begin) {
     unsigned char *bytes = NULL;
     unsigned long length = 0;
     bool fine = head->level > 0 && quality >= QUALITY_NORMAL;
-    parcel *made = NULL;
+    outgoing *made = NULL;
     tjhandle jpeg = tjInitCompress();
     if (jpeg &&
         tjCompress2(jpeg, rgb, (int)head->width, 0, (int)head->height, TJPF_RGB,
@@ -96,12 +96,12 @@ static parcel *compress_jpeg(const unsigned char *rgb, int quality,
 
 #if SNOW_HAVE_WEBP
 /* As fast as it can: method 0. */
-static parcel *compress_webp(const unsigned char *rgb, frame_head *head,
-                             double begin) {
+static outgoing *compress_webp(const unsigned char *rgb, frame_head *head,
+                               double begin) {
     WebPConfig config;
     WebPPicture form;
     WebPMemoryWriter writer;
-    parcel *made = NULL;
+    outgoing *made = NULL;
     if (!WebPConfigInit(&config) || !WebPPictureInit(&form))
         return NULL;
     config.method = 0;
@@ -121,8 +121,8 @@ static parcel *compress_webp(const unsigned char *rgb, frame_head *head,
 #endif
 
 /* `quality` is that of pictures that move; 0: on a thin link. */
-static parcel *compress(const unsigned char *rgb, int quality, frame_head *head,
-                        double begin) {
+static outgoing *compress(const unsigned char *rgb, int quality,
+                          frame_head *head, double begin) {
 #if SNOW_HAVE_WEBP
     if (!quality)
         return compress_webp(rgb, head, begin);
@@ -134,12 +134,12 @@ static parcel *compress(const unsigned char *rgb, int quality, frame_head *head,
     return compress_jpeg(rgb, quality, head, begin);
 }
 
-static parcel *pack_lossy(const snow_image *image,
-                          const snow_image_options *form, int quality,
-                          frame_head *head) {
+static outgoing *pack_lossy(const snow_image *image,
+                            const snow_image_options *form, int quality,
+                            frame_head *head) {
     double begin = seconds();
     unsigned char *rgb = malloc(3 * (size_t)head->width * head->height);
-    parcel *made = NULL;
+    outgoing *made = NULL;
     if (rgb && snow_image_to_rgb8_with(image, form, rgb) == SNOW_STATUS_OK)
         made = compress(rgb, quality, head, begin);
     free(rgb);
@@ -162,23 +162,23 @@ static snow_image *copy_image(snow_context *context, snow_image *from) {
     return image;
 }
 
-static parcel *read_back(frame_head *head, double begin) {
+static outgoing *read_back(frame_head *head, double begin) {
     off_t length = lseek(file, 0, SEEK_END);
     void *bytes =
         length > 0 ? mmap(NULL, (size_t)length, PROT_READ, MAP_SHARED, file, 0)
                    : MAP_FAILED;
     if (bytes == MAP_FAILED)
         return NULL;
-    parcel *made = finish(head, FRAME_PNG, begin, bytes, (size_t)length);
+    outgoing *made = finish(head, FRAME_PNG, begin, bytes, (size_t)length);
     munmap(bytes, (size_t)length);
     return made;
 }
 
 /* The library writes a PNG to a file or to standard output (packer_new). */
-static parcel *write_png(const snow_image *image,
-                         const snow_image_options *form, frame_head *head,
-                         double begin) {
-    parcel *packed = NULL;
+static outgoing *write_png(const snow_image *image,
+                           const snow_image_options *form, frame_head *head,
+                           double begin) {
+    outgoing *packed = NULL;
     pthread_mutex_lock(&file_lock);
     if (ftruncate(file, 0) == 0 && lseek(STDOUT_FILENO, 0, SEEK_SET) == 0 &&
         snow_image_save(image, "-", form) == SNOW_STATUS_OK)
@@ -187,18 +187,18 @@ static parcel *write_png(const snow_image *image,
     return packed;
 }
 
-static parcel *pack_png(packer *p, const picture *made, frame_head *head) {
+static outgoing *pack_png(packer *p, const picture *made, frame_head *head) {
     double begin = seconds();
     snow_image *image = copy_image(p->context, made->image);
     snow_image_options form = made->form;
     form.overlay = made->overlay;
-    parcel *packed = image ? write_png(image, &form, head, begin) : NULL;
+    outgoing *packed = image ? write_png(image, &form, head, begin) : NULL;
     snow_image_free(image);
     return packed;
 }
 
-parcel *pack_small(const snow_image *image, const snow_image_options *form,
-                   bool exact, int pane, uint32_t n) {
+outgoing *pack_small(const snow_image *image, const snow_image_options *form,
+                     bool exact, int pane, uint32_t n) {
     frame_head head = {.n = n,
                        .level = exact ? 2 : 1,
                        .pane = pane,
@@ -211,8 +211,8 @@ parcel *pack_small(const snow_image *image, const snow_image_options *form,
 /* --- the thread ------------------------------------------------------------
  */
 
-static void put(packer *p, const picture *made, parcel *packed,
-                parcel_topic about) {
+static void put(packer *p, const picture *made, outgoing *packed,
+                message_topic about) {
     if (packed) {
         packed->revision = made->revision;
         packed->topic = about;
@@ -230,16 +230,16 @@ static void pack(packer *p, const picture *made) {
     snow_image_options form = made->form;
     form.overlay = made->overlay;
     if (made->level == 2) {
-        put(p, made, pack_png(p, made, &head), PARCEL_PICTURE);
+        put(p, made, pack_png(p, made, &head), MESSAGE_PICTURE);
         return;
     }
-    if (outbox_has_audience(p->box, PARCEL_PICTURE))
+    if (outbox_has_audience(p->box, MESSAGE_PICTURE))
         put(p, made,
             pack_lossy(made->image, &form, outbox_quality(p->box), &head),
-            PARCEL_PICTURE);
-    if (outbox_has_audience(p->box, PARCEL_THIN_PICTURE))
+            MESSAGE_PICTURE);
+    if (outbox_has_audience(p->box, MESSAGE_THIN_PICTURE))
         put(p, made, pack_lossy(made->image, &form, 0, &head),
-            PARCEL_THIN_PICTURE);
+            MESSAGE_THIN_PICTURE);
 }
 
 static void *run(void *user) {

@@ -44,9 +44,9 @@ void packer_wait_for_draft(packer *p);
 picture *packer_wait(packer *p);
 
 /* Packs a small picture at once, in the calling thread, which owns its context,
- * as JPEG or, if it is to be `exact`, as the PNG that the tool writes: a parcel
- * for pane and n of the page, or NULL. */
-parcel *pack_small(const snow_image *image, const snow_image_options *form,
-                   bool exact, int pane, uint32_t n);
+ * as JPEG or, if it is to be `exact`, as the PNG that the tool writes: a
+ * message for pane and n of the page, or NULL. */
+outgoing *pack_small(const snow_image *image, const snow_image_options *form,
+                     bool exact, int pane, uint32_t n);
 
 #endif

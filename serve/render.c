@@ -25,7 +25,7 @@ struct renderer {
     uint32_t revision; /* of the picture under way */
     json_t *good;      /* the last recipe that was drawn, or opened with */
     json_t *vain;      /* what had no room in an emptied drawing; NULL: none */
-    bool told_empty;
+    bool reported_empty;
     double radius; /* of the volume that was read last */
 };
 
@@ -51,18 +51,18 @@ static void free_pictures(picture *made) {
 }
 
 static void tell_state(renderer *r) {
-    outbox_put(r->box, state_parcel(r->state, 0, 0));
+    outbox_put(r->box, state_message(r->state, 0, 0));
 }
 
 /* A new range or preset that shows nothing is reported once, until something is
  * seen again. */
 static void tell_empty(renderer *r, snow_image *image) {
     bool empty = picture_is_empty(image);
-    if (empty && !r->told_empty)
-        outbox_put_text(r->box, 0, PARCEL_PLAIN,
+    if (empty && !r->reported_empty)
+        outbox_put_text(r->box, 0, MESSAGE_PLAIN,
                         "{\"t\":\"said\",\"text\":\"Nothing is visible: change "
                         "the range, the opacity or the clip planes.\"}");
-    r->told_empty = empty;
+    r->reported_empty = empty;
 }
 
 static void hand_over(renderer *r, snow_image *image, snow_overlay *overlay,
@@ -306,7 +306,7 @@ viewer_work renderer_step(renderer *r, double *due) {
 
 /* Reading again, and encoding, may take long: pages see how far it is.  A
  * picture is soon there, or was not waited for. */
-static bool hear_progress(void *user, snow_stage stage, double fraction) {
+static bool show_progress(void *user, snow_stage stage, double fraction) {
     renderer *r = user;
     static const char *const names[] = {
         [SNOW_STAGE_READ] = "reading", [SNOW_STAGE_ENCODE] = "encoding"};
@@ -315,7 +315,7 @@ static bool hear_progress(void *user, snow_stage stage, double fraction) {
     json_t *tree = json_pack("{s:s, s:s, s:f}", "t", "progress", "stage",
                              names[stage], "part", fraction);
     char *text = json_dumps(tree, JSON_COMPACT);
-    outbox_put_text(r->box, 0, PARCEL_PROGRESS, text);
+    outbox_put_text(r->box, 0, MESSAGE_PROGRESS, text);
     free(text);
     json_decref(tree);
     return state_has_ended(r->state);
@@ -330,7 +330,7 @@ renderer *renderer_new(drawing *d, viewer_state *s, outbox *box, packer *pack) {
         .drawing = d, .state = s, .box = box, .pack = pack, .level = -1};
     r->good = state_recipe(s);
     drawing_middle(d, middle, &r->radius);
-    snow_context_set_progress(d->state.context, hear_progress, r);
+    snow_context_set_progress(d->state.context, show_progress, r);
     return r;
 }
 

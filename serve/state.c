@@ -175,7 +175,7 @@ json_t *state_recipe(viewer_state *s) {
     return copy;
 }
 
-parcel *state_parcel(viewer_state *s, uint64_t client, uint64_t except) {
+outgoing *state_message(viewer_state *s, uint64_t client, uint64_t except) {
     const char *key;
     json_t *value, *shown = json_object();
     pthread_mutex_lock(&s->lock);
@@ -187,13 +187,13 @@ parcel *state_parcel(viewer_state *s, uint64_t client, uint64_t except) {
     char *text = json_dumps(shown, JSON_COMPACT | JSON_REAL_PRECISION(17));
     json_decref(shown);
     size_t most = (text ? strlen(text) : 0) + 64;
-    parcel *made = text ? parcel_new(most) : NULL;
+    outgoing *made = text ? outgoing_new(most) : NULL;
     if (made) {
         made->length =
             (size_t)snprintf((char *)made->bytes, most,
                              STATE_HEAD "%-10u,\"recipe\":%s}", 0U, text);
         made->is_text = true;
-        made->topic = PARCEL_STATE;
+        made->topic = MESSAGE_STATE;
         made->client = client;
         made->except = except;
         made->revision = revision;
@@ -234,8 +234,8 @@ bool state_ask(viewer_state *s, uint64_t client, json_t *tree) {
             json_equal(json_object_get(q->tree, "pane"), pane))
             same = q;
     }
-    bool room = same || (s->count < STATE_QUESTIONS_MOST &&
-                         own < STATE_QUESTIONS_OF_PAGE);
+    bool capacity = same || (s->count < STATE_QUESTIONS_MOST &&
+                             own < STATE_QUESTIONS_OF_PAGE);
     if (same) {
         /* The newer one of two thumbnails of a pane is made; one that is asked
          * again is the older. */
@@ -243,15 +243,15 @@ bool state_ask(viewer_state *s, uint64_t client, json_t *tree) {
         json_decref(older ? tree : same->tree);
         if (!older)
             same->tree = tree;
-    } else if (room)
+    } else if (capacity)
         s->questions[(s->first + s->count++) % STATE_QUESTIONS_MOST] =
             (viewer_question){client, tree, waits};
-    s->urgent += room && !waits;
+    s->urgent += capacity && !waits;
     pthread_cond_signal(&s->changed);
     pthread_mutex_unlock(&s->lock);
-    if (!room)
+    if (!capacity)
         json_decref(tree);
-    return room;
+    return capacity;
 }
 
 void state_end(viewer_state *s) {

@@ -47,9 +47,9 @@ void state_free(viewer_state *s);
  * of the state. */
 char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision);
 
-/* The state as a parcel {"t": "state", "n": 0, "recipe": {...}} (message.h) for
- * a page, or for all (0) but one; NULL: no memory. */
-parcel *state_parcel(viewer_state *s, uint64_t client, uint64_t except);
+/* The state as a message {"t": "state", "n": 0, "recipe": {...}} (message.h)
+ * for a page, or for all (0) but one; NULL: no memory. */
+outgoing *state_message(viewer_state *s, uint64_t client, uint64_t except);
 
 /* Some page moves something: drafts suffice. */
 void state_set_moving(viewer_state *s, bool moving);

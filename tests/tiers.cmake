@@ -41,7 +41,7 @@ set(SNOW_LABEL_surface ${formats} test_base test_compare test_convert test_image
     test_source test_tf test_volume test_writer test_writer_named)
 set(SNOW_LABEL_threads test_affinity test_same_bits test_combine test_comm test_early
     test_pipeline test_frames test_insitu test_insitu_levels test_insitu_marks
-    test_raycast test_value test_value_layer_parts test_value_parts test_simulated test_stop test_progress test_ranks test_ranks_open test_redistribute
+    test_raycast test_shear_warp test_shear_warp_layer_parts test_shear_warp_parts test_simulated test_stop test_progress test_ranks test_ranks_open test_redistribute
     test_pool_signals test_shares serve_hostile serve_places serve_sockets)
 set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     test_model_raycast test_model_reference test_model_rules test_model_slabs
@@ -66,7 +66,7 @@ set(SNOW_COSTS
     test_combine 35 cli_bench 34 cli_interrupt 34
     cli_documents 31 test_raycast 31 cli_matrix 31
     oracle_dicom 31 test_pipeline 28 cli_measurements 28
-    test_ranks_open 28 test_value 27 test_insitu 26
+    test_ranks_open 28 test_shear_warp 27 test_insitu 26
     test_model_picture 22 test_histogram 22 oracle_tiff 22
     cli_real 22 test_model_encodings 20 test_truth 25 test_same_bits 25
     serve_sockets 20 serve_hostile 20 oracle_orientation 20 oracle_hdf5 20 oracle_netcdf 18 test_comm 17

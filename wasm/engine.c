@@ -33,7 +33,7 @@ static struct {
     outbox *box;
     renderer *renderer;
     set_log sets;
-    parcel *waiting, *shown;
+    outgoing *waiting, *shown;
 } e;
 
 static void be_woken(void *user) {
@@ -88,7 +88,7 @@ EMSCRIPTEN_KEEPALIVE bool engine_open(const char *path, const char *recipe) {
     e.renderer = renderer_new(&e.drawing, e.state, e.box, packer_new(e.box));
     outbox_set_audience(e.box, 1, 0, 0);
     state_set_watchers(e.state, 1);
-    outbox_put(e.box, state_parcel(e.state, 0, 0));
+    outbox_put(e.box, state_message(e.state, 0, 0));
     return e.renderer;
 }
 
@@ -99,7 +99,7 @@ static void set(const message *m) {
     if (!fault)
         return;
     answer_said(e.box, CLIENT, fault);
-    outbox_put(e.box, state_parcel(e.state, 0, 0));
+    outbox_put(e.box, state_message(e.state, 0, 0));
     free(fault);
 }
 
@@ -136,17 +136,17 @@ EMSCRIPTEN_KEEPALIVE double engine_step(void) {
 /* The next that goes to the page, until the one after it; NULL: none. */
 EMSCRIPTEN_KEEPALIVE const unsigned char *engine_take(void) {
     if (e.shown)
-        parcel_release(e.box, e.shown);
+        outgoing_release(e.box, e.shown);
     if (!e.waiting)
         e.waiting = outbox_take(e.box);
-    parcel *p = e.shown = e.waiting;
+    outgoing *p = e.shown = e.waiting;
     if (!p)
         return NULL;
     e.waiting = p->next;
     uint32_t n = set_log_n(&e.sets, p->revision);
-    if (p->topic == PARCEL_PICTURE)
+    if (p->topic == MESSAGE_PICTURE)
         frame_head_set_n(p->bytes, n);
-    if (p->topic == PARCEL_STATE)
+    if (p->topic == MESSAGE_STATE)
         state_text_set_n(p->bytes, n);
     return p->bytes;
 }

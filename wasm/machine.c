@@ -1,7 +1,7 @@
 /* machine.c - in the place of what a page has not: threads kept on processors,
  * signals, movies (of base/affinity.c, run/free_memory.c, run/interrupt.c),
- * methods other than shear-warp (of render/exact/, render/raycast/), and levels
- * of refinement (of formats/amr/). */
+ * methods other than shear-warp (of render/footprint/, render/raycast/), and
+ * levels of refinement (of formats/amr/). */
 #include "base/affinity.h"
 #include "formats/amr/amr.h"
 #include "formats/format.h"
@@ -60,11 +60,11 @@ static snow_status refuse(snow_picture *picture, snow_job *job) {
                      "snowglass serve for other methods and kernels");
 }
 
-const snow_render_method snow_method_exact = {.encode = refuse};
+const snow_render_method snow_method_footprint = {.encode = refuse};
 const snow_render_method snow_method_groups = {.encode = refuse};
 const snow_render_method snow_method_raycast = {.encode = refuse};
 
-void snow_exact_free(snow_exact *exact) {
+void snow_footprint_buffers_free(snow_footprint_buffers *exact) {
     (void)exact;
 }
 

@@ -1,6 +1,6 @@
 /* one_process.c - in the place of what many ranks do together (comm/, combine/,
- * parallel/, render/groups.c).  A page has one process, which never comes here,
- * and the compiler leaves out what would. */
+ * parallel/, render/slice_groups.c).  A page has one process, which never comes
+ * here, and the compiler leaves out what would. */
 #include "combine/exchange.h"
 #include "comm/comm.h"
 #include "parallel/internal.h"

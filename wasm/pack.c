@@ -48,10 +48,10 @@ static void widen(unsigned char *bytes, size_t pixels) {
     }
 }
 
-static parcel *pack_levels(const snow_image *image,
-                           const snow_image_options *form, frame_head *head) {
+static outgoing *pack_levels(const snow_image *image,
+                             const snow_image_options *form, frame_head *head) {
     size_t pixels = (size_t)head->width * head->height;
-    parcel *made = parcel_new(FRAME_HEAD_BYTES + 4 * pixels);
+    outgoing *made = outgoing_new(FRAME_HEAD_BYTES + 4 * pixels);
     if (!made)
         return NULL;
     unsigned char *bytes = made->bytes + FRAME_HEAD_BYTES;
@@ -64,26 +64,26 @@ static parcel *pack_levels(const snow_image *image,
     return made;
 }
 
-static parcel *pack_png(const snow_image *image, const snow_image_options *form,
-                        frame_head *head) {
+static outgoing *pack_png(const snow_image *image,
+                          const snow_image_options *form, frame_head *head) {
     size_t length;
     files_forget_output();
     if (snow_image_save(image, "-", form) != SNOW_STATUS_OK)
         return NULL;
     const unsigned char *bytes = files_output(&length);
-    parcel *made = parcel_new(FRAME_HEAD_BYTES + length);
+    outgoing *made = outgoing_new(FRAME_HEAD_BYTES + length);
     if (made)
         memcpy(made->bytes + FRAME_HEAD_BYTES, bytes, length);
     head->kind = FRAME_PNG;
     return made;
 }
 
-static parcel *pack(const snow_image *image, const snow_image_options *form,
-                    bool exact, frame_head *head) {
+static outgoing *pack(const snow_image *image, const snow_image_options *form,
+                      bool exact, frame_head *head) {
     double begin = seconds_now();
     head->width = (uint32_t)snow_image_width(image);
     head->height = (uint32_t)snow_image_height(image);
-    parcel *made =
+    outgoing *made =
         exact ? pack_png(image, form, head) : pack_levels(image, form, head);
     head->pack_us = (uint32_t)(1e6 * (seconds_now() - begin));
     if (made)
@@ -91,8 +91,8 @@ static parcel *pack(const snow_image *image, const snow_image_options *form,
     return made;
 }
 
-parcel *pack_small(const snow_image *image, const snow_image_options *form,
-                   bool exact, int pane, uint32_t n) {
+outgoing *pack_small(const snow_image *image, const snow_image_options *form,
+                     bool exact, int pane, uint32_t n) {
     frame_head head = {.n = n, .level = exact ? 2 : 1, .pane = pane};
     return pack(image, form, true, &head); /* the page takes it for a file */
 }
@@ -101,10 +101,10 @@ picture *packer_put(packer *p, picture *made) {
     frame_head head = {.level = made->level, .render_us = made->render_us};
     snow_image_options form = made->form;
     form.overlay = made->overlay;
-    parcel *packed = pack(made->image, &form, made->level == 2, &head);
+    outgoing *packed = pack(made->image, &form, made->level == 2, &head);
     if (packed) {
         packed->revision = made->revision;
-        packed->topic = PARCEL_PICTURE;
+        packed->topic = MESSAGE_PICTURE;
     }
     outbox_put(p->box, packed);
     return made;

@@ -157,7 +157,7 @@ static snow_status draw(rank_state *s, bool timed) {
     const int ranks = snow_comm_size(s->comm);
     snow_status status =
         snow_comm_agree_status(s->comm, SNOW_STATUS_OK); /* a barrier */
-    const uint64_t sent = s->comm->bytes_sent, placed = s->comm->bytes_lent;
+    const uint64_t sent = s->comm->bytes_sent, placed = s->comm->bytes_shared;
     const double start = snow_comm_seconds(s->comm);
     snow_image_free(s->image);
     s->image = NULL;
@@ -169,7 +169,7 @@ static snow_status draw(rank_state *s, bool timed) {
         return status;
     note_stats(s);
     s->mine.bytes_sent = s->comm->bytes_sent - sent;
-    s->mine.bytes_in_place = s->comm->bytes_lent - placed;
+    s->mine.bytes_in_place = s->comm->bytes_shared - placed;
     status = snow_comm_allgather(s->comm, &took, sizeof took, s->ends);
     double last = 0;
     for (int i = 0; i < ranks; i++)

@@ -58,7 +58,7 @@ static void say_once(const char *text) {
     snprintf(said, sizeof said, "%s", text);
 }
 
-static void hear(void *user, const char *text) {
+static void print_warning(void *user, const char *text) {
     (void)user;
     say(text);
 }
@@ -162,7 +162,7 @@ enum catalyst_status catalyst_initialize_snowglass(const conduit_node *params) {
         close_all();
         return catalyst_status_ok; /* no pictures, but a simulation */
     }
-    snow_insitu_set_warning(adaptor.insitu, hear, NULL);
+    snow_insitu_set_warning(adaptor.insitu, print_warning, NULL);
     /* Told to all ranks by the first step, with the message. */
     snow_insitu_set_recipe_status(adaptor.insitu,
                                   take_recipe(find_recipe(params)));

@@ -177,7 +177,7 @@ static void write_field(const box *b, const char *path) {
 /* ------------------------------------------------------------------------- */
 
 /* Pictures left out, and what all took beside the simulation. */
-static void hear(void *user, const char *text) {
+static void print_warning(void *user, const char *text) {
     (void)user;
     fprintf(stderr, "gray_scott: %s\n", text);
 }
@@ -200,7 +200,7 @@ static snow_insitu *open_movie(const box *b, const char *pattern) {
     snow_view_init(&view);
     if (snow_insitu_new_mpi(NULL, b->comm, &movie) != SNOW_STATUS_OK)
         return NULL;
-    snow_insitu_set_warning(movie, hear, NULL);
+    snow_insitu_set_warning(movie, print_warning, NULL);
     snow_insitu_set_grid(movie, b->dims, NULL, NULL);
     snow_insitu_set_brick(movie, 0, b->first, b->count, NULL);
     snow_view_from_name(snow_comm_context(snow_insitu_comm(movie)), "iso",

@@ -130,14 +130,14 @@ SNOW_API snow_status snow_frame_render(snow_frame *frame,
  * or in their files, of which parts take what they need; drawn with it, slab by
  * slab, the last in front or, as channels, mixed (docs/model.md). They stay the
  * caller's; 0: none. Mode over, shear-warp and raycast. */
-typedef struct snow_inlay {
+typedef struct snow_layer {
     const snow_volume *volume;
     const snow_transfer *transfer;
     bool mixes; /* with that before it, the first one with the volume */
-} snow_inlay;
-#define SNOW_INLAYS_MOST 7
-SNOW_API snow_status snow_frame_set_inlays(
-    snow_frame *frame, const snow_inlay *layers, int count);
+} snow_layer;
+#define SNOW_LAYERS_MOST 7
+SNOW_API snow_status snow_frame_set_layers(
+    snow_frame *frame, const snow_layer *layers, int count);
 
 /* The same as bytes: red, green, blue, straight alpha, row 0 on top, rows
  * `stride` bytes apart; or opaque on a `background` of 0 to 1 (NULL: none).

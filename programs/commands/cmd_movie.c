@@ -20,7 +20,7 @@ static int check_movie(const options *opts) {
 }
 
 /* People who ask for a movie of one volume often mean a turntable. */
-static void remark_still(const options *opts, const shot_list *list) {
+static void warn_still(const options *opts, const shot_list *list) {
     if (list->count == 1 && opts->verbosity >= 0)
         say("note: this is one time step, so the movie is a still; for a movie "
             "around the volume use turntable, for a picture render");
@@ -46,7 +46,7 @@ static int prepare_movie(const options *opts, shot_renderer *shots,
         return done;
     done = steps_list(files, shots, list);
     if (done == CONTINUE)
-        remark_still(opts, list);
+        warn_still(opts, list);
     if (done == CONTINUE && process_talks())
         done = movie_open(opts, list, s);
     done = process_agree(done);

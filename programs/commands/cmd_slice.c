@@ -216,9 +216,9 @@ static int open_piped(slice_work *w) {
 static int open_slice(slice_work *w) {
     if (is_piped(w))
         return open_piped(w);
-    hear_warnings(&w->opts, w->context, false); /* they come again */
+    show_warnings(&w->opts, w->context, false); /* they come again */
     int done = inspect(w);
-    hear_warnings(&w->opts, w->context, true);
+    show_warnings(&w->opts, w->context, true);
     if (done == CONTINUE)
         done = find_slice(w);
     snow_volume_info slice = w->whole;
@@ -516,7 +516,7 @@ static int check_request(slice_work *w) {
     if (done != CONTINUE)
         return done;
     snow_context_set_memory_limit(w->context, opts->memory);
-    snow_context_set_progress(w->context, progress_hear, NULL);
+    snow_context_set_progress(w->context, progress_show, NULL);
     fill_settings(opts, &w->settings);
     if (!w->settings.threads)
         w->settings.threads = process_processors();

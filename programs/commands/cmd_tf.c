@@ -199,7 +199,7 @@ static void print_points(const snow_look *p) {
 /* A function of the library that returns a text, to be freed; NULL after the
  * error was printed. */
 typedef snow_status text_writer(snow_context *context, const snow_look *points,
-                                char *text, size_t room, size_t *length);
+                                char *text, size_t capacity, size_t *length);
 
 static char *text_of(const named *n, text_writer *write, size_t *length,
                      int *done) {

@@ -167,7 +167,7 @@ static void find_patient(snow_context *context, const options *opts,
         one.crop[i][0] = 0;
         one.crop[i][1] = 1;
     }
-    hear_warnings(opts, context, false);
+    show_warnings(opts, context, false);
     snow_volume_options data = data_options(&one);
     data.allow_gaps = true;
     if (snow_volume_open(context, path, &data, &volume) == SNOW_STATUS_OK)

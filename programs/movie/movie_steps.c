@@ -259,13 +259,14 @@ static int look_at_labels(render_state *s, const value_pool *pool) {
     static options as_labels; /* large */
     const snow_volume_options data = {
         .size = sizeof data, .label_table = data_options(s->opts).label_table};
-    const size_t room = 128 + (size_t)pool->label_count * 320;
-    char *text = malloc(room);
+    const size_t capacity = 128 + (size_t)pool->label_count * 320;
+    char *text = malloc(capacity);
     size_t used = 0;
     int named = 0;
     if (!text)
         return fail_list();
-#define PUT(...) used += (size_t)snprintf(text + used, room - used, __VA_ARGS__)
+#define PUT(...) \
+    used += (size_t)snprintf(text + used, capacity - used, __VA_ARGS__)
     PUT("NRRD0004\ntype: int64\ndimension: 3\nsizes: %" PRId64
         " 1 1\nencoding: ascii\n",
         pool->label_count);
@@ -500,7 +501,7 @@ static int pool_steps(const shot_list *list, shot_renderer *shots,
         report_step(shots->state.opts, i, list->count);
         done = pool_round(list, i, shots, pool);
     }
-    hear_warnings(shots->state.opts, shots->state.context, true);
+    show_warnings(shots->state.opts, shots->state.context, true);
     if (done != CONTINUE)
         return done;
     bool labels = pool->labelled && pool->label_count > 0;
@@ -529,14 +530,14 @@ static int look_at_steps(const shot_list *list, shot_renderer *shots,
                                                   : !opts->tf};
     if (pool.quota < STEP_VALUES)
         pool.quota = STEP_VALUES;
-    int64_t room = pool.quota + 2;
+    int64_t capacity = pool.quota + 2;
     pool.values =
-        malloc((size_t)(room * (list->count + 1)) * sizeof *pool.values);
+        malloc((size_t)(capacity * (list->count + 1)) * sizeof *pool.values);
     pool.labels = malloc(2 * LABELS_MOST * sizeof *pool.labels);
     int done =
         process_agree(pool.values && pool.labels ? CONTINUE : fail_list());
     if (done == CONTINUE) {
-        pool.step = pool.values + room * list->count;
+        pool.step = pool.values + capacity * list->count;
         done = pool_steps(list, shots, &pool);
     }
     free(pool.values);
@@ -576,7 +577,7 @@ int steps_look(const shot_list *list, shot_renderer *shots) {
     /* All steps are opened again later and cause the same notes.  They are
      * printed now, except if ranks read steps that rank 0 does not see now. */
     const bool later = process_ranks() > 1;
-    hear_warnings(s->opts, s->context, !later);
+    show_warnings(s->opts, s->context, !later);
     int done = choose_channels(&looked, shots), n = 0;
     do
         if (done == CONTINUE)
@@ -584,6 +585,6 @@ int steps_look(const shot_list *list, shot_renderer *shots) {
     while (++n < s->channels.list.count && done == CONTINUE);
     if (done == CONTINUE && list->looked < list->count)
         done = look_at_more(list, shots);
-    hear_warnings(s->opts, s->context, later);
+    show_warnings(s->opts, s->context, later);
     return done;
 }

@@ -51,14 +51,14 @@ int channels_choose(const options *opts, const snow_volume_info *info,
     const channel_list *asked = &opts->channels;
     const int64_t there = info->channels > 1 ? info->channels : 1;
     channel_list list = *asked;
-    char room[128];
+    char scratch[128];
     if (out->chosen)
         return CONTINUE;
     if (!asked->count && !asks_one(opts))
         channels_of_file(info, &list);
     if (!why && list.count > 1 &&
-        !memory_holds(opts, info, list.count, room, sizeof room))
-        why = room;
+        !memory_holds(opts, info, list.count, scratch, sizeof scratch))
+        why = scratch;
     if (asked->count && (opts->preset || opts->tf))
         return fail_usage("--channel: a list has colours of its own; remove "
                           "--preset and --tf, or give one channel");
@@ -66,7 +66,7 @@ int channels_choose(const options *opts, const snow_volume_info *info,
         const int done = fail_usage("--channel: %s; give one channel, such as "
                                     "--channel %lld",
                                     why, (long long)asked->picks[0].index);
-        return why == room ? SNOW_STATUS_NO_MEMORY : done;
+        return why == scratch ? SNOW_STATUS_NO_MEMORY : done;
     }
     for (int n = 0; n < asked->count; n++)
         if (asked->picks[n].index >= there)
@@ -112,7 +112,7 @@ static bool find_rgb(const char *color, double rgb[3]) {
  * and of voxels that are colours: faint enough that the colour is not that of
  * the border, where values are between. */
 static void take_color(const options *opts, const snow_channel *of,
-                       const channel_pick *pick, channel_colors *room,
+                       const channel_pick *pick, channel_colors *scratch,
                        snow_look *look) {
     static const snow_opacity_point own[] = {
         {0, 0}, {0.04, 0}, {0.15, 0.25}, {1, 0.3}};
@@ -120,10 +120,10 @@ static void take_color(const options *opts, const snow_channel *of,
     const double dim = flat || of->own ? 0 : DIM;
     double rgb[3];
     if (find_rgb(pick->color, rgb)) {
-        room->colors[0] =
+        scratch->colors[0] =
             (snow_color_point){0, dim * rgb[0], dim * rgb[1], dim * rgb[2]};
-        room->colors[1] = (snow_color_point){1, rgb[0], rgb[1], rgb[2]};
-        look->colors = room->colors;
+        scratch->colors[1] = (snow_color_point){1, rgb[0], rgb[1], rgb[2]};
+        look->colors = scratch->colors;
         look->color_count = 2;
         look->domain = SNOW_DOMAIN_RANGE;
     } else {
@@ -131,11 +131,11 @@ static void take_color(const options *opts, const snow_channel *of,
         look->preset = flat ? "linear" : NULL;
         return;
     }
-    memcpy(room->opacities, own, sizeof own);
+    memcpy(scratch->opacities, own, sizeof own);
     if (flat)
-        room->opacities[1] = (snow_opacity_point){1, 1};
+        scratch->opacities[1] = (snow_opacity_point){1, 1};
     if (flat || of->own)
-        look->opacities = room->opacities;
+        look->opacities = scratch->opacities;
     look->opacity_count = flat ? 2 : of->own ? 4 : 0;
 }
 
@@ -187,14 +187,14 @@ snow_status channels_look(snow_comm *comm, const options *opts,
                                  ? &info->channel[pick->index]
                                  : &unknown;
     const range_value range = range_of(opts, of, pick);
-    channel_colors room;
+    channel_colors scratch;
     snow_look look = {.size = sizeof look,
                       .range = range.kind,
                       .low = range.low,
                       .high = range.high,
                       .log = opts->scale.log,
                       .symlog = opts->scale.symlog};
-    take_color(opts, of, pick, &room, &look);
+    take_color(opts, of, pick, &scratch, &look);
     if (opts->gradient_opacities.count) {
         look.gradient_opacities = opts->gradient_opacities.points;
         look.gradient_opacity_count = opts->gradient_opacities.count;

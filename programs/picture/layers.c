@@ -432,13 +432,13 @@ void layers_drop_look(layers *l) {
 
 snow_status layers_set(const layers *l, const channel_set *c,
                        snow_frame *frame) {
-    snow_inlay all[SNOW_INLAYS_MOST + 1];
+    snow_layer all[SNOW_LAYERS_MOST + 1];
     int count = 0;
     for (int n = 1; n < c->list.count; n++)
-        all[count++] = (snow_inlay){c->volumes[n], c->looks[n], true};
+        all[count++] = (snow_layer){c->volumes[n], c->looks[n], true};
     if (l->volume)
-        all[count++] = (snow_inlay){l->volume, l->transfer, false};
-    return snow_frame_set_inlays(frame, all, count);
+        all[count++] = (snow_layer){l->volume, l->transfer, false};
+    return snow_frame_set_layers(frame, all, count);
 }
 
 void layers_close(layers *l) {

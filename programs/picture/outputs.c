@@ -242,16 +242,16 @@ int write_text(const char *bytes, size_t count, const char *path,
 int write_json(json_t *object, const char *path, bool overwrite) {
     if (strcmp(path, "-") == 0)
         return print_json(object);
-    size_t room = json_dumpb(object, NULL, 0, JSON_FORM);
-    char *text = room ? malloc(room + 1) : NULL;
+    size_t capacity = json_dumpb(object, NULL, 0, JSON_FORM);
+    char *text = capacity ? malloc(capacity + 1) : NULL;
     if (text)
-        json_dumpb(object, text, room, JSON_FORM);
+        json_dumpb(object, text, capacity, JSON_FORM);
     json_decref(object);
     if (!text)
         return fail_memory(
             "%s: out of memory for its text; close other programs", path);
-    text[room] = '\n';
-    int done = write_text(text, room + 1, path, overwrite);
+    text[capacity] = '\n';
+    int done = write_text(text, capacity + 1, path, overwrite);
     free(text);
     return done;
 }

@@ -74,8 +74,8 @@ static bool is_clear(const options *opts) {
 
 /* The least opacity with which a colour can be laid over the lowest one. */
 static float opacity_of(float color, float low) {
-    float room = color > low ? 1 - low : low;
-    return fminf(fabsf(color - low) / fmaxf(room, ROOM), 1);
+    float scratch = color > low ? 1 - low : low;
+    return fminf(fabsf(color - low) / fmaxf(scratch, ROOM), 1);
 }
 
 /* Takes the lowest colour out of a premultiplied pixel: over that colour it is

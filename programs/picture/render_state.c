@@ -43,7 +43,7 @@ int render_state_new(const options *opts, render_state *out) {
     int done = open_render_context(opts, &out->context);
     if (done == CONTINUE) {
         snow_context_set_memory_limit(out->context, opts->memory);
-        snow_context_set_progress(out->context, progress_hear, NULL);
+        snow_context_set_progress(out->context, progress_show, NULL);
         size_t ranks = (size_t)process_ranks();
         out->figures = calloc(ranks, sizeof(rank_figures));
         if (!out->figures)

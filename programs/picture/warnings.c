@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-static bool is_heard(const options *opts) {
+static bool is_shown(const options *opts) {
     return opts->verbosity >= 0 && process_talks();
 }
 
@@ -23,7 +23,7 @@ void warn_unused(const options *opts) {
         "light",    "shade",     "ambient",         "diffuse",
         "specular", "shininess", "depth-darkening", "occlusion"};
     bool lit = strcmp(opts->mode, "iso") == 0;
-    if (strcmp(opts->mode, "over") == 0 || !is_heard(opts))
+    if (strcmp(opts->mode, "over") == 0 || !is_shown(opts))
         return;
     for (size_t i = 0; i < sizeof of_opacity / sizeof *of_opacity; i++)
         warn_option(opts, of_opacity[i]);
@@ -79,7 +79,7 @@ static void warn_empty(const render_state *s, snow_image *image) {
 }
 
 void warn_picture(const render_state *s, snow_image *image) {
-    if (!is_heard(s->opts))
+    if (!is_shown(s->opts))
         return;
     warn_method(s);
     warn_empty(s, image);

@@ -65,12 +65,12 @@ void silence_others(void) {
 }
 
 /* Who hears messages instead. */
-static void (*hear_line)(void *user, const char *line);
-static void *hear_user;
+static void (*show_line)(void *user, const char *line);
+static void *show_user;
 
-void say_to(void (*hear)(void *user, const char *line), void *user) {
-    hear_line = hear;
-    hear_user = user;
+void say_to(void (*show)(void *user, const char *line), void *user) {
+    show_line = show;
+    show_user = user;
 }
 
 /* The lines that wait, each with its end. */
@@ -97,8 +97,8 @@ static void say_list(const char *format, va_list arguments) {
         fprintf(later, "%s\n", line);
         return;
     }
-    if (hear_line) {
-        hear_line(hear_user, line);
+    if (show_line) {
+        show_line(show_user, line);
         return;
     }
     if (!process_talks()) {
@@ -208,7 +208,7 @@ static bool is_new_note(const char *text) {
     return !found;
 }
 
-static void hear_warning(void *user, const char *text) {
+static void show_warning(void *user, const char *text) {
     (void)user;
     if (is_new_note(text))
         say("note: %s", text);
@@ -218,20 +218,20 @@ int open_context(const options *opts, snow_context **out) {
     snow_status status = snow_context_new(NULL, out);
     if (status != SNOW_STATUS_OK)
         return fail_status(NULL, status);
-    hear_warnings(opts, *out, true);
+    show_warnings(opts, *out, true);
     return CONTINUE;
 }
 
-void hear_warnings(const options *opts, snow_context *context, bool hear) {
-    hear = hear && opts->verbosity >= 0 && process_talks();
-    snow_context_set_warning(context, hear ? hear_warning : NULL, NULL);
+void show_warnings(const options *opts, snow_context *context, bool show) {
+    show = show && opts->verbosity >= 0 && process_talks();
+    snow_context_set_warning(context, show ? show_warning : NULL, NULL);
 }
 
 int open_render_context(const options *opts, snow_context **out) {
     if (process_ranks() == 1)
         return open_context(opts, out);
     *out = snow_comm_context(process_comm());
-    hear_warnings(opts, *out, true);
+    show_warnings(opts, *out, true);
     return CONTINUE;
 }
 
@@ -364,7 +364,7 @@ void progress_end(const options *opts) {
     progress(opts, NULL);
 }
 
-bool progress_hear(void *unused, snow_stage stage, double fraction) {
+bool progress_show(void *unused, snow_stage stage, double fraction) {
     static const char *const names[] = {[SNOW_STAGE_READ] = "reading",
                                         [SNOW_STAGE_ENCODE] = "encoding",
                                         [SNOW_STAGE_RENDER] = "rendering",

@@ -13,7 +13,7 @@
 void say(const char *format, ...) SNOW_PRINTF(1, 2);
 
 /* From here on messages go to a function instead, which any thread calls. */
-void say_to(void (*hear)(void *user, const char *line), void *user);
+void say_to(void (*show)(void *user, const char *line), void *user);
 
 /* What this thread says waits from here on: until it is said, or dropped since
  * what it was about is tried again. */
@@ -45,7 +45,7 @@ int open_context(const options *opts, snow_context **out);
 
 /* Sends a context's warnings to standard error or drops them; they are printed
  * on rank 0 only, and never when quiet. */
-void hear_warnings(const options *opts, snow_context *context, bool hear);
+void show_warnings(const options *opts, snow_context *context, bool show);
 
 /* The context for rendering: the communicator's if there is one, otherwise a
  * new one as above.  Returns CONTINUE or an exit code. */
@@ -67,7 +67,7 @@ void progress_end(const options *opts);
 
 /* Hears of the library's progress (a snow_progress_fn): it is a part of such a
  * stage, shown as a bar on a terminal.  Asks for a stop after a signal. */
-bool progress_hear(void *unused, snow_stage stage, double fraction);
+bool progress_show(void *unused, snow_stage stage, double fraction);
 
 /* "[######--------------] " */
 void progress_bar(double fraction, char *out, size_t size);

@@ -223,8 +223,8 @@ static uint64_t slab_bytes(const sizes *s, int64_t slices) {
  * fits into an eighth of the limit.  A packed file is unpacked again for each
  * slab, and a mask applied, so these may take a third. */
 static uint64_t choose_slab(const sizes *s, uint64_t limit, int threads) {
-    uint64_t room = limit > s->picture ? limit - s->picture : 0;
-    uint64_t eighth = room / 8;
+    uint64_t capacity = limit > s->picture ? limit - s->picture : 0;
+    uint64_t eighth = capacity / 8;
     uint64_t most = eighth < SLAB_USUAL ? eighth : SLAB_USUAL;
     for (int n = threads; n > 0; n--) {
         uint64_t bands = slab_bytes(s, n * BAND_SLICES + 2);
@@ -232,7 +232,7 @@ static uint64_t choose_slab(const sizes *s, uint64_t limit, int threads) {
             most = bands;
     }
     if (s->packed || s->masking)
-        most = room / 3;
+        most = capacity / 3;
     double share = (double)s->voxels / (double)(s->voxels + s->masking);
     return (uint64_t)((double)most * share) + 1;
 }
@@ -258,7 +258,7 @@ static uint64_t limit_of(const options *opts, bool *own) {
 
 bool memory_holds(const options *opts, const snow_volume_info *info, int count,
                   char *why, size_t size) {
-    char need[32], room[32];
+    char need[32], scratch[32];
     bool own;
     const uint64_t limit = limit_of(opts, &own);
     sizes s = {.info = *info,
@@ -271,7 +271,7 @@ bool memory_holds(const options *opts, const snow_volume_info *info, int count,
     if (!limit || least <= limit)
         return true;
     snprintf(why, size, "several need %s of memory, over the %s of %s",
-             print_bytes(least, need), print_bytes(limit, room),
+             print_bytes(least, need), print_bytes(limit, scratch),
              own ? "--memory" : "free memory");
     return false;
 }
@@ -312,21 +312,21 @@ static void report_need(const sizes *s) {
  * NULL if slabs would do but do not fit either. */
 static int refuse_volume(const sizes *s, const char *path, uint64_t limit,
                          bool own, const char *why) {
-    char need[32], room[32];
+    char need[32], scratch[32];
     const char *of = own ? "--memory" : "free memory";
     const char *advice = own ? "raise it, " : "";
     bool slabs = !why && slabs_least(s) < s->need.least;
     print_bytes(slabs ? slabs_least(s) : s->need.least, need);
-    print_bytes(limit, room);
+    print_bytes(limit, scratch);
     if (slabs)
         say("%s: one slab, tables and the picture need %s, over the %s of %s; "
             "%suse --crop or a smaller --size",
-            path, need, of, room, advice);
+            path, need, of, scratch, advice);
     else
         say("%s: voxels and picture need %s, over the %s of %s%s%s%s; %suse "
             "--crop, or share the volume among several machines "
             "(snowglass-mpi)",
-            path, need, of, room, why ? ", and " : "", why ? why : "",
+            path, need, of, scratch, why ? ", and " : "", why ? why : "",
             why ? " needs all voxels at once" : "", advice);
     return SNOW_STATUS_NO_MEMORY;
 }

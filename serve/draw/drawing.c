@@ -197,9 +197,9 @@ static bool drop_overlay(drawing *d, const json_t *recipe, bool other_data) {
 static int open_overlay(drawing *d) {
     render_state *s = &d->state;
     s->layers.quiet = false;
-    hear_warnings(&d->opts, s->context, false);
+    show_warnings(&d->opts, s->context, false);
     int done = layers_open(&d->opts, s->context, s->volume, &s->layers);
-    hear_warnings(&d->opts, s->context, true);
+    show_warnings(&d->opts, s->context, true);
     return process_agree(done);
 }
 

@@ -47,7 +47,7 @@ void ranks_broadcast(ranks_call call, json_t *arguments, double timeout) {
 }
 
 /* What the call was given. */
-static json_t *hear_arguments(uint32_t length, snow_status *status) {
+static json_t *receive_arguments(uint32_t length, snow_status *status) {
     char *text = length ? malloc(length) : NULL;
     json_t *tree = NULL;
     if (!length)
@@ -116,7 +116,7 @@ int ranks_follow(drawing *d) {
         status = snow_comm_broadcast(comm, &head, sizeof head, 0);
         snow_comm_set_timeout(comm, d->first.timeout);
         json_t *given = status == SNOW_STATUS_OK
-                            ? hear_arguments(head.length, &status)
+                            ? receive_arguments(head.length, &status)
                             : NULL;
         if (status == SNOW_STATUS_OK)
             make_call(d, (ranks_call)head.call, given);

@@ -20,7 +20,7 @@ static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* --- where slices lie --------------------------------------------------- */
+/* --- where slices lie ----------------------------------------------------- */
 
 /* The view of a slice in a picture of its own size. */
 static snow_status see(drawing *d, const snow_volume_info *info,
@@ -84,7 +84,7 @@ json_t *slices_info(drawing *d) {
     return list ? list : panes_info(d, of_grid);
 }
 
-/* --- what is asked, as options of the verb slice ------------------------- */
+/* --- what is asked, as options of the verb slice -------------------------- */
 
 /* Channels are mixed where the colours of the look are asked. */
 static void take_channels(const drawing *d, const slice_asked *asked,
@@ -235,9 +235,9 @@ static int open_overlay(drawing *d, const options *opts,
     if (has_all(d) && !drawing_is_clipped(d))
         return CONTINUE;
     *out = &d->slice_layers;
-    hear_warnings(opts, d->state.context, false);
+    show_warnings(opts, d->state.context, false);
     int done = layers_open(opts, d->state.context, volume, &d->slice_layers);
-    hear_warnings(opts, d->state.context, true);
+    show_warnings(opts, d->state.context, true);
     return done;
 }
 

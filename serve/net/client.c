@@ -26,9 +26,9 @@ static const struct {
 
 void client_free(client *c, outbox *box) {
     for (int i = 0; i < c->count; i++)
-        parcel_release(box, c->queue[i]);
+        outgoing_release(box, c->queue[i]);
     if (c->sending)
-        parcel_release(box, c->sending);
+        outgoing_release(box, c->sending);
     free(c->text);
     c->count = 0;
     c->sending = NULL;
@@ -36,15 +36,15 @@ void client_free(client *c, outbox *box) {
     c->id = 0;
 }
 
-static bool is_picture(const parcel *p) {
-    return p->topic == PARCEL_PICTURE || p->topic == PARCEL_THIN_PICTURE;
+static bool is_picture(const outgoing *p) {
+    return p->topic == MESSAGE_PICTURE || p->topic == MESSAGE_THIN_PICTURE;
 }
 
 /* The picture at rest, whose head says so, is one for all links. */
-static bool is_for_link(const client *c, const parcel *p) {
-    bool final = p->topic == PARCEL_PICTURE && p->bytes[8] == 2;
+static bool is_for_link(const client *c, const outgoing *p) {
+    bool final = p->topic == MESSAGE_PICTURE && p->bytes[8] == 2;
     return !is_picture(p) || final ||
-           c->thin == (p->topic == PARCEL_THIN_PICTURE);
+           c->thin == (p->topic == MESSAGE_THIN_PICTURE);
 }
 
 /* Of all pictures that wait, for whichever link, only the newest is sent. */
@@ -52,28 +52,28 @@ static void forget_pictures(client *c, outbox *box) {
     int left = 0;
     for (int i = 0; i < c->count; i++)
         if (is_picture(c->queue[i]))
-            parcel_release(box, c->queue[i]);
+            outgoing_release(box, c->queue[i]);
         else
             c->queue[left++] = c->queue[i];
     c->count = left;
 }
 
-void client_queue(client *c, outbox *box, parcel *p) {
+void client_queue(client *c, outbox *box, outgoing *p) {
     if (!is_for_link(c, p))
         return;
     if (is_picture(p))
         forget_pictures(c, box);
-    for (int i = 0; i < c->count && p->topic != PARCEL_PLAIN; i++) {
+    for (int i = 0; i < c->count && p->topic != MESSAGE_PLAIN; i++) {
         if (c->queue[i]->topic != p->topic)
             continue;
-        parcel_release(box, c->queue[i]);
-        c->queue[i] = parcel_share(box, p);
+        outgoing_release(box, c->queue[i]);
+        c->queue[i] = outgoing_share(box, p);
         return;
     }
     if (c->count == CLIENT_QUEUE_MOST)
         c->too_slow = true;
     else
-        c->queue[c->count++] = parcel_share(box, p);
+        c->queue[c->count++] = outgoing_share(box, p);
 }
 
 static bool has_picture(const client *c) {
@@ -110,7 +110,7 @@ static void note_trip(client *c, const sent_picture *sent) {
 
 /* A picture at rest does not count for those that move, nor does one that waits
  * behind it. */
-static void note_sent(client *c, const parcel *p) {
+static void note_sent(client *c, const outgoing *p) {
     bool at_rest = p->bytes[8] > 0;
     bool waits = c->under_way > 0 && c->sent_pictures[0].at_rest;
     c->sent_pictures[c->under_way++] =
@@ -142,7 +142,7 @@ bool client_acknowledge(client *c) {
     return c->thin != thin || client_quality(c) != quality;
 }
 
-/* The index of the next parcel that may be sent, or -1. */
+/* The index of the next message that may be sent, or -1. */
 static int next_of(const client *c) {
     for (int i = 0; i < c->count; i++)
         if (!is_picture(c->queue[i]) || c->under_way < CLIENT_UNDER_WAY)
@@ -167,27 +167,27 @@ static void begin(client *c) {
         note_sent(c, c->sending);
 }
 
-/* lws writes into the bytes before a piece, and others read the parcel: so it
+/* lws writes into the bytes before a piece, and others read the message: so it
  * is copied. */
 static bool send_piece(client *c) {
-    static unsigned char room[LWS_PRE + CLIENT_PIECE_BYTES];
-    const parcel *p = c->sending;
+    static unsigned char scratch[LWS_PRE + CLIENT_PIECE_BYTES];
+    const outgoing *p = c->sending;
     size_t length = p->length - c->sent;
     bool first = c->sent == 0, last = length <= CLIENT_PIECE_BYTES;
     if (!last)
         length = CLIENT_PIECE_BYTES;
-    memcpy(room + LWS_PRE, p->bytes + c->sent, length);
+    memcpy(scratch + LWS_PRE, p->bytes + c->sent, length);
     if (first && is_picture(p))
-        frame_head_set_n(room + LWS_PRE, set_log_n(&c->sets, p->revision));
-    if (first && p->topic == PARCEL_STATE)
-        state_text_set_n(room + LWS_PRE, set_log_n(&c->sets, p->revision));
+        frame_head_set_n(scratch + LWS_PRE, set_log_n(&c->sets, p->revision));
+    if (first && p->topic == MESSAGE_STATE)
+        state_text_set_n(scratch + LWS_PRE, set_log_n(&c->sets, p->revision));
     int how = !first       ? LWS_WRITE_CONTINUATION
               : p->is_text ? LWS_WRITE_TEXT
                            : LWS_WRITE_BINARY;
     if (!last)
         how |= LWS_WRITE_NO_FIN;
     c->sent += length;
-    return lws_write(c->wsi, room + LWS_PRE, length,
+    return lws_write(c->wsi, scratch + LWS_PRE, length,
                      (enum lws_write_protocol)how) >= 0;
 }
 
@@ -198,7 +198,7 @@ bool client_send(client *c, outbox *box) {
         return true;
     bool good = send_piece(c);
     if (c->sent == c->sending->length) {
-        parcel_release(box, c->sending);
+        outgoing_release(box, c->sending);
         c->sending = NULL;
     }
     return good;

@@ -35,9 +35,9 @@ typedef struct client {
     bool too_slow; /* so much waits that it is closed */
     char *text;    /* a message that comes in pieces */
     size_t used;
-    parcel *queue[CLIENT_QUEUE_MOST]; /* the oldest first */
+    outgoing *queue[CLIENT_QUEUE_MOST]; /* the oldest first */
     int count;
-    parcel *sending; /* and of it: */
+    outgoing *sending; /* and of it: */
     size_t sent;
     bool thin;      /* the link, since pictures wait for it: */
     double blocked; /* the share of them, of late */
@@ -52,8 +52,8 @@ typedef struct client {
 
 void client_free(client *c, outbox *box);
 
-/* Queues a parcel, which it shares. */
-void client_queue(client *c, outbox *box, parcel *p);
+/* Queues a message, which it shares. */
+void client_queue(client *c, outbox *box, outgoing *p);
 
 /* A picture was painted.  Whether pictures are to be packed in another way
  * for this page from now on. */
@@ -62,7 +62,7 @@ bool client_acknowledge(client *c);
 /* The quality of pictures that move, from 50 to 90. */
 int client_quality(const client *c);
 
-/* Sends a piece of the next parcel; called when the socket can take one. False
+/* Sends a piece of the next message; called when the socket can take one. False
  * for an error. */
 bool client_send(client *c, outbox *box);
 

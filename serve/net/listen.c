@@ -119,25 +119,25 @@ static void count_clients(listener *l, int change) {
 }
 
 static int close_with(struct lws *wsi, int reason, const char *text) {
-    unsigned char room[LWS_PRE + 124];
+    unsigned char scratch[LWS_PRE + 124];
     size_t length = strlen(text);
     length = length < 120 ? length : 120;
-    memcpy(room + LWS_PRE, text, length);
-    lws_close_reason(wsi, (enum lws_close_status)reason, room + LWS_PRE,
+    memcpy(scratch + LWS_PRE, text, length);
+    lws_close_reason(wsi, (enum lws_close_status)reason, scratch + LWS_PRE,
                      length);
     return -1;
 }
 
-static void queue_newest(listener *l, client *c, parcel_topic about) {
-    parcel *p = outbox_newest(l->box, about);
+static void queue_newest(listener *l, client *c, message_topic about) {
+    outgoing *p = outbox_newest(l->box, about);
     if (!p)
         return;
     client_queue(c, l->box, p);
-    parcel_release(l->box, p);
+    outgoing_release(l->box, p);
 }
 
 static void send_state(listener *l, uint64_t to, uint64_t except) {
-    outbox_put(l->box, state_parcel(l->state, to, except));
+    outbox_put(l->box, state_message(l->state, to, except));
 }
 
 static int greet(listener *l, client *c, const message *m) {
@@ -153,10 +153,10 @@ static int greet(listener *l, client *c, const message *m) {
     c->webp = m->webp;
     c->next = l->clients;
     l->clients = c;
-    queue_newest(l, c, PARCEL_INFO);
-    queue_newest(l, c, PARCEL_LOOK);
-    queue_newest(l, c, PARCEL_FIGURES);
-    queue_newest(l, c, PARCEL_PICTURE);
+    queue_newest(l, c, MESSAGE_INFO);
+    queue_newest(l, c, MESSAGE_LOOK);
+    queue_newest(l, c, MESSAGE_FIGURES);
+    queue_newest(l, c, MESSAGE_PICTURE);
     send_state(l, c->id, 0);
     count_clients(l, 1);
     return 0;
@@ -229,12 +229,12 @@ static int receive(listener *l, client *c, const void *bytes, size_t length) {
 
 /* Gives each page what is meant for it. */
 static void distribute(listener *l) {
-    for (parcel *p = outbox_take(l->box), *next; p; p = next) {
+    for (outgoing *p = outbox_take(l->box), *next; p; p = next) {
         next = p->next;
         for (client *c = l->clients; c; c = c->next)
             if (p->client ? p->client == c->id : p->except != c->id)
                 client_queue(c, l->box, p);
-        parcel_release(l->box, p);
+        outgoing_release(l->box, p);
     }
     for (client *c = l->clients; c; c = c->next)
         if (c->too_slow) /* whose socket may never take anything again */

@@ -23,7 +23,7 @@ typedef struct listener listener;
 listener *listener_new(const sockets *s, const guard *g, double idle);
 void listener_free(listener *l);
 
-/* Lets the serving thread know that parcels wait, from any thread. */
+/* Lets the serving thread know that messages wait, from any thread. */
 void listener_wake(void *listener);
 
 /* Serves until a signal comes, or no page was there for the idle time. */

@@ -55,9 +55,9 @@ static bool add_policies(struct lws *wsi, unsigned char **at,
 /* A page is asked for each time, its modules only whether they have changed. */
 static bool write_head(struct lws *wsi, unsigned status, const page_file *file,
                        const char *type, bool packed, size_t length) {
-    static unsigned char room[LWS_PRE + HEADER_BYTES];
-    unsigned char *start = room + LWS_PRE, *at = start,
-                  *end = room + sizeof room - 1;
+    static unsigned char scratch[LWS_PRE + HEADER_BYTES];
+    unsigned char *start = scratch + LWS_PRE, *at = start,
+                  *end = scratch + sizeof scratch - 1;
     if (lws_add_http_common_headers(wsi, status, type, length, &at, end))
         return false;
     bool good = add_policies(wsi, &at, end);
@@ -75,12 +75,13 @@ static bool write_head(struct lws *wsi, unsigned status, const page_file *file,
 /* lws writes into the bytes before a body.  What the socket does not take at
  * once, lws keeps. */
 static bool write_body(struct lws *wsi, const void *bytes, size_t length) {
-    unsigned char *room = malloc(LWS_PRE + length);
-    if (!room)
+    unsigned char *capacity = malloc(LWS_PRE + length);
+    if (!capacity)
         return false;
-    memcpy(room + LWS_PRE, bytes, length);
-    int written = lws_write(wsi, room + LWS_PRE, length, LWS_WRITE_HTTP_FINAL);
-    free(room);
+    memcpy(capacity + LWS_PRE, bytes, length);
+    int written =
+        lws_write(wsi, capacity + LWS_PRE, length, LWS_WRITE_HTTP_FINAL);
+    free(capacity);
     return written >= 0;
 }
 

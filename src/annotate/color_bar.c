@@ -184,12 +184,12 @@ static double pixels_of_decade(const color_bar *bar) {
  * no room for all; and what room allows between it and the next. */
 static void add_decade(const color_bar *bar, int power, int each, double side,
                        bar_ticks *ticks) {
-    double room = pixels_of_decade(bar) / bar->height, ten = pow(10, power);
+    double capacity = pixels_of_decade(bar) / bar->height, ten = pow(10, power);
     bool number = power % each == 0;
     add_tick(bar, side * ten, number, ticks);
-    for (int n = 2; n < 10 && room > 2.5; n++)
+    for (int n = 2; n < 10 && capacity > 2.5; n++)
         add_tick(bar, side * n * ten,
-                 room > 8 && (n == 5 || (n == 2 && room > 10)), ticks);
+                 capacity > 8 && (n == 5 || (n == 2 && capacity > 10)), ticks);
 }
 
 /* Decades above the least magnitude of the scale, on both sides of 0. */
@@ -268,11 +268,12 @@ static snow_status draw_label(snow_overlay *overlay, const snow_label *label,
 /* Those that are seen, of which the lower half has room for some. */
 static snow_status draw_labels(snow_overlay *overlay, const snow_transfer *t) {
     const double height = snow_number_height(overlay), step = 1.7 * height;
-    size_t seen = 0, room = (size_t)(overlay->height / 2.0 / step), drawn = 0;
+    size_t seen = 0, capacity = (size_t)(overlay->height / 2.0 / step),
+           drawn = 0;
     size_t first = overlay->shape_count;
     for (size_t n = 0; n < t->label_count; n++)
         seen += t->labels[n].color[3] > 0;
-    size_t rows = seen < room ? seen : room;
+    size_t rows = seen < capacity ? seen : capacity;
     double y = overlay->height - 1.2 * height - step * (double)rows;
     for (size_t n = 0; n < t->label_count && drawn < rows; n++) {
         if (!(t->labels[n].color[3] > 0))

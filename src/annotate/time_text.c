@@ -155,7 +155,7 @@ static bool find_moment(const snow_volume_info *info, moment *out) {
 
 /* "%Y-%m-%d %H:%M:%S", in any order; false where another letter stands. */
 static bool format_moment(const moment *m, const char *format, char *out,
-                          size_t room) {
+                          size_t capacity) {
     size_t used = 0;
     for (const char *p = format; *p; p++) {
         char part[24] = {*p, 0};
@@ -170,8 +170,8 @@ static bool format_moment(const moment *m, const char *format, char *out,
             else if (at)
                 snprintf(part, sizeof part, "%02d", numbers[at - letters]);
         }
-        used += (size_t)snprintf(out + used, room - used, "%s", part);
-        if (used >= room)
+        used += (size_t)snprintf(out + used, capacity - used, "%s", part);
+        if (used >= capacity)
             return false;
     }
     return true;
@@ -195,10 +195,10 @@ static const char *find_number(const char *format, size_t *length) {
 }
 
 /* Text with "%%" as one sign of per cent; false where it does not fit. */
-static bool add_plain(const char *text, size_t length, char *out, size_t room,
-                      size_t *used) {
+static bool add_plain(const char *text, size_t length, char *out,
+                      size_t capacity, size_t *used) {
     for (size_t n = 0; n < length; n++) {
-        if (*used + 1 >= room)
+        if (*used + 1 >= capacity)
             return false;
         out[(*used)++] = text[n];
         n += text[n] == '%';
@@ -208,27 +208,27 @@ static bool add_plain(const char *text, size_t length, char *out, size_t room,
 }
 
 static bool format_number(double value, const char *format, char *out,
-                          size_t room) {
+                          size_t capacity) {
     size_t length = 0;
     char conversion[16];
     const char *at = find_number(format, &length);
-    if (!at || !room)
+    if (!at || !capacity)
         return false;
     memcpy(conversion, at, length);
     conversion[length] = 0;
     size_t used = 0;
-    if (!add_plain(format, (size_t)(at - format), out, room, &used))
+    if (!add_plain(format, (size_t)(at - format), out, capacity, &used))
         return false;
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wformat-nonliteral"
-    used += (size_t)snprintf(out + used, room - used, conversion, value);
+    used += (size_t)snprintf(out + used, capacity - used, conversion, value);
 #pragma GCC diagnostic pop
-    return used < room &&
-           add_plain(at + length, strlen(at + length), out, room, &used);
+    return used < capacity &&
+           add_plain(at + length, strlen(at + length), out, capacity, &used);
 }
 
 bool snow_time_text(const snow_volume_info *given, const char *format,
-                    char *out, size_t room) {
+                    char *out, size_t capacity) {
     snow_volume_info info;
     moment m;
     if (SNOW_RECORD_READ(NULL, snow_volume_info, given, &info) !=
@@ -237,12 +237,13 @@ bool snow_time_text(const snow_volume_info *given, const char *format,
         return false;
     bool dated = find_moment(&info, &m);
     if (format)
-        return format_number(info.time_value, format, out, room) ||
-               (dated && format_moment(&m, format, out, room));
+        return format_number(info.time_value, format, out, capacity) ||
+               (dated && format_moment(&m, format, out, capacity));
     if (dated)
-        return format_moment(
-            &m, m.second ? "%Y-%m-%d %H:%M:%S" : "%Y-%m-%d %H:%M", out, room);
-    int length = snprintf(out, room, "%.6g%s%s", info.time_value,
+        return format_moment(&m,
+                             m.second ? "%Y-%m-%d %H:%M:%S" : "%Y-%m-%d %H:%M",
+                             out, capacity);
+    int length = snprintf(out, capacity, "%.6g%s%s", info.time_value,
                           *info.time_unit ? " " : "", info.time_unit);
-    return length >= 0 && (size_t)length < room;
+    return length >= 0 && (size_t)length < capacity;
 }

@@ -20,7 +20,7 @@
 
 #define SNOW_MESSAGE_BYTES 10240
 
-typedef struct snow_monitor snow_monitor; /* base/monitor.h */
+typedef struct snow_monitor snow_monitor; /* monitor.h */
 
 /* Blocks of voxels that a file is packed in, each of which is unpacked as a
  * whole; of a box, `cut` of the first block's lie before it.  Sizes of 0: there
@@ -35,10 +35,9 @@ struct snow_context {
                              picture allocate */
     snow_warning_fn *warning; /* NULL: no warnings */
     void *warning_user;
-    uint64_t bytes, peak; /* allocated now; the most so far */
-    uint64_t limit;       /* of bytes; 0: none */
-    struct snow_pool
-        *pool;             /* threads (base/thread_pool.h), NULL until needed */
+    uint64_t bytes, peak;   /* allocated now; the most so far */
+    uint64_t limit;         /* of bytes; 0: none */
+    struct snow_pool *pool; /* threads (thread_pool.h), NULL until needed */
     uint64_t generations;  /* number of generations given out, which distinguish
                               objects */
     uint64_t bytes_read;   /* from files */
@@ -75,7 +74,7 @@ snow_status snow_fail_within(snow_context *context, snow_status status,
 snow_status snow_fail_in_file(snow_context *context, snow_status status,
                               const char *path);
 
-/* --- memory -------------------------------------------------------------- */
+/* --- memory --------------------------------------------------------------- */
 
 /* Does what snow_allocate does, but of zeros. */
 void *snow_allocate_clear(snow_context *context, size_t bytes);
@@ -117,7 +116,7 @@ bool snow_add_u64(uint64_t a, uint64_t b, uint64_t *out);
 int64_t snow_last_up_to(const int64_t *numbers, int64_t low, int64_t high,
                         int64_t most);
 
-/* --- records ------------------------------------------------------------- */
+/* --- records -------------------------------------------------------------- */
 
 /* Defines the initialiser of a record that grows at its end
  * (snowglass/extend.h) and whose defaults are zeros. */

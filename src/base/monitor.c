@@ -93,7 +93,7 @@ snow_status snow_monitor_status(const snow_monitor *monitor) {
 }
 
 /* Asks, on the calling thread only. */
-static void ask(snow_monitor *monitor) {
+static void ask_progress(snow_monitor *monitor) {
     if (monitor && monitor->stop && !atomic_load(&monitor->stopped) &&
         monitor->stop(monitor->stop_user))
         atomic_store(&monitor->stopped, true);
@@ -138,7 +138,7 @@ bool snow_monitor_item(snow_monitor *monitor, int worker, int64_t item,
     if (!monitor)
         return false;
     if (worker == 0) {
-        ask(monitor);
+        ask_progress(monitor);
         if (monitor->batch)
             snow_monitor_report(monitor, monitor->stage,
                                 monitor->begin +
@@ -158,7 +158,7 @@ bool snow_monitor_look(snow_monitor *monitor, int worker) {
         double now = snow_seconds();
         if (now - monitor->asked >= ASK_INTERVAL) {
             monitor->asked = now;
-            ask(monitor);
+            ask_progress(monitor);
             repeat(monitor, now);
         }
     }

@@ -1,8 +1,8 @@
 /* base/relay.c - see relay.h. */
 #include "base/relay.h"
 
-void snow_relay_remark(snow_context *context, const char *name, bool foreign,
-                       uint64_t left) {
+void snow_relay_warn(snow_context *context, const char *name, bool foreign,
+                     uint64_t left) {
     if (foreign)
         snow_notify(context,
                     "%s: bytes after the end of the compressed data are "

@@ -37,7 +37,7 @@ typedef struct snow_relay {
 } snow_relay;
 
 /* Warns of what the last reader has found, as that did not. */
-void snow_relay_remark(snow_context *context, const char *name, bool foreign,
-                       uint64_t left);
+void snow_relay_warn(snow_context *context, const char *name, bool foreign,
+                     uint64_t left);
 
 #endif

@@ -187,7 +187,7 @@ void snow_classify_row_block(const snow_classifier *classifier,
     }
 }
 
-/* --- row blocks ---------------------------------------------------------- */
+/* --- row blocks ----------------------------------------------------------- */
 
 /* Voxels of a row block: with 4 bytes of column and 16 of sample each it takes
  * 320 KB, a part of today's second-level caches. */

@@ -170,7 +170,7 @@ void snow_shade_gradients(const snow_shader *shader,
                           const double gradients[3][SNOW_SHADE_BLOCK],
                           int count, int channels, float *samples);
 
-/* --- perspective: classify/path_length.c ---------------------------------- */
+/* --- perspective: path_length.c ------------------------------------------- */
 
 /* Corrects the opacities of a row block from the reference length to the path
  * lengths of the voxels' own rays. Colours are premultiplied. */

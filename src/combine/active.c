@@ -88,7 +88,7 @@ typedef struct tail {
     uint32_t first_word, words;
 } tail;
 
-size_t snow_active_room(int64_t count, size_t pixel_bytes) {
+size_t snow_active_capacity(int64_t count, size_t pixel_bytes) {
     return (size_t)count * pixel_bytes + (size_t)(count / 64 + 2) * 9 +
            sizeof(tail) + SNOW_PIXELS_SLACK;
 }

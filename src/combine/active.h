@@ -55,7 +55,7 @@ static inline uint64_t snow_active_bits(const snow_active *layer, int64_t index,
 
 /* The most bytes of a message of `count` pixels, including those beyond it that
  * loops may access. */
-size_t snow_active_room(int64_t count, size_t pixel_bytes);
+size_t snow_active_capacity(int64_t count, size_t pixel_bytes);
 
 /* Scans pixels first .. last - 1 of the local image: writes their mask to
  * `words` and the active ones to `out`; returns their number, and adds the

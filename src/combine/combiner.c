@@ -94,12 +94,12 @@ static int64_t most_held(const snow_combiner *combiner, int level) {
     for (int i = rounds->count - 1; i >= level && group > 1; i--)
         group = group / rounds->radices[i] > 1 ? group / rounds->radices[i] : 1;
     if (rounds->tree || level == 0)
-        return snow_region_room(bounds, 1);
-    return most(snow_region_room(bounds, group),
-                snow_region_room(bounds, group + 1));
+        return snow_region_capacity(bounds, 1);
+    return most(snow_region_capacity(bounds, group),
+                snow_region_capacity(bounds, group + 1));
 }
 
-/* The most messages of a rank in a round (snow_rounds_room). */
+/* The most messages of a rank in a round (snow_rounds_capacity). */
 static size_t peers_in(const snow_rounds *rounds, int level) {
     int radix = rounds->radices[level];
     return 2 * (size_t)(radix < rounds->rank_order ? radix
@@ -115,9 +115,11 @@ static void count_round(const snow_combiner *combiner, int level,
                   after = most_held(combiner, level + 1);
     const size_t peers = peers_in(rounds, level), radix = (peers - 4) / 2;
     const int parity = level & 1;
-    size_t spare = peers * (SNOW_ALIGNMENT + snow_active_room(0, pixel_bytes));
-    size_t sent = snow_active_room(before, pixel_bytes) + spare;
-    size_t came = (radix - 1) * snow_active_room(after, pixel_bytes) + spare;
+    size_t spare =
+        peers * (SNOW_ALIGNMENT + snow_active_capacity(0, pixel_bytes));
+    size_t sent = snow_active_capacity(before, pixel_bytes) + spare;
+    size_t came =
+        (radix - 1) * snow_active_capacity(after, pixel_bytes) + spare;
     size_t words = radix * ((size_t)after / 64 + 2) + 2 * peers;
     out->out[parity] = more(out->out[parity], sent);
     out->in[parity] = more(out->in[parity], came);
@@ -130,8 +132,8 @@ static void count_needs(const snow_combiner *combiner,
     const size_t channels = (size_t)combiner->shape.channels;
     *out = (snow_exchange_needs){0};
     if (!rounds->count) {
-        out->out[0] = snow_align(
-            snow_active_room(most_held(combiner, 0), channels * sizeof(float)));
+        out->out[0] = snow_align(snow_active_capacity(
+            most_held(combiner, 0), channels * sizeof(float)));
         out->words =
             ((size_t)most_held(combiner, 0) / 64 + 2) * sizeof(uint64_t);
     }
@@ -156,7 +158,7 @@ static snow_status allocate_lists(snow_combiner *combiner) {
         SNOW_TRY(SNOW_RESERVE(context, combiner->out[i].returns, 0, peers));
     }
     SNOW_TRY(SNOW_RESERVE(context, combiner->rounds.shares, 0,
-                          snow_rounds_room(&combiner->rounds)));
+                          snow_rounds_capacity(&combiner->rounds)));
     SNOW_TRY(SNOW_RESERVE(context, combiner->ranks, 0, rank_order));
     SNOW_TRY(SNOW_RESERVE(context, combiner->table, 0, rank_order));
     SNOW_TRY(SNOW_RESERVE(context, combiner->layers, 0,

@@ -15,7 +15,7 @@ typedef struct snow_traffic {
     snow_loan *loans; /* of the messages to and from ranks of this node */
     int count;
     snow_message *returns; /* of what was lent */
-    int lent;
+    int shared;
 } snow_traffic;
 
 /* Pixels first .. last - 1. */

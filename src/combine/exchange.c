@@ -73,8 +73,8 @@ static snow_status begin_receives(snow_combiner *combiner) {
         if (part.first >= part.last ||
             share->rank_position == combiner->rounds.rank_position)
             continue;
-        size_t capacity = snow_active_room(part.last - part.first,
-                                           combiner->exchange.pixel_bytes);
+        size_t capacity = snow_active_capacity(part.last - part.first,
+                                               combiner->exchange.pixel_bytes);
         SNOW_TRY(snow_traffic_receive(
             combiner, in, i,
             combiner->exchange.order.ranks[share->rank_position],
@@ -168,8 +168,8 @@ static snow_status end_receives(snow_combiner *combiner) {
                 combiner, in, i,
                 combiner->exchange.order.ranks[share->rank_position],
                 in->bytes + at, &count);
-            at += snow_align(snow_active_room(part.last - part.first,
-                                              combiner->exchange.pixel_bytes));
+            at += snow_align(snow_active_capacity(
+                part.last - part.first, combiner->exchange.pixel_bytes));
         }
         snow_active *layer =
             &combiner->layers[combiner->exchange.layer_count++];

@@ -97,7 +97,7 @@ void snow_parts_write(snow_combiner *combiner, int count, int workers) {
     for (int i = 0; i < count; i++) {
         snow_part_to_send *what = &combiner->parts[i];
         what->message = combiner->out[run->level & 1].bytes + run->used;
-        run->used += snow_align(snow_active_room(
+        run->used += snow_align(snow_active_capacity(
             what->part.last - what->part.first, run->pixel_bytes));
     }
     share_work(combiner, workers, count, write_part, combiner);

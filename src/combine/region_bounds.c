@@ -81,7 +81,7 @@ static int64_t largest(const snow_region_bounds *bounds, int regions) {
     return most;
 }
 
-int64_t snow_region_room(const snow_region_bounds *bounds, int regions) {
+int64_t snow_region_capacity(const snow_region_bounds *bounds, int regions) {
     const int64_t pixels = (int64_t)bounds->width * bounds->height;
     int64_t even = pixels / regions + 1;
     if (!bounds->counted)

@@ -38,6 +38,6 @@ int64_t snow_region_begin(const snow_region_bounds *bounds, int region,
                           int regions);
 
 /* The most pixels of any of n regions, or an upper bound. */
-int64_t snow_region_room(const snow_region_bounds *bounds, int regions);
+int64_t snow_region_capacity(const snow_region_bounds *bounds, int regions);
 
 #endif

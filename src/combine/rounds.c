@@ -109,7 +109,7 @@ static void list_owners(const snow_rounds *rounds, int level, group g,
 
 /* --- lists ---------------------------------------------------------------- */
 
-size_t snow_rounds_room(const snow_rounds *rounds) {
+size_t snow_rounds_capacity(const snow_rounds *rounds) {
     size_t capacity = 0;
     for (int i = 0; i < rounds->count; i++) /* in either list, and spare */
         capacity +=

@@ -50,7 +50,7 @@ typedef struct snow_rounds {
 } snow_rounds;
 
 /* The capacity that the lists may need. */
-size_t snow_rounds_room(const snow_rounds *rounds);
+size_t snow_rounds_capacity(const snow_rounds *rounds);
 
 /* Chooses radices for `method`: `pixels` of `pixel_bytes` in the picture;
  * `radix` as in snow_exchange_params; `node_ranks` neighbours are a node, whose
@@ -60,7 +60,7 @@ void snow_rounds_choose(snow_rounds *rounds, snow_combine method, int radix,
                         size_t pixel_bytes);
 
 /* Fills in the lists for a rank position; `shares` has the capacity of
- * snow_rounds_room, and `table` that of `rank_order` numbers. */
+ * snow_rounds_capacity, and `table` that of `rank_order` numbers. */
 void snow_rounds_fill(snow_rounds *rounds, int rank_position, int display,
                       int *table);
 

@@ -7,9 +7,9 @@ snow_status snow_traffic_receive(snow_combiner *combiner, snow_traffic *in,
                                  int i, int from, unsigned char *bytes,
                                  size_t capacity) {
     snow_comm *comm = combiner->comm;
-    const bool lent = combiner->lends && snow_comm_lends(comm, from);
-    void *place = lent ? (void *)&in->loans[i] : bytes;
-    return snow_comm_receive(comm, place, lent ? sizeof *in->loans : capacity,
+    const bool shared = combiner->lends && snow_comm_lends(comm, from);
+    void *place = shared ? (void *)&in->loans[i] : bytes;
+    return snow_comm_receive(comm, place, shared ? sizeof *in->loans : capacity,
                              from, SNOW_TAG_COMBINE, &in->messages[i]);
 }
 
@@ -38,7 +38,7 @@ snow_status snow_traffic_send(snow_combiner *combiner, snow_traffic *out,
                               &out->messages[i]);
     return snow_comm_lend(comm, bytes, count, to, SNOW_TAG_COMBINE,
                           &out->loans[i], &out->messages[i],
-                          &out->returns[out->lent++]);
+                          &out->returns[out->shared++]);
 }
 
 snow_status snow_traffic_return(snow_combiner *combiner, int level) {
@@ -67,8 +67,8 @@ snow_status snow_traffic_await_sent(snow_combiner *combiner,
 
 snow_status snow_traffic_await_return(snow_combiner *combiner,
                                       snow_traffic *out) {
-    SNOW_TRY(snow_comm_wait_all(combiner->comm, out->returns, out->lent));
-    out->lent = 0;
+    SNOW_TRY(snow_comm_wait_all(combiner->comm, out->returns, out->shared));
+    out->shared = 0;
     return SNOW_STATUS_OK;
 }
 

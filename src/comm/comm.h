@@ -20,7 +20,7 @@ struct snow_comm {
     int rank, ranks;
     /* Sent by this rank, for the figures of a benchmark; lent: of the bytes,
      * those that a rank of the same node read in place. */
-    uint64_t messages_sent, bytes_sent, bytes_lent;
+    uint64_t messages_sent, bytes_sent, bytes_shared;
     void *shared;        /* memory that ranks of the node read, or NULL */
     size_t shared_bytes; /* its size, alike on all ranks; 0: never made */
     size_t shared_taken; /* of the bytes, by the combiner that uses it */

@@ -100,7 +100,7 @@ snow_status snow_comm_lend(snow_comm *comm, const void *bytes, size_t count,
     SNOW_TRY(snow_comm_receive(comm, NULL, 0, to, SNOW_TAG_RETURN, returned));
     SNOW_TRY(snow_comm_send(comm, loan, sizeof *loan, to, tag, sent));
     comm->bytes_sent += count - sizeof *loan; /* as by a message */
-    comm->bytes_lent += count;
+    comm->bytes_shared += count;
     return SNOW_STATUS_OK;
 }
 

@@ -43,7 +43,7 @@ void snow_composite_sheet(float *image, snow_sheet *sheet,
     snow_sheet_unmark(sheet);
 }
 
-/* --- projection ---------------------------------------------------------- */
+/* --- projection ----------------------------------------------------------- */
 
 /* Without branches, so that compilers can vectorize it. Values are never
  * negative; an image begins as zeros. */

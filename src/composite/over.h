@@ -4,7 +4,7 @@
 #ifndef SNOW_OVER_H
 #define SNOW_OVER_H
 
-#include "splat/splat.h"
+#include "splat/footprint/splat.h"
 
 /* Lays `count` pixels behind others. */
 typedef void snow_composite_fn(float *front, const float *back, size_t count);

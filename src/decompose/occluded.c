@@ -86,16 +86,16 @@ static void sort_digit(const place *from, place *to, int count, int shift) {
 }
 
 /* By radix, in an even number of steps. */
-static void seat(snow_occluded *set, place *places, place *other) {
+static void sort_boxes(snow_occluded *set, place *places, place *other) {
     const int full = find_places(set, places);
     for (int shift = 0; shift < 3 * PLACE_BITS; shift += 2 * DIGIT_BITS) {
         sort_digit(places, other, full, shift);
         sort_digit(other, places, full, shift + DIGIT_BITS);
     }
     for (int n = 0; n < set->count; n++)
-        set->seats[n] = -1;
+        set->positions[n] = -1;
     for (int n = 0; n < full; n++) {
-        set->seats[places[n].box] = n;
+        set->positions[places[n].box] = n;
         set->boxes_at[n] = places[n].box;
     }
     set->count = full;
@@ -131,10 +131,10 @@ snow_status snow_occluded_new(snow_context *context, const snow_box *boxes,
     place *places = NULL;
     *out = (snow_occluded){
         .context = context, .boxes = boxes, .viewer = viewer, .count = count};
-    SNOW_TRY(SNOW_RESERVE(context, out->seats, 0, count));
+    SNOW_TRY(SNOW_RESERVE(context, out->positions, 0, count));
     SNOW_TRY(SNOW_RESERVE(context, out->boxes_at, 0, count));
     SNOW_TRY(SNOW_RESERVE(context, places, 0, 2 * (int64_t)count));
-    seat(out, places, places + count);
+    sort_boxes(out, places, places + count);
     snow_release(context, places);
     return make_tree(out);
 }
@@ -142,7 +142,7 @@ snow_status snow_occluded_new(snow_context *context, const snow_box *boxes,
 void snow_occluded_free(snow_occluded *set) {
     snow_release(set->context, set->all);
     snow_release(set->context, set->boxes_at);
-    snow_release(set->context, set->seats);
+    snow_release(set->context, set->positions);
 }
 
 /* --- bounds --------------------------------------------------------------- */
@@ -170,22 +170,22 @@ static bool lift(const snow_occluded_node *node, snow_occluded_node *above,
 }
 
 /* A box into its place in the lowest level, or nothing. */
-static void place_box(snow_occluded *set, int seat, const snow_box *box) {
-    snow_occluded_node *node = &set->nodes[0][seat / BRANCHES];
+static void place_box(snow_occluded *set, int position, const snow_box *box) {
+    snow_occluded_node *node = &set->nodes[0][position / BRANCHES];
     for (int axis = 0; axis < 3; axis++) {
-        node->end[axis][seat % BRANCHES] =
+        node->end[axis][position % BRANCHES] =
             box ? (double)(box->first[axis] + box->count[axis]) : nothing;
-        node->first[axis][seat % BRANCHES] =
+        node->first[axis][position % BRANCHES] =
             box ? -(double)box->first[axis] : nothing;
     }
 }
 
-static void change_box(snow_occluded *set, int seat, const snow_box *box) {
+static void change_box(snow_occluded *set, int position, const snow_box *box) {
     bool changed = true;
-    place_box(set, seat, box);
+    place_box(set, position, box);
     for (int level = 1; level < set->levels && changed; level++) {
-        const int node = seat / BRANCHES;
-        seat = node;
+        const int node = position / BRANCHES;
+        position = node;
         changed = lift(&set->nodes[level - 1][node],
                        &set->nodes[level][node / BRANCHES], node % BRANCHES);
     }
@@ -202,8 +202,8 @@ void snow_occluded_clear(snow_occluded *set) {
 
 void snow_occluded_fill(snow_occluded *set) {
     snow_occluded_clear(set);
-    for (int seat = 0; seat < set->count; seat++)
-        place_box(set, seat, &set->boxes[set->boxes_at[seat]]);
+    for (int position = 0; position < set->count; position++)
+        place_box(set, position, &set->boxes[set->boxes_at[position]]);
     for (int level = 1, below = set->count; level < set->levels; level++) {
         below = nodes_above(below);
         for (int node = 0; node < below; node++)
@@ -212,20 +212,21 @@ void snow_occluded_fill(snow_occluded *set) {
     }
 }
 
-static bool is_in(const snow_occluded *set, int seat) {
-    return set->nodes[0][seat / BRANCHES].end[0][seat % BRANCHES] > nothing;
+static bool is_in(const snow_occluded *set, int position) {
+    return set->nodes[0][position / BRANCHES].end[0][position % BRANCHES] >
+           nothing;
 }
 
 bool snow_occluded_remove(snow_occluded *set, int box) {
-    const int seat = set->seats[box];
-    if (seat < 0 || !is_in(set, seat))
+    const int position = set->positions[box];
+    if (position < 0 || !is_in(set, position))
         return false;
-    change_box(set, seat, NULL);
+    change_box(set, position, NULL);
     return true;
 }
 
 void snow_occluded_insert(snow_occluded *set, int box) {
-    change_box(set, set->seats[box], &set->boxes[box]);
+    change_box(set, set->positions[box], &set->boxes[box]);
 }
 
 /* --- questions ------------------------------------------------------------ */
@@ -259,7 +260,7 @@ static unsigned int answers(const snow_occluded_node *node, const question *q) {
 
 /* Depth first; `left` are the branches not seen of the present node of each
  * level. */
-static int ask(const snow_occluded *set, const question *q) {
+static int search_tree(const snow_occluded *set, const question *q) {
     unsigned int left[SNOW_OCCLUDED_LEVELS];
     int level = set->levels - 1, node = 0;
     left[level] = answers(&set->nodes[level][0], q);
@@ -296,11 +297,11 @@ static question beyond(const snow_viewer *viewer, const snow_box *box) {
 
 int snow_occluded_find(const snow_occluded *set, int box) {
     const question q = beyond(set->viewer, &set->boxes[box]);
-    return ask(set, &q);
+    return search_tree(set, &q);
 }
 
 int snow_occluded_overlap(const snow_occluded *set, int box) {
     static const snow_viewer everywhere;
     const question q = beyond(&everywhere, &set->boxes[box]);
-    return ask(set, &q);
+    return search_tree(set, &q);
 }

@@ -26,8 +26,8 @@ typedef struct snow_occluded {
     const snow_box *boxes;
     const snow_viewer *viewer;
     int count, levels;
-    int *seats;    /* of boxes along the curve; -1: empty */
-    int *boxes_at; /* of seats, roughly from front to back */
+    int *positions; /* of boxes along the curve; -1: empty */
+    int *boxes_at;  /* of positions, roughly from front to back */
     snow_occluded_node *nodes[SNOW_OCCLUDED_LEVELS]; /* from the boxes' up */
     snow_occluded_node *all;
 } snow_occluded;

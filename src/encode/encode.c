@@ -23,9 +23,9 @@ snow_encoding snow_encoding_choose(uint64_t voxels, uint64_t interesting,
 }
 
 /* No slice is there yet. */
-static snow_status begin(snow_sparse *s, const snow_scheme *scheme,
-                         int channels, int64_t columns, int64_t rows,
-                         int64_t slices) {
+static snow_status begin_encoding(snow_sparse *s, const snow_scheme *scheme,
+                                  int channels, int64_t columns, int64_t rows,
+                                  int64_t slices) {
     SNOW_TRY(SNOW_RESERVE(s->context, s->pa, 0, slices + 1));
     s->scheme = scheme;
     s->channels = channels;
@@ -51,8 +51,8 @@ snow_status snow_slice_check(snow_context *context, const snow_placement *p) {
 snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
                               const snow_placement *placement, int channels) {
     SNOW_TRY(snow_slice_check(s->context, placement));
-    return begin(s, scheme, channels, placement->columns, placement->rows,
-                 placement->slices);
+    return begin_encoding(s, scheme, channels, placement->columns,
+                          placement->rows, placement->slices);
 }
 
 snow_status snow_sparse_begin_slice(snow_sparse *s) {
@@ -107,7 +107,7 @@ snow_status snow_sparse_end_slice(snow_sparse *s) {
 snow_status snow_sparse_begin_band(snow_sparse *s, const snow_scheme *scheme,
                                    int64_t columns, int64_t rows,
                                    int64_t slices) {
-    return begin(s, scheme, 0, columns, rows, slices);
+    return begin_encoding(s, scheme, 0, columns, rows, slices);
 }
 
 snow_status snow_sparse_add_masks(snow_sparse *s, const uint64_t *masks,
@@ -123,7 +123,7 @@ snow_status snow_sparse_add_masks(snow_sparse *s, const uint64_t *masks,
 void snow_sparse_fini(snow_sparse *s) {
     snow_release(s->context, s->ea);
     snow_release(s->context, s->ia);
-    snow_release(s->context, s->numbers);
+    snow_release(s->context, s->quantized);
     snow_release(s->context, s->pa);
     snow_release(s->context, s->mask);
     *s = (snow_sparse){.context = s->context};

@@ -31,7 +31,7 @@ typedef struct snow_slice_pointer {
 typedef struct snow_scheme snow_scheme;
 
 /* A volume's interesting voxels, or those of a band of rows
- * (encode/values/value_shell.c). Slices are appended in order; beginning again
+ * (encode/shear_warp/active.c). Slices are appended in order; beginning again
  * reuses the buffers. Their form is that of the paper's figures 4 to 6; a slice
  * of a band without interesting voxels takes no bytes of EA. */
 typedef struct snow_sparse {
@@ -43,9 +43,10 @@ typedef struct snow_sparse {
     int64_t filled;    /* slices ended so far */
     unsigned char *ea; /* readable beyond its end */
     size_t ea_bytes;
-    /* IA holds samples (exact method), or the numbers of a band. */
+    /* IA holds samples (footprint method), or the quantized values of a band.
+     */
     float *ia;
-    int16_t *numbers;
+    int16_t *quantized;
     size_t ia_voxels;
     snow_slice_pointer *pa; /* one more than slices */
     int64_t row;            /* next row of the slice being encoded */

@@ -84,7 +84,7 @@ snow_status snow_volume_pick_channel(snow_context *context,
 /* The same for values that lie next to each other and may be a vector.  Sets
  * info->components, and info->magnitude if the options ask for the magnitude of
  * all, or for nothing, and they are 2 or 3 floats; then *out is the first one,
- * and the others are asked for one by one (formats/components.h).  info->type
+ * and the others are asked for one by one (components.h).  info->type
  * is set already. */
 snow_status snow_volume_pick_component(snow_context *context,
                                        const snow_volume_options *options,

@@ -276,7 +276,7 @@ static snow_status add_next(snow_context *context, snow_component_fn *read,
     return status;
 }
 
-/* Remarks of the first reading hold for all. */
+/* Warnings of the first reading hold for all. */
 static snow_status add_others(snow_context *context, snow_component_fn *read,
                               void *user, const snow_volume_options *options,
                               int64_t count, snow_volume **volume) {

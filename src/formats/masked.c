@@ -59,7 +59,7 @@ static snow_status check_options(opening *o,
     return SNOW_STATUS_OK;
 }
 
-/* A header alone, without the remarks that its reading makes too. */
+/* A header alone, without the warnings that its reading makes too. */
 static snow_status look(const opening *o, const char *path,
                         const snow_volume_options *options,
                         snow_volume_info *out) {
@@ -151,7 +151,7 @@ static void note_empty(const opening *o, const snow_volume *mask,
     volume->mask_range[0] = m.min;
     volume->mask_range[1] = m.max;
     if (!is_cropped(&options))
-        snow_mask_remark(o->context, &options, volume->mask_range);
+        snow_mask_warn(o->context, &options, volume->mask_range);
 }
 
 static snow_status leave_out_of(const opening *o, const snow_volume *volume,

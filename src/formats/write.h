@@ -12,8 +12,8 @@ snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer);
 /* Prints `count` numbers with 17 digits and `between` between them, with a
  * decimal point in every locale.  Returns the number of characters; the buffer
  * must have 25 for each number. */
-int snow_print_numbers(char *text, size_t room, const double *values, int count,
-                       const char *between);
+int snow_print_numbers(char *text, size_t capacity, const double *values,
+                       int count, const char *between);
 
 /* Writes as a snow_format does. Errors: SNOW_STATUS_BAD_USAGE when the format
  * cannot say what the volume is (a scaling of values, say), those of the

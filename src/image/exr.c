@@ -35,7 +35,7 @@ typedef struct exr_file {
 } exr_file;
 
 /* The first error is the most specific. */
-static void hear_error(exr_const_context_t exr, exr_result_t code,
+static void note_error(exr_const_context_t exr, exr_result_t code,
                        const char *text) {
     void *user = NULL;
     exr_get_user_data(exr, &user);
@@ -80,7 +80,7 @@ static int64_t set_size(exr_const_context_t exr, void *user) {
 
 static exr_context_initializer_t hooks_of(exr_file *file) {
     exr_context_initializer_t hooks = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    hooks.error_handler_fn = hear_error;
+    hooks.error_handler_fn = note_error;
     hooks.user_data = file;
     hooks.read_fn = read_bytes;
     hooks.size_fn = set_size;
@@ -237,7 +237,7 @@ static snow_status write_exr(const snow_image *image,
  * turns a block of 64 values into its share of a Deflate stream. */
 #define PACKED_MOST (64 * SNOW_DEFLATE_RATIO)
 
-static snow_status refuse(const exr_file *file, const snow_source *source) {
+static snow_status fail_exr(const exr_file *file, const snow_source *source) {
     return snow_fail(
         file->context, SNOW_STATUS_BAD_INPUT,
         "%s: is a damaged or truncated EXR file (OpenEXR: %s); get it again",
@@ -269,7 +269,7 @@ static snow_status find_channels(const exr_file *file,
     const exr_attr_chlist_t *list = NULL;
     int colors = 0;
     if (exr_get_channels(file->exr, 0, &list) != EXR_ERR_SUCCESS)
-        return refuse(file, source);
+        return fail_exr(file, source);
     for (int n = 0; n < list->num_channels; n++) {
         const exr_attr_chlist_entry_t *entry = &list->entries[n];
         bool grey;
@@ -297,7 +297,7 @@ static snow_status read_header(const exr_file *file, const snow_source *source,
     int32_t at_once = 0;
     if (exr_get_storage(file->exr, 0, &storage) != EXR_ERR_SUCCESS ||
         exr_get_data_window(file->exr, 0, &box) != EXR_ERR_SUCCESS)
-        return refuse(file, source);
+        return fail_exr(file, source);
     if (storage != EXR_STORAGE_SCANLINE)
         return snow_fail(
             file->context, SNOW_STATUS_BAD_INPUT,
@@ -308,11 +308,11 @@ static snow_status read_header(const exr_file *file, const snow_source *source,
     SNOW_TRY(snow_image_check_sides(source, width, height));
     if ((uint64_t)(width * height) / PACKED_MOST >
         snow_seekable_size(file->bytes))
-        return refuse(file, source);
+        return fail_exr(file, source);
     if (exr_get_scanlines_per_chunk(file->exr, 0, &at_once) !=
             EXR_ERR_SUCCESS ||
         at_once < 1)
-        return refuse(file, source);
+        return fail_exr(file, source);
     *plan = (exr_plan){.x0 = box.min.x,
                        .y0 = box.min.y,
                        .width = (int)width,
@@ -365,7 +365,7 @@ static snow_status read_lines(const exr_file *file, const snow_source *source,
         code = read_chunk(file, plan, y, image->pixels, &pipe);
     exr_decoding_destroy(file->exr, &pipe);
     if (code != EXR_ERR_SUCCESS)
-        return refuse(file, source);
+        return fail_exr(file, source);
     for (size_t i = 0; i < pixels; i++) {
         float *pixel = image->pixels + 4 * i;
         if (plan->grey)
@@ -383,7 +383,7 @@ static snow_status read_file(exr_file *file, const snow_source *source,
     snow_image *image = NULL;
     if (exr_start_read(&file->exr, snow_source_name(source), &hooks) !=
         EXR_ERR_SUCCESS)
-        return refuse(file, source);
+        return fail_exr(file, source);
     SNOW_TRY(read_header(file, source, &plan));
     SNOW_TRY(snow_image_new(file->context, plan.width, plan.height, 4, &image));
     snow_status status = read_lines(file, source, &plan, image);

@@ -110,7 +110,7 @@ static snow_status write_jpeg(const snow_image *image,
 
 /* --- reading -------------------------------------------------------------- */
 
-static snow_status refuse(const snow_source *source, const char *reason) {
+static snow_status fail_jpeg(const snow_source *source, const char *reason) {
     return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
                      "%s: the JPEG file is damaged, truncated or of an unusual "
                      "kind (libjpeg: %s); give a PNG",
@@ -119,7 +119,7 @@ static snow_status refuse(const snow_source *source, const char *reason) {
 
 /* The bytes lie in the second half of their row of floats: pixel x ends at byte
  * 16 x + 16, its three bytes begin at 13 w + 3 x, which is not before. */
-static void widen(float *out, int width) {
+static void widen_to_floats(float *out, int width) {
     const unsigned char *raw = (const unsigned char *)out + 13 * (size_t)width;
     for (int x = 0; x < width; x++, raw += 3, out += 4) {
         const float rgb[3] = {(float)(raw[0] / 255.0), (float)(raw[1] / 255.0),
@@ -135,7 +135,7 @@ static snow_status decode(const snow_source *source, const unsigned char *bytes,
                           struct jpeg_decompress_struct *info,
                           snow_image **out) {
     if (setjmp(fault->out))
-        return refuse(source, fault->text);
+        return fail_jpeg(source, fault->text);
     jpeg_create_decompress(info);
     info->mem->max_memory_to_use = SNOW_JPEG_COEFFICIENT_BYTES;
     jpeg_mem_src(info, bytes, (unsigned long)size);
@@ -153,7 +153,7 @@ static snow_status decode(const snow_source *source, const unsigned char *bytes,
         float *line = (*out)->pixels + 4 * width * y;
         JSAMPROW row = (JSAMPROW)line + 13 * width;
         jpeg_read_scanlines(info, &row, 1);
-        widen(line, (int)width);
+        widen_to_floats(line, (int)width);
     }
     jpeg_finish_decompress(info);
     return SNOW_STATUS_OK;
@@ -172,7 +172,7 @@ static snow_status read_jpeg(snow_source *source, snow_image **out) {
     unsigned char *bytes = snow_allocate_array(context, size + 1, 1);
     snow_status status = bytes ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
     if (bytes && snow_seekable_read(store, 0, bytes, (size_t)size) != size)
-        status = refuse(source, "it cannot be read to its end");
+        status = fail_jpeg(source, "it cannot be read to its end");
     if (status == SNOW_STATUS_OK)
         status = decode(source, bytes, (size_t)size, &fault, &info, &image);
     jpeg_destroy_decompress(&info);

@@ -37,7 +37,7 @@ static snow_status write_npy(const snow_image *image,
     return snow_image_write_floats(image, channels, false, writer);
 }
 
-static snow_status refuse(snow_source *source, const char *reason) {
+static snow_status fail_npy(snow_source *source, const char *reason) {
     return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
                      "%s: %s", snow_source_name(source), reason);
 }
@@ -58,16 +58,17 @@ static snow_status read_npy(snow_source *source, snow_image **out) {
     snow_float_layout layout = {.channels = 1};
     SNOW_TRY(snow_npy_read_header(source, &header));
     if (!parse_type(header.type, &layout))
-        return refuse(source, "the array is not float32 or float64; save it "
-                              "with .astype('float32')");
+        return fail_npy(source, "the array is not float32 or float64; save it "
+                                "with .astype('float32')");
     if (header.fortran_order)
-        return refuse(source, "the array is in Fortran order; save it with "
-                              "numpy.ascontiguousarray");
+        return fail_npy(source, "the array is in Fortran order; save it with "
+                                "numpy.ascontiguousarray");
     bool has_channels = header.axes == 3;
     if ((header.axes != 2 && !has_channels) ||
         (has_channels && (header.shape[2] < 1 || header.shape[2] > 4)))
-        return refuse(source, "the array does not have the shape of a picture; "
-                              "it must be (h, w) or (h, w, 1 to 4)");
+        return fail_npy(source,
+                        "the array does not have the shape of a picture; "
+                        "it must be (h, w) or (h, w, 1 to 4)");
     if (has_channels)
         layout.channels = (int)header.shape[2];
     return snow_image_read_floats(source, header.shape[1], header.shape[0],

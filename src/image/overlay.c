@@ -171,9 +171,9 @@ void snow_overlay_settle(snow_overlay *overlay, size_t first,
     for (int n = 0; n < count && most < enough; n++) {
         double box[4];
         bounds_of(overlay, first, offsets[n], box);
-        int room = room_at(overlay, first, box);
-        best = room > most ? n : best;
-        most = room > most ? room : most;
+        int capacity = room_at(overlay, first, box);
+        best = capacity > most ? n : best;
+        most = capacity > most ? capacity : most;
     }
     if (!most)
         overlay->shape_count = first;

@@ -60,7 +60,7 @@ static void leave(png_job *job, snow_status status) {
 
 /* Handles libpng's errors.  A failure below libpng (memory, the file) has a
  * more specific message. */
-static void hear_error(png_structp png, png_const_charp text) {
+static void note_error(png_structp png, png_const_charp text) {
     png_job *job = png_get_error_ptr(png);
     if (job->status == SNOW_STATUS_OK)
         snow_fail(job->context, job->refusal, "%s (libpng: %s); %s",
@@ -69,7 +69,7 @@ static void hear_error(png_structp png, png_const_charp text) {
 }
 
 /* Ignores warnings: they change nothing in the pixels. */
-static void hear_warning(png_structp png, png_const_charp text) {
+static void note_warning(png_structp png, png_const_charp text) {
     (void)png;
     (void)text;
 }
@@ -146,8 +146,8 @@ static void write_header(png_job *job, snow_levels *levels) {
 static snow_status run_writer(png_job *job, snow_levels *levels) {
     if (setjmp(job->jump))
         return job->status;
-    job->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, job, hear_error,
-                                         hear_warning, job, allocate_block,
+    job->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, job, note_error,
+                                         note_warning, job, allocate_block,
                                          release_block);
     if (job->png)
         job->info = png_create_info_struct(job->png);
@@ -282,8 +282,8 @@ static void widen_row(const snow_image *image, int y) {
 static snow_status run_reader(png_job *job, snow_image **image) {
     if (setjmp(job->jump))
         return job->status;
-    job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, hear_error,
-                                        hear_warning, job, allocate_block,
+    job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, note_error,
+                                        note_warning, job, allocate_block,
                                         release_block);
     if (job->png)
         job->info = png_create_info_struct(job->png);

@@ -97,7 +97,7 @@ typedef struct tiff_plan {
     bool straight; /* alpha is to be multiplied in */
 } tiff_plan;
 
-static snow_status refuse(const snow_tiff *file, const snow_source *source) {
+static snow_status fail_tiff(const snow_tiff *file, const snow_source *source) {
     return snow_fail_within(file->context, snow_tiff_fail(file), "%s",
                             snow_source_name(source));
 }
@@ -138,7 +138,7 @@ static snow_status read_header(const snow_tiff *file, const snow_source *source,
             snow_source_name(source), plan->samples, plan->bits);
     if ((uint64_t)plan->width * plan->height / SNOW_DEFLATE_RATIO >
         snow_seekable_size(file->bytes))
-        return refuse(file, source);
+        return fail_tiff(file, source);
     return SNOW_STATUS_OK;
 }
 
@@ -192,7 +192,7 @@ static snow_status read_lines(const snow_tiff *file, const snow_source *source,
             widen_line(plan, line, image->pixels + 4 * (size_t)y * plan->width);
     }
     snow_release(file->context, line);
-    return good ? SNOW_STATUS_OK : refuse(file, source);
+    return good ? SNOW_STATUS_OK : fail_tiff(file, source);
 }
 
 static snow_status read_page(const snow_tiff *file, const snow_source *source,

@@ -109,15 +109,15 @@ static snow_status write_webp(const snow_image *image,
 
 /* --- reading -------------------------------------------------------------- */
 
-static snow_status refuse(const snow_source *source, const char *reason) {
+static snow_status fail_webp(const snow_source *source, const char *reason) {
     return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
                      "%s: %s", snow_source_name(source), reason);
 }
 
 /* Converts the bytes in the second half of each row to floats in place, as in
- * image/png.c: float pixel x ends at byte 16 x + 16, raw pixel x at 12 w + 4 x
+ * png.c: float pixel x ends at byte 16 x + 16, raw pixel x at 12 w + 4 x
  * + 4, which is not before. */
-static void widen(const snow_image *image) {
+static void widen_to_floats(const snow_image *image) {
     size_t width = (size_t)image->width;
     for (int y = 0; y < image->height; y++) {
         float *out = image->pixels + 4 * width * (size_t)y;
@@ -138,23 +138,24 @@ static snow_status decode(const snow_source *source, const unsigned char *bytes,
     WebPBitstreamFeatures found;
     snow_image *image = NULL;
     if (WebPGetFeatures(bytes, size, &found) != VP8_STATUS_OK)
-        return refuse(source,
-                      "the WebP file is damaged or truncated; get it again");
+        return fail_webp(source,
+                         "the WebP file is damaged or truncated; get it again");
     if (found.has_animation)
-        return refuse(source, "is an animated WebP; give a single picture, for "
-                              "example from webpmux -get frame 1");
+        return fail_webp(source,
+                         "is an animated WebP; give a single picture, for "
+                         "example from webpmux -get frame 1");
     SNOW_TRY(snow_image_check_sides(source, found.width, found.height));
     SNOW_TRY(snow_image_make(snow_source_context(source), found.width,
                              found.height, 4, &image));
     size_t width = (size_t)image->width, all = 16 * width;
     unsigned char *raw = (unsigned char *)(image->pixels + 3 * width);
-    size_t room = all * (size_t)image->height - 12 * width;
-    if (!WebPDecodeRGBAInto(bytes, size, raw, room, (int)all)) {
+    size_t capacity = all * (size_t)image->height - 12 * width;
+    if (!WebPDecodeRGBAInto(bytes, size, raw, capacity, (int)all)) {
         snow_image_free(image);
-        return refuse(source,
-                      "the WebP file is damaged or truncated; get it again");
+        return fail_webp(source,
+                         "the WebP file is damaged or truncated; get it again");
     }
-    widen(image);
+    widen_to_floats(image);
     *out = image;
     return SNOW_STATUS_OK;
 }
@@ -168,7 +169,7 @@ static snow_status read_webp(snow_source *source, snow_image **out) {
     unsigned char *bytes = snow_allocate_array(context, size + 1, 1);
     snow_status status = bytes ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
     if (bytes && snow_seekable_read(store, 0, bytes, (size_t)size) != size)
-        status = refuse(source, "the WebP file cannot be read to its end");
+        status = fail_webp(source, "the WebP file cannot be read to its end");
     if (status == SNOW_STATUS_OK)
         status = decode(source, bytes, (size_t)size, out);
     snow_release(context, bytes);

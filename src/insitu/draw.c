@@ -111,8 +111,8 @@ snow_status snow_insitu_find_values(snow_insitu *insitu, double ends[2]) {
 
 static bool has_grown(const snow_insitu *insitu, const double ends[2]) {
     const double *seen = insitu->seen;
-    double room = BEYOND * (seen[1] - seen[0]);
-    return !(ends[0] >= seen[0] - room && ends[1] <= seen[1] + room) &&
+    double capacity = BEYOND * (seen[1] - seen[0]);
+    return !(ends[0] >= seen[0] - capacity && ends[1] <= seen[1] + capacity) &&
            ends[0] <= ends[1];
 }
 
@@ -255,7 +255,7 @@ static snow_status agree_seconds(snow_insitu *insitu) {
     return SNOW_STATUS_OK;
 }
 
-static snow_status draw(snow_insitu *insitu, snow_image **out) {
+static snow_status draw_picture(snow_insitu *insitu, snow_image **out) {
     double start = snow_comm_seconds(insitu->comm);
     snow_image *image = NULL;
     if (insitu->left_out) {
@@ -298,7 +298,7 @@ snow_status snow_insitu_update(snow_insitu *insitu) {
 snow_status snow_insitu_render(snow_insitu *insitu, snow_image **image) {
     snow_status status = snow_insitu_begin(insitu);
     if (status == SNOW_STATUS_OK)
-        status = draw(insitu, image);
+        status = draw_picture(insitu, image);
     return snow_insitu_end(insitu, status);
 }
 
@@ -339,7 +339,7 @@ static snow_status make_step(snow_insitu *insitu, int64_t step) {
             "ranks; call snow_insitu_render and write the parts");
     snow_insitu_refresh(insitu);
     INSITU_TRY(update(insitu));
-    INSITU_TRY(draw(insitu, &image));
+    INSITU_TRY(draw_picture(insitu, &image));
     snow_status status = SNOW_STATUS_OK;
     if (!insitu->left_out) /* the same on all ranks */
         status = snow_insitu_count(insitu);

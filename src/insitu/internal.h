@@ -191,7 +191,7 @@ snow_status snow_insitu_refuse(snow_insitu *insitu, const char *format, ...)
 /* Frees what a look holds (look.c). */
 void snow_insitu_free_look(snow_context *context, snow_own_look *look);
 
-/* A remark, on rank 0. */
+/* A warning, on rank 0. */
 void snow_insitu_report(snow_insitu *insitu, const char *format, ...)
     SNOW_PRINTF(2, 3);
 
@@ -304,7 +304,7 @@ snow_status snow_insitu_count(snow_insitu *insitu);
 snow_status snow_insitu_enlarge(snow_insitu *insitu, snow_image **image,
                                 int width, int height);
 
-/* Collective.  Rank 0 writes its picture, all hear how it went (output.c). */
+/* Collective.  Rank 0 writes its picture, all learn how it went (output.c). */
 snow_status snow_insitu_write(snow_insitu *insitu, int64_t step,
                               const snow_image *image);
 

@@ -55,7 +55,7 @@ snow_status snow_insitu_keep_output(snow_insitu *insitu, const char *pattern,
 
 /* The title, the time or number of a step in lines. */
 static void write_title(const snow_insitu *insitu, int64_t step, char *text,
-                        size_t room) {
+                        size_t capacity) {
     const char *title = insitu->annotations.title;
     const char *format = insitu->annotations.time_format;
     char time[TEXT_BYTES] = "";
@@ -63,7 +63,7 @@ static void write_title(const snow_insitu *insitu, int64_t step, char *text,
         ((format && !*format) ||
          !snow_time_text(&insitu->says, format, time, sizeof time)))
         snprintf(time, sizeof time, "step %" PRId64, step);
-    snprintf(text, room, "%s%s%s", title ? title : "",
+    snprintf(text, capacity, "%s%s%s", title ? title : "",
              title && *time ? "\n" : "", time);
 }
 
@@ -76,16 +76,16 @@ snow_status snow_insitu_set_time(snow_insitu *insitu, double time,
 }
 
 static bool format_path(const snow_insitu *insitu, int64_t step, char *out,
-                        size_t room) {
+                        size_t capacity) {
     int digits = 0;
     size_t end = 0;
     const char *pattern = insitu->pattern;
     const char *at = find_number(pattern, &digits, &end);
     if (!at)
         return false;
-    int length = snprintf(out, room, "%.*s%0*lld%s", (int)(at - pattern),
+    int length = snprintf(out, capacity, "%.*s%0*lld%s", (int)(at - pattern),
                           pattern, digits, (long long)step, pattern + end);
-    return length > 0 && (size_t)length < room;
+    return length > 0 && (size_t)length < capacity;
 }
 
 /* Bars and the step's number for a picture that was enlarged to its size, where

@@ -226,6 +226,6 @@ snow_status snow_source_finish(snow_source *source) {
     if (source->top->relay)
         source->top->relay->left = left;
     else
-        snow_relay_remark(source->context, source->name, false, left);
+        snow_relay_warn(source->context, source->name, false, left);
     return SNOW_STATUS_OK;
 }

@@ -25,7 +25,7 @@ static snow_status check_group(snow_context *context, MPI_Comm group) {
     return SNOW_STATUS_OK;
 }
 
-static void remark_threads(snow_context *context) {
+static void warn_threads(snow_context *context) {
     int level = MPI_THREAD_SINGLE;
     MPI_Query_thread(&level);
     if (level < MPI_THREAD_FUNNELED)
@@ -95,7 +95,7 @@ snow_status snow_comm_new_mpi(snow_context *context, MPI_Comm group,
             MPI_Comm_free(&ours);
         return status;
     }
-    remark_threads(context);
+    warn_threads(context);
     *out = comm;
     return SNOW_STATUS_OK;
 }

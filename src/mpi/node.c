@@ -136,9 +136,10 @@ int snow_mpi_node_of(void *self, int rank) {
 
 /* Returns whether the windows of all members fit twice. */
 static bool has_room(const mpi_node *node, size_t bytes) {
-    struct statvfs room;
-    return statvfs("/dev/shm", &room) == 0 && room.f_frsize &&
-           bytes / room.f_frsize < room.f_bavail / 2 / (unsigned)node->members;
+    struct statvfs scratch;
+    return statvfs("/dev/shm", &scratch) == 0 && scratch.f_frsize &&
+           bytes / scratch.f_frsize <
+               scratch.f_bavail / 2 / (unsigned)node->members;
 }
 
 /* NULL, on all ranks of a node: it has too little room. */

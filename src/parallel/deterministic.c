@@ -116,10 +116,10 @@ static snow_status exchange_messages(snow_ranks *r, const snow_local *local,
     int count = 0;
     char *at = r->sent;
     for (int rank = 0; rank < r->ranks; rank++) {
-        size_t room = message_room(r, local, p, rank);
-        if (room && rank != r->rank)
+        size_t capacity = message_room(r, local, p, rank);
+        if (capacity && rank != r->rank)
             SNOW_TRY(snow_comm_receive(r->comm, r->came + r->offsets[rank],
-                                       room, rank, SNOW_TAG_LAYERS,
+                                       capacity, rank, SNOW_TAG_LAYERS,
                                        &messages[count++]));
     }
     for (int rank = 0; rank < r->ranks && local->image.layers; rank++) {

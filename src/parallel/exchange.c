@@ -92,8 +92,8 @@ static snow_composite_op composite_op_of(snow_mode mode) {
     }
 }
 
-snow_status snow_in_flight_room(snow_in_flight *f, const snow_job *job,
-                                int layers) {
+snow_status snow_in_flight_capacity(snow_in_flight *f, const snow_job *job,
+                                    int layers) {
     snow_ranks *r = f->ranks;
     size_t bytes = snow_job_bytes(job);
     SNOW_TRY(
@@ -133,7 +133,7 @@ static snow_status prepare(snow_in_flight *p, const snow_job *job) {
 snow_status snow_in_flight_prepare(snow_in_flight *p, const snow_job *job) {
     snow_value_path *path = p->picture.frame->value_path;
     if (path && job->volume && job->volume->stream)
-        snow_value_leave_room(path, snow_value_exchange_bytes(path));
+        snow_value_leave_memory(path, snow_value_exchange_bytes(path));
     return prepare(p, job);
 }
 

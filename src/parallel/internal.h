@@ -93,7 +93,7 @@ struct snow_ranks {
     snow_message *messages; /* 2 for each rank */
     int rank, ranks;
     /* Layers that were sent and that came, the piece made of them, its halves;
-     * lines around a piece; exact methods' images of nodes. */
+     * lines around a piece; footprint methods' images of nodes. */
     char *sent, *came;
     float *region, *lines, *images;
     size_t *offsets; /* in `sent` and `came`, per rank */
@@ -185,8 +185,8 @@ snow_status snow_ranks_put_in_order(snow_ranks *ranks,
                                     const snow_placement *placement);
 
 /* Cleared room in ranks->images for layers of a job's local pixels. */
-snow_status snow_in_flight_room(snow_in_flight *in_flight, const snow_job *job,
-                                int layers);
+snow_status snow_in_flight_capacity(snow_in_flight *in_flight,
+                                    const snow_job *job, int layers);
 
 /* Collective.  The range of all parts into the frame's ramp. */
 snow_status snow_in_flight_agree_range(snow_in_flight *in_flight);

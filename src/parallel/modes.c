@@ -73,7 +73,7 @@ static snow_status join_values(snow_in_flight *f, snow_data_range *range,
                                bool *lost) {
     enum { LOST, FIRST, MINUS_LOW = 0, HIGH, HOLES, MASKED, COUNT };
     const int count = 1 + f->picture.job.layer_count;
-    double all[FIRST + COUNT * (1 + SNOW_INLAYS_MOST)];
+    double all[FIRST + COUNT * (1 + SNOW_LAYERS_MOST)];
     all[LOST] = f->picture.job.volume->lost_clip;
     for (int n = 0; n < count; n++) {
         double *words = all + FIRST + COUNT * n;
@@ -97,7 +97,7 @@ static snow_status join_values(snow_in_flight *f, snow_data_range *range,
 
 snow_status snow_in_flight_agree_values(snow_in_flight *f) {
     snow_value_path **path = &f->picture.frame->value_path;
-    snow_data_range range[1 + SNOW_INLAYS_MOST];
+    snow_data_range range[1 + SNOW_LAYERS_MOST];
     bool lost;
     f->ranks->values_of = 0;
     SNOW_TRY(snow_comm_agree_status(f->ranks->comm, measure_values(f, range)));
@@ -167,7 +167,7 @@ static snow_status prepare_pairs(snow_in_flight *f, const snow_job *job,
                                  snow_image **pairs) {
     snow_picture *p = &f->picture;
     p->local.layers = 1;
-    SNOW_TRY(snow_in_flight_room(f, job, 1));
+    SNOW_TRY(snow_in_flight_capacity(f, job, 1));
     take_depths(p->near, f->ranks->images);
     SNOW_TRY(snow_in_flight_prepare(f, job));
     if (!snow_in_flight_keeps(f))
@@ -202,11 +202,11 @@ snow_status snow_in_flight_combine_depths(snow_in_flight *f) {
  *
  * Alphas travel through ranks->images. */
 
-static int seat_of(const snow_ranks *r) {
-    int seat = 0;
-    while (r->order[seat] != r->rank)
-        seat++;
-    return seat;
+static int rank_position_of(const snow_ranks *r) {
+    int rank_position = 0;
+    while (r->order[rank_position] != r->rank)
+        rank_position++;
+    return rank_position;
 }
 
 /* Local work: the order of the ranks, and places. */
@@ -216,7 +216,7 @@ static snow_status prepare_turn(snow_in_flight *f) {
     const snow_job *job = &p->pass->job;
     snow_job alphas = *job;
     alphas.channels = 1;
-    SNOW_TRY(snow_in_flight_room(f, &alphas, 1));
+    SNOW_TRY(snow_in_flight_capacity(f, &alphas, 1));
     SNOW_TRY(
         snow_reserve(job->context, &frame->layer, 0, 1, snow_job_bytes(job)));
     SNOW_TRY(snow_picture_new_depths(p, &p->near));
@@ -233,11 +233,11 @@ snow_status snow_in_flight_take_turn(snow_in_flight *f, snow_status status) {
     if (status == SNOW_STATUS_OK)
         status = prepare_turn(f);
     SNOW_TRY(snow_comm_agree_status(r->comm, status));
-    int seat = seat_of(r);
-    if (seat > 0) {
+    int rank_position = rank_position_of(r);
+    if (rank_position > 0) {
         SNOW_TRY(snow_comm_receive(
-            r->comm, r->images, count * sizeof *r->images, r->order[seat - 1],
-            SNOW_TAG_LAYERS, &r->messages[0]));
+            r->comm, r->images, count * sizeof *r->images,
+            r->order[rank_position - 1], SNOW_TAG_LAYERS, &r->messages[0]));
         SNOW_TRY(snow_comm_wait_all(r->comm, r->messages, 1));
     }
     for (size_t n = 0; n < count; n++)
@@ -253,12 +253,12 @@ snow_status snow_in_flight_give_turn(snow_in_flight *f, snow_status status) {
     size_t channels = (size_t)job->channels;
     if (!f->turn) /* no rank has drawn */
         return status;
-    int seat = seat_of(r);
+    int rank_position = rank_position_of(r);
     for (size_t n = 0; n < count; n++)
         r->images[n] = f->picture.local.pixels[(n + 1) * channels - 1];
-    if (seat + 1 < r->ranks) {
+    if (rank_position + 1 < r->ranks) {
         SNOW_TRY(snow_comm_send(r->comm, r->images, count * sizeof *r->images,
-                                r->order[seat + 1], SNOW_TAG_LAYERS,
+                                r->order[rank_position + 1], SNOW_TAG_LAYERS,
                                 &r->messages[0]));
         SNOW_TRY(snow_comm_wait_all(r->comm, r->messages, 1));
     }

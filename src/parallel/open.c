@@ -220,7 +220,7 @@ static snow_status read_stream(opening *o, snow_volume **share) {
 }
 
 /* Collective.  Looks at the file, and reads it where that is the only way.
- * Remarks are left to the reading, which makes them too. */
+ * Warnings are left to the reading, which makes them too. */
 static snow_status inspect_file(opening *o, int64_t *stream,
                                 snow_volume **share) {
     *stream = snow_source_is_stream(o->path);
@@ -301,7 +301,7 @@ static snow_status warn_empty(const opening *o, const snow_volume *read) {
     const double range[2] = {known ? -ends[MINUS_LEAST] : NAN,
                              known ? ends[MOST] : NAN};
     if (ends[LEFT] == 0 && snow_comm_rank(o->comm) == 0)
-        snow_mask_remark(o->context, &o->options, range);
+        snow_mask_warn(o->context, &o->options, range);
     return SNOW_STATUS_OK;
 }
 

@@ -76,7 +76,7 @@ static snow_status make_images(snow_in_flight *f) {
                     : SNOW_STATUS_NO_MEMORY;
 }
 
-static snow_status begin(snow_picture *p, snow_status status) {
+static snow_status begin_picture(snow_picture *p, snow_status status) {
     snow_in_flight *f = snow_in_flight_of(p);
     f->generation = p->job.volume->generation;
     f->ranks->apart = false;
@@ -103,7 +103,7 @@ static snow_status begin(snow_picture *p, snow_status status) {
  * stay in their files may be others on other machines. */
 static uint64_t mix_layers(uint64_t hash, const snow_frame *frame) {
     for (int n = 0; n < frame->layer_count; n++) {
-        const snow_inlay *layer = &frame->layers[n];
+        const snow_layer *layer = &frame->layers[n];
         const snow_volume *volume = layer->volume;
         const int64_t facts[] = {
             layer->mixes,         (int64_t)volume->info.type,
@@ -253,7 +253,7 @@ static snow_status place_gathered(snow_in_flight *f) {
     return make_clear(job, &f->gathered);
 }
 
-/* A layer, or in deterministic pictures of the exact methods one for each
+/* A layer, or in deterministic pictures of the footprint methods one for each
  * node. */
 static snow_status place_layers(snow_in_flight *f) {
     const snow_job *job = &f->picture.pass->job;
@@ -267,10 +267,10 @@ static snow_status place_layers(snow_in_flight *f) {
                          "parts of a deterministic picture must begin and end "
                          "at multiples of %d groups of slices",
                          SNOW_GROUPS);
-    return snow_in_flight_room(f, job, local->layers);
+    return snow_in_flight_capacity(f, job, local->layers);
 }
 
-static snow_status place(snow_picture *p, snow_status status) {
+static snow_status place_volume(snow_picture *p, snow_status status) {
     snow_in_flight *f = snow_in_flight_of(p);
     const snow_job *job = &p->pass->job;
     f->drawn_cpu = snow_in_flight_cpu(f);
@@ -358,9 +358,9 @@ static snow_status reduce(snow_picture *p, int64_t *values, size_t count,
                                  count, by);
 }
 
-const snow_combine_ops snow_combine_ranks = {.begin = begin,
+const snow_combine_ops snow_combine_ranks = {.begin = begin_picture,
                                              .synchronize = synchronize,
-                                             .place = place,
+                                             .place = place_volume,
                                              .combine = combine,
                                              .display = display,
                                              .agree = agree,

@@ -168,13 +168,13 @@ static snow_status take_turns(turns *t) {
 }
 
 /* Collective.  The first rank says what the last one has noticed. */
-static snow_status remark(snow_comm *comm, const snow_relay *relay,
-                          const char *path) {
+static snow_status warn_about_file(snow_comm *comm, const snow_relay *relay,
+                                   const char *path) {
     int64_t words[2] = {relay->foreign, (int64_t)relay->left};
     SNOW_TRY(snow_comm_reduce_ints(comm, words, 2, SNOW_REDUCE_MAX));
     if (snow_comm_rank(comm) == 0)
-        snow_relay_remark(snow_comm_context(comm), path, words[0] != 0,
-                          (uint64_t)words[1]);
+        snow_relay_warn(snow_comm_context(comm), path, words[0] != 0,
+                        (uint64_t)words[1]);
     return SNOW_STATUS_OK;
 }
 
@@ -184,7 +184,7 @@ static snow_status read_in_turn(turns *t, const char *path) {
     snow_monitor_begin_reading(snow_comm_context(t->comm), &monitor);
     snow_status status = take_turns(t);
     if (status == SNOW_STATUS_OK)
-        status = remark(t->comm, t->relay, path);
+        status = warn_about_file(t->comm, t->relay, path);
     return snow_monitor_end(&monitor,
                             status == SNOW_STATUS_OK ? t->status : status);
 }

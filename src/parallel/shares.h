@@ -31,7 +31,7 @@ snow_status snow_share_is_packed(snow_context *context, snow_share_fn *read,
 /* Collective.  The ranks unpack their shares one after another, each from where
  * the one before has come to; those from `readers` on have nothing of their
  * own, and read as they like.  Where a reader skips nothing, the ranks behind
- * read side by side.  Progress counts turns.  `path` is for remarks.  Errors:
+ * read side by side.  Progress counts turns.  `path` is for warnings.  Errors:
  * of reading; not agreed on, and the ranks behind one that fails or is to stop
  * read nothing. */
 snow_status snow_shares_in_turn(snow_comm *comm, int readers, const char *path,

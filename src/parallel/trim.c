@@ -18,7 +18,7 @@
 #include "parallel/trim.h"
 
 #include "classify/hidden.h"
-#include "classify/values/value_table.h"
+#include "classify/shear_warp/table.h"
 
 #include <math.h>
 #include <string.h>

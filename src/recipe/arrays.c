@@ -31,7 +31,7 @@ json_t *recipe_write_reals(const recipe_key *key, const void *field) {
     return array;
 }
 
-static json_t *write_told_reals(const recipe_key *key, const void *field) {
+static json_t *write_given_reals(const recipe_key *key, const void *field) {
     const double *numbers = field;
     return numbers[0] != 0 ? recipe_write_reals(key, field) : NULL;
 }
@@ -55,7 +55,7 @@ static bool read_longs(const recipe_key *key, const json_t *value, void *field,
     return true;
 }
 
-static json_t *write_told_longs(const recipe_key *key, const void *field) {
+static json_t *write_given_longs(const recipe_key *key, const void *field) {
     const int64_t *numbers = field;
     if (!numbers[0])
         return NULL;
@@ -150,9 +150,9 @@ static json_t *write_size(const recipe_key *key, const void *field) {
 }
 
 const recipe_kind recipe_reals = {recipe_read_reals, recipe_write_reals};
-const recipe_kind recipe_given_reals = {recipe_read_reals, write_told_reals};
+const recipe_kind recipe_given_reals = {recipe_read_reals, write_given_reals};
 const recipe_kind recipe_point = {recipe_read_reals, write_place};
-const recipe_kind recipe_longs = {read_longs, write_told_longs};
+const recipe_kind recipe_longs = {read_longs, write_given_longs};
 const recipe_kind recipe_crop = {read_crop, write_crop};
 const recipe_kind recipe_clip = {read_clip, write_clip};
 const recipe_kind recipe_size = {read_size, write_size};

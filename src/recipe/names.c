@@ -89,7 +89,7 @@ static json_t *write_name(const recipe_key *key, const void *field) {
     return json_string(key->name_of(value));
 }
 
-static json_t *write_told_name(const recipe_key *key, const void *field) {
+static json_t *write_given_name(const recipe_key *key, const void *field) {
     int value;
     memcpy(&value, field, sizeof value);
     return value ? json_string(key->name_of(value)) : NULL;
@@ -163,4 +163,4 @@ const recipe_kind recipe_input = {read_input, write_text};
 const recipe_kind recipe_labels = {read_labels, write_text};
 const recipe_kind recipe_known = {read_known, write_text};
 const recipe_kind recipe_name = {read_name, write_name};
-const recipe_kind recipe_given_name = {read_name, write_told_name};
+const recipe_kind recipe_given_name = {read_name, write_given_name};

@@ -140,9 +140,9 @@ snow_status recipe_read_file(snow_context *context, const char *path,
         return snow_context_fail(context, SNOW_STATUS_BAD_INPUT,
                                  "%s: cannot be opened; name a readable recipe",
                                  path);
-    size_t room = (size_t)about.st_size + 1;
-    *text = snow_context_allocate(context, room);
-    *bytes = *text ? fread(*text, 1, room, file) : 0;
+    size_t capacity = (size_t)about.st_size + 1;
+    *text = snow_context_allocate(context, capacity);
+    *bytes = *text ? fread(*text, 1, capacity, file) : 0;
     fclose(file);
     return *text ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
 }
@@ -161,7 +161,7 @@ snow_status snow_recipe_load(snow_context *context, const char *path,
 /* --- writing -------------------------------------------------------------- */
 
 snow_status snow_recipe_write(snow_context *context, const snow_recipe *given,
-                              char *text, size_t room, size_t *length) {
+                              char *text, size_t capacity, size_t *length) {
     snow_recipe recipe;
     snow_status status = SNOW_RECORD_READ(context, snow_recipe, given, &recipe);
     if (status != SNOW_STATUS_OK)
@@ -175,14 +175,14 @@ snow_status snow_recipe_write(snow_context *context, const snow_recipe *given,
             failed = json_object_set_new(tree, key->name, value);
     }
     size_t flags = JSON_INDENT(2) | JSON_REAL_PRECISION(17);
-    size_t bytes = failed ? 0 : json_dumpb(tree, text, room, flags);
+    size_t bytes = failed ? 0 : json_dumpb(tree, text, capacity, flags);
     json_decref(tree);
     if (!bytes)
         return snow_context_fail(
             context, SNOW_STATUS_NO_MEMORY,
             "out of memory for the text of a recipe; close other programs");
-    if (room)
-        text[bytes < room ? bytes : 0] = 0;
+    if (capacity)
+        text[bytes < capacity ? bytes : 0] = 0;
     *length = bytes;
     return SNOW_STATUS_OK;
 }

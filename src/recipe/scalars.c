@@ -80,7 +80,7 @@ static bool read_long(const recipe_key *key, const json_t *value, void *field,
     return recipe_read_whole(key, value, field, wrong);
 }
 
-static json_t *write_told_long(const recipe_key *key, const void *field) {
+static json_t *write_given_long(const recipe_key *key, const void *field) {
     (void)key;
     int64_t value = *(const int64_t *)field;
     return value ? json_integer(value) : NULL;
@@ -110,7 +110,7 @@ static bool read_channel(const recipe_key *key, const json_t *value,
 static json_t *write_channel(const recipe_key *key, const void *field) {
     const snow_recipe *r = recipe_at(field, offsetof(snow_recipe, channels));
     return r->channels ? recipe_text.write(key, field)
-                       : write_told_long(key, &r->data.channel);
+                       : write_given_long(key, &r->data.channel);
 }
 
 static bool read_time(const recipe_key *key, const json_t *value, void *field,
@@ -124,7 +124,7 @@ static bool read_time(const recipe_key *key, const json_t *value, void *field,
 static json_t *write_time(const recipe_key *key, const void *field) {
     const snow_recipe *r = recipe_at(field, offsetof(snow_recipe, steps));
     return r->steps ? recipe_text.write(key, field)
-                    : write_told_long(key, &r->data.time);
+                    : write_given_long(key, &r->data.time);
 }
 
 static bool read_flag(const recipe_key *key, const json_t *value, void *field,
@@ -192,5 +192,5 @@ const recipe_kind recipe_given_real = {recipe_read_real, write_told_real};
 const recipe_kind recipe_int = {recipe_read_int, recipe_write_given_int};
 const recipe_kind recipe_channel = {read_channel, write_channel};
 const recipe_kind recipe_time = {read_time, write_time};
-const recipe_kind recipe_long = {read_long, write_told_long};
+const recipe_kind recipe_long = {read_long, write_given_long};
 const recipe_kind recipe_flag = {read_flag, write_flag};

@@ -32,7 +32,7 @@ static snow_status fail_part(const snow_picture *p, const char *what,
 
 static snow_status find_values(snow_picture *p) {
     snow_frame *frame = p->frame;
-    snow_data_range range, layers[SNOW_INLAYS_MOST];
+    snow_data_range range, layers[SNOW_LAYERS_MOST];
     SNOW_TRY(snow_value_path_new(frame->context, &frame->value_path));
     SNOW_TRY(snow_value_measure(
         frame->value_path, p->job.volume,
@@ -96,7 +96,7 @@ static snow_status place_over(snow_picture *p) {
     return SNOW_STATUS_OK;
 }
 
-static snow_status place(snow_picture *p, snow_status status) {
+static snow_status place_volume(snow_picture *p, snow_status status) {
     const snow_job *job = &p->pass->job;
     SNOW_TRY(status);
     p->local.layers = 1;
@@ -160,7 +160,7 @@ static snow_status display(snow_picture *p, snow_status status) {
 
 const snow_combine_ops snow_combine_alone = {.begin = nobody,
                                              .synchronize = synchronize,
-                                             .place = place,
+                                             .place = place_volume,
                                              .combine = combine,
                                              .display = display,
                                              .agree = nobody,

@@ -3,27 +3,27 @@
 #include "render/picture.h"
 
 void snow_buffers_free(snow_frame *frame) {
-    snow_exact_free(frame->exact);
+    snow_footprint_buffers_free(frame->footprint);
     for (int n = 0; n < SNOW_GROUP_RANKS; n++)
         snow_release(frame->context, frame->spare[n]);
     snow_release(frame->context, frame->layer);
     snow_identity_transfer_fini(&frame->identity);
     snow_value_path_free(frame->value_path);
     snow_image_free(frame->depth);
-    snow_inlays_drop(frame, 0);
+    snow_layers_drop(frame, 0);
     snow_release(frame->context, frame);
 }
 
-snow_status snow_frame_set_inlays(snow_frame *frame, const snow_inlay *layers,
+snow_status snow_frame_set_layers(snow_frame *frame, const snow_layer *layers,
                                   int count) {
-    if (count < 0 || count > SNOW_INLAYS_MOST)
+    if (count < 0 || count > SNOW_LAYERS_MOST)
         return snow_fail(frame->context, SNOW_STATUS_BAD_USAGE,
                          "%d layers; up to %d are drawn with a volume", count,
-                         SNOW_INLAYS_MOST);
+                         SNOW_LAYERS_MOST);
     for (int n = 0; n < count; n++)
         frame->layers[n] = layers[n];
     frame->layer_count = count;
-    snow_inlays_drop(frame, count);
+    snow_layers_drop(frame, count);
     return SNOW_STATUS_OK;
 }
 

@@ -110,7 +110,7 @@ snow_status snow_job_begin(snow_context *context, const snow_request *request,
     choose_method(job, &whole);
     place_slab(job);
     SNOW_TRY(check_raycast(job));
-    SNOW_TRY(snow_inlays_check(job));
+    SNOW_TRY(snow_layers_check(job));
     return check_part(job);
 }
 

@@ -11,21 +11,22 @@
 
 #include <snowglass/ranks.h>
 
-typedef struct snow_exact snow_exact; /* render/exact/exact.c */
+typedef struct snow_footprint_buffers
+    snow_footprint_buffers;           /* render/footprint/footprint.c */
 typedef struct snow_ranks snow_ranks; /* parallel/internal.h */
 
-/* What was read of a layer in its file (inlays.c); `of` it and for `part`. */
-typedef struct snow_taken {
+/* What was read of a layer in its file (layers.c); `of` it and for `part`. */
+typedef struct snow_layer_file {
     snow_volume *volume; /* or NULL */
     uint64_t of, part;   /* generations */
-} snow_taken;
+} snow_layer_file;
 
 /* Buffers of the methods, kept from picture to picture. */
 struct snow_frame {
     snow_context *context;
     snow_stats stats;
     snow_ranks_stats ranks_stats;
-    snow_exact *exact;
+    snow_footprint_buffers *footprint;
     float *layer; /* local pixels that are not the picture's */
     float *spare[SNOW_GROUP_RANKS];  /* pictures of groups, to be combined */
     int64_t own_interesting;         /* of the part that was encoded last */
@@ -33,9 +34,9 @@ struct snow_frame {
     snow_mode_colors mode_colors;
     snow_image *depth;           /* of the last picture; NULL: not asked for */
     snow_value_path *value_path; /* of method shear-warp; NULL until needed */
-    snow_inlay layers[SNOW_INLAYS_MOST]; /* as the caller gave them; */
-    snow_inlay placed[SNOW_INLAYS_MOST]; /* what the present part has of them */
-    snow_taken taken[SNOW_INLAYS_MOST];
+    snow_layer layers[SNOW_LAYERS_MOST]; /* as the caller gave them; */
+    snow_layer placed[SNOW_LAYERS_MOST]; /* what the present part has of them */
+    snow_layer_file read[SNOW_LAYERS_MOST];
     int layer_count;
     snow_ranks *ranks; /* of pictures by many ranks; NULL until needed */
     /* The first line of the picture that is drawn, and one past the last; {0,
@@ -62,11 +63,11 @@ typedef struct snow_job {
     snow_placement placement; /* of the whole that the volume is a part of */
     snow_clip clip;           /* what of it the part has and answers for */
     snow_slab slab;           /* slices of the whole that are drawn */
-    /* The same for the exact methods, which see the stored voxels only. */
+    /* The same for the footprint methods, which see the stored voxels only. */
     snow_placement stored;
     snow_slab stored_slab;
     int channels;
-    const snow_inlay *layers; /* volumes on the same grid, or their files */
+    const snow_layer *layers; /* volumes on the same grid, or their files */
     int layer_count;
     snow_composite_fn *composite; /* in the place of over; NULL: over */
     float *pixels; /* the local image: transparent, to be filled */
@@ -92,22 +93,22 @@ typedef struct snow_request {
     const snow_transfer *transfer;
     const snow_view *view;
     const snow_settings *settings; /* of the caller, or resolved */
-    const snow_inlay *layers;
+    const snow_layer *layers;
     int layer_count;
 } snow_request;
 
-/* --- inlays.c ---
+/* --- layers.c ---
 
  * Places what the request's volume, in memory, needs of the frame's layers.
  * Errors: of snow_volume_take_box, and of views. */
-snow_status snow_inlays_place(snow_frame *frame, const snow_request *request);
+snow_status snow_layers_place(snow_frame *frame, const snow_request *request);
 
 /* What was read of layers from `first` on. */
-void snow_inlays_drop(snow_frame *frame, int first);
+void snow_layers_drop(snow_frame *frame, int first);
 
 /* Refuses layers that cannot be drawn; where one has colours, so has the
  * picture. */
-snow_status snow_inlays_check(snow_job *job);
+snow_status snow_layers_check(snow_job *job);
 
 /* --- job.c ---
 

@@ -136,9 +136,9 @@ static snow_status begin_slab(snow_parts *parts, const snow_volume *volume) {
                                   .settings = &whole->settings,
                                   .layers = frame->placed,
                                   .layer_count = whole->layer_count};
-    snow_status placed = snow_inlays_place(frame, &request);
-    if (frame->value_path && snow_value_lacks_room(frame->value_path, placed))
-        placed = snow_inlays_place(frame, &request);
+    snow_status placed = snow_layers_place(frame, &request);
+    if (frame->value_path && snow_value_lacks_memory(frame->value_path, placed))
+        placed = snow_layers_place(frame, &request);
     SNOW_TRY(placed);
     SNOW_TRY(
         snow_job_begin(whole->context, &request, &parts->stats, &parts->slab));
@@ -156,7 +156,7 @@ static snow_status next_slab(snow_parts *parts, bool *any) {
     parts->part = &parts->slab;
     snow_value_path *path = parts->picture->frame->value_path;
     snow_status read = snow_slabs_next(&parts->slabs, &volume);
-    if (path && snow_value_lacks_room(path, read))
+    if (path && snow_value_lacks_memory(path, read))
         read = snow_slabs_next(&parts->slabs, &volume);
     SNOW_TRY(read);
     *any = volume != NULL;
@@ -195,6 +195,6 @@ snow_status snow_parts_close(snow_parts *parts, snow_status status) {
     if (!parts->many)
         return status;
     snow_slabs_close(&parts->slabs);
-    snow_inlays_drop(parts->picture->frame, 0);
+    snow_layers_drop(parts->picture->frame, 0);
     return status == SNOW_STATUS_NO_MEMORY ? fail_room(parts) : status;
 }

@@ -15,7 +15,7 @@ static const snow_render_method *method_of(const snow_job *job) {
         return &snow_method_raycast;
     if (s->method == SNOW_METHOD_SHEAR_WARP)
         return &snow_method_shear_warp;
-    return s->deterministic ? &snow_method_groups : &snow_method_exact;
+    return s->deterministic ? &snow_method_groups : &snow_method_footprint;
 }
 
 static snow_render_pass *add_pass(snow_picture *p, const snow_job *job) {
@@ -73,7 +73,7 @@ static snow_status check_depth(const snow_job *job) {
 static snow_status plan_job(snow_picture *p, snow_request *request) {
     snow_status status = SNOW_STATUS_OK;
     if (!request->volume->stream) {
-        status = snow_inlays_place(p->frame, request);
+        status = snow_layers_place(p->frame, request);
         request->layers = p->frame->placed;
     }
     if (status != SNOW_STATUS_OK)
@@ -212,7 +212,7 @@ snow_status snow_picture_end(snow_picture *p, snow_status status,
      */
     const uint64_t pixels = (uint64_t)p->view.width * (uint64_t)p->view.height;
     if (p->frame->value_path && p->combiner == &snow_combine_alone)
-        snow_value_leave_room(p->frame->value_path, 16 * pixels + (1 << 20));
+        snow_value_leave_memory(p->frame->value_path, 16 * pixels + (1 << 20));
     *image = p->image;
     return SNOW_STATUS_OK;
 }

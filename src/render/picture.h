@@ -72,7 +72,8 @@ typedef struct snow_render_pass {
 /* The local image of a part. */
 typedef struct snow_local_image {
     float *pixels, *depths; /* of the picture's pixels; depths may be NULL */
-    /* Deterministic ones of the exact methods have a layer for each node. */
+    /* Deterministic ones of the footprint methods have a layer for each node.
+     */
     int layers;
     snow_group_node nodes[SNOW_NODES_MOST];
     /* Methods that warp fill these. */
@@ -143,15 +144,16 @@ static inline snow_status snow_method_figures(const snow_render_method *method,
  * front. */
 bool snow_group_rises(const snow_placement *placement, snow_group_node node);
 
-extern const snow_render_method snow_method_exact, snow_method_groups,
+extern const snow_render_method snow_method_footprint, snow_method_groups,
     snow_method_raycast, snow_method_shear_warp;
 
-/* These belong to snow_method_exact (exact/exact.c). The first frees
+/* These belong to snow_method_footprint (exact/exact.c). The first frees
  * its buffers, which are kept from picture to picture; adds a job's
  * voxels and bytes to job->stats, once its image is made. Errors:
  * SNOW_STATUS_NO_MEMORY. */
-void snow_exact_free(snow_exact *exact);
-snow_status snow_exact_count(snow_exact *exact, const snow_job *job);
+void snow_footprint_buffers_free(snow_footprint_buffers *buffers);
+snow_status snow_footprint_count(snow_footprint_buffers *buffers,
+                                 const snow_job *job);
 
 /* One process has nothing to combine. */
 extern const snow_combine_ops snow_combine_alone;

@@ -140,7 +140,7 @@ double snow_transfer_builder_place(const snow_transfer_builder *builder,
 }
 
 /* Extends the range of colours to all values that have opacities. */
-static void widen(double value, double *low, double *high) {
+static void widen_range(double value, double *low, double *high) {
     *low = value < *low ? value : *low;
     *high = value > *high ? value : *high;
 }
@@ -150,12 +150,13 @@ static void own_range(const snow_look *points, double *low, double *high) {
     *low = INFINITY;
     *high = -INFINITY;
     if (points->color_count) {
-        widen(points->colors[0].value, low, high);
-        widen(points->colors[points->color_count - 1].value, low, high);
+        widen_range(points->colors[0].value, low, high);
+        widen_range(points->colors[points->color_count - 1].value, low, high);
     }
     if (points->opacity_count) {
-        widen(points->opacities[0].value, low, high);
-        widen(points->opacities[points->opacity_count - 1].value, low, high);
+        widen_range(points->opacities[0].value, low, high);
+        widen_range(points->opacities[points->opacity_count - 1].value, low,
+                    high);
     }
 }
 

@@ -182,12 +182,12 @@ int snow_colormap_from_name(const char *name) {
 }
 
 size_t snow_colormap_points(size_t index, snow_color_point *points,
-                            size_t room) {
+                            size_t capacity) {
     if (index >= 2 * map_count)
         return 0;
     const bool reversed = index >= map_count;
     const size_t map = index % map_count, all = maps[map].count;
-    const size_t count = all < room ? all : room;
+    const size_t count = all < capacity ? all : capacity;
     for (size_t i = 0; i < count; i++) {
         const map_point *p = maps[map].points + (reversed ? all - 1 - i : i);
         int at = reversed ? MAP_END - p->at : p->at;

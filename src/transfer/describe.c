@@ -30,10 +30,10 @@ bool snow_look_suits_labels(const snow_look *look) {
 
 /* The source of the look: only what was not requested was chosen. */
 static void set_reason(const snow_transfer_builder *builder,
-                       const snow_look *look, char *text, size_t room) {
+                       const snow_look *look, char *text, size_t capacity) {
     bool all_asked =
         look->opacities && look->range != SNOW_RANGE_AUTO && !look->preset;
-    snprintf(text, room, " (%s%s%s)",
+    snprintf(text, capacity, " (%s%s%s)",
              all_asked ? "as requested" : builder->reason, builder->range_note,
              look->opacities && !all_asked ? "; opacities as requested" : "");
 }
@@ -66,29 +66,29 @@ void snow_transfer_builder_describe(const snow_transfer_builder *builder,
                                     const snow_look *look,
                                     snow_transfer *transfer) {
     char text[SNOW_TRANSFER_TEXT_BYTES / 2]; /* the rest is for the gradients */
-    size_t room = sizeof text, used;
+    size_t capacity = sizeof text, used;
     char low[40], value[40], opacity[40], scale[128];
     const snow_opacity_point *points =
         look->opacities ? look->opacities : builder->opacities;
     size_t count =
         look->opacities ? look->opacity_count : builder->opacity_count;
     describe_scale(builder->scale, scale);
-    snprintf(text, room, "%.64s %s..%s%s", builder->name,
+    snprintf(text, capacity, "%.64s %s..%s%s", builder->name,
              spell(builder->low, low), spell(builder->high, value), scale);
     if (!builder->labels)
         strcat(text, "; opacity");
     for (size_t i = 0; i < count && !builder->labels; i++) {
         used = strlen(text);
         /* The end is reserved for the reason. */
-        if (used + 120 > room) {
-            snprintf(text + used, room - used, ", ...");
+        if (used + 120 > capacity) {
+            snprintf(text + used, capacity - used, ", ...");
             break;
         }
-        snprintf(text + used, room - used, "%s %s at %s", i ? "," : "",
+        snprintf(text + used, capacity - used, "%s %s at %s", i ? "," : "",
                  spell(points[i].opacity, opacity),
                  spell(points[i].value, value));
     }
     used = strlen(text);
-    set_reason(builder, look, text + used, room - used);
+    set_reason(builder, look, text + used, capacity - used);
     snow_transfer_describe(transfer, text);
 }

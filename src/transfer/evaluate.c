@@ -145,7 +145,7 @@ void snow_transfer_evaluate(const snow_transfer *transfer, double value,
     snow_transfer_near(transfer, value, &hint, rgba);
 }
 
-/* --- categories ---------------------------------------------------------- */
+/* --- categories ----------------------------------------------------------- */
 
 static bool same_color(const snow_color_point *a, const snow_color_point *b) {
     return a->red == b->red && a->green == b->green && a->blue == b->blue;

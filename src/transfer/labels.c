@@ -75,17 +75,17 @@ static void add_value(label_scan *s, double value) {
 
 /* Row y of slice z of the grid, or another one where it is not at hand. */
 static const double *read_row(const snow_volume *v, const snow_extent *e,
-                              int64_t y, int64_t z, double *room,
+                              int64_t y, int64_t z, double *scratch,
                               const double *other) {
     const int64_t *dims = v->info.dims;
     int64_t row = y - e->stored[1], slice = z - e->stored[2];
     if (row < 0 || row >= dims[1] || slice < 0 || slice >= dims[2])
         return other;
     snow_volume_stored(v, (slice * dims[1] + row) * dims[0], (size_t)dims[0],
-                       room);
+                       scratch);
     for (int64_t x = 0; x < dims[0]; x++)
-        room[x] = v->info.slope * room[x] + v->info.intercept;
-    return room;
+        scratch[x] = v->info.slope * scratch[x] + v->info.intercept;
+    return scratch;
 }
 
 /* A neighbour without a value does not count. */
@@ -117,32 +117,33 @@ static void compare_row(label_scan *s, const double *rows[5], int64_t width,
 }
 
 static void scan_row(label_scan *s, const snow_volume *v, const snow_extent *e,
-                     int64_t y, int64_t z, double *room) {
+                     int64_t y, int64_t z, double *scratch) {
     const int64_t width = v->info.dims[0];
     const int64_t first = e->first[0] - e->stored[0], end = first + e->count[0];
     const double *rows[5];
     if (s->many || (s->compares && (z * e->dims[1] + y) % s->step != 0))
         return;
-    rows[0] = read_row(v, e, y, z, room, NULL);
+    rows[0] = read_row(v, e, y, z, scratch, NULL);
     for (int64_t x = first; x < end && !s->compares; x++)
         if (isfinite(rows[0][x]))
             add_value(s, rows[0][x]);
     for (int n = 1; n < 5 && s->compares; n++)
-        rows[n] = read_row(v, e, y + (n == 1) - (n == 2),
-                           z + (n == 3) - (n == 4), room + n * width, rows[0]);
+        rows[n] =
+            read_row(v, e, y + (n == 1) - (n == 2), z + (n == 3) - (n == 4),
+                     scratch + n * width, rows[0]);
     if (s->compares)
         compare_row(s, rows, width, first, end);
 }
 
 static snow_status scan_slab(const snow_volume *slab, label_scan *s) {
     snow_extent e;
-    double *room = NULL;
+    double *scratch = NULL;
     snow_volume_find_extent(slab, &e);
-    SNOW_TRY(SNOW_RESERVE(slab->context, room, 0, 5 * slab->info.dims[0]));
+    SNOW_TRY(SNOW_RESERVE(slab->context, scratch, 0, 5 * slab->info.dims[0]));
     for (int64_t z = e.first[2]; z < e.first[2] + e.count[2]; z++)
         for (int64_t y = e.first[1]; y < e.first[1] + e.count[1]; y++)
-            scan_row(s, slab, &e, y, z, room);
-    snow_release(slab->context, room);
+            scan_row(s, slab, &e, y, z, scratch);
+    snow_release(slab->context, scratch);
     s->labelled |= slab->labelled;
     if (!slab->label_count || s->labels)
         return SNOW_STATUS_OK;
@@ -369,8 +370,8 @@ static snow_status build(snow_context *context, const label_scan *s,
     return SNOW_STATUS_OK;
 }
 
-static snow_status refuse(const snow_volume *volume, const label_scan *s,
-                          bool fractions) {
+static snow_status fail_labels(const snow_volume *volume, const label_scan *s,
+                               bool fractions) {
     if (s->many)
         return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
                          "labels: the volume has more than %d values; take "
@@ -405,7 +406,7 @@ snow_status snow_transfer_builder_labels(const snow_histogram *histogram,
         if (can && (asked || s->labelled || (is_few(s) && !measured)))
             status = build(context, s, look, builder);
         else if (asked)
-            status = refuse(volume, s, !whole);
+            status = fail_labels(volume, s, !whole);
     }
     if (s)
         snow_release(context, s->labels);

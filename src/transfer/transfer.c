@@ -111,15 +111,15 @@ void snow_transfer_free(snow_transfer *transfer) {
 /* Appends "; gradient opacity 0 at 2, 1 at 10", as far as it fits. */
 static void describe_gradients(snow_transfer *transfer) {
     char *text = transfer->text;
-    size_t room = sizeof transfer->text, used = transfer->look_bytes;
+    size_t capacity = sizeof transfer->text, used = transfer->look_bytes;
     text[used] = 0;
     for (size_t i = 0; i < transfer->gradient_count; i++) {
         used = strlen(text);
-        if (used + 40 > room) { /* the longest entry, and an end */
-            snprintf(text + used, room - used, ", ...");
+        if (used + 40 > capacity) { /* the longest entry, and an end */
+            snprintf(text + used, capacity - used, ", ...");
             break;
         }
-        snprintf(text + used, room - used, "%s %.4g at %.5g",
+        snprintf(text + used, capacity - used, "%s %.4g at %.5g",
                  i ? "," : "; gradient opacity", transfer->gradients[i].opacity,
                  transfer->gradients[i].value);
     }

@@ -42,8 +42,8 @@ static void find_reach(const snow_volume_info *info, double reach[3]) {
 }
 
 /* Room for planes; none of them is there yet. */
-static snow_status begin(snow_context *context, size_t planes,
-                         snow_clip_planes **out) {
+static snow_status allocate_planes(snow_context *context, size_t planes,
+                                   snow_clip_planes **out) {
     snow_clip_planes *clip = snow_allocate_clear(context, sizeof *clip);
     snow_status status = SNOW_STATUS_NO_MEMORY;
     if (clip) {
@@ -69,7 +69,7 @@ snow_status snow_clip_planes_new(snow_context *context,
         used += snow_is_plane(planes + 4 * n);
     if (!used && !before)
         return SNOW_STATUS_OK;
-    SNOW_TRY(begin(context, most, out));
+    SNOW_TRY(allocate_planes(context, most, out));
     snow_clip_planes *clip = *out;
     find_reach(info, clip->reach);
     for (size_t n = 0; before && n < before->plane_count; n++)
@@ -91,7 +91,7 @@ void snow_clip_planes_free(snow_clip_planes *clip) {
 
 snow_status snow_clip_planes_move(const snow_clip_planes *clip,
                                   const int64_t by[3], snow_clip_planes **out) {
-    SNOW_TRY(begin(clip->context, clip->plane_count, out));
+    SNOW_TRY(allocate_planes(clip->context, clip->plane_count, out));
     snow_clip_planes *moved = *out;
     memcpy(moved->reach, clip->reach, sizeof moved->reach);
     moved->plane_count = clip->plane_count;

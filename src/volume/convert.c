@@ -151,7 +151,8 @@ static snow_status set_range(const snow_volume *volume, const double range[2],
     return SNOW_STATUS_OK;
 }
 
-static snow_status refuse(const snow_volume *volume, const conversion *c) {
+static snow_status fail_conversion(const snow_volume *volume,
+                                   const conversion *c) {
     return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
                      "%lld values such as %g do not fit %s; %s",
                      (long long)c->lost, c->first_lost, snow_type_name(c->type),
@@ -201,7 +202,7 @@ snow_status snow_volume_convert(const snow_volume *volume, snow_type type,
         run(volume, &c, made->owned);
     if (c.lost) {
         snow_volume_close(made);
-        return refuse(volume, &c);
+        return fail_conversion(volume, &c);
     }
     report(volume, &c, range);
     snow_status status =

@@ -56,12 +56,13 @@ static bool read_range(const char **text, snow_label_range *out) {
     return true;
 }
 
-bool snow_labels_parse(const char *text, snow_label_range *ranges, size_t room,
-                       size_t *count) {
+bool snow_labels_parse(const char *text, snow_label_range *ranges,
+                       size_t capacity, size_t *count) {
     snow_label_range read[SNOW_LABELS_MAX];
     size_t n = 0;
     do {
-        if (n == room || n == SNOW_LABELS_MAX || !read_range(&text, &read[n]))
+        if (n == capacity || n == SNOW_LABELS_MAX ||
+            !read_range(&text, &read[n]))
             return false;
         n++;
     } while (*text++ == ',');
@@ -362,8 +363,8 @@ bool snow_mask_asked(const snow_volume_options *options) {
     return options->mask || options->labels || clips;
 }
 
-void snow_mask_remark(snow_context *context, const snow_volume_options *options,
-                      const double mask_range[2]) {
+void snow_mask_warn(snow_context *context, const snow_volume_options *options,
+                    const double mask_range[2]) {
     if (options->mask)
         snow_notify(context,
                     "%s: no voxel is left inside this mask, whose values are "

@@ -44,7 +44,7 @@ bool snow_mask_asked(const snow_volume_options *options);
 
 /* Notifies that no voxel is left of a volume that was opened with these
  * options, by a mask of these values, or by planes alone. */
-void snow_mask_remark(snow_context *context, const snow_volume_options *options,
-                      const double mask_range[2]);
+void snow_mask_warn(snow_context *context, const snow_volume_options *options,
+                    const double mask_range[2]);
 
 #endif

@@ -56,7 +56,7 @@ static void weigh(double at, place *out) {
 
 /* What follows on d, c, b, a: by the parabola through the last three where
  * values go on smoothly, but not past 0; else the last one again. */
-static double go_on(double a, double b, double c, double d) {
+static double extrapolate(double a, double b, double c, double d) {
     if (!isfinite(b) || !isfinite(c))
         return a;
     const double last = a - b, bend = last - (b - c);
@@ -75,14 +75,15 @@ static double go_on(double a, double b, double c, double d) {
 static void complete(double p[STENCIL]) {
     const bool below = isfinite(p[OWN - 1]), above = isfinite(p[OWN + 1]);
     if (!above)
-        p[OWN + 1] = go_on(p[OWN], p[OWN - 1], p[OWN - 2], p[OWN - 3]);
+        p[OWN + 1] = extrapolate(p[OWN], p[OWN - 1], p[OWN - 2], p[OWN - 3]);
     if (!below)
         p[OWN - 1] =
-            above ? go_on(p[OWN], p[OWN + 1], p[OWN + 2], p[OWN + 3]) : p[OWN];
+            above ? extrapolate(p[OWN], p[OWN + 1], p[OWN + 2], p[OWN + 3])
+                  : p[OWN];
     if (!above || !isfinite(p[OWN + 2]))
-        p[OWN + 2] = go_on(p[OWN + 1], p[OWN], p[OWN - 1], p[OWN - 2]);
+        p[OWN + 2] = extrapolate(p[OWN + 1], p[OWN], p[OWN - 1], p[OWN - 2]);
     if (!below || !isfinite(p[OWN - 2]))
-        p[OWN - 2] = go_on(p[OWN - 1], p[OWN], p[OWN + 1], p[OWN + 2]);
+        p[OWN - 2] = extrapolate(p[OWN - 1], p[OWN], p[OWN + 1], p[OWN + 2]);
 }
 
 static double less(double a, double b) {
@@ -216,9 +217,9 @@ static void refine_slice(const refining *r, const snow_box *voxels, int64_t z,
 }
 
 /* All scratch memory, in one block of values and one of places. */
-static snow_status begin(snow_context *context, refining *r,
-                         const snow_box *voxels, place **places,
-                         double **values) {
+static snow_status allocate_scratch(snow_context *context, refining *r,
+                                    const snow_box *voxels, place **places,
+                                    double **values) {
     const int64_t *count = r->box->count;
     const uint64_t slice = (uint64_t)(count[0] * count[1]);
     *values = snow_allocate_array(
@@ -255,7 +256,8 @@ snow_status snow_cells_refine(snow_context *context, const double *cells,
     refining r = {.cells = cells, .box = box, .ratio = ratio};
     place *places = NULL;
     double *values = NULL;
-    snow_status status = begin(context, &r, voxels, &places, &values);
+    snow_status status =
+        allocate_scratch(context, &r, voxels, &places, &values);
     if (status == SNOW_STATUS_OK)
         for (int64_t z = voxels->first[2];
              z < voxels->first[2] + voxels->count[2]; z++)

@@ -198,7 +198,8 @@ static snow_status resample(regrid *r, const snow_volume_info *box,
 }
 
 /* The result, or nothing. */
-static snow_status give(regrid *r, snow_status status, snow_volume **out) {
+static snow_status end_resampling(regrid *r, snow_status status,
+                                  snow_volume **out) {
     if (status == SNOW_STATUS_OK)
         *out = r->to;
     else
@@ -220,7 +221,7 @@ snow_status snow_volume_resample(const snow_volume *volume,
     memcpy(r.dims, volume->info.dims, sizeof r.dims);
     memcpy(r.grid, grid->info.dims, sizeof r.grid);
     find_steps(&volume->info, &grid->info, r.step, r.origin);
-    return give(&r, resample(&r, &grid->info, what), out);
+    return end_resampling(&r, resample(&r, &grid->info, what), out);
 }
 
 snow_status snow_volume_regrid(snow_volume **volume, const snow_volume *grid,
@@ -277,7 +278,7 @@ static snow_status resample_box(const snow_volume *volume,
     snow_status status = resample(&r, box, "overlay");
     snow_stream_listen_no_more(volume->context, volume->stream);
     snow_volume_close(read);
-    return give(&r, status, out);
+    return end_resampling(&r, status, out);
 }
 
 /* Cut by the planes that its file is opened with. */

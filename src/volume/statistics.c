@@ -31,8 +31,8 @@ void snow_volume_steps(const snow_volume *volume, int64_t out[3]) {
     out[2] = pitch[0] ? pitch[1] : dims[0] * dims[1];
 }
 
-static void widen(const snow_volume *volume, int64_t first, size_t count,
-                  double *out) {
+static void to_doubles(const snow_volume *volume, int64_t first, size_t count,
+                       double *out) {
     switch (volume->info.type) {
 #define WIDEN(name, c_type, text)                                    \
     case SNOW_TYPE_##name: {                                         \
@@ -65,7 +65,7 @@ void snow_volume_stored(const snow_volume *volume, int64_t first, size_t count,
     while (count) {
         uint64_t here = count;
         const int64_t at = snow_volume_run(volume, first, &here);
-        widen(volume, at, (size_t)here, out);
+        to_doubles(volume, at, (size_t)here, out);
         first += (int64_t)here;
         count -= (size_t)here;
         out += here;

@@ -22,7 +22,7 @@ static void warn_once(void *user, const char *text) {
     for (int n = 0; n < stream->told_count; n++)
         if (stream->given[n] == sum)
             return;
-    if (stream->told_count == REMARKS_MOST)
+    if (stream->told_count == WARNINGS_MOST)
         return;
     stream->given[stream->told_count++] = sum;
     if (stream->warning)
@@ -153,7 +153,7 @@ snow_status snow_stream_open_slab(snow_context *context, snow_stream *stream,
     snow_volume_info info;
     double begin = snow_seconds();
     snow_stream_listen(context, stream);
-    /* A remark on what a mask or plane leaves does not hold for the volume. */
+    /* A warning on what a mask or plane leaves does not hold for the volume. */
     if (snow_mask_asked(options))
         snow_context_set_warning(context, NULL, NULL);
     context->leaves_clipped = !clipped;

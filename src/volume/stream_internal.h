@@ -5,7 +5,7 @@
 
 #include "volume/stream.h"
 
-#define REMARKS_MOST 64
+#define WARNINGS_MOST 64
 
 /* What is needed to open a slab; the texts of the options follow behind. */
 struct snow_stream {
@@ -25,14 +25,14 @@ struct snow_stream {
     /* Warnings of reading, each of which is given once: a hash of each. */
     snow_warning_fn *warning;
     void *warning_user;
-    uint64_t given[REMARKS_MOST];
+    uint64_t given[WARNINGS_MOST];
     int told_count;
 };
 
 /* Without a wish: small beside any memory, and long enough to be read fast. */
 #define SNOW_SLAB_BYTES ((uint64_t)64 << 20)
 
-/* Begins and ends telling each remark once. */
+/* Begins and ends telling each warning once. */
 void snow_stream_listen(snow_context *context, snow_stream *stream);
 void snow_stream_listen_no_more(snow_context *context,
                                 const snow_stream *stream);

@@ -28,8 +28,8 @@ static uint64_t slab_room(const snow_volume *volume, int64_t made) {
     uint64_t left =
         context->limit > context->bytes ? context->limit - context->bytes : 0;
     uint64_t most = usual > SNOW_SLAB_BYTES ? usual : SNOW_SLAB_BYTES;
-    uint64_t room = left / 2 / (uint64_t)(1 + made);
-    return room < most ? room : most;
+    uint64_t capacity = left / 2 / (uint64_t)(1 + made);
+    return capacity < most ? capacity : most;
 }
 
 /* The slices that are walked over: a volume's own, or one of a part that has
@@ -48,9 +48,9 @@ static int64_t slab_slices(const snow_volume *volume,
     snow_volume_find_extent(volume, &own);
     uint64_t slice = (uint64_t)(dims[0] * dims[1]) *
                      (uint64_t)snow_type_size(volume->info.type);
-    uint64_t room = slab_room(volume, cut->made) / slice;
+    uint64_t capacity = slab_room(volume, cut->made) / slice;
     uint64_t around = 2 * (uint64_t)cut->ghosts;
-    uint64_t slices = room > around ? room - around : 1;
+    uint64_t slices = capacity > around ? capacity - around : 1;
     return slices < (uint64_t)own_slices(&own) ? (int64_t)slices
                                                : own_slices(&own);
 }
@@ -143,7 +143,7 @@ static void warn_empty(const snow_volume *volume) {
         memcmp(options->crop, none, sizeof none) != 0)
         return;
     stream->told_empty = true;
-    snow_mask_remark(volume->context, options, stream->mask_range);
+    snow_mask_warn(volume->context, options, stream->mask_range);
 }
 
 void snow_slabs_open(const snow_volume *volume, const snow_slab_cut *cut,

@@ -151,9 +151,9 @@ void snow_volume_freeze(snow_volume *volume) {
 /* Returns whether `count` voxels from `first` on lie within `room` from
  * `begin` on; written so that nothing overflows. */
 static bool lies_within(int64_t first, int64_t count, int64_t begin,
-                        int64_t room) {
-    return first >= begin && first - begin <= room && count >= 0 &&
-           count <= room - (first - begin);
+                        int64_t capacity) {
+    return first >= begin && first - begin <= capacity && count >= 0 &&
+           count <= capacity - (first - begin);
 }
 
 static snow_status check_part(const snow_volume *volume,

@@ -6,8 +6,8 @@
 #include "base/monitor.h"
 #include "volume/region.h"
 
-typedef struct snow_stream snow_stream;           /* volume/stream.h */
-typedef struct snow_clip_planes snow_clip_planes; /* volume/clip_planes.h */
+typedef struct snow_stream snow_stream;           /* stream.h */
+typedef struct snow_clip_planes snow_clip_planes; /* clip_planes.h */
 
 /* What a part lacks, since the look that it was opened for shows nothing of it
  * (parallel/trim.c); the same on all ranks but for the box. */

@@ -345,7 +345,7 @@ static void wrong_arguments_are_refused(void **state) {
 
 /* --- contexts ------------------------------------------------------------- */
 
-static void count_remark(void *user, const char *text) {
+static void count_warning(void *user, const char *text) {
     if (!strcmp(text, "from rank 0"))
         ++*(int *)user;
     else
@@ -363,7 +363,7 @@ static void the_caller_hears_rank_0_and_counts_the_bytes_of_all(void **state) {
     (void)state;
     int heard = 0;
     snow_context *context = support_context();
-    snow_context_set_warning(context, count_remark, &heard);
+    snow_context_set_warning(context, count_warning, &heard);
     assert_int_equal(snow_comm_run_threads(context, 5, remark, NULL),
                      SNOW_STATUS_OK);
     assert_int_equal(heard, 1);

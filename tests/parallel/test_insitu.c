@@ -637,7 +637,7 @@ static void ranks_without_bricks_help(void **state) {
     assert_true(s.figures.recut);
 }
 
-static void the_exact_methods_do_too(void **state) {
+static void the_footprint_methods_do_too(void **state) {
     (void)state;
     scene s = make_scene(4, 2, 2, 1);
     s.settings.method = SNOW_METHOD_FOOTPRINT;
@@ -1568,7 +1568,7 @@ int main(void) {
         cmocka_unit_test(several_bricks_of_a_rank_are_one_part),
         cmocka_unit_test(bricks_that_are_no_box_are_recut),
         cmocka_unit_test(ranks_without_bricks_help),
-        cmocka_unit_test(the_exact_methods_do_too),
+        cmocka_unit_test(the_footprint_methods_do_too),
         cmocka_unit_test(parts_of_a_scattered_picture_add_up_to_it),
         cmocka_unit_test(a_deterministic_picture_is_the_same_bit_for_bit),
         cmocka_unit_test(a_picture_after_a_deterministic_one_is_drawn_in_place),

@@ -46,7 +46,7 @@ static reference_scene numbered_scene(size_t n, const int64_t size[3]) {
 
 /* --- pictures ------------------------------------------------------------- */
 
-static void the_exact_methods_make_the_references_picture(void **state) {
+static void the_footprint_methods_make_the_references_picture(void **state) {
     (void)state;
     model_stage stage = model_open();
     model_summary summary = {0};
@@ -251,7 +251,7 @@ static void all_methods_find_the_same_voxels_interesting(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_exact_methods_make_the_references_picture),
+        cmocka_unit_test(the_footprint_methods_make_the_references_picture),
         cmocka_unit_test(curves_of_any_shape),
         cmocka_unit_test(voxels_that_are_no_numbers_or_infinite),
         cmocka_unit_test(what_is_even_vanishes_and_a_border_stays),

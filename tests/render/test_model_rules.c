@@ -100,7 +100,7 @@ static void opacity_does_not_depend_on_the_angle_of_view(void **state) {
     model_close(&stage);
 }
 
-/* --- what is near hides what is far -------------------------------------- */
+/* --- what is near hides what is far --------------------------------------- */
 
 static void the_nearest_slice_hides_those_behind(void **state) {
     (void)state;

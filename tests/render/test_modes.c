@@ -153,7 +153,7 @@ static void every_type_and_matrix_in_perspective(void **state) {
     exact_pictures(1);
 }
 
-/* --- depth ------------------------------------------------------------ */
+/* --- depth ---------------------------------------------------------------- */
 
 static void compare_depth(const model_stage *stage,
                           const reference_scene *scene, mode_summary *t) {

@@ -41,20 +41,20 @@ static snow_image *render(const model_stage *stage,
     snow_volume *volume = open_cut(stage->context, cast);
     snow_transfer *transfer = model_transfer(stage->context, scene);
     snow_image *image = NULL;
-    snow_volume *volumes[SNOW_INLAYS_MOST];
-    snow_transfer *looks[SNOW_INLAYS_MOST];
-    snow_inlay channels[SNOW_INLAYS_MOST];
+    snow_volume *volumes[SNOW_LAYERS_MOST];
+    snow_transfer *looks[SNOW_LAYERS_MOST];
+    snow_layer channels[SNOW_LAYERS_MOST];
     int count = 0;
     for (const reference_cast *c = cast->next; c; c = c->next, count++) {
         volumes[count] = open_cut(stage->context, c);
         looks[count] = model_transfer(stage->context, c->scene);
-        channels[count] = (snow_inlay){volumes[count], looks[count], true};
+        channels[count] = (snow_layer){volumes[count], looks[count], true};
     }
-    assert_int_equal(snow_frame_set_inlays(stage->frame, channels, count),
+    assert_int_equal(snow_frame_set_layers(stage->frame, channels, count),
                      SNOW_STATUS_OK);
     snow_status status = snow_frame_render(
         stage->frame, volume, transfer, &scene->view, &scene->settings, &image);
-    snow_frame_set_inlays(stage->frame, NULL, 0);
+    snow_frame_set_layers(stage->frame, NULL, 0);
     for (int n = 0; n < count; n++) {
         snow_transfer_free(looks[n]);
         snow_volume_close(volumes[n]);

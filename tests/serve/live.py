@@ -70,7 +70,7 @@ def wait_for(what, seconds=90):
     return None
 
 
-def hear_step(page):
+def receive_step(page):
     """The next picture, and the step that was told before it."""
     step = None
     while True:
@@ -88,20 +88,20 @@ def steps_and_turns():
     simulation = simulate()
     server = Server("--live", "look.json")
     page = Page(server)
-    info = page.hear_text("info")
+    info = page.receive_text("info")
     check("the grid of the simulation", info["dims"] == [24, 24, 30] and
           info["matrix"] == [[0.5, 0, 0, 100], [0, 0.5, 0, 50], [0, 0, 2, -20]]
           and info["live"] and info["slices"] is None, info)
-    look = page.hear_text("look")
+    look = page.receive_text("look")
     check("its look", look["low"] == 0 and look["high"] == 1 and
           look["opacity"] == [[0.3, 0], [1, 0.8]], look)
     page.say({"t": "ask", "what": "histogram"})
-    counts = page.hear_text("histogram")
+    counts = page.receive_text("histogram")
     check("how often values occur, each voxel once", len(counts["counts"]) == 256
           and sum(counts["counts"]) == 24 * 24 * 30 and
           counts["lo"] < counts["hi"], counts)
     before = number(newest())
-    shown = [hear_step(page) for _ in range(5)]
+    shown = [receive_step(page) for _ in range(5)]
     steps = [step for step, _ in shown]
     check("steps go up", steps == sorted(set(steps)), steps)
     check("and are new", steps[-1] >= before, f"{steps} {before}")
@@ -119,7 +119,7 @@ def steps_and_turns():
     check("but no size, as a movie has one", read()["size"] == [160, 120])
     latest = number(newest())
     while True:  # one that was begun after
-        step, picture = hear_step(page)
+        step, picture = receive_step(page)
         if step is None or step > latest + 2:
             break
     check("the simulation has drawn it", step is not None and
@@ -127,29 +127,29 @@ def steps_and_turns():
     page.say({"t": "set", "n": 2, "recipe": {"clip": [[1, 0, 0, 105]]}})
     check("clip planes are written into it",
           wait_for(lambda: read().get("clip") == [[1, 0, 0, 105]]), read())
-    few = wait_for(lambda: 0 < sum(page.hear_text("histogram")["counts"]) <
+    few = wait_for(lambda: 0 < sum(page.receive_text("histogram")["counts"]) <
                    24 * 24 * 30)
     check("and what they take away is not counted", few)
     page.say({"t": "set", "n": 3, "recipe": {"clip": None}})
-    check("all of it is back", wait_for(lambda: sum(page.hear_text("histogram")
+    check("all of it is back", wait_for(lambda: sum(page.receive_text("histogram")
           ["counts"]) == 24 * 24 * 30) and "clip" not in read(), read())
     page.say({"t": "ask", "what": "fit"})
     page.say({"t": "ask", "what": "command"})
-    check("there is no command", "look.json" in page.hear_text("said")["text"])
+    check("there is no command", "look.json" in page.receive_text("said")["text"])
     page.say({"t": "ask", "what": "recipe"})
-    check("the recipe", json.loads(page.hear_text("recipe")["text"])["azimuth"]
+    check("the recipe", json.loads(page.receive_text("recipe")["text"])["azimuth"]
           == 70)
     page.say({"t": "set", "n": 4, "recipe": {"range": [0, 0.5]}})
-    info = page.hear_text("info")
+    info = page.receive_text("info")
     check("another range is told, of the same pictures", info["max"] == 0.5 and
           info["name"] == RECIPE["output"], info)
     page.say({"t": "set", "n": 5, "recipe": {"zoom": "large"}})
     check("a wrong value is answered and not written",
-          "zoom" in page.hear_text("said")["text"] and "zoom" not in read())
+          "zoom" in page.receive_text("said")["text"] and "zoom" not in read())
     end(simulation)
     other = Page(server)
     check("a page that comes later has the newest picture",
-          hear_step(other)[0] == number(newest()))
+          receive_step(other)[0] == number(newest()))
     check("the viewer ends in order", server.stop()[0] == 0)
 
 
@@ -178,13 +178,13 @@ def strange_pictures():
             "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}
     show(1, {**told, "range": [2, 1]})
     check("why a look cannot be made is said",
-          "range" in page.hear_text("said")["text"])
+          "range" in page.receive_text("said")["text"])
     show(2, told)
-    check("the next picture is told", page.hear_text("info")["dims"] ==
+    check("the next picture is told", page.receive_text("info")["dims"] ==
           told["dims"])
     show(3, {**told, "ends": [0, 1], "counts": ["many"] * 256})
     show(4, {**told, "ends": [0, 1], "counts": [7] * 256})
-    counts = page.hear_text("histogram")
+    counts = page.receive_text("histogram")
     check("counts that are not numbers are not shown", counts["counts"] == [7] * 256 and
           [counts["lo"], counts["hi"]] == [0, 1], counts)
     check("the viewer ends in order", server.stop()[0] == 0)
@@ -199,7 +199,7 @@ def slow_pages():
     alone = (number(newest()) - first) / (time.monotonic() - begin)
     server = Server("--live", "look.json")
     pages = [Page(server) for _ in range(8)]
-    pages[0].hear_text("info")
+    pages[0].receive_text("info")
     begin, first = time.monotonic(), number(newest())
     time.sleep(3)
     beside = (number(newest()) - first) / (time.monotonic() - begin)

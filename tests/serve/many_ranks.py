@@ -57,12 +57,12 @@ def end_of(server, seconds=180):
 
 def at_rest(page, n, recipe):
     page.say({"t": "set", "n": n, "recipe": recipe})
-    return page.hear_picture(2, n)
+    return page.receive_picture(2, n)
 
 
 def command_of(page):
     page.say({"t": "ask", "what": "command"})
-    return shlex.split(page.hear_text("command")["text"])
+    return shlex.split(page.receive_text("command")["text"])
 
 
 def by_command(words):
@@ -94,13 +94,13 @@ def answers(page):
             ("no value", {"what": "value", "at": [31, 22, 48]}),
             ("depth", {"what": "depth", "x": 0.5, "y": 0.5})):
         page.say({"t": "ask", **question})
-        kept[name] = page.hear_text(question["what"])
+        kept[name] = page.receive_text(question["what"])
     for pane, axis in enumerate("xyz", 1):
         page.say({"t": "ask", "what": "slice", "axis": axis, "index": 21,
                   "range": [0, 100], "pane": pane, "n": 1, "exact": True})
-        kept["slice " + axis] = page.hear_small(pane)[32:]
+        kept["slice " + axis] = page.receive_small(pane)[32:]
     page.say({"t": "ask", "what": "thumbnail", "preset": "ct-bone", "pane": 4})
-    kept["thumbnail"] = len(page.hear_small(4)) > 500
+    kept["thumbnail"] = len(page.receive_small(4)) > 500
     return kept
 
 
@@ -144,8 +144,8 @@ def same_as_one(exact):
     with_bits = ["--deterministic"] if exact else []
     many = start(*with_bits)
     pages = [Page(many)]
-    infos = [pages[0].hear_text("info")]
-    shown = pages[0].hear_picture(2)
+    infos = [pages[0].receive_text("info")]
+    shown = pages[0].receive_picture(2)
     check("a picture of the first state", shown is not None)
     for n, state in enumerate(STATES, 2):
         shown = at_rest(pages[0], n, state)
@@ -156,7 +156,7 @@ def same_as_one(exact):
     if not exact:
         one = Server(SMALL)
         pages.append(Page(one))
-        infos.append(pages[1].hear_text("info"))
+        infos.append(pages[1].receive_text("info"))
         check("all is told of the volume alike", infos[0] == infos[1], infos)
         for page in pages:
             at_rest(page, 9, {"size": [SIDE, SIDE], "mode": "over",
@@ -182,17 +182,17 @@ def newest_and_rest():
     first rank ends all in order."""
     server = start()
     page = Page(server)
-    page.hear_picture(2)
+    page.receive_picture(2)
     for n in range(2, 200):
         page.say({"t": "set", "n": n, "recipe": {"azimuth": n, "size": [
             SIDE, SIDE]}})
-    check("the newest state is drawn", page.hear_picture(2, 199) is not None)
+    check("the newest state is drawn", page.receive_picture(2, 199) is not None)
     check("and is what its command says", "199" in command_of(page))
     page.say({"t": "set", "n": 200, "recipe": {"zoom": "large"}})
-    said = page.hear_text("said")
+    said = page.receive_text("said")
     check("a wrong value is answered", said and "zoom" in said["text"], said)
     page.say({"t": "set", "n": 201, "recipe": {"crop": [[0, 99], [0, 9], [0, 9]]}})
-    said = page.hear_text("said")
+    said = page.receive_text("said")
     check("so is one that only the volume shows", said is not None)
     check("and pictures go on",
           at_rest(page, 202, {"crop": None}) is not None)
@@ -227,14 +227,14 @@ def histogram_in_place():
                     "--opacity", "0:0,255:0,256:1", "--range", "0,255", tool=MANY)
     atexit.register(server.process.kill)
     page = Page(server)
-    page.hear_picture(2)
+    page.receive_picture(2)
     ranks = ranks_of(server)
     for rank in ranks:
         with open(f"/proc/{rank}/clear_refs", "w") as peak:
             peak.write("5")  # begins the peak anew
     before = [memory_of(rank, "VmRSS") for rank in ranks]
     page.say({"t": "ask", "what": "histogram"})
-    counts = page.hear_text("histogram")["counts"]
+    counts = page.receive_text("histogram")["counts"]
     more = [memory_of(rank, "VmHWM") - was for rank, was in zip(ranks, before)]
     check("each voxel is counted once", counts == [256 * 320] * 256, counts)
     check("and none is copied for it", max(more) < 2048, f"{more} KiB")
@@ -246,7 +246,7 @@ def lost_rank():
     """A rank that is stopped, or gone, ends the job."""
     server = start("--timeout", "6")
     page = Page(server)
-    page.hear_picture(2)
+    page.receive_picture(2)
     time.sleep(7)
     check("a wait for pages is no fault", server.process.poll() is None)
     lost = ranks_of(server)[2]
@@ -258,7 +258,7 @@ def lost_rank():
           f"rank 2 (process {lost}" in lines[0], lines)
     server = start("--timeout", "6")
     page = Page(server)
-    page.hear_picture(2)
+    page.receive_picture(2)
     os.kill(ranks_of(server)[1], signal.SIGKILL)
     code, _ = end_of(server)
     check("so does one that was killed", code not in (0, None), code)

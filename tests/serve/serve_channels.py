@@ -36,16 +36,16 @@ def too_large():
     for n, size in enumerate(([400, 300], [900, 700]), 1):
         page.say({"t": "set", "n": n, "recipe": {"size": size}})
         if n == 1:
-            page.hear_picture(2, n)
+            page.receive_picture(2, n)
         else:
-            line = page.hear_text("said")["text"]
+            line = page.receive_text("said")["text"]
             check("a large picture has no room in 6M", "900 x 700" in line and
                   "--memory of 6.0 MiB" in line and "window" in line, line)
     page.say({"t": "ask", "what": "value", "at": [3, 4, 5]})
-    value = page.hear_text("value")["value"]
+    value = page.receive_text("value")["value"]
     check("values are those of the volume before", value is not None, value)
     page.say({"t": "ask", "what": "command"})
-    command = page.hear_text("command")["text"]
+    command = page.receive_text("command")["text"]
     check("and the command is that of the page", "--size 900x700" in command, command)
     page.say({"t": "set", "n": 3, "recipe": {"size": [96, 80]}})
     look = look_of(page, lambda look: len(look["channels"]) == 1)
@@ -61,9 +61,9 @@ def ends_with_one_off():
     server = Server("plain.zarr", "-q", "-j", "2")
     page = Page(server)
     page.say({"t": "set", "n": 1, "recipe": {"size": [64, 64]}})
-    page.hear_picture(2, 1)
+    page.receive_picture(2, 1)
     page.say({"t": "set", "n": 2, "recipe": {"channel": "0,2"}})
-    page.hear_picture(2, 2)
+    page.receive_picture(2, 2)
     page.close()
     server.stop()
 
@@ -90,7 +90,7 @@ def switched(name, *options, clip=None):
     """All, some, one, none but the first; clipped; in other modes."""
     server = Server(name, "-q", "-j", "2", *options)
     page, what = Page(server), " ".join([name, *options])
-    info = page.hear_text("info")
+    info = page.receive_text("info")
     check(f"{what}: channels have names", info["channels"] == ["DAPI", "GFP", "Cy5"],
           info["channels"])
     look = look_of(page, lambda look: True)
@@ -139,7 +139,7 @@ def switched(name, *options, clip=None):
                          box=None, clip=clip)
     check("are the first", last == every)
     page.say({"t": "set", "n": 18, "recipe": {"channel": "7:red,0"}})
-    said = page.hear_text("said")["text"]
+    said = page.receive_text("said")["text"]
     check("one that is not there is refused", "channel 7 does not exist" in said, said)
     last = is_of_command(page, "and the page goes on", 19, channel=None)
     check("as before", last == every)
@@ -153,7 +153,7 @@ def refused():
     server = Server("plain.zarr", "-j", "2", "--preset", "linear")
     page = Page(server)
     page.say({"t": "set", "n": 1, "recipe": {"size": [64, 64]}})
-    page.hear_picture(2, 1)
+    page.receive_picture(2, 1)
     page.say({"t": "set", "n": 2, "recipe": {"component": "zz"}})
     said, at_rest = [], False
     while not at_rest:

@@ -157,14 +157,14 @@ def deaths(server):
     """More than may look at once are killed in the middle of a frame."""
     witness = Page(server)
     witness.say({"t": "set", "n": 1, "recipe": {"size": [600, 600]}})
-    check("there is a picture", witness.hear_picture(2, 1) is not None)
+    check("there is a picture", witness.receive_picture(2, 1) is not None)
     before, count = server.files(), 12 if SHORT else 40
     begun = [die_in_a_frame(server, turn % 2) for turn in range(count)]
     check(f"{count} clients are killed", all(begun), begun)
     check("and leave no file open", until(lambda: server.files() <= before),
           f"{server.files()} {before}")
     witness.say({"t": "set", "n": 2, "recipe": {"size": [64, 64]}})
-    check("another sees the next change", witness.hear_picture(2, 2) is not None)
+    check("another sees the next change", witness.receive_picture(2, 2) is not None)
     witness.close()
 
 
@@ -197,13 +197,13 @@ def deaf(server):
     side = 512 if SANITIZED else 1024
     other, silent = Page(server), deaf_page(server)
     other.say({"t": "set", "n": 10, "recipe": {"size": [side, side]}})
-    check("the first picture", other.hear_picture(2, 10) is not None)
+    check("the first picture", other.receive_picture(2, 10) is not None)
     before, seen, last = server.kilobytes(), 0, 20 if SHORT else 50
     for n in range(11, last):
         for _ in range(3):
             silent.say({"t": "ack", "n": 0})
         other.say({"t": "set", "n": n, "recipe": {"azimuth": n}})
-        seen += other.hear_picture(2 if n % 5 == 0 else 0, n) is not None
+        seen += other.receive_picture(2 if n % 5 == 0 else 0, n) is not None
     check(f"each of {seen} pictures of {side} x {side} comes beside a page that "
           "reads nothing", seen == last - 11, seen)
     more = server.kilobytes() - before
@@ -221,7 +221,7 @@ silent = Silent()
 server = Server(SMALL)
 page = Page(server)
 page.say({"t": "set", "n": 1, "recipe": {"size": [64, 64]}})
-check("there is a first picture", page.hear_picture(2, 1) is not None)
+check("there is a first picture", page.receive_picture(2, 1) is not None)
 page.close()
 harms(server)
 silent.end()

@@ -36,7 +36,7 @@ def drag(page, n, name, quick, first, second, ends):
 
     page.say({"t": "moving", "on": True})
     say(n, first)
-    page.hear_picture(0, n)
+    page.receive_picture(0, n)
     say(n + 1, second)
     draft = look_with(page, ends)
     counted = " made by histogram" if "histogram" in draft["text"] else ""
@@ -51,13 +51,13 @@ def drag(page, n, name, quick, first, second, ends):
     is_of_command(page, "and that of its command", n + 2, azimuth=20)
     page.say({"t": "set", "n": n + 3, "recipe": {key: None for key in
                                              [*first, *second, "azimuth"]}})
-    page.hear_picture(2, n + 3)
+    page.receive_picture(2, n + 3)
 
 
 server = Server("phantom:head", "--dims", "40x40x40", "-q")
 page = Page(server)
 page.say({"t": "set", "n": 0, "recipe": {"size": [64, 64]}})
-page.hear_picture(2)
+page.receive_picture(2)
 drag(page, 10, "a range", True, {"range": [10, 200]}, {"range": [30, 180]}, (30, 180))
 drag(page, 20, "a window", True, {"window": [100, 90]},
      {"window": [120, 80]}, (20, 140))
@@ -67,7 +67,7 @@ server.stop()
 for words in (["--clip", "1,0,0,3"], ["--mask", "phantom:head"]):
     server = Server("phantom:head", "-q", *words)
     page = Page(server)
-    info = page.hear_text("info")
+    info = page.receive_text("info")
     check(f"with {words[0]} the type is the file's", info["type"] == "uint8", info["type"])
     page.close()
     server.stop()

@@ -112,7 +112,7 @@ def names():
         write_nrrd(name, DIMS, HERE + place, value, ("uint16", "H"))
         server = Server("ct.nrrd", "--overlay", name, "-q")
         page = Page(server)
-        labels = page.hear_text("look")["overlay"]["labels"]
+        labels = page.receive_text("look")["overlay"]["labels"]
         page.close()
         server.stop()
         return [[value, text] for value, text, _, _ in labels]
@@ -135,7 +135,7 @@ def only_values():
     page = Page(server)
     is_of_command(page, "a picture", 1, size=[64, 60])
     page.say({"t": "set", "n": 2, "recipe": {"overlay-look": "0.5"}})
-    said = page.hear_text("said")["text"]
+    said = page.receive_text("said")["text"]
     check("a factor is refused", '"overlay-look"' in said, said)
     is_of_command(page, "and not kept", 3, azimuth=20)
     is_of_command(page, "opacities at labels are taken", 4,

@@ -23,7 +23,7 @@ def ask_all(page):
     """What a page hears of all that it can ask for, as bytes."""
     heard = []
 
-    def hear_until(good):
+    def receive_until(good):
         while True:
             what, message = page.hear()
             if what == "closed":
@@ -36,23 +36,23 @@ def ask_all(page):
                 return True
 
     page.say({"t": "set", "n": 1, "recipe": {"size": [96, 80], "legend": True}})
-    all_heard = hear_until(lambda what, message: what == "picture" and
+    all_heard = receive_until(lambda what, message: what == "picture" and
                            message[4:9] == struct.pack("<IB", 1, 2))
     page.say({"t": "set", "n": 2, "recipe": {"time": 7}})
-    all_heard &= hear_until(lambda what, message: what == "text" and
+    all_heard &= receive_until(lambda what, message: what == "text" and
                             message["t"] == "said")
     for kind, asked in (
             ("histogram", {}), ("command", {}), ("movie-command", {}), ("recipe", {}),
             ("value", {"at": [1, 2, 3]}), ("depth", {"x": 0.5, "y": 0.5}),
             ("slice-command", {"axis": "z", "index": 1, "range": [0, 255]})):
         page.say({"t": "ask", "what": kind, **asked})
-        all_heard &= hear_until(lambda what, message: what == "text" and
+        all_heard &= receive_until(lambda what, message: what == "text" and
                                 message["t"] in (kind, "command"))
     for pane, asked in ((2, {"what": "slice", "axis": "z", "index": 1, "n": 5,
                              "range": [0, 255], "exact": True}),
                         (4, {"what": "thumbnail", "preset": "ct-bone"})):
         page.say({"t": "ask", "pane": pane, **asked})
-        all_heard &= hear_until(lambda what, message: what == "picture" and
+        all_heard &= receive_until(lambda what, message: what == "picture" and
                                 message[10] == pane)
     return heard if all_heard else []
 
@@ -125,7 +125,7 @@ def other_loopback():
     host = f"[::1]:{server.port}"
     check("[::1] is reached", server.get("/", host=host)[0] == 200)
     page = Page(server, host=host, origin=f"http://{host}")
-    check("and opens a WebSocket", page.hear_text("info") is not None)
+    check("and opens a WebSocket", page.receive_text("info") is not None)
     page.close()
     check("not for another port's page",
           not Page(server, host=host, origin="http://[::1]:1").is_open)
@@ -140,7 +140,7 @@ def own_addresses():
               f"{name}:{server.port}", server.host)
         check("sends its page", server.get("/")[0] == 200)
         page = Page(server)
-        check("opens a WebSocket", page.hear_text("info") is not None)
+        check("opens a WebSocket", page.receive_text("info") is not None)
         page.close()
         check("refuses another name",
               server.get("/", host=f"evil.org:{server.port}")[0] == 421)

@@ -165,25 +165,25 @@ def odd_messages(server):
     }
     for name, say in cases.items():
         page = Page(server)
-        page.hear_text("info")
+        page.receive_text("info")
         say(page)
         check(f"{name} closes", page.closed_code() is not None)
     page = Page(server, hello=False)
     page.say({"t": "set", "n": 1, "recipe": {}})
     check("what comes before hello closes", page.closed_code() == 4401)
     page = Page(server)
-    page.hear_text("info")
+    page.receive_text("info")
     page.say({"t": "set", "n": 1, "recipe": {"zoom": "large", "preset": 7}})
-    said = page.hear_text("said")
+    said = page.receive_text("said")
     check("a wrong value is answered", said and "zoom" in said["text"], said)
     for n, time_of in enumerate(("2:4", "0.3s"), 2):
         page.say({"t": "set", "n": n, "recipe": {"time": time_of}})
-        said = page.hear_text("said")
+        said = page.receive_text("said")
         check(f"so is time {time_of}", said and '"time"' in said["text"], said)
     page.say({"t": "set", "n": 4, "recipe": {"time": "last"}})
-    check("the last step is taken", page.hear_picture(2, 4) is not None)
+    check("the last step is taken", page.receive_picture(2, 4) is not None)
     page.say({"t": "ask", "what": "nothing"})
-    check("and so is a wrong question", page.hear_text("said") is not None)
+    check("and so is a wrong question", page.receive_text("said") is not None)
     page.close()
 
 
@@ -194,7 +194,7 @@ def crowds(server):
         idle.append(server.connect())
     page_comes(server, f"{count} idle connections")
     page = Page(server)
-    check("and a WebSocket is opened", page.hear_text("info") is not None)
+    check("and a WebSocket is opened", page.receive_text("info") is not None)
     files = server.files()
     check(f"few stay open: {files} files", files < 110, files)
     page.close()
@@ -239,32 +239,32 @@ def many_pages(server):
     """A page that takes nothing slows no other, and the 33rd is one too many."""
     fast, slow = Page(server), Page(server)
     fast.say({"t": "set", "n": 1, "recipe": {"size": [SIDE, SIDE]}})
-    check("the first picture", fast.hear_picture(2) is not None)
+    check("the first picture", fast.receive_picture(2) is not None)
     seen = 0
     for n in range(2, 42):  # the slow one acknowledges nothing
         fast.say({"t": "set", "n": n, "recipe": {"azimuth": n}})
-        seen += fast.hear_picture(0, n, 10) is not None
+        seen += fast.receive_picture(0, n, 10) is not None
     check(f"each of 40 changes is seen beside a slow page: {seen}", seen == 40)
-    state = slow.hear_text("state")
+    state = slow.receive_text("state")
     check("the other page learns of changes", state is not None)
     last = None
     slow.say({"t": "ack", "n": 0})
     slow.say({"t": "ack", "n": 0})
     while last is None or last["recipe"].get("azimuth") != 41:
-        last = slow.hear_text("state")
+        last = slow.receive_text("state")
         if last is None:
             break
     check("and sees the newest state", last is not None)
     others = [Page(server) for _ in range(30)]
     for page in others:
-        page.hear_text("info")
+        page.receive_text("info")
     check("the 33rd page is refused", Page(server).closed_code() == 4429)
     for page in [*others, slow]:
         page.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER,
                                struct.pack("ii", 1, 0))  # as a kill -9
         page.close()
     fast.say({"t": "set", "n": 50, "recipe": {"azimuth": 0}})
-    check("the rest is served on", fast.hear_picture(0, 50) is not None)
+    check("the rest is served on", fast.receive_picture(0, 50) is not None)
     fast.close()
 
 
@@ -272,13 +272,13 @@ def floods(server):
     """Sets faster than pictures: the newest wins, and none is kept."""
     count = 300 if SHORT else 10000
     page = Page(server)
-    page.hear_text("info")
+    page.receive_text("info")
     before = server.kilobytes()
     for n in range(1, count + 1):
         page.say({"t": "set", "n": n, "recipe": {"azimuth": n % 360,
                                                  "size": [SIDE, SIDE]}})
     check(f"after {count} changes the newest is shown",
-          page.hear_picture(2, count) is not None)
+          page.receive_picture(2, count) is not None)
     more = server.kilobytes() - before
     check(f"which took {more} kB", more < 30000 or SANITIZED, more)
     page.close()
@@ -289,9 +289,9 @@ def same_bytes(server, path, recipe):
     page = Page(server)
     page.say({"t": "set", "n": 7, "recipe": {"size": [SIDE, SIDE + 10],
                                              **recipe}})
-    shown = page.hear_picture(2, 7)
+    shown = page.receive_picture(2, 7)
     page.say({"t": "ask", "what": "command"})
-    command = page.hear_text("command")
+    command = page.receive_text("command")
     words = shlex.split(command["text"]) if command else []
     page.close()
     if not words or shown is None:
@@ -309,18 +309,18 @@ def same_bytes(server, path, recipe):
 def crop_and_back(server):
     """A crop keeps the object's size; a step back names its zoom itself."""
     page = Page(server)
-    before = page.hear_text("state")["recipe"]
+    before = page.receive_text("state")["recipe"]
     page.say({"t": "set", "n": 1, "recipe": {"crop": [[12, 36], [12, 36],
                                                       [12, 36]]}})
-    cropped = page.hear_text("state")["recipe"]
+    cropped = page.receive_text("state")["recipe"]
     check("a crop keeps the scale", cropped["zoom"] < 0.8 * before["zoom"],
           f"{before['zoom']} {cropped['zoom']}")
     page.say({"t": "set", "n": 2, "recipe": {
         "crop": None, "zoom": before["zoom"], "target": before["target"]}})
-    page.hear_picture(2, 2)
+    page.receive_picture(2, 2)
     page.close()
     page = Page(server)
-    now = page.hear_text("state")["recipe"]
+    now = page.receive_text("state")["recipe"]
     check("a step back has its own zoom", now["zoom"] == before["zoom"],
           f"{before['zoom']} {now['zoom']}")
     page.close()
@@ -330,7 +330,7 @@ def two_at_once(server):
     """Both pages learn of both changes, and which of their own are in a state."""
     one, other = Page(server), Page(server)
     for page in (one, other):
-        page.hear_text("state")
+        page.receive_text("state")
     for n in range(1, 30):
         one.say({"t": "set", "n": n, "recipe": {"azimuth": n}})
         other.say({"t": "set", "n": 100 + n, "recipe": {"elevation": n}})
@@ -338,16 +338,16 @@ def two_at_once(server):
                                  (other, "elevation", "azimuth", 129)):
         state = {"recipe": {}}
         while state and state["recipe"].get(key) != 29:
-            state = page.hear_text("state")
+            state = page.receive_text("state")
         check(f"the other's {key} arrives", state is not None)
         if state:
             base = 100 if own == "elevation" else 0
             check(f"its n is that of its {own}",
                   state["n"] in (0, base + state["recipe"].get(own, 0)), state)
     one.say({"t": "set", "n": 77, "recipe": {"zoom": "wrong"}})
-    state = one.hear_text("state")
+    state = one.receive_text("state")
     while state and state["n"] != 77:
-        state = one.hear_text("state")
+        state = one.receive_text("state")
     check("a refused change counts as heard", state is not None)
     one.close()
     other.close()
@@ -358,12 +358,12 @@ def first_state():
     server = Server("phantom:head")
     page = Page(server)
     page.say({"t": "set", "n": 1, "recipe": {"zoom": 3.5}})
-    begin = page.hear_text("state")["recipe"]
+    begin = page.receive_text("state")["recipe"]
     check("the first state is framed", "target" in begin, begin)
-    page.hear_picture(2, 1)
+    page.receive_picture(2, 1)
     page.close()
     page = Page(server)
-    now = page.hear_text("state")["recipe"]
+    now = page.receive_text("state")["recipe"]
     check("a zoom that is set at once stays", now["zoom"] == 3.5, now)
     page.close()
     server.stop()
@@ -430,7 +430,7 @@ def answers_first():
     for n in range(1, 9):  # on a busy machine this page may ask too late
         page.say({"t": "set", "n": n, "recipe": {"size": [side, side],
                                                  "azimuth": n}})
-        page.hear_picture(1, n)
+        page.receive_picture(1, n)
         time.sleep(0.1)  # the picture of quality high is under way
         page.say({"t": "ask", "what": "value", "at": [1, 2, 3]})
         kinds = []
@@ -441,7 +441,7 @@ def answers_first():
             break
     check("an answer comes before the picture at rest",
           "figures" not in kinds, kinds)
-    check("which comes then", page.hear_picture(2, n) is not None)
+    check("which comes then", page.receive_picture(2, n) is not None)
     page.close()
     server.stop()
 
@@ -452,9 +452,9 @@ def movie_command():
     page = Page(server)
     page.say({"t": "set", "n": 1, "recipe": {
         "azimuth": 20, "preset": "ct-bone", "size": [SIDE, SIDE]}})
-    shown = page.hear_picture(2, 1)
+    shown = page.receive_picture(2, 1)
     page.say({"t": "ask", "what": "movie-command"})
-    text = page.hear_text("command")["text"]
+    text = page.receive_text("command")["text"]
     words = shlex.split(text)
     words[0] = TOOL
     words[words.index("--output") + 1] = os.path.join(FOLDER.name, "f_%d.png")
@@ -476,10 +476,10 @@ def thumbnails(server):
     for n, mode in enumerate(("over", "mean", "sum"), 1):
         page.say({"t": "set", "n": n, "recipe": {
             "mode": mode, "size": [SIDE, SIDE], "background": "#000000"}})
-        page.hear_picture(2, n)
+        page.receive_picture(2, n)
         page.say({"t": "ask", "what": "thumbnail", "preset": "ct-bone",
                   "pane": 4})
-        seen.append(page.hear_small(4)[32:])
+        seen.append(page.receive_small(4)[32:])
     check("a thumbnail is painted in all modes", seen[1:] == seen[:1] * 2,
           [len(each) for each in seen])
     page.say({"t": "set", "n": 9, "recipe": {
@@ -490,9 +490,9 @@ def thumbnails(server):
 def fit_at_position():
     server = Server(SMALL, "--position", "200,10,20")
     page = Page(server)
-    page.hear_text("state")
+    page.receive_text("state")
     page.say({"t": "ask", "what": "fit"})
-    said = page.hear_text("said")
+    said = page.receive_text("said")
     check("what cannot be framed is told", said and "position" in said["text"],
           said)
     page.close()
@@ -527,7 +527,7 @@ def dragged_points(more, grey):
     is that of the smallest draft: none is smaller."""
     server = Server(SMALL, *more)
     page, n = Page(server), 1
-    points = page.hear_text("look")["opacity"]
+    points = page.receive_text("look")["opacity"]
     moved = [[value, min(1, 2 * opacity)] for value, opacity in points]
     page.say({"t": "moving", "on": True})
 
@@ -550,7 +550,7 @@ def dragged_points(more, grey):
     check("which has changed", draft(opacity=points)[0] != quick)
     draft(opacity=moved)
     page.say({"t": "moving", "on": False})
-    look = page.hear_text("look")
+    look = page.receive_text("look")
     check("the picture at rest has a new look", look and
           "opacities as requested" in look["text"] and
           look["opacity"] == moved, look)
@@ -570,19 +570,19 @@ def recipe_file():
     page = Page(server)
     page.say({"t": "set", "n": 1, "recipe": {"azimuth": 12,
                                              "size": [SIDE, SIDE]}})
-    shown = page.hear_picture(2, 1)
+    shown = page.receive_picture(2, 1)
     page.say({"t": "ask", "what": "thumbnail", "preset": "", "pane": 4})
-    of_file = page.hear_small(4)
+    of_file = page.receive_small(4)
     page.say({"t": "ask", "what": "thumbnail", "preset": "ct-bone", "pane": 4})
     check("the first thumbnail is there", of_file and
-          of_file[32:] != page.hear_small(4)[32:])
+          of_file[32:] != page.receive_small(4)[32:])
     late = Page(server)
-    look = late.hear_text("look")
+    look = late.receive_text("look")
     check("a look of many points says how many there are",
           look["count"] == 300 and len(look["opacity"]) == 256, look["count"])
     late.close()
     page.say({"t": "ask", "what": "recipe"})
-    recipe = page.hear_text("recipe")
+    recipe = page.receive_text("recipe")
     path, out = (os.path.join(FOLDER.name, name)
                  for name in ("recipe.json", "recipe.png"))
     with open(path, "w") as file:
@@ -614,7 +614,7 @@ def saved_paths(raw, points):
         server = Server(volume, *(about + [look] if look else []))
         page = Page(server)
         page.say({"t": "ask", "what": "recipe"})
-        tree = json.loads(page.hear_text("recipe")["text"])
+        tree = json.loads(page.receive_text("recipe")["text"])
         found = [tree.get("input"), tree.get("tf")]
         check(f"a recipe of {volume} leads from its folder", found == wanted,
               found)
@@ -662,7 +662,7 @@ def slices():
     """They are the pictures of the verb slice, which has the same command."""
     server = Server(SMALL, "--kernel", "tent")
     page = Page(server)
-    info = page.hear_text("info")
+    info = page.receive_text("info")
     check("the page hears where slices lie",
           sorted(each["along"] for each in info["slices"]) == [0, 1, 2] and
           all(sorted([each["along"], each["right"][0], each["down"][0]]) ==
@@ -671,7 +671,7 @@ def slices():
         page.say({"t": "set", "n": n, "recipe": {
             "preset": None, "clip": None, "crop": None, "colormap": None,
             "size": [SIDE, SIDE], **recipe}})
-        page.hear_picture(2, n)
+        page.receive_picture(2, n)
         moving = ask_slice(page, **asked)
         check(f"slice {n} moves as JPEG", moving and moving[9] == 1 and
               moving[32:34] == b"\xff\xd8", moving)
@@ -679,7 +679,7 @@ def slices():
         check(f"slice {n} rests as PNG, with its own n", exact and
               exact[9] == 2 and struct.unpack("<I", exact[4:8]) == (7,))
         page.say({"t": "ask", "what": "slice-command", **asked})
-        command = page.hear_text("command")["text"]
+        command = page.receive_text("command")["text"]
         made = run_command(command)
         check(f"slice {n} has the bytes of its command", made == exact[32:],
               made if isinstance(made, str) else command)
@@ -706,13 +706,13 @@ def slices_in_little_memory():
     server = Server(flat, "-q", "-j", "2", "--memory", "14M")
     page = Page(server)
     page.say({"t": "set", "n": 1, "recipe": {"size": [64, 64]}})
-    said = page.hear_text("said")["text"]
+    said = page.receive_text("said")["text"]
     check("the picture at rest has no room in 14M", "14.0 MiB" in said, said)
     for axis, index in ("z", 3), ("y", 200), ("x", 80):
         asked = {"axis": axis, "index": index, "range": [0, 255]}
         exact = ask_slice(page, **asked, exact=True)
         page.say({"t": "ask", "what": "slice-command", **asked})
-        made = run_command(page.hear_text("command")["text"], "--memory", "14M")
+        made = run_command(page.receive_text("command")["text"], "--memory", "14M")
         check(f"a slice across {axis} has", exact and made == exact[32:],
               made if isinstance(made, str) else exact)
     page.close()
@@ -724,10 +724,10 @@ def one_channel():
     server = Server(SMALL, "-q")
     page = Page(server)
     page.say({"t": "set", "n": 1, "recipe": {"size": [SIDE, SIDE], "channel": "5"}})
-    said = page.hear_text("said")["text"]
+    said = page.receive_text("said")["text"]
     check("a channel that is not there is refused",
           "channel 5 does not exist; the voxels have 1" in said, said)
-    state = page.hear_text("state")
+    state = page.receive_text("state")
     check("and not kept", state and "channel" not in state["recipe"], state)
     page.close()
     server.stop()
@@ -744,10 +744,10 @@ def mask_switch():
                     "uint8", "-o", mask + ".nrrd", "-q"], check=True)
     server = Server(SMALL, "--mask", mask + ".nrrd", "--labels", "1")
     page = Page(server)
-    info = page.hear_text("info")
+    info = page.receive_text("info")
     check("a page hears of a mask, and which labels it keeps",
           info["mask"] is True and info["labels"] == "1", info)
-    state = page.hear_text("state")["recipe"]
+    state = page.receive_text("state")["recipe"]
     check("but not of its file", state["mask"] is True and
           "secret" not in json.dumps(state), state)
     shown = []
@@ -756,9 +756,9 @@ def mask_switch():
                                 {"clip": [[1, 0, 0, 3.5]]},
                                 {"mask": True, "labels": "1", "clip": None}), 1):
         page.say({"t": "set", "n": n, "recipe": change})
-        shown.append(page.hear_picture(2, n))
+        shown.append(page.receive_picture(2, n))
         page.say({"t": "ask", "what": "command"})
-        command = page.hear_text("command")["text"]
+        command = page.receive_text("command")["text"]
         check(f"mask {n}: the picture is its command's",
               run_command(command) == shown[-1], command)
         check(f"mask {n}: which names the mask where it is used",
@@ -770,9 +770,9 @@ def mask_switch():
     server = Server(SMALL)
     page = Page(server)
     check("there is no mask without one",
-          page.hear_text("info")["mask"] is False)
+          page.receive_text("info")["mask"] is False)
     page.say({"t": "set", "n": 1, "recipe": {"mask": True, "azimuth": 5}})
-    check("and none to switch", page.hear_picture(2, 1) is not None)
+    check("and none to switch", page.receive_picture(2, 1) is not None)
     page.close()
     server.stop()
 
@@ -793,14 +793,14 @@ def newest_values():
     server = Server(*known_volume("newest.raw"))
     page = Page(server)
     page.say({"t": "set", "n": 1, "recipe": {"size": [1500, 1500]}})
-    page.hear_picture(2, 1)
+    page.receive_picture(2, 1)
     page.say({"t": "moving", "on": True})
     got, sizes = [], []
     for n in range(2, 14):
         page.say({"t": "set", "n": n, "recipe": {
             "crop": [[n, 48], [0, 48], [0, 48]]}})
         page.say({"t": "ask", "what": "value", "at": [0, 0, 0]})
-        got.append(page.hear_text("value")["value"])
+        got.append(page.receive_text("value")["value"])
         page.say({"t": "set", "n": n, "recipe": {
             "crop": [[n, 48], [0, 48], [0, 20 + n]]}})
         slice_ = ask_slice(page, axis="y", index=0, range=[0, 100])
@@ -834,10 +834,10 @@ def nothing_to_slice():
           message["pane"] == 2, message)
     check("and why is said", any("gone.raw" in line for line in lines), lines)
     page.say({"t": "ask", "what": "value", "at": [1, 2, 3]})
-    check("nor a value", page.hear_text("value")["value"] is None)
+    check("nor a value", page.receive_text("value")["value"] is None)
     page.say({"t": "ask", "what": "histogram"})
     check("nor a histogram", "There is no volume" in
-          page.hear_text("said")["text"])
+          page.receive_text("said")["text"])
     os.rename(raw + ".away", raw)
     page.say({"t": "set", "n": 2, "recipe": {
         "crop": [[5, 48], [0, 48], [0, 48]]}})
@@ -851,18 +851,18 @@ def taken_back():
     server = Server(SMALL)
     page = Page(server)
     page.say({"t": "set", "n": 1, "recipe": {"size": [64, 48], "azimuth": 20}})
-    before = page.hear_picture(2, 1)
+    before = page.receive_picture(2, 1)
     for n, wrong in enumerate(({"time": 7},
                                {"crop": [[90, 99], [0, 9], [0, 9]]}), 2):
         page.say({"t": "set", "n": n, "recipe": wrong})
         key, = wrong
-        line = page.hear_text("said")["text"]
-        recipe = page.hear_text("state")["recipe"]
+        line = page.receive_text("said")["text"]
+        recipe = page.receive_text("state")["recipe"]
         check(f"a wrong {key} is said, and taken back", key not in recipe and
               recipe["azimuth"] == 20 and recipe["size"] == [64, 48],
               f"{line} {recipe}")
     page.say({"t": "set", "n": 9, "recipe": {"azimuth": 21}})
-    after = page.hear_picture(2, 9)
+    after = page.receive_picture(2, 9)
     check("what comes after is drawn", after and after != before)
     page.close()
     server.stop()
@@ -913,10 +913,10 @@ def streamed_slices():
     server = Server(big, "--dims", "256x256x320", "--type", "uint8", "--memory",
                     "16M")
     page = Page(server)
-    page.hear_text("info")
+    page.receive_text("info")
     for at, value in ([1, 2, 3], 4), ([255, 255, 319], 62), ([0, 0, 320], None):
         page.say({"t": "ask", "what": "value", "at": at})
-        told = page.hear_text("value")
+        told = page.receive_text("value")
         check(f"the value at {at} in the file", told["value"] == value, told)
     for at in ([1, 2, 3], [1, 100, 7], [200, 9, 3], [200, 100, 3]):
         ask_slice(page, axis="z", index=at[2], range=[0, 255])
@@ -924,14 +924,14 @@ def streamed_slices():
     os.rename(big, big + "x")
     for at in ([1, 2, 3], [9, 7, 3], [4, 100, 200]):
         page.say({"t": "ask", "what": "value", "at": at})
-        told = page.hear_text("value")
+        told = page.receive_text("value")
         check(f"the value at {at} is of a slice that is there",
               told["value"] == at[0] + at[2], told)
     again = ask_slice(page, axis="y", index=100, range=[0, 255], exact=True)
     check("which is not read again", again is not None)
     page.say({"t": "ask", "what": "value", "at": [1, 3, 4]})
-    check("another one is", page.hear_text("value")["value"] is None)
-    said = page.hear_text("said")
+    check("another one is", page.receive_text("value")["value"] is None)
+    said = page.receive_text("said")
     check("which is said to be gone", os.path.basename(big) in json.dumps(said), said)
     os.rename(big + "x", big)
     check("its voxels are not in memory", server.kilobytes("VmRSS") < 60000,
@@ -946,7 +946,7 @@ def streamed_slices():
     asked = {"axis": "y", "index": 100, "range": [0, 255]}
     exact = ask_slice(page, **asked, exact=True)
     page.say({"t": "ask", "what": "slice-command", **asked})
-    made = run_command(page.hear_text("command")["text"])
+    made = run_command(page.receive_text("command")["text"])
     check("a slice of a volume in its file has its command's bytes",
           exact and made == exact[32:], made if isinstance(made, str) else "")
     page.close()
@@ -960,29 +960,29 @@ def values_and_depths():
                     "volume")
     page = Page(server)
     page.say({"t": "set", "n": 1, "recipe": {"azimuth": 0}})
-    page.hear_picture(2)
+    page.receive_picture(2)
     for at, value in (([5, 40, 7], 19), ([47, 0, 29], 105), ([1, 1, 30], 0),
                       ([48, 0, 0], None), ([0, -1, 0], None),
                       ([0, 2 ** 62, 0], None)):
         page.say({"t": "ask", "what": "value", "at": at})
-        got = page.hear_text("value")
+        got = page.receive_text("value")
         check(f"the value at {at} is {value}", got["value"] == value and
               got["at"] == at, got)
     for n, fov in enumerate((0, 30), 2):
         page.say({"t": "set", "n": n, "recipe": {
             "perspective": fov, "size": [200, 100]}})
-        page.hear_picture(2, n)
+        page.receive_picture(2, n)
         page.say({"t": "ask", "what": "depth", "x": 0.55, "y": 0.45})
-        got = page.hear_text("depth")
+        got = page.receive_text("depth")
         check(f"the object is 6 mm before the target, at {fov} degrees",
               abs(got["depth"] + 5.5) < 1.1, got)
         page.say({"t": "ask", "what": "depth", "x": 0.02, "y": 0.05})
         check("and nothing is in a corner",
-              page.hear_text("depth")["depth"] is None)
+              page.receive_text("depth")["depth"] is None)
     page.say({"t": "set", "n": 4, "recipe": {"mode": "mip"}})
-    page.hear_picture(2, 4)
+    page.receive_picture(2, 4)
     page.say({"t": "ask", "what": "depth", "x": 0.5, "y": 0.5})
-    check("mode mip has no depth", page.hear_text("depth")["depth"] is None)
+    check("mode mip has no depth", page.receive_text("depth")["depth"] is None)
     page.close()
     server.stop()
 
@@ -1051,7 +1051,7 @@ def quality_of_links():
     link = ThinLink(server, 1e6, 0.04)
     slow = Page(server, port=link.port)
     slow.say({"t": "set", "n": 1, "recipe": {"size": [1024, 1024]}})
-    slow.hear_picture(2, 1)
+    slow.receive_picture(2, 1)
     got = drafts(slow, 20, 100)
     qualities = [quality_of(jpeg) for jpeg in got]
     print(f"       1 Mbit/s, 80 ms: quality {qualities[0]} to {qualities[-1]}, "
@@ -1076,7 +1076,7 @@ def quality_here():
     server = Server("phantom:engine", "--preset", "ct-bone")
     page = Page(server)
     page.say({"t": "set", "n": 1, "recipe": {"size": [1024, 1024]}})
-    page.hear_picture(2, 1)
+    page.receive_picture(2, 1)
     got = drafts(page, 40, 100)
     qualities = [quality_of(jpeg) for jpeg in got]
     sizes = [len(jpeg) // 1000 for jpeg in got]
@@ -1154,7 +1154,7 @@ def unix_socket():
               server.get("/", host="evil.org:4321")[0] == 421)
         page = Page(server, host="localhost:4321",
                     origin="http://localhost:4321")
-        check("and WebSockets", page.hear_text("info") is not None)
+        check("and WebSockets", page.receive_text("info") is not None)
         check("not for another page's port",
               not Page(server, host="localhost:4321",
                        origin="http://localhost:1").is_open)

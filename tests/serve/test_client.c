@@ -33,18 +33,18 @@ static void wake_nobody(void *user) {
     (void)user;
 }
 
-static void queue_long(client *c, outbox *box, parcel_topic topic, int level,
+static void queue_long(client *c, outbox *box, message_topic topic, int level,
                        size_t length) {
-    parcel *p = parcel_new(length);
+    outgoing *p = outgoing_new(length);
     assert_non_null(p);
     memset(p->bytes, 0, length);
     p->topic = topic;
     p->bytes[8] = (unsigned char)level;
     client_queue(c, box, p);
-    parcel_release(box, p);
+    outgoing_release(box, p);
 }
 
-static void queue(client *c, outbox *box, parcel_topic topic, int level) {
+static void queue(client *c, outbox *box, message_topic topic, int level) {
     queue_long(c, box, topic, level, FRAME_HEAD_BYTES);
 }
 
@@ -58,7 +58,7 @@ static void send_all(client *c, outbox *box) {
 static int quality_after(client *c, int pictures, size_t length, int ms) {
     outbox *box = outbox_new(wake_nobody, NULL);
     for (int i = 0; i < pictures; i++) {
-        queue_long(c, box, PARCEL_PICTURE, 0, length);
+        queue_long(c, box, MESSAGE_PICTURE, 0, length);
         send_all(c, box);
         now += 1000 * ms;
         client_acknowledge(c);
@@ -115,13 +115,13 @@ static void pictures_at_rest_do_not_count(void **state) {
     outbox *box = outbox_new(wake_nobody, NULL);
     client c = {.id = 1};
     for (int i = 0; i < 40; i++) {
-        queue(&c, box, PARCEL_PICTURE, 2);
+        queue(&c, box, MESSAGE_PICTURE, 2);
         send_all(&c, box);
-        queue(&c, box, PARCEL_PICTURE, 0);
+        queue(&c, box, MESSAGE_PICTURE, 0);
         send_all(&c, box);
         now += 900000;
         client_acknowledge(&c);
-        queue(&c, box, PARCEL_PICTURE,
+        queue(&c, box, MESSAGE_PICTURE,
               0); /* counts, behind one that does not */
         send_all(&c, box);
         client_acknowledge(&c);
@@ -142,7 +142,7 @@ static void a_change_of_quality_is_told(void **state) {
     outbox *box = outbox_new(wake_nobody, NULL);
     client c = {.id = 1};
     for (int i = 1; i <= 16; i++) {
-        queue(&c, box, PARCEL_PICTURE, 0);
+        queue(&c, box, MESSAGE_PICTURE, 0);
         send_all(&c, box);
         now += 400000;
         assert_int_equal(client_acknowledge(&c), i % 8 == 0);
@@ -154,14 +154,14 @@ static void of_pictures_the_newest_waits(void **state) {
     (void)state;
     outbox *box = outbox_new(wake_nobody, NULL);
     client c = {.id = 1, .thin = true};
-    queue(&c, box, PARCEL_PICTURE, 2);
-    queue(&c, box, PARCEL_STATE, 0);
-    queue(&c, box, PARCEL_THIN_PICTURE, 0);
-    queue(&c, box, PARCEL_PICTURE, 0); /* for other links */
+    queue(&c, box, MESSAGE_PICTURE, 2);
+    queue(&c, box, MESSAGE_STATE, 0);
+    queue(&c, box, MESSAGE_THIN_PICTURE, 0);
+    queue(&c, box, MESSAGE_PICTURE, 0); /* for other links */
     assert_int_equal(c.count, 2);
-    assert_int_equal(c.queue[0]->topic, PARCEL_STATE);
-    assert_int_equal(c.queue[1]->topic, PARCEL_THIN_PICTURE);
-    queue(&c, box, PARCEL_PICTURE, 2);
+    assert_int_equal(c.queue[0]->topic, MESSAGE_STATE);
+    assert_int_equal(c.queue[1]->topic, MESSAGE_THIN_PICTURE);
+    queue(&c, box, MESSAGE_PICTURE, 2);
     assert_int_equal(c.count, 2);
     assert_int_equal(c.queue[1]->bytes[8], 2);
     client_free(&c, box);
@@ -172,11 +172,11 @@ static void texts_with_a_topic_replace_in_place(void **state) {
     (void)state;
     outbox *box = outbox_new(wake_nobody, NULL);
     client c = {.id = 1};
-    queue(&c, box, PARCEL_INFO, 0);
-    queue(&c, box, PARCEL_STATE, 0);
-    queue(&c, box, PARCEL_INFO, 1);
-    queue(&c, box, PARCEL_PLAIN, 0);
-    queue(&c, box, PARCEL_PLAIN, 0);
+    queue(&c, box, MESSAGE_INFO, 0);
+    queue(&c, box, MESSAGE_STATE, 0);
+    queue(&c, box, MESSAGE_INFO, 1);
+    queue(&c, box, MESSAGE_PLAIN, 0);
+    queue(&c, box, MESSAGE_PLAIN, 0);
     assert_int_equal(c.count, 4);
     assert_int_equal(c.queue[0]->bytes[8], 1);
     client_free(&c, box);
@@ -201,18 +201,18 @@ static void two_pictures_are_under_way(void **state) {
     outbox *box = outbox_new(wake_nobody, NULL);
     client c = {.id = 1};
     for (int i = 1; i <= CLIENT_UNDER_WAY; i++) {
-        queue(&c, box, PARCEL_PICTURE, 0);
+        queue(&c, box, MESSAGE_PICTURE, 0);
         assert_true(client_has_more(&c));
         assert_true(client_send(&c, box));
         assert_int_equal(c.under_way, i);
     }
-    queue(&c, box, PARCEL_PICTURE, 0);
-    queue(&c, box, PARCEL_PICTURE, 1);
+    queue(&c, box, MESSAGE_PICTURE, 0);
+    queue(&c, box, MESSAGE_PICTURE, 1);
     assert_false(client_has_more(&c));
     int before = written.count;
     assert_true(client_send(&c, box));
     assert_int_equal(written.count, before);
-    queue(&c, box, PARCEL_PLAIN, 0); /* which waits for no picture */
+    queue(&c, box, MESSAGE_PLAIN, 0); /* which waits for no picture */
     assert_true(client_has_more(&c));
     assert_true(client_send(&c, box));
     assert_int_equal(written.count, before + 1);
@@ -233,10 +233,10 @@ static void a_picture_goes_in_pieces_with_the_own_n(void **state) {
     (void)state;
     outbox *box = outbox_new(wake_nobody, NULL);
     client c = {.id = 1};
-    parcel *p = parcel_new(2 * CLIENT_PIECE_BYTES + 100);
+    outgoing *p = outgoing_new(2 * CLIENT_PIECE_BYTES + 100);
     assert_non_null(p);
     memset(p->bytes, 0, p->length);
-    p->topic = PARCEL_PICTURE;
+    p->topic = MESSAGE_PICTURE;
     p->revision = 7;
     set_log_note(&c.sets, 42, 7);
     client_queue(&c, box, p);
@@ -250,13 +250,13 @@ static void a_picture_goes_in_pieces_with_the_own_n(void **state) {
         assert_int_equal(written.how, wanted[i]);
         if (i == 0)
             assert_int_equal(written.head[4], 42);
-        queue(&c, box, PARCEL_PLAIN, 0); /* which comes between no pieces */
+        queue(&c, box, MESSAGE_PLAIN, 0); /* which comes between no pieces */
     }
     assert_int_equal(written.all, p->length);
     assert_int_equal(written.length, 100);
     assert_int_equal(p->bytes[4], 0); /* others share it */
     assert_null(c.sending);
-    parcel_release(box, p);
+    outgoing_release(box, p);
     client_free(&c, box);
     outbox_free(box);
 }
@@ -267,8 +267,8 @@ static void a_link_is_thin_while_pictures_wait(void **state) {
     client c = {.id = 1, .webp = true}, plain = {.id = 2};
     int changes = 0;
     for (int i = 0; i < 10; i++) {
-        queue(&c, box, c.thin ? PARCEL_THIN_PICTURE : PARCEL_PICTURE, 0);
-        queue(&plain, box, PARCEL_PICTURE, 0);
+        queue(&c, box, c.thin ? MESSAGE_THIN_PICTURE : MESSAGE_PICTURE, 0);
+        queue(&plain, box, MESSAGE_PICTURE, 0);
         changes += client_acknowledge(&c);
         assert_false(client_acknowledge(&plain)); /* it cannot show WebP */
     }
@@ -288,9 +288,9 @@ static void too_much_that_waits_is_noted(void **state) {
     outbox *box = outbox_new(wake_nobody, NULL);
     client c = {.id = 1};
     for (int i = 0; i < CLIENT_QUEUE_MOST; i++)
-        queue(&c, box, PARCEL_PLAIN, 0);
+        queue(&c, box, MESSAGE_PLAIN, 0);
     assert_false(c.too_slow);
-    queue(&c, box, PARCEL_PLAIN, 0);
+    queue(&c, box, MESSAGE_PLAIN, 0);
     assert_true(c.too_slow);
     assert_int_equal(c.count, CLIENT_QUEUE_MOST);
     client_free(&c, box);

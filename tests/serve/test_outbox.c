@@ -7,21 +7,21 @@ static void wake_nobody(void *user) {
     (void)user;
 }
 
-static void put(outbox *box, parcel_topic topic, uint64_t except) {
-    parcel *p = parcel_new(0);
+static void put(outbox *box, message_topic topic, uint64_t except) {
+    outgoing *p = outgoing_new(0);
     assert_non_null(p);
     p->topic = topic;
     p->except = except;
     outbox_put(box, p);
 }
 
-/* The one parcel that waits. */
+/* The one outgoing that waits. */
 static uint64_t except_of_all(outbox *box) {
-    parcel *p = outbox_take(box);
+    outgoing *p = outbox_take(box);
     assert_non_null(p);
     assert_null(p->next);
     uint64_t except = p->except;
-    parcel_release(box, p);
+    outgoing_release(box, p);
     return except;
 }
 
@@ -31,8 +31,8 @@ static void a_state_reaches_whom_the_one_before_was_for(void **state) {
         {1, 2, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}, {0, 0, 0}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         outbox *box = outbox_new(wake_nobody, NULL);
-        put(box, PARCEL_STATE, rows[i][0]);
-        put(box, PARCEL_STATE, rows[i][1]);
+        put(box, MESSAGE_STATE, rows[i][0]);
+        put(box, MESSAGE_STATE, rows[i][1]);
         assert_int_equal(except_of_all(box), rows[i][2]);
         outbox_free(box);
     }
@@ -41,16 +41,16 @@ static void a_state_reaches_whom_the_one_before_was_for(void **state) {
 static void other_topics_replace_nothing(void **state) {
     (void)state;
     outbox *box = outbox_new(wake_nobody, NULL);
-    put(box, PARCEL_STATE, 1);
-    put(box, PARCEL_INFO, 0);
-    put(box, PARCEL_PLAIN, 0);
-    parcel *first = outbox_take(box);
+    put(box, MESSAGE_STATE, 1);
+    put(box, MESSAGE_INFO, 0);
+    put(box, MESSAGE_PLAIN, 0);
+    outgoing *first = outbox_take(box);
     assert_int_equal(first->except, 1);
-    assert_int_equal(first->next->topic, PARCEL_INFO);
-    assert_int_equal(first->next->next->topic, PARCEL_PLAIN);
-    for (parcel *next; first; first = next) {
+    assert_int_equal(first->next->topic, MESSAGE_INFO);
+    assert_int_equal(first->next->next->topic, MESSAGE_PLAIN);
+    for (outgoing *next; first; first = next) {
         next = first->next;
-        parcel_release(box, first);
+        outgoing_release(box, first);
     }
     outbox_free(box);
 }

@@ -121,7 +121,7 @@ static void files_are_switched_and_not_told(void **state) {
     assert_recipe(s, "{\"azimuth\":1}");
     assert_true(set(s, "{\"mask\":true}"));
     assert_recipe(s, "{\"mask\":\"/secret.nrrd\",\"azimuth\":1}");
-    parcel *p = state_parcel(s, 3, 0);
+    outgoing *p = state_message(s, 3, 0);
     assert_non_null(p);
     char *text = calloc(1, p->length + 1);
     memcpy(text, p->bytes, p->length);

@@ -272,7 +272,7 @@ class Page:
                 return ("text", json.loads(whole)) if kind == 1 else \
                     ("picture", whole)
 
-    def hear_text(self, kind, seconds=PATIENCE):
+    def receive_text(self, kind, seconds=PATIENCE):
         """The next text of a kind; None when the page was closed."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
@@ -283,7 +283,7 @@ class Page:
                 return message
         return None
 
-    def hear_picture(self, level, n=None, seconds=60, head=False):
+    def receive_picture(self, level, n=None, seconds=60, head=False):
         """Bytes of the next picture of a quality or a finer one, as a busy machine
         may leave out a draft; or its head.  It is acknowledged."""
         end = time.monotonic() + seconds
@@ -299,7 +299,7 @@ class Page:
                 return message[:32] if head else message[32:]
         return None
 
-    def hear_small(self, pane):
+    def receive_small(self, pane):
         """The next picture of a pane; None when the page was closed."""
         while True:
             what, message = self.hear()
@@ -380,13 +380,13 @@ def run_command(text):
 
 def command_of(page, what, **asked):
     page.say({"t": "ask", "what": what, **asked})
-    return page.hear_text("command")["text"]
+    return page.receive_text("command")["text"]
 
 
 def is_of_command(page, name, n, **recipe):
     """Sets a recipe; the picture at rest must be that of its command."""
     page.say({"t": "set", "n": n, "recipe": recipe})
-    shown, command = page.hear_picture(2, n), command_of(page, "command")
+    shown, command = page.receive_picture(2, n), command_of(page, "command")
     made = run_command(command)
     check(name, shown == made, f"{command} {made[:200]}")
     return shown
@@ -415,7 +415,7 @@ def drag_over(server, link, side, seconds):
     their kinds and sizes."""
     page = Page(server, port=link.port, wants=("jpeg", "png", "webp"))
     page.say({"t": "set", "n": 1, "recipe": {"size": [side, side]}})
-    page.hear_picture(2, 1)
+    page.receive_picture(2, 1)
     page.say({"t": "moving", "on": True})
     stop, kinds, sizes = time.monotonic() + seconds, [], []
 

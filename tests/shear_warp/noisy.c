@@ -31,7 +31,7 @@ static const struct {
              {bands, COUNT(bands)},
              {steep, COUNT(steep)}};
 
-/* Slices so far apart that there are many sheets between them. */
+/* Slices so far apart that there are many resampled slices between them. */
 static void thicken(reference_scene *s, int axis, double times) {
     for (int row = 0; row < 3; row++)
         s->info.matrix[row][axis] *= times;

@@ -120,9 +120,9 @@ float *warp_scene_render(const model_stage *stage, const warp_scene *scene) {
         front = open_volume(stage->context, scene->front);
         look = make_transfer(stage->context, scene->front, front);
     }
-    const snow_inlay layer = {front, look, scene->mixes};
+    const snow_layer layer = {front, look, scene->mixes};
     assert_int_equal(
-        snow_frame_set_inlays(stage->frame, &layer, scene->front != NULL),
+        snow_frame_set_layers(stage->frame, &layer, scene->front != NULL),
         SNOW_STATUS_OK);
     if (snow_frame_render(stage->frame, volume, transfer, &s->view,
                           &s->settings, &image) != SNOW_STATUS_OK)
@@ -132,7 +132,7 @@ float *warp_scene_render(const model_stage *stage, const warp_scene *scene) {
                      s->settings.method);
     float *picture = warp_scene_has_values(scene) ? spread_values(image)
                                                   : model_spread(image);
-    snow_frame_set_inlays(stage->frame, NULL, 0);
+    snow_frame_set_layers(stage->frame, NULL, 0);
     snow_transfer_free(transfer);
     snow_volume_close(volume);
     snow_transfer_free(look);

@@ -15,8 +15,8 @@ typedef enum smooth_field {
 } smooth_field;
 
 /* A scene by method shear-warp in quality high with a head light, of 72x64
- * pixels, whose sizes, field and angles the random numbers give; values of 0 to
- * 100, or -100 to 100.  The opacity rises over all of them. */
+ * pixels, whose sizes, field and angles the random quantized values give;
+ * values of 0 to 100, or -100 to 100.  The opacity rises over all of them. */
 warp_scene smooth_scene(smooth_field field, snow_type type, model_matrix matrix,
                         uint64_t *random);
 

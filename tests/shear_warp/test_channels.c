@@ -12,7 +12,7 @@ static const snow_opacity_point few[] = {
 static float *render_channels(const model_stage *stage,
                               const reference_scene *s, const int order[3]) {
     snow_color_point parts[3][2];
-    snow_inlay channels[3];
+    snow_layer channels[3];
     snow_image *image = NULL;
     for (int n = 0; n < 3; n++) {
         reference_scene part = *s;
@@ -28,15 +28,15 @@ static float *render_channels(const model_stage *stage,
             snow_volume_wrap(stage->context, &s->info, s->voxels, &volume),
             SNOW_STATUS_OK);
         channels[n] =
-            (snow_inlay){volume, model_transfer(stage->context, &part), true};
+            (snow_layer){volume, model_transfer(stage->context, &part), true};
     }
-    assert_int_equal(snow_frame_set_inlays(stage->frame, channels + 1, 2),
+    assert_int_equal(snow_frame_set_layers(stage->frame, channels + 1, 2),
                      SNOW_STATUS_OK);
     assert_int_equal(snow_frame_render(stage->frame, channels[0].volume,
                                        channels[0].transfer, &s->view,
                                        &s->settings, &image),
                      SNOW_STATUS_OK);
-    snow_frame_set_inlays(stage->frame, NULL, 0);
+    snow_frame_set_layers(stage->frame, NULL, 0);
     float *picture = model_spread(image);
     snow_image_free(image);
     for (int n = 0; n < 3; n++) {

@@ -78,8 +78,8 @@ static double fourth_slice(const double at[3]) {
     return at[2] == 4 ? 10 : 0;
 }
 
-/* Of both slabs beside it half is seen, though one of their sheets shows
- * nothing. */
+/* Of both slabs beside it half is seen, though one of their resampled slices
+ * shows nothing. */
 static void a_single_slice_that_is_seen_fills_half_of_both_slabs(void **state) {
     (void)state;
     static const snow_opacity_point step[] = {{5, 0}, {5, 0.5}};

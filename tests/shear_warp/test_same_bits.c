@@ -23,7 +23,7 @@ static warp_scene smoothed(int n) {
     return scene;
 }
 
-/* Numbers of scenes of floats. */
+/* Quantized values of scenes of floats. */
 static int of_floats(int n) {
     return (n - n % 5 + 2) % NOISY_SCENES;
 }

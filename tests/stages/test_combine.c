@@ -298,7 +298,7 @@ static snow_status combine_all_ways(snow_comm *comm, void *user) {
     SNOW_TRY(snow_combiner_new(comm, &combiner));
     for (size_t i = 0; i < COUNT_OF(ways) && status == SNOW_STATUS_OK; i++) {
         node_of_fn *several = nodes[(i + (size_t)turn) % COUNT_OF(nodes)];
-        const uint64_t lent = comm->bytes_lent;
+        const uint64_t lent = comm->bytes_shared;
         comm->ops.node_of = several ? several : on_one;
         for (size_t k = 0; k < COUNT_OF(sizes) && status == SNOW_STATUS_OK;
              k++) {
@@ -314,7 +314,7 @@ static snow_status combine_all_ways(snow_comm *comm, void *user) {
                                   (snow_image_partition)(turn / 2 % 3));
             status = snow_comm_agree_status(comm, status);
         }
-        int64_t all = (int64_t)(comm->bytes_lent - lent);
+        int64_t all = (int64_t)(comm->bytes_shared - lent);
         if (status == SNOW_STATUS_OK)
             status = snow_comm_reduce_ints(comm, &all, 1, SNOW_REDUCE_SUM);
         CHECK(status != SNOW_STATUS_OK || several != alone || all == 0);
@@ -352,8 +352,8 @@ static snow_status combine_size(snow_comm *comm, snow_combiner *combiner,
         combine_once(comm, combiner, &j, &w, 1, SNOW_IMAGE_PARTITION_EVEN));
 }
 
-static snow_status lent_by_all(snow_comm *comm, int64_t *out) {
-    *out = (int64_t)comm->bytes_lent;
+static snow_status shared_by_all(snow_comm *comm, int64_t *out) {
+    *out = (int64_t)comm->bytes_shared;
     return snow_comm_reduce_ints(comm, out, 1, SNOW_REDUCE_SUM);
 }
 
@@ -371,20 +371,20 @@ static snow_status combine_on_nodes(snow_comm *comm, void *user) {
     SNOW_TRY(combine_size(comm, first, 128, 90));
     SNOW_TRY(combine_size(comm, first, 61, 7));
     int64_t lent, again;
-    SNOW_TRY(lent_by_all(comm, &lent));
+    SNOW_TRY(shared_by_all(comm, &lent));
     CHECK(lent > 0);
     SNOW_TRY(snow_combiner_new(comm, &second));
     if (comm->rank == 1)
         snow_combiner_free(first);
     SNOW_TRY(combine_size(comm, second, 200, 150));
-    SNOW_TRY(lent_by_all(comm, &again));
+    SNOW_TRY(shared_by_all(comm, &again));
     CHECK(again == lent);
     if (comm->rank != 1)
         snow_combiner_free(first);
     SNOW_TRY(combine_size(comm, second, 256, 200));
     SNOW_TRY(combine_size(comm, second, 64, 16));
-    SNOW_TRY(lent_by_all(comm, &again));
-    CHECK(again > lent && (comm->rank > 1 || comm->bytes_lent == 0));
+    SNOW_TRY(shared_by_all(comm, &again));
+    CHECK(again > lent && (comm->rank > 1 || comm->bytes_shared == 0));
     snow_combiner_free(second);
     return SNOW_STATUS_OK;
 }
@@ -634,7 +634,7 @@ static void check_plan(snow_combine method, int radix, int rank_order) {
     snow_rounds rounds;
     snow_rounds_choose(&rounds, method, radix, rank_order, 1, 1 << 20, 16);
     assert_true(rounds.count <= SNOW_ROUNDS_MOST);
-    size_t room = snow_rounds_room(&rounds);
+    size_t room = snow_rounds_capacity(&rounds);
     rounds.shares = calloc(room + 1, sizeof *rounds.shares);
     int *table = calloc((size_t)rank_order, sizeof *table);
     int *owners = calloc((size_t)rank_order, sizeof *owners);

@@ -1,6 +1,6 @@
 /* tests/stages/test_data_range.c - the range of a volume's values is found, by
  * many threads and vectors, at its first and its last voxel. */
-#include "classify/values/value_range.h"
+#include "classify/shear_warp/range.h"
 #include "support/support.h"
 #include "volume/volume.h"
 

@@ -125,8 +125,8 @@ snow_status scenario_add_layer(const scenario *p, snow_frame *frame,
     if (grid)
         SNOW_TRY(snow_volume_regrid(
             volume, grid, snow_transfer_has_labels(*look, &(*volume)->info)));
-    const snow_inlay layer = {.volume = *volume, .transfer = *look};
-    return snow_frame_set_inlays(frame, &layer, 1);
+    const snow_layer layer = {.volume = *volume, .transfer = *look};
+    return snow_frame_set_layers(frame, &layer, 1);
 }
 
 snow_status scenario_perform(snow_comm *comm, void *user) {

@@ -30,7 +30,7 @@ typedef struct reading {
     char line[LINE_BYTES];
 } reading;
 
-static snow_status refuse(const reading *r, const char *what) {
+static snow_status fail_boxes(const reading *r, const char *what) {
     return snow_amr_refuse(r->file->context, r->line, what);
 }
 
@@ -43,7 +43,7 @@ static snow_status take_line(reading *r, const char *what, int least, int most,
                              int64_t *out, int *count) {
     SNOW_TRY(next_line(r, what));
     *count = snow_amr_integers(r->line, out, most);
-    return *count < least ? refuse(r, what) : SNOW_STATUS_OK;
+    return *count < least ? fail_boxes(r, what) : SNOW_STATUS_OK;
 }
 
 /* All before the boxes; how many these are. */
@@ -60,17 +60,17 @@ static snow_status take_front(reading *r, int64_t *boxes) {
     SNOW_TRY(take_line(r, "how it was written", 1, 1, values, &count));
     SNOW_TRY(take_line(r, "the number of components", 1, 1, values, &count));
     if (values[0] < r->file->components)
-        return refuse(r, "the number of components of the header");
+        return fail_boxes(r, "the number of components of the header");
     SNOW_TRY(take_line(r, "the ghost cells", 1, 3, values, &count));
     for (int i = 0; i < 3; i++) {
         ghosts[i] = i < r->file->axes ? values[i < count ? i : 0] : 0;
         if (ghosts[i] < 0 || ghosts[i] > 1024)
-            return refuse(r, "a number of ghost cells");
+            return fail_boxes(r, "a number of ghost cells");
     }
     SNOW_TRY(take_line(r, "the number of boxes", 1, 2, values, &count));
     *boxes = values[0];
     return *boxes < 0 || *boxes > AMR_MOST_BOXES
-               ? refuse(r, "the number of boxes")
+               ? fail_boxes(r, "the number of boxes")
                : SNOW_STATUS_OK;
 }
 
@@ -90,7 +90,7 @@ static snow_status take_box(reading *r) {
                              "has values on faces or nodes, which are not "
                              "supported; write those of cells");
         if (low < -INT32_MAX || low > high || high > INT32_MAX)
-            return refuse(r, "a box with cells");
+            return fail_boxes(r, "a box with cells");
         box.first[i] = low - corner[i];
         box.count[i] = high - low + 1;
     }
@@ -105,15 +105,15 @@ static snow_status take_place(reading *r, const char *folder, size_t number) {
     SNOW_TRY(next_line(r, "the places of its boxes"));
     char *name = r->line + sizeof key - 1;
     if (strncmp(r->line, key, sizeof key - 1) != 0)
-        return refuse(r, "a file and an offset");
+        return fail_boxes(r, "a file and an offset");
     name += strspn(name, " \t");
     char *blank = strrchr(name, ' ');
     if (!blank || blank == name || !snow_parse_int64(blank + 1, &offset) ||
         offset < 0)
-        return refuse(r, "a file and an offset");
+        return fail_boxes(r, "a file and an offset");
     const size_t front = strlen(folder), length = (size_t)(blank - name);
     if (front + length >= AMR_NAME_BYTES)
-        return refuse(r, "a shorter name");
+        return fail_boxes(r, "a shorter name");
     SNOW_TRY(SNOW_RESERVE(file->context, file->fabs, number, number + 1));
     SNOW_TRY(SNOW_RESERVE(file->context, file->names, file->names_used,
                           file->names_used + front + length + 1));
@@ -136,7 +136,7 @@ static snow_status take_all(reading *r, const char *folder) {
     SNOW_TRY(take_line(r, "the end of the boxes", 0, 0, values, &count));
     SNOW_TRY(take_line(r, "the number of boxes", 1, 1, values, &count));
     if (values[0] != boxes)
-        return refuse(r, "the number of boxes");
+        return fail_boxes(r, "the number of boxes");
     for (int64_t i = 0; i < boxes; i++)
         SNOW_TRY(take_place(r, folder, first + (size_t)i));
     return SNOW_STATUS_OK;

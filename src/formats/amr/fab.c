@@ -24,7 +24,7 @@ typedef struct fab {
     int64_t components;
 } fab;
 
-static snow_status refuse(snow_source *source, const char *line) {
+static snow_status fail_fab(snow_source *source, const char *line) {
     return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
                      "\"%.120s\" is not the header of values that its Cell_H "
                      "promises here; copy or write the files again",
@@ -96,13 +96,13 @@ static snow_status read_header(const amr_plotfile *file, size_t number,
     snow_source_plan(source, LINE_BYTES);
     SNOW_TRY(snow_source_read_line(source, line, sizeof line, &got));
     if (!got || strncmp(line, "FAB", 3) != 0)
-        return refuse(source, line);
+        return fail_fab(source, line);
     int count = snow_amr_integers(line + 3, numbers, MOST_NUMBERS);
     if (!take_type(numbers, count, &used, out) ||
         count != used + 3 * file->axes + 1 ||
         !take_box(file, file->grid.boxes[number].level, numbers + used, out) ||
         !holds_box(file, number, out))
-        return refuse(source, line);
+        return fail_fab(source, line);
     return SNOW_STATUS_OK;
 }
 
@@ -148,7 +148,7 @@ static snow_status read_cells(const amr_plotfile *file, snow_source *source,
     }
     SNOW_TRY(snow_region_lay_out(context, &options, &info, &region));
     if (!snow_mul_u64(region.all, (uint64_t)file->component, &skip))
-        return refuse(source, "too many components");
+        return fail_fab(source, "too many components");
     uint64_t all = skip;
     if (!snow_add_u64(skip, region.all, &all))
         all = UINT64_MAX;

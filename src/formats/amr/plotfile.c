@@ -47,7 +47,7 @@ typedef struct reading {
     char line[LINE_BYTES];
 } reading;
 
-static snow_status refuse(const reading *r, const char *what) {
+static snow_status fail_plotfile(const reading *r, const char *what) {
     return snow_amr_refuse(r->file.context, r->line, what);
 }
 
@@ -63,7 +63,7 @@ static snow_status take_number(reading *r, const char *what, int64_t least,
     int count = snow_amr_numbers(r->line, numbers, 4);
     if (count < 1 || !(numbers[0] >= (double)least) ||
         !(numbers[0] <= (double)most) || numbers[0] != rint(numbers[0]))
-        return refuse(r, what);
+        return fail_plotfile(r, what);
     *out = (int64_t)numbers[0];
     return SNOW_STATUS_OK;
 }
@@ -72,10 +72,10 @@ static snow_status take_number(reading *r, const char *what, int64_t least,
 static snow_status take_point(reading *r, const char *what, double out[3]) {
     SNOW_TRY(next_line(r, what));
     if (snow_amr_numbers(r->line, out, 3) != r->file.axes)
-        return refuse(r, what);
+        return fail_plotfile(r, what);
     for (int i = 0; i < r->file.axes; i++)
         if (!isfinite(out[i]))
-            return refuse(r, what);
+            return fail_plotfile(r, what);
     return SNOW_STATUS_OK;
 }
 
@@ -185,7 +185,7 @@ static snow_status take_domain(reading *r, int level, const int64_t *ends) {
 }
 
 /* The world, axis by axis; an axis that is missing has the size of x. */
-static snow_status place(reading *r) {
+static snow_status place_in_world(reading *r) {
     amr_grid *grid = &r->file.grid;
     for (int i = 0; i < 3; i++) {
         const bool is_there = i < r->file.axes;
@@ -225,7 +225,7 @@ static snow_status take_front(reading *r) {
     file->axes = (int)number;
     SNOW_TRY(next_line(r, "a time"));
     if (snow_amr_numbers(r->line, &file->time, 1) != 1)
-        return refuse(r, "a time");
+        return fail_plotfile(r, "a time");
     SNOW_TRY(take_number(r, "the number of its finest level", 0,
                          AMR_MOST_LEVELS - 1, &number));
     file->grid.levels = (int)number + 1;
@@ -237,11 +237,11 @@ static snow_status take_front(reading *r) {
     SNOW_TRY(next_line(r, "the domains of its levels"));
     int count = snow_amr_integers(r->line, ends, 9 * AMR_MOST_LEVELS);
     if (count != each * levels)
-        return refuse(r, "the domains of its levels");
+        return fail_plotfile(r, "the domains of its levels");
     for (int l = 0; l < levels; l++)
         SNOW_TRY(take_domain(r, l, ends + each * l));
     SNOW_TRY(snow_amr_check(&r->file.grid));
-    SNOW_TRY(place(r));
+    SNOW_TRY(place_in_world(r));
     return take_rest(r);
 }
 
@@ -253,14 +253,14 @@ static snow_status take_level(reading *r, int level) {
     SNOW_TRY(next_line(r, "its levels"));
     if (snow_amr_numbers(r->line, numbers, 3) < 2 || numbers[0] != level ||
         !(numbers[1] >= 0) || !(numbers[1] <= AMR_MOST_BOXES))
-        return refuse(r, "a level and its number of boxes");
+        return fail_plotfile(r, "a level and its number of boxes");
     SNOW_TRY(next_line(r, "the step of a level"));
     for (int64_t i = 0; i < (int64_t)numbers[1] * r->file.axes; i++)
         SNOW_TRY(next_line(r, "the boxes of a level"));
     SNOW_TRY(next_line(r, "the files of a level"));
     if (strlen(r->line) + 3 > sizeof name ||
         snow_amr_integers(r->line, values, 1) >= 0)
-        return refuse(r, "the name of a level's files");
+        return fail_plotfile(r, "the name of a level's files");
     snprintf(name, sizeof name, "%s_H", r->line);
     return snow_plotfile_read_boxes(&r->file, level, name);
 }

@@ -55,7 +55,8 @@ static snow_status begin_element(void *user, const char *name,
     return SNOW_STATUS_OK;
 }
 
-static snow_status refuse(const vth_file *f, size_t number, const char *what) {
+static snow_status fail_vth(const vth_file *f, size_t number,
+                            const char *what) {
     return snow_fail(f->list.context, SNOW_STATUS_BAD_INPUT,
                      "%s %s; write the file again",
                      snow_index_name(&f->list, number), what);
@@ -71,7 +72,7 @@ static bool is_straight(const snow_volume_info *info) {
     return true;
 }
 
-/* Remarks of the first file hold for all. */
+/* Warnings of the first file hold for all. */
 static snow_status look_at_files(vth_file *f) {
     snow_context *context = f->list.context;
     snow_warning_fn *warning = context->warning;
@@ -85,9 +86,10 @@ static snow_status look_at_files(vth_file *f) {
                                         &whole, info, NULL);
         context->warning = NULL;
         if (status == SNOW_STATUS_OK && !is_straight(info))
-            status = refuse(f, i, "has axes that are turned");
+            status = fail_vth(f, i, "has axes that are turned");
         if (status == SNOW_STATUS_OK && info->type != f->places[0].type)
-            status = refuse(f, i, "has values of another type than the first");
+            status =
+                fail_vth(f, i, "has values of another type than the first");
         if (status == SNOW_STATUS_OK)
             snow_volume_info_measure(info);
     }
@@ -127,9 +129,10 @@ static snow_status find_ratios(vth_file *f) {
                              info->matrix[i][i])
                   : 1;
             if (!f->grid.ratio[l][i])
-                return refuse(f, number,
-                              "has cells that do not divide those of the level "
-                              "below");
+                return fail_vth(
+                    f, number,
+                    "has cells that do not divide those of the level "
+                    "below");
         }
     }
     return SNOW_STATUS_OK;
@@ -169,12 +172,12 @@ static snow_status place_box(vth_file *f, size_t number) {
             f->grid.size[i] * (double)coarse[i] / (double)all[i];
         const double at = (info->matrix[i][3] - f->grid.corner[i]) / step - 0.5;
         if (!(fabs(info->matrix[i][i] - step) <= 1e-3 * step))
-            return refuse(f, number,
-                          "has cells of another size than its level");
+            return fail_vth(f, number,
+                            "has cells of another size than its level");
         if (!(fabs(at) < 0x1p31) || fabs(at - rint(at)) > NEAR)
-            return refuse(f, number,
-                          "lies between the cells of its level (values at "
-                          "points have no levels)");
+            return fail_vth(f, number,
+                            "lies between the cells of its level (values at "
+                            "points have no levels)");
         box.first[i] = (int64_t)rint(at);
         box.count[i] = info->dims[i];
     }

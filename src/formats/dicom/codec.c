@@ -102,8 +102,9 @@ static bool has_scan(const unsigned char *bytes, size_t size, bool ls,
 /* Returns whether components have one depth and are not subsampled, as the
  * caller expects. `siz` is the marker's segment at its length; `room` counts
  * from there. */
-static bool are_alike(const unsigned char *siz, size_t room, uint32_t samples) {
-    if (samples > (room - 38) / 3)
+static bool are_alike(const unsigned char *siz, size_t capacity,
+                      uint32_t samples) {
+    if (samples > (capacity - 38) / 3)
         return false;
     for (uint32_t n = 0; n < samples; n++) {
         const unsigned char *of = siz + 38 + 3 * (size_t)n;

@@ -84,7 +84,7 @@ typedef struct dicom_frame {
     double keys[DICOM_KEYS];
 } dicom_frame;
 
-/* --- groups.c, series.c, spacing.c ------------------------------------ */
+/* --- groups.c, series.c, spacing.c ---------------------------------------- */
 
 /* The order of two numbers: below 0, 0 or above 0. */
 static inline int snow_dicom_order(double a, double b) {
@@ -210,22 +210,23 @@ const dicom_element *snow_dicom_locate(dicom_reader *reader, dicom_place place);
 /* Copies up to `room` bytes of an element's value as stored; returns their
  * number, 0 if there is no element. */
 size_t snow_dicom_bytes(const dicom_reader *reader,
-                        const dicom_element *element, void *out, size_t room);
+                        const dicom_element *element, void *out,
+                        size_t capacity);
 
 static inline size_t snow_dicom_value(dicom_reader *reader, dicom_place place,
-                                      void *out, size_t room) {
+                                      void *out, size_t capacity) {
     return snow_dicom_bytes(reader, snow_dicom_locate(reader, place), out,
-                            room);
+                            capacity);
 }
 
 /* Reads a text of the file itself; text for people, in UTF-8 as far as it
  * fits. */
 void snow_dicom_text(dicom_reader *reader, uint32_t tag, char *out,
-                     size_t room);
+                     size_t capacity);
 void snow_dicom_words(dicom_reader *reader, const dicom_element *element,
-                      char *out, size_t room);
+                      char *out, size_t capacity);
 
-/* --- series.c ------------------------------------------------------- */
+/* --- series.c ------------------------------------------------------------- */
 
 /* Frames of one series that match, in the order of the list. */
 typedef struct dicom_group {
@@ -286,7 +287,7 @@ snow_status snow_dicom_stack(snow_context *context, dicom_frame *frames,
                              size_t count, bool gaps, dicom_stack *out);
 void snow_dicom_stack_free(dicom_stack *stack);
 
-/* --- files.c -------------------------------------------------------- */
+/* --- files.c -------------------------------------------------------------- */
 
 /* True when a file of the list looks like DICOM; slices of other formats by
  * their names are not looked at. */
@@ -370,7 +371,7 @@ bool snow_dicom_unpack_runs(const dicom_image *image,
                             const unsigned char *bytes, size_t size,
                             unsigned char *out);
 
-/* --- voxels.c ------------------------------------------------------- */
+/* --- voxels.c ------------------------------------------------------------- */
 
 /* The source of frames: the given file, or files by their paths. */
 typedef struct dicom_input {

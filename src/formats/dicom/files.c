@@ -196,16 +196,17 @@ static const dicom_image *image_of(const choice *all, size_t index) {
 
 /* One line: "0 CT 512x512x20, 1 MR ...". */
 static void list_series(const choice *all, size_t taken, char *out,
-                        size_t room) {
+                        size_t capacity) {
     size_t used = 0;
-    for (size_t i = 0; i < all->count && used < room; i++) {
+    for (size_t i = 0; i < all->count && used < capacity; i++) {
         const dicom_image *image = image_of(all, i);
         if (i == MOST_LISTED) {
-            snprintf(out + used, room - used, ", and %zu more", all->count - i);
+            snprintf(out + used, capacity - used, ", and %zu more",
+                     all->count - i);
             return;
         }
         used += (size_t)snprintf(
-            out + used, room - used, "%s%zu: %s%s%lldx%lld, %zu image%s%s",
+            out + used, capacity - used, "%s%zu: %s%s%lldx%lld, %zu image%s%s",
             i ? "; " : "", i, image->modality, *image->modality ? " " : "",
             (long long)image->columns, (long long)image->rows,
             all->groups[i].count, all->groups[i].count > 1 ? "s" : "",

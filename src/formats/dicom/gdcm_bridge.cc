@@ -68,7 +68,7 @@ void describe(const gdcm_frame &frame, gdcm::ImageCodec &codec) {
 
 template <class Codec>
 bool decode(gdcm_frame &frame, const gdcm::DataElement &packed, char *out,
-            size_t room) {
+            size_t capacity) {
     Codec codec;
     gdcm::DataElement made;
     describe(frame, codec);
@@ -76,10 +76,10 @@ bool decode(gdcm_frame &frame, const gdcm::DataElement &packed, char *out,
         return false;
     const gdcm::ByteValue *value = made.GetByteValue();
     const gdcm::PixelFormat &format = codec.GetPixelFormat();
-    if (!value || static_cast<uint32_t>(value->GetLength()) != room ||
+    if (!value || static_cast<uint32_t>(value->GetLength()) != capacity ||
         format.GetBitsAllocated() != frame.allocated)
         return false;
-    std::memcpy(out, value->GetPointer(), room);
+    std::memcpy(out, value->GetPointer(), capacity);
     const bool is_signed = format.GetPixelRepresentation() != 0;
     if (frame.allocated != 8 || format.GetBitsStored() != 8 ||
         is_signed != frame.is_signed) {
@@ -95,7 +95,7 @@ bool decode(gdcm_frame &frame, const gdcm::DataElement &packed, char *out,
 } // namespace
 
 extern "C" bool snow_gdcm_unpack(gdcm_frame *frame, const void *packed,
-                                 size_t size, void *out, size_t room) {
+                                 size_t size, void *out, size_t capacity) {
     try {
         be_silent();
         gdcm::TransferSyntax syntax(
@@ -103,11 +103,11 @@ extern "C" bool snow_gdcm_unpack(gdcm_frame *frame, const void *packed,
         gdcm::DataElement element = wrap(packed, size);
         char *to = static_cast<char *>(out);
         if (gdcm::JPEGLSCodec().CanDecode(syntax))
-            return decode<gdcm::JPEGLSCodec>(*frame, element, to, room);
+            return decode<gdcm::JPEGLSCodec>(*frame, element, to, capacity);
         if (gdcm::JPEG2000Codec().CanDecode(syntax))
-            return decode<gdcm::JPEG2000Codec>(*frame, element, to, room);
+            return decode<gdcm::JPEG2000Codec>(*frame, element, to, capacity);
         return gdcm::JPEGCodec().CanDecode(syntax) &&
-               decode<gdcm::JPEGCodec>(*frame, element, to, room);
+               decode<gdcm::JPEGCodec>(*frame, element, to, capacity);
     } catch (...) {
         return false;
     }

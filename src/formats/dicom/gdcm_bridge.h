@@ -30,11 +30,11 @@ typedef struct gdcm_frame {
  * of *frame in which the words may differ from the header.  Returns false if
  * the codec fails, or its words differ in number or size. */
 bool snow_gdcm_unpack(gdcm_frame *frame, const void *packed, size_t size,
-                      void *out, size_t room);
+                      void *out, size_t capacity);
 
 /* The type of this function, which may be in a module. */
 typedef bool gdcm_codec(gdcm_frame *frame, const void *packed, size_t size,
-                        void *out, size_t room);
+                        void *out, size_t capacity);
 
 #ifdef __cplusplus
 }

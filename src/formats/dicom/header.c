@@ -97,9 +97,9 @@ static int numbers_of(const dicom_reader *reader, const dicom_element *element,
         text[length] = 0;
         return length ? parse_numbers(text, out, most) : 0;
     }
-    size_t size = sizes[kind], room = (size_t)most * size;
-    room = room < sizeof text ? room : sizeof text;
-    int count = (int)(snow_dicom_bytes(reader, element, text, room) / size);
+    size_t size = sizes[kind], capacity = (size_t)most * size;
+    capacity = capacity < sizeof text ? capacity : sizeof text;
+    int count = (int)(snow_dicom_bytes(reader, element, text, capacity) / size);
     for (int i = 0; i < count; i++) {
         out[i] = binary((const unsigned char *)text + (size_t)i * size, size,
                         reader->big_endian);
@@ -143,9 +143,11 @@ static double number(dicom_reader *reader, uint32_t tag, storage kind,
                : otherwise;
 }
 
-static void words(dicom_reader *reader, uint32_t tag, char *out, size_t room) {
-    snow_dicom_words(
-        reader, snow_dicom_locate(reader, (dicom_place){0, 0, tag}), out, room);
+static void words(dicom_reader *reader, uint32_t tag, char *out,
+                  size_t capacity) {
+    snow_dicom_words(reader,
+                     snow_dicom_locate(reader, (dicom_place){0, 0, tag}), out,
+                     capacity);
 }
 
 /* --- the file ------------------------------------------------------------- */

@@ -27,7 +27,7 @@ static uint16_t word_of(const dicom_reader *reader, const unsigned char *at) {
                                          : at[1] << 8 | at[0]);
 }
 
-static snow_status refuse(dicom_reader *reader, const char *what) {
+static snow_status fail_palette(dicom_reader *reader, const char *what) {
     return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
                      "its values are palette colours, %s; convert it to grey",
                      what);
@@ -38,14 +38,14 @@ static snow_status read_shape(dicom_reader *reader, const dicom_image *image,
     unsigned char bytes[6];
     const dicom_place place = {0, 0, DESCRIPTOR + color};
     if (snow_dicom_value(reader, place, bytes, 6) < 6)
-        return refuse(reader, "and the palette is missing");
+        return fail_palette(reader, "and the palette is missing");
     uint16_t count = word_of(reader, bytes), first = word_of(reader, bytes + 2);
     *out = (palette_shape){.first = image->is_signed ? (int16_t)first : first,
                            .count = count ? count : 65536,
                            .bits = word_of(reader, bytes + 4)};
     if (out->bits == 8 || out->bits == 16)
         return SNOW_STATUS_OK;
-    return refuse(reader, "with entries of other than 8 or 16 bits");
+    return fail_palette(reader, "with entries of other than 8 or 16 bits");
 }
 
 /* Adds `share` of a table's entries, scaled to 0 to 1.  Tables of 8 bits are
@@ -60,9 +60,10 @@ static snow_status add_table(dicom_reader *reader, uint32_t color,
     unsigned char packed[4];
     const dicom_place segments = {0, 0, SEGMENTED + color};
     if (got == 0 && snow_dicom_value(reader, segments, packed, 4))
-        return refuse(reader, "stored in segments, which are not supported");
+        return fail_palette(reader,
+                            "stored in segments, which are not supported");
     if (!words && (shape->bits == 16 || got < count))
-        return refuse(reader, "of which some are missing");
+        return fail_palette(reader, "of which some are missing");
     double most = shape->bits == 16 ? 65535 : 255;
     for (size_t i = 0; i < count; i++) {
         /* bytes that were written as words have their byte order */
@@ -94,7 +95,7 @@ snow_status snow_dicom_palette_read(dicom_reader *reader,
     for (int color = 1; color < 3; color++)
         if (all[color].first != all[0].first ||
             all[color].count != all[0].count || all[color].bits != all[0].bits)
-            return refuse(reader, "whose tables differ in length");
+            return fail_palette(reader, "whose tables differ in length");
     float *levels =
         snow_allocate_array(reader->context, all[0].count, sizeof *levels);
     unsigned char *bytes =

@@ -144,8 +144,8 @@ static snow_status check_frames(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-static void remark(snow_context *context, const dicom_stack *stack,
-                   bool spacing_given) {
+static void warn_about_segments(snow_context *context, const dicom_stack *stack,
+                                bool spacing_given) {
     const dicom_frame *first = stack->frames;
     if (!first->measured && !spacing_given)
         snow_notify(context, "the size of a pixel is missing or invalid; 1 mm "
@@ -298,7 +298,7 @@ static snow_status describe(snow_context *context, const dicom_stack *stack,
     memcpy(info->matrix, stack->matrix, sizeof info->matrix);
     memcpy(info->modality, image->modality, sizeof info->modality);
     memcpy(info->description, image->description, sizeof info->description);
-    remark(context, stack, snow_spacing_given(options));
+    warn_about_segments(context, stack, snow_spacing_given(options));
     SNOW_TRY(snow_volume_pick_channel(context, options, 1, info, &channel));
     return snow_volume_pick_time(context, "volume", options, info);
 }

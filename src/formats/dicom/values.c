@@ -65,17 +65,18 @@ const dicom_element *snow_dicom_locate(dicom_reader *r, dicom_place place) {
 }
 
 size_t snow_dicom_bytes(const dicom_reader *reader,
-                        const dicom_element *element, void *out, size_t room) {
+                        const dicom_element *element, void *out,
+                        size_t capacity) {
     if (!element)
         return 0;
-    size_t size = element->length < room ? element->length : room;
+    size_t size = element->length < capacity ? element->length : capacity;
     return snow_seekable_read(reader->store, element->at, out, size);
 }
 
 /* Text without blanks around it. */
 static void text_of(const dicom_reader *reader, const dicom_element *element,
-                    char *out, size_t room) {
-    size_t length = snow_dicom_bytes(reader, element, out, room - 1);
+                    char *out, size_t capacity) {
+    size_t length = snow_dicom_bytes(reader, element, out, capacity - 1);
     out[length] = 0;
     length = strlen(out);
     while (length && (out[length - 1] == ' ' || out[length - 1] == '\n'))
@@ -86,22 +87,22 @@ static void text_of(const dicom_reader *reader, const dicom_element *element,
 }
 
 void snow_dicom_text(dicom_reader *reader, uint32_t tag, char *out,
-                     size_t room) {
+                     size_t capacity) {
     text_of(reader, snow_dicom_locate(reader, (dicom_place){0, 0, tag}), out,
-            room);
+            capacity);
 }
 
 /* Text for people in UTF-8 if the file declares UTF-8 or Latin 1, as most do;
  * otherwise '?' replaces characters outside ASCII. */
 void snow_dicom_words(dicom_reader *reader, const dicom_element *element,
-                      char *out, size_t room) {
+                      char *out, size_t capacity) {
     char set[65], raw[128];
     size_t used = 0;
     snow_dicom_text(reader, 0x00080005, set, sizeof set);
     text_of(reader, element, raw, sizeof raw);
     bool utf8 = !strcmp(set, "ISO_IR 192"), latin = !strcmp(set, "ISO_IR 100");
     const char *at = raw;
-    for (; *at && used + 3 < room; at++) {
+    for (; *at && used + 3 < capacity; at++) {
         unsigned char c = (unsigned char)*at;
         if (c >= 0x80 && latin) {
             out[used++] = (char)(0xc0 | c >> 6);

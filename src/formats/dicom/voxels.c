@@ -337,7 +337,7 @@ static double height(const dicom_stack *stack, const dicom_frame *frame) {
 }
 
 /* Names each gap by the slices around it. */
-static void remark_missing(snow_context *context, const dicom_stack *stack) {
+static void warn_missing(snow_context *context, const dicom_stack *stack) {
     size_t named = 0;
     for (size_t z = 0; stack->missing && z < stack->slice_count; z++) {
         const dicom_slice *slice = &stack->slices[z];
@@ -365,8 +365,7 @@ static void remark_missing(snow_context *context, const dicom_stack *stack) {
 }
 
 /* Names each slice whose file is cut; refuses a volume without others. */
-static snow_status remark_lost(snow_context *context,
-                               const dicom_stack *stack) {
+static snow_status warn_lost(snow_context *context, const dicom_stack *stack) {
     size_t lost = 0, named = 0, count = stack->places * stack->times;
     for (size_t i = 0; i < count; i++)
         lost += stack->frames[i].lost;
@@ -390,8 +389,8 @@ static snow_status remark_lost(snow_context *context,
 }
 
 /* Gives all warnings about a volume, each once. */
-static void remark(snow_context *context, const dicom_stack *stack,
-                   bool spacing_given) {
+static void warn_about_volume(snow_context *context, const dicom_stack *stack,
+                              bool spacing_given) {
     const dicom_frame *first = stack->frames;
     bool unscaled = false;
     for (size_t i = 0; i < stack->places * stack->times; i++)
@@ -405,7 +404,7 @@ static void remark(snow_context *context, const dicom_stack *stack,
                     "the distance of the slices is missing; %g mm is used, "
                     "--spacing sets another",
                     stack->gap);
-    remark_missing(context, stack);
+    warn_missing(context, stack);
     if (stack->slices && !stack->missing)
         snow_notify(context,
                     "its %zu slices lie %g to %g mm apart; they are resampled "
@@ -485,8 +484,8 @@ static snow_status describe_stack(const dicom_input *input,
     memcpy(info->description, image->description, sizeof info->description);
     memcpy(info->window, first[stack->places / 2 * stack->times].window,
            sizeof info->window);
-    SNOW_TRY(remark_lost(context, stack));
-    remark(context, stack, snow_spacing_given(options));
+    SNOW_TRY(warn_lost(context, stack));
+    warn_about_volume(context, stack, snow_spacing_given(options));
     snow_channels_begin(info, image->samples, false);
     if (image->samples == 3 && strcmp(image->photometric, "RGB") == 0)
         snow_channels_are_colors(info);

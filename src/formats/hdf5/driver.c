@@ -26,8 +26,8 @@ struct hdf5_file {
     snow_context *context;
     snow_seekable *bytes;
     hid_t driver, access, id;
-    H5E_auto2_t heard; /* the error handler to restore */
-    void *heard_data;
+    H5E_auto2_t handler; /* the error handler to restore */
+    void *handler_data;
 };
 
 /* The record of an open file; it begins with libhdf5's own. */
@@ -177,7 +177,7 @@ snow_status snow_hdf5_open(snow_source *source, hdf5_file **out) {
         return SNOW_STATUS_NO_MEMORY;
     file->context = context;
     file->driver = file->access = file->id = H5I_INVALID_HID;
-    H5Eget_auto2(H5E_DEFAULT, &file->heard, &file->heard_data);
+    H5Eget_auto2(H5E_DEFAULT, &file->handler, &file->handler_data);
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
     snow_status status = snow_seekable_open(source, &file->bytes);
     if (status == SNOW_STATUS_OK)
@@ -200,7 +200,7 @@ void snow_hdf5_close(hdf5_file *file) {
     if (file->driver >= 0)
         H5FDunregister(file->driver);
     H5Eclear2(H5E_DEFAULT);
-    H5Eset_auto2(H5E_DEFAULT, file->heard, file->heard_data);
+    H5Eset_auto2(H5E_DEFAULT, file->handler, file->handler_data);
     snow_seekable_close(file->bytes);
     snow_release(file->context, file);
 }

@@ -69,10 +69,10 @@ static bool describe_dataset(hid_t id, hdf5_set *out) {
 }
 
 /* "4x3x2", x first. */
-static void spell_sizes(const hdf5_set *set, char *text, size_t room) {
+static void spell_sizes(const hdf5_set *set, char *text, size_t capacity) {
     size_t used = 0;
-    for (int i = set->axes - 1; i >= 0 && used < room; i--)
-        used += (size_t)snprintf(text + used, room - used, "%s%llu",
+    for (int i = set->axes - 1; i >= 0 && used < capacity; i--)
+        used += (size_t)snprintf(text + used, capacity - used, "%s%llu",
                                  i == set->axes - 1 ? "" : "x",
                                  (unsigned long long)set->sizes[i]);
 }

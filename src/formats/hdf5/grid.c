@@ -42,8 +42,8 @@ int snow_hdf5_numbers(hid_t object, const char *name, int most, double *out) {
 }
 
 static void read_text(const hdf5_file *file, hid_t object, const char *name,
-                      char *out, size_t room) {
-    snow_hdf5_text(file, object, name, 0, out, room);
+                      char *out, size_t capacity) {
+    snow_hdf5_text(file, object, name, 0, out, capacity);
 }
 
 static bool all_above_0(const double *values) {

@@ -55,7 +55,7 @@ bool snow_hdf5_is_usual(const hdf5_file *file);
 /* Reads text `index` of an attribute, of fixed or variable length; "" if it is
  * missing or damaged.  Returns how many texts the attribute has. */
 size_t snow_hdf5_text(const hdf5_file *file, hid_t object, const char *name,
-                      size_t index, char *out, size_t room);
+                      size_t index, char *out, size_t capacity);
 
 /* "what (libhdf5: why); the file is damaged ..." */
 snow_status snow_hdf5_fail(snow_context *context, const char *what);

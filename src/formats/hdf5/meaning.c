@@ -16,10 +16,10 @@
 
 /* Reads the first of some attributes that is there. */
 static void read_any(const hdf5_file *file, hid_t object,
-                     const char *const *names, char *out, size_t room) {
+                     const char *const *names, char *out, size_t capacity) {
     *out = 0;
     for (; *names && !*out; names++)
-        snow_hdf5_text(file, object, *names, 0, out, room);
+        snow_hdf5_text(file, object, *names, 0, out, capacity);
 }
 
 /* Opens the group `levels` above the data set; below 0: there is none. */
@@ -37,18 +37,18 @@ static hid_t open_above(const hdf5_file *file, const hdf5_set *set,
 }
 
 /* "kg m^-3" of powers of the seven base units (openPMD, unitDimension). */
-static void spell_unit(const double powers[7], char *out, size_t room) {
+static void spell_unit(const double powers[7], char *out, size_t capacity) {
     static const char *const units[] = {"m", "kg", "s", "A", "K", "mol", "cd"};
     size_t used = 0;
     *out = 0;
     for (int i = 0; i < 14; i++) { /* what is divided by comes last */
         const double power = powers[i % 7];
-        if (power == 0 || (power < 0) != (i >= 7) || used + 12 > room)
+        if (power == 0 || (power < 0) != (i >= 7) || used + 12 > capacity)
             continue;
-        used += (size_t)snprintf(out + used, room - used, "%s%s",
+        used += (size_t)snprintf(out + used, capacity - used, "%s%s",
                                  used ? " " : "", units[i % 7]);
         if (power != 1)
-            used += (size_t)snprintf(out + used, room - used, "^%g", power);
+            used += (size_t)snprintf(out + used, capacity - used, "^%g", power);
     }
 }
 

@@ -54,7 +54,7 @@ static uint64_t number(const unsigned char *bytes, int size) {
     return value;
 }
 
-static bool take(const search *s, uint64_t at, void *out, size_t size) {
+static bool copy_bytes(const search *s, uint64_t at, void *out, size_t size) {
     return snow_seekable_read(s->bytes, at, out, size) == size;
 }
 
@@ -68,7 +68,7 @@ static void add_block(search *s, uint64_t at, uint64_t size) {
 /* The first block of messages, of either version of object headers. */
 static bool open_header(search *s, uint64_t at) {
     unsigned char head[32];
-    if (!take(s, at, head, 16))
+    if (!copy_bytes(s, at, head, 16))
         return false;
     if (memcmp(head, "OHDR", 4) != 0) {
         if (head[0] == 1)
@@ -81,7 +81,7 @@ static bool open_header(search *s, uint64_t at) {
         at + 6 + (flags & 0x20 ? 16 : 0) + (flags & 0x10 ? 4 : 0);
     s->version2 = true;
     s->ordered = flags & 4;
-    if (!take(s, size_at, head, (size_t)wide))
+    if (!copy_bytes(s, size_at, head, (size_t)wide))
         return false;
     add_block(s, size_at + (uint64_t)wide, number(head, wide));
     return s->count == 1;
@@ -94,17 +94,17 @@ static bool read_object(const search *s, const unsigned char *reference) {
     unsigned char head[16];
     uint64_t at, end;
     if (!snow_add_u64(s->base, number(reference + 4, 8), &at) ||
-        !take(s, at, head, 16) || memcmp(head, "GCOL", 4) != 0 ||
+        !copy_bytes(s, at, head, 16) || memcmp(head, "GCOL", 4) != 0 ||
         !snow_add_u64(at, number(head + 8, 8), &end))
         return false;
     at += 16;
-    for (int i = 0; i < MOST_OBJECTS && at < end && take(s, at, head, 16);
+    for (int i = 0; i < MOST_OBJECTS && at < end && copy_bytes(s, at, head, 16);
          i++) {
         const uint64_t size = number(head + 8, 8);
         at += 16;
         if (number(head, 2) == index && index) {
             size_t bytes = length < s->room ? (size_t)length : s->room - 1;
-            if (length > size || !take(s, at, s->out, bytes))
+            if (length > size || !copy_bytes(s, at, s->out, bytes))
                 return false;
             s->out[bytes] = 0;
             return true;
@@ -146,14 +146,14 @@ static bool read_attribute(const search *s, size_t size) {
 static bool read_message(search *s, uint64_t *at) {
     unsigned char head[8];
     const size_t bytes = s->version2 ? (s->ordered ? 6 : 4) : 8;
-    if (!take(s, *at, head, bytes))
+    if (!copy_bytes(s, *at, head, bytes))
         return false;
     const uint64_t kind = number(head, s->version2 ? 1 : 2);
     const size_t size = (size_t)number(head + (s->version2 ? 1 : 2), 2);
     const uint64_t data = *at + bytes;
     *at = data + size;
     if ((kind != MESSAGE_ATTRIBUTE && kind != MESSAGE_CONTINUATION) ||
-        size > MOST_MESSAGE || !take(s, data, s->message, size))
+        size > MOST_MESSAGE || !copy_bytes(s, data, s->message, size))
         return false;
     if (kind == MESSAGE_ATTRIBUTE)
         return read_attribute(s, size);
@@ -192,19 +192,19 @@ static void read_variable(const hdf5_file *file, hid_t object, const char *name,
 
 /* Fixed length: an array is read whole. */
 static void read_fixed(hid_t attribute, hid_t type, size_t index, size_t count,
-                       char *out, size_t room) {
+                       char *out, size_t capacity) {
     char text[4096];
     const size_t size = H5Tget_size(type);
     if (!size || size > sizeof text / count ||
         H5Aread(attribute, type, text) < 0)
         return;
-    size_t length = size < room ? size : room - 1;
+    size_t length = size < capacity ? size : capacity - 1;
     memcpy(out, text + index * size, length);
     out[length] = 0;
 }
 
 size_t snow_hdf5_text(const hdf5_file *file, hid_t object, const char *name,
-                      size_t index, char *out, size_t room) {
+                      size_t index, char *out, size_t capacity) {
     *out = 0;
     if (H5Aexists(object, name) <= 0)
         return 0;
@@ -217,9 +217,9 @@ size_t snow_hdf5_text(const hdf5_file *file, hid_t object, const char *name,
     if (H5Tget_class(type) != H5T_STRING || index >= count)
         count = 0;
     else if (H5Tis_variable_str(type) > 0)
-        read_variable(file, object, name, index, out, room);
+        read_variable(file, object, name, index, out, capacity);
     else
-        read_fixed(attribute, type, index, count, out, room);
+        read_fixed(attribute, type, index, count, out, capacity);
     H5Sclose(space);
     H5Tclose(type);
     H5Aclose(attribute);

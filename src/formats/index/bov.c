@@ -88,13 +88,13 @@ static snow_type type_named(const char *value) {
     return SNOW_TYPE_NONE;
 }
 
-static bool take_text(const char *value, char *out, size_t room) {
+static bool take_text(const char *value, char *out, size_t capacity) {
     size_t length = strlen(value);
     if (length > 1 && *value == '"' && value[length - 1] == '"') {
         value++;
         length -= 2;
     }
-    if (!length || length >= room)
+    if (!length || length >= capacity)
         return false;
     memcpy(out, value, length);
     out[length] = 0;
@@ -136,8 +136,8 @@ static bool take_line(const char *line, bov_header *h) {
     return true;
 }
 
-/* A remark begins with # at the beginning or behind a blank. */
-static void cut_remark(char *line) {
+/* A warning begins with # at the beginning or behind a blank. */
+static void cut_comment(char *line) {
     for (char *at = line; *at; at++)
         if (*at == '#' && (at == line || strchr(" \t", at[-1]))) {
             *at = 0;
@@ -155,7 +155,7 @@ static snow_status read_header(snow_source *source, bov_header *h) {
         SNOW_TRY(snow_source_read_line(source, line, sizeof line, &got));
         if (!got)
             break;
-        cut_remark(line);
+        cut_comment(line);
         for (size_t end = strlen(line); end && strchr(" \t", line[end - 1]);
              end--)
             line[end - 1] = 0;
@@ -219,7 +219,7 @@ static snow_status read_file(snow_source *source, const bov_header *h,
 
 /* The name of a brick, which has one number: %04d. */
 static bool brick_name(const char *pattern, int64_t number, char *out,
-                       size_t room) {
+                       size_t capacity) {
     const char *at = strchr(pattern, '%');
     int width = 0;
     if (!at || strchr(at + 1, '%'))
@@ -229,9 +229,9 @@ static bool brick_name(const char *pattern, int64_t number, char *out,
         width = 10 * width + (*end - '0');
     if (*end != 'd')
         return false;
-    int length = snprintf(out, room, "%.*s%0*lld%s", (int)(at - pattern),
+    int length = snprintf(out, capacity, "%.*s%0*lld%s", (int)(at - pattern),
                           pattern, width, (long long)number, end + 1);
-    return length > 0 && (size_t)length < room;
+    return length > 0 && (size_t)length < capacity;
 }
 
 /* Reads a brick, if the box has any of it. */

@@ -26,7 +26,8 @@ typedef struct mosaic {
     int64_t first[3]; /* the whole's first voxel, counted as those of parts */
 } mosaic;
 
-static snow_status refuse(const mosaic *m, size_t index, const char *what) {
+static snow_status fail_mosaic(const mosaic *m, size_t index,
+                               const char *what) {
     return snow_fail(m->list->context, SNOW_STATUS_BAD_INPUT,
                      "%s has %s than %s, so they are no parts of one grid; "
                      "open one of them",
@@ -76,15 +77,15 @@ static snow_status look(const mosaic *m, size_t index,
     if (!index)
         *grid = info;
     if (info.type != grid->type)
-        return refuse(m, index, "voxels of another type");
+        return fail_mosaic(m, index, "voxels of another type");
     if (!is_parallel(grid, &info))
-        return refuse(m, index, "voxels of another size");
+        return fail_mosaic(m, index, "voxels of another size");
     if (!find_place(grid, &info, &m->parts[index]))
-        return refuse(m, index, "voxels between others");
+        return fail_mosaic(m, index, "voxels between others");
     return SNOW_STATUS_OK;
 }
 
-/* Remarks of the first file hold for all. */
+/* Warnings of the first file hold for all. */
 static snow_status look_at_all(const mosaic *m,
                                const snow_volume_options *options,
                                snow_volume_info *grid) {

@@ -7,7 +7,7 @@
  * of pieces, a piece. */
 #define MOST_DEPTH 4
 
-/* The whole of a named volume, without the remarks that reading makes too. */
+/* The whole of a named volume, without the warnings that reading makes too. */
 static snow_status look_at_named(snow_source *source, const char *path,
                                  const snow_volume_options *options, bool quiet,
                                  snow_volume_info *info) {

@@ -115,7 +115,7 @@ static snow_status place_rectilinear(xdmf_file *f, const xdmf_grid *from,
     return SNOW_STATUS_OK;
 }
 
-static snow_status place(xdmf_file *f, vtk_grid *grid) {
+static snow_status place_grid(xdmf_file *f, vtk_grid *grid) {
     const xdmf_grid *from = &f->kept.grid;
     *grid = snow_vtk_grid_default();
     memcpy(grid->points, from->points, sizeof grid->points);
@@ -214,7 +214,7 @@ static snow_status read_grid(xdmf_file *f, vtk_grid *grid,
     vtk_array array = {.cells = f->kept.cells, .channels = 1};
     xdmf_values v = {.file = f};
     snow_volume_info series = *info;
-    SNOW_TRY(place(f, grid));
+    SNOW_TRY(place_grid(f, grid));
     SNOW_TRY(look_at_values(f, grid, &array));
     memcpy(array.name, f->kept.name, sizeof f->kept.name);
     SNOW_TRY(snow_vtk_describe(f->context, grid, &array, f->options, info));

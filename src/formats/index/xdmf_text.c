@@ -13,8 +13,8 @@ bool snow_xdmf_is(const char *text, const char *word) {
     return text && !*text && !*word;
 }
 
-static void copy_text(const char *from, char *to, size_t room) {
-    snprintf(to, room, "%s", from ? from : "");
+static void copy_text(const char *from, char *to, size_t capacity) {
+    snprintf(to, capacity, "%s", from ? from : "");
 }
 
 /* Reads up to three sizes, the slowest first, into x, y, z. */

@@ -36,8 +36,8 @@ static void stop(parse *p, snow_status status) {
     XML_StopParser(p->parser, XML_FALSE);
 }
 
-static void XMLCALL begin(void *user, const char *name,
-                          const char **attributes) {
+static void XMLCALL begin_element(void *user, const char *name,
+                                  const char **attributes) {
     parse *p = user;
     if (p->status == SNOW_STATUS_OK)
         stop(p, p->handlers->begin(p->user, name, attributes));
@@ -109,7 +109,7 @@ snow_status snow_index_parse(snow_source *source, const index_xml *handlers,
         return snow_fail(p.context, SNOW_STATUS_NO_MEMORY,
                          "out of memory to read XML");
     XML_SetUserData(p.parser, &p);
-    XML_SetElementHandler(p.parser, begin, end);
+    XML_SetElementHandler(p.parser, begin_element, end);
     XML_SetCharacterDataHandler(p.parser, text);
     XML_SetEntityDeclHandler(p.parser, declare_entity);
     snow_status status = feed(source, &p);

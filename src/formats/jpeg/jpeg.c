@@ -38,7 +38,7 @@ static void leave_unless(j_decompress_ptr info, snow_status status) {
 }
 
 /* The source gives what libjpeg is done with. */
-static void take(j_decompress_ptr info, size_t bytes) {
+static void skip_bytes(j_decompress_ptr info, size_t bytes) {
     jpeg_reader *reader = info->client_data;
     reader->copied = reader->bytes.bytes_in_buffer = 0;
     leave_unless(info, snow_source_skip(reader->source, bytes, "the pixels"));
@@ -47,7 +47,7 @@ static void take(j_decompress_ptr info, size_t bytes) {
 static boolean fill(j_decompress_ptr info) {
     jpeg_reader *reader = info->client_data;
     size_t got;
-    take(info, reader->copied);
+    skip_bytes(info, reader->copied);
     leave_unless(info, snow_source_peek(reader->source, reader->copy,
                                         sizeof reader->copy, &got));
     if (!got)
@@ -63,7 +63,7 @@ static void skip(j_decompress_ptr info, long count) {
     if (count < 1)
         return;
     if ((size_t)count > left) {
-        take(info, reader->copied - left + (size_t)count);
+        skip_bytes(info, reader->copied - left + (size_t)count);
         return;
     }
     reader->bytes.next_input_byte += count;
@@ -222,7 +222,7 @@ static snow_status decode(jpeg_reader *reader, int64_t channel,
         }
     }
     jpeg_finish_decompress(info);
-    take(info, reader->copied - reader->bytes.bytes_in_buffer);
+    skip_bytes(info, reader->copied - reader->bytes.bytes_in_buffer);
     return snow_source_finish(reader->source);
 }
 

@@ -169,7 +169,7 @@ static snow_status read_list(const reading *r, snow_volume **out) {
  * one %d, %i or %u with a width is supported: a name in a file must not become
  * a printf format.  Returns false for any other pattern. */
 static bool name_of(const char *pattern, int64_t number, char *name,
-                    size_t room) {
+                    size_t capacity) {
     const char *mark = strchr(pattern, '%');
     const char *at = mark ? mark + 1 : NULL;
     if (!mark || strchr(at, '%'))
@@ -180,10 +180,10 @@ static bool name_of(const char *pattern, int64_t number, char *name,
         width = 10 * width + (*at - '0');
     if (width > 32 || !strchr("diu", *at ? *at : 'x'))
         return false;
-    int used = snprintf(name, room, zeros ? "%.*s%0*lld%s" : "%.*s%*lld%s",
+    int used = snprintf(name, capacity, zeros ? "%.*s%0*lld%s" : "%.*s%*lld%s",
                         (int)(mark - pattern), pattern, width,
                         (long long)number, at + 1);
-    return used > 0 && (size_t)used < room;
+    return used > 0 && (size_t)used < capacity;
 }
 
 /* "pattern first last step"; by default first is 1, last follows from the

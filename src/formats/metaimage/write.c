@@ -11,15 +11,15 @@
 #include <string.h>
 
 /* Writes "key = numbers" and the end of the line. */
-static int print_line(char *text, size_t room, const char *key,
+static int print_line(char *text, size_t capacity, const char *key,
                       const double *values, int count) {
-    int used = snprintf(text, room, "%s = ", key);
-    used += snow_print_numbers(text + used, room - (size_t)used, values, count,
-                               " ");
-    return used + snprintf(text + used, room - (size_t)used, "\n");
+    int used = snprintf(text, capacity, "%s = ", key);
+    used += snow_print_numbers(text + used, capacity - (size_t)used, values,
+                               count, " ");
+    return used + snprintf(text + used, capacity - (size_t)used, "\n");
 }
 
-static int print_geometry(char *text, size_t room,
+static int print_geometry(char *text, size_t capacity,
                           const snow_volume_info *info) {
     const double(*m)[4] = info->matrix;
     const double origin[3] = {-m[0][3], -m[1][3], m[2][3]};
@@ -27,26 +27,27 @@ static int print_geometry(char *text, size_t room,
     for (int k = 0; k < 9; k++)
         directions[k] =
             (k % 3 < 2 ? -1 : 1) * m[k % 3][k / 3] / info->spacing[k / 3];
-    int used = print_line(text, room, "TransformMatrix", directions, 9);
-    used += print_line(text + used, room - (size_t)used, "Offset", origin, 3);
-    used += print_line(text + used, room - (size_t)used, "ElementSpacing",
+    int used = print_line(text, capacity, "TransformMatrix", directions, 9);
+    used +=
+        print_line(text + used, capacity - (size_t)used, "Offset", origin, 3);
+    used += print_line(text + used, capacity - (size_t)used, "ElementSpacing",
                        info->spacing, 3);
     /* The units that MetaImage can name; others count as mm. */
     if (strcmp(info->unit, "um") == 0 || strcmp(info->unit, "cm") == 0)
-        used += snprintf(text + used, room - (size_t)used,
+        used += snprintf(text + used, capacity - (size_t)used,
                          "DistanceUnits = %s\n", info->unit);
     /* Without this key the directions would make it a patient. */
     if (!info->medical)
-        used += snprintf(text + used, room - (size_t)used,
+        used += snprintf(text + used, capacity - (size_t)used,
                          "AnatomicalOrientation = ???\n");
     return used;
 }
 
-static int print_scaling(char *text, size_t room,
+static int print_scaling(char *text, size_t capacity,
                          const snow_volume_info *info) {
-    int used = print_line(text, room, "ElementToIntensityFunctionSlope",
+    int used = print_line(text, capacity, "ElementToIntensityFunctionSlope",
                           &info->slope, 1);
-    return used + print_line(text + used, room - (size_t)used,
+    return used + print_line(text + used, capacity - (size_t)used,
                              "ElementToIntensityFunctionOffset",
                              &info->intercept, 1);
 }

@@ -35,7 +35,7 @@ typedef struct cursor {
     snow_status status;
 } cursor;
 
-static void refuse(cursor *c, const char *reason) {
+static void fail_header(cursor *c, const char *reason) {
     if (c->status == SNOW_STATUS_OK)
         c->status = snow_fail(c->context, SNOW_STATUS_BAD_INPUT, "%s", reason);
 }
@@ -45,7 +45,7 @@ static void copy_bytes(cursor *c, void *out, size_t size) {
     if (c->status != SNOW_STATUS_OK)
         return;
     if (snow_seekable_read(c->bytes, c->at, out, size) < size)
-        refuse(c, "its NetCDF header is truncated; get the file again");
+        fail_header(c, "its NetCDF header is truncated; get the file again");
     c->at += size;
 }
 
@@ -62,7 +62,7 @@ static uint64_t take_number(cursor *c, int size) {
 static int64_t take_count(cursor *c) {
     uint64_t value = take_number(c, c->wide);
     if (value > (uint64_t)INT64_MAX || (c->wide == 4 && value > INT32_MAX)) {
-        refuse(c, "its NetCDF header has a count below 0; it is damaged");
+        fail_header(c, "its NetCDF header has a count below 0; it is damaged");
         return 0;
     }
     return c->status == SNOW_STATUS_OK ? (int64_t)value : 0;
@@ -73,15 +73,17 @@ static void skip(cursor *c, uint64_t size) {
     uint64_t whole;
     if (!snow_add_u64(size, 3, &whole) ||
         !snow_add_u64(c->at, whole / 4 * 4, &c->at))
-        refuse(c, "its NetCDF header is longer than any file; it is damaged");
+        fail_header(c,
+                    "its NetCDF header is longer than any file; it is damaged");
 }
 
 static void take_name(cursor *c, char name[NETCDF_NAME_BYTES]) {
     int64_t length = take_count(c);
     *name = 0;
     if (length >= NETCDF_NAME_BYTES) {
-        refuse(c, "its NetCDF header has a name of more than 256 letters; it "
-                  "is damaged");
+        fail_header(c,
+                    "its NetCDF header has a name of more than 256 letters; it "
+                    "is damaged");
         return;
     }
     uint64_t begin = c->at;
@@ -98,10 +100,11 @@ static int64_t take_list(cursor *c, unsigned tag, uint64_t least) {
     int64_t count = take_count(c);
     uint64_t size = snow_seekable_size(c->bytes);
     if (c->status == SNOW_STATUS_OK && found != tag && (found || count))
-        refuse(c, "its NetCDF header is invalid; it is damaged");
+        fail_header(c, "its NetCDF header is invalid; it is damaged");
     if (c->status == SNOW_STATUS_OK && (uint64_t)count > size / least)
-        refuse(c, "its NetCDF header lists more than the file can hold; it is "
-                  "damaged");
+        fail_header(
+            c, "its NetCDF header lists more than the file can hold; it is "
+               "damaged");
     return c->status == SNOW_STATUS_OK ? count : 0;
 }
 
@@ -147,8 +150,8 @@ static double value_of(cursor *c, uint64_t type) {
 }
 
 /* Copies a text to a room, of which a longer one fills all. */
-static void keep_text(const char *from, char *to, size_t room) {
-    size_t length = strlen(from) < room ? strlen(from) : room - 1;
+static void keep_text(const char *from, char *to, size_t capacity) {
+    size_t length = strlen(from) < capacity ? strlen(from) : capacity - 1;
     memcpy(to, from, length);
     to[length] = 0;
 }
@@ -207,7 +210,8 @@ static void take_attributes(cursor *c, netcdf_header *header,
         uint64_t type = take_number(c, 4), bytes;
         int64_t values = take_count(c);
         if (c->status == SNOW_STATUS_OK && !type_bytes(type))
-            refuse(c, "its NetCDF header has an unknown type; it is damaged");
+            fail_header(c,
+                        "its NetCDF header has an unknown type; it is damaged");
         if (c->status != SNOW_STATUS_OK)
             return;
         if (v)
@@ -248,8 +252,9 @@ static void take_axes(cursor *c, const netcdf_header *header,
     for (int64_t i = 0; i < v->axes && c->status == SNOW_STATUS_OK; i++) {
         int64_t index = take_count(c);
         if (c->status == SNOW_STATUS_OK && index >= header->dimension_count)
-            refuse(c, "a variable has a dimension that does not exist; the "
-                      "file is damaged");
+            fail_header(c,
+                        "a variable has a dimension that does not exist; the "
+                        "file is damaged");
         if (c->status != SNOW_STATUS_OK)
             return;
         const netcdf_dimension *d = &header->dimensions[index];
@@ -258,11 +263,13 @@ static void take_axes(cursor *c, const netcdf_header *header,
         if (d->records && i == 0)
             v->records = true;
         else if (d->records)
-            refuse(c, "a variable has the records not as its first dimension; "
-                      "the file is damaged");
+            fail_header(
+                c, "a variable has the records not as its first dimension; "
+                   "the file is damaged");
         else if (!snow_mul_u64(v->bytes, (uint64_t)d->size, &v->bytes) ||
                  v->bytes > (uint64_t)INT64_MAX / 8)
-            refuse(c, "a variable is too large for any file; it is damaged");
+            fail_header(c,
+                        "a variable is too large for any file; it is damaged");
     }
 }
 
@@ -281,7 +288,7 @@ static void take_variable(cursor *c, netcdf_header *header,
                   : v->type == SNOW_TYPE_INT32 ? SNOW_TYPE_UINT32
                                                : v->type;
     if (c->status == SNOW_STATUS_OK && !type_bytes(type))
-        refuse(c, "its NetCDF header has an unknown type; it is damaged");
+        fail_header(c, "its NetCDF header has an unknown type; it is damaged");
     v->bytes *= type_bytes(type);
     take_count(c); /* the size, which is wrong in some files */
     v->begin = take_number(c, header->version == 1 ? 4 : 8);
@@ -319,7 +326,7 @@ static void measure_records(cursor *c, netcdf_header *header) {
             first = v->begin;
         if (!snow_add_u64(sum, (v->bytes + 3) / 4 * 4, &sum) ||
             sum > (uint64_t)INT64_MAX)
-            refuse(c, "a record is too large for any file; it is damaged");
+            fail_header(c, "a record is too large for any file; it is damaged");
     }
     header->record_bytes = count == 1 ? only->bytes : sum;
     if (header->records >= 0 || c->status != SNOW_STATUS_OK)
@@ -340,14 +347,15 @@ snow_status snow_netcdf_read_header(snow_context *context, snow_seekable *bytes,
     out->version = magic[3];
     if (memcmp(magic, "CDF", 3) != 0 ||
         (out->version != 1 && out->version != 2 && out->version != 5))
-        refuse(&c, "is not a NetCDF file of version 1, 2 or 5, although its "
-                   "name says so; get it again");
+        fail_header(&c,
+                    "is not a NetCDF file of version 1, 2 or 5, although its "
+                    "name says so; get it again");
     if (out->version == 5)
         c.wide = 8;
     uint64_t records = take_number(&c, c.wide);
     bool streaming = records == (c.wide == 4 ? UINT32_MAX : UINT64_MAX);
     if (!streaming && records > (uint64_t)INT64_MAX)
-        refuse(&c, "its NetCDF header has a count below 0; it is damaged");
+        fail_header(&c, "its NetCDF header has a count below 0; it is damaged");
     out->records = streaming ? -1 : (int64_t)records;
     take_dimensions(&c, out);
     take_attributes(&c, out, NULL);

@@ -36,26 +36,26 @@ static bool is_volume(const netcdf_header *header, const netcdf_variable *v,
 
 /* Appends the name of a variable and its sizes to the list. */
 static void note(const netcdf_header *header, const netcdf_variable *v,
-                 char *list, size_t room) {
+                 char *list, size_t capacity) {
     size_t used = strlen(list);
     char sizes[128] = "";
     for (int64_t i = 0, at = 0; i < v->axes && at < 100; i++)
         at += snprintf(sizes + at, sizeof sizes - (size_t)at, "%s%lld",
                        i ? "x" : "", (long long)size_of(header, v, i));
-    if (used + strlen(v->name) + strlen(sizes) + 8 < room)
-        snprintf(list + used, room - used, "%s%s (%s)", used ? ", " : "",
+    if (used + strlen(v->name) + strlen(sizes) + 8 < capacity)
+        snprintf(list + used, capacity - used, "%s%s (%s)", used ? ", " : "",
                  v->name, sizes);
 }
 
 /* The only variable with three axes or, if there is none, with two. */
 static snow_status find_only(const netcdf_header *header, char *list,
-                             size_t room, const netcdf_variable **out) {
+                             size_t capacity, const netcdf_variable **out) {
     int found = 0;
     for (int axes = 3; axes >= 2 && !found; axes--)
         for (int64_t i = 0; i < header->variable_count; i++)
             if (is_volume(header, &header->variables[i], axes)) {
                 *out = &header->variables[i];
-                note(header, *out, list, room);
+                note(header, *out, list, capacity);
                 found++;
             }
     if (found == 1)

@@ -132,8 +132,8 @@ static snow_status open_other(const snow_source *source, const char *wanted,
                               snow_source **out) {
     snow_context *context = snow_source_context(source);
     const char *own = snow_path_name(snow_source_name(source));
-    size_t room = strlen(own) + 4;
-    char *name = snow_allocate_clear(context, room);
+    size_t capacity = strlen(own) + 4;
+    char *name = snow_allocate_clear(context, capacity);
     if (!name)
         return SNOW_STATUS_NO_MEMORY;
     memcpy(name, own, strlen(own));

@@ -20,10 +20,10 @@ static char letter_of(snow_type type) {
 
 /* Padded with blanks, so that the values are aligned for mapping. */
 static size_t print_header(const snow_volume_info *info, char *text,
-                           size_t room) {
+                           size_t capacity) {
     size_t size = snow_type_size(info->type);
     int used = snprintf(
-        text + 10, room - 10,
+        text + 10, capacity - 10,
         "{'descr': '%c%c%zu', 'fortran_order': False, 'shape': (%lld, %lld, "
         "%lld), }",
         size > 1 ? '<' : '|', letter_of(info->type), size,

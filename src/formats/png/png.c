@@ -54,7 +54,7 @@ static void leave(png_reader *reader, snow_status status) {
     longjmp(reader->jump, 1);
 }
 
-static void hear_error(png_structp png, png_const_charp text) {
+static void note_error(png_structp png, png_const_charp text) {
     png_reader *reader = png_get_error_ptr(png);
     if (reader->status == SNOW_STATUS_OK)
         snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
@@ -62,7 +62,7 @@ static void hear_error(png_structp png, png_const_charp text) {
     leave(reader, SNOW_STATUS_BAD_INPUT);
 }
 
-static void hear_warning(png_structp png, png_const_charp text) {
+static void note_warning(png_structp png, png_const_charp text) {
     (void)png;
     (void)text;
 }
@@ -171,7 +171,7 @@ static snow_status run_reader(png_reader *reader, const png_shape *shape,
     if (setjmp(reader->jump))
         return reader->status;
     reader->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, reader,
-                                           hear_error, hear_warning, reader,
+                                           note_error, note_warning, reader,
                                            allocate_block, release_block);
     if (reader->png)
         reader->info = png_create_info_struct(reader->png);

@@ -206,7 +206,7 @@ static snow_status read_raw(snow_source *source,
 }
 
 /* No probe: any bytes can be raw data, so that it is never found, only left. */
-/* A name alone cannot bring the voxels back: the remark gives the options that
+/* A name alone cannot bring the voxels back: the warning gives the options that
  * do.  A scaling is refused, since dropped it would change every value. */
 static snow_status write_raw(const snow_volume *volume, const char *path,
                              snow_writer *writer) {

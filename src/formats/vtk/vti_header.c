@@ -56,7 +56,7 @@ static void stop(vti_text *text, snow_status status) {
     XML_StopParser(text->parser, XML_FALSE);
 }
 
-static void refuse(vti_text *text, const char *reason) {
+static void fail_header(vti_text *text, const char *reason) {
     stop(text, snow_fail(text->context, SNOW_STATUS_BAD_INPUT, "%s", reason));
 }
 
@@ -120,11 +120,11 @@ static void begin_file(vti_text *text, const char **attributes) {
     text->file = true;
     snow_vti_file_form(text->header, attributes);
     if (!type || strcmp(type, wanted) != 0)
-        refuse(text, snow_vtk_other(type));
+        fail_header(text, snow_vtk_other(type));
     else if (text->header->packed &&
              strcmp(compressor, "vtkZLibDataCompressor") != 0)
-        refuse(text, "its data are not compressed by zlib; write it again "
-                     "with vtkZLibDataCompressor or without compression");
+        fail_header(text, "its data are not compressed by zlib; write it again "
+                          "with vtkZLibDataCompressor or without compression");
 }
 
 static void begin_grid(vti_text *text, const char **attributes) {
@@ -138,8 +138,9 @@ static void begin_grid(vti_text *text, const char **attributes) {
         !take_reals(snow_vti_attribute(attributes, "Spacing"), 3,
                     grid->spacing) ||
         !take_reals(snow_vti_attribute(attributes, "Direction"), 9, direction))
-        refuse(text, "its WholeExtent, Origin, Spacing or Direction is empty "
-                     "or not a row of numbers; write the file again");
+        fail_header(text,
+                    "its WholeExtent, Origin, Spacing or Direction is empty "
+                    "or not a row of numbers; write the file again");
     for (int i = 0; i < 9; i++)
         grid->direction[i / 3][i % 3] = direction[i];
 }
@@ -156,8 +157,9 @@ static void begin_piece(vti_text *text, const char **attributes) {
                  !memcmp(points, grid->points, sizeof points);
     text->piece = true;
     if (!whole)
-        refuse(text, "has no piece that spans the WholeExtent; write the whole "
-                     "image to one file");
+        fail_header(text,
+                    "has no piece that spans the WholeExtent; write the whole "
+                    "image to one file");
 }
 
 static void begin_section(vti_text *text, const char **attributes,
@@ -246,8 +248,9 @@ static void begin_array(vti_text *text, const char **attributes) {
         return;
     if (!snow_vti_keep_array(text->header, attributes, name, text->cells)) {
         if (choice == WANTED)
-            refuse(text, "its array has an unknown type, format, offset or "
-                         "number of components; choose another with --dataset");
+            fail_header(text,
+                        "its array has an unknown type, format, offset or "
+                        "number of components; choose another with --dataset");
         return;
     }
     /* Data in the element can be read only now, although better arrays may
@@ -265,7 +268,7 @@ static void XMLCALL begin_element(void *user, const char *name,
     if (text->status != SNOW_STATUS_OK || text->done)
         return;
     if (!text->file && strcmp(name, "VTKFile") != 0)
-        refuse(text, "is XML, but not a VTK file; give a .vti file");
+        fail_header(text, "is XML, but not a VTK file; give a .vti file");
     else if (!strcmp(name, "VTKFile"))
         begin_file(text, attributes);
     else if (!strcmp(name, "ImageData") || !strcmp(name, "RectilinearGrid"))
@@ -283,9 +286,9 @@ static void XMLCALL begin_element(void *user, const char *name,
         text->header->raw = encoding && !strcmp(encoding, "raw");
         if (!text->header->raw &&
             (!encoding || strcmp(encoding, "base64") != 0))
-            refuse(text,
-                   "its appended data are neither raw nor base64; write the "
-                   "file again");
+            fail_header(
+                text, "its appended data are neither raw nor base64; write the "
+                      "file again");
         else if (text->choice)
             stop(text, SNOW_STATUS_OK);
     }
@@ -307,8 +310,8 @@ static void XMLCALL begin_doctype(void *user, const char *name,
     (void)system;
     (void)public;
     (void)inner;
-    refuse(user, "has a document type declaration, which VTK files do not "
-                 "have; remove it");
+    fail_header(user, "has a document type declaration, which VTK files do not "
+                      "have; remove it");
 }
 
 static snow_status fail_syntax(const vti_text *text) {

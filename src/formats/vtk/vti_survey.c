@@ -170,11 +170,11 @@ static snow_status read_array(snow_source *source, snow_seekable *bytes,
                          "%s are not in the file; write it again", what);
     if (count > CF_MOST_COORDINATES)
         count = CF_MOST_COORDINATES + 1; /* refused where they are read */
-    size_t room = (size_t)count * NUMBER_BYTES + BEFORE_BYTES;
-    char *block = snow_allocate(context, room);
+    size_t capacity = (size_t)count * NUMBER_BYTES + BEFORE_BYTES;
+    char *block = snow_allocate(context, capacity);
     if (!block)
         return SNOW_STATUS_NO_MEMORY;
-    size_t got = snow_seekable_read(bytes, at, block, room);
+    size_t got = snow_seekable_read(bytes, at, block, capacity);
     snow_source *numbers;
     snow_status status = snow_source_open_memory(
         context, snow_source_name(source), block, got, &numbers);

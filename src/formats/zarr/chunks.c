@@ -243,7 +243,7 @@ static snow_status read_chunk(filler *f, const zarr_file *file, uint64_t first,
     SNOW_TRY(snow_zarr_expect(f->context, file->name, &array->coding, f->packed,
                               (size_t)size, f->bytes));
     SNOW_TRY(SNOW_RESERVE(f->context, f->values, 0,
-                          snow_zarr_room(&array->coding, f->bytes)));
+                          snow_zarr_capacity(&array->coding, f->bytes)));
     SNOW_TRY(snow_zarr_unpack(f->context, file->name, array, f->packed,
                               (size_t)size, f->values, f->bytes));
     if (array->big_endian != snow_machine_big_endian())

@@ -55,7 +55,7 @@ static snow_status check_sums(snow_context *context, const char *name,
     return SNOW_STATUS_OK;
 }
 
-uint64_t snow_zarr_room(const zarr_coding *coding, uint64_t bytes) {
+uint64_t snow_zarr_capacity(const zarr_coding *coding, uint64_t bytes) {
     return bytes + (uint64_t)coding->inner_sums * SUM_BYTES;
 }
 
@@ -157,7 +157,7 @@ snow_status snow_zarr_expect(snow_context *context, const char *name,
                              const zarr_coding *coding,
                              const unsigned char *packed, size_t size,
                              uint64_t bytes) {
-    uint64_t inner = snow_zarr_room(coding, bytes);
+    uint64_t inner = snow_zarr_capacity(coding, bytes);
     /* The size without the checksums after the compressed bytes; they are
      * verified at decompression. */
     size_t sums = (size_t)coding->outer_sums * SUM_BYTES;
@@ -245,7 +245,7 @@ snow_status snow_zarr_unpack(snow_context *context, const char *name,
                              const unsigned char *packed, size_t size,
                              unsigned char *out, uint64_t bytes) {
     const zarr_coding *coding = &array->coding;
-    uint64_t inner = snow_zarr_room(coding, bytes);
+    uint64_t inner = snow_zarr_capacity(coding, bytes);
     size_t left = (size_t)inner;
     SNOW_TRY(check_sums(context, name, packed, &size, coding->outer_sums));
     SNOW_TRY(unpack(context, name, coding, packed, size, out, inner));

@@ -157,7 +157,7 @@ static void note_chunks(const zarr_box *box, const snow_region *region) {
 
 /* "zarr 2, level 1 of 3 (1), axes z y x, chunks 64x64x64, blosc lz4": as much
  * as fits. */
-static void spell(const zarr_found *found, char *out, size_t room) {
+static void spell(const zarr_found *found, char *out, size_t capacity) {
     const zarr_array *array = &found->array;
     char text[1024];
     int used = snprintf(text, sizeof text, "version %d", array->version);
@@ -181,7 +181,7 @@ static void spell(const zarr_found *found, char *out, size_t room) {
                          i ? "x" : lists[k].what, (long long)lists[k].sizes[i]);
     snprintf(text + used, sizeof text - (size_t)used, ", %s",
              *array->coding.text ? array->coding.text : "not compressed");
-    snprintf(out, room, "%.*s", (int)room - 1, text);
+    snprintf(out, capacity, "%.*s", (int)capacity - 1, text);
 }
 
 static snow_status read_voxels(const zarr_box *box,

@@ -204,7 +204,7 @@ snow_status snow_zarr_place(const zarr_store *store, const zarr_found *found,
 /* --- unpack.c ------------------------------------------------------------- */
 
 /* Bytes of memory that decompression needs for a chunk of this size. */
-uint64_t snow_zarr_room(const zarr_coding *coding, uint64_t bytes);
+uint64_t snow_zarr_capacity(const zarr_coding *coding, uint64_t bytes);
 
 /* Checks whether compressed bytes can be a chunk, before memory is allocated
  * for it.  `name` is that of the file. */

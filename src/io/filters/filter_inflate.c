@@ -33,14 +33,14 @@ uint32_t snow_inflate_sum(const inflate_filter *inflater,
                           : adler32(inflater->check, bytes, (uInt)count));
 }
 
-/* The last reader of a relay leaves the remark to the first one. */
-static void remark_foreign(inflate_filter *inflater) {
+/* The last reader of a relay leaves the warning to the first one. */
+static void warn_foreign(inflate_filter *inflater) {
     snow_relay *relay = inflater->filter.relay;
     if (relay)
         relay->foreign = true;
     else
-        snow_relay_remark(inflater->filter.context, inflater->filter.name, true,
-                          0);
+        snow_relay_warn(inflater->filter.context, inflater->filter.name, true,
+                        0);
 }
 
 /* After the end of a member: begins the next one, or ends the data. */
@@ -58,7 +58,7 @@ static snow_status next_member(inflate_filter *inflater) {
     }
     inflater->ended = true;
     if (left)
-        remark_foreign(inflater);
+        warn_foreign(inflater);
     return SNOW_STATUS_OK;
 }
 

@@ -267,16 +267,17 @@ static snow_status darken(const snow_picture *p, occlusion *o) {
     const size_t count = (size_t)(o->dims[0] * o->dims[1] * o->dims[2]);
     if (!p->image || !p->depth)
         return SNOW_STATUS_OK;
-    float *room =
-        snow_allocate(context, (3 * count + 2 * pixels) * sizeof *room);
-    if (!room)
+    float *scratch =
+        snow_allocate(context, (3 * count + 2 * pixels) * sizeof *scratch);
+    if (!scratch)
         return SNOW_STATUS_NO_MEMORY;
     o->depth = p->depth;
-    o->open = room + 3 * count;
+    o->open = scratch + 3 * count;
     snow_depth_place(o->job, o->of);
-    snow_status status = snow_clear(context, room, 2 * count * sizeof *room);
+    snow_status status =
+        snow_clear(context, scratch, 2 * count * sizeof *scratch);
     if (status == SNOW_STATUS_OK) {
-        make_fields(o, room, room + count, room + 2 * count);
+        make_fields(o, scratch, scratch + count, scratch + 2 * count);
         status = snow_parallel(context, o->job->settings.threads, height,
                                find_open_line, o);
     }
@@ -285,7 +286,7 @@ static snow_status darken(const snow_picture *p, occlusion *o) {
                                  height, voxel_pixels(o));
     if (status == SNOW_STATUS_OK)
         darken_pixels(o, p->image);
-    snow_release(context, room);
+    snow_release(context, scratch);
     return status;
 }
 

@@ -4,7 +4,7 @@
 
 #include "base/vec3.h"
 #include "classify/count_interesting.h"
-#include "classify/values/value_range.h"
+#include "classify/shear_warp/range.h"
 #include "render/modes/depth.h"
 #include "volume/clip_planes.h"
 
@@ -148,7 +148,7 @@ static void cast_line(void *of, int64_t y, int worker) {
     const snow_job *job = pass->job;
     size_t width = (size_t)job->view->width, line = (size_t)y * width;
     size_t channels = (size_t)job->channels;
-    snow_raycast_eye eye, layers[SNOW_INLAYS_MOST];
+    snow_raycast_eye eye, layers[SNOW_LAYERS_MOST];
     memset(&eye, 0, sizeof eye);
     for (int n = 0; n < pass->layer_count; n++)
         memset(&layers[n], 0, sizeof *layers);
@@ -290,7 +290,7 @@ static snow_status prepare(const snow_picture *p, const snow_job *job,
 }
 
 static snow_status cast_rays(snow_picture *p, snow_job *job) {
-    snow_raycast_pass pass, layers[SNOW_INLAYS_MOST];
+    snow_raycast_pass pass, layers[SNOW_LAYERS_MOST];
     double mark = snow_seconds();
     SNOW_TRY(prepare(p, job, &pass, layers));
     snow_monitor_next(job->context->monitor, SNOW_STAGE_RENDER, 0, 1);

@@ -131,8 +131,9 @@ static int find_next(const snow_value_params *params, double from[3][3],
 }
 
 /* Begins the encoding along an axis. */
-static bool begin(snow_value_path *path, const snow_value_params *params,
-                  const snow_value_order *order, snow_value_encoding *kept) {
+static bool begin_axis(snow_value_path *path, const snow_value_params *params,
+                       const snow_value_order *order,
+                       snow_value_encoding *kept) {
     forget(kept);
     kept->store.context = path->context;
     kept->interesting = -1;
@@ -145,8 +146,8 @@ static bool begin(snow_value_path *path, const snow_value_params *params,
 }
 
 /* Makes some bands more of it, so that it is whole when it is needed. */
-static bool go_on(const snow_value_order *order, int pictures,
-                  snow_value_encoding *kept) {
+static bool encode_some_bands(const snow_value_order *order, int pictures,
+                              snow_value_encoding *kept) {
     int64_t left = snow_value_store_left(&kept->store);
     return !left || snow_value_store_go_on(&kept->store, &order->params,
                                            (left + pictures - 1) / pictures) ==
@@ -180,7 +181,8 @@ void snow_value_prepare_axis(snow_value_path *path,
     snow_value_encoding *kept = &axes->kept[next.slice_axis];
     /* The first time it asks for memory, which takes long enough. */
     const bool first = !snow_value_fits_key(path, kept, &ahead, generation);
-    if ((first && !begin(path, &ahead, &order, kept)) ||
-        ((!first || pictures == 1) && !go_on(&order, pictures, kept)))
+    if ((first && !begin_axis(path, &ahead, &order, kept)) ||
+        ((!first || pictures == 1) &&
+         !encode_some_bands(&order, pictures, kept)))
         forget(kept);
 }

@@ -99,21 +99,23 @@ static snow_status place_fade(const snow_value_params *params,
     return SNOW_STATUS_OK;
 }
 
-/* --- sheets and memory ---------------------------------------------------- */
+/* --- resampled slices and memory ------------------------------------------ */
 
-static snow_status place_sheets(snow_value_path *path,
-                                const snow_value_params *params) {
+static snow_status place_resampled(snow_value_path *path,
+                                   const snow_value_params *params) {
     const snow_value_lattice *l = &path->lattice;
-    size_t sheets = (size_t)l->sheet_count;
-    SNOW_TRY(SNOW_RESERVE(path->context, path->sheets, 0, sheets));
+    size_t resampled_slices = (size_t)l->resampled_count;
+    SNOW_TRY(SNOW_RESERVE(path->context, path->resampled_slices, 0,
+                          resampled_slices));
     snow_value_place *places = NULL;
     if (!l->perspective) {
-        size_t count = sheets * (size_t)l->phases;
+        size_t count = resampled_slices * (size_t)l->phases;
         SNOW_TRY(SNOW_RESERVE(path->context, path->places, 0, count));
         places = path->places;
     }
-    snow_value_lattice_sheets(l, params->placement, path->sheets, places);
-    snow_value_move_sheets(path, params);
+    snow_value_lattice_slices(l, params->placement, path->resampled_slices,
+                              places);
+    snow_value_move_slices(path, params);
     return l->perspective ? snow_value_place_rays(path, params)
                           : SNOW_STATUS_OK;
 }
@@ -161,10 +163,10 @@ static void describe(snow_value_drawing *job) {
                            .light = shaded ? &path->light : NULL,
                            .fade = fades ? &path->fade : NULL,
                            .surface = surface ? &path->surface : NULL,
-                           .sheets = path->sheets,
+                           .resampled_slices = path->resampled_slices,
                            .places = path->places,
                            .rays = l->perspective ? &path->rays : NULL,
-                           .sheet_count = l->sheet_count,
+                           .resampled_count = l->resampled_count,
                            .phases = l->phases,
                            .channels = params->channels,
                            .clips = (const double(*)[4])path->clips,
@@ -255,7 +257,7 @@ static void store_phase(const snow_value_drawing *job, const void *planes,
     }
 }
 
-/* The same numbers from there. */
+/* The same ones from there. */
 static void load_phase(const snow_value_drawing *job, void *planes, int phase,
                        int64_t column, int64_t row) {
     const int channels = job->splat.channels;
@@ -298,31 +300,31 @@ static void draw_tile(void *of, int64_t item, int worker) {
     int64_t row = (int64_t)y * SNOW_VALUE_ROWS;
     if (!is_wanted(job, item, column, row))
         return;
-    void *room = job->path->scratch + (size_t)worker * job->scratch_bytes;
+    void *scratch = job->path->scratch + (size_t)worker * job->scratch_bytes;
     bool within = column < l->voxels[0] && row < l->voxels[1];
     snow_value_splat splat = job->splat;
     const bool behind = job->params.resumes && image->drawn[item];
     splat.resumes = behind && !job->path->op->combine;
     if (splat.resumes)
-        memset(room, 0, snow_value_planes_bytes(&splat));
+        memset(scratch, 0, snow_value_planes_bytes(&splat));
     for (int phase = 0; splat.resumes && phase < l->phases; phase++)
-        load_phase(job, room, phase, column, row);
+        load_phase(job, scratch, phase, column, row);
     bool drawn =
         within &&
         (job->path->layer_count
-             ? snow_value_draw_stack(job, NULL, splat.resumes, x, y, room)
-             : job->tile(&splat, x, y, room));
+             ? snow_value_draw_stack(job, NULL, splat.resumes, x, y, scratch)
+             : job->tile(&splat, x, y, scratch));
     if (!drawn && (!image->drawn[item] || behind))
         return;
     image->drawn[item] = drawn;
     for (int phase = 0; phase < l->phases; phase++)
-        store_phase(job, drawn ? room : NULL, phase, column, row,
+        store_phase(job, drawn ? scratch : NULL, phase, column, row,
                     behind && !splat.resumes);
 }
 
 /* The same in a layer of a deterministic picture. */
 static void draw_layer(const snow_value_drawing *job, int layer, int64_t item,
-                       void *room, float *pixels) {
+                       void *scratch, float *pixels) {
     snow_value_image *image = job->path->image;
     const snow_value_lattice *l = &image->lattice;
     int x = (int)(item % image->grid.tiles[0]);
@@ -334,7 +336,7 @@ static void draw_layer(const snow_value_drawing *job, int layer, int64_t item,
         image->drawn + (size_t)layer * snow_value_tiles(image) + item;
     bool drawn =
         column < l->voxels[0] && row < l->voxels[1] &&
-        snow_value_node_tile(job, image->nodes[layer], x, y, room, pixels);
+        snow_value_node_tile(job, image->nodes[layer], x, y, scratch, pixels);
     if (!drawn && !*flag)
         return;
     if (!drawn)
@@ -353,23 +355,23 @@ static void draw_layer(const snow_value_drawing *job, int layer, int64_t item,
 
 static void draw_layers(void *of, int64_t item, int worker) {
     const snow_value_drawing *job = of;
-    char *room = job->path->scratch + (size_t)worker * job->scratch_bytes;
+    char *scratch = job->path->scratch + (size_t)worker * job->scratch_bytes;
     float *pixels =
-        (float *)(void *)(room + snow_value_splat_bytes(&job->splat) +
+        (float *)(void *)(scratch + snow_value_splat_bytes(&job->splat) +
                           snow_value_stack_bytes(job->path, &job->splat));
     for (int n = 0; n < job->path->image->grid.layers; n++)
-        draw_layer(job, n, item, room, pixels);
+        draw_layer(job, n, item, scratch, pixels);
 }
 
 /* --- a picture ------------------------------------------------------------ */
 
-/* Sheets and light. */
+/* Resampled slices and light. */
 snow_status snow_value_place_drawing(snow_value_path *path,
                                      const snow_value_params *params) {
     const snow_settings *settings = params->settings;
     snow_value_drawing *job = &path->drawing;
     *job = (snow_value_drawing){.path = path, .params = *params};
-    SNOW_TRY(place_sheets(path, params));
+    SNOW_TRY(place_resampled(path, params));
     SNOW_TRY(place_clips(path, params));
     if (settings->shade == SNOW_SHADE_PHONG)
         place_light(params, &path->light);

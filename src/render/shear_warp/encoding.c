@@ -7,14 +7,14 @@
 
 #include <math.h>
 
-/* Returns whether the runs that were left out are invisible still. */
+/* Returns whether the intervals that were left out are invisible still. */
 static bool shows_no_more(const snow_value_table *table,
                           const snow_value_store *store) {
-    for (int n = 0; n < store->run_count; n++) {
-        bool hidden = store->runs[n].first > store->runs[n].last;
-        for (int m = 0; m < table->run_count; m++)
-            hidden |= table->runs[m].first <= store->runs[n].first &&
-                      table->runs[m].last >= store->runs[n].last;
+    for (int n = 0; n < store->interval_count; n++) {
+        bool hidden = store->intervals[n].first > store->intervals[n].last;
+        for (int m = 0; m < table->interval_count; m++)
+            hidden |= table->intervals[m].first <= store->intervals[n].first &&
+                      table->intervals[m].last >= store->intervals[n].last;
         if (!hidden)
             return false;
     }
@@ -27,27 +27,28 @@ static bool is_cubic(const snow_value_path *path,
     return params->settings->kernel == SNOW_KERNEL_BSPLINE && !path->has_labels;
 }
 
-/* Numbers by which ends of runs seldom move. */
+/* Quantized values by which ends of intervals seldom move. */
 #define NODE_OFTEN 32
 
 /* Nodes that are placed by a look move with the length of rays, and with them
- * the ends of invisible runs: shorter ones serve all views. */
-static int store_runs(const snow_value_path *path, bool spare,
-                      snow_value_run runs[SNOW_VALUE_RUNS]) {
+ * the ends of transparent intervals: shorter ones serve all views. */
+static int
+store_intervals(const snow_value_path *path, bool spare,
+                snow_transparent_interval intervals[SNOW_VALUE_RUNS]) {
     const snow_value_table *table = &path->table;
     const int by = !table->nodes ? 0
                    : spare       ? SNOW_VALUE_NODE_MOST
                                  : NODE_OFTEN;
-    for (int n = 0; n < table->run_count; n++) {
-        runs[n] = table->runs[n];
-        if (runs[n].first > 0)
-            runs[n].first = (int16_t)(runs[n].first + by);
-        if (runs[n].last < SNOW_VALUE_MOST)
-            runs[n].last = (int16_t)(runs[n].last - by);
-        if (runs[n].first > runs[n].last)
-            runs[n] = SNOW_VALUE_NO_RUN;
+    for (int n = 0; n < table->interval_count; n++) {
+        intervals[n] = table->intervals[n];
+        if (intervals[n].first > 0)
+            intervals[n].first = (int16_t)(intervals[n].first + by);
+        if (intervals[n].last < SNOW_VALUE_MOST)
+            intervals[n].last = (int16_t)(intervals[n].last - by);
+        if (intervals[n].first > intervals[n].last)
+            intervals[n] = SNOW_VALUE_NO_RUN;
     }
-    return table->run_count;
+    return table->interval_count;
 }
 
 /* In perspective it changes from view to view: steps of it let an encoding
@@ -120,15 +121,15 @@ bool snow_value_serves(const snow_value_path *path,
 static int find_seen(const snow_value_path *path,
                      const snow_value_params *params,
                      snow_value_stored_range out[SNOW_VALUE_SEEN]) {
-    const snow_value_rule *rule = &path->coder.scale.rule;
+    const snow_fixed_quantizer *fixed = &path->quantizer.scale.fixed;
     snow_native_range ranges[SNOW_VALUE_SEEN];
-    if (!path->coder.ruled || path->coder.scale.clamps ||
+    if (!path->quantizer.is_fixed || path->quantizer.scale.clamps ||
         params->volume->is_part ||
         snow_transfer_has_gradient_opacity(params->counted))
         return 0;
     int count = snow_interesting_ranges(
         &params->volume->info, params->counted, params->settings->threshold,
-        rule->bottom, rule->top, ranges, SNOW_VALUE_SEEN);
+        fixed->bottom, fixed->top, ranges, SNOW_VALUE_SEEN);
     for (int n = 0; n < count; n++)
         out[n] = (snow_value_stored_range){
             .first = (uint16_t)ranges[n].first,
@@ -140,16 +141,16 @@ snow_status snow_value_order_make(snow_value_path *path,
                                   const snow_value_params *params, bool spare,
                                   snow_value_order *out) {
     const snow_settings *s = params->settings;
-    path->coder.names = path->has_labels ? path->labels.names : NULL;
-    path->coder.name_count = path->labels.count;
-    SNOW_TRY(snow_value_coder_make(params->volume, &path->table.made.scale,
-                                   &path->coder));
+    path->quantizer.names = path->has_labels ? path->labels.names : NULL;
+    path->quantizer.name_count = path->labels.count;
+    SNOW_TRY(snow_quantizer_make(params->volume, &path->table.made.scale,
+                                 &path->quantizer));
     out->params = (snow_value_store_params){
         .volume = params->volume,
         .placement = params->stored,
-        .coder = &path->coder,
-        .runs = out->runs,
-        .run_count = store_runs(path, spare, out->runs),
+        .quantizer = &path->quantizer,
+        .intervals = out->intervals,
+        .interval_count = store_intervals(path, spare, out->intervals),
         .holes = path->range.holes,
         .reach = find_reach(path, params),
         .cubic = is_cubic(path, params),
@@ -203,8 +204,9 @@ static snow_status encode_part(snow_value_path *path,
                    (path->wavers &&
                     snow_value_same_scale(&path->made.key.scale, &key->scale));
     snow_status status = encode_anew(path, params, key);
-    return snow_value_lacks_room(path, status) ? encode_anew(path, params, key)
-                                               : status;
+    return snow_value_lacks_memory(path, status)
+               ? encode_anew(path, params, key)
+               : status;
 }
 
 void snow_value_forget(snow_value_path *path) {

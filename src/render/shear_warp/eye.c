@@ -1,5 +1,6 @@
 /* render/shear_warp/eye.c - the lattice in perspective: its samples lie on the
- * voxels of the front sheet, and ever farther apart on those behind. */
+ * voxels of the front resampled slice, and ever farther apart on those behind.
+ */
 #include "render/shear_warp/lattice.h"
 
 #include <math.h>
@@ -51,8 +52,8 @@ bool snow_value_eye_fits(const snow_placement *p, int per_slice) {
 
 /* --- the image ------------------------------------------------------------ */
 
-/* The volume's range along an axis, in voxels of the front sheet, and one voxel
- * more of each sheet. */
+/* The volume's range along an axis, in voxels of the front resampled slice, and
+ * one voxel more of each resampled slice. */
 static void covered_range(const snow_value_lattice *l, const snow_placement *p,
                           int axis, double range[2]) {
     double ends[2], m = snow_value_eye_step(l, back_of(l, p));
@@ -64,7 +65,7 @@ static void covered_range(const snow_value_lattice *l, const snow_placement *p,
     }
 }
 
-/* Whole voxels of the front sheet: n pixels are `phases` a voxel. */
+/* Whole voxels of the front resampled slice: n pixels are `phases` a voxel. */
 static void round_to_voxels(const snow_perspective_shear_axis *from, int axis,
                             int phases, snow_value_lattice *l) {
     int64_t rest = ((from->first % phases) + phases) % phases;
@@ -108,7 +109,7 @@ double snow_value_eye_density(const snow_value_lattice *l,
     return most;
 }
 
-/* --- sheets --------------------------------------------------------------- */
+/* --- resampled slices ----------------------------------------------------- */
 
 /* Samples from one to those of its gradient: about one voxel. */
 static int apart_of(int cells, double step) {
@@ -118,8 +119,9 @@ static int apart_of(int cells, double step) {
 double snow_value_eye_reach(const snow_value_lattice *l,
                             const snow_placement *p) {
     double wide = 1, back = back_of(l, p);
-    for (int n = 0; n < l->sheet_count; n++) {
-        double slice = l->front + (back - l->front) * n / (l->sheet_count - 1);
+    for (int n = 0; n < l->resampled_count; n++) {
+        double slice =
+            l->front + (back - l->front) * n / (l->resampled_count - 1);
         double step = snow_value_eye_step(l, slice);
         for (int axis = 0; axis < 2; axis++)
             wide = fmax(wide,
@@ -130,8 +132,8 @@ double snow_value_eye_reach(const snow_value_lattice *l,
 }
 
 snow_value_spread snow_value_eye_spread(const snow_value_lattice *l,
-                                        const snow_value_sheet *sheet) {
-    snow_value_spread spread = {.step = snow_value_eye_step(l, sheet->at)};
+                                        const snow_resampled_slice *resampled) {
+    snow_value_spread spread = {.step = snow_value_eye_step(l, resampled->at)};
     for (int axis = 0; axis < 2; axis++) {
         int apart = apart_of(l->cells[axis], spread.step);
         double share = l->cells[axis] / (apart * spread.step);
@@ -169,9 +171,10 @@ static void select_lanes(int margin, snow_value_lanes *lanes) {
 }
 
 void snow_value_eye_lanes(const snow_value_lattice *l,
-                          const snow_value_sheet *sheet, int axis, int tiles,
-                          int64_t stored, int margin, snow_value_lanes *lanes) {
-    double step = snow_value_eye_step(l, sheet->at), eye = l->eye[axis];
+                          const snow_resampled_slice *resampled, int axis,
+                          int tiles, int64_t stored, int margin,
+                          snow_value_lanes *lanes) {
+    double step = snow_value_eye_step(l, resampled->at), eye = l->eye[axis];
     int phases = l->cells[axis] * (l->quincunx ? 2 : 1);
     int side = axis == 0 ? SNOW_VALUE_COLUMNS : SNOW_VALUE_ROWS;
     for (int phase = 0; phase < phases; phase++)

@@ -8,18 +8,18 @@
 
 typedef struct rays_job {
     snow_value_path *path;
-    size_t lanes[2]; /* of a sheet, along u and v */
+    size_t lanes[2]; /* of a resampled slice, along u and v */
 } rays_job;
 
 static void place_lanes(void *of, int64_t item, int worker) {
     const rays_job *job = of;
     snow_value_path *path = job->path;
     const snow_value_rays *rays = &path->rays;
-    const snow_value_sheet *sheet = &path->sheets[item];
+    const snow_resampled_slice *resampled = &path->resampled_slices[item];
     (void)worker;
-    path->spreads[item] = snow_value_eye_spread(&path->lattice, sheet);
+    path->spreads[item] = snow_value_eye_spread(&path->lattice, resampled);
     for (int axis = 0; axis < 2; axis++)
-        snow_value_eye_lanes(&path->lattice, sheet, axis, rays->tiles[axis],
+        snow_value_eye_lanes(&path->lattice, resampled, axis, rays->tiles[axis],
                              rays->stored[axis], path->made.store.margin,
                              path->lanes[axis] +
                                  (size_t)item * job->lanes[axis]);
@@ -83,21 +83,21 @@ snow_status snow_value_place_rays(snow_value_path *path,
     const snow_value_lattice *l = &path->lattice;
     snow_value_rays *rays = &path->rays;
     rays_job job = {.path = path};
-    size_t sheets = (size_t)l->sheet_count;
+    size_t resampled_slices = (size_t)l->resampled_count;
     *rays = (snow_value_rays){0};
     describe(l, rays);
     memcpy(rays->stored, params->clip->stored, sizeof rays->stored);
     measure_ways(path, params->placement, rays);
     place_light(params, l, rays);
-    SNOW_TRY(SNOW_RESERVE(path->context, path->spreads, 0, sheets));
+    SNOW_TRY(SNOW_RESERVE(path->context, path->spreads, 0, resampled_slices));
     for (int axis = 0; axis < 2; axis++) {
         job.lanes[axis] =
             (size_t)rays->phases[axis] * (size_t)rays->tiles[axis];
         SNOW_TRY(SNOW_RESERVE(path->context, path->lanes[axis], 0,
-                              sheets * job.lanes[axis]));
+                              resampled_slices * job.lanes[axis]));
         rays->lanes[axis] = path->lanes[axis];
     }
-    rays->sheets = path->spreads;
+    rays->resampled_slices = path->spreads;
     return snow_parallel(path->context, params->settings->threads,
-                         l->sheet_count, place_lanes, &job);
+                         l->resampled_count, place_lanes, &job);
 }

@@ -55,12 +55,12 @@ typedef struct snow_value_grid {
 } snow_value_grid;
 
 /* A mode: what becomes of the slabs of a ray.  Those that make no colours have
- * pixels (number, weight), and NULL where over needs nothing. */
+ * pixels (value, weight), and NULL where over needs nothing. */
 typedef struct snow_value_operator {
     snow_mode mode;
     snow_value_reduction reduction;
-    /* Which numbers the pictures do not need, of all data values; NULL: of the
-     * look's those that are invisible. */
+    /* Which quantized values the pictures do not need, of all data values;
+     * NULL: of the look's those that are invisible. */
     void (*hides)(snow_value_path *path, const snow_value_look *look,
                   const snow_settings *settings);
     /* A row of a phase of a tile as pixels of the picture's channels. */
@@ -102,7 +102,7 @@ typedef struct snow_value_strip {
 typedef struct snow_value_drawing {
     snow_value_path *path;
     snow_value_params params; /* volume and transfer function may be gone */
-    snow_value_splat splat;   /* but for its sheets */
+    snow_value_splat splat;   /* but for its resampled slices */
     snow_value_strip strip;   /* whose tiles are drawn */
     snow_value_tile_fn *tile;
     size_t scratch_bytes; /* of a worker */
@@ -116,7 +116,7 @@ struct snow_value_path {
     snow_data_range range;     /* of the whole */
     snow_data_range measured; /* of the volume of this generation; 0: of none */
     uint64_t measured_of;
-    snow_value_coder coder;
+    snow_quantizer quantizer;
     snow_value_table table;
     snow_value_labels labels; /* of the volume of this generation */
     uint64_t labels_of;
@@ -128,7 +128,7 @@ struct snow_value_path {
     snow_value_light light;
     snow_value_fade fade;
     snow_value_surface surface;
-    snow_value_sheet *sheets;
+    snow_resampled_slice *resampled_slices;
     snow_value_place *places;
     snow_value_rays rays; /* perspective: instead of places */
     snow_value_spread *spreads;
@@ -142,7 +142,7 @@ struct snow_value_path {
     snow_line_batch batch;      /* of its tiles */
     float *lines;               /* of the warp */
     char *scratch;
-    snow_value_path *layers[SNOW_INLAYS_MOST]; /* of other volumes */
+    snow_value_path *layers[SNOW_LAYERS_MOST]; /* of other volumes */
     int layer_count;                           /* of the picture */
     int group;      /* as a layer: those of one are mixed; the picture's is 0 */
     snow_clip clip; /* and what it has */
@@ -153,7 +153,7 @@ struct snow_value_path {
 
 const snow_value_operator *snow_value_operator_of(snow_mode mode);
 
-/* In perspective: the rays of the sheets, which are there.  Errors:
+/* In perspective: the rays of the resampled slices, which are there.  Errors:
  * SNOW_STATUS_NO_MEMORY, SNOW_STATUS_STOPPED. */
 snow_status snow_value_place_rays(snow_value_path *path,
                                   const snow_value_params *params);
@@ -165,12 +165,12 @@ snow_value_key snow_value_key_of(const snow_value_path *path,
                                  const snow_value_params *params,
                                  uint64_t generation);
 
-/* An order to encode, and what it points to.  `spare` leaves out fewer numbers,
- * so that it serves views whose rays have another length.  Errors:
- * SNOW_STATUS_NO_MEMORY. */
+/* An order to encode, and what it points to.  `spare` leaves out fewer
+ * quantized values, so that it serves views whose rays have another length.
+ * Errors: SNOW_STATUS_NO_MEMORY. */
 typedef struct snow_value_order {
     snow_value_store_params params;
-    snow_value_run runs[SNOW_VALUE_RUNS];
+    snow_transparent_interval intervals[SNOW_VALUE_RUNS];
     snow_value_stored_range seen[SNOW_VALUE_SEEN];
 } snow_value_order;
 snow_status snow_value_order_make(snow_value_path *path,
@@ -239,15 +239,15 @@ void snow_value_end_image(snow_value_image *image);
 
 /* --- parts.c --- */
 
-/* Moves the sheets of the whole to the voxels that a part has. */
-void snow_value_move_sheets(snow_value_path *path,
+/* Moves the resampled slices of the whole to the voxels that a part has. */
+void snow_value_move_slices(snow_value_path *path,
                             const snow_value_params *params);
 
 /* The samples of a tile that are a part's, of those in its slab. */
 void snow_value_own(const snow_value_params *params, snow_value_splat *splat);
 
-/* The splat of the slabs between sheets that belong to some slices: of the two
- * slices beside it a slab is the nearer one's. */
+/* The splat of the slabs between resampled slices that belong to some slices:
+ * of the two slices beside it a slab is the nearer one's. */
 snow_value_splat snow_value_splat_of(const snow_value_drawing *drawing,
                                      snow_slab slices);
 
@@ -258,7 +258,7 @@ size_t snow_value_node_floats(const snow_value_drawing *drawing);
  * `out`, each of the picture's channels; false: nothing is there, and anything
  * in `out`.  `room` is as the splat's. */
 bool snow_value_node_tile(const snow_value_drawing *drawing,
-                          snow_group_node node, int x, int y, void *room,
+                          snow_group_node node, int x, int y, void *scratch,
                           float *out);
 
 /* --- lines.c --- */

@@ -19,7 +19,7 @@ void snow_value_forget_slabs(snow_value_path *path) {
     path->kept.of = 0;
 }
 
-bool snow_value_lacks_room(snow_value_path *path, snow_status status) {
+bool snow_value_lacks_memory(snow_value_path *path, snow_status status) {
     if (status != SNOW_STATUS_NO_MEMORY)
         return false;
     bool kept = path->kept.count > 0;
@@ -39,7 +39,7 @@ static uint64_t room_left(const snow_context *context) {
                                            : 0;
 }
 
-void snow_value_leave_room(snow_value_path *path, uint64_t bytes) {
+void snow_value_leave_memory(snow_value_path *path, uint64_t bytes) {
     snow_value_kept_slabs *kept = &path->kept;
     if (!path->context->limit || room_left(path->context) >= bytes)
         return;

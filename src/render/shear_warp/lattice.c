@@ -4,15 +4,16 @@
 #include <math.h>
 #include <string.h>
 
-/* Sheets and their phases are counted in an int. */
+/* Resampled slices and their phases are counted in an int. */
 #define SLICES_MOST (1 << 22)
 
-/* How far apart sheets may be, of the finer in-plane spacing; and from how many
- * pixels a voxel on normal has more sheets than slices in any case. */
+/* How far apart resampled slices may be, of the finer in-plane spacing; and
+ * from how many pixels a voxel on normal has more resampled slices than slices
+ * in any case. */
 #define APART_MOST 1.5
 #define DRAFT_APART_MOST (SNOW_VALUE_REACH_MOST / 2)
 #define WIDE 4
-/* Sheets a slice at most: powers of 2 have exact weights. */
+/* Resampled slices a slice at most: powers of 2 have exact weights. */
 #define PER_SLICE_MOST 16
 
 /* --- cells ---------------------------------------------------------------- */
@@ -54,12 +55,12 @@ static void choose_cells(const snow_volume_info *info, const snow_placement *p,
     l->phases = l->cells[0] * l->cells[1] * (1 + l->quincunx);
 }
 
-/* --- sheets --------------------------------------------------------------- */
+/* --- resampled slices ----------------------------------------------------- */
 
-/* Sheets a slice, where a voxel is so many pixels wide. */
-static int sheets_per_slice(const snow_volume_info *info,
-                            const snow_placement *p, snow_quality quality,
-                            double pixels) {
+/* Resampled slices a slice, where a voxel is so many pixels wide. */
+static int resampled_per_slice(const snow_volume_info *info,
+                               const snow_placement *p, snow_quality quality,
+                               double pixels) {
     const bool draft = quality == SNOW_QUALITY_DRAFT;
     double fine = fmin(info->spacing[p->u_axis], info->spacing[p->v_axis]);
     double ratio = info->spacing[p->slice_axis] / fine / (1 + 1e-9);
@@ -83,29 +84,30 @@ double snow_value_lattice_reach(const snow_volume_info *info,
         double ratio = info->spacing[p->slice_axis] / info->spacing[axes[n]];
         most = fmax(most, fmax(fabs(slope), ratio * (1 + 1e-6)));
     }
-    return most / sheets_per_slice(info, p, quality, 0);
+    return most / resampled_per_slice(info, p, quality, 0);
 }
 
 bool snow_value_fits(const snow_volume_info *info, const snow_placement *p,
                      const snow_settings *s) {
     if (p->perspective)
-        return snow_value_eye_fits(p, sheets_per_slice(info, p, s->quality, 0));
+        return snow_value_eye_fits(p,
+                                   resampled_per_slice(info, p, s->quality, 0));
     return ceil(snow_value_lattice_reach(info, p, s->quality)) +
                (s->kernel == SNOW_KERNEL_BSPLINE) <=
            SNOW_VALUE_REACH_MOST;
 }
 
-void snow_value_lattice_sheets(const snow_value_lattice *l,
+void snow_value_lattice_slices(const snow_value_lattice *l,
                                const snow_placement *p,
-                               snow_value_sheet *sheets,
+                               snow_resampled_slice *resampled_slices,
                                snow_value_place *places) {
-    for (int n = 0; n < l->sheet_count; n++) {
-        int at = l->nearest_first ? n : l->sheet_count - 1 - n;
-        snow_value_sheet *s = &sheets[n];
+    for (int n = 0; n < l->resampled_count; n++) {
+        int at = l->nearest_first ? n : l->resampled_count - 1 - n;
+        snow_resampled_slice *s = &resampled_slices[n];
         const int part = at % l->per_slice;
-        *s = (snow_value_sheet){.at = (double)at / l->per_slice,
-                                .slice = at / l->per_slice,
-                                .between = part != 0};
+        *s = (snow_resampled_slice){.at = (double)at / l->per_slice,
+                                    .slice = at / l->per_slice,
+                                    .between = part != 0};
         if (s->between)
             s->toward =
                 (int16_t)(32768 * (2 * part - l->per_slice) / l->per_slice);
@@ -142,7 +144,7 @@ void snow_value_lattice_sheets(const snow_value_lattice *l,
 
 /* --- the image ------------------------------------------------------------ */
 
-/* The slice of the front sheet. */
+/* The slice of the front resampled slice. */
 static void place_front(const snow_placement *p, snow_value_lattice *l) {
     l->perspective = p->perspective;
     l->nearest_first = p->nearest_first;
@@ -156,8 +158,8 @@ static void place_front(const snow_placement *p, snow_value_lattice *l) {
         l->front = l->nearest_first ? 0 : (double)(p->slices - 1);
 }
 
-/* The lattice has its samples on the voxels of the front sheet, not of slice 0:
- * moves an axis of the image by that. */
+/* The lattice has its samples on the voxels of the front resampled slice, not
+ * of slice 0: moves an axis of the image by that. */
 static void anchor(snow_value_lattice *l, int axis, int phases) {
     double moved = (double)l->first[axis] - l->front * l->slope[axis];
     double first = floor(moved);
@@ -243,8 +245,9 @@ snow_value_lattice_make(snow_context *context, const snow_volume_info *info,
                          (long long)p->slices, SLICES_MOST);
     SNOW_TRY(measure_density(context, info, view, p, &pixels));
     choose_cells(info, p, quality, pixels, &l);
-    l.per_slice = sheets_per_slice(info, p, quality, pixels);
-    l.sheet_count = p->slices == 1 ? 2 : (int)(p->slices - 1) * l.per_slice + 1;
+    l.per_slice = resampled_per_slice(info, p, quality, pixels);
+    l.resampled_count =
+        p->slices == 1 ? 2 : (int)(p->slices - 1) * l.per_slice + 1;
     l.path = p->path / l.per_slice;
     place_front(p, &l);
     const int dense = l.quincunx ? 2 : 1;

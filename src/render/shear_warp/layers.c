@@ -40,19 +40,19 @@ static void begin_walk(const snow_value_drawing *drawing,
 }
 
 /* All slabs of a layer before `end`. */
-static bool draw_slabs(layer_walk *w, int end, int x, int y, void *room) {
+static bool draw_slabs(layer_walk *w, int end, int x, int y, void *scratch) {
     if (next_slab(w) >= end)
         return false;
     w->splat.slabs[0] = next_slab(w);
     while (next_slab(w) < end)
         w->splat.slabs[1] = w->slabs[w->next++] + 1;
-    return w->tile(&w->splat, x, y, room);
+    return w->tile(&w->splat, x, y, scratch);
 }
 
 /* Returns whether a tile has pixels that something behind would show in. */
-static bool is_open(const snow_value_splat *splat, const void *room) {
+static bool is_open(const snow_value_splat *splat, const void *scratch) {
     const snow_value_faint_plane *planes =
-        (const snow_value_faint_plane *)(uintptr_t)room;
+        (const snow_value_faint_plane *)(uintptr_t)scratch;
     const float closed = (float)splat->closed / 32767;
     for (int phase = 0; phase < splat->phases; phase++)
         for (int row = 0; row < SNOW_VALUE_ROWS; row++)
@@ -97,7 +97,7 @@ static void lay_behind(float *planes, const float *kept, const float *mixed,
 /* The slabs before `end` of layers in one place; of a single one as they are,
  * else each in planes of its own.  `room_of_two` holds two pictures of them. */
 static bool draw_group(layer_walk *w, int count, int end, int x, int y,
-                       void *room, float *room_of_two) {
+                       void *scratch, float *room_of_two) {
     const snow_value_splat *splat = &w->splat;
     const size_t bytes = snow_value_planes_bytes(splat);
     const float closed = (float)splat->closed / 32767;
@@ -107,33 +107,34 @@ static bool draw_group(layer_walk *w, int count, int end, int x, int y,
     for (int n = 0; n < count; n++)
         active += next_slab(&w[n]) < end;
     if (active > 1) {
-        memcpy(kept, room, bytes);
+        memcpy(kept, scratch, bytes);
         memset(mixed, 0, bytes);
     }
     for (int n = 0; n < count; n++) {
         if (next_slab(&w[n]) >= end)
             continue;
         if (active > 1)
-            clear(room, kept, splat->phases, closed);
-        drawn |= draw_slabs(&w[n], end, x, y, room);
+            clear(scratch, kept, splat->phases, closed);
+        drawn |= draw_slabs(&w[n], end, x, y, scratch);
         if (active > 1)
-            mix(mixed, room, splat->phases);
+            mix(mixed, scratch, splat->phases);
     }
     if (active > 1)
-        lay_behind(room, kept, mixed, splat->phases, closed);
+        lay_behind(scratch, kept, mixed, splat->phases, closed);
     return drawn;
 }
 
 bool snow_value_draw_stack(const snow_value_drawing *job,
                            const snow_slab *slices, bool resumes, int x, int y,
-                           void *room) {
+                           void *scratch) {
     const snow_value_path *path = job->path;
-    const size_t sheets = (size_t)job->splat.sheet_count;
-    int32_t *slabs =
-        (int32_t *)(void *)((char *)room + snow_value_splat_bytes(&job->splat));
+    const size_t resampled_slices = (size_t)job->splat.resampled_count;
+    int32_t *slabs = (int32_t *)(void *)((char *)scratch +
+                                         snow_value_splat_bytes(&job->splat));
     float *room_of_two =
-        (float *)(void *)(slabs + sheets * 2 * (size_t)path->layer_count);
-    layer_walk walks[SNOW_INLAYS_MOST + 1];
+        (float *)(void *)(slabs +
+                          resampled_slices * 2 * (size_t)path->layer_count);
+    layer_walk walks[SNOW_LAYERS_MOST + 1];
     const int tile[2] = {x, y};
     int count = 0;
     bool drawn = false;
@@ -142,17 +143,17 @@ bool snow_value_draw_stack(const snow_value_drawing *job,
         if (!snow_value_has_values(layer))
             continue;
         begin_walk(&layer->drawing, slices, tile,
-                   slabs + sheets * (size_t)count, &walks[count]);
+                   slabs + resampled_slices * (size_t)count, &walks[count]);
         walks[count++].group = layer->group;
     }
     if (!resumes)
-        memset(room, 0, snow_value_planes_bytes(&job->splat));
+        memset(scratch, 0, snow_value_planes_bytes(&job->splat));
     for (int turn = 1;; turn++) {
         int first = INT32_MAX, alone = -1, end = INT32_MAX;
         for (int n = 0; n < count; n++)
             first = next_slab(&walks[n]) < first ? next_slab(&walks[n]) : first;
         if (first == INT32_MAX ||
-            (turn % 8 == 0 && drawn && !is_open(&job->splat, room)))
+            (turn % 8 == 0 && drawn && !is_open(&job->splat, scratch)))
             return drawn;
         for (int n = 0; n < count; n++)
             if (next_slab(&walks[n]) == first)
@@ -166,8 +167,8 @@ bool snow_value_draw_stack(const snow_value_drawing *job,
             for (next = n + 1; next < count; next++)
                 if (walks[next].group != walks[n].group)
                     break;
-            drawn |=
-                draw_group(&walks[n], next - n, end, x, y, room, room_of_two);
+            drawn |= draw_group(&walks[n], next - n, end, x, y, scratch,
+                                room_of_two);
         }
     }
 }

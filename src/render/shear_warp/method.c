@@ -31,7 +31,7 @@ static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
 
 /* Once.  The image comes first, for the slabs of a file are cut to the memory
  * that it leaves. */
-static snow_status begin(snow_picture *p, snow_job *job) {
+static snow_status begin_picture(snow_picture *p, snow_job *job) {
     if (p->local.begun)
         return SNOW_STATUS_OK;
     if (job->volume->stream && job->settings.encoding == SNOW_ENCODING_AUTO)
@@ -53,7 +53,7 @@ static snow_status encode(snow_picture *p, snow_job *job) {
     return snow_value_encode(p->frame->value_path, &params, job->stats);
 }
 
-static snow_status draw(snow_picture *p, snow_job *job) {
+static snow_status draw_part(snow_picture *p, snow_job *job) {
     const snow_value_params params = params_of(p, job);
     SNOW_TRY(snow_value_place_layers(p->frame->value_path, &params));
     p->frame->tiles_of = 0;
@@ -98,10 +98,10 @@ static void keep(snow_picture *p, snow_job *job, snow_slabs *slabs) {
 }
 
 const snow_render_method snow_method_shear_warp = {
-    .begin = begin,
-    .classify_and_shade = begin,
+    .begin = begin_picture,
+    .classify_and_shade = begin_picture,
     .encode = encode,
-    .splat_and_composite = draw,
+    .splat_and_composite = draw_part,
     .show = show,
     .cut = cut,
     .keep = keep,

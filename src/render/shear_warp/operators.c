@@ -1,5 +1,5 @@
 /* render/shear_warp/operators.c - the modes: a record for each.  Over makes
- * colours; projections make numbers, which are coloured after the warp
+ * colours; projections make quantized values, which are coloured after the warp
  * (render/modes/modes.c). */
 #include "render/shear_warp/internal.h"
 
@@ -41,7 +41,8 @@ static void hide_idle(snow_value_path *path, const snow_value_look *look,
     int16_t idle = settings->mode == SNOW_MODE_MINIP ? SNOW_VALUE_MOST : 0;
     snow_value_table_begin(look, &path->table);
     if (!path->range.holes)
-        snow_value_table_hide(&path->table, (snow_value_run){idle, idle});
+        snow_value_table_hide(&path->table,
+                              (snow_transparent_interval){idle, idle});
 }
 
 static void read_best(const snow_value_splat *splat, const void *planes,
@@ -113,8 +114,8 @@ static void hide_below(snow_value_path *path, const snow_value_look *look,
     at = settings->iso > scale->low ? fmin(at, SNOW_VALUE_MOST + 1) : 0;
     snow_value_table_begin(look, &path->table);
     if (at > 0)
-        snow_value_table_hide(&path->table,
-                              (snow_value_run){0, (int16_t)(ceil(at) - 1)});
+        snow_value_table_hide(&path->table, (snow_transparent_interval){
+                                                0, (int16_t)(ceil(at) - 1)});
     snow_transfer_evaluate(look->transfer, settings->iso, rgba);
     surface->at = (float)at;
     for (int c = 0; c < 3; c++)

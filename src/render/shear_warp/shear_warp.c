@@ -22,16 +22,17 @@ void snow_value_path_free(snow_value_path *path) {
     if (!path)
         return;
     snow_context *context = path->context;
-    snow_value_coder_fini(context, &path->coder);
+    snow_quantizer_fini(context, &path->quantizer);
     snow_value_table_fini(context, &path->table);
     snow_value_labels_fini(context, &path->labels);
     snow_value_store_fini(&path->made.store);
     snow_value_forget_axes(path);
     snow_value_forget_slabs(path);
-    void *const blocks[] = {path->kept.slabs,   path->sheets,   path->places,
-                            path->spreads,      path->lanes[0], path->lanes[1],
-                            path->curve_points, path->lines,    path->clips,
-                            path->scratch};
+    void *const blocks[] = {path->kept.slabs,   path->resampled_slices,
+                            path->places,       path->spreads,
+                            path->lanes[0],     path->lanes[1],
+                            path->curve_points, path->lines,
+                            path->clips,        path->scratch};
     for (size_t n = 0; n < sizeof blocks / sizeof *blocks; n++)
         snow_release(context, blocks[n]);
     for (int n = 0; n < 2; n++) {
@@ -42,7 +43,7 @@ void snow_value_path_free(snow_value_path *path) {
         snow_release(context, path->images[n].halved);
     }
     snow_line_batch_fini(&path->batch);
-    for (int n = 0; n < SNOW_INLAYS_MOST; n++)
+    for (int n = 0; n < SNOW_LAYERS_MOST; n++)
         snow_value_path_free(path->layers[n]);
     snow_release(context, path);
 }
@@ -177,7 +178,7 @@ snow_status snow_value_begin(snow_value_path *path,
     snow_status status = snow_value_shows(path)
                              ? snow_value_reserve_image(path, params)
                              : SNOW_STATUS_OK;
-    if (snow_value_lacks_room(path, status))
+    if (snow_value_lacks_memory(path, status))
         status = snow_value_reserve_image(path, params);
     SNOW_TRY(status);
     stats->seconds_classify += snow_seconds() - mark;

@@ -1,6 +1,6 @@
 /* render/shear_warp/shear_warp.h - the method shear-warp: figure 8 of the paper
- * with slices that are moved instead of footprints that are turned.  Sheets of
- * values are splatted, and slabs between them coloured. */
+ * with slices that are moved instead of footprints that are turned.  Resampled
+ * slices of values are splatted, and slabs between them coloured. */
 #ifndef SNOW_RENDER_SHEAR_WARP_SHEAR_WARP_H
 #define SNOW_RENDER_SHEAR_WARP_SHEAR_WARP_H
 
@@ -11,7 +11,7 @@
 #include "transform/clip.h"
 #include "volume/stream.h"
 
-/* Data values as numbers of 0 to 1: (value - from) / step. */
+/* Data values as values of 0 to 1: (value - from) / step. */
 typedef struct snow_value_scale {
     double from, step; /* step may be negative, not 0 */
 } snow_value_scale;
@@ -34,7 +34,7 @@ typedef struct snow_value_params {
     const snow_clip *clip; /* what of the whole it has and answers for */
     snow_slab slab; /* slices of the whole that are drawn, within these */
     int channels;   /* 2 or 4 */
-    const snow_inlay *layers; /* other volumes, of the same grid, or files */
+    const snow_layer *layers; /* other volumes, of the same grid, or files */
     int layer_count;
     bool shared;  /* with other ranks: the image's size depends on the picture
                      alone, and a deterministic one has a layer for each node */
@@ -56,13 +56,13 @@ snow_status snow_value_measure(snow_value_path *path, const snow_volume *volume,
                                const snow_transfer *transfer, int threads,
                                snow_data_range *out);
 
-/* Makes the range of the whole known, which the pictures' numbers are of.
- * Labels are a part's own, in the same order as the whole's. */
+/* Makes the range of the whole known, which the pictures' quantized values are
+ * of. Labels are a part's own, in the same order as the whole's. */
 void snow_value_set_range(snow_value_path *path, const snow_data_range *range);
 
 /* The same of a layer; makes those of all layers known, none perhaps. */
 snow_status snow_value_measure_layer(snow_value_path *path, int n,
-                                     const snow_inlay *inlay, int threads,
+                                     const snow_layer *given, int threads,
                                      snow_data_range *out);
 snow_status snow_value_set_layers(snow_value_path *path,
                                   const snow_data_range *ranges, int count);
@@ -99,11 +99,11 @@ void snow_value_forget_slabs(snow_value_path *path);
 
 /* Returns whether memory was too small, and there is more: what was kept is
  * gone. */
-bool snow_value_lacks_room(snow_value_path *path, snow_status status);
+bool snow_value_lacks_memory(snow_value_path *path, snow_status status);
 
 /* Drops encodings until a limit leaves so many bytes, as for the exchange of
  * the image among ranks. */
-void snow_value_leave_room(snow_value_path *path, uint64_t bytes);
+void snow_value_leave_memory(snow_value_path *path, uint64_t bytes);
 uint64_t snow_value_exchange_bytes(const snow_value_path *path);
 
 /* What was kept of a part that stores so many slices, of the whole's params, if
@@ -126,13 +126,13 @@ snow_status snow_value_draw(snow_value_path *path,
                             snow_shear_warp_image *out,
                             snow_line_batch **batch);
 
-/* What the numbers 0 to 1 of a projection's pixels stand for, when it is
+/* What the values from 0 to 1 of a projection's pixels stand for, when it is
  * begun. */
 snow_value_scale snow_value_projected(const snow_value_path *path,
                                       snow_mode mode);
 
 /* The image of one layer to all of the picture: width * height * channels
- * floats; of projections (number, 1) or (0, 0), or less where a pixel is not
+ * floats; of projections (value, 1) or (0, 0), or less where a pixel is not
  * wholly of one.  Errors: as above. */
 snow_status snow_value_display(snow_value_path *path,
                                const snow_value_params *params,

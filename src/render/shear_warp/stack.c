@@ -5,21 +5,21 @@
 /* --- values --------------------------------------------------------------- */
 
 /* Whatever a file has, places beside it have no value, or label 0. */
-static snow_status measure_file(snow_value_path *layer, const snow_inlay *inlay,
+static snow_status measure_file(snow_value_path *layer, const snow_layer *given,
                                 snow_data_range *range) {
     range->holes = true;
-    return snow_transfer_has_labels(inlay->transfer, &inlay->volume->info)
+    return snow_transfer_has_labels(given->transfer, &given->volume->info)
                ? snow_value_labels_name(layer->context, &layer->labels, 0)
                : SNOW_STATUS_OK;
 }
 
 snow_status snow_value_measure_layer(snow_value_path *path, int n,
-                                     const snow_inlay *inlay, int threads,
+                                     const snow_layer *given, int threads,
                                      snow_data_range *out) {
     SNOW_TRY(snow_value_path_new(path->context, &path->layers[n]));
-    SNOW_TRY(snow_value_measure(path->layers[n], inlay->volume, inlay->transfer,
+    SNOW_TRY(snow_value_measure(path->layers[n], given->volume, given->transfer,
                                 threads, out));
-    return inlay->volume->stream ? measure_file(path->layers[n], inlay, out)
+    return given->volume->stream ? measure_file(path->layers[n], given, out)
                                  : SNOW_STATUS_OK;
 }
 
@@ -35,7 +35,7 @@ snow_status snow_value_set_layers(snow_value_path *path,
 
 /* --- a part --------------------------------------------------------------- */
 
-/* A layer has ghost voxels of its own (render/inlays.c). */
+/* A layer has ghost voxels of its own (render/layers.c). */
 static snow_value_params params_of(const snow_value_path *path,
                                    const snow_value_params *params, int n) {
     snow_value_params own = *params;
@@ -59,7 +59,7 @@ snow_status snow_value_encode_layers(snow_value_path *path,
             (n ? path->layers[n - 1]->group : 0) + !params->layers[n].mixes;
         SNOW_TRY(snow_value_begin_values(path->layers[n], &own));
         snow_status status = snow_value_encode(path->layers[n], &own, &unused);
-        if (snow_value_lacks_room(path, status))
+        if (snow_value_lacks_memory(path, status))
             status = snow_value_encode(path->layers[n], &own, &unused);
         SNOW_TRY(status);
     }

@@ -58,7 +58,7 @@ snow_status tf_add_opacity(const tf_input *in, snow_look_file *tf,
 bool tf_is_wanted(const tf_input *in, const char *name);
 void tf_set_name(snow_look_file *tf, const char *name);
 
-/* --- text: transfer/formats/number.c
+/* --- text: number.c
  * ------------------------------------------
  * */
 
@@ -67,7 +67,7 @@ void tf_set_name(snow_look_file *tf, const char *name);
  * is no number: *at is then at the next character that is not blank. */
 bool tf_take_number(const char **at, const char *end, double *out);
 
-/* --- colour spaces: transfer/formats/space.c
+/* --- colour spaces: space.c
  * ----------------------------------
  * */
 
@@ -93,7 +93,7 @@ snow_status tf_join_color(const tf_input *in, snow_look_file *tf,
                           double value, const double rgb[3]);
 
 /* The same for opacities with VTK's midpoint and sharpness:
- * transfer/formats/curve.c. */
+ * curve.c. */
 snow_status tf_join_opacity(const tf_input *in, snow_look_file *tf,
                             const double a[4], const double b[4]);
 
@@ -106,7 +106,7 @@ snow_status tf_read_pal(const tf_input *in, snow_look_file *tf);
 snow_status tf_read_csv(const tf_input *in, snow_look_file *tf);
 
 /* Reads three lists of Slicer, "count v v v ..." each: opacities, gradient
- * opacities and colours: transfer/formats/vp.c. */
+ * opacities and colours: vp.c. */
 snow_status tf_read_slicer_lists(const tf_input *in, snow_look_file *tf,
                                  const char *opacities, const char *gradients,
                                  const char *colors);

@@ -62,21 +62,21 @@ static json_t *tree_of(const snow_look *points) {
 }
 
 snow_status snow_look_write_json(snow_context *context, const snow_look *given,
-                                 char *text, size_t room, size_t *length) {
+                                 char *text, size_t capacity, size_t *length) {
     snow_look look;
     snow_status status = SNOW_RECORD_READ(context, snow_look, given, &look);
     if (status != SNOW_STATUS_OK)
         return status;
     json_t *tree = tree_of(&look);
     size_t flags = JSON_INDENT(1) | JSON_REAL_PRECISION(17);
-    size_t bytes = tree ? json_dumpb(tree, text, room, flags) : 0;
+    size_t bytes = tree ? json_dumpb(tree, text, capacity, flags) : 0;
     json_decref(tree);
     if (!bytes)
         return snow_context_fail(context, SNOW_STATUS_NO_MEMORY,
                                  "out of memory for the text of a transfer "
                                  "function; close other programs");
-    if (room)
-        text[bytes < room ? bytes : 0] = 0;
+    if (capacity)
+        text[bytes < capacity ? bytes : 0] = 0;
     *length = bytes;
     return SNOW_STATUS_OK;
 }
@@ -154,12 +154,12 @@ static void put_rows(sheet *out, const snow_look *points) {
 }
 
 snow_status snow_look_write_csv(snow_context *context, const snow_look *given,
-                                char *text, size_t room, size_t *length) {
+                                char *text, size_t capacity, size_t *length) {
     snow_look look;
     snow_status status = SNOW_RECORD_READ(context, snow_look, given, &look);
     if (status != SNOW_STATUS_OK)
         return status;
-    sheet out = {text, room, 0};
+    sheet out = {text, capacity, 0};
     if (!look.color_count || !look.opacity_count)
         return snow_context_fail(
             context, SNOW_STATUS_BAD_USAGE,
@@ -167,8 +167,8 @@ snow_status snow_look_write_csv(snow_context *context, const snow_look *given,
             look.color_count ? "no opacities" : "no colours");
     put_text(&out, "value,red,green,blue,opacity\n");
     put_rows(&out, &look);
-    if (room)
-        text[out.used < room ? out.used : 0] = 0;
+    if (capacity)
+        text[out.used < capacity ? out.used : 0] = 0;
     *length = out.used;
     return SNOW_STATUS_OK;
 }

@@ -1,6 +1,6 @@
 #!/bin/bash
 # --method shear-warp: pictures, figures and what is left to others.  What the
-# pictures must be is known by tests/render/test_value.c.
+# pictures must be is known by tests/render/test_shear_warp.c.
 . "$(dirname "$0")/../../support/shell.sh"
 
 scene="phantom:engine --dims 60x60x40 -s 110x90 --azimuth 30 --elevation 20 -y"

@@ -1,0 +1,141 @@
+/* encode/shear_warp/stored_marks.c - which voxels of a row of stored values are
+ * outside of transparent intervals, without making quantized values of them:
+ * the fixed-point quantizer rises or falls, so that an interval is a range of
+ * stored values. */
+#include "encode/shear_warp/encode.h"
+
+#include <string.h>
+
+/* --- ranges --------------------------------------------------------------- */
+
+/* The native that is `step` from the one of number 0. */
+static int32_t native_of(const snow_fixed_quantizer *fixed, int32_t step) {
+    bool falls = snow_quantize_fixed(fixed, fixed->top) <
+                 snow_quantize_fixed(fixed, fixed->bottom);
+    return falls ? fixed->top - step : fixed->bottom + step;
+}
+
+/* The first step of which the number is not below v; one more than all: none
+ * is. */
+static int32_t step_of(const snow_fixed_quantizer *fixed, int v) {
+    int32_t low = 0, high = fixed->top - fixed->bottom + 1;
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (snow_quantize_fixed(fixed, native_of(fixed, middle)) < v)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+snow_value_stored_range
+snow_value_stored_range_of(const snow_quantizer *quantizer,
+                           snow_transparent_interval interval) {
+    const snow_fixed_quantizer *fixed = &quantizer->scale.fixed;
+    const bool narrow = snow_type_size(quantizer->type) == 1;
+    const int32_t least = snow_type_lowest(quantizer->type);
+    int32_t from = step_of(fixed, interval.first),
+            end = step_of(fixed, interval.last + 1);
+    if (from >= end)
+        return (snow_value_stored_range){.none = true};
+    int32_t a = native_of(fixed, from), b = native_of(fixed, end - 1);
+    int32_t first = a < b ? a : b, last = a < b ? b : a;
+    if (first == fixed->bottom) /* those beyond are clamped */
+        first = least;
+    if (last == fixed->top)
+        last = least + (narrow ? UINT8_MAX : UINT16_MAX);
+    return (snow_value_stored_range){.first = (uint16_t)first,
+                                     .width = (uint16_t)(last - first)};
+}
+
+/* --- rows ----------------------------------------------------------------- */
+
+/* The words of a row, moved on by `margin` bits (1 to 31), to `words` words. */
+static void place_bits(const uint32_t *from, size_t count, int margin,
+                       uint32_t *bits, size_t words) {
+    size_t own = (count + 31) / 32;
+    bits[0] = from[0] << margin;
+    for (size_t w = 1; w < own; w++)
+        bits[w] = from[w] << margin | from[w - 1] >> (32 - margin);
+    for (size_t w = own; w < words; w++)
+        bits[w] = w == own ? from[w - 1] >> (32 - margin) : 0;
+}
+
+/* Whether the number beyond a side is outside of an interval: that of a voxel,
+ * of which the one inside is `step` on. */
+static bool is_beyond_outside(const snow_quantizer *quantizer,
+                              const unsigned char *stored, int64_t column,
+                              int64_t step,
+                              snow_transparent_interval interval) {
+    int64_t size = (int64_t)snow_type_size(quantizer->type);
+    int16_t side, inside;
+    snow_quantize_row(quantizer, stored + column * size, 1, &side);
+    snow_quantize_row(quantizer, stored + (column + step) * size, 1, &inside);
+    int16_t beyond = snow_value_beyond(side, inside, false);
+    interval = snow_transparent_open(interval);
+    return beyond < interval.first || beyond > interval.last;
+}
+
+/* A bit for each native of a row that is not in a range. */
+static void find_outside(const snow_value_store *s,
+                         const snow_value_store_params *params,
+                         const snow_value_stored_range *range,
+                         const unsigned char *stored, uint64_t *out) {
+    const snow_value_loops *loops = snow_value_loops_of(params->isa);
+    const size_t count = (size_t)s->columns;
+    if (range->none)
+        memset(out, 0xff, (count + 63) / 64 * sizeof *out);
+    else if (snow_type_size(params->quantizer->type) == 1)
+        loops->outside_bytes(stored, count, *range, out);
+    else
+        loops->outside_words(stored, count, *range, out);
+    if (count % 64)
+        out[count / 64] &= ~UINT64_C(0) >> (64 - count % 64);
+}
+
+static bool is_same(const unsigned char *a, const unsigned char *b,
+                    int64_t size) {
+    return a[0] == b[0] && (size == 1 || a[1] == b[1]);
+}
+
+void snow_value_mark_stored(const snow_value_store *s,
+                            const snow_value_store_params *params,
+                            const snow_value_stored_range *range, int interval,
+                            const unsigned char *stored, uint64_t *scratch,
+                            uint32_t *bits) {
+    const size_t count = (size_t)s->columns;
+    const int64_t size = (int64_t)snow_type_size(params->quantizer->type);
+    const int64_t step = s->columns > 1;
+    find_outside(s, params, range, stored, scratch);
+    place_bits((const uint32_t *)(const void *)scratch, count, s->margin, bits,
+               snow_value_words(s));
+    for (int end = 0; end < 2; end++) {
+        int64_t column = end ? s->columns - 1 : 0, in = end ? -step : step;
+        const unsigned char *side = stored + column * size;
+        if (is_same(side, side + in * size, size)
+                ? scratch[column / 64] >> column % 64 & 1
+                : is_beyond_outside(params->quantizer, stored, column, in,
+                                    s->intervals[interval])) {
+            /* Sets `count` bits, up to 31, from bit `first` on. */
+            const size_t first = end ? (size_t)s->margin + count : 0;
+            uint64_t some = ((UINT64_C(1) << s->margin) - 1) << first % 32;
+            bits[first / 32] |= (uint32_t)some;
+            if (some >> 32)
+                bits[first / 32 + 1] |= (uint32_t)(some >> 32);
+        }
+    }
+}
+
+int64_t snow_value_count_stored(const snow_value_store *s,
+                                const snow_value_store_params *params,
+                                const unsigned char *stored,
+                                uint64_t *scratch) {
+    int64_t outside = 0;
+    for (int n = 0; n < s->counted_ranges; n++) {
+        find_outside(s, params, &s->counted[n], stored, scratch);
+        for (int64_t word = 0; word < (s->columns + 63) / 64; word++)
+            outside += __builtin_popcountll(scratch[word]);
+    }
+    return s->counted_ranges * s->columns - outside;
+}
