@@ -83,7 +83,9 @@ SNOW_API snow_status snow_comm_new(snow_context *context,
 /* Collective. Element by element over all ranks; the result replaces `values`,
  * with the same bits on every rank. */
 typedef enum snow_reduce {
-    SNOW_REDUCE_SUM, SNOW_REDUCE_MIN, SNOW_REDUCE_MAX
+    SNOW_REDUCE_SUM,
+    SNOW_REDUCE_MIN,
+    SNOW_REDUCE_MAX
 } snow_reduce;
 SNOW_API snow_status snow_comm_reduce_ints(
     snow_comm *comm, int64_t *values, size_t count, snow_reduce by);

@@ -139,20 +139,16 @@ typedef struct box_axis {
     char name[24];  /* "x (mm)" */
 } box_axis;
 
-/* The world's axis along a grid's one, or -1 where it is oblique. */
-static int world_axis(const snow_volume_info *info, int axis) {
-    int found = -1;
-    for (int i = 0; i < 3; i++)
-        if (fabs(info->matrix[i][axis]) > 1e-6 * info->spacing[axis])
-            found = found < 0 ? i : 3;
-    return found < 3 ? found : -1;
-}
-
 /* Samples sit at integers.  Of an oblique axis lengths are counted from its
  * first one. */
 static void name_axis(const box_view *b, int axis, box_axis *out) {
     const snow_volume_info *info = b->info;
-    int world = world_axis(info, axis);
+    /* The world's axis along a grid's one, or -1 where it is oblique. */
+    int found = -1;
+    for (int i = 0; i < 3; i++)
+        if (fabs(info->matrix[i][axis]) > 1e-6 * info->spacing[axis])
+            found = found < 0 ? i : 3;
+    int world = found < 3 ? found : -1;
     double first = world < 0 ? 0 : info->matrix[world][3];
     double step = world < 0 ? info->spacing[axis] : info->matrix[world][axis];
     for (int end = 0; end < 2; end++)

@@ -99,17 +99,6 @@ static void ask_progress(snow_monitor *monitor) {
         atomic_store(&monitor->stopped, true);
 }
 
-/* Just below 1, which is kept for the end, and never falling. */
-static double fraction_of(const snow_monitor *monitor, snow_stage stage,
-                          double done, double all) {
-    double part = all > 0 ? done / all : 0;
-    double fraction = monitor->from + monitor->share * (part < 1 ? part : 1);
-    if (fraction > 0.999)
-        fraction = 0.999;
-    return fraction > monitor->reported[stage] ? fraction
-                                               : monitor->reported[stage];
-}
-
 void snow_monitor_report(snow_monitor *monitor, snow_stage stage, double done,
                          double all) {
     if (!monitor || !monitor->context->progress ||
@@ -117,7 +106,14 @@ void snow_monitor_report(snow_monitor *monitor, snow_stage stage, double done,
         return;
     double now = snow_seconds();
     monitor->last = stage;
-    monitor->reached = fraction_of(monitor, stage, done, all);
+    /* Just below 1, which is kept for the end, and never falling. */
+    double part = all > 0 ? done / all : 0;
+    double fraction = monitor->from + monitor->share * (part < 1 ? part : 1);
+    if (fraction > 0.999)
+        fraction = 0.999;
+    monitor->reached = fraction > monitor->reported[stage]
+                           ? fraction
+                           : monitor->reported[stage];
     if (now >= monitor->context->progress_due)
         call_progress(monitor, stage, monitor->reached, now + INTERVAL);
 }

@@ -50,17 +50,6 @@ static int lesser_limit(int a, int b) {
     return a == 0 || (b > 0 && b < a) ? b : a;
 }
 
-/* The limits of its parent groups apply to a group too. */
-static int quota_along(char *group) {
-    int limit = quota_of("");
-    while (*group) {
-        limit = lesser_limit(limit, quota_of(group));
-        char *end = strrchr(group, '/');
-        *(end ? end : group) = 0;
-    }
-    return limit;
-}
-
 static int cgroup_limit(void) {
     char line[PATH_MAX + 8], own[PATH_MAX] = "";
     FILE *file = fopen("/proc/self/cgroup", "r");
@@ -73,7 +62,14 @@ static int cgroup_limit(void) {
         fclose(file);
     int old = processors_of(number_in(GROUPS "/cpu/cpu.cfs_quota_us"),
                             number_in(GROUPS "/cpu/cpu.cfs_period_us"));
-    return lesser_limit(quota_along(own), old);
+    /* The limits of its parent groups apply to a group too. */
+    int limit = quota_of("");
+    while (*own) {
+        limit = lesser_limit(limit, quota_of(own));
+        char *end = strrchr(own, '/');
+        *(end ? end : own) = 0;
+    }
+    return lesser_limit(limit, old);
 }
 
 /* The number of processors, if there are more than bits of a cpu_set_t. */

@@ -51,18 +51,6 @@ snow_status snow_gradient_opacity_init(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-static void find_gradients(const snow_gradient_opacity *gradient_opacity,
-                           const snow_gradient_opacity_row *row,
-                           const uint32_t *columns, size_t count,
-                           double gradients[3][BLOCK]) {
-    const snow_placement *p = row->placement;
-    snow_gradient_row from = {.volume = gradient_opacity->volume,
-                              .axis = p->u_axis};
-    from.at[p->slice_axis] = row->slice;
-    from.at[p->v_axis] = row->row;
-    snow_gradients_of_row(&from, columns, count, BLOCK, gradients[0]);
-}
-
 void snow_gradient_opacity_factors(
     const snow_gradient_opacity *gradient_opacity,
     const snow_gradient_opacity_row *row, const uint32_t *columns, size_t count,
@@ -70,7 +58,12 @@ void snow_gradient_opacity_factors(
     const snow_transfer *transfer = gradient_opacity->transfer;
     const gradient_opacity_kernels *kernels = kernels_of(gradient_opacity->isa);
     double gradients[3][BLOCK], magnitudes[BLOCK];
-    find_gradients(gradient_opacity, row, columns, count, gradients);
+    const snow_placement *p = row->placement;
+    snow_gradient_row from = {.volume = gradient_opacity->volume,
+                              .axis = p->u_axis};
+    from.at[p->slice_axis] = row->slice;
+    from.at[p->v_axis] = row->row;
+    snow_gradients_of_row(&from, columns, count, BLOCK, gradients[0]);
     kernels->magnitudes(gradient_opacity, gradients, count, magnitudes);
     if (transfer->gradient_count <= STRETCHES_MOST)
         kernels->factors(transfer->gradients, transfer->gradient_count, count,

@@ -70,23 +70,19 @@ int64_t snow_region_begin(const snow_region_bounds *bounds, int region,
     return weighed(bounds, weight) / bounds->grain * bounds->grain;
 }
 
-/* The pixels of the largest region. */
-static int64_t largest(const snow_region_bounds *bounds, int regions) {
-    int64_t most = 0, first = 0;
-    for (int i = 1; i <= regions; i++) {
-        int64_t end = snow_region_begin(bounds, i, regions);
-        most = end - first > most ? end - first : most;
-        first = end;
-    }
-    return most;
-}
-
 int64_t snow_region_capacity(const snow_region_bounds *bounds, int regions) {
     const int64_t pixels = (int64_t)bounds->width * bounds->height;
     int64_t even = pixels / regions + 1;
     if (!bounds->counted)
         return least(pixels, even + bounds->grain);
-    if (regions <= REGIONS_MEASURED)
-        return largest(bounds, regions);
+    if (regions <= REGIONS_MEASURED) {
+        int64_t most = 0, first = 0;
+        for (int i = 1; i <= regions; i++) {
+            int64_t end = snow_region_begin(bounds, i, regions);
+            most = end - first > most ? end - first : most;
+            first = end;
+        }
+        return most;
+    }
     return least(pixels, SNOW_IMAGE_REGION_MOST * even + 1 + bounds->grain);
 }

@@ -9,17 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Sends to one rank while receiving from the same or another. */
-static snow_status swap(snow_comm *comm, const void *out, size_t out_bytes,
-                        int to, void *in, size_t in_bytes, int from) {
-    snow_message messages[2] = {{0}};
-    SNOW_TRY(snow_comm_receive(comm, in, in_bytes, from, SNOW_TAG_COLLECTIVE,
-                               &messages[0]));
-    SNOW_TRY(snow_comm_send(comm, out, out_bytes, to, SNOW_TAG_COLLECTIVE,
-                            &messages[1]));
-    return snow_comm_wait_all(comm, messages, 2);
-}
-
 static snow_status send_one(snow_comm *comm, const void *bytes, size_t count,
                             int to) {
     snow_message message = {0};
@@ -104,7 +93,13 @@ static snow_status reduce_some(snow_comm *comm, void *values, size_t count,
     }
     for (int bit = 1; bit < power; bit *= 2) {
         int other = comm->rank ^ bit;
-        SNOW_TRY(swap(comm, values, bytes, other, comm->scratch, bytes, other));
+        /* Sends to one rank while receiving from the same or another. */
+        snow_message messages[2] = {{0}};
+        SNOW_TRY(snow_comm_receive(comm, comm->scratch, bytes, other,
+                                   SNOW_TAG_COLLECTIVE, &messages[0]));
+        SNOW_TRY(snow_comm_send(comm, values, bytes, other, SNOW_TAG_COLLECTIVE,
+                                &messages[1]));
+        SNOW_TRY(snow_comm_wait_all(comm, messages, 2));
         reduce(values, comm->scratch, count, how);
     }
     return helps ? send_one(comm, values, bytes, comm->rank + power)

@@ -40,18 +40,6 @@ static bool holds_slices(const stack *s, const snow_folder *files) {
     return false;
 }
 
-static snow_status refuse_empty(snow_context *context, const char *path) {
-    char name[256];
-    if (snow_is_folder(path) && snow_folder_below(path, name, sizeof name))
-        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "has no slices itself, only folders such as %s; "
-                         "name one of them",
-                         name);
-    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                     "names no slices; give a folder or a pattern of .tif, "
-                     ".png, .jpg or DICOM files");
-}
-
 /* Keeps the files whose names belong to slices: folders also hold notes and
  * tables, and previews beside the slices.  All must have one format. */
 static snow_status choose_files(stack *s, const char *path,
@@ -74,8 +62,17 @@ static snow_status choose_files(stack *s, const char *path,
                          "has %zu files of %s among others; give a pattern "
                          "that matches one kind, such as \"folder/*.tif\"",
                          kept, s->format->name);
-    if (!kept)
-        return refuse_empty(s->context, path);
+    if (!kept) {
+        char name[256];
+        if (snow_is_folder(path) && snow_folder_below(path, name, sizeof name))
+            return snow_fail(s->context, SNOW_STATUS_BAD_INPUT,
+                             "has no slices itself, only folders such as %s; "
+                             "name one of them",
+                             name);
+        return snow_fail(s->context, SNOW_STATUS_BAD_INPUT,
+                         "names no slices; give a folder or a pattern of .tif, "
+                         ".png, .jpg or DICOM files");
+    }
     files->count = kept;
     s->files = files;
     return SNOW_STATUS_OK;

@@ -79,21 +79,6 @@ static double luma_of(const snow_image *image, size_t index) {
            0.0722 * (double)p[2];
 }
 
-/* The lumas of row y.  Equal ones that are not finite become 0 in both; unequal
- * ones become NaN, which spreads to the sums of a window. */
-static void fill_lumas(const snow_image *a, const snow_image *b, int y,
-                       double *row_a, double *row_b) {
-    size_t first = (size_t)y * (size_t)a->width;
-    for (int x = 0; x < a->width; x++) {
-        double p = luma_of(a, first + (size_t)x);
-        double q = luma_of(b, first + (size_t)x);
-        if (!isfinite(p) || !isfinite(q))
-            p = q = are_equal(p, q) ? 0 : NAN;
-        row_a[x] = p;
-        row_b[x] = q;
-    }
-}
-
 /* Sums over a window, or over one of its columns. */
 typedef struct moments {
     double a, b, aa, bb, ab;
@@ -176,7 +161,17 @@ static snow_status measure_similarity(const snow_image *a, const snow_image *b,
     double total = 0;
     for (int y = 0; lumas && columns && y < a->height; y++) {
         double *row = lumas + (size_t)(y % high) * (size_t)width;
-        fill_lumas(a, b, y, row, row + stored);
+        /* The lumas of row y.  Equal ones that are not finite become 0 in both;
+         * unequal ones become NaN, which spreads to the sums of a window. */
+        size_t first = (size_t)y * (size_t)a->width;
+        for (int x = 0; x < a->width; x++) {
+            double p = luma_of(a, first + (size_t)x);
+            double q = luma_of(b, first + (size_t)x);
+            if (!isfinite(p) || !isfinite(q))
+                p = q = are_equal(p, q) ? 0 : NAN;
+            row[x] = p;
+            (row + stored)[x] = q;
+        }
         if (y + 1 < high)
             continue;
         sum_columns(lumas, lumas + stored, width, high, columns);

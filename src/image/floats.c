@@ -24,18 +24,6 @@ static float decode_sample(const unsigned char *bytes, int size,
     return sample;
 }
 
-/* Expands the samples of a pixel in the file to red, green, blue and alpha:
- *
- *   g        -> g g g 1        r g b    -> r g b 1
- *   g a      -> g g g a        r g b a  -> r g b a */
-static void spread_pixel(const float *samples, int channels, float *pixel) {
-    bool grey = channels < 3;
-    pixel[0] = samples[0];
-    pixel[1] = samples[grey ? 0 : 1];
-    pixel[2] = samples[grey ? 0 : 2];
-    pixel[3] = channels % 2 == 0 ? samples[channels - 1] : 1;
-}
-
 /* Converts a row of the file to `width` pixels of four floats. */
 static void decode_row(const unsigned char *bytes, int width,
                        const snow_float_layout *layout, float *row) {
@@ -46,7 +34,18 @@ static void decode_row(const unsigned char *bytes, int width,
                 decode_sample(bytes, layout->sample_bytes, layout->big_endian);
             bytes += layout->sample_bytes;
         }
-        spread_pixel(samples, layout->channels, row + 4 * (size_t)x);
+        /* Expands the samples of a pixel in the file to red, green, blue and
+         * alpha:
+         *
+         *   g        -> g g g 1        r g b    -> r g b 1
+         *   g a      -> g g g a        r g b a  -> r g b a */
+        float *pixel = row + 4 * (size_t)x;
+        bool grey = layout->channels < 3;
+        pixel[0] = samples[0];
+        pixel[1] = samples[grey ? 0 : 1];
+        pixel[2] = samples[grey ? 0 : 2];
+        pixel[3] =
+            layout->channels % 2 == 0 ? samples[layout->channels - 1] : 1;
     }
 }
 

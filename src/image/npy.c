@@ -42,22 +42,20 @@ static snow_status fail_npy(snow_source *source, const char *reason) {
                      "%s: %s", snow_source_name(source), reason);
 }
 
-/* Parses a type such as <f4.  NumPy writes the machine's byte order as < or >,
- * never as =. */
-static bool parse_type(const char *type, snow_float_layout *layout) {
-    bool known = (type[0] == '<' || type[0] == '>') && type[1] == 'f' &&
-                 (type[2] == '4' || type[2] == '8') && type[3] == '\0';
-    layout->big_endian = type[0] == '>';
-    layout->sample_bytes = known ? type[2] - '0' : 0;
-    return known;
-}
-
 /* Each refusal names the NumPy call that makes a readable file. */
 static snow_status read_npy(snow_source *source, snow_image **out) {
     npy_header header;
     snow_float_layout layout = {.channels = 1};
     SNOW_TRY(snow_npy_read_header(source, &header));
-    if (!parse_type(header.type, &layout))
+    /* Parses a type such as <f4.  NumPy writes the machine's byte order as < or
+     * >, never as =. */
+    bool known = (header.type[0] == '<' || header.type[0] == '>') &&
+                 header.type[1] == 'f' &&
+                 (header.type[2] == '4' || header.type[2] == '8') &&
+                 header.type[3] == '\0';
+    layout.big_endian = header.type[0] == '>';
+    layout.sample_bytes = known ? header.type[2] - '0' : 0;
+    if (!known)
         return fail_npy(source, "the array is not float32 or float64; save it "
                                 "with .astype('float32')");
     if (header.fortran_order)

@@ -18,12 +18,6 @@
 
 /* --- taking --------------------------------------------------------------- */
 
-/* Whether a volume can have rows and slices that lie so. */
-static bool can_wrap(const snow_insitu_brick *brick) {
-    const int64_t *stride = brick->stride;
-    return stride[0] == 1 && stride[1] > 0 && stride[2] > 0;
-}
-
 /* The only brick's voxels where they lie, with the part of its halo that is
  * within the grid. */
 static const void *in_place(const snow_insitu *insitu, snow_box *memory,
@@ -38,7 +32,8 @@ static const void *in_place(const snow_insitu *insitu, snow_box *memory,
     int64_t back = 0;
     *memory = snow_insitu_grow_box(&brick->box, brick->halo.low,
                                    brick->halo.high, insitu->whole.dims);
-    if (!can_wrap(brick) ||
+    const int64_t *stride = brick->stride;
+    if (!(stride[0] == 1 && stride[1] > 0 && stride[2] > 0) ||
         !snow_insitu_box_holds(memory, &insitu->layout.stored))
         return NULL;
     for (int i = 0; i < 3; i++)

@@ -24,15 +24,6 @@ static void place_grid(snow_volume_info *info, const double *origin,
     info->matrix[3][3] = 1;
 }
 
-/* By the rules for all volumes, whose voxels nobody looks at here. */
-static snow_status check_grid(snow_context *context,
-                              const snow_volume_info *info) {
-    snow_volume *volume = NULL;
-    snow_status status = snow_volume_wrap(context, info, info, &volume);
-    snow_volume_close(volume);
-    return status;
-}
-
 snow_status snow_insitu_set_grid(snow_insitu *insitu, const int64_t dims[3],
                                  const double origin[3],
                                  const double spacing[3]) {
@@ -45,8 +36,12 @@ snow_status snow_insitu_set_grid(snow_insitu *insitu, const int64_t dims[3],
             return snow_insitu_refuse(insitu,
                                       "invalid spacing %g: must be positive",
                                       info.spacing[i]);
-    INSITU_TRY(
-        snow_insitu_set_error(insitu, check_grid(insitu->context, &info)));
+    /* By the rules for all volumes, whose voxels nobody looks at here. */
+    snow_volume *volume = NULL;
+    snow_status status =
+        snow_volume_wrap(insitu->context, &info, &info, &volume);
+    snow_volume_close(volume);
+    INSITU_TRY(snow_insitu_set_error(insitu, status));
     insitu->whole = info;
     insitu->brick_count = 0;
     insitu->changed = true;

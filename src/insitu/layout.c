@@ -177,16 +177,6 @@ static snow_status plan_layout(snow_insitu *insitu,
     return SNOW_STATUS_OK;
 }
 
-/* What this rank finds out by itself: its bricks, how the view lies, how wide
- * ghosts must be, which grow as pictures get smaller. */
-static snow_status look_around(snow_insitu *insitu, const snow_view *view,
-                               const snow_settings *settings,
-                               snow_ranks_needs *needs) {
-    INSITU_TRY(list_bricks(insitu));
-    return snow_ranks_find_needs(insitu->context, &insitu->whole, view,
-                                 settings, &insitu->look.look, needs);
-}
-
 /* Collective.  Every rank's united bricks, when they are not known. */
 static snow_status share_boxes(snow_insitu *insitu, const snow_box *united) {
     const uint64_t ranks = (uint64_t)snow_comm_size(insitu->comm);
@@ -239,7 +229,10 @@ snow_status snow_insitu_lay_out(snow_insitu *insitu) {
     snow_ranks_needs needs = {.size = sizeof needs};
     int64_t facts[SNOW_INSITU_FACTS];
     snow_insitu_lowered(insitu, &lowered, &settings);
-    snow_status status = look_around(insitu, &lowered, &settings, &needs);
+    INSITU_TRY(list_bricks(insitu));
+    snow_status status =
+        snow_ranks_find_needs(insitu->context, &insitu->whole, &lowered,
+                              &settings, &insitu->look.look, &needs);
     INSITU_TRY(snow_comm_agree_status(insitu->comm, status));
     memcpy(l.layers, needs.layers, sizeof l.layers);
     bool is_united = unite_bricks(insitu, &united);

@@ -136,14 +136,6 @@ static snow_status count_slab(const snow_volume *slab, void *user) {
                                          threads > 1 ? threads : 1, c->counts);
 }
 
-/* Slices of slabs are like those beside them; blocks have no slice to spare. */
-static int64_t step_of(const snow_partition_params *order) {
-    const int64_t step = order->grid.dims[2] / SLICES_COUNTED;
-    const bool slabs =
-        order->cut == SNOW_PARTITION_COUNTED && !order->grid.borders;
-    return slabs && step > 1 ? step : 1;
-}
-
 /* A slice that was not counted costs what the nearest one does that was. */
 static void fill_steps(snow_block_counts *counts) {
     const int64_t step = counts->step, last = counts->blocks[2] - 1;
@@ -251,7 +243,12 @@ snow_status snow_partition_boxes(snow_comm *comm,
         order->cut == SNOW_PARTITION_BRICKS
             ? snow_block_counts_for_bricks(&order->grid, order->ranks)
             : snow_block_counts_for_slabs(&order->grid);
-    counts.step = step_of(order);
+    /* Slices of slabs are like those beside them; blocks have no slice to
+     * spare. */
+    const int64_t step = order->grid.dims[2] / SLICES_COUNTED;
+    const bool slabs =
+        order->cut == SNOW_PARTITION_COUNTED && !order->grid.borders;
+    counts.step = slabs && step > 1 ? step : 1;
     snow_ray_grid rays;
     if (order->hides && order->cut == SNOW_PARTITION_COUNTED) {
         snow_ray_grid_make(&order->rays, order->grid.dims, counts.step, &rays);

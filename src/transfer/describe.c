@@ -28,16 +28,6 @@ bool snow_look_suits_labels(const snow_look *look) {
 
 /* --- a line of text ------------------------------------------------------- */
 
-/* The source of the look: only what was not requested was chosen. */
-static void set_reason(const snow_transfer_builder *builder,
-                       const snow_look *look, char *text, size_t capacity) {
-    bool all_asked =
-        look->opacities && look->range != SNOW_RANGE_AUTO && !look->preset;
-    snprintf(text, capacity, " (%s%s%s)",
-             all_asked ? "as requested" : builder->reason, builder->range_note,
-             look->opacities && !all_asked ? "; opacities as requested" : "");
-}
-
 /* Writes a value so that reading it gives the same, if twelve digits do; then
  * it was chosen or given.  Others are rounded. */
 static const char *spell(double value, char text[40]) {
@@ -89,6 +79,11 @@ void snow_transfer_builder_describe(const snow_transfer_builder *builder,
                  spell(points[i].value, value));
     }
     used = strlen(text);
-    set_reason(builder, look, text + used, capacity - used);
+    /* The source of the look: only what was not requested was chosen. */
+    bool all_asked =
+        look->opacities && look->range != SNOW_RANGE_AUTO && !look->preset;
+    snprintf(text + used, capacity - used, " (%s%s%s)",
+             all_asked ? "as requested" : builder->reason, builder->range_note,
+             look->opacities && !all_asked ? "; opacities as requested" : "");
     snow_transfer_describe(transfer, text);
 }

@@ -156,18 +156,6 @@ static snow_status join_measures(snow_histogram *histogram) {
     return SNOW_STATUS_OK;
 }
 
-/* Stores the range for modes other than over (render/modes/modes.c), which
- * spares them a pass. */
-static void note_range(const snow_histogram *histogram) {
-    const int64_t *dims = histogram->volume->info.dims;
-    const snow_volume_statistics range = {.voxels = dims[0] * dims[1] * dims[2],
-                                          .finite = (int64_t)histogram->finite,
-                                          .min = histogram->min,
-                                          .max = histogram->max};
-    if (histogram->volume->stream && !histogram->scale.log && !histogram->comm)
-        snow_stream_note_range(histogram->volume, &range);
-}
-
 /* What is not known by less is counted; ranks count always. */
 static snow_status count_as_needed(snow_histogram *histogram) {
     bool found = false;
@@ -226,8 +214,18 @@ snow_status snow_histogram_new(const snow_volume *volume, snow_comm *comm,
     /* Makes a zero positive: which sign is found first is chance. */
     histogram.min += 0.0;
     histogram.max += 0.0;
-    if (histogram.need == SNOW_NEED_COUNTS)
-        note_range(&histogram);
+    if (histogram.need == SNOW_NEED_COUNTS) {
+        /* Stores the range for modes other than over (render/modes/modes.c),
+         * which spares them a pass. */
+        const int64_t *dims = histogram.volume->info.dims;
+        const snow_volume_statistics range = {
+            .voxels = dims[0] * dims[1] * dims[2],
+            .finite = (int64_t)histogram.finite,
+            .min = histogram.min,
+            .max = histogram.max};
+        if (histogram.volume->stream && !histogram.scale.log && !histogram.comm)
+            snow_stream_note_range(histogram.volume, &range);
+    }
     tell_dropped(&histogram);
     *out = histogram;
     return SNOW_STATUS_OK;

@@ -231,15 +231,6 @@ static snow_status pass(const snow_histogram *histogram, bool compares,
     return status;
 }
 
-/* The values of types of 8 and 16 bits, which are counted. */
-static void take_counted(const snow_histogram *histogram, label_scan *s) {
-    for (int n = 0; n < SNOW_DIGITS && !s->many; n++) {
-        double value;
-        if (snow_stored_values_nth(histogram, n, &value))
-            add_value(s, value);
-    }
-}
-
 static bool is_few(const label_scan *s) {
     return !s->many && s->count <= FEW &&
            (double)s->even >= EVEN * (double)s->all &&
@@ -255,9 +246,14 @@ static snow_status scan(const snow_histogram *histogram, bool asked,
     snow_volume_find_extent(volume, &whole);
     s->background = fmax(histogram->min, 0);
     memset(s->seen, 0xff, sizeof s->seen);
-    if (counted)
-        take_counted(histogram, s);
-    else
+    if (counted) {
+        /* The values of types of 8 and 16 bits, which are counted. */
+        for (int n = 0; n < SNOW_DIGITS && !s->many; n++) {
+            double value;
+            if (snow_stored_values_nth(histogram, n, &value))
+                add_value(s, value);
+        }
+    } else
         SNOW_TRY(pass(histogram, false, s));
     s->step = whole.dims[0] * whole.dims[1] * whole.dims[2] / COMPARED + 1;
     if (!s->many && s->count <= FEW)
@@ -271,25 +267,22 @@ static snow_status scan(const snow_histogram *histogram, bool asked,
 
 /* --- how they look -------------------------------------------------------- */
 
-/* By the golden angle: neighbours differ, and few are alike. */
-static void choose_color(double value, double rgb[3]) {
-    double turns = value * 0.61803398874989485 + 0.5;
-    double hue = 6 * (turns - floor(turns));
-    double least = fmod(fabs(value), 3) == 0 ? 0.35 : 0.15;
-    for (int c = 0; c < 3; c++) {
-        double way = fmod(hue + 6 - 2 * c, 6);
-        double share = fmin(fmax(2 - fmin(way, 6 - way), 0), 1);
-        rgb[c] = least + (0.92 - least) * share;
-    }
-}
-
 static snow_label label_of(const label_scan *s, size_t n) {
     snow_label label = {.value = s->values[n], .color = {-1, 0, 0, -1}};
     for (size_t i = 0; i < s->label_count; i++)
         if (s->labels[i].value == label.value)
             label = s->labels[i];
-    if (label.color[0] < 0)
-        choose_color(label.value, label.color);
+    if (label.color[0] < 0) {
+        /* By the golden angle: neighbours differ, and few are alike. */
+        double turns = label.value * 0.61803398874989485 + 0.5;
+        double hue = 6 * (turns - floor(turns));
+        double least = fmod(fabs(label.value), 3) == 0 ? 0.35 : 0.15;
+        for (int c = 0; c < 3; c++) {
+            double way = fmod(hue + 6 - 2 * c, 6);
+            double share = fmin(fmax(2 - fmin(way, 6 - way), 0), 1);
+            label.color[c] = least + (0.92 - least) * share;
+        }
+    }
     if (label.color[3] < 0)
         label.color[3] = 1;
     /* The background. */

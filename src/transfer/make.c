@@ -260,16 +260,6 @@ static snow_status fill_builder(const snow_histogram *histogram,
     return fit_values(histogram, look, points, builder);
 }
 
-/* Rounding of logarithms may have made values decrease. */
-static void keep_rising(snow_transfer_builder *builder) {
-    for (size_t i = 1; i < builder->color_count; i++)
-        if (builder->colors[i].value < builder->colors[i - 1].value)
-            builder->colors[i].value = builder->colors[i - 1].value;
-    for (size_t i = 1; i < builder->opacity_count; i++)
-        if (builder->opacities[i].value < builder->opacities[i - 1].value)
-            builder->opacities[i].value = builder->opacities[i - 1].value;
-}
-
 static snow_status build_look(const snow_histogram *histogram,
                               const snow_look *look,
                               snow_transfer_builder *builder) {
@@ -290,7 +280,13 @@ static snow_status build_look(const snow_histogram *histogram,
     if (map && !builder->labels) /* which have taken theirs */
         snow_transfer_builder_colormap(builder, map, builder->low,
                                        builder->high);
-    keep_rising(builder);
+    /* Rounding of logarithms may have made values decrease. */
+    for (size_t i = 1; i < builder->color_count; i++)
+        if (builder->colors[i].value < builder->colors[i - 1].value)
+            builder->colors[i].value = builder->colors[i - 1].value;
+    for (size_t i = 1; i < builder->opacity_count; i++)
+        if (builder->opacities[i].value < builder->opacities[i - 1].value)
+            builder->opacities[i].value = builder->opacities[i - 1].value;
     return SNOW_STATUS_OK;
 }
 

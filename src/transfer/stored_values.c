@@ -142,17 +142,6 @@ static double data_value(const snow_volume *volume, int native) {
     return volume->info.slope * native + volume->info.intercept;
 }
 
-static void join_extremes(const snow_volume *volume, int64_t first,
-                          size_t count, extremes *n) {
-    int32_t low = 0, high = 0;
-    snow_volume_extremes(volume, first, count, &low, &high);
-    n->low = n->any && n->low < low ? n->low : low;
-    n->high = n->any && n->high > high ? n->high : high;
-    n->any = true;
-    n->negative =
-        data_value(volume, n->low) < 0 || data_value(volume, n->high) < 0;
-}
-
 /* Finds the extremes, `user`, of the voxels that a volume answers for. */
 static snow_status find_extremes_of_part(const snow_volume *volume,
                                          void *user) {
@@ -161,7 +150,14 @@ static snow_status find_extremes_of_part(const snow_volume *volume,
                                               SNOW_HISTOGRAM_EXACT);
     while (!(n->until_negative && n->negative) && has_more(&w)) {
         const uint64_t left = w.end - w.at, count = left < BLOCK ? left : BLOCK;
-        join_extremes(volume, (int64_t)w.at + w.ahead, count, n);
+        int32_t low = 0, high = 0;
+        snow_volume_extremes(volume, (int64_t)w.at + w.ahead, count, &low,
+                             &high);
+        n->low = n->any && n->low < low ? n->low : low;
+        n->high = n->any && n->high > high ? n->high : high;
+        n->any = true;
+        n->negative =
+            data_value(volume, n->low) < 0 || data_value(volume, n->high) < 0;
         w.at += count;
     }
     return SNOW_STATUS_OK;

@@ -38,17 +38,6 @@ static snow_status check_numbers(snow_context *context, const snow_view *view) {
     return SNOW_STATUS_OK;
 }
 
-static snow_status check_view(snow_context *context, const snow_view *view) {
-    SNOW_TRY(check_numbers(context, view));
-    if (!(fabs(snow_length(view->back) - 1) <= 1e-6) ||
-        !(fabs(snow_length(view->up) - 1) <= 1e-6) ||
-        !(fabs(snow_dot(view->back, view->up)) <= 1e-6))
-        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "invalid view: back and up must be perpendicular unit "
-                         "vectors; begin with snow_view_from_name");
-    return SNOW_STATUS_OK;
-}
-
 /* The vector from the target to the middle of the voxel boxes. */
 static void middle_from_target(const snow_volume_info *info,
                                const snow_view *view, double step[3]) {
@@ -123,14 +112,6 @@ static snow_status look_up(snow_context *context, const snow_view *view,
     return SNOW_STATUS_OK;
 }
 
-static bool are_finite(const snow_view *view) {
-    bool good = true;
-    for (int i = 0; i < 3; i++)
-        good = good && (!view->has_position || isfinite(view->position[i])) &&
-               (!view->has_target || isfinite(view->target[i]));
-    return good;
-}
-
 /* Distance and pitch. The cone of the default field of view touches the sphere
  * of radius R, and is R / cos(fov / 2) wide at the target. */
 static void measure_distance(const snow_volume_info *info,
@@ -172,8 +153,18 @@ snow_status snow_camera_make(snow_context *context,
                              const snow_view *view, snow_camera *out) {
     snow_camera c = {.distance = 0};
     double middle[3];
-    SNOW_TRY(check_view(context, view));
-    if (!are_finite(view))
+    SNOW_TRY(check_numbers(context, view));
+    if (!(fabs(snow_length(view->back) - 1) <= 1e-6) ||
+        !(fabs(snow_length(view->up) - 1) <= 1e-6) ||
+        !(fabs(snow_dot(view->back, view->up)) <= 1e-6))
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "invalid view: back and up must be perpendicular unit "
+                         "vectors; begin with snow_view_from_name");
+    bool good = true;
+    for (int i = 0; i < 3; i++)
+        good = good && (!view->has_position || isfinite(view->position[i])) &&
+               (!view->has_target || isfinite(view->target[i]));
+    if (!good)
         return snow_fail(
             context, SNOW_STATUS_BAD_USAGE,
             "invalid camera: position and target must be finite numbers");

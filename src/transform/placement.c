@@ -61,27 +61,6 @@ static int choose_axis(const snow_volume_info *info, const double back[3]) {
     return chosen;
 }
 
-static void cut_along(const snow_volume_info *info, int slice_axis,
-                      snow_placement *p) {
-    p->slice_axis = slice_axis;
-    p->u_axis = p->slice_axis == 0 ? 1 : 0;
-    p->v_axis = p->slice_axis == 2 ? 1 : 2;
-    p->columns = info->dims[p->u_axis];
-    p->rows = info->dims[p->v_axis];
-    p->slices = info->dims[p->slice_axis];
-}
-
-/* Sets the ray's length between two slice planes, and which side is near. */
-static void measure_path(const snow_volume_info *info, snow_placement *p) {
-    double normal[3], step[3];
-    snow_slice_normal(info, p->slice_axis, normal);
-    step_of(info, p->slice_axis, step);
-    double distance = snow_dot(normal, step);
-    double cosine = snow_dot(normal, p->back);
-    p->path = fabs(distance / cosine);
-    p->nearest_first = distance * cosine < 0;
-}
-
 static void place_slices(const snow_volume_info *info,
                          const snow_camera *camera, snow_placement *p) {
     double pitch = camera->pitch;
@@ -138,8 +117,21 @@ static snow_status place_volume(snow_context *context,
                                 const snow_view *view,
                                 const snow_camera *camera, int slice_axis,
                                 snow_placement *p) {
-    cut_along(info, slice_axis, p);
-    measure_path(info, p);
+    p->slice_axis = slice_axis;
+    p->u_axis = p->slice_axis == 0 ? 1 : 0;
+    p->v_axis = p->slice_axis == 2 ? 1 : 2;
+    p->columns = info->dims[p->u_axis];
+    p->rows = info->dims[p->v_axis];
+    p->slices = info->dims[p->slice_axis];
+    /* Sets the ray's length between two slice planes, and which side is near.
+     */
+    double normal[3], step[3];
+    snow_slice_normal(info, p->slice_axis, normal);
+    step_of(info, p->slice_axis, step);
+    double distance = snow_dot(normal, step);
+    double cosine = snow_dot(normal, p->back);
+    p->path = fabs(distance / cosine);
+    p->nearest_first = distance * cosine < 0;
     place_slices(info, camera, p);
     bool fits = isfinite(p->path) && isfinite(p->origin[0]) &&
                 isfinite(p->origin[1]) && invert_slice_map(p);

@@ -31,16 +31,6 @@ static void to_index(const snow_volume_info *info, const double plane[4],
  * (SNOW_VALUE_REACH_MOST). */
 #define ASIDE_MOST 24
 
-/* A ray moves no farther aside between two sheets than slices are apart, in
- * perspective twice as far; values there and gradients look two voxels on. */
-static void find_reach(const snow_volume_info *info, double reach[3]) {
-    const double *s = info->spacing;
-    for (int axis = 0; axis < 3; axis++) {
-        double ratio = fmax(s[0], fmax(s[1], s[2])) / s[axis];
-        reach[axis] = 2 + ceil(2 * fmin(ratio, ASIDE_MOST));
-    }
-}
-
 /* Room for planes; none of them is there yet. */
 static snow_status allocate_planes(snow_context *context, size_t planes,
                                    snow_clip_planes **out) {
@@ -71,7 +61,14 @@ snow_status snow_clip_planes_new(snow_context *context,
         return SNOW_STATUS_OK;
     SNOW_TRY(allocate_planes(context, most, out));
     snow_clip_planes *clip = *out;
-    find_reach(info, clip->reach);
+    /* A ray moves no farther aside between two sheets than slices are apart, in
+     * perspective twice as far; values there and gradients look two voxels on.
+     */
+    const double *s = info->spacing;
+    for (int axis = 0; axis < 3; axis++) {
+        double ratio = fmax(s[0], fmax(s[1], s[2])) / s[axis];
+        clip->reach[axis] = 2 + ceil(2 * fmin(ratio, ASIDE_MOST));
+    }
     for (size_t n = 0; before && n < before->plane_count; n++)
         memcpy(clip->planes[clip->plane_count++], before->planes[n],
                sizeof *clip->planes);

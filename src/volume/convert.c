@@ -161,18 +161,6 @@ static snow_status fail_conversion(const snow_volume *volume,
                          : "convert to float32, or give a range to be spread");
 }
 
-/* Reported, since the file does not show it. */
-static void report(const snow_volume *volume, const conversion *c,
-                   const double range[2]) {
-    const char *name = snow_type_name(c->type);
-    if (range)
-        snow_notify(volume->context, "values %g to %g became %g to %g of %s",
-                    range[0], range[1], c->least, c->most, name);
-    else if (c->rounded)
-        snow_notify(volume->context, "%lld values were rounded to %s",
-                    (long long)c->rounded, name);
-}
-
 snow_status snow_volume_convert(const snow_volume *volume, snow_type type,
                                 const double range[2], snow_volume **out) {
     snow_volume_info info = volume->info;
@@ -204,7 +192,14 @@ snow_status snow_volume_convert(const snow_volume *volume, snow_type type,
         snow_volume_close(made);
         return fail_conversion(volume, &c);
     }
-    report(volume, &c, range);
+    /* Reported, since the file does not show it. */
+    const char *name = snow_type_name(c.type);
+    if (range)
+        snow_notify(volume->context, "values %g to %g became %g to %g of %s",
+                    range[0], range[1], c.least, c.most, name);
+    else if (c.rounded)
+        snow_notify(volume->context, "%lld values were rounded to %s",
+                    (long long)c.rounded, name);
     snow_status status =
         volume->labelled && !range
             ? snow_volume_set_labels(made, volume->labels, volume->label_count)

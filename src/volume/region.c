@@ -72,14 +72,6 @@ int64_t snow_region_runs(const snow_region *w) {
     return (axes < 2 ? w->count[1] : 1) * (axes < 3 ? w->count[2] : 1);
 }
 
-static uint64_t run_bytes(const snow_region *w) {
-    int axes = run_axes(w);
-    uint64_t voxels = (uint64_t)w->count[0];
-    for (int i = 1; i < axes; i++)
-        voxels *= (uint64_t)w->count[i];
-    return voxels * w->value;
-}
-
 /* A run of slices begins with the first of them: 0 along all axes but x. */
 void snow_region_run(const snow_region *w, int64_t run, uint64_t *begin,
                      uint64_t *end) {
@@ -88,7 +80,11 @@ void snow_region_run(const snow_region *w, int64_t run, uint64_t *begin,
     uint64_t voxel =
         (uint64_t)((z * w->dims[1] + y) * w->dims[0] + w->first[0]);
     *begin = w->before + voxel * w->value;
-    *end = *begin + run_bytes(w);
+    int axes = run_axes(w);
+    uint64_t voxels = (uint64_t)w->count[0];
+    for (int i = 1; i < axes; i++)
+        voxels *= (uint64_t)w->count[i];
+    *end = *begin + (voxels * w->value);
 }
 
 int64_t snow_region_run_at(const snow_region *w, uint64_t at) {

@@ -155,18 +155,6 @@ static void fill_row(const regrid *r, int64_t y, int64_t z) {
     }
 }
 
-/* Returns whether each voxel of the new grid is one of the volume's. */
-static bool is_turned(const regrid *r) {
-    double off = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        off = fmax(off, fabs(r->origin[axis] - rint(r->origin[axis])));
-        for (int n = 0; n < 3; n++)
-            off = fmax(off, fabs(r->step[axis][n] - rint(r->step[axis][n])) *
-                                (double)r->grid[n]);
-    }
-    return off < 0.1;
-}
-
 /* All voxels, on dims and matrix of `box`; `what` it is for. */
 static snow_status resample(regrid *r, const snow_volume_info *box,
                             const char *what) {
@@ -182,7 +170,15 @@ static snow_status resample(regrid *r, const snow_volume_info *box,
         info.intercept = 0;
     }
     SNOW_TRY(snow_volume_new(volume->context, &info, &r->to));
-    if (!is_turned(r))
+    /* Returns whether each voxel of the new grid is one of the volume's. */
+    double off = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        off = fmax(off, fabs(r->origin[axis] - rint(r->origin[axis])));
+        for (int n = 0; n < 3; n++)
+            off = fmax(off, fabs(r->step[axis][n] - rint(r->step[axis][n])) *
+                                (double)r->grid[n]);
+    }
+    if (!(off < 0.1))
         snow_notify(volume->context,
                     "the %s has another grid than the volume, and is resampled "
                     "to the volume's (%s)",

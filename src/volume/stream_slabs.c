@@ -184,15 +184,6 @@ snow_volume *snow_slabs_keep(snow_slabs *slabs) {
     return slabs->slab;
 }
 
-/* Returns whether a slab of a file is left, from `next` on. */
-static bool any_left(snow_slabs *slabs) {
-    if (!slabs->falls && slabs->next >= slabs->slices) {
-        slabs->falls = true;
-        slabs->next = slabs->nearest - slabs->count;
-    }
-    return !slabs->falls || slabs->next >= 0;
-}
-
 static void note_mask(snow_stream *stream, const snow_volume *slab) {
     stream->left = stream->left || !slab->emptied;
     stream->mask_range[0] = fmin(stream->mask_range[0], slab->mask_range[0]);
@@ -208,7 +199,12 @@ snow_status snow_slabs_next(snow_slabs *slabs, const snow_volume **slab) {
         slabs->begun = true;
         return SNOW_STATUS_OK;
     }
-    if (!any_left(slabs)) {
+    /* Returns whether a slab of a file is left, from `next` on. */
+    if (!slabs->falls && slabs->next >= slabs->slices) {
+        slabs->falls = true;
+        slabs->next = slabs->nearest - slabs->count;
+    }
+    if (!(!slabs->falls || slabs->next >= 0)) {
         warn_empty(volume);
         return SNOW_STATUS_OK;
     }

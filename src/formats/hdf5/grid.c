@@ -97,18 +97,6 @@ static bool read_labels(const hdf5_file *file, hid_t group, int order[3]) {
     return seen == 7;
 }
 
-/* Returns whether the labels, and all in their order, begin with the fastest
- * axis: the array was written by a program that counts indices as Fortran
- * does. */
-static bool is_fortran(const hdf5_file *file, hid_t object) {
-    char text[4];
-    double code = 0;
-    read_text(file, object, "dataOrder", text, sizeof text);
-    return *text == 'F' ||
-           (snow_hdf5_numbers(object, "dataOrder", 1, &code) == 1 &&
-            code == 'F');
-}
-
 /* openPMD (openpmd.org, 1.1.0): the group of a mesh, or the data set itself,
  * has spacing and offset in the order of the labels.  That is the order of the
  * array, with the fastest axis last, or by dataOrder "F" first.  The labels
@@ -127,7 +115,15 @@ static bool place_by_mesh(const hdf5_file *file, hid_t object,
         memcpy(info->unit, "m", 2);
     else
         unit = 1;
-    bool fortran = is_fortran(file, object);
+    /* Returns whether the labels, and all in their order, begin with the
+     * fastest axis: the array was written by a program that counts indices as
+     * Fortran does. */
+    char text[4];
+    double code = 0;
+    read_text(file, object, "dataOrder", text, sizeof text);
+    bool fortran =
+        *text == 'F' ||
+        (snow_hdf5_numbers(object, "dataOrder", 1, &code) == 1 && code == 'F');
     for (int b = 0; b < 3; b++) {
         int label = fortran ? b : 2 - b; /* of x, y and z of the array */
         for (int a = 0; a < 3; a++)
@@ -326,16 +322,6 @@ static snow_status read_scales(scales *s) {
     return s->status;
 }
 
-/* HDF5's own convention for images: colours are the last axis. */
-static bool is_coloured(const hdf5_file *file, hid_t set) {
-    char kind[32], colours[32], order[32];
-    read_text(file, set, "CLASS", kind, sizeof kind);
-    read_text(file, set, "IMAGE_SUBCLASS", colours, sizeof colours);
-    read_text(file, set, "INTERLACE_MODE", order, sizeof order);
-    return !strcmp(kind, "IMAGE") && !strcmp(colours, "IMAGE_TRUECOLOR") &&
-           (!*order || !strcmp(order, "INTERLACE_PIXEL"));
-}
-
 snow_status snow_hdf5_read_axes(snow_context *context, const hdf5_file *file,
                                 const hdf5_set *set, hdf5_axes *out) {
     scales s = {
@@ -347,7 +333,14 @@ snow_status snow_hdf5_read_axes(snow_context *context, const hdf5_file *file,
     snow_hdf5_hint_image(file, set, s.hints);
     for (int i = 0; i < HDF5_MOST_AXES; i++)
         sizes[i] = i < set->axes ? (int64_t)set->sizes[set->axes - 1 - i] : 1;
-    out->colors = is_coloured(file, set->id);
+    /* HDF5's own convention for images: colours are the last axis. */
+    char kind[32], colours[32], order[32];
+    read_text(file, set->id, "CLASS", kind, sizeof kind);
+    read_text(file, set->id, "IMAGE_SUBCLASS", colours, sizeof colours);
+    read_text(file, set->id, "INTERLACE_MODE", order, sizeof order);
+    out->colors = !strcmp(kind, "IMAGE") &&
+                  !strcmp(colours, "IMAGE_TRUECOLOR") &&
+                  (!*order || !strcmp(order, "INTERLACE_PIXEL"));
     s.hints[0].components |= out->colors;
     if (snow_axes_assign(set->axes, sizes, s.hints, &out->roles))
         return SNOW_STATUS_OK;

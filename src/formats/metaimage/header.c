@@ -291,20 +291,6 @@ static snow_status read_int(snow_context *context, const fields *f, slot where,
     return SNOW_STATUS_OK;
 }
 
-/* Exact names only: guessing a type would mean guessing the size of a voxel. */
-static snow_status read_type(snow_context *context, const fields *f,
-                             metaimage_header *header) {
-    for (size_t i = 0; i < TYPE_COUNT; i++)
-        if (f->key[TYPE] && strcmp(f->value[TYPE], types[i].name) == 0)
-            header->info.type = types[i].type;
-    if (!f->key[TYPE])
-        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "the header has no ElementType; add it");
-    if (header->info.type == SNOW_TYPE_NONE)
-        return fail_value(context, f, TYPE, "one of MET_CHAR to MET_DOUBLE");
-    return SNOW_STATUS_OK;
-}
-
 /* Sizes and their products are checked in 64 bits before use; whether the file
  * really holds so much is checked when the data are opened. */
 static snow_status read_sizes(snow_context *context, const fields *f,
@@ -439,7 +425,16 @@ static snow_status interpret(snow_context *context, const fields *f,
         return fail_value(context, f, OBJECT_TYPE,
                           "Image; only images are volumes");
     header->info = snow_volume_info_default("metaimage");
-    SNOW_TRY(read_type(context, f, header));
+    /* Exact names only: guessing a type would mean guessing the size of a
+     * voxel. */
+    for (size_t i = 0; i < TYPE_COUNT; i++)
+        if (f->key[TYPE] && strcmp(f->value[TYPE], types[i].name) == 0)
+            header->info.type = types[i].type;
+    if (!f->key[TYPE])
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "the header has no ElementType; add it");
+    if (header->info.type == SNOW_TYPE_NONE)
+        return fail_value(context, f, TYPE, "one of MET_CHAR to MET_DOUBLE");
     SNOW_TRY(read_sizes(context, f, header));
     SNOW_TRY(read_geometry(context, f, header));
     SNOW_TRY(read_layout(context, f, header));

@@ -63,20 +63,6 @@ static void rotate_by_quaternion(const double quatern[3], double r[3][3]) {
     memcpy(r, rotation, sizeof rotation);
 }
 
-/* nifti1.h, method 2: the third column takes the sign that mirrors. */
-static void fill_from_qform(const nifti_header *header, const double spacing[3],
-                            double m[4][4]) {
-    double r[3][3];
-    rotate_by_quaternion(header->quatern, r);
-    double qfac = header->pixdim[0] < 0 ? -1 : 1;
-    for (int i = 0; i < 3; i++) {
-        m[i][0] = r[i][0] * spacing[0];
-        m[i][1] = r[i][1] * spacing[1];
-        m[i][2] = r[i][2] * spacing[2] * qfac;
-        m[i][3] = header->qoffset[i];
-    }
-}
-
 /* Millimetres of the header's unit of length; an unknown one counts as 1. */
 static double millimetres(int units) {
     switch (units) {
@@ -108,7 +94,16 @@ static bool try_qform(snow_context *context, const nifti_header *header,
                       const double spacing[3], double m[4][4]) {
     if (header->qform_code <= 0)
         return false;
-    fill_from_qform(header, spacing, m);
+    /* nifti1.h, method 2: the third column takes the sign that mirrors. */
+    double r[3][3];
+    rotate_by_quaternion(header->quatern, r);
+    double qfac = header->pixdim[0] < 0 ? -1 : 1;
+    for (int i = 0; i < 3; i++) {
+        m[i][0] = r[i][0] * spacing[0];
+        m[i][1] = r[i][1] * spacing[1];
+        m[i][2] = r[i][2] * spacing[2] * qfac;
+        m[i][3] = header->qoffset[i];
+    }
     if (is_usable((const double(*)[4])m))
         return true;
     snow_notify(context, "its quaternion (qform) is not finite; only its "

@@ -180,19 +180,6 @@ static bool next_vector(const char **at, int count, double *out) {
     return true;
 }
 
-/* "block" is also a type, of opaque samples, and is not supported. */
-static snow_status parse_type(snow_context *context, const nrrd_text *text,
-                              nrrd_header *out) {
-    const char *value = snow_nrrd_value(text, NRRD_TYPE);
-    out->type =
-        value ? (snow_type)look_up(type_names, value)->value : SNOW_TYPE_NONE;
-    if (!out->type)
-        return fail_field(context, text, NRRD_TYPE,
-                          "is not a supported scalar type (8 to 64 bit "
-                          "integers, float, double)");
-    return SNOW_STATUS_OK;
-}
-
 static snow_status parse_encoding(snow_context *context, const nrrd_text *text,
                                   nrrd_header *out) {
     const char *value = snow_nrrd_value(text, NRRD_ENCODING);
@@ -489,7 +476,14 @@ snow_status snow_nrrd_parse_header(snow_context *context, const nrrd_text *text,
                                    nrrd_header *out) {
     int dimension = 3;
     *out = (nrrd_header){0};
-    SNOW_TRY(parse_type(context, text, out));
+    /* "block" is also a type, of opaque samples, and is not supported. */
+    const char *value = snow_nrrd_value(text, NRRD_TYPE);
+    out->type =
+        value ? (snow_type)look_up(type_names, value)->value : SNOW_TYPE_NONE;
+    if (!out->type)
+        return fail_field(context, text, NRRD_TYPE,
+                          "is not a supported scalar type (8 to 64 bit "
+                          "integers, float, double)");
     SNOW_TRY(parse_encoding(context, text, out));
     SNOW_TRY(parse_endian(context, text, out));
     SNOW_TRY(parse_dimension(context, text, out));

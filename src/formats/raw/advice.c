@@ -72,12 +72,6 @@ static void list_by_dims(advice *a, const int64_t dims[3], snow_type type) {
     list(a, other, snow_type_size(type), type);
 }
 
-static void list_cube(advice *a, uint64_t size, snow_type type) {
-    int64_t side = (int64_t)(cbrt((double)(a->bytes / size)) + 0.5);
-    const int64_t dims[3] = {side, side, side};
-    list(a, dims, size, type);
-}
-
 /* Stacks of square slices of usual sides, not much longer than wide. */
 static void list_squares(advice *a, uint64_t size, snow_type type) {
     for (uint64_t side = 64; side <= 1024; side *= 2) {
@@ -95,8 +89,11 @@ static void list_guesses(advice *a, bool squares, snow_type type) {
             continue;
         if (squares)
             list_squares(a, size, type);
-        else
-            list_cube(a, size, type);
+        else {
+            int64_t side = (int64_t)(cbrt((double)(a->bytes / size)) + 0.5);
+            const int64_t dims[3] = {side, side, side};
+            list(a, dims, size, type);
+        }
     }
 }
 

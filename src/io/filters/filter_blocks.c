@@ -34,13 +34,6 @@ static snow_status fail_block(const blocks_filter *filter, const char *why) {
                      why);
 }
 
-static void begin_block(blocks_filter *filter) {
-    filter->left = size_of(filter, filter->next);
-    filter->packed = filter->blocks.packed[filter->next];
-    filter->next++;
-    inflateReset(&filter->stream);
-}
-
 /* Runs inflate once on the buffered bytes below that belong to the block. */
 static snow_status inflate_some(blocks_filter *filter, int *answer) {
     snow_filter_stage *below = filter->filter.below;
@@ -104,8 +97,12 @@ static snow_status pull_blocks(snow_filter_stage *base, void *bytes,
     *got = 0;
     if (filter->damaged)
         return fail_block(filter, "it cannot be skipped");
-    while (!filter->left && filter->next < filter->blocks.count)
-        begin_block(filter);
+    while (!filter->left && filter->next < filter->blocks.count) {
+        filter->left = size_of(filter, filter->next);
+        filter->packed = filter->blocks.packed[filter->next];
+        filter->next++;
+        inflateReset(&filter->stream);
+    }
     return filter->left ? pull_block(filter, bytes, size, got) : SNOW_STATUS_OK;
 }
 

@@ -29,11 +29,6 @@ static int64_t clamp(int64_t i, int64_t count) {
     return i < 0 ? 0 : i < count ? i : count - 1;
 }
 
-/* The voxel inside of the one at a side. */
-static int64_t inner(int64_t i, int64_t count) {
-    return count == 1 ? 0 : i < 0 ? 1 : count - 2;
-}
-
 /* Of a voxel of a slice, beyond the box by the odd reflection. */
 static int slice_member(const snow_value_store *s, int label, int64_t i,
                         int64_t j, int64_t k) {
@@ -42,9 +37,10 @@ static int slice_member(const snow_value_store *s, int label, int64_t i,
     if (u == i && v == j)
         return here;
     if (u != i)
-        u = inner(i, s->columns);
+        u = s->columns == 1 ? 0 : i < 0 ? 1 : s->columns - 2;
+    /* The voxel inside of the one at a side. */
     else
-        v = inner(j, s->rows);
+        v = s->rows == 1 ? 0 : j < 0 ? 1 : s->rows - 2;
     return 2 * here - (code_of(s, u, v, k) == label ? SNOW_VALUE_MOST : 0);
 }
 
@@ -257,14 +253,6 @@ static label_part part_of(const value_slab *slab, int row, int lane) {
     return (label_part){from / 32768.0, (to - from) / 32768.0};
 }
 
-/* The ray of a sample, in phases from the tile's first cell. */
-static void ray_of(const value_sample *at, int16_t out[2]) {
-    const snow_value_rays *rays = at->splat->rays;
-    const uint8_t *own = rays->spot[at->phase];
-    out[0] = (int16_t)(at->lane * rays->phases[0] + own[0]);
-    out[1] = (int16_t)(at->row * rays->phases[1] + own[1]);
-}
-
 /* Its length, in that of the table. */
 static double way_of(const snow_value_rays *rays, float slope[2][2],
                      const int16_t ray[2]) {
@@ -293,7 +281,11 @@ int snow_value_collect_labels(const snow_value_splat *p, int n, int phase,
                 sample.ends[end] = value_spot_of(&sample.at, end);
             if (p->rays) {
                 int16_t ray[2];
-                ray_of(&sample.at, ray);
+                /* The ray of a sample, in phases from the tile's first cell. */
+                const snow_value_rays *rays = sample.at.splat->rays;
+                const uint8_t *own = rays->spot[sample.at.phase];
+                ray[0] = (int16_t)(sample.at.lane * rays->phases[0] + own[0]);
+                ray[1] = (int16_t)(sample.at.row * rays->phases[1] + own[1]);
                 q->ray[0][count] = ray[0];
                 q->ray[1][count] = ray[1];
                 sample.longer = way_of(p->rays, slope, ray);
