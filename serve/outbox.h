@@ -64,7 +64,7 @@ int outbox_quality(outbox *box);
 /* All that waits, in order, which the caller then owns; NULL: nothing. */
 outgoing *outbox_take(outbox *box);
 
-/* The newest outgoing of a topic, shared; NULL: none yet. */
+/* The newest message of a topic, shared; NULL: none yet. */
 outgoing *outbox_newest(outbox *box, message_topic topic);
 
 #endif

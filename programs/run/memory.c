@@ -5,7 +5,7 @@
  *                refused      |     in slabs           |    in memory
  *
  * Bytes of an interesting voxel are those of the encodings: its value of 8 or
- * 16 bits, or four floats for the exact methods.  Its position takes little
+ * 16 bits, or four floats for the footprint methods.  Its position takes little
  * more than one bit. */
 #include "run/memory.h"
 #include "commands/commands.h"

@@ -18,7 +18,7 @@ except ImportError as missing:
 import oracle
 
 place = oracle.folder()
-# The exact method, whose pictures do not depend on how the grid is numbered.
+# The footprint method, whose pictures do not depend on how the grid is numbered.
 LOOK = ["-q", "-s", "48x48", "--method", "footprint", "--azimuth", "25", "--elevation", "20", "--view",
         "+y", "--range", "0,3000", "--preset", "linear", "--no-labels"]
 TOLERANCE = "1/255"

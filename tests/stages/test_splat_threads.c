@@ -1,4 +1,4 @@
-/* tests/stages/test_splat_threads.c - the exact methods by any number of
+/* tests/stages/test_splat_threads.c - the footprint methods by any number of
  * threads, on random runs of random samples, and in memory that is there. */
 #include "reference/model.h"
 

@@ -138,7 +138,7 @@ refused 5 "the smallest slab" \
 refused 5 "a deterministic picture by shear-warp" \
     'a deterministic picture by method shear-warp needs all voxels' \
     "$TOOL" render a.nrrd "${small[@]}" --deterministic --memory 11M -q
-refused 5 "a deterministic picture by an exact method" \
+refused 5 "a deterministic picture by a footprint method" \
     'a deterministic picture by method footprint needs all voxels' \
     "$TOOL" render a.nrrd "${small[@]}" --method footprint --deterministic \
     --memory 11M -q
