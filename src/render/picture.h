@@ -147,7 +147,7 @@ bool snow_group_rises(const snow_placement *placement, snow_group_node node);
 extern const snow_render_method snow_method_footprint, snow_method_groups,
     snow_method_raycast, snow_method_shear_warp;
 
-/* These belong to snow_method_footprint (exact/exact.c). The first frees
+/* These belong to snow_method_footprint (footprint/footprint.c). The first frees
  * its buffers, which are kept from picture to picture; adds a job's
  * voxels and bytes to job->stats, once its image is made. Errors:
  * SNOW_STATUS_NO_MEMORY. */
