@@ -3,7 +3,7 @@
  * The thread that renders puts pictures into a queue; its workers make a file
  * of each, and the bytes for ffmpeg.  A frame's way:
  *
- *   render -> copy -> compress aside, sync | rename, "done", bytes to ffmpeg
+ *   render -> copy -> compress aside, sync | record, rename, bytes to ffmpeg
  *                     several at once      | one after another
  *
  * Frames that an earlier run has left whole go the second half only, and only

@@ -190,9 +190,11 @@ typedef struct frame_line {
     int64_t bytes;    /* 0: not made yet */
 } frame_line;
 
-/* A truncated line is the last one, and is ignored. */
+/* A torn line is the last one. It is ignored, and cut off before others are
+ * written. */
 static void find_lines(const char *text, int64_t count, frame_line *lines,
                        frame_record *out) {
+    const char *begin = text;
     for (; strchr(text, '\n'); text += line_length(text)) {
         frame_line found = {.line = text};
         int64_t index;
@@ -208,6 +210,7 @@ static void find_lines(const char *text, int64_t count, frame_line *lines,
         if (index < count)
             lines[index] = found;
     }
+    out->whole = text - begin;
 }
 
 static void mark_kept(const frame_line *lines, const movie_place *place,
@@ -263,13 +266,11 @@ static int check_frames(const options *opts, const shot_list *list,
         const frame_line *old = &lines[i];
         if (!old->line || (i >= list->looked && !out->kept[i]))
             continue;
-        char *now = text_of(NULL, list, i);
-        bool same = now && is_same_line(old->what, now);
+        const char *now = out->inputs[i];
+        bool same = is_same_line(old->what, now);
         out->renewed |= !same;
-        if (!same &&
-            !(now && old->count < list->count && has_grown(old->what, now)))
-            done = fail_other(opts, old->line, now ? now : "out of memory");
-        free(now);
+        if (!same && !(old->count < list->count && has_grown(old->what, now)))
+            done = fail_other(opts, old->line, now);
     }
     return done;
 }
@@ -329,7 +330,7 @@ static int compare(const options *opts, const shot_list *list,
         done = fail_output("%s: an unfinished movie is in %s; use --resume to "
                            "continue or --overwrite to start again",
                            place->output, place->folder);
-    else if (!opts->resume)
+    else
         done = check_other_files(opts, place, true);
     free(lines);
     if (done == CONTINUE || !opts->overwrite)
@@ -369,6 +370,20 @@ static int describe(const options *opts, const shot_list *list,
     return out->head ? CONTINUE : fail_list(list);
 }
 
+/* Inputs are looked at before any is read: one that changes meanwhile shows
+ * when the run is resumed. */
+static int list_inputs(const shot_list *list, frame_record *out) {
+    out->kept = calloc((size_t)list->count, sizeof *out->kept);
+    out->inputs = calloc((size_t)list->count, sizeof *out->inputs);
+    if (!out->kept || !out->inputs)
+        return fail_list(list);
+    out->count = list->count;
+    for (int64_t i = 0; i < list->count; i++)
+        if (!(out->inputs[i] = text_of(NULL, list, i)))
+            return fail_list(list);
+    return CONTINUE;
+}
+
 int record_open(const options *opts, shot_list *list, const movie_place *place,
                 frame_record *out) {
     *out = (frame_record){.file = -1, .anew = true};
@@ -379,8 +394,9 @@ int record_open(const options *opts, shot_list *list, const movie_place *place,
     const int64_t all = list->looked;
     if (old && opts->resume)
         keep_look(old, list);
-    out->kept = calloc((size_t)list->count, sizeof *out->kept);
-    done = out->kept ? describe(opts, list, out) : fail_list(list);
+    done = list_inputs(list, out);
+    if (done == CONTINUE)
+        done = describe(opts, list, out);
     if (done != CONTINUE) {
         free(old);
         return done;
@@ -421,18 +437,17 @@ int record_claim(frame_record *record, const movie_place *place) {
     return is_locked_by_others(record->file) ? EAGAIN : 0;
 }
 
+/* A line is written at once, so that few are torn. */
 static int write_line(const frame_record *record, const shot_list *list,
                       int64_t index, int64_t bytes) {
-    char begin[96];
-    char *what = text_of(NULL, list, index);
-    int length = snprintf(begin, sizeof begin,
-                          "frame %" PRId64 " of %" PRId64 " bytes %" PRId64 " ",
-                          index, list->count, bytes);
-    int number = what ? write_all(record->file, begin, (size_t)length) : ENOMEM;
-    if (number == 0)
-        number = write_all(record->file, what, strlen(what));
-    free(what);
-    return number;
+    char line[96 + 2 * PATH_MAX];
+    int length =
+        snprintf(line, sizeof line,
+                 "frame %" PRId64 " of %" PRId64 " bytes %" PRId64 " %s", index,
+                 list->count, bytes, record->inputs[index]);
+    return length > 0 && (size_t)length < sizeof line
+               ? write_all(record->file, line, (size_t)length)
+               : ENAMETOOLONG;
 }
 
 /* Old frames are removed before the record that lists them, so that an
@@ -470,7 +485,12 @@ static int write_known(frame_record *record, const movie_place *place,
 
 int record_add(frame_record *record, const movie_place *place,
                const shot_list *list, int64_t index, int64_t bytes) {
-    int number = record->anew ? start_anew(record, place, list->count) : 0;
+    int number = 0;
+    if (record->anew)
+        number = start_anew(record, place, list->count);
+    else if (record->whole && ftruncate(record->file, record->whole) != 0)
+        number = errno;
+    record->whole = 0;
     if (number == 0 && (record->anew || record->renewed))
         number = write_known(record, place, list);
     record->anew = record->renewed = number != 0;
@@ -480,6 +500,9 @@ int record_add(frame_record *record, const movie_place *place,
 void record_close(frame_record *record) {
     if (record->file >= 0)
         close(record->file);
+    for (int64_t i = 0; i < record->count; i++)
+        free(record->inputs[i]);
+    free(record->inputs);
     free(record->head);
     free(record->kept);
     *record = (frame_record){.file = -1};

@@ -28,6 +28,9 @@
 typedef struct frame_record {
     int file;       /* locked; -1: none yet */
     char *head;     /* the new text before the frames' lines */
+    char **inputs;  /* per frame: its line from the azimuth on */
+    int64_t count;  /* of inputs */
+    int64_t whole;  /* bytes of whole lines, where a torn one may follow */
     bool *kept;     /* per frame: its complete file exists */
     int64_t keeps;  /* how many */
     int64_t listed; /* frames that an earlier record lists, also beyond ours */

@@ -19,9 +19,8 @@ static void warn_option(const options *opts, const char *name) {
 
 void warn_unused(const options *opts) {
     static const char *const of_opacity[] = {"opacity", "gradient-opacity"};
-    static const char *const of_light[] = {
-        "light",    "shade",     "ambient",         "diffuse",
-        "specular", "shininess", "depth-darkening", "occlusion"};
+    static const char *const of_light[] = {"light", "shade", "material",
+                                           "depth-darkening", "occlusion"};
     bool lit = strcmp(opts->mode, "iso") == 0;
     if (strcmp(opts->mode, "over") == 0 || !is_shown(opts))
         return;

@@ -185,13 +185,14 @@ static int take(listener *l, client *c, message *m) {
     case MESSAGE_SET:
         set(l, c, m);
         break;
-    case MESSAGE_MOVING:
+    case MESSAGE_MOVING: {
         bool moving = false;
         c->moving = m->on;
         for (const client *other = l->clients; other; other = other->next)
             moving = moving || other->moving;
         state_set_moving(l->state, moving);
         break;
+    }
     case MESSAGE_ACK:
         if (client_acknowledge(c))
             count_links(l);

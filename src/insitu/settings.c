@@ -28,7 +28,7 @@ static snow_status keep_clip(snow_insitu *insitu, const double *planes,
     if (count && !planes)
         return snow_insitu_refuse(insitu,
                                   "no clip planes where there are to be %zu; "
-                                  "give them, or a count of 0",
+                                  "give them, or none",
                                   count);
     for (size_t i = 0; i < 4 * count; i++)
         if (!isfinite(planes[i]))

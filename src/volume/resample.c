@@ -170,7 +170,7 @@ static snow_status resample(regrid *r, const snow_volume_info *box,
         info.intercept = 0;
     }
     SNOW_TRY(snow_volume_new(volume->context, &info, &r->to));
-    /* Returns whether each voxel of the new grid is one of the volume's. */
+    /* Is each voxel of the new grid one of the volume's? */
     double off = 0;
     for (int axis = 0; axis < 3; axis++) {
         off = fmax(off, fabs(r->origin[axis] - rint(r->origin[axis])));

@@ -199,7 +199,7 @@ snow_status snow_slabs_next(snow_slabs *slabs, const snow_volume **slab) {
         slabs->begun = true;
         return SNOW_STATUS_OK;
     }
-    /* Returns whether a slab of a file is left, from `next` on. */
+    /* Is a slab of the file left, from `next` on? */
     if (!slabs->falls && slabs->next >= slabs->slices) {
         slabs->falls = true;
         slabs->next = slabs->nearest - slabs->count;

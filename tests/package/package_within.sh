@@ -8,9 +8,9 @@ mkdir snowglass
 cp -r "$SOURCE"/{CMakeLists.txt,README.md,LICENSE,CHANGELOG.md,CONTRIBUTING.md} \
     "$SOURCE"/{bench,bindings,cmake,docs,examples,fuzz,include,programs,python,scripts,src} \
     snowglass
+. "$HERE/package/compiled.sh" snowglass
 hide_project tests/package/within examples/minimal.c examples/array.c
 
-. "$HERE/package/compiled.sh" snowglass
 built=snowglass/built
 configure() {
     cmake -S within -B $built -DSNOWGLASS="$WORK/snowglass" \

@@ -115,9 +115,9 @@ static bool place_by_mesh(const hdf5_file *file, hid_t object,
         memcpy(info->unit, "m", 2);
     else
         unit = 1;
-    /* Returns whether the labels, and all in their order, begin with the
-     * fastest axis: the array was written by a program that counts indices as
-     * Fortran does. */
+    /* Do the labels, and all in their order, begin with the fastest axis? Then
+     * the array was written by a program that counts indices as Fortran does.
+     */
     char text[4];
     double code = 0;
     read_text(file, object, "dataOrder", text, sizeof text);

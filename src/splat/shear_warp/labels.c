@@ -36,9 +36,9 @@ static int slice_member(const snow_value_store *s, int label, int64_t i,
     int here = code_of(s, u, v, k) == label ? SNOW_VALUE_MOST : 0;
     if (u == i && v == j)
         return here;
+    /* The voxel inside of the one at a side. */
     if (u != i)
         u = s->columns == 1 ? 0 : i < 0 ? 1 : s->columns - 2;
-    /* The voxel inside of the one at a side. */
     else
         v = s->rows == 1 ? 0 : j < 0 ? 1 : s->rows - 2;
     return 2 * here - (code_of(s, u, v, k) == label ? SNOW_VALUE_MOST : 0);
