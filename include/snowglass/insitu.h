@@ -78,10 +78,15 @@ typedef struct snow_insitu_work {
     size_t size;
     snow_ghosts ghosts;
     snow_balance balance;
-    double seconds; /* limits: of a step in the mean, of each rank's context; */
-    uint64_t bytes; /* 0: none. Pictures are lowered or left out (docs: Cost) */
 } snow_insitu_work;
 SNOW_RECORD(snow_insitu_work);
+/* Pictures are lowered or left out to keep to them (docs: Cost). */
+typedef struct snow_insitu_limits {
+    size_t size;
+    double seconds; /* of a step in the mean; 0: none */
+    uint64_t bytes; /* of each rank's context; 0: none */
+} snow_insitu_limits;
+SNOW_RECORD(snow_insitu_limits);
 /* What is drawn over pictures (snow_time_text, snow_overlay_box). */
 typedef struct snow_insitu_annotations {
     size_t size;
@@ -107,6 +112,7 @@ typedef struct snow_insitu_settings {
     const snow_insitu_annotations *annotations;
     const snow_ranks_options *ranks;
     const snow_insitu_work *work;
+    const snow_insitu_limits *limits;
 } snow_insitu_settings;
 SNOW_RECORD(snow_insitu_settings);
 SNOW_API snow_status snow_insitu_set(

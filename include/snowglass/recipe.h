@@ -44,7 +44,7 @@ typedef struct snow_recipe {
     const char *annotate, *box; /* "step", "time=FORMAT"; "axes"; or NULL */
     bool reread;                /* in situ: when the file changes */
     const char *overlay, *overlay_look; /* of the tool, or NULL */
-    double limit_seconds; /* in situ, as in snow_insitu_work; 0: not given */
+    double limit_seconds; /* in situ, as in snow_insitu_limits; 0: not given */
     int64_t limit_bytes;
     const char *channels, *steps; /* of the tool: --channel, --time; or NULL */
 } snow_recipe;

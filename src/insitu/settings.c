@@ -68,14 +68,26 @@ static snow_status keep_work(snow_insitu *insitu,
                                   "invalid ghosts %d or balance %d; use values "
                                   "of snow_ghosts and snow_balance",
                                   (int)work.ghosts, (int)work.balance);
-    if (!(work.seconds >= 0))
-        return snow_insitu_refuse(
-            insitu, "invalid limit %g s: must not be negative", work.seconds);
     insitu->ghosts = work.ghosts;
     insitu->balance = work.balance;
     insitu->changed = true;
-    insitu->limit_seconds = work.seconds;
-    insitu->limit_bytes = work.bytes;
+    return SNOW_STATUS_OK;
+}
+
+/* Limits that are given again, as by a recipe that is read for each step, leave
+ * pictures as they have been lowered. */
+static snow_status keep_limits(snow_insitu *insitu,
+                               const snow_insitu_limits *given) {
+    snow_insitu_limits limits;
+    INSITU_TRY(INSITU_READ(insitu, snow_insitu_limits, given, &limits));
+    if (!(limits.seconds >= 0))
+        return snow_insitu_refuse(
+            insitu, "invalid limit %g s: must not be negative", limits.seconds);
+    if (insitu->limit_seconds == limits.seconds &&
+        insitu->limit_bytes == limits.bytes)
+        return SNOW_STATUS_OK;
+    insitu->limit_seconds = limits.seconds;
+    insitu->limit_bytes = limits.bytes;
     insitu->lowering = SNOW_DEGRADATION_NONE;
     insitu->to_skip = 0;
     return SNOW_STATUS_OK;
@@ -124,11 +136,17 @@ snow_status snow_insitu_set(snow_insitu *insitu,
         INSITU_TRY(keep_annotations(insitu, s.annotations));
     if (s.ranks)
         INSITU_TRY(keep_ranks(insitu, s.ranks));
-    return s.work ? keep_work(insitu, s.work) : SNOW_STATUS_OK;
+    if (s.work)
+        INSITU_TRY(keep_work(insitu, s.work));
+    return s.limits ? keep_limits(insitu, s.limits) : SNOW_STATUS_OK;
 }
 
 void snow_insitu_work_init_sized(snow_insitu_work *work, size_t size) {
     snow_record_init(work, size, NULL, sizeof *work);
+}
+
+void snow_insitu_limits_init_sized(snow_insitu_limits *limits, size_t size) {
+    snow_record_init(limits, size, NULL, sizeof *limits);
 }
 
 void snow_insitu_annotations_init_sized(snow_insitu_annotations *annotations,

@@ -129,10 +129,10 @@ static snow_status set_picture(const snow_recipe *recipe, const picture *p,
         .step = step != NULL,
         .outline = recipe->box != NULL,
         .axes = recipe->box && strcasecmp(recipe->box, "axes") == 0};
-    const snow_insitu_work work = {.size = sizeof work,
-                                   .seconds = recipe->limit_seconds,
-                                   .bytes = (uint64_t)recipe->limit_bytes};
-    const bool limited = work.seconds > 0 || work.bytes > 0;
+    const snow_insitu_limits limits = {.size = sizeof limits,
+                                       .seconds = recipe->limit_seconds,
+                                       .bytes = (uint64_t)recipe->limit_bytes};
+    const bool limited = limits.seconds > 0 || limits.bytes > 0;
     const snow_insitu_settings settings = {.size = sizeof settings,
                                            .output = recipe->output,
                                            .image = &recipe->image,
@@ -144,7 +144,7 @@ static snow_status set_picture(const snow_recipe *recipe, const picture *p,
                                            .clip_count =
                                                count_planes(recipe->data.clip),
                                            .annotations = &annotations,
-                                           .work = limited ? &work : NULL};
+                                           .limits = limited ? &limits : NULL};
     return snow_insitu_set(insitu, &settings);
 }
 

@@ -95,6 +95,7 @@ static void a_file_that_is_missing_makes_no_image(void **state) {
     X(snow_comm_ops)           \
     X(snow_insitu_stats)       \
     X(snow_insitu_work)        \
+    X(snow_insitu_limits)      \
     X(snow_insitu_settings)    \
     X(snow_insitu_annotations) \
     X(snow_recipe)             \

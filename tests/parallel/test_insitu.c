@@ -912,13 +912,11 @@ static snow_status movie_rank(snow_comm *comm, void *user) {
         status = SET(insitu, .look = &automatic);
     if (status == SNOW_STATUS_OK)
         status = SET(insitu, .output = m->pattern);
-    const snow_insitu_work limits = {.size = sizeof limits,
-                                     .ghosts = m->scene.ghosts,
-                                     .balance = m->scene.balance,
-                                     .seconds = m->limit_seconds,
-                                     .bytes = m->limit_bytes};
+    const snow_insitu_limits limits = {.size = sizeof limits,
+                                       .seconds = m->limit_seconds,
+                                       .bytes = m->limit_bytes};
     if (status == SNOW_STATUS_OK)
-        status = SET(insitu, .work = &limits);
+        status = SET(insitu, .limits = &limits);
     if (status == SNOW_STATUS_OK)
         status = make_movie(insitu, m, snow_comm_rank(comm));
     snow_insitu_free(insitu);
