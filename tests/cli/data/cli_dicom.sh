@@ -135,7 +135,7 @@ run 0 "as JSON" "$TOOL" info cube.nrrd whole --patient --json
 prints '"path": "whole".*"patient": "Doe.Jane"'
 run 0 "a list without that" "$TOOL" info cube.nrrd whole
 check "has no name" bash -c "! grep -q Doe '$OUT' '$ERR'"
-refused 2 "options of the look that exclude one another" '\-\-window: needs' \
+refused 2 "a window without its centre" "\-\-window: '5' is not a window" \
     "$TOOL" info cube.nrrd whole --window 5
 
 # Slices beside volumes of their own are listed once, as their folder.

@@ -24,8 +24,8 @@ done
 
 # What can be read in slabs is cli_stream.sh's.
 refused 5 "voxels over the limit" \
-    'a.nrrd: slabs of .* neighbours, and their encoding do not fit under the limit of 3.8 MiB' \
-    "$TOOL" render a.nrrd "${small[@]}" --method footprint -o c.png --memory 3900K
+    'a.nrrd: slabs of .* neighbours, and their encoding do not fit under the limit of 3.3 MiB' \
+    "$TOOL" render a.nrrd "${small[@]}" --method footprint -o c.png --memory 3400K
 refused 5 "a picture over the limit" 'need 17.1 MiB' \
     "$TOOL" render a.nrrd -s 1024x1024 -o c.png --memory 6M
 refused 5 "encodings over the limit" 'their encoding do not fit under the limit' \
@@ -33,7 +33,7 @@ refused 5 "encodings over the limit" 'their encoding do not fit under the limit'
 refused 5 "standard input" 'under a limit' bash -c \
     "'$TOOL' render - -o c.png --memory 3000K <a.nrrd"
 refused 5 "a turntable" 'do not fit' "$TOOL" turntable a.nrrd \
-    "${small[@]}" --method footprint --frames 3 -o 'f_%d.png' --memory 3900K
+    "${small[@]}" --method footprint --frames 3 -o 'f_%d.png' --memory 3400K
 refused 5 "a movie" 'need 4.0 MiB' "$TOOL" movie a.nrrd a.nrrd \
     "${small[@]}" --range p1,p99 -o 'f_%d.png' --memory 3900K
 check "nothing is left" test ! -e c.png -a ! -e f_0.png
