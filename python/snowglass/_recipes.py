@@ -2,6 +2,7 @@
 command line."""
 from __future__ import annotations
 
+import json
 import os
 import shlex
 from typing import Any, Mapping, Optional
@@ -290,5 +291,6 @@ def command(recipe: Mapping[str, Any]) -> str:
         if key not in ("input", "verb"):
             words += ["--" + key] if value is True else \
                 [f"--legend={value}"] if key == "legend" else \
+                ["--config", json.dumps({key: value})] if key == "opacity-unit" else \
                 ["--" + key, _word(key, value)]
     return shlex.join(words)
