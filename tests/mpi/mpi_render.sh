@@ -95,17 +95,17 @@ run 0 "a turntable is resumed" launch 3 "$MPI_TOOL" turntable v.nrrd \
 check "one frame was missing" grep -q '"rendered": 1, "kept": 3' stats.json
 run 0 "its frame is the same" "$TOOL" compare one_2.png many_2.png \
     --tolerance 1.001/255
-number=0
+number=0 # of files that say nothing of their grid, so that it is one
 for name in head engine shells; do
-    "$TOOL" phantom $name --dims 32x32x32 -q -o step$((number++)).nrrd
+    "$TOOL" phantom $name --dims 32x32x32 -q -o step$((number++)).npy
 done
-frames_as_one "a movie" 2 movie step%d.nrrd
+frames_as_one "a movie" 2 movie step%d.npy
 
 # Ranks share the reading for the look of all steps where there are more of them
 # than steps, or a step is too large for one: the look is that of one process.
-"$TOOL" phantom engine --dims 240x240x251 -q -o large0.nrrd
-"$TOOL" phantom head --dims 240x240x251 -q -o large1.nrrd
-for way in "step0.nrrd step1.nrrd --crop :,3:30,5:31" "large0.nrrd large1.nrrd"; do
+"$TOOL" phantom engine --dims 240x240x251 -q -o large0.npy
+"$TOOL" phantom head --dims 240x240x251 -q -o large1.npy
+for way in "step0.npy step1.npy --crop :,3:30,5:31" "large0.npy large1.npy"; do
     # shellcheck disable=SC2086
     run 0 "a movie alone, $way" "$TOOL" movie $way -s 64x64 -y -o step_%d.npy
     look=$(grep -o 'grey .*histogram)' "$ERR")
@@ -120,7 +120,7 @@ for way in "step0.nrrd step1.nrrd --crop :,3:30,5:31" "large0.nrrd large1.nrrd";
     done
 done
 refused 5 "a step too large for one" 'the range of all steps needs' \
-    "$TOOL" movie large0.nrrd large1.nrrd --memory 13600K -o x_%d.png
+    "$TOOL" movie large0.npy large1.npy --memory 13600K -o x_%d.png
 
 # --- masks --------------------------------------------------------------------
 
@@ -163,11 +163,11 @@ check "4 ranks take less each" [ "$(peak many.json)" -le \
 rm large.nrrd
 
 # shellcheck disable=SC2054
-turn=(turntable slab.nrrd --frames 3 -s 64x64 -y -q --background black)
+turn=(turntable slab.nrrd --frames 4 -s 64x64 -y -q --background black)
 run 0 "a turn in memory" launch 3 "$MPI_TOOL" "${turn[@]}" -o one_%d.png
 run 0 "a turn in its file" launch 3 "$MPI_TOOL" "${turn[@]}" -o many_%d.png \
     --memory 6M
-for frame in 0 1 2; do
+for frame in 0 1 2 3; do
     check "frame $frame" cmp -s one_$frame.png many_$frame.png
 done
 
@@ -176,7 +176,7 @@ done
 # That nothing is left is told once, whoever has read what.
 for way in "render mask.nrrd -o x.png" \
     "turntable mask.nrrd -o x_%d.png --frames 2" \
-    "movie step0.nrrd step1.nrrd step2.nrrd -o x_%d.png"; do
+    "movie step0.npy step1.npy step2.npy -o x_%d.png"; do
     # shellcheck disable=SC2086
     run 7 "$way by $MOST" launch "$MOST" "$MPI_TOOL" $way -y -s 32x32 \
         --clip 0,0,1,-1000
