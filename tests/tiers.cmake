@@ -49,7 +49,8 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     test_phantom test_perspective test_camera_points
     cli_documents cli_bench cli_figures cli_ranks cli_stream
     cli_again cli_matrix cli_turntable cli_modules cli_memory cli_progress
-    serve_browser cli_large oracle_zarr oracle_tiff oracle_vtk oracle_pictures)
+    serve_browser cli_interrupt cli_large cli_measurements oracle_zarr oracle_tiff
+    oracle_vtk oracle_pictures)
 
 # Tenths of a second on one core in the short tier, of those that take more than
 # one second (scripts/test_costs); before them what takes longest in the long
