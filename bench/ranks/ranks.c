@@ -27,7 +27,7 @@ static const char help[] =
     "snowglass-mpi;\n"
     "each works on one thread.  Of the pictures the fastest counts; the volume "
     "is\n"
-    "encoded already.  Splats are told in processor time, the rest by the "
+    "encoded already.  Splats are in processor time, the rest is by the "
     "clock,\n"
     "which says little where there are more ranks than processors: then give\n"
     "--network, with which ranks work one at a time, as if each had a machine "
@@ -100,7 +100,8 @@ static int check(const bench_option_table *table, const ranks_options *options,
                                        "there is no FILE; name one", "");
     if (comm && options->counts.count)
         return bench_option_table_fail(
-            table, said, "mpirun tells how many ranks; leave out", "--ranks");
+            table, said, "mpirun sets the number of ranks; leave out",
+            "--ranks");
     if (comm && options->simulated)
         return bench_option_table_fail(
             table, said, "MPI's network is not simulated; leave out",

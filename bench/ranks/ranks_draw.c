@@ -102,7 +102,7 @@ snow_status ranks_draw_alone(snow_context *context,
 
 /* --- one of many ---------------------------------------------------------- */
 
-/* What a rank tells the others: the least of its pictures. */
+/* The figures that a rank sends: the least of its pictures. */
 typedef struct rank_figures {
     double splat, exchange;
     uint64_t bytes_sent, bytes_in_place;

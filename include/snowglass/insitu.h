@@ -80,11 +80,10 @@ typedef struct snow_insitu_work {
     snow_balance balance;
 } snow_insitu_work;
 SNOW_RECORD(snow_insitu_work);
-/* Pictures are lowered or left out to keep to them (docs: Cost). */
-typedef struct snow_insitu_limits {
+typedef struct snow_insitu_limits { /* docs/insitu.md, Cost; 0: none */
     size_t size;
-    double seconds; /* of a step in the mean; 0: none */
-    uint64_t bytes; /* of each rank's context; 0: none */
+    double seconds; /* of a step in the mean */
+    uint64_t bytes; /* of each rank's context */
 } snow_insitu_limits;
 SNOW_RECORD(snow_insitu_limits);
 /* What is drawn over pictures (snow_time_text, snow_overlay_box). */
@@ -97,8 +96,7 @@ typedef struct snow_insitu_annotations {
 } snow_insitu_annotations;
 SNOW_RECORD(snow_insitu_annotations);
 /* All that holds for many steps, alike on all ranks, copied. What is NULL stays
- * as it was, at first the default. A look is fitted to the next picture's
- * values, each time that it is given. */
+ * as it was, at first the default. A look given fits the next picture. */
 typedef struct snow_insitu_settings {
     size_t size;
     const char *output; /* where a step writes, with one %d (or %04d) */

@@ -58,7 +58,7 @@ static void drop_buffers(snow_combiner *combiner) {
     combiner->shape = (snow_exchange_params){0};
 }
 
-/* Returns whether nobody reads any more what was lent. After an exchange that
+/* Returns whether nobody reads any more what was shared. After an exchange that
  * has not ended there is nobody to wait for. */
 static bool give_back(snow_combiner *combiner) {
     return combiner->exchange.ended && !snow_comm_broken(combiner->comm) &&

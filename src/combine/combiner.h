@@ -14,7 +14,7 @@ typedef struct snow_traffic {
     snow_message *messages;
     snow_loan *loans; /* of the messages to and from ranks of this node */
     int count;
-    snow_message *returns; /* of what was lent */
+    snow_message *returns; /* of what was shared */
     int shared;
 } snow_traffic;
 
@@ -136,7 +136,7 @@ snow_status snow_traffic_send(snow_combiner *combiner, snow_traffic *out,
 /* Returns what was borrowed in the round `level`. */
 snow_status snow_traffic_return(snow_combiner *combiner, int level);
 
-/* Waits until all messages of a round are sent; until what was lent in it has
+/* Waits until all messages of a round are sent; until what was shared in it has
  * been returned; and the latter for all rounds. */
 snow_status snow_traffic_await_sent(snow_combiner *combiner, snow_traffic *out);
 snow_status snow_traffic_await_return(snow_combiner *combiner,

@@ -82,7 +82,7 @@ int snow_comm_ranks_per_node(const snow_comm *comm);
  * ranks of this node share none, or while a combiner of any rank has it.
  * Errors, alike on all ranks: SNOW_STATUS_NO_MEMORY, those of the transport. */
 snow_status snow_comm_take_shared(snow_comm *comm, size_t bytes, void **out);
-void snow_comm_drop_shared(snow_comm *comm); /* what was lent has come back */
+void snow_comm_drop_shared(snow_comm *comm); /* what was shared has come back */
 
 /* For snow_comm_free: it is not counted any more. */
 void snow_comm_forget_shared(snow_comm *comm);

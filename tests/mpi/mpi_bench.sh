@@ -20,7 +20,7 @@ run 0 "one rank" launch 1 "$MPI_TOOL" bench ranks $head
 prints '^    1 .* 1\.00 +[0-9]+ %$'
 # shellcheck disable=SC2086
 run 2 "a number of ranks" bench ranks $head --ranks 4
-says "mpirun tells how many ranks"
+says "mpirun sets the number of ranks"
 # shellcheck disable=SC2086
 run 2 "a simulated network" bench ranks $head --network 1,1,1
 says "is not simulated"
