@@ -30,8 +30,8 @@ static const char help[] =
     "original splatting, the same by footprint tables (original-table), and\n"
     "tested splatting, with the same kernel.  It takes many minutes.\n"
     "\n"
-    "Every row is verified before its times are printed.  Figures tell on\n"
-    "stderr how far they are and how long they take yet.  all prints with\n"
+    "Every row is verified before its times are printed.  Figures print on\n"
+    "stderr how far they are, and the time that is left.  all prints with\n"
     "--json one object that holds that of each by its name.\n"
     "\n"
     "  --data DIR       folder that holds "
@@ -143,6 +143,7 @@ int bench_options_read(const bench_entry *entry, int argc, char **argv,
         {OF_EVERY, {"--quick", BENCH_FLAG, &out->quick, 0, 0, NULL}},
         {OF_EVERY, {"--runs", BENCH_WHOLE, &out->runs, 5, 99, NULL}},
         {OF_EVERY, {"--help", BENCH_FLAG, &helps, 0, 0, NULL}},
+        {OF_EVERY, {"-h", BENCH_FLAG, &helps, 0, 0, NULL}},
         {BENCH_OF_TABLES, {"--kernel", BENCH_TEXT, &kernel, 0, 0, NULL}},
         {BENCH_OF_TABLES,
          {"--azimuth", BENCH_NUMBER, &out->azimuth, -1e6, 1e6, NULL}},
