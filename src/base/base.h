@@ -51,6 +51,8 @@ struct snow_context {
                             planes are nothing */
     snow_file_blocks blocks; /* of the file that was looked at last, if its
                                 reader says so */
+    bool inflates; /* and whether that is a stream of gzip or zlib, in which a
+                      voxel is reached by unpacking all before it */
     char message[SNOW_MESSAGE_BYTES];
 };
 

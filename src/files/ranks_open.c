@@ -1,10 +1,6 @@
 /* files/ranks_open.c - snow_ranks_open: the ranks of parallel/open.c over the
  * readers of formats/, neither of which knows the other. */
 #include "parallel/part.h"
-#include "volume/mask.h"
-
-#include <string.h>
-#include <sys/stat.h>
 
 static snow_status open_file(snow_context *context, const char *path,
                              const snow_volume_options *options,
@@ -17,27 +13,12 @@ static snow_status open_file(snow_context *context, const char *path,
     return SNOW_STATUS_OK;
 }
 
-static snow_status open_relayed(snow_context *context, const char *path,
-                                snow_relay *relay,
-                                const snow_volume_options *options,
-                                snow_volume_info *info, snow_volume **out) {
-    /* A relay is of one file: of no mask, and no phantom of such a name. */
-    struct stat about;
-    if (!(strncmp(path, "phantom:", 8) != 0 && stat(path, &about) == 0 &&
-          S_ISREG(about.st_mode) && !snow_mask_asked(options) &&
-          !options->label_table))
-        return open_file(context, path, options, info, out);
-    snow_volume_info_init(info);
-    return snow_volume_open_relayed(context, path, relay, options, info, out);
-}
-
 snow_status snow_ranks_open(snow_comm *comm, const char *path,
                             const snow_volume_options *options,
                             const snow_look *look, const snow_view *view,
                             const snow_settings *settings,
                             const snow_ranks_options *how, snow_volume **volume,
                             snow_transfer **transfer) {
-    return snow_ranks_open_by(open_file, open_relayed, snow_format_name, comm,
-                              path, options, look, view, settings, how, volume,
-                              transfer);
+    return snow_ranks_open_by(open_file, snow_format_name, comm, path, options,
+                              look, view, settings, how, volume, transfer);
 }

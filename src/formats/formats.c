@@ -12,10 +12,8 @@
 #include "formats/unsupported.h"
 #include "formats/zarr/zarr.h"
 #include "io/folder.h"
-#include "io/relayed.h"
 #include "phantom/phantom.h"
 #include "volume/mask.h"
-#include "volume/relayed.h"
 
 #include <math.h>
 #include <string.h>
@@ -268,16 +266,14 @@ static snow_status open_stack(snow_context *context, const char *path,
 
 static snow_open_named_fn open_named_path;
 
-static snow_status open_file(snow_context *context, const char *path,
-                             snow_relay *relay, int depth,
+static snow_status open_file(snow_context *context, const char *path, int depth,
                              const snow_volume_options *options,
                              snow_volume_info *info, snow_volume **out) {
     snow_source *source;
     if (depth && snow_source_is_stream(path)) /* it could wait for ever */
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "%s: is a pipe; give a regular file", path);
-    snow_status status =
-        snow_source_open_relayed(context, path, relay, &source);
+    snow_status status = snow_source_open(context, path, &source);
     if (status != SNOW_STATUS_OK)
         return name_failure(context, status,
                             strcmp(path, "-") ? path : "standard input");
@@ -329,7 +325,7 @@ static snow_status open_named_path(snow_context *context, const char *path,
     }
     if (snow_is_folder(path) || snow_is_pattern(path))
         return open_stack(context, path, options, info, out);
-    return open_file(context, path, NULL, depth, options, info, out);
+    return open_file(context, path, depth, options, info, out);
 }
 
 /* A volume on the way to be opened, component by component. */
@@ -340,16 +336,12 @@ typedef struct input {
     const void *bytes; /* else, in memory */
     size_t size;
     snow_bytes_behind with; /* or by a function, if there is one */
-    snow_relay *relay;      /* of a file; NULL: none */
 } input;
 
 static snow_status read_input(void *user, const snow_volume_options *options,
                               snow_volume_info *info, snow_volume **out) {
     const input *in = user;
     snow_source *source;
-    if (in->relay)
-        return open_file(in->context, in->path, in->relay, 0, options, info,
-                         out);
     if (in->is_file)
         return open_named_path(in->context, in->path, 0, options, info, out);
     snow_status status =
@@ -407,22 +399,6 @@ snow_status snow_volume_inspect(snow_context *context, const char *path,
     snow_volume_info info;
     SNOW_TRY(open_any(context, path, options, &info, NULL));
     return SNOW_RECORD_FILL(context, snow_volume_info, &info, out);
-}
-
-snow_status snow_volume_open_relayed(snow_context *context, const char *path,
-                                     snow_relay *relay,
-                                     const snow_volume_options *options,
-                                     snow_volume_info *info,
-                                     snow_volume **out) {
-    input in = {
-        .context = context, .path = path, .is_file = true, .relay = relay};
-    snow_monitor monitor;
-    snow_volume_info made;
-    snow_monitor_begin_reading(context, &monitor);
-    SNOW_TRY(snow_monitor_end(
-        &monitor, snow_components_read(context, read_input, &in, false, options,
-                                       &made, out)));
-    return SNOW_RECORD_FILL(context, snow_volume_info, &made, info);
 }
 
 snow_status snow_volume_open_streamed(snow_context *context, const char *path,

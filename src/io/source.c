@@ -2,7 +2,6 @@
  *
  * All of it uses the topmost filter stage; see io/filter.h. */
 #include "io/source.h"
-#include "base/relay.h"
 #include "io/source_internal.h"
 
 #include <assert.h>
@@ -36,8 +35,7 @@ bool snow_source_has_siblings(const snow_source *source) {
 
 /* On failure the source keeps its stages and is closed as usual. */
 snow_status snow_source_unpack(snow_source *source) {
-    return snow_filter_stage_open_inflate(source->top, source->relay,
-                                          &source->top);
+    return snow_filter_stage_open_inflate(source->top, &source->top);
 }
 
 snow_status snow_source_peek(snow_source *source, void *bytes, size_t size,
@@ -75,12 +73,10 @@ snow_status snow_source_read_all(snow_source *source, void *bytes, size_t size,
     return got == size ? SNOW_STATUS_OK : fail_short(source, what, size - got);
 }
 
-/* Skips what is not buffered, without reading, if possible.  A relay finds out
- * later whether there are as many bytes. */
+/* Skips what is not buffered, without reading, if possible. */
 static bool pass_by(snow_filter_stage *filter, uint64_t size) {
     int64_t remaining = snow_filter_stage_remaining(filter);
-    if (!filter->jump || (remaining < 0 && !filter->relay) ||
-        (remaining >= 0 && (uint64_t)remaining < size) ||
+    if (!filter->jump || remaining < 0 || (uint64_t)remaining < size ||
         !filter->jump(filter, size))
         return false;
     filter->taken += size;
@@ -188,13 +184,9 @@ snow_status snow_source_expect(const snow_source *source, uint64_t size,
 }
 
 /* Consumes the rest of a stage whose size is not known. An inflating stage
- * verifies its check sum at its end, which is the only purpose of this; what
- * others read on is theirs. */
+ * verifies its check sum at its end, which is the only purpose of this. */
 static snow_status drain(snow_filter_stage *filter, uint64_t *count) {
-    *count = 0;
-    if (filter->relay && !filter->relay->last)
-        return SNOW_STATUS_OK;
-    for (;;) {
+    for (*count = 0;;) {
         SNOW_TRY(snow_filter_stage_fill(filter, 1));
         size_t some = filter->end - filter->begin;
         if (!some)
@@ -223,9 +215,11 @@ snow_status snow_source_finish(snow_source *source) {
         if (filter == source->top)
             left += count;
     }
-    if (source->top->relay)
-        source->top->relay->left = left;
-    else
-        snow_relay_warn(source->context, source->name, false, left);
+    if (left)
+        snow_notify(source->context,
+                    "%s: %llu byte%s after the data ignored; check the sizes "
+                    "and the type",
+                    source->name, (unsigned long long)left,
+                    left == 1 ? "" : "s");
     return SNOW_STATUS_OK;
 }

@@ -12,9 +12,7 @@ struct snow_source {
     snow_filter_stage *top; /* top filter stage, which is read from */
     int depth;              /* of files that led here by name */
     snow_open_named_fn *opener;
-    struct snow_relay *relay; /* of those who unpack it, or a file beside it, in
-                                 turn (base/relay.h); NULL: nobody does */
-    bool siblings;            /* other files can be opened by name */
+    bool siblings; /* other files can be opened by name */
 };
 
 #endif

@@ -4,7 +4,6 @@
  * A name on the command line may be a pipe, and "-" is standard input; a name
  * in a header, which is untrusted, must be a regular file. */
 #include "io/filters/filter.h"
-#include "io/relayed.h"
 #include "io/source_internal.h"
 
 #include <errno.h>
@@ -114,12 +113,10 @@ static snow_status open_descriptor(snow_source *source, const char *path,
 
 /* Opens `path` (NULL: standard input) under the name of the path. */
 static snow_status open_path(snow_context *context, const char *path,
-                             snow_relay *relay, bool pipes, bool unpack,
-                             snow_source **out) {
+                             bool pipes, bool unpack, snow_source **out) {
     snow_source *source;
     const char *name = path ? path : "standard input";
     SNOW_TRY(new_source(context, name, strlen(name), &source));
-    source->relay = relay;
     source->siblings = path != NULL; /* standard input is not in a folder */
     int descriptor = -1;
     int64_t size = -1;
@@ -143,13 +140,7 @@ static snow_status open_path(snow_context *context, const char *path,
 
 snow_status snow_source_open(snow_context *context, const char *path,
                              snow_source **out) {
-    return snow_source_open_relayed(context, path, NULL, out);
-}
-
-snow_status snow_source_open_relayed(snow_context *context, const char *path,
-                                     snow_relay *relay, snow_source **out) {
-    return open_path(context, strcmp(path, "-") ? path : NULL, relay, true,
-                     true, out);
+    return open_path(context, strcmp(path, "-") ? path : NULL, true, true, out);
 }
 
 bool snow_source_is_stream(const char *path) {
@@ -247,8 +238,7 @@ static snow_status open_beside(const snow_source *source, const char *name,
                                bool unpack, snow_source **out) {
     char *path = NULL;
     SNOW_TRY(snow_source_path_beside(source, name, &path));
-    snow_status status =
-        open_path(source->context, path, source->relay, false, unpack, out);
+    snow_status status = open_path(source->context, path, false, unpack, out);
     snow_release(source->context, path);
     return status;
 }

@@ -31,8 +31,6 @@ typedef struct opening {
     snow_comm *comm;
     snow_context *context;
     snow_open_fn *open;
-    snow_open_relayed_fn *open_relayed;
-    snow_relay *relay; /* while it is this rank's turn */
     snow_format_name_fn *format_name;
     const char *path;
     snow_volume_options options;
@@ -45,7 +43,6 @@ typedef struct opening {
     const snow_ranks_options *how;
     bool again;              /* it can be read in slabs, several times, */
     bool plain;              /* at no more cost than its bytes */
-    bool packed;             /* ranks unpack it in turn */
     snow_file_blocks blocks; /* that it is packed in */
 } opening;
 
@@ -64,29 +61,8 @@ static snow_status read_box(const opening *o, const snow_part_place *p,
         options.crop[i][0] += p->stored.first[i];
         options.crop[i][1] = options.crop[i][0] + p->stored.count[i];
     }
-    SNOW_TRY(o->relay ? o->open_relayed(o->context, o->path, o->relay, &options,
-                                        &info, &volume)
-                      : o->open(o->context, o->path, &options, &info, &volume));
+    SNOW_TRY(o->open(o->context, o->path, &options, &info, &volume));
     return snow_part_set(volume, &o->whole, p, out);
-}
-
-/* What is read in turn: a box, or, where there is none, the header. */
-typedef struct reading {
-    opening *opening;
-    const snow_part_place *place;
-    snow_volume **out;
-} reading;
-
-static snow_status read_part(void *user, snow_relay *relay) {
-    const reading *r = user;
-    opening *o = r->opening;
-    if (!r->place)
-        return o->open_relayed(o->context, o->path, relay, &o->options,
-                               &o->whole, NULL);
-    o->relay = relay;
-    const snow_status status = read_box(o, r->place, r->out);
-    o->relay = NULL;
-    return status;
 }
 
 /* --- what fits into memory ------------------------------------------------ */
@@ -156,7 +132,7 @@ static bool is_plain(const opening *o) {
     struct stat about;
     snow_volume_options all = o->options;
     snow_volume_info info = o->whole;
-    if (o->packed)
+    if (o->context->inflates)
         return false;
     memset(all.crop, 0, sizeof all.crop);
     if (stat(o->path, &about) != 0 || !S_ISREG(about.st_mode))
@@ -232,18 +208,16 @@ static snow_status inspect_file(opening *o, int64_t *stream,
                        (S_ISREG(about.st_mode) || S_ISDIR(about.st_mode));
     snow_warning_fn *warning = o->context->warning;
     o->context->warning = NULL;
-    reading header = {.opening = o};
     o->context->blocks = (snow_file_blocks){{0, 0, 0}, {0, 0, 0}};
+    o->context->inflates = false;
     snow_status status =
-        snow_share_is_packed(o->context, read_part, &header, &o->packed);
-    if (!o->packed)
-        o->blocks = o->context->blocks;
+        o->open(o->context, o->path, &o->options, &o->whole, NULL);
+    o->blocks = o->context->blocks;
     const bool unpacked = status == SNOW_STATUS_OK && is_plain(o);
     o->context->warning = warning;
     SNOW_TRY(snow_comm_agree_status(o->comm, status));
     SNOW_TRY(snow_share_agree(o->comm, again, &o->again));
     SNOW_TRY(snow_share_agree(o->comm, unpacked, &o->plain));
-    SNOW_TRY(snow_share_agree(o->comm, o->packed, &o->packed));
     SNOW_TRY(snow_ranks_compare_file(o->comm, o->plain ? o->open : NULL,
                                      o->path, &o->options, &o->whole));
     /* What a mask leaves out is counted over all voxels together. */
@@ -254,7 +228,8 @@ static snow_status inspect_file(opening *o, int64_t *stream,
 /* Collective.  The share of this rank, unless it has one.  A large one stays in
  * the file where that costs little, and any where some rank has no room for it
  * and its box. */
-static snow_status read_share(opening *o, bool stream, snow_volume **share) {
+static snow_status read_share(const opening *o, bool stream,
+                              snow_volume **share) {
     static const int64_t no_layers[3];
     int ranks = snow_comm_size(o->comm), rank = snow_comm_rank(o->comm);
     snow_box box = stream
@@ -268,12 +243,7 @@ static snow_status read_share(opening *o, bool stream, snow_volume **share) {
     const bool small = bytes <= SHARE_MOST || !o->context->limit;
     SNOW_TRY(
         snow_share_agree(o->comm, fits(o, &p) && (!o->plain || small), &fit));
-    reading turn = {o, &p, share};
-    if (o->packed && fit)
-        status = snow_shares_in_turn(
-            o->comm, snow_share_readers(o->whole.dims, &o->blocks, ranks),
-            o->path, read_part, &turn);
-    else if (!*share)
+    if (!*share)
         status = o->again && !fit ? open_in_file(o, &p, share)
                                   : read_box(o, &p, share);
     return snow_comm_agree_status(o->comm, status);
@@ -392,7 +362,7 @@ static snow_status open_counted(const opening *o,
 }
 
 /* Collective.  By way of shares. */
-static snow_status open_shares(opening *o, snow_partition_params *order,
+static snow_status open_shares(const opening *o, snow_partition_params *order,
                                bool stream, snow_volume **share,
                                snow_volume **volume, snow_transfer **transfer) {
     SNOW_TRY(read_share(o, stream, share));
@@ -436,17 +406,17 @@ static snow_status read_records(opening *o, const snow_volume_options *options,
     return SNOW_STATUS_OK;
 }
 
-snow_status
-snow_ranks_open_by(snow_open_fn *open, snow_open_relayed_fn *open_relayed,
-                   snow_format_name_fn *format_name, snow_comm *comm,
-                   const char *path, const snow_volume_options *options,
-                   const snow_look *look, const snow_view *view,
-                   const snow_settings *settings, const snow_ranks_options *how,
-                   snow_volume **volume, snow_transfer **transfer) {
+snow_status snow_ranks_open_by(snow_open_fn *open,
+                               snow_format_name_fn *format_name,
+                               snow_comm *comm, const char *path,
+                               const snow_volume_options *options,
+                               const snow_look *look, const snow_view *view,
+                               const snow_settings *settings,
+                               const snow_ranks_options *how,
+                               snow_volume **volume, snow_transfer **transfer) {
     opening o = {.comm = comm,
                  .context = snow_comm_context(comm),
                  .open = open,
-                 .open_relayed = open_relayed,
                  .format_name = format_name,
                  .path = path,
                  .view = view,

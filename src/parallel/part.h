@@ -3,7 +3,6 @@
 #define SNOW_PARALLEL_PART_H
 
 #include "parallel/partition.h"
-#include "volume/relayed.h"
 #include "volume/stream.h"
 
 /* A rank's box, and with its ghosts. */
@@ -57,12 +56,13 @@ typedef const char *snow_format_name_fn(size_t index);
 
 /* Does what snow_ranks_open does, by functions that open files, which this
  * folder does not know. */
-snow_status
-snow_ranks_open_by(snow_open_fn *open, snow_open_relayed_fn *open_relayed,
-                   snow_format_name_fn *format_name, snow_comm *comm,
-                   const char *path, const snow_volume_options *options,
-                   const snow_look *look, const snow_view *view,
-                   const snow_settings *settings, const snow_ranks_options *how,
-                   snow_volume **volume, snow_transfer **transfer);
+snow_status snow_ranks_open_by(snow_open_fn *open,
+                               snow_format_name_fn *format_name,
+                               snow_comm *comm, const char *path,
+                               const snow_volume_options *options,
+                               const snow_look *look, const snow_view *view,
+                               const snow_settings *settings,
+                               const snow_ranks_options *how,
+                               snow_volume **volume, snow_transfer **transfer);
 
 #endif

@@ -68,18 +68,15 @@ says "mode mip has no depth; use mode over or iso"
 
 # --- files --------------------------------------------------------------------
 
-# Each rank reads its part, and unpacks it in turn.
+# Each rank reads its part, for which it unpacks all of a packed file.
 run 0 "a file" "$TOOL" phantom engine --dims 40x40x40 -o v.nrrd
 run 0 "a packed file" "$TOOL" phantom engine --dims 40x40x40 -o v.nii.gz
 as_one "a packed file" 3 $step v.nii.gz
-# Whoever has read the end of it, one line says what lies behind.
-for size in 40 90; do
-    run 0 "another packed file" "$TOOL" phantom engine \
-        --dims ${size}x${size}x$size -q -y -o tail.nii.gz
-    echo more >>tail.nii.gz
-    run 0 "more behind the data" launch 3 "$MPI_TOOL" tail.nii.gz -y -o x.png
-    check "is said once" [ "$(grep -c 'compressed data are ignored' "$ERR")" = 1 ]
-done
+# All ranks have read the end of it; one line says what lies behind.
+cp v.nii.gz tail.nii.gz
+echo more >>tail.nii.gz
+run 0 "more behind the data" launch 3 "$MPI_TOOL" tail.nii.gz -y -o x.png
+check "is said once" [ "$(grep -c 'compressed data are ignored' "$ERR")" = 1 ]
 
 # --- movies -------------------------------------------------------------------
 

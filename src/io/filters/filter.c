@@ -56,7 +56,7 @@ void snow_filter_stage_close(snow_filter_stage *filter) {
 static size_t room_ahead(const snow_filter_stage *filter, size_t size) {
     size_t free_bytes = SNOW_FILTER_BYTES - filter->end,
            least = size - filter->end;
-    uint64_t reach = snow_filter_stage_reach(filter);
+    uint64_t reach = filter->taken + (filter->end - filter->begin);
     uint64_t ahead = filter->horizon > reach ? filter->horizon - reach : 0;
     if (ahead < least)
         ahead = least;
@@ -127,28 +127,6 @@ int64_t snow_filter_stage_remaining(const snow_filter_stage *filter) {
         return -1;
     uint64_t size = (uint64_t)filter->size;
     return filter->taken < size ? (int64_t)(size - filter->taken) : 0;
-}
-
-bool snow_filter_stage_pass(snow_filter_stage *filter, uint64_t size) {
-    while (size) {
-        if (filter->begin == filter->end && filter->jump) {
-            int64_t remaining = snow_filter_stage_remaining(filter);
-            if (remaining >= 0 && (uint64_t)remaining >= size &&
-                filter->jump(filter, size)) {
-                filter->taken += size;
-                return true;
-            }
-        }
-        if (snow_filter_stage_fill(filter, 1) != SNOW_STATUS_OK ||
-            filter->begin == filter->end)
-            return false;
-        uint64_t some = filter->end - filter->begin;
-        if (some > size)
-            some = size;
-        snow_filter_stage_drop(filter, (size_t)some);
-        size -= some;
-    }
-    return true;
 }
 
 /* Seeking does not change the buffer; the caller has emptied it. */

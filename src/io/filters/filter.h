@@ -33,10 +33,8 @@ struct snow_filter_stage {
     size_t (*look)(snow_filter_stage *filter, uint64_t from, void *bytes,
                    size_t size);
     void (*fini)(snow_filter_stage *filter);
-    struct snow_relay *relay; /* of an inflating stage that others continue
-                                 (relay.h); NULL: nobody does */
-    int64_t size;             /* of all its bytes; -1 if not known */
-    uint64_t taken;           /* bytes returned so far */
+    int64_t size;      /* of all its bytes; -1 if not known */
+    uint64_t taken;    /* bytes returned so far */
     uint64_t horizon;  /* reading ahead ends at this byte, if it is ahead */
     size_t begin, end; /* of the buffered bytes */
     unsigned char *buffer;
@@ -55,10 +53,8 @@ snow_status snow_filter_stage_open_with(snow_context *context, const char *name,
                                         const snow_bytes_behind *bytes,
                                         snow_filter_stage **out);
 
-/* Adds a stage on top that unpacks gzip or zlib, in a relay perhaps; owns
- * `below` on success. */
+/* Adds a stage on top that unpacks gzip or zlib; owns `below` on success. */
 snow_status snow_filter_stage_open_inflate(snow_filter_stage *below,
-                                           struct snow_relay *relay,
                                            snow_filter_stage **out);
 
 /* Adds a stage on top that decodes base64 (RFC 4648), up to the first character
@@ -92,15 +88,6 @@ void *snow_filter_stage_allocate(snow_context *context, size_t bytes);
 /* Buffers at least `size` (at most SNOW_FILTER_BYTES) bytes unless the data end
  * before, and more up to the horizon if one is set. */
 snow_status snow_filter_stage_fill(snow_filter_stage *filter, size_t size);
-
-/* The position of the next pull. */
-static inline uint64_t
-snow_filter_stage_reach(const snow_filter_stage *filter) {
-    return filter->taken + (filter->end - filter->begin);
-}
-
-/* Skips bytes, by a jump where that is possible; false: there are fewer. */
-bool snow_filter_stage_pass(snow_filter_stage *filter, uint64_t size);
 
 /* Removes `count` buffered bytes. */
 void snow_filter_stage_drop(snow_filter_stage *filter, size_t count);

@@ -106,6 +106,29 @@ static snow_status pull_blocks(snow_filter_stage *base, void *bytes,
     return filter->left ? pull_block(filter, bytes, size, got) : SNOW_STATUS_OK;
 }
 
+/* Skips bytes, by a jump where that is possible; false: there are fewer. */
+static bool pass_by(snow_filter_stage *filter, uint64_t size) {
+    while (size) {
+        if (filter->begin == filter->end && filter->jump) {
+            int64_t remaining = snow_filter_stage_remaining(filter);
+            if (remaining >= 0 && (uint64_t)remaining >= size &&
+                filter->jump(filter, size)) {
+                filter->taken += size;
+                return true;
+            }
+        }
+        if (snow_filter_stage_fill(filter, 1) != SNOW_STATUS_OK ||
+            filter->begin == filter->end)
+            return false;
+        uint64_t some = filter->end - filter->begin;
+        if (some > size)
+            some = size;
+        snow_filter_stage_drop(filter, (size_t)some);
+        size -= some;
+    }
+    return true;
+}
+
 /* Skips the rest of the current block, then whole blocks without unpacking,
  * then a part of one. The bytes in between are not buffered here, as for every
  * jump. */
@@ -115,8 +138,7 @@ static bool jump_blocks(snow_filter_stage *base, uint64_t count) {
         if (!filter->left && filter->next < filter->blocks.count &&
             size_of(filter, filter->next) <= count) {
             count -= size_of(filter, filter->next);
-            if (!snow_filter_stage_pass(base->below,
-                                        filter->blocks.packed[filter->next++]))
+            if (!pass_by(base->below, filter->blocks.packed[filter->next++]))
                 filter->damaged = true;
         } else {
             unsigned char scratch[4096];

@@ -4,14 +4,20 @@
  * zlib verifies the check sum, and for gzip the length, at a stream's end; the
  * stage reports the end only after that. A gzip file may have several members,
  * whose bytes are joined. */
-#include "io/filters/inflate.h"
+#include "io/filters/filter.h"
 #include "io/source.h"
-
-#include <stdio.h>
+#include "io/zlib_memory.h"
 
 /* What inflate may have consumed but not returned: its bit buffer and a started
  * run. In packed bytes, generously. */
 #define INFLATE_SLACK 64
+
+typedef struct inflate_filter {
+    snow_filter_stage filter;
+    z_stream stream;
+    bool gzip; /* else zlib, which has one member */
+    bool ended;
+} inflate_filter;
 
 bool snow_looks_gzip(const unsigned char *bytes, size_t size) {
     /* Two magic bytes, method 8 (deflate), no reserved flag. */
@@ -19,89 +25,65 @@ bool snow_looks_gzip(const unsigned char *bytes, size_t size) {
            !(bytes[3] & 0xe0);
 }
 
-snow_status snow_inflate_fail(const inflate_filter *inflater, const char *how) {
-    return snow_fail(
-        inflater->filter.context, SNOW_STATUS_BAD_INPUT,
-        "%s: the compressed data are %s; fetch or compress the file again",
-        inflater->filter.name, how);
-}
-
-uint32_t snow_inflate_sum(const inflate_filter *inflater,
-                          const unsigned char *bytes, size_t count) {
-    return (uint32_t)(inflater->gzip
-                          ? crc32(inflater->check, bytes, (uInt)count)
-                          : adler32(inflater->check, bytes, (uInt)count));
-}
-
-/* The last reader of a relay leaves the warning to the first one. */
-static void warn_foreign(inflate_filter *inflater) {
-    snow_relay *relay = inflater->filter.relay;
-    if (relay)
-        relay->foreign = true;
-    else
-        snow_relay_warn(inflater->filter.context, inflater->filter.name, true,
-                        0);
-}
-
 /* After the end of a member: begins the next one, or ends the data. */
 static snow_status next_member(inflate_filter *inflater) {
     snow_filter_stage *below = inflater->filter.below;
-    if (inflater->entered)
-        SNOW_TRY(snow_relay_verify(inflater));
     SNOW_TRY(snow_filter_stage_fill(below, 4));
     size_t left = below->end - below->begin;
     if (inflater->gzip && snow_looks_gzip(below->buffer + below->begin, left)) {
-        inflateReset2(&inflater->stream, SNOW_ANY_HEADER);
-        if (inflater->filter.relay)
-            snow_relay_begin_member(inflater);
+        inflateReset(&inflater->stream);
         return SNOW_STATUS_OK;
     }
     inflater->ended = true;
     if (left)
-        warn_foreign(inflater);
+        snow_notify(below->context,
+                    "%s: bytes after the end of the compressed data are "
+                    "ignored",
+                    below->name);
     return SNOW_STATUS_OK;
 }
 
 /* Converts the result of inflate to a status with a message. Z_BUF_ERROR is an
  * error too: inflate is called only with input and with free space in the
- * output, and takes or gives some, or has come to the end of a block. */
+ * output. */
 static snow_status check_inflate(const inflate_filter *inflater, int answer) {
-    char how[128];
-    if (answer == Z_OK || answer == Z_STREAM_END ||
-        (answer == Z_BUF_ERROR && inflater->filter.relay &&
-         (inflater->stream.data_type & SNOW_BETWEEN_BLOCKS)))
+    const snow_filter_stage *filter = &inflater->filter;
+    if (answer == Z_OK || answer == Z_STREAM_END)
         return SNOW_STATUS_OK;
     if (answer == Z_MEM_ERROR)
         return SNOW_STATUS_NO_MEMORY; /* snow_allocate set the message */
-    snprintf(how, sizeof how, "damaged (%s)",
-             inflater->stream.msg ? inflater->stream.msg : "invalid data");
-    return snow_inflate_fail(inflater, how);
+    return snow_fail(
+        filter->context, SNOW_STATUS_BAD_INPUT,
+        "%s: the compressed data are damaged (%s); fetch or compress the file "
+        "again",
+        filter->name,
+        inflater->stream.msg ? inflater->stream.msg : "invalid data");
 }
 
-/* Runs inflate once on the buffered bytes below; in a relay it stops between
- * blocks, where points are. */
+/* Runs inflate once on the buffered bytes below. */
 static snow_status inflate_some(inflate_filter *inflater) {
     snow_filter_stage *below = inflater->filter.below;
     z_stream *stream = &inflater->stream;
     SNOW_TRY(snow_filter_stage_fill(below, 1));
     size_t packed = below->end - below->begin;
     if (!packed)
-        return snow_inflate_fail(inflater, "truncated");
-    const unsigned char *bytes = stream->next_out;
+        return snow_fail(below->context, SNOW_STATUS_BAD_INPUT,
+                         "%s: the compressed data are truncated; fetch or "
+                         "compress the file again",
+                         below->name);
     stream->next_in = below->buffer + below->begin;
     stream->avail_in = (uInt)packed;
-    int answer = inflate(stream, inflater->filter.relay ? Z_BLOCK : Z_NO_FLUSH);
+    int answer = inflate(stream, Z_NO_FLUSH);
     snow_filter_stage_drop(below, packed - stream->avail_in);
     SNOW_TRY(check_inflate(inflater, answer));
-    if (inflater->filter.relay)
-        snow_relay_note(inflater, bytes, (size_t)(stream->next_out - bytes));
     return answer == Z_STREAM_END ? next_member(inflater) : SNOW_STATUS_OK;
 }
 
 /* zlib counts in 32 bits; a larger request is served in parts, for which the
  * caller asks again. */
-snow_status snow_inflate_bytes(inflate_filter *inflater, void *bytes,
-                               size_t size, size_t *got) {
+static snow_status pull_inflated(snow_filter_stage *filter, void *bytes,
+                                 size_t size, size_t *got) {
+    inflate_filter *inflater = (inflate_filter *)filter;
     uInt wanted = size > 1u << 30 ? 1u << 30 : (uInt)size;
     inflater->stream.next_out = bytes;
     inflater->stream.avail_out = wanted;
@@ -111,23 +93,11 @@ snow_status snow_inflate_bytes(inflate_filter *inflater, void *bytes,
     return SNOW_STATUS_OK;
 }
 
-static snow_status pull_inflated(snow_filter_stage *filter, void *bytes,
-                                 size_t size, size_t *got) {
-    inflate_filter *inflater = (inflate_filter *)filter;
-    if (filter->relay)
-        SNOW_TRY(snow_relay_catch_up(inflater));
-    return snow_inflate_bytes(inflater, bytes, size, got);
-}
-
 static void end_inflate(snow_filter_stage *filter) {
-    inflate_filter *inflater = (inflate_filter *)filter;
-    if (filter->relay)
-        snow_relay_leave(inflater);
-    inflateEnd(&inflater->stream);
+    inflateEnd(&((inflate_filter *)filter)->stream);
 }
 
 snow_status snow_filter_stage_open_inflate(snow_filter_stage *below,
-                                           struct snow_relay *relay,
                                            snow_filter_stage **out) {
     SNOW_TRY(snow_filter_stage_fill(below, 4));
     inflate_filter *inflater =
@@ -136,7 +106,8 @@ snow_status snow_filter_stage_open_inflate(snow_filter_stage *below,
         return SNOW_STATUS_NO_MEMORY;
     z_stream *stream = &inflater->stream;
     snow_zlib_use(stream, below->context);
-    int answer = inflateInit2(stream, SNOW_ANY_HEADER);
+    /* 15: the largest window; + 32: gzip or zlib, according to the header. */
+    int answer = inflateInit2(stream, 15 + 32);
     inflater->filter.name = below->name;
     snow_status status = check_inflate(inflater, answer);
     if (status != SNOW_STATUS_OK) {
@@ -149,8 +120,7 @@ snow_status snow_filter_stage_open_inflate(snow_filter_stage *below,
     inflater->filter.size = -1;
     inflater->gzip = snow_looks_gzip(below->buffer + below->begin,
                                      below->end - below->begin);
-    if (relay)
-        snow_relay_join(inflater, relay);
+    below->context->inflates = true;
     *out = &inflater->filter;
     return SNOW_STATUS_OK;
 }

@@ -1,7 +1,6 @@
 /* io/filters/filters.c - adds the stages of filter_base64.c and filter_blocks.c
  * to a source; the end of data that are followed by others. */
 #include "io/filters/filters.h"
-#include "base/relay.h"
 #include "io/source_internal.h"
 
 snow_status snow_source_unpack_base64(snow_source *source) {
@@ -30,7 +29,7 @@ snow_status snow_source_promise(snow_source *source, uint64_t size,
 snow_status snow_source_verify(snow_source *source) {
     for (snow_filter_stage *filter = source->top; filter;
          filter = filter->below)
-        while (filter->size < 0 && !(filter->relay && !filter->relay->last)) {
+        while (filter->size < 0) {
             SNOW_TRY(snow_filter_stage_fill(filter, 1));
             if (filter->begin == filter->end)
                 break;
