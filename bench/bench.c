@@ -21,6 +21,10 @@ static const bench_entry every = {"all", NULL, BENCH_OF_ALL, true};
 
 #define ENTRY_COUNT (sizeof entries / sizeof entries[0])
 
+const char *bench_method_name(snow_method method) {
+    return method == SNOW_METHOD_TESTED ? "tested" : snow_method_name(method);
+}
+
 /* The library's message is complete: what is wrong; what to try. */
 int bench_fail(snow_context *context, snow_status status) {
     fprintf(stderr, "snowglass: bench: %s\n", snow_context_message(context));

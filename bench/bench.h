@@ -1,12 +1,14 @@
 /* bench/bench.h - the paper's tables, measured again, and today's speed.
  *
- * Everything here stands on the public headers only.  A row is verified before
- * its times are printed: all encodings give the same bits as testing the
- * threshold voxel by voxel, and at threshold 0 the same as the original. */
+ * All but tested splatting and a few stages (ranks_draw.c, speed_table.c)
+ * stands on the public headers.  A row is verified before its times are
+ * printed: all encodings give the same bits as testing the threshold voxel by
+ * voxel, and at threshold 0 the same as the original. */
 #ifndef SNOW_BENCH_H
 #define SNOW_BENCH_H
 
 #include "option_table.h"
+#include "render/tested.h"
 
 #include <jansson.h>
 #include <snowglass/comm.h>
@@ -152,6 +154,9 @@ int bench_ranks(int argc, char **argv, snow_comm *comm);
 
 /* Today's speed, method by method: see speed.h. */
 int bench_speed(snow_context *context, const bench_options *options);
+
+/* The name of a method, of tested splatting too. */
+const char *bench_method_name(snow_method method);
 
 /* The median of some values, which are sorted by it. */
 double bench_median(double *values, int count);

@@ -259,7 +259,7 @@ static void add_way(json_t *json, const speed_row *row) {
     const speed_way *way = row->way;
     json_object_set_new(json, "way", json_string(way->name));
     json_object_set_new(json, "method",
-                        json_string(snow_method_name(way->method)));
+                        json_string(bench_method_name(way->method)));
     if (!speed_is_baseline(way))
         json_object_set_new(
             json, "encoding",

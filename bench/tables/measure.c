@@ -96,7 +96,7 @@ static snow_status verify(bench_run *run, bench_way first, double threshold) {
                     "snowglass: bench: %s at threshold %g: method %s %s gives "
                     "another picture; nothing is timed\n",
                     run->volume->name, threshold,
-                    snow_method_name(ways[way].method),
+                    bench_method_name(ways[way].method),
                     snow_encoding_name(ways[way].encoding));
             return SNOW_STATUS_DIFFERENT;
         }

@@ -12,7 +12,6 @@ typedef struct snow_frame snow_frame;
 typedef enum snow_method { /* how voxels reach the picture (docs/fast.md) */
     SNOW_METHOD_AUTO = 0,
     SNOW_METHOD_ORIGINAL,   /* every voxel, no sparse matrix: the baseline */
-    SNOW_METHOD_TESTED,     /* the same, voxels tested against the threshold */
     SNOW_METHOD_FOOTPRINT,  /* interesting voxels, each onto the image */
     SNOW_METHOD_SHEAR_WARP, /* values of sheared slices, warped once: fast */
     SNOW_METHOD_RAYCAST     /* rays through interpolated values: slow truth */

@@ -5,7 +5,6 @@
 static const char *const methods[] = {
     [SNOW_METHOD_AUTO] = "auto",
     [SNOW_METHOD_ORIGINAL] = "original",
-    [SNOW_METHOD_TESTED] = "tested",
     [SNOW_METHOD_FOOTPRINT] = "footprint",
     [SNOW_METHOD_SHEAR_WARP] = "shear-warp",
     [SNOW_METHOD_RAYCAST] = "raycast",

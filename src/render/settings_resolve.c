@@ -1,5 +1,6 @@
 /* render/settings_resolve.c - settings made definite for a volume (job.h). */
 #include "render/job.h"
+#include "render/tested.h"
 
 #include <math.h>
 #include <snowglass/snowglass.h>
@@ -90,7 +91,7 @@ snow_status snow_settings_resolve(snow_context *context,
                                   const snow_volume_info *info,
                                   snow_settings *s) {
     SNOW_TRY(check_choice(context, "method", (int)s->method,
-                          SNOW_METHOD_RAYCAST + 1));
+                          (int)SNOW_METHOD_TESTED + 1));
     SNOW_TRY(check_choice(context, "encoding", (int)s->encoding,
                           SNOW_ENCODING_RLE + 1));
     SNOW_TRY(

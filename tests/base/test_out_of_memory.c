@@ -1,5 +1,6 @@
 /* tests/base/test_out_of_memory.c - each allocation of load, render and write
  * is made to fail once, and from there on: an error, no leak, no half file. */
+#include "render/tested.h"
 #include "support/failing.h"
 
 #include <unistd.h>

@@ -7,6 +7,7 @@
 
 #include "image/image.h"
 #include "insitu/internal.h"
+#include "render/tested.h"
 
 #include <math.h>
 #include <unistd.h>

@@ -5,6 +5,7 @@
 #define SNOW_TEST_MODEL_H
 
 #include "reference/reference.h"
+#include "render/tested.h"
 #include "support/support.h"
 
 /* Fails unless two numbers are finite and differ by no more than `bound`. */

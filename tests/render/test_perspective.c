@@ -197,7 +197,8 @@ static void every_kernel_and_method_from_every_side(void **state) {
                 scene.settings.method =
                     scene.settings.threshold == 0 && n % 3 == 0
                         ? SNOW_METHOD_ORIGINAL
-                        : (snow_method)(SNOW_METHOD_TESTED + n % 2);
+                    : n % 2 ? SNOW_METHOD_FOOTPRINT
+                            : SNOW_METHOD_TESTED;
                 scene.view.fov = fovs[f];
                 stand_at(&scene, n, zooms[n / COUNT(stands)]);
                 model_check(&stage, &scene, BOUND, &summary);
@@ -226,7 +227,8 @@ static void slices_on_both_sides_of_the_eye(void **state) {
             snow_placement_make(stage.context, &scene.info, &scene.view, &p),
             SNOW_STATUS_OK);
         assert_true(p.eye.at[2] > 0 && p.eye.at[2] < 30);
-        scene.settings.method = (snow_method)(SNOW_METHOD_TESTED + n % 2);
+        scene.settings.method =
+            n % 2 ? SNOW_METHOD_FOOTPRINT : SNOW_METHOD_TESTED;
         model_check(&stage, &scene, BOUND, &summary);
         model_free(&scene);
     }

@@ -9,6 +9,7 @@
 #include "comm/comm.h"
 #include "image/image.h"
 #include "render/picture.h"
+#include "render/tested.h"
 
 #include <sched.h>
 #include <snowglass/ranks.h>

@@ -4,6 +4,7 @@
 #include "support/volumes.h"
 
 #include "image/image.h"
+#include "render/tested.h"
 #include "volume/stream.h"
 
 #include <math.h>

@@ -14,6 +14,7 @@
  * order however bands are cut: the number of threads cannot change a bit. */
 #include "render/modes/depth.h"
 #include "render/picture.h"
+#include "render/tested.h"
 #include "splat/footprint/perspective.h"
 
 #include <string.h>
