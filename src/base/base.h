@@ -66,8 +66,8 @@ struct snow_context {
 #define snow_reserve snow_context_reserve
 
 /* Puts "prefix: " before the message of a failure in a called function and
- * returns its status: each level adds what it knows (the name of the file,
- * say). */
+ * returns its status: each caller adds what it knows (the name of the
+ * file, say). */
 snow_status snow_fail_within(snow_context *context, snow_status status,
                              const char *format, ...) SNOW_PRINTF(3, 4);
 

@@ -183,6 +183,6 @@ snow_status snow_insitu_place_bricks(snow_insitu *insitu,
     if (status == SNOW_STATUS_OK)
         status = place_all(insitu, bricks, count, spacing, placed);
     snow_context_release(insitu->context, placed);
-    insitu->given = SNOW_STATUS_OK; /* of the setters above: all have heard */
+    insitu->given = SNOW_STATUS_OK; /* of the setters above: agreed on */
     return snow_insitu_end(insitu, status);
 }

@@ -39,7 +39,7 @@ static void snow_jpeg_leave(j_common_ptr info) {
 }
 
 /* Warnings of damage count as errors, since half a picture is none. */
-static void snow_jpeg_hear(j_common_ptr info, int level) {
+static void snow_jpeg_emit_message(j_common_ptr info, int level) {
     if (level < 0)
         snow_jpeg_leave(info);
 }
@@ -48,7 +48,7 @@ static inline struct jpeg_error_mgr *
 snow_jpeg_begin_faults(snow_jpeg_fault *fault) {
     jpeg_std_error(&fault->base);
     fault->base.error_exit = snow_jpeg_leave;
-    fault->base.emit_message = snow_jpeg_hear;
+    fault->base.emit_message = snow_jpeg_emit_message;
     fault->text[0] = '\0';
     return &fault->base;
 }

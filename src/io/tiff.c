@@ -51,7 +51,7 @@ static int close_nothing(thandle_t handle) {
     return 0;
 }
 
-static int hear_error(TIFF *tiff, void *user, const char *module,
+static int keep_error(TIFF *tiff, void *user, const char *module,
                       const char *format, va_list arguments) {
     snow_tiff *file = user;
     (void)tiff;
@@ -62,8 +62,8 @@ static int hear_error(TIFF *tiff, void *user, const char *module,
 }
 
 /* Mostly about unknown tags. */
-static int hear_warning(TIFF *tiff, void *user, const char *module,
-                        const char *format, va_list arguments) {
+static int ignore_warning(TIFF *tiff, void *user, const char *module,
+                          const char *format, va_list arguments) {
     (void)tiff;
     (void)user;
     (void)module;
@@ -81,8 +81,8 @@ static snow_status open_client(snow_tiff *file, const char *name,
                          "out of memory for TIFF");
     uint64_t most = set_size((thandle_t)file) + LIBRARY_BYTES;
     TIFFOpenOptionsSetMaxSingleMemAlloc(options, (tmsize_t)most);
-    TIFFOpenOptionsSetErrorHandlerExtR(options, hear_error, file);
-    TIFFOpenOptionsSetWarningHandlerExtR(options, hear_warning, file);
+    TIFFOpenOptionsSetErrorHandlerExtR(options, keep_error, file);
+    TIFFOpenOptionsSetWarningHandlerExtR(options, ignore_warning, file);
     file->tiff = TIFFClientOpenExt(name, mode, (thandle_t)file, read_bytes,
                                    write_bytes, seek_byte, close_nothing,
                                    set_size, NULL, NULL, options);

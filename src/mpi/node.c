@@ -35,10 +35,10 @@ static int number_nodes(mpi_node *node, MPI_Comm group, int rank) {
     int mine[2] = {rank, 0};
     MPI_Comm_rank(node->group, &mine[1]);
     MPI_Comm_size(node->group, &node->members);
-    const int told = MPI_Bcast(mine, 1, MPI_INT, 0, node->group);
+    const int sent = MPI_Bcast(mine, 1, MPI_INT, 0, node->group);
     const int gathered =
         MPI_Allgather(mine, 2, MPI_INT, node->numbers, 2, MPI_INT, group);
-    return told == MPI_SUCCESS ? gathered : told;
+    return sent == MPI_SUCCESS ? gathered : sent;
 }
 
 /* The smallest of the numbers of a group's ranks. */

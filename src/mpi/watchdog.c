@@ -155,7 +155,7 @@ static void send_note(mpi_watchdog *watchdog, int to, const note *what) {
 
 /* Handles an answer of a waiting rank. If all wait for longer than the timeout
  * of a rank that does not answer, they wait for each other. */
-static void hear_answer(mpi_watchdog *watchdog, int from, const note *what) {
+static void take_answer(mpi_watchdog *watchdog, int from, const note *what) {
     watchdog->answered[from] = 1;
     if (what->waited > 3 * watchdog->limit)
         snprintf(watchdog->verdict, sizeof watchdog->verdict,
@@ -183,7 +183,7 @@ static void read_notes(mpi_watchdog *watchdog, double now) {
                               .waits_for = watchdog->waits_for,
                               .waited = now - watchdog->since});
         else if (what.kind == ANSWER)
-            hear_answer(watchdog, from, &what);
+            take_answer(watchdog, from, &what);
         else
             memcpy(watchdog->verdict, what.text, sizeof watchdog->verdict);
     }

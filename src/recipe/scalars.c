@@ -42,7 +42,7 @@ json_t *recipe_write_real(const recipe_key *key, const void *field) {
     return json_real(*(const double *)field);
 }
 
-static json_t *write_told_real(const recipe_key *key, const void *field) {
+static json_t *write_given_real(const recipe_key *key, const void *field) {
     return *(const double *)field > 0 ? recipe_write_real(key, field) : NULL;
 }
 
@@ -188,7 +188,7 @@ static json_t *write_scale(const recipe_key *key, const void *field) {
 
 const recipe_kind recipe_scale = {read_scale, write_scale};
 const recipe_kind recipe_real = {recipe_read_real, recipe_write_real};
-const recipe_kind recipe_given_real = {recipe_read_real, write_told_real};
+const recipe_kind recipe_given_real = {recipe_read_real, write_given_real};
 const recipe_kind recipe_int = {recipe_read_int, recipe_write_given_int};
 const recipe_kind recipe_channel = {read_channel, write_channel};
 const recipe_kind recipe_time = {read_time, write_time};

@@ -52,7 +52,7 @@ static bool has_avx512(void) {
 }
 #endif
 
-/* The level that a machine always has beside scalar, or scalar. */
+/* The instruction set that a machine always has beside scalar, or scalar. */
 #if !SNOW_HAS_V128
 #define V128 SNOW_ISA_SCALAR
 #elif defined(__aarch64__)

@@ -1,7 +1,8 @@
 /* simd/rows.h - vector operations on rows of 32 numbers of 16 bits, for
  * templates that simd/select.h is included for:
  *
- *   V(row)                        the type; all levels give the same bits
+ *   V(row)                        the type; all instruction sets give the
+ *                                 same bits
  *   V(row_load)(p), V(row_store)(p, a)     any alignment
  *   V(row_set1)(x)
  *   V(row_bytes)(p)               32 unsigned bytes at p

@@ -169,7 +169,7 @@ static snow_status count_as_needed(snow_histogram *histogram) {
     return snow_stored_values_count(histogram);
 }
 
-static void tell_dropped(const snow_histogram *histogram) {
+static void warn_dropped(const snow_histogram *histogram) {
     if (histogram->dropped)
         snow_notify(
             histogram->volume->context,
@@ -226,7 +226,7 @@ snow_status snow_histogram_new(const snow_volume *volume, snow_comm *comm,
         if (histogram.volume->stream && !histogram.scale.log && !histogram.comm)
             snow_stream_note_range(histogram.volume, &range);
     }
-    tell_dropped(&histogram);
+    warn_dropped(&histogram);
     *out = histogram;
     return SNOW_STATUS_OK;
 }

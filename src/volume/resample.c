@@ -270,9 +270,9 @@ static snow_status resample_box(const snow_volume *volume,
     memcpy(r.grid, whole->dims, sizeof r.grid);
     r.from = read;
     find_steps(&volume->info, whole, r.step, r.origin);
-    snow_stream_listen(volume->context, volume->stream);
+    snow_stream_begin_warnings(volume->context, volume->stream);
     snow_status status = resample(&r, box, "overlay");
-    snow_stream_listen_no_more(volume->context, volume->stream);
+    snow_stream_end_warnings(volume->context, volume->stream);
     snow_volume_close(read);
     return end_resampling(&r, status, out);
 }

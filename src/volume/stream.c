@@ -19,24 +19,24 @@ static void warn_once(void *user, const char *text) {
     uint64_t sum = 1469598103934665603U; /* FNV-1a */
     for (const char *at = text; *at; at++)
         sum = (sum ^ (unsigned char)*at) * 1099511628211U;
-    for (int n = 0; n < stream->told_count; n++)
+    for (int n = 0; n < stream->given_count; n++)
         if (stream->given[n] == sum)
             return;
-    if (stream->told_count == WARNINGS_MOST)
+    if (stream->given_count == WARNINGS_MOST)
         return;
-    stream->given[stream->told_count++] = sum;
+    stream->given[stream->given_count++] = sum;
     if (stream->warning)
         stream->warning(stream->warning_user, text);
 }
 
-void snow_stream_listen(snow_context *context, snow_stream *stream) {
+void snow_stream_begin_warnings(snow_context *context, snow_stream *stream) {
     stream->warning = context->warning;
     stream->warning_user = context->warning_user;
     snow_context_set_warning(context, warn_once, stream);
 }
 
-void snow_stream_listen_no_more(snow_context *context,
-                                const snow_stream *stream) {
+void snow_stream_end_warnings(snow_context *context,
+                              const snow_stream *stream) {
     snow_context_set_warning(context, stream->warning, stream->warning_user);
 }
 
@@ -95,9 +95,9 @@ snow_status snow_stream_open(snow_context *context, const char *path,
                          "several times; copy it to a file",
                          strcmp(path, "-") ? path : "standard input");
     SNOW_TRY(new_stream(context, path, &known, slab_bytes, &stream));
-    snow_stream_listen(context, stream);
+    snow_stream_begin_warnings(context, stream);
     snow_status status = open(context, path, &known, &info, NULL);
-    snow_stream_listen_no_more(context, stream);
+    snow_stream_end_warnings(context, stream);
     snow_volume *volume = NULL;
     if (status == SNOW_STATUS_OK) {
         volume = snow_allocate_clear(context, sizeof *volume);
@@ -152,7 +152,7 @@ snow_status snow_stream_open_slab(snow_context *context, snow_stream *stream,
                                   bool clipped, snow_volume **out) {
     snow_volume_info info;
     double begin = snow_seconds();
-    snow_stream_listen(context, stream);
+    snow_stream_begin_warnings(context, stream);
     /* A warning on what a mask or plane leaves does not hold for the volume. */
     if (snow_mask_asked(options))
         snow_context_set_warning(context, NULL, NULL);
@@ -160,7 +160,7 @@ snow_status snow_stream_open_slab(snow_context *context, snow_stream *stream,
     snow_status status =
         stream->open(context, stream->path, options, &info, out);
     context->leaves_clipped = false;
-    snow_stream_listen_no_more(context, stream);
+    snow_stream_end_warnings(context, stream);
     stream->seconds += snow_seconds() - begin;
     return status;
 }

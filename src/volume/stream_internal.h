@@ -17,7 +17,7 @@ struct snow_stream {
                                     that no mask or plane leaves out */
     double mask_range[2];        /* of it: the mask's values, NaN where it is
                                     not known */
-    bool told_empty;             /* that nothing is left */
+    bool warned_empty;           /* that nothing is left */
     bool measured;               /* `range` is known */
     snow_volume_statistics range;
     char *path;
@@ -26,16 +26,15 @@ struct snow_stream {
     snow_warning_fn *warning;
     void *warning_user;
     uint64_t given[WARNINGS_MOST];
-    int told_count;
+    int given_count;
 };
 
 /* Without a wish: small beside any memory, and long enough to be read fast. */
 #define SNOW_SLAB_BYTES ((uint64_t)64 << 20)
 
-/* Begins and ends telling each warning once. */
-void snow_stream_listen(snow_context *context, snow_stream *stream);
-void snow_stream_listen_no_more(snow_context *context,
-                                const snow_stream *stream);
+/* Between them each warning is given once. */
+void snow_stream_begin_warnings(snow_context *context, snow_stream *stream);
+void snow_stream_end_warnings(snow_context *context, const snow_stream *stream);
 
 /* The box of the file that the options ask for; `clipped`: with the values next
  * to clip planes.  Errors: those of snow_volume_open. */

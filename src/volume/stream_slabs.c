@@ -138,11 +138,11 @@ static void warn_empty(const snow_volume *volume) {
     static const int64_t none[3][2];
     snow_stream *stream = volume->stream;
     const snow_volume_options *options = &stream->options;
-    if (stream->left || stream->told_empty || volume->is_part ||
+    if (stream->left || stream->warned_empty || volume->is_part ||
         !snow_mask_asked(options) ||
         memcmp(options->crop, none, sizeof none) != 0)
         return;
-    stream->told_empty = true;
+    stream->warned_empty = true;
     snow_mask_warn(volume->context, options, stream->mask_range);
 }
 

@@ -175,7 +175,7 @@ static void take_resolution(snow_tiff *file, tiff_plan *plan) {
 }
 
 /* Samples that are colours have known names. */
-static void tell_channels(const tiff_plan *plan, snow_volume_info *info) {
+static void describe_channels(const tiff_plan *plan, snow_volume_info *info) {
     const tiff_shape *shape = &plan->shape;
     const int64_t samples = plan->page.samples;
     snow_channels_begin(info, plan->channels * samples, true);
@@ -221,7 +221,7 @@ static snow_status make_plan(snow_tiff *file, tiff_plan *plan,
     info->dims[2] = plan->slices;
     info->type = plan->page.type;
     info->times = plan->times;
-    tell_channels(plan, info);
+    describe_channels(plan, info);
     return SNOW_STATUS_OK;
 }
 

@@ -2,8 +2,8 @@
  *
  * A path may name an array, an image of OME-Zarr (a group whose attributes have
  * "multiscales") or a group that contains one of these.  The finest existing
- * level of an image is read.  An array that belongs to an image is read with
- * the image's metadata, whichever way it was named. */
+ * resolution level of an image is read.  An array that belongs to an image is
+ * read with the image's metadata, whichever way it was named. */
 #include "formats/zarr/zarr.h"
 
 #include <ctype.h>
@@ -86,8 +86,8 @@ static void append_array(char list[LIST_BYTES], const char *name,
     append(list, text);
 }
 
-/* Lists the existing levels of an image, and returns the first; -1 if there are
- * none. */
+/* Lists the existing resolution levels of an image, and returns the first; -1
+ * if there are none. */
 static snow_status list_levels(const zarr_store *store, const char *group,
                                const json_t *image, char list[LIST_BYTES],
                                int *first) {

@@ -171,8 +171,8 @@ static void take_channel(const json_t *from, snow_channel *out) {
 }
 
 /* From version 0.5 on all is within "ome". */
-void snow_zarr_tell_channels(const zarr_found *found, int64_t count,
-                             snow_volume_info *info) {
+void snow_zarr_describe_channels(const zarr_found *found, int64_t count,
+                                 snow_volume_info *info) {
     const json_t *own = json_object_get(found->node.attributes, "ome");
     const json_t *omero =
         json_object_get(own ? own : found->node.attributes, "omero");
@@ -283,8 +283,8 @@ static void take_units(const zarr_found *found, const zarr_roles *roles,
     }
 }
 
-/* Before version 0.4 levels have no scale: it is the ratio of their size to
- * that of the finest level, if that exists. */
+/* Before version 0.4 resolution levels have no scale: it is the ratio of their
+ * size to that of the finest level, if that exists. */
 static snow_status compare_sizes(const zarr_store *store,
                                  const zarr_found *found, placement *place) {
     const zarr_array *array = &found->array;

@@ -208,8 +208,8 @@ static snow_status read_found(const zarr_store *store, zarr_found *found,
     *info = snow_volume_info_default("zarr");
     SNOW_TRY(snow_zarr_assign(store, found, &box.roles));
     const int axis = box.roles.axis[ZARR_CHANNEL];
-    snow_zarr_tell_channels(found, axis < 0 ? 1 : found->array.sizes[axis],
-                            info);
+    snow_zarr_describe_channels(found, axis < 0 ? 1 : found->array.sizes[axis],
+                                info);
     SNOW_TRY(pick(store->context, options, &box, info));
     SNOW_TRY(snow_zarr_place(store, found, &box.roles, info));
     SNOW_TRY(snow_region_lay_out(store->context, options, info, &region));

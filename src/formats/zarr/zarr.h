@@ -5,7 +5,7 @@
  *   node.c    .zarray, .zgroup, .zattrs, zarr.json -> what a folder is
  *   meta.c    these -> the description of an array
  *   codec.c   the codecs, as steps; fill values
- *   find.c    a path -> the array to read, possibly a level of an image
+ *   find.c    a path -> the array to read, perhaps a resolution level
  *   place.c   axes and transformations -> positions of voxels
  *   unpack.c  the bytes of a chunk -> its values
  *   blosc.c   the same by a library that is loaded when needed
@@ -164,14 +164,14 @@ snow_status snow_zarr_take_fill(const zarr_store *store, const json_t *given,
 typedef struct zarr_found {
     zarr_node node;      /* of the image; empty if there is none */
     const json_t *image; /* an entry of "multiscales", or NULL */
-    const json_t *level; /* an entry of its "datasets" */
-    int index, levels;   /* index of the level; number of levels */
+    const json_t *level; /* an entry of its "datasets": a resolution level */
+    int index, levels;   /* its index; how many there are */
     zarr_array array;
 } zarr_found;
 
 /* Finds the array of a path within the store: an array, an image, of which the
- * finest existing level is used, or a group that contains one of them.  `out`
- * must be freed in any case.  Errors: SNOW_STATUS_BAD_INPUT,
+ * finest existing resolution level is used, or a group that contains one of
+ * them.  `out` must be freed in any case.  Errors: SNOW_STATUS_BAD_INPUT,
  * SNOW_STATUS_BAD_USAGE (several; none of that name). */
 snow_status snow_zarr_find(const zarr_store *store, const char *path,
                            zarr_found *out);
@@ -180,7 +180,8 @@ void snow_zarr_found_forget(zarr_found *found);
 /* The entry of "multiscales" of attributes by its index, or NULL. */
 const json_t *snow_zarr_image(const json_t *attributes, size_t index);
 
-/* The path of one of its levels within its group; NULL if it is invalid. */
+/* The path of one of its resolution levels within its group; NULL if it is
+ * invalid. */
 const char *snow_zarr_level_path(const json_t *image, size_t index);
 
 /* The axis of the array that is x, y, z, channel and time; -1: none. */
@@ -194,8 +195,8 @@ snow_status snow_zarr_assign(const zarr_store *store, zarr_found *found,
                              zarr_roles *out);
 
 /* What "omero" says of the channels of an image, of which there are so many. */
-void snow_zarr_tell_channels(const zarr_found *found, int64_t count,
-                             snow_volume_info *info);
+void snow_zarr_describe_channels(const zarr_found *found, int64_t count,
+                                 snow_volume_info *info);
 
 /* Sets matrix and unit of the info. */
 snow_status snow_zarr_place(const zarr_store *store, const zarr_found *found,

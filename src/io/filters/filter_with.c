@@ -9,8 +9,8 @@ typedef struct with_filter {
     uint64_t at; /* of the next pull */
 } with_filter;
 
-/* Copies in pieces, so that a stop is heard in between; what was copied is
- * counted as read. */
+/* Copies in pieces, so that a stop is noticed in between; what was copied
+ * is counted as read. */
 static snow_status copy(with_filter *with, uint64_t from, void *bytes,
                         size_t size, size_t *done) {
     snow_context *context = with->filter.context;

@@ -58,7 +58,7 @@ static snow_status make_transfer(snow_context *context,
      * beyond it.  Infinities are outside. */
     double beyond = nextafter(high, INFINITY);
     double from = identity->kind.steps
-                      ? fmin(fmax(identity->kind.level, low), beyond)
+                      ? fmin(fmax(identity->kind.least, low), beyond)
                       : low;
     const snow_opacity_point finite[] = {
         {from, 0}, {from, 1}, {beyond, 1}, {beyond, 0}};
@@ -87,7 +87,7 @@ prepare_identity_transfer(const snow_job *job,
     snow_identity_transfer made = *identity;
     if (identity->transfer && identity->generation &&
         kind->inverted == wanted->inverted && kind->steps == wanted->steps &&
-        kind->level == wanted->level)
+        kind->least == wanted->least)
         return SNOW_STATUS_OK;
     made.kind = *wanted;
     SNOW_TRY(make_transfer(job->context, &made));
@@ -102,7 +102,7 @@ snow_status snow_identity_transfer_above(snow_job *job,
     double margin = 2e-6 * (identity->high - identity->low) +
                     2e-9 * fabs(job->settings.iso);
     const struct snow_identity_kind wanted = {
-        .steps = true, .level = job->settings.iso - margin};
+        .steps = true, .least = job->settings.iso - margin};
     return prepare_identity_transfer(job, &wanted, identity);
 }
 

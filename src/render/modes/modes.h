@@ -20,8 +20,8 @@ typedef struct snow_identity_transfer {
     uint64_t generation; /* of the volume; 0: of none */
     struct snow_identity_kind {
         bool inverted; /* 1 is the smallest value: of minip */
-        bool steps;    /* voxels below `level` are left out: of iso */
-        double level;
+        bool steps;    /* voxels below `least` are left out: of iso */
+        double least;
     } kind;
     bool whole; /* every voxel is finite */
     bool empty; /* none is */

@@ -79,7 +79,7 @@ void snow_raycast_sum(const snow_raycast_pass *pass, const snow_ray *ray,
 #define HALVINGS 30
 
 static bool is_above(const snow_raycast_pass *pass, double value) {
-    return !isnan(value) && value >= pass->level;
+    return !isnan(value) && value >= pass->isovalue;
 }
 
 /* Returns where between i - 1 and i a surface is met. */
@@ -135,7 +135,7 @@ void snow_raycast_iso(const snow_raycast_pass *pass, const snow_ray *ray,
         if (!is_own(pass, at))
             continue;
         double value = value_at(pass, ray, (double)i, eye, at);
-        skip = eye->near.most >= pass->level ? 1 : snow_ray_skip(ray, at);
+        skip = eye->near.most >= pass->isovalue ? 1 : snow_ray_skip(ray, at);
         if (!is_above(pass, value))
             continue;
         double met = i ? find_crossing(pass, ray, i, eye) : 0;

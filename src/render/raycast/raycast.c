@@ -201,7 +201,7 @@ static void choose_cast(const snow_picture *p, snow_raycast_pass *pass) {
     } else if (mode == SNOW_MODE_ISO) {
         pass->cast = snow_raycast_iso;
         set_border(pass, range);
-        pass->visible[0] = pass->level;
+        pass->visible[0] = pass->isovalue;
     } else {
         pass->cast = mode == SNOW_MODE_MIP || mode == SNOW_MODE_MINIP
                          ? snow_raycast_largest
@@ -224,8 +224,8 @@ static void set_part(snow_raycast_pass *pass) {
 
 static void set_colors(snow_raycast_pass *pass) {
     double rgb[3];
-    pass->level = pass->job->settings.iso;
-    snow_transfer_color(pass->transfer, pass->level, rgb);
+    pass->isovalue = pass->job->settings.iso;
+    snow_transfer_color(pass->transfer, pass->isovalue, rgb);
     for (int n = 0; n < 3; n++)
         pass->rgb[n] = (float)rgb[n];
 }

@@ -62,8 +62,8 @@ struct snow_raycast_pass {
     double depth[4];      /* of index position (x, y, z), and a constant */
     /* Values that a window must reach to be seen, in the field's units. */
     double visible[2];
-    /* Mode iso has the surface's value and colour. */
-    double level;
+    /* Of mode iso, with the surface's colour: */
+    double isovalue;
     float rgb[3];
     /* Layers drawn with it, of mode over. */
     struct snow_raycast_pass *layers;
