@@ -9,6 +9,8 @@ except ImportError as missing:
     sys.exit(77)
 import gzip
 import os
+import struct
+import zlib
 
 import oracle
 
@@ -39,13 +41,20 @@ oracle.refuse("a.h5", "no such data set", ["--dataset", "none"], 2)
 a = oracle.sample("<f4", (20, 30, 40))
 ways = [dict(chunks=(7, 8, 9)), dict(compression="gzip", chunks=True),
         dict(compression="gzip", shuffle=True, fletcher32=True),
-        dict(fletcher32=True), {}]
+        dict(compression="lzf", chunks=True), dict(compression="lzf", shuffle=True),
+        dict(fletcher32=True), dict(scaleoffset=0), {}]
+if h5py.h5z.filter_avail(h5py.h5z.FILTER_SZIP):
+    ways.append(dict(compression="szip", chunks=(5, 6, 8)))
 for way in ways:
     for version in ("earliest", "latest"):
+        v = a if "scaleoffset" not in way else \
+            oracle.sample("<i1", a.shape).astype("<i2")
         with h5py.File("b.h5", "w", libver=version) as file:
-            file.create_dataset("only", data=a, **way)
+            file.create_dataset("only", data=v, **way)
             file["line"] = np.arange(10)
-        oracle.expect("b.h5", a, name=f"{way} {version}")
+        oracle.expect("b.h5", v, name=f"{way} {version}")
+with h5py.File("b.h5", "w") as file:
+    file["only"] = a
 with open("b.h5", "rb") as file, gzip.open("b.h5.gz", "wb") as to:
     to.write(file.read())
 oracle.expect("b.h5.gz", a)
@@ -268,7 +277,45 @@ for size in (20, 600, len(whole) // 2, len(whole) - 1):
     oracle.refuse("i.h5", "get or write it again")
 with h5py.File("k.h5", "w") as file:
     file.create_dataset("only", data=a, compression="lzf")
-oracle.refuse("k.h5", "filter 32000 (LZF)")
+with open("k.h5", "rb") as file:
+    whole = file.read()
+with open("k.h5", "wb") as file:
+    file.write(whole.replace(struct.pack("<H", 32000),
+                             struct.pack("<H", 32015), 1))
+oracle.refuse("k.h5", "filter 32015 (Zstandard)")
+
+# A chunk that unpacks to too few bytes: libhdf5 would copy what lies behind it.
+# One that unpacks to more is cut, as some NetCDF files need it.
+SHUFFLED = dict(compression="gzip", shuffle=True)
+KINDS = [(dict(compression="gzip"), zlib.compress, 0),
+         (dict(compression="gzip"), bytes, 1),
+         (dict(compression="gzip"), lambda data: zlib.compress(data)[:-5], 0),
+         (dict(shuffle=True), bytes, 0), (SHUFFLED, zlib.compress, 0),
+         (SHUFFLED, zlib.compress, 1), (dict(fletcher32=True), bytes, 1),
+         (dict(fletcher32=True), bytes, 0), ({}, bytes, 0),
+         (dict(compression="lzf"), bytes, 0), (dict(scaleoffset=0), bytes, 0)]
+
+
+def write_chunk(path, size, way, stored, mask):
+    with h5py.File(path, "w") as file:
+        made = file.create_dataset("only", (size,) * 3, "<i2",
+                                   chunks=(size,) * 3, **way)
+        made.id.write_direct_chunk((0, 0, 0), stored, filter_mask=mask)
+
+
+for way, pack, mask in KINDS:
+    for count in oracle.few((1, 2, 3, 5, 100, 200, 1000, 4096), 3, len(way)):
+        write_chunk("l.h5", 16, way, pack(bytes(i % 31 for i in range(count))),
+                    mask)
+        oracle.refuse("l.h5", "its chunk at 0,0,0")
+for way in (dict(compression="gzip"), SHUFFLED):
+    long = np.concatenate([oracle.sample("<i2", (16,) * 3).ravel(),
+                           np.arange(50, dtype="<i2")])
+    stored = long.tobytes()
+    if way is SHUFFLED:
+        stored = long.view("u1").reshape(-1, 2).T.tobytes()
+    write_chunk("m.h5", 16, way, zlib.compress(stored), 0)
+    oracle.expect("m.h5", long[:4096].reshape((16,) * 3), name=f"more {way}")
 with h5py.File("j.h5", "w") as file:
     file.create_dataset("huge", (10**6, 10**6, 10**5), "f8",
                         chunks=(8, 8, 8))

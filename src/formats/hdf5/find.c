@@ -23,7 +23,7 @@ static snow_type integer_type(size_t size, bool is_signed) {
                                           {SNOW_TYPE_UINT16, SNOW_TYPE_INT16},
                                           {SNOW_TYPE_UINT32, SNOW_TYPE_INT32},
                                           {SNOW_TYPE_UINT64, SNOW_TYPE_INT64}};
-    for (size_t i = 0; i < 4; i++)
+    for (size_t i = 0; i < 4 && size; i++)
         if (size <= (size_t)1 << i)
             return types[i][is_signed];
     return SNOW_TYPE_NONE;
@@ -37,7 +37,9 @@ static snow_type type_of(hid_t type) {
     case H5T_INTEGER:
         return integer_type(size, H5Tget_sign(type) == H5T_SGN_2);
     case H5T_FLOAT:
-        return size <= 4 ? SNOW_TYPE_FLOAT32 : SNOW_TYPE_FLOAT64;
+        return !size       ? SNOW_TYPE_NONE
+               : size <= 4 ? SNOW_TYPE_FLOAT32
+                           : SNOW_TYPE_FLOAT64;
     case H5T_ENUM: {
         hid_t base = H5Tget_super(type);
         snow_type found = base < 0 ? SNOW_TYPE_NONE : type_of(base);

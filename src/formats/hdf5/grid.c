@@ -152,26 +152,37 @@ static snow_status read_scale(const scales *s, hid_t scale, hsize_t count,
                               cf_axis *out) {
     snow_context *context = s->context;
     char name[64], units[64], positive[64];
+    hsize_t sizes[HDF5_MOST_AXES], first[HDF5_MOST_AXES] = {0}, points = 1;
     hid_t space = H5Dget_space(scale);
-    hssize_t points = H5Sget_simple_extent_npoints(space);
+    const int axes = H5Sget_simple_extent_ndims(space);
+    if (axes < 1 || axes > HDF5_MOST_AXES ||
+        H5Sget_simple_extent_dims(space, sizes, NULL) != axes)
+        points = 0;
     H5Sclose(space);
+    hid_t type = H5Dget_type(scale);
+    const H5T_class_t kind = H5Tget_class(type);
+    H5Tclose(type);
+    if (kind != H5T_INTEGER && kind != H5T_FLOAT)
+        points = 0;
+    for (int i = 0; i < axes && points; i++)
+        points *= sizes[i];
     read_text(s->file, scale, "NAME", name, sizeof name);
     read_text(s->file, scale, "units", units, sizeof units);
-    if (points < 1 || (hsize_t)points != count ||
-        points > CF_MOST_COORDINATES ||
+    if (!points || points != count || points > CF_MOST_COORDINATES ||
         !strncmp(name, "This is a netCDF dimension but not", 34))
         return SNOW_STATUS_OK;
     double *values = snow_allocate_array(context, count, sizeof *values);
     if (!values)
         return SNOW_STATUS_NO_MEMORY;
-    if (H5Dread(scale, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                values) < 0) {
+    const snow_status status = snow_hdf5_read_box(
+        context, s->file, scale, H5T_NATIVE_DOUBLE, axes, first, sizes, values);
+    if (status != SNOW_STATUS_OK) {
         snow_release(context, values);
-        return SNOW_STATUS_OK;
+        return snow_fail_within(context, status, "the coordinates of an axis");
     }
     snow_cf_release(context, out,
                     1); /* of a damaged file that lists it twice */
-    snow_cf_measure(values, points, units, out);
+    snow_cf_measure(values, (int64_t)points, units, out);
     read_text(s->file, scale, "positive", positive, sizeof positive);
     read_text(s->file, scale, "calendar", out->calendar, sizeof out->calendar);
     out->down = snow_cf_is_down(positive, units);

@@ -6,6 +6,7 @@
 #include "formats/hdf5/hdf5.h"
 #include "formats/array.h"
 #include "formats/features.h"
+#include "formats/hdf5/filters.h"
 
 #include <math.h>
 #include <string.h>
@@ -53,8 +54,6 @@ static hid_t native_type(snow_type type) {
 /* Filters that are usual (the HDF Group's list of registered ones). */
 static const char *filter_name(int filter) {
     switch (filter) {
-    case 32000:
-        return " (LZF)";
     case 32001:
         return " (Blosc)";
     case 32004:
@@ -86,7 +85,8 @@ static snow_status check_storage(snow_context *context, hid_t set) {
         size_t count = 0;
         H5Z_filter_t filter = H5Pget_filter2(plan, (unsigned)i, &flags, &count,
                                              NULL, 0, NULL, &config);
-        if (filter > 0 && H5Zfilter_avail(filter) <= 0)
+        if (filter > 0 && !snow_hdf5_undoes(filter) &&
+            H5Zfilter_avail(filter) <= 0)
             missing = filter;
     }
     H5Pclose(plan);
@@ -142,34 +142,24 @@ static snow_status pick(snow_context *context, const hdf5_set *set,
     return SNOW_STATUS_OK;
 }
 
-/* Reads the box as a hyperslab of the data set. */
-static snow_status read_slab(const hdf5_set *set, const snow_axes *roles,
-                             const snow_region *region,
-                             hsize_t start[HDF5_MOST_AXES],
-                             snow_volume *volume) {
-    hsize_t count[HDF5_MOST_AXES] = {1, 1, 1, 1, 1};
+/* Reads the box of the region, at the channel and the time of `start`. */
+static snow_status read_region(const hdf5_file *file, const hdf5_set *set,
+                               const snow_axes *roles,
+                               const snow_region *region,
+                               const hsize_t start[HDF5_MOST_AXES],
+                               snow_volume *volume) {
+    hsize_t first[HDF5_MOST_AXES], count[HDF5_MOST_AXES] = {1, 1, 1, 1, 1};
+    memcpy(first, start, sizeof first);
     for (int i = 0; i < 3; i++) {
         int at = set->axes - 1 - roles->space[i];
         if (roles->space[i] < 0)
             continue;
-        start[at] = (hsize_t)region->first[i];
+        first[at] = (hsize_t)region->first[i];
         count[at] = (hsize_t)region->count[i];
     }
-    hid_t space = H5Dget_space(set->id);
-    hid_t memory = H5Screate_simple(set->axes, count, NULL);
-    bool read = space >= 0 && memory >= 0 &&
-                H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count,
-                                    NULL) >= 0 &&
-                H5Dread(set->id, native_type(set->type), memory, space,
-                        H5P_DEFAULT, volume->owned) >= 0;
-    snow_status status =
-        read ? SNOW_STATUS_OK
-             : snow_hdf5_fail(volume->context, "its voxels cannot be read");
-    if (memory >= 0)
-        H5Sclose(memory);
-    if (space >= 0)
-        H5Sclose(space);
-    return status;
+    return snow_hdf5_read_box(volume->context, file, set->id,
+                              native_type(set->type), set->axes, first, count,
+                              volume->owned);
 }
 
 /* Impossible sizes are refused before memory is allocated. */
@@ -227,8 +217,8 @@ static snow_status read_voxels(void *user, const snow_volume_options *options,
         note_chunks(job, &region);
     if (out) {
         SNOW_TRY(snow_volume_new(context, info, &volume));
-        snow_status status =
-            read_slab(job->set, &job->axes.roles, &region, job->start, volume);
+        snow_status status = read_region(job->file, job->set, &job->axes.roles,
+                                         &region, job->start, volume);
         if (status != SNOW_STATUS_OK) {
             snow_volume_close(volume);
             return status;
@@ -248,7 +238,8 @@ static snow_status read_job(hdf5_job *job, const snow_volume_options *options,
         pick(job->context, job->set, &job->axes, options, info, job->start));
     snow_hdf5_place(job->context, file, job->set, &job->axes, options, info,
                     &job->values, &job->grid);
-    snow_hdf5_mean(file, job->set, &job->axes, info, &job->values);
+    SNOW_TRY(snow_hdf5_mean(job->context, file, job->set, &job->axes, info,
+                            &job->values));
     return snow_uneven_any(&job->grid)
                ? snow_uneven_read(job->context, &job->grid, options,
                                   read_voxels, job, info, out)

@@ -7,6 +7,8 @@
  *   grid.c    attributes -> geometry and value conversion
  *   meaning.c attributes -> quantity, unit, time
  *   vtkhdf.c  VTK's own attributes -> geometry, time
+ *   filters.c the stored bytes of a chunk -> its elements
+ *   chunks.c  chunks, or what else is stored -> a box of elements
  *   hdf5.c    a box of the data set -> the volume */
 #ifndef SNOW_FORMATS_HDF5_HDF5_H
 #define SNOW_FORMATS_HDF5_HDF5_H
@@ -88,6 +90,16 @@ snow_status snow_hdf5_find_step(snow_context *context, hid_t file,
                                 const snow_volume_options *options,
                                 hdf5_series *out);
 
+/* Reads elements first .. first + count - 1 along each of `axes` axes of a data
+ * set, at most HDF5_MOST_AXES, as values of a type of libhdf5 in memory, the
+ * last axis fastest.  All data sets are read by this function, since libhdf5
+ * does not notice a chunk that is too short.  Errors: SNOW_STATUS_BAD_INPUT,
+ * SNOW_STATUS_NO_MEMORY, SNOW_STATUS_STOPPED. */
+snow_status snow_hdf5_read_box(snow_context *context, const hdf5_file *file,
+                               hid_t set, hid_t type, int axes,
+                               const hsize_t *first, const hsize_t *count,
+                               void *out);
+
 /* The axes of a data set, counted from the last one. */
 typedef struct hdf5_axes {
     cf_axis scales[HDF5_MOST_AXES]; /* coordinates by dimension scales */
@@ -113,8 +125,8 @@ void snow_hdf5_place(snow_context *context, const hdf5_file *file,
  * steps. */
 bool snow_hdf5_place_image(const hdf5_file *file, const hdf5_set *set,
                            snow_volume_info *info);
-void snow_hdf5_time_image(const hdf5_file *file, const hdf5_set *set,
-                          snow_volume_info *info);
+snow_status snow_hdf5_time_image(snow_context *context, const hdf5_file *file,
+                                 const hdf5_set *set, snow_volume_info *info);
 void snow_hdf5_hint_image(const hdf5_file *file, const hdf5_set *set,
                           snow_axis_hint hints[HDF5_MOST_AXES]);
 
@@ -123,10 +135,10 @@ void snow_hdf5_hint_image(const hdf5_file *file, const hdf5_set *set,
 int snow_hdf5_numbers(hid_t object, const char *name, int most, double *out);
 
 /* Sets what the values are, and the time of the step; values that have a factor
- * to SI (openPMD) are scaled by it. */
-void snow_hdf5_mean(const hdf5_file *file, const hdf5_set *set,
-                    const hdf5_axes *axes, snow_volume_info *info,
-                    cf_values *values);
+ * to SI (openPMD) are scaled by it.  Errors: those of snow_hdf5_read_box. */
+snow_status snow_hdf5_mean(snow_context *context, const hdf5_file *file,
+                           const hdf5_set *set, const hdf5_axes *axes,
+                           snow_volume_info *info, cf_values *values);
 
 #endif
 #endif

@@ -94,9 +94,9 @@ static void take_time(const hdf5_file *file, const hdf5_set *set,
     }
 }
 
-void snow_hdf5_mean(const hdf5_file *file, const hdf5_set *set,
-                    const hdf5_axes *axes, snow_volume_info *info,
-                    cf_values *values) {
+snow_status snow_hdf5_mean(snow_context *context, const hdf5_file *file,
+                           const hdf5_set *set, const hdf5_axes *axes,
+                           snow_volume_info *info, cf_values *values) {
     static const char *const units[] = {"units", "unit", NULL};
     static const char *const names[] = {"long_name", "description", NULL};
     const char *slash = strrchr(set->path, '/');
@@ -109,8 +109,9 @@ void snow_hdf5_mean(const hdf5_file *file, const hdf5_set *set,
     if (axes->roles.time >= 0)
         snow_cf_time(&axes->scales[axes->roles.time], info);
     take_si(file, set, info, values);
-    snow_hdf5_time_image(file, set, info);
+    SNOW_TRY(snow_hdf5_time_image(context, file, set, info));
     take_time(file, set, info);
+    return SNOW_STATUS_OK;
 }
 
 #endif

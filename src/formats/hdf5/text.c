@@ -146,8 +146,10 @@ static bool read_attribute(const search *s, size_t size) {
 static bool read_message(search *s, uint64_t *at) {
     unsigned char head[8];
     const size_t bytes = s->version2 ? (s->ordered ? 6 : 4) : 8;
-    if (!copy_bytes(s, *at, head, bytes))
+    if (!copy_bytes(s, *at, head, bytes)) {
+        *at = UINT64_MAX / 2; /* the block ends here */
         return false;
+    }
     const uint64_t kind = number(head, s->version2 ? 1 : 2);
     const size_t size = (size_t)number(head + (s->version2 ? 1 : 2), 2);
     const uint64_t data = *at + bytes;

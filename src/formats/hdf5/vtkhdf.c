@@ -77,27 +77,28 @@ static hid_t open_times(hid_t root, hsize_t *count) {
     return -1;
 }
 
-void snow_hdf5_time_image(const hdf5_file *file, const hdf5_set *set,
-                          snow_volume_info *info) {
+snow_status snow_hdf5_time_image(snow_context *context, const hdf5_file *file,
+                                 const hdf5_set *set, snow_volume_info *info) {
     hid_t root = open_root(file, set);
     if (root < 0)
-        return;
+        return SNOW_STATUS_OK;
     hsize_t count = 0, at = (hsize_t)info->time, one = 1;
     hid_t times = open_times(root, &count);
     H5Oclose(root);
     if (times < 0)
-        return;
-    hid_t space = H5Dget_space(times), memory = H5Screate_simple(1, &one, NULL);
-    double value;
-    if (at < count &&
-        H5Sselect_hyperslab(space, H5S_SELECT_SET, &at, NULL, &one, NULL) >=
-            0 &&
-        H5Dread(times, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, &value) >=
-            0)
-        info->time_value = value;
-    H5Sclose(memory);
-    H5Sclose(space);
+        return SNOW_STATUS_OK;
+    double value = 0;
+    snow_status status = SNOW_STATUS_OK;
+    if (at < count) {
+        status = snow_hdf5_read_box(context, file, times, H5T_NATIVE_DOUBLE, 1,
+                                    &at, &one, &value);
+        if (status == SNOW_STATUS_OK)
+            info->time_value = value;
+        else
+            snow_fail_within(context, status, "the times of its steps");
+    }
     H5Dclose(times);
+    return status;
 }
 
 /* An array of all steps has the axes time, z, y, x, and may have one of
