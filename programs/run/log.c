@@ -6,6 +6,8 @@
 #include "run/interrupt.h"
 #include "run/start.h"
 
+#include <snowglass/extend.h>
+
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -89,10 +91,7 @@ static void wipe_stage(void) {
 static void say_list(const char *format, va_list arguments) {
     char line[LINE_BYTES];
     vsnprintf(line, sizeof line, format, arguments);
-    for (char *at = line; *at; at++) {
-        if ((unsigned char)*at < ' ' || *at == 127)
-            *at = '?';
-    }
+    snow_text_to_line(line, sizeof line);
     if (later) {
         fprintf(later, "%s\n", line);
         return;

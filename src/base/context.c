@@ -106,19 +106,11 @@ const char *snow_status_description(snow_status status) {
     return "unknown status";
 }
 
-/* Names and libraries' texts may contain anything; control characters must not
- * reach a terminal. */
-static void keep_to_one_line(char *text) {
-    for (; *text; text++)
-        if ((unsigned char)*text < 0x20 || *text == 0x7f)
-            *text = '?';
-}
-
 static void set_message(snow_context *context, const char *format,
                         va_list arguments) {
     pthread_mutex_lock(&context->lock);
     vsnprintf(context->message, sizeof context->message, format, arguments);
-    keep_to_one_line(context->message);
+    snow_text_to_line(context->message, sizeof context->message);
     pthread_mutex_unlock(&context->lock);
 }
 
@@ -165,6 +157,6 @@ void snow_context_warn(snow_context *context, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    keep_to_one_line(text);
+    snow_text_to_line(text, sizeof text);
     context->warning(context->warning_user, text);
 }

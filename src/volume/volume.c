@@ -58,6 +58,23 @@ static bool matrix_is_finite(const double m[4][4]) {
     return m[3][0] == 0 && m[3][1] == 0 && m[3][2] == 0 && m[3][3] == 1;
 }
 
+/* The farthest that a voxel may lie from the origin, and 1 by the shortest side
+ * that it may have: squares of lengths are doubles. */
+#define FARTHEST 1e100
+
+static bool is_measurable(const snow_volume_info *info) {
+    for (int i = 0; i < 3; i++) {
+        double far = fabs(info->matrix[i][3]), side = 0;
+        for (int j = 0; j < 3; j++) {
+            far += fabs(info->matrix[i][j]) * (double)info->dims[j];
+            side = fmax(side, fabs(info->matrix[j][i]));
+        }
+        if (!(far <= FARTHEST) || side < 1 / FARTHEST)
+            return false;
+    }
+    return true;
+}
+
 /* In the order of dependence: the type has a size before bytes are counted.
  * Spacings are not looked at here, they are the columns of the matrix. */
 snow_status snow_volume_info_check(snow_context *context,
@@ -86,6 +103,12 @@ snow_status snow_volume_info_check(snow_context *context,
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "invalid spacing or directions of the axes: zero, not "
                          "finite, or in one plane; correct them in the header");
+    if (!is_measurable(info))
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "its voxels are smaller than %g or lie farther than "
+                         "%g from the origin; correct spacing and origin in "
+                         "the header",
+                         1 / FARTHEST, FARTHEST);
     if (!isfinite(info->slope) || !isfinite(info->intercept) ||
         info->slope == 0)
         return snow_fail(

@@ -205,11 +205,51 @@ static void a_host_with_a_comma_reads_the_same_numbers(void **state) {
     assert_true(value == 0.25);
 }
 
+/* Bytes as ls --escape writes them; letters of UTF-8 stay, but for those that
+ * turn the direction of text (U+202E) and controls of Latin-1 (U+009B). */
 static void a_message_is_one_line_whatever_it_quotes(void **state) {
+    static const char *const cases[][2] = {
+        {"a\nb\x1b[2J\x7f", "a\\nb\\033[2J\\177"},
+        {"gr\xc3\xb6\xc3\x9f"
+         "er \xe2\x82\xac \xf0\x9f\x98\x80",
+         "gr\xc3\xb6\xc3\x9f"
+         "er \xe2\x82\xac \xf0\x9f\x98\x80"},
+        {"\xff\xc3", "\\377\\303"},
+        {"\xe2\x80\xae"
+         "gnp",
+         "\\342\\200\\256gnp"},
+        {"\xc2\x9b"
+         "2J",
+         "\\302\\2332J"},
+        {"\xc0\xaf\xed\xa0\x80", "\\300\\257\\355\\240\\200"},
+    };
     (void)state;
     snow_context *context = support_context();
-    snow_fail(context, SNOW_STATUS_BAD_INPUT, "%s: no", "a\nb\x1b[2J\x7f");
-    assert_string_equal(snow_context_message(context), "a?b?[2J?: no");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        snow_fail(context, SNOW_STATUS_BAD_INPUT, "%s", cases[i][0]);
+        assert_string_equal(snow_context_message(context), cases[i][1]);
+    }
+    snow_context_free(context);
+}
+
+/* Of a long name the end is left, of another word the beginning. */
+static void long_words_are_shortened(void **state) {
+    char word[100001];
+    (void)state;
+    snow_context *context = support_context();
+    for (size_t length = 90; length < sizeof word; length += length / 5) {
+        const size_t kept = length > 100 ? 100 : length;
+        const size_t name = length > 200 ? 200 : length;
+        memset(word, 'w', length);
+        word[length] = 0;
+        snow_fail(context, SNOW_STATUS_BAD_INPUT, "no %s here", word);
+        const char *told = snow_context_message(context);
+        assert_int_equal(strlen(told), 8 + kept - (length > 10230 ? 5 : 0));
+        word[0] = '/';
+        memcpy(word + length - 4, ".nii", 4);
+        snow_fail(context, SNOW_STATUS_BAD_INPUT, "%.9000s: empty", word);
+        assert_int_equal(strcspn(told, ":"), name);
+    }
     snow_context_free(context);
 }
 
@@ -239,6 +279,7 @@ int main(void) {
         cmocka_unit_test(a_number_gets_the_sign_of_the_locale),
         cmocka_unit_test(a_host_with_a_comma_reads_the_same_numbers),
         cmocka_unit_test(a_message_is_one_line_whatever_it_quotes),
+        cmocka_unit_test(long_words_are_shortened),
         cmocka_unit_test(layers_add_what_they_know_to_a_message),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -191,7 +191,7 @@ static void names_are_kept_on_one_line(void **state) {
     add_text(&r, "p\nq/.zarray",
              "{\"shape\": [2, 1, 1], \"chunks\": [1, 1, 1], \"dtype\": "
              "\"|u1\", \"order\": \"C\", \"compressor\": null}");
-    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "a?b", 1 << 16);
+    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "a\\nb", 1 << 16);
     assert_null(strchr(snow_context_message(place->context), '\n'));
     assert_non_null(strstr(place->warnings, "level 0 of 2 (p?q)"));
 }
