@@ -15,6 +15,11 @@
 /* More than any program writes: each costs a walk over all coefficients. */
 #define MOST_SCANS 500
 
+/* Bytes before the pixels, and of the codes of a block of pixels in all scans;
+ * libjpeg reads on through what is no code. */
+#define HEADER_BYTES ((uint64_t)16 << 20)
+#define BLOCK_BYTES 1024
+
 typedef struct jpeg_reader {
     snow_context *context;
     snow_source *source;
@@ -23,6 +28,7 @@ typedef struct jpeg_reader {
     struct jpeg_decompress_struct info;
     struct jpeg_source_mgr bytes; /* a copy of the source's next ones */
     struct jpeg_progress_mgr progress;
+    uint64_t left; /* bytes that may yet be read */
     size_t copied;
     unsigned char copy[SNOW_PEEK_BYTES];
     unsigned char *row;
@@ -48,6 +54,12 @@ static boolean fill(j_decompress_ptr info) {
     jpeg_reader *reader = info->client_data;
     size_t got;
     skip_bytes(info, reader->copied);
+    if (reader->left < sizeof reader->copy)
+        leave_unless(info,
+                     snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
+                               "is a JPEG file with more bytes than its pixels "
+                               "can have; it is damaged, get it again"));
+    reader->left -= sizeof reader->copy;
     leave_unless(info, snow_source_peek(reader->source, reader->copy,
                                         sizeof reader->copy, &got));
     if (!got)
@@ -169,17 +181,18 @@ static snow_status check_colors(const jpeg_reader *reader) {
 /* Checks that the file can hold its sizes, before memory is allocated for them:
  * each block of pixels has a code of one bit at least.  Only arithmetic codes
  * may be shorter. */
-static snow_status check_size(const jpeg_reader *reader) {
+static snow_status check_size(jpeg_reader *reader) {
     const struct jpeg_decompress_struct *info = &reader->info;
-    uint64_t bits = 0;
+    uint64_t blocks = 0;
     if (info->arith_code)
         return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
                          "is a JPEG file of arithmetic codes, which are not "
                          "read; convert it with jpegtran");
     for (int i = 0; i < info->num_components; i++)
-        bits += (uint64_t)info->comp_info[i].width_in_blocks *
-                info->comp_info[i].height_in_blocks;
-    return snow_source_expect(reader->source, bits / 8, "the pixels");
+        blocks += (uint64_t)info->comp_info[i].width_in_blocks *
+                  info->comp_info[i].height_in_blocks;
+    reader->left += blocks * BLOCK_BYTES;
+    return snow_source_expect(reader->source, blocks / 8, "the pixels");
 }
 
 static snow_status describe(jpeg_reader *reader, snow_volume_info *info) {
@@ -265,7 +278,8 @@ static snow_status read_jpeg(snow_source *source,
                              const snow_volume_options *options,
                              snow_volume_info *info, snow_volume **out) {
     jpeg_reader reader = {.context = snow_source_context(source),
-                          .source = source};
+                          .source = source,
+                          .left = HEADER_BYTES};
     reader.info.err = snow_jpeg_begin_faults(&reader.fault);
     snow_status status = read_open(&reader, options, info, out);
     jpeg_destroy_decompress(&reader.info);

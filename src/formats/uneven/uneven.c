@@ -6,8 +6,11 @@
 #include <string.h>
 
 /* Voxels of an even grid, unless the file has more: a single narrow step must
- * not make a small file a huge one. */
+ * not make a small file a huge one.  At most so many, and so many for each of
+ * the file's, of which a small file may have more. */
 #define MOST_VOXELS 0x1p29
+#define MOST_GROWTH 64
+#define SMALL_VOXELS 0x1p22
 
 /* Steps that differ by this share are equal. */
 #define EQUAL 1e-3
@@ -63,6 +66,10 @@ static double wanted(const snow_uneven *grid, int axis) {
 
 /* Makes the axes that grow the most shorter until all voxels are few enough. */
 static void limit(const snow_uneven *grid, double even[3]) {
+    double most = MOST_GROWTH;
+    for (int i = 0; i < 3; i++)
+        most *= (double)grid->count[i];
+    most = fmin(fmax(most, SMALL_VOXELS), MOST_VOXELS);
     for (;;) {
         double all = even[0] * even[1] * even[2], growth = 1;
         int axis = -1;
@@ -71,9 +78,9 @@ static void limit(const snow_uneven *grid, double even[3]) {
                 growth = even[i] / (double)grid->count[i];
                 axis = i;
             }
-        if (all <= MOST_VOXELS || axis < 0)
+        if (all <= most || axis < 0)
             return;
-        even[axis] = fmax(floor(even[axis] * fmax(MOST_VOXELS / all, 0.5)),
+        even[axis] = fmax(floor(even[axis] * fmax(most / all, 0.5)),
                           (double)grid->count[axis]);
     }
 }
