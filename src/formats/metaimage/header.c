@@ -34,6 +34,7 @@ typedef enum slot {
     DIRECTIONS,
     ANATOMY,
     HEADER_SIZE,
+    COMPRESSED_SIZE,
     SLOPE,
     INTERCEPT,
     UNITS,
@@ -79,7 +80,7 @@ static const struct {
     {"Color", IGNORED},
     {"CenterOfRotation", IGNORED},
     {"Modality", IGNORED},
-    {"CompressedDataSize", IGNORED},
+    {"CompressedDataSize", COMPRESSED_SIZE},
     {"CompressionLevel", IGNORED},
     {"ElementMin", IGNORED},
     {"ElementMax", IGNORED},
@@ -399,11 +400,15 @@ static snow_status read_geometry(snow_context *context, const fields *f,
 static snow_status read_layout(snow_context *context, const fields *f,
                                metaimage_header *header) {
     bool binary = true;
+    int64_t packed = 0;
     SNOW_TRY(read_flag(context, f, BINARY, true, &binary));
     SNOW_TRY(read_flag(context, f, COMPRESSED, false, &header->compressed));
     SNOW_TRY(read_flag(context, f, BIG_ENDIAN, false, &header->big_endian));
     SNOW_TRY(read_int(context, f, HEADER_SIZE, &header->header_size));
+    SNOW_TRY(read_int(context, f, COMPRESSED_SIZE, &packed));
     header->text = !binary;
+    if (packed < 0)
+        return fail_value(context, f, COMPRESSED_SIZE, "0 or above");
     if (header->header_size < -1)
         return fail_value(context, f, HEADER_SIZE, "-1, 0 or above");
     if (header->header_size == -1 && (header->compressed || header->text))

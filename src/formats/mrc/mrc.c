@@ -74,8 +74,8 @@ static bool is_plausible(const mrc_header *header) {
     return axes && mode >= 0 && mode <= 101;
 }
 
-/* The stamp gives the byte order, if programs wrote it correctly; otherwise it
- * is the order in which the header is plausible. */
+/* The stamp gives the byte order, if programs wrote it; otherwise it is the
+ * order in which the header is plausible. */
 static mrc_header header_of(const unsigned char *bytes) {
     mrc_header header = {bytes, bytes[212] == 0x11};
     if (!is_plausible(&header)) {
@@ -220,6 +220,15 @@ static snow_status parse_header(snow_context *context, const mrc_header *header,
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "is not an MRC file: its sizes or mode are invalid; "
                          "check the name, or get it again");
+    const unsigned char *stamp = header->bytes + 212;
+    if ((stamp[0] == 0x11 && stamp[1] == 0x11 && !header->big_endian) ||
+        (stamp[0] == 0x44 && stamp[1] == 0x44 && header->big_endian))
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "its machine stamp says %s-endian, but its sizes are "
+                         "%s-endian; correct bytes 213 and 214 (44 44: little, "
+                         "11 11: big)",
+                         header->big_endian ? "little" : "big",
+                         header->big_endian ? "big" : "little");
     if (!parse_mode(header, info, &array->coding))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "voxels of MRC mode %d are not supported; modes 0, 1, "

@@ -129,7 +129,8 @@ size_t nifti_header_size(const unsigned char *bytes, size_t size) {
     const bool magic1 =
         size >= NIFTI1_BYTES && (memcmp(bytes + 344, "n+1", 4) == 0 ||
                                  memcmp(bytes + 344, "ni1", 4) == 0);
-    if (magic1 &&
+    /* The size of version 2 is no mistake of a program: one of both is wrong. */
+    if (magic1 && !has_size(bytes, NIFTI2_BYTES, &big) &&
         (has_size(bytes, NIFTI1_BYTES, &big) || order_of_dim(bytes, &big)))
         return NIFTI1_BYTES;
     return 0;

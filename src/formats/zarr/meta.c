@@ -18,7 +18,7 @@ static bool take_sizes(const json_t *list, int axes, int64_t *out) {
         return false;
     for (int i = 0; i < axes; i++) {
         double size = json_number_value(json_array_get(list, (size_t)i));
-        if (!(size >= 1 && size < 0x1p53))
+        if (!(size >= 1 && size < 0x1p53) || size != (double)(int64_t)size)
             return false;
         out[i] = (int64_t)size;
     }
@@ -36,9 +36,9 @@ static snow_status take_shape(const zarr_store *store, const char *path,
     array->axes = (int)axes;
     if (!take_sizes(list, array->axes, array->sizes))
         return snow_zarr_fail(store, path,
-                              "has an axis without a size of at least 1: it "
-                              "is empty or damaged; choose another array with "
-                              "--dataset");
+                              "has an axis without a whole size of at least 1: "
+                              "it is empty or damaged; choose another array "
+                              "with --dataset");
     return SNOW_STATUS_OK;
 }
 
@@ -101,6 +101,10 @@ static snow_status take_coders_2(const zarr_store *store, const char *path,
                                  const json_t *meta, zarr_array *array) {
     const json_t *filters = json_object_get(meta, "filters");
     const json_t *packer = json_object_get(meta, "compressor");
+    if (filters && !json_is_array(filters) && !json_is_null(filters))
+        return snow_zarr_fail(store, path,
+                              "has filters that are neither a list nor null; "
+                              "correct .zarray");
     for (size_t i = 0; i <= json_array_size(filters); i++) {
         bool last = i == json_array_size(filters);
         const json_t *coder = last ? packer : json_array_get(filters, i);
@@ -306,6 +310,13 @@ static snow_status take_codecs(const zarr_store *store, const char *path,
 static snow_status describe_3(const zarr_store *store, const char *path,
                               const json_t *meta, zarr_array *array) {
     const json_t *grid = json_object_get(meta, "chunk_grid");
+    const json_t *changed = json_object_get(meta, "storage_transformers");
+    if (changed && !(json_is_array(changed) && !json_array_size(changed)))
+        return snow_zarr_fail(store, path,
+                              "is stored through the transformer \"%.40s\", "
+                              "which is not supported; copy the array without "
+                              "storage_transformers",
+                              name_of(json_array_get(changed, 0)));
     SNOW_TRY(take_shape(store, path, json_object_get(meta, "shape"), array));
     const json_t *chunks =
         json_object_get(json_object_get(grid, "configuration"), "chunk_shape");
