@@ -37,6 +37,34 @@ check "mpi has all that is of MPI" \
 check "each file belongs to one component" \
     [ "$(cat {runtime,dev,mpi,python,doc}.files | sort)" = \
     "$(cat all.files)" ]
+
+# --- hardening: files of programs and libraries, as SECURITY.md promises ------
+
+programs=$(find runtime mpi python -type f -exec sh -c \
+    'head -c 4 "$1" | grep -q ELF' sh {} \; -print)
+# What readelf prints of each program or library fits the pattern.
+all_have() {
+    local file bad=0
+    for file in $programs; do
+        readelf -W -h -l -d -s "$file" >elf
+        grep -Eq "$1" elf || { echo "       $file has no $1"; bad=1; }
+    done
+    return $bad
+}
+hardened() {
+    check "programs and libraries may lie at any address" \
+        all_have 'Type: +DYN'
+    check "their tables are read-only" all_have GNU_RELRO
+    check "all of them, before main" all_have 'BIND_NOW|FLAGS.* NOW'
+    check "no stack of theirs is for code" all_have 'GNU_STACK .* RW '
+    check "the tool checks its stack" grep -q __stack_chk_fail elf.tool
+    check "the tool checks its copies" grep -Eq '__[a-z]+_chk' elf.tool
+}
+readelf -W -s "$(find runtime -name snowglass -type f)" >elf.tool
+if grep -q 'SNOW_HARDEN:BOOL=ON' "$BUILD/CMakeCache.txt" &&
+    grep -q 'CMAKE_BUILD_TYPE:STRING=Release' "$BUILD/CMakeCache.txt"; then
+    hardened
+fi
 rm -rf first runtime dev mpi python doc
 
 # --- where they find one another ----------------------------------------------
