@@ -27,7 +27,7 @@ static void a_name_leads_back_to_its_value(void **state) {
 
 /* The picture of one call is that of the objects made one by one. */
 static void a_file_is_rendered_in_one_call(void **state) {
-    snow_context *context = NULL;
+    snow_context *context = support_context();
     snow_image *image = NULL, *other = NULL;
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL;
@@ -35,7 +35,6 @@ static void a_file_is_rendered_in_one_call(void **state) {
     snow_look look = {.size = sizeof look};
     snow_view view = {.size = sizeof view};
     (void)state;
-    assert_int_equal(snow_context_new(NULL, &context), SNOW_STATUS_OK);
     assert_int_equal(snow_volume_open(context, "phantom:head", NULL, &volume),
                      SNOW_STATUS_OK);
     snow_view_default(volume, &view);
@@ -62,10 +61,9 @@ static void a_file_is_rendered_in_one_call(void **state) {
 }
 
 static void a_file_that_is_missing_makes_no_image(void **state) {
-    snow_context *context = NULL;
+    snow_context *context = support_context();
     snow_image *image = NULL;
     (void)state;
-    assert_int_equal(snow_context_new(NULL, &context), SNOW_STATUS_OK);
     assert_int_equal(
         snow_render_file(context, "missing.nrrd", NULL, NULL, &image),
         SNOW_STATUS_BAD_INPUT);
@@ -136,9 +134,8 @@ static void initialisers_give_the_documented_defaults(void **state) {
     snow_view view, plus_z = {.size = sizeof plus_z};
     snow_settings settings;
     snow_recipe recipe;
-    snow_context *context = NULL;
+    snow_context *context = support_context();
     (void)state;
-    assert_int_equal(snow_context_new(NULL, &context), SNOW_STATUS_OK);
     snow_view_init(&view);
     assert_int_equal(snow_view_from_name(context, "+z", &plus_z),
                      SNOW_STATUS_OK);
@@ -173,7 +170,7 @@ static bool names_initialiser(const snow_context *context, const char *record) {
 
 /* Every call, with a record that was never initialised. */
 static void a_size_of_0_is_refused(void **state) {
-    snow_context *context = NULL;
+    snow_context *context = support_context();
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
@@ -192,7 +189,6 @@ static void a_size_of_0_is_refused(void **state) {
     (void)state;
     snow_view_init(&good);
     good.width = good.height = 16;
-    assert_int_equal(snow_context_new(NULL, &context), SNOW_STATUS_OK);
     const char *path = "phantom:cube";
     REFUSED("snow_volume_options",
             snow_volume_open(context, path, &options, &volume));
@@ -259,10 +255,9 @@ static snow_status render_with_one_bad_record(snow_comm *comm, void *user) {
 }
 
 static void a_size_of_0_on_one_rank_is_refused_by_all(void **state) {
-    snow_context *context = NULL;
+    snow_context *context = support_context();
     int any = 1;
     (void)state;
-    assert_int_equal(snow_context_new(NULL, &context), SNOW_STATUS_OK);
     assert_int_equal(
         snow_comm_run_threads(context, 3, render_with_one_bad_record, NULL),
         SNOW_STATUS_OK);
@@ -278,10 +273,9 @@ static void fields_that_are_unknown_are_refused_unless_0(void **state) {
         snow_view known;
         double beyond;
     } view;
-    snow_context *context = NULL;
+    snow_context *context = support_context();
     snow_image *image = NULL;
     (void)state;
-    assert_int_equal(snow_context_new(NULL, &context), SNOW_STATUS_OK);
     snow_view_init_sized(&view.known, sizeof view);
     view.known.width = view.known.height = 16;
     assert_int_equal(
@@ -301,12 +295,11 @@ static void fields_that_are_unknown_are_refused_unless_0(void **state) {
 /* A shorter record of an older header: what it lacks has its default, or is not
  * written. */
 static void records_of_an_older_header_are_read_and_filled(void **state) {
-    snow_context *context = NULL;
+    snow_context *context = support_context();
     snow_volume *volume = NULL;
     snow_volume_options options;
     snow_volume_statistics statistics;
     (void)state;
-    assert_int_equal(snow_context_new(NULL, &context), SNOW_STATUS_OK);
     memset(&options, 7, sizeof options);
     snow_volume_options_init_sized(&options,
                                    offsetof(snow_volume_options, type));
@@ -331,10 +324,9 @@ static void records_of_an_older_header_are_read_and_filled(void **state) {
 /* Whatever the file is: readers take the number for an index. */
 static void less_than_0_levels_are_refused(void **state) {
     static const int64_t wrong[] = {-1, -40, INT64_MIN};
-    snow_context *context = NULL;
+    snow_context *context = support_context();
     snow_volume *volume = NULL;
     (void)state;
-    assert_int_equal(snow_context_new(NULL, &context), SNOW_STATUS_OK);
     for (int n = 0; n < 3; n++) {
         snow_volume_options options;
         snow_volume_options_init(&options);

@@ -3,7 +3,8 @@
  * their first byte. */
 #define _GNU_SOURCE /* O_TMPFILE */
 #include "io/writer.h"
-#include "support/support.h"
+#include "support/failing.h"
+#include "support/folder.h"
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -15,42 +16,33 @@
 
 typedef struct fixture {
     snow_context *context;
-    char folder[64];
+    char folder[SUPPORT_FOLDER_BYTES];
     char path[128];
 } fixture;
 
 static int set_up(void **state) {
     fixture *f = calloc(1, sizeof *f);
     f->context = support_context();
-    snprintf(f->folder, sizeof f->folder, "/tmp/snow-writer-XXXXXX");
-    assert_non_null(mkdtemp(f->folder));
+    support_folder_make(f->folder);
     snprintf(f->path, sizeof f->path, "%s/out.bin", f->folder);
     *state = f;
     return 0;
 }
 
-/* Files in the folder, hidden ones included; removes them when told. */
-static int count_files(const char *folder, bool removing) {
+/* Files in the folder, hidden ones included. */
+static int count_files(const char *folder) {
     DIR *listing = opendir(folder);
     assert_non_null(listing);
-    int count = 0;
-    for (struct dirent *entry; (entry = readdir(listing));) {
-        if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0)
-            continue;
-        char name[512];
-        snprintf(name, sizeof name, "%s/%s", folder, entry->d_name);
-        if (removing)
-            unlink(name);
+    int count = -2; /* . and .. */
+    while (readdir(listing))
         count++;
-    }
     closedir(listing);
     return count;
 }
 
 static int tear_down(void **state) {
     fixture *f = *state;
-    count_files(f->folder, true);
-    rmdir(f->folder);
+    support_folder_remove(f->folder);
     assert_int_equal(snow_context_bytes(f->context), 0);
     snow_context_free(f->context);
     free(f);
@@ -58,10 +50,7 @@ static int tear_down(void **state) {
 }
 
 static void put_text(const char *path, const char *text) {
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    fputs(text, file);
-    fclose(file);
+    support_write_file(path, text, strlen(text));
 }
 
 static void assert_text(const char *path, const char *text) {
@@ -110,7 +99,7 @@ static void a_committed_file_has_its_bytes_and_leaves_no_other(void **state) {
     assert_int_equal(at, sizeof bytes);
     assert_int_not_equal(access(f->path, F_OK), 0);
     assert_int_equal(snow_writer_commit(writer), SNOW_STATUS_OK);
-    assert_int_equal(count_files(f->folder, false), 1);
+    assert_int_equal(count_files(f->folder), 1);
     static unsigned char back[sizeof bytes + 1];
     FILE *file = fopen(f->path, "rb");
     assert_int_equal(fread(back, 1, sizeof back, file), sizeof bytes);
@@ -153,32 +142,26 @@ static void an_existing_file_is_kept_unless_overwriting(void **state) {
     assert_text(f->path, "old");
     assert_int_equal(write_text(f, f->path, true, "new"), SNOW_STATUS_OK);
     assert_text(f->path, "new");
-    assert_int_equal(count_files(f->folder, false), 1);
+    assert_int_equal(count_files(f->folder), 1);
 }
 
-static void a_file_that_appears_meanwhile_is_kept(void **state) {
+static void a_file_that_appears_meanwhile_is_kept_or_replaced(void **state) {
     fixture *f = *state;
-    snow_writer *writer = NULL;
-    assert_int_equal(snow_writer_open(f->context, f->path, false, &writer),
-                     SNOW_STATUS_OK);
-    assert_int_equal(snow_writer_write(writer, "mine", 4), SNOW_STATUS_OK);
-    put_text(f->path, "theirs");
-    assert_int_equal(snow_writer_commit(writer), SNOW_STATUS_BAD_OUTPUT);
-    assert_message(f, "exists");
-    assert_text(f->path, "theirs");
-    assert_int_equal(count_files(f->folder, false), 1);
-}
-
-static void a_file_that_appears_meanwhile_is_replaced_if_told(void **state) {
-    fixture *f = *state;
-    snow_writer *writer = NULL;
-    assert_int_equal(snow_writer_open(f->context, f->path, true, &writer),
-                     SNOW_STATUS_OK);
-    assert_int_equal(snow_writer_write(writer, "mine", 4), SNOW_STATUS_OK);
-    put_text(f->path, "theirs");
-    assert_int_equal(snow_writer_commit(writer), SNOW_STATUS_OK);
-    assert_text(f->path, "mine");
-    assert_int_equal(count_files(f->folder, false), 1);
+    for (int overwrite = 0; overwrite < 2; overwrite++) {
+        snow_writer *writer = NULL;
+        unlink(f->path);
+        assert_int_equal(
+            snow_writer_open(f->context, f->path, overwrite, &writer),
+            SNOW_STATUS_OK);
+        assert_int_equal(snow_writer_write(writer, "mine", 4), SNOW_STATUS_OK);
+        put_text(f->path, "theirs");
+        assert_int_equal(snow_writer_commit(writer),
+                         overwrite ? SNOW_STATUS_OK : SNOW_STATUS_BAD_OUTPUT);
+        if (!overwrite)
+            assert_message(f, "exists");
+        assert_text(f->path, overwrite ? "mine" : "theirs");
+        assert_int_equal(count_files(f->folder), 1);
+    }
 }
 
 /* Whether files of the folder have names while they are written. */
@@ -212,7 +195,7 @@ static void a_writer_that_is_killed_leaves_nothing(void **state) {
     assert_int_equal(waitpid(child, &end, 0), child);
     assert_true(WIFSIGNALED(end) && WTERMSIG(end) == SIGKILL);
     assert_int_not_equal(access(f->path, F_OK), 0);
-    assert_int_equal(count_files(f->folder, false), are_named(f->folder));
+    assert_int_equal(count_files(f->folder), are_named(f->folder));
 }
 
 static void an_abandoned_file_leaves_nothing(void **state) {
@@ -225,7 +208,7 @@ static void an_abandoned_file_leaves_nothing(void **state) {
     snow_writer_abandon(writer);
     snow_writer_abandon(NULL);
     assert_text(f->path, "old");
-    assert_int_equal(count_files(f->folder, false), 1);
+    assert_int_equal(count_files(f->folder), 1);
 }
 
 static void a_link_stays_a_link_and_its_target_is_replaced(void **state) {
@@ -256,7 +239,7 @@ static void folders_and_missing_folders_are_refused(void **state) {
     char slash[160];
     snprintf(slash, sizeof slash, "%s/new/", f->folder);
     assert_int_equal(write_text(f, slash, false, "x"), SNOW_STATUS_BAD_OUTPUT);
-    assert_int_equal(count_files(f->folder, false), 0);
+    assert_int_equal(count_files(f->folder), 0);
 }
 
 static void a_name_of_the_greatest_length_can_be_written(void **state) {
@@ -277,7 +260,7 @@ static void a_name_that_is_too_long_is_refused_at_once(void **state) {
     assert_int_equal(snow_writer_open(f->context, path, false, &writer),
                      SNOW_STATUS_BAD_OUTPUT);
     assert_message(f, "choose a shorter name");
-    assert_int_equal(count_files(f->folder, false), 0);
+    assert_int_equal(count_files(f->folder), 0);
 }
 
 static void devices_are_written_through(void **state) {
@@ -326,7 +309,7 @@ static void a_file_over_the_size_limit_leaves_nothing(void **state) {
     assert_int_equal(first, SNOW_STATUS_OK);
     assert_int_equal(second, SNOW_STATUS_BAD_OUTPUT);
     assert_int_equal(committed, SNOW_STATUS_BAD_OUTPUT);
-    assert_int_equal(count_files(f->folder, false), 0);
+    assert_int_equal(count_files(f->folder), 0);
 }
 
 static void a_dash_is_standard_output(void **state) {
@@ -344,23 +327,13 @@ static void a_dash_is_standard_output(void **state) {
     assert_text(f->path, "to stdout");
 }
 
-/* An allocator that fails from its n-th call on. */
-static void *allocate_few(void *user, size_t bytes) {
-    int *left = user;
-    return (*left)-- > 0 ? malloc(bytes) : NULL;
-}
-
-static void release_any(void *user, void *block) {
-    (void)user;
-    free(block);
-}
-
 static void no_memory_leaves_nothing(void **state) {
     fixture *f = *state;
     int successes = 0;
     for (int few = 0; few < 6; few++) {
-        int left = few + 1; /* one for the context */
-        snow_allocator allocator = {allocate_few, release_any, &left};
+        /* One more for the context. */
+        support_failing failing = {.failing = few + 1, .for_good = true};
+        snow_allocator allocator = support_failing_allocator(&failing);
         snow_context *context = NULL;
         assert_int_equal(snow_context_new(&allocator, &context),
                          SNOW_STATUS_OK);
@@ -373,7 +346,7 @@ static void no_memory_leaves_nothing(void **state) {
             assert_null(writer);
         }
         assert_int_equal(snow_context_bytes(context), 0);
-        assert_int_equal(count_files(f->folder, false), 0);
+        assert_int_equal(count_files(f->folder), 0);
         snow_context_free(context);
     }
     assert_true(successes > 0 && successes < 6);
@@ -387,8 +360,7 @@ int main(void) {
         UNIT(the_mode_is_what_the_umask_says),
         UNIT(a_replaced_file_keeps_its_permissions),
         UNIT(an_existing_file_is_kept_unless_overwriting),
-        UNIT(a_file_that_appears_meanwhile_is_kept),
-        UNIT(a_file_that_appears_meanwhile_is_replaced_if_told),
+        UNIT(a_file_that_appears_meanwhile_is_kept_or_replaced),
         UNIT(a_writer_that_is_killed_leaves_nothing),
         UNIT(an_abandoned_file_leaves_nothing),
         UNIT(a_link_stays_a_link_and_its_target_is_replaced),

@@ -37,13 +37,11 @@ static const char *put_file(support_files *files, const den_file *file) {
 }
 
 static void both_byte_orders_are_read(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
+    support_files *files = *state;
     for (int big = 0; big < 2; big++) {
         den_file file = make(big);
         snow_volume *volume =
-            support_opened(&files, put_file(&files, &file), NULL);
+            support_opened(files, put_file(files, &file), NULL);
         const snow_volume_info *info = snow_volume_get_info(volume);
         assert_string_equal(info->format, "den");
         assert_int_equal(info->type, SNOW_TYPE_UINT8);
@@ -53,49 +51,38 @@ static void both_byte_orders_are_read(void **state) {
                             24);
         snow_volume_close(volume);
     }
-    support_files_end(&files);
 }
 
 static void a_box_is_cut_out(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
+    support_files *files = *state;
     den_file file = make(false);
     const snow_volume_options box = {.size = sizeof box,
                                      .crop = {{1, 3}, {2, 3}, {0, 2}}};
     static const unsigned char wanted[] = {9, 10, 21, 22};
-    snow_volume *volume = support_opened(&files, put_file(&files, &file), &box);
+    snow_volume *volume = support_opened(files, put_file(files, &file), &box);
     assert_memory_equal(snow_volume_voxels(volume), wanted, sizeof wanted);
     snow_volume_close(volume);
-    support_files_end(&files);
 }
 
 static void damaged_files_are_refused(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
+    support_files *files = *state;
     den_file file = make(false);
     file.size--;
-    support_refused(&files, put_file(&files, &file), NULL,
-                    SNOW_STATUS_BAD_INPUT, "the file is truncated", 1 << 17);
+    support_bad_file(files, put_file(files, &file), "the file is truncated");
     file = make(false);
     put(&file, 29, 25, false);
-    support_refused(&files, put_file(&files, &file), NULL,
-                    SNOW_STATUS_BAD_INPUT,
-                    "4x3x2 voxels but another number of bytes", 1 << 17);
+    support_bad_file(files, put_file(files, &file),
+                     "4x3x2 voxels but another number of bytes");
     file = make(false);
     put(&file, 26, 7, false);
-    support_refused(&files, put_file(&files, &file), NULL,
-                    SNOW_STATUS_BAD_INPUT, "not a DEN header", 1 << 17);
+    support_bad_file(files, put_file(files, &file), "not a DEN header");
     file.size = 20;
-    support_refused(&files, put_file(&files, &file), NULL,
-                    SNOW_STATUS_BAD_INPUT, "not a DEN header", 1 << 17);
-    support_files_end(&files);
+    support_bad_file(files, put_file(files, &file), "not a DEN header");
 }
 
 /* What is known but not read is called by its name. */
 static void unsupported_formats_are_known(void **state) {
-    (void)state;
+    support_files *files = *state;
     static const struct {
         size_t offset;
         const char *magic;
@@ -108,26 +95,21 @@ static void unsupported_formats_are_known(void **state) {
         {0, "MATLAB 5.0 MAT-file", "save it with -v7.3"},
         {0, "RIFF", "is a RIFF file"},
     };
-    support_files files;
-    support_files_begin(&files);
     for (size_t i = 0; i < sizeof unsupported / sizeof *unsupported; i++) {
         char bytes[512] = "";
         memcpy(bytes + unsupported[i].offset, unsupported[i].magic,
                strlen(unsupported[i].magic));
-        const char *path =
-            support_write(&files, "strange", bytes, sizeof bytes);
-        support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT,
-                        unsupported[i].given, 1 << 17);
+        const char *path = support_write(files, "strange", bytes, sizeof bytes);
+        support_bad_file(files, path, unsupported[i].given);
     }
-    support_files_end(&files);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(both_byte_orders_are_read),
-        cmocka_unit_test(a_box_is_cut_out),
-        cmocka_unit_test(damaged_files_are_refused),
-        cmocka_unit_test(unsupported_formats_are_known),
+        SUPPORT_TEST(both_byte_orders_are_read),
+        SUPPORT_TEST(a_box_is_cut_out),
+        SUPPORT_TEST(damaged_files_are_refused),
+        SUPPORT_TEST(unsupported_formats_are_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

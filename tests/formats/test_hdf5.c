@@ -8,9 +8,6 @@
 #include <formats/hdf5/hdf5.h>
 #include <unistd.h>
 
-/* The most memory that a refusal may ask for at once, of the context. */
-#define MOST ((size_t)200 * 1024)
-
 /* A file with data sets of 4 x 3 x 2 counting bytes under these paths. */
 static const char *write_sets(support_files *files, const char *const *names) {
     static unsigned char bytes[24];
@@ -44,37 +41,24 @@ static void expect_counting(snow_volume *volume) {
     snow_volume_close(volume);
 }
 
-static void the_only_data_set_needs_no_name(void **state) {
-    (void)state;
-    static const char *const names[] = {"/deep/in/it", NULL};
-    support_files files;
-    support_files_begin(&files);
-    expect_counting(support_opened(&files, write_sets(&files, names), NULL));
-    assert_int_equal(files.warnings, 0);
-    support_files_end(&files);
-}
-
 static void several_are_listed(void **state) {
-    (void)state;
+    support_files *files = *state;
     static const char *const names[] = {"/b/two", "/a", NULL};
-    support_files files;
-    support_files_begin(&files);
-    const char *path = write_sets(&files, names);
-    support_refused(&files, path, NULL, SNOW_STATUS_BAD_USAGE,
-                    "/a (4x3x2), /b/two (4x3x2)", MOST);
+    const char *path = write_sets(files, names);
+    support_refused(files, path, NULL, SNOW_STATUS_BAD_USAGE,
+                    "/a (4x3x2), /b/two (4x3x2)", SUPPORT_MOST);
     const snow_volume_options wrong = {.size = sizeof wrong, .dataset = "c"};
-    support_refused(&files, path, &wrong, SNOW_STATUS_BAD_USAGE, "/b/two",
-                    MOST);
+    support_refused(files, path, &wrong, SNOW_STATUS_BAD_USAGE, "/b/two",
+                    SUPPORT_MOST);
     const snow_volume_options right = {.size = sizeof right,
                                        .dataset = "b/two"};
-    expect_counting(support_opened(&files, path, &right));
+    expect_counting(support_opened(files, path, &right));
     char inside[600];
     snprintf(inside, sizeof inside, "%s:/b/two", path);
-    expect_counting(support_opened(&files, inside, NULL));
+    expect_counting(support_opened(files, inside, NULL));
     snow_volume *volume = NULL;
-    assert_int_equal(snow_volume_open(files.context, inside, &right, &volume),
+    assert_int_equal(snow_volume_open(files->context, inside, &right, &volume),
                      SNOW_STATUS_BAD_USAGE);
-    support_files_end(&files);
 }
 
 static herr_t hear(hid_t stack, void *user) {
@@ -86,23 +70,20 @@ static herr_t hear(hid_t stack, void *user) {
 /* Whether the file is read or refused: nothing stays open, and who heard of
  * libhdf5's errors before still does. */
 static void nothing_is_left_behind(void **state) {
-    (void)state;
+    support_files *files = *state;
     static const char *const names[] = {"/a", NULL};
-    support_files files;
     int heard = 0;
-    support_files_begin(&files);
-    const char *path = write_sets(&files, names);
+    const char *path = write_sets(files, names);
     H5Eset_auto2(H5E_DEFAULT, hear, &heard);
-    expect_counting(support_opened(&files, path, NULL));
-    const char *bad = support_write(&files, "b.h5", "\x89HDF\r\n\x1a\n", 8);
-    support_refused(&files, bad, NULL, SNOW_STATUS_BAD_INPUT, "libhdf5", MOST);
+    expect_counting(support_opened(files, path, NULL));
+    const char *bad = support_write(files, "b.h5", "\x89HDF\r\n\x1a\n", 8);
+    support_bad_file(files, bad, "libhdf5");
     assert_int_equal(heard, 0);
     assert_true(H5Fget_obj_count((hid_t)H5F_OBJ_ALL, H5F_OBJ_ALL) <= 0);
     heard = 0;
     assert_true(H5Fopen("there is none", H5F_ACC_RDONLY, H5P_DEFAULT) < 0);
     assert_int_equal(heard, 1);
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    support_files_end(&files);
 }
 
 /* A second link to the root, of which its count of links knows nothing: so
@@ -127,25 +108,20 @@ static const char *write_loop(support_files *files) {
 }
 
 static void a_link_to_the_root_is_not_followed_for_ever(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
+    support_files *files = *state;
     const snow_volume_options named = {.size = sizeof named, .dataset = "a"};
-    const char *path = write_loop(&files);
+    const char *path = write_loop(files);
     alarm(20); /* ends the test */
-    support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT, "more than 64",
-                    MOST);
-    expect_counting(support_opened(&files, path, &named));
+    support_bad_file(files, path, "more than 64");
+    expect_counting(support_opened(files, path, &named));
     alarm(0);
-    support_files_end(&files);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_link_to_the_root_is_not_followed_for_ever),
-        cmocka_unit_test(the_only_data_set_needs_no_name),
-        cmocka_unit_test(several_are_listed),
-        cmocka_unit_test(nothing_is_left_behind),
+        SUPPORT_TEST(a_link_to_the_root_is_not_followed_for_ever),
+        SUPPORT_TEST(several_are_listed),
+        SUPPORT_TEST(nothing_is_left_behind),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,9 +2,6 @@
  * are compared in oracle_tiff.py. */
 #include "support/files.h"
 
-/* The most memory that a refusal may ask for at once, of the context. */
-#define MOST ((size_t)200 * 1024)
-
 static void previews_are_no_slices(void **state);
 
 #if SNOW_HAVE_JPEG
@@ -75,60 +72,17 @@ static const char *write_jpeg(const support_files *files, const char *name,
 
 static const jpeg_kind grey = {
     .width = 21, .height = 13, .colors = JCS_GRAYSCALE};
-static const jpeg_kind rgb = {.width = 21, .height = 13, .colors = JCS_RGB};
 
-/* Of a slice, with these differences at most. */
-static void expect_values(const uint8_t *voxels, const jpeg_kind *kind,
-                          int first, int most) {
-    for (int y = 0; y < kind->height; y++)
-        for (int x = 0; x < kind->width; x++) {
-            int wanted = 4 * y + x + first;
-            int is = voxels[y * kind->width + x];
-            if (abs(is - wanted) > most)
-                fail_msg("(%d, %d) is %d, not %d", x, y, is, wanted);
-        }
-}
-
-static void grey_is_one_channel(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    for (int i = 0; i < 2; i++) {
-        jpeg_kind kind = grey;
-        kind.progressive = i == 1;
-        snow_volume *volume = support_opened(
-            &files, write_jpeg(&files, "a.jpeg", &kind, 7), NULL);
-        const snow_volume_info *info = snow_volume_get_info(volume);
-        assert_string_equal(info->format, "jpeg");
-        assert_int_equal(info->type, SNOW_TYPE_UINT8);
-        assert_int_equal(info->dims[0], 21);
-        assert_int_equal(info->dims[1], 13);
-        assert_int_equal(info->dims[2], 1);
-        assert_true(info->matrix[1][1] == -1 && info->matrix[2][2] == -1);
-        expect_values(snow_volume_voxels(volume), &kind, 7, 2);
-        snow_volume_close(volume);
-    }
-    assert_int_equal(files.warnings, 0);
-    support_files_end(&files);
-}
-
-static void colours_are_channels(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    const char *path = write_jpeg(&files, "a.jpg", &rgb, 5);
-    for (int c = 1; c < 3; c++) {
-        const snow_volume_options options = {.size = sizeof options,
-                                             .channel = c};
-        snow_volume *volume = support_opened(&files, path, &options);
-        assert_int_equal(snow_volume_get_info(volume)->channels, 3);
-        expect_values(snow_volume_voxels(volume), &rgb, 5 + 60 * c, 6);
-        snow_volume_close(volume);
-    }
-    assert_int_equal(files.warnings, 0); /* the user knows of the others */
-    snow_volume_close(support_opened(&files, path, NULL));
-    assert_int_equal(files.warnings, 1);
-    support_files_end(&files);
+static void one_of_many_channels_is_told(void **state) {
+    support_files *files = *state;
+    jpeg_kind kind = grey;
+    kind.colors = JCS_RGB;
+    const char *path = write_jpeg(files, "a.jpg", &kind, 5);
+    const snow_volume_options options = {.size = sizeof options, .channel = 1};
+    snow_volume_close(support_opened(files, path, &options));
+    assert_string_equal(files->warnings, ""); /* the user knows of the others */
+    snow_volume_close(support_opened(files, path, NULL));
+    assert_int_equal(support_warned(files), 1);
 }
 
 static void write_stack(const support_files *files, int count) {
@@ -137,27 +91,6 @@ static void write_stack(const support_files *files, int count) {
         snprintf(name, sizeof name, "z%d.jpg", z);
         write_jpeg(files, name, &grey, 3 * z);
     }
-}
-
-static void a_box_is_that_of_the_whole(void **state) {
-    (void)state;
-    const snow_volume_options box = {.size = sizeof box,
-                                     .crop = {{2, 9}, {3, 13}, {1, 11}}};
-    support_files files;
-    support_files_begin(&files);
-    write_stack(&files, 12);
-    snow_volume *whole = support_opened(&files, files.folder, NULL);
-    snow_volume *part = support_opened(&files, files.folder, &box);
-    const uint8_t *a = snow_volume_voxels(whole), *b = snow_volume_voxels(part);
-    assert_int_equal(snow_volume_get_info(whole)->dims[2], 12);
-    for (int z = 0; z < 12; z++)
-        expect_values(a + (ptrdiff_t)z * 21 * 13, &grey, 3 * z, 2);
-    for (int z = 1; z < 11; z++)
-        for (int y = 3; y < 13; y++, b += 7)
-            assert_memory_equal(b, a + (z * 13 + y) * 21 + 2, 7);
-    snow_volume_close(whole);
-    snow_volume_close(part);
-    support_files_end(&files);
 }
 
 static size_t read_back(const support_files *files, const char *name,
@@ -171,114 +104,93 @@ static size_t read_back(const support_files *files, const char *name,
 
 /* At every length, and with a wrong code among the pixels. */
 static void a_damaged_slice_is_named(void **state) {
-    (void)state;
+    support_files *files = *state;
     static unsigned char bytes[4000];
-    support_files files;
-    support_files_begin(&files);
-    write_stack(&files, 3);
-    size_t size = read_back(&files, "z1.jpg", bytes, sizeof bytes);
+    write_stack(files, 3);
+    size_t size = read_back(files, "z1.jpg", bytes, sizeof bytes);
     for (size_t cut = 0; cut < size; cut += cut < size - 20 ? 7 : 1) {
-        support_write(&files, "z1.jpg", bytes, cut);
-        support_refused(&files, files.folder, NULL, SNOW_STATUS_BAD_INPUT,
-                        "z1.jpg", MOST);
+        support_write(files, "z1.jpg", bytes, cut);
+        support_bad_file(files, files->folder, "z1.jpg");
     }
     memset(bytes + size - 60, 0x55, 30);
-    support_write(&files, "z1.jpg", bytes, size);
-    support_refused(&files, files.folder, NULL, SNOW_STATUS_BAD_INPUT, "z1.jpg",
-                    MOST);
-    support_refused(&files, support_write_text(&files, "n.jpg", "no picture"),
-                    NULL, SNOW_STATUS_BAD_INPUT, "Not a JPEG file", MOST);
-    support_files_end(&files);
+    support_write(files, "z1.jpg", bytes, size);
+    support_bad_file(files, files->folder, "z1.jpg");
+    support_bad_file(files, support_write_text(files, "n.jpg", "no picture"),
+                     "Not a JPEG file");
 }
 
 /* The sizes of the first frame header are set: more than the file can hold. */
 static void sizes_that_do_not_fit_cost_nothing(void **state) {
-    (void)state;
+    support_files *files = *state;
     static unsigned char bytes[4000];
-    support_files files;
-    support_files_begin(&files);
     for (int i = 0; i < 2; i++) {
         jpeg_kind kind = grey;
         kind.progressive = i == 1;
-        write_jpeg(&files, "a.jpg", &kind, 0);
-        size_t size = read_back(&files, "a.jpg", bytes, sizeof bytes);
+        write_jpeg(files, "a.jpg", &kind, 0);
+        size_t size = read_back(files, "a.jpg", bytes, sizeof bytes);
         unsigned char *frame = bytes;
         while (frame[0] != 0xff || (frame[1] & 0xfd) != 0xc0)
             frame++;
         memset(frame + 5, 0x7f, 4);
-        support_refused(&files, support_write(&files, "a.jpg", bytes, size),
-                        NULL, SNOW_STATUS_BAD_INPUT,
-                        "bytes left where the pixels need 2080800", MOST);
+        support_bad_file(files, support_write(files, "a.jpg", bytes, size),
+                         "bytes left where the pixels need 2080800");
     }
-    support_files_end(&files);
 }
 
 /* Coefficients, of which a progressive file needs all, have two bytes each. */
 static void coefficients_are_under_the_limit(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
+    support_files *files = *state;
     jpeg_kind kind = {.width = 1000, .height = 1000, .colors = JCS_GRAYSCALE};
-    snow_context_set_memory_limit(files.context, 2000000);
+    snow_context_set_memory_limit(files->context, 2000000);
     snow_volume_close(
-        support_opened(&files, write_jpeg(&files, "a.jpg", &kind, 0), NULL));
+        support_opened(files, write_jpeg(files, "a.jpg", &kind, 0), NULL));
     kind.progressive = true;
-    support_refused(&files, write_jpeg(&files, "b.jpg", &kind, 0), NULL,
+    support_refused(files, write_jpeg(files, "b.jpg", &kind, 0), NULL,
                     SNOW_STATUS_NO_MEMORY, "not progressive", 1100000);
-    snow_context_set_memory_limit(files.context, 4000000);
+    snow_context_set_memory_limit(files->context, 4000000);
     snow_volume_close(
-        support_opened(&files, support_path(&files, "b.jpg"), NULL));
-    support_files_end(&files);
+        support_opened(files, support_path(files, "b.jpg"), NULL));
 }
 
 static void what_is_not_read_is_named(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    jpeg_kind kind = grey;
-    kind.colors = JCS_CMYK;
-    support_refused(&files, write_jpeg(&files, "a.jpg", &kind, 0), NULL,
-                    SNOW_STATUS_BAD_INPUT, "(CMYK), where grey and RGB", MOST);
-    kind = grey;
-    kind.arithmetic = true;
-    support_refused(&files, write_jpeg(&files, "a.jpg", &kind, 0), NULL,
-                    SNOW_STATUS_BAD_INPUT, "convert it with jpegtran", MOST);
-    kind = grey;
-    kind.refined = true;
-    support_refused(&files, write_jpeg(&files, "a.jpg", &kind, 0), NULL,
-                    SNOW_STATUS_BAD_INPUT, "more than 500 scans", MOST);
-    support_files_end(&files);
+    static const struct {
+        jpeg_kind kind;
+        const char *part;
+    } cases[] = {
+        {{21, 13, JCS_CMYK, false, false, false}, "(CMYK), where grey and RGB"},
+        {{21, 13, JCS_GRAYSCALE, false, true, false},
+         "convert it with jpegtran"},
+        {{21, 13, JCS_GRAYSCALE, false, false, true}, "more than 500 scans"},
+    };
+    for (int i = 0; i < 3; i++)
+        support_bad_file(*state, write_jpeg(*state, "a.jpg", &cases[i].kind, 0),
+                         cases[i].part);
 }
 
 /* Of 12 bits a sample, which this libjpeg does not write. */
 static void other_depths_are_named(void **state) {
-    (void)state;
+    support_files *files = *state;
     static unsigned char bytes[4000];
-    support_files files;
-    support_files_begin(&files);
-    write_jpeg(&files, "a.jpg", &grey, 0);
-    size_t size = read_back(&files, "a.jpg", bytes, sizeof bytes);
+    write_jpeg(files, "a.jpg", &grey, 0);
+    size_t size = read_back(files, "a.jpg", bytes, sizeof bytes);
     unsigned char *frame = bytes;
     while (frame[0] != 0xff || frame[1] != 0xc0)
         frame++;
     frame[1] = 0xc1;
     frame[4] = 12;
-    support_refused(&files, support_write(&files, "a.jpg", bytes, size), NULL,
-                    SNOW_STATUS_BAD_INPUT, "12 bits a sample", MOST);
-    support_files_end(&files);
+    support_bad_file(files, support_write(files, "a.jpg", bytes, size),
+                     "12 bits a sample");
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(grey_is_one_channel),
-        cmocka_unit_test(colours_are_channels),
-        cmocka_unit_test(a_box_is_that_of_the_whole),
-        cmocka_unit_test(a_damaged_slice_is_named),
-        cmocka_unit_test(sizes_that_do_not_fit_cost_nothing),
-        cmocka_unit_test(coefficients_are_under_the_limit),
-        cmocka_unit_test(what_is_not_read_is_named),
-        cmocka_unit_test(other_depths_are_named),
-        cmocka_unit_test(previews_are_no_slices),
+        SUPPORT_TEST(one_of_many_channels_is_told),
+        SUPPORT_TEST(a_damaged_slice_is_named),
+        SUPPORT_TEST(sizes_that_do_not_fit_cost_nothing),
+        SUPPORT_TEST(coefficients_are_under_the_limit),
+        SUPPORT_TEST(what_is_not_read_is_named),
+        SUPPORT_TEST(other_depths_are_named),
+        SUPPORT_TEST(previews_are_no_slices),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
@@ -286,18 +198,15 @@ int main(void) {
 #else
 
 static void it_is_refused_by_name(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    support_refused(&files, support_write(&files, "a", "\xff\xd8\xff\xe0", 4),
-                    NULL, SNOW_STATUS_BAD_INPUT, "libjpeg62-turbo-dev", MOST);
-    support_files_end(&files);
+    support_files *files = *state;
+    support_bad_file(files, support_write(files, "a", "\xff\xd8\xff\xe0", 4),
+                     "libjpeg62-turbo-dev");
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(it_is_refused_by_name),
-        cmocka_unit_test(previews_are_no_slices),
+        SUPPORT_TEST(it_is_refused_by_name),
+        SUPPORT_TEST(previews_are_no_slices),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
@@ -318,22 +227,19 @@ static void copy_from_corpus(const support_files *files, const char *from,
 
 /* Beside slices of another format, whose names are before theirs and after. */
 static void previews_are_no_slices(void **state) {
-    (void)state;
+    support_files *files = *state;
     static const char *const kinds[][2] = {{"png_slice/grey8.png", "png"},
                                            {"dicom/little", "dicom"}};
     for (int i = 0; i < 2; i++) {
         char name[16];
-        support_files files;
-        support_files_begin(&files);
-        support_write(&files, "a.jpg", "\xff\xd8\xff\xe0", 4);
-        support_write(&files, "z.jpeg", "\xff\xd8\xff\xe0", 4);
-        support_refused(&files, files.folder, NULL, SNOW_STATUS_BAD_INPUT,
-                        "JPEG", MOST);
+        support_write(files, "a.jpg", "\xff\xd8\xff\xe0", 4);
+        support_write(files, "z.jpeg", "\xff\xd8\xff\xe0", 4);
+        support_bad_file(files, files->folder, "JPEG");
         snprintf(name, sizeof name, "m.%s", kinds[i][1]);
-        copy_from_corpus(&files, kinds[i][0], name);
-        snow_volume *volume = support_opened(&files, files.folder, NULL);
+        copy_from_corpus(files, kinds[i][0], name);
+        snow_volume *volume = support_opened(files, files->folder, NULL);
         assert_string_equal(snow_volume_get_info(volume)->format, kinds[i][1]);
         snow_volume_close(volume);
-        support_files_end(&files);
+        assert_int_equal(remove(support_path(files, name)), 0);
     }
 }

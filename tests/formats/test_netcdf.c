@@ -3,9 +3,6 @@
  */
 #include "support/files.h"
 
-/* The most memory that a refusal may ask for at once. */
-#define MOST ((size_t)100 * 1024)
-
 typedef struct nc {
     unsigned char bytes[4096];
     size_t size;
@@ -74,34 +71,19 @@ static void expect_counting(snow_volume *volume, int64_t slices) {
     snow_volume_close(volume);
 }
 
-static void a_fixed_variable_is_read(void **state) {
-    (void)state;
-    support_files files;
-    nc f;
-    support_files_begin(&files);
-    begin(&f, 0, 4);
-    put_voxels(&f, 24);
-    expect_counting(support_opened(&files, write_nc(&files, &f), NULL), 4);
-    assert_int_equal(files.warnings, 0);
-    support_files_end(&files);
-}
-
 static void records_are_counted_or_found(void **state) {
-    (void)state;
-    support_files files;
+    support_files *files = *state;
     nc f;
-    support_files_begin(&files);
     begin(&f, 5, 0);
     put_voxels(&f, 30);
-    expect_counting(support_opened(&files, write_nc(&files, &f), NULL), 5);
+    expect_counting(support_opened(files, write_nc(files, &f), NULL), 5);
     begin(&f, UINT32_MAX, 0); /* to the end of the file */
     put_voxels(&f, 30);
-    expect_counting(support_opened(&files, write_nc(&files, &f), NULL), 5);
-    support_files_end(&files);
+    expect_counting(support_opened(files, write_nc(files, &f), NULL), 5);
 }
 
 static void headers_that_lie_are_refused(void **state) {
-    (void)state;
+    support_files *files = *state;
     static const struct {
         size_t at; /* byte of a number of 4 */
         uint32_t value;
@@ -122,8 +104,6 @@ static void headers_that_lie_are_refused(void **state) {
         {100, 2, "no numeric variable"},
         {108, 0x7fffffff, "truncated"},
     };
-    support_files files;
-    support_files_begin(&files);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         nc f;
         begin(&f, 0, 4);
@@ -132,54 +112,44 @@ static void headers_that_lie_are_refused(void **state) {
         f.size = cases[i].at;
         put(&f, cases[i].value, 4);
         f.size = size;
-        support_refused(&files, write_nc(&files, &f), NULL,
-                        SNOW_STATUS_BAD_INPUT, cases[i].part, MOST);
+        support_bad_file(files, write_nc(files, &f), cases[i].part);
     }
-    support_files_end(&files);
 }
 
 static void a_cut_file_is_refused(void **state) {
-    (void)state;
-    support_files files;
+    support_files *files = *state;
     nc f;
-    support_files_begin(&files);
     begin(&f, 0, 4);
     put_voxels(&f, 24);
     for (size_t size = 4; size < f.size; size++)
-        support_refused(&files, support_write(&files, "b.nc", f.bytes, size),
-                        NULL, SNOW_STATUS_BAD_INPUT, ";", MOST);
+        support_bad_file(files, support_write(files, "b.nc", f.bytes, size),
+                         ";");
     begin(&f, 0x7fffffff, 0);
     put_voxels(&f, 30);
-    support_refused(&files, write_nc(&files, &f), NULL, SNOW_STATUS_BAD_INPUT,
-                    "truncated", MOST);
-    support_files_end(&files);
+    support_bad_file(files, write_nc(files, &f), "truncated");
 }
 
 static void a_wrong_name_lists_the_right_ones(void **state) {
-    (void)state;
-    support_files files;
+    support_files *files = *state;
     nc f;
-    support_files_begin(&files);
     begin(&f, 0, 4);
     put_voxels(&f, 24);
     const snow_volume_options wrong = {.size = sizeof wrong, .dataset = "w"},
                               right = {.size = sizeof right, .dataset = "v"};
-    support_refused(&files, write_nc(&files, &f), &wrong, SNOW_STATUS_BAD_USAGE,
-                    "v (3x2x4)", MOST);
-    expect_counting(support_opened(&files, write_nc(&files, &f), &right), 4);
+    support_refused(files, write_nc(files, &f), &wrong, SNOW_STATUS_BAD_USAGE,
+                    "v (3x2x4)", SUPPORT_MOST);
+    expect_counting(support_opened(files, write_nc(files, &f), &right), 4);
     char path[600];
-    snprintf(path, sizeof path, "%s:/v", write_nc(&files, &f));
-    expect_counting(support_opened(&files, path, NULL), 4);
-    support_files_end(&files);
+    snprintf(path, sizeof path, "%s:/v", write_nc(files, &f));
+    expect_counting(support_opened(files, path, NULL), 4);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_fixed_variable_is_read),
-        cmocka_unit_test(records_are_counted_or_found),
-        cmocka_unit_test(headers_that_lie_are_refused),
-        cmocka_unit_test(a_cut_file_is_refused),
-        cmocka_unit_test(a_wrong_name_lists_the_right_ones),
+        SUPPORT_TEST(records_are_counted_or_found),
+        SUPPORT_TEST(headers_that_lie_are_refused),
+        SUPPORT_TEST(a_cut_file_is_refused),
+        SUPPORT_TEST(a_wrong_name_lists_the_right_ones),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,9 +5,6 @@
 
 #include <png.h>
 
-/* The most memory that a refusal may ask for at once: zlib's and libpng's. */
-#define MOST ((size_t)200 * 1024)
-
 /* Writes a picture of `samples` values of `depth` bits: value i of a row is
  * first + i. */
 static const char *write_png(const support_files *files, const char *name,
@@ -41,114 +38,77 @@ static const char *write_png(const support_files *files, const char *name,
     return path;
 }
 
-static void samples_stay_as_they_are(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    snow_volume *volume = support_opened(
-        &files, write_png(&files, "a.png", 5, 3, 16, 1, 7), NULL);
-    const uint16_t *voxels = snow_volume_voxels(volume);
-    const snow_volume_info *info = snow_volume_get_info(volume);
-    assert_true(info->dims[0] == 5 && info->dims[1] == 3 && info->dims[2] == 1);
-    for (int i = 0; i < 15; i++)
-        assert_int_equal(voxels[i], (7 + i % 5) << 8 | i / 5);
-    assert_int_equal(files.warnings, 0);
-    snow_volume_close(volume);
-    support_files_end(&files);
-}
-
-static void colours_are_channels(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    const snow_volume_options options = {.size = sizeof options, .channel = 2};
-    snow_volume *volume = support_opened(
-        &files, write_png(&files, "a.png", 4, 2, 8, 3, 0), &options);
-    const uint8_t *voxels = snow_volume_voxels(volume);
-    for (int x = 0; x < 4; x++)
-        assert_int_equal(voxels[x], 3 * x + 2);
-    assert_int_equal(files.warnings, 0); /* the user knows of the others */
-    snow_volume_close(volume);
-    const snow_volume_options first = {.size = sizeof first,
-                                       .channel_given = true};
-    const char *path = support_path(&files, "a.png");
-    snow_volume_close(support_opened(&files, path, &first));
-    assert_int_equal(files.warnings, 0);
-    snow_volume_close(support_opened(&files, path, NULL));
-    assert_int_equal(files.warnings, 1);
-    support_files_end(&files);
+/* A warning tells of the other channels, unless the user knows of them. */
+static void one_of_many_channels_is_told(void **state) {
+    support_files *files = *state;
+    const char *path = write_png(files, "a.png", 4, 2, 8, 3, 0);
+    const snow_volume_options known[] = {
+        {.size = sizeof *known, .channel = 2},
+        {.size = sizeof *known, .channel_given = true}};
+    for (int i = 0; i < 2; i++)
+        snow_volume_close(support_opened(files, path, &known[i]));
+    assert_string_equal(files->warnings, "");
+    snow_volume_close(support_opened(files, path, NULL));
+    assert_int_equal(support_warned(files), 1);
 }
 
 static void a_folder_tells_of_its_channels_once(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
+    support_files *files = *state;
     for (int z = 0; z < 12; z++) {
         char name[16];
         snprintf(name, sizeof name, "z%d.png", z);
-        write_png(&files, name, 4, 2, 8, 4, z);
+        write_png(files, name, 4, 2, 8, 4, z);
     }
-    snow_volume *volume = support_opened(&files, files.folder, NULL);
+    snow_volume *volume = support_opened(files, files->folder, NULL);
     const uint8_t *voxels = snow_volume_voxels(volume);
     for (int z = 0; z < 12; z++)
         assert_int_equal(voxels[8 * z], z);
-    assert_int_equal(files.warnings, 1);
+    assert_int_equal(support_warned(files), 1);
     snow_volume_close(volume);
-    support_files_end(&files);
 }
 
 static void a_damaged_slice_is_named(void **state) {
-    (void)state;
-    support_files files;
+    support_files *files = *state;
     unsigned char bytes[2000];
-    support_files_begin(&files);
     for (int z = 0; z < 3; z++) {
         char name[16];
         snprintf(name, sizeof name, "z%d.png", z);
-        write_png(&files, name, 40, 2, 8, 1, z);
+        write_png(files, name, 40, 2, 8, 1, z);
     }
-    FILE *file = fopen(support_path(&files, "z1.png"), "rb");
+    FILE *file = fopen(support_path(files, "z1.png"), "rb");
     size_t size = fread(bytes, 1, sizeof bytes, file);
     fclose(file);
     bytes[size - 20] ^= 1; /* in the last of the pixels' bytes */
-    support_write(&files, "z1.png", bytes, size);
-    support_refused(&files, files.folder, NULL, SNOW_STATUS_BAD_INPUT, "z1.png",
-                    MOST);
-    support_write(&files, "z1.png", bytes, 30);
-    support_refused(&files, files.folder, NULL, SNOW_STATUS_BAD_INPUT, "z1.png",
-                    MOST);
-    support_files_end(&files);
+    support_write(files, "z1.png", bytes, size);
+    support_bad_file(files, files->folder, "z1.png");
+    support_write(files, "z1.png", bytes, 30);
+    support_bad_file(files, files->folder, "z1.png");
 }
 
 /* A box of the smaller size lies in the larger slice too. */
 static void a_slice_of_another_size_is_named(void **state) {
-    (void)state;
+    support_files *files = *state;
     static const int sizes[][2] = {{50, 30}, {40, 31}, {30, 20}};
     const snow_volume_options part = {.size = sizeof part,
                                       .crop = {{1, 9}, {2, 9}, {0, 0}}};
-    support_files files;
-    support_files_begin(&files);
     for (int i = 0; i < 3; i++) {
-        write_png(&files, "z0.png", 40, 30, 8, 1, 0);
-        write_png(&files, "z1.png", sizes[i][0], sizes[i][1], 8, 1, 0);
-        write_png(&files, "z2.png", 40, 30, 8, 1, 0);
-        support_refused(&files, files.folder, NULL, SNOW_STATUS_BAD_INPUT,
-                        "z1.png: has ", MOST);
-        support_refused(&files, files.folder, &part, SNOW_STATUS_BAD_INPUT,
-                        "z1.png: has ", MOST);
+        write_png(files, "z0.png", 40, 30, 8, 1, 0);
+        write_png(files, "z1.png", sizes[i][0], sizes[i][1], 8, 1, 0);
+        write_png(files, "z2.png", 40, 30, 8, 1, 0);
+        support_bad_file(files, files->folder, "z1.png: has ");
+        support_refused(files, files->folder, &part, SNOW_STATUS_BAD_INPUT,
+                        "z1.png: has ", SUPPORT_MOST);
     }
-    write_png(&files, "z1.png", 40, 30, 8, 1, 0);
-    snow_volume_close(support_opened(&files, files.folder, &part));
-    support_files_end(&files);
+    write_png(files, "z1.png", 40, 30, 8, 1, 0);
+    snow_volume_close(support_opened(files, files->folder, &part));
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(samples_stay_as_they_are),
-        cmocka_unit_test(colours_are_channels),
-        cmocka_unit_test(a_folder_tells_of_its_channels_once),
-        cmocka_unit_test(a_damaged_slice_is_named),
-        cmocka_unit_test(a_slice_of_another_size_is_named),
+        SUPPORT_TEST(one_of_many_channels_is_told),
+        SUPPORT_TEST(a_folder_tells_of_its_channels_once),
+        SUPPORT_TEST(a_damaged_slice_is_named),
+        SUPPORT_TEST(a_slice_of_another_size_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,6 @@
-/* tests/formats/test_tiff.c - TIFF files by hand: which pages are slices, and
- * what is refused.  What others write is compared in oracle_tiff.py. */
+/* tests/formats/test_tiff.c - TIFF files by hand: which pages are no slices,
+ * and what is refused.  What others write is compared in oracle_tiff.py. */
 #include "support/files.h"
-
-/* The most memory that a refusal may ask for at once: tables of a small file.
- */
-#define MOST ((size_t)100 * 1024)
 
 /* Index of the library among those of snow_library_name. */
 #define LIBTIFF 1
@@ -58,45 +54,22 @@ static const char *write_tiff(support_files *files, const tiff *t) {
     return support_write(files, "a.tif", t->bytes, t->size);
 }
 
-static void pages_are_slices_in_order(void **state) {
-    (void)state;
-    support_files files;
-    tiff t;
-    support_files_begin(&files);
-    begin(&t);
-    for (int z = 0; z < 5; z++)
-        add_page(&t, 3, 8, 10 + z, 0, 0);
-    snow_volume *volume = support_opened(&files, write_tiff(&files, &t), NULL);
-    const snow_volume_info *info = snow_volume_get_info(volume);
-    const uint8_t *voxels = snow_volume_voxels(volume);
-    assert_string_equal(info->format, "tiff");
-    assert_true(info->dims[0] == 3 && info->dims[1] == 2 && info->dims[2] == 5);
-    for (int z = 0; z < 5; z++)
-        assert_true(voxels[6 * z] == 10 + z && voxels[6 * z + 5] == 10 + z);
-    assert_int_equal(files.warnings, 0);
-    snow_volume_close(volume);
-    support_files_end(&files);
-}
-
 static void small_copies_are_no_slices(void **state) {
-    (void)state;
-    support_files files;
+    support_files *files = *state;
     tiff t;
-    support_files_begin(&files);
     begin(&t);
     add_page(&t, 4, 8, 1, 0, 0);
     add_page(&t, 2, 8, 9, 254, 1);
     add_page(&t, 4, 8, 2, 0, 0);
-    snow_volume *volume = support_opened(&files, write_tiff(&files, &t), NULL);
+    snow_volume *volume = support_opened(files, write_tiff(files, &t), NULL);
     const uint8_t *voxels = snow_volume_voxels(volume);
     assert_int_equal(snow_volume_get_info(volume)->dims[2], 2);
     assert_true(voxels[0] == 1 && voxels[8] == 2);
     snow_volume_close(volume);
-    support_files_end(&files);
 }
 
 static void pages_that_lie_are_refused(void **state) {
-    (void)state;
+    support_files *files = *state;
     static const struct {
         uint16_t tag;
         uint32_t value;
@@ -110,76 +83,33 @@ static void pages_that_lie_are_refused(void **state) {
         {273, 60000, "damaged"},    {259, 32773, "damaged"},
         {259, 12345, "damaged"},
     };
-    support_files files;
-    support_files_begin(&files);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         tiff t;
         begin(&t);
         add_page(&t, 4, 8, 1, 0, 0);
         add_page(&t, 4, 8, 1, cases[i].tag, cases[i].value);
-        support_refused(&files, write_tiff(&files, &t), NULL,
-                        SNOW_STATUS_BAD_INPUT, cases[i].part, MOST);
+        support_bad_file(files, write_tiff(files, &t), cases[i].part);
     }
-    support_files_end(&files);
 }
 
 static void sizes_that_the_file_cannot_hold_cost_nothing(void **state) {
-    (void)state;
-    support_files files;
+    support_files *files = *state;
     tiff t;
-    support_files_begin(&files);
     begin(&t);
     add_page(&t, 4, 8, 1, 256, 2000000000);
-    support_refused(&files, write_tiff(&files, &t), NULL, SNOW_STATUS_BAD_INPUT,
-                    "cannot hold", MOST);
+    support_bad_file(files, write_tiff(files, &t), "cannot hold");
     begin(&t);
     add_page(&t, 4, 8, 1, 257, 4000000000);
-    support_refused(&files, write_tiff(&files, &t), NULL, SNOW_STATUS_BAD_INPUT,
-                    "damaged", MOST);
+    support_bad_file(files, write_tiff(files, &t), "damaged");
     put(&t, t.link, 4, 8 + 8); /* the next page is the same one */
-    support_refused(&files, write_tiff(&files, &t), NULL, SNOW_STATUS_BAD_INPUT,
-                    ";", MOST);
-    support_files_end(&files);
-}
-
-/* A folder of numbered files: all of them, or none. */
-static void a_folder_with_a_gap_is_refused(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    for (int z = 8; z < 12; z++) {
-        tiff t;
-        char name[16];
-        begin(&t);
-        add_page(&t, 3, 8, z, 0, 0);
-        snprintf(name, sizeof name, "s%d.tif", z);
-        support_write(&files, name, t.bytes, t.size);
-    }
-    snow_volume *volume = support_opened(&files, files.folder, NULL);
-    const uint8_t *voxels = snow_volume_voxels(volume);
-    for (int z = 0; z < 4; z++)
-        assert_int_equal(voxels[6 * z], 8 + z);
-    snow_volume_close(volume);
-    const snow_volume_options box = {.size = sizeof box,
-                                     .crop = {{1, 2}, {0, 0}, {1, 3}}};
-    volume = support_opened(&files, files.folder, &box);
-    voxels = snow_volume_voxels(volume);
-    assert_true(voxels[0] == 9 && voxels[3] == 10);
-    assert_int_equal(snow_volume_get_info(volume)->dims[1], 2);
-    snow_volume_close(volume);
-    assert_int_equal(remove(support_path(&files, "s9.tif")), 0);
-    support_refused(&files, files.folder, NULL, SNOW_STATUS_BAD_INPUT,
-                    "missing", MOST);
-    support_files_end(&files);
+    support_bad_file(files, write_tiff(files, &t), ";");
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pages_are_slices_in_order),
-        cmocka_unit_test(small_copies_are_no_slices),
-        cmocka_unit_test(pages_that_lie_are_refused),
-        cmocka_unit_test(sizes_that_the_file_cannot_hold_cost_nothing),
-        cmocka_unit_test(a_folder_with_a_gap_is_refused),
+        SUPPORT_TEST(small_copies_are_no_slices),
+        SUPPORT_TEST(pages_that_lie_are_refused),
+        SUPPORT_TEST(sizes_that_the_file_cannot_hold_cost_nothing),
     };
     const char *version, *formats;
     if (snow_library_name(LIBTIFF, &version, &formats) && !version)

@@ -2,9 +2,6 @@
  * writes is compared in oracle_vtk.py. */
 #include "support/files.h"
 
-/* The most memory that a refusal may ask for at once. */
-#define MOST ((size_t)150 * 1024)
-
 #define FILE_TAG "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\">\n"
 #define GRID                                                   \
     "<ImageData WholeExtent=\"1 3 0 1 0 0\" Origin=\"1 2 3\" " \
@@ -26,20 +23,6 @@ static void expect_counting(snow_volume *volume) {
     snow_volume_close(volume);
 }
 
-/* Skips where the build reads no XML. */
-static int begin(void **state) {
-    static support_files files;
-    const char *version, *formats;
-    *state = &files;
-    support_files_begin(&files);
-    return snow_library_name(0, &version, &formats) && version ? 0 : 1;
-}
-
-static int end(void **state) {
-    support_files_end(*state);
-    return 0;
-}
-
 static void text_and_base64_are_read_in_place(void **state) {
     support_files *files = *state;
     static const char *const texts[] = {
@@ -58,7 +41,7 @@ static void text_and_base64_are_read_in_place(void **state) {
         assert_true(info->matrix[0][0] == 0.5 && info->matrix[0][3] == 1.5);
         expect_counting(volume);
     }
-    assert_int_equal(files->warnings, 0);
+    assert_string_equal(files->warnings, "");
 }
 
 static void the_scalars_of_the_file_come_before_others(void **state) {
@@ -77,7 +60,7 @@ static void the_scalars_of_the_file_come_before_others(void **state) {
         files,
         support_write_text(files, "b.vti",
                            FILE_TAG GRID ARRAY("a", "ascii") "0 1 2 3 4 5" END),
-        &options, SNOW_STATUS_BAD_USAGE, "the file has a", MOST);
+        &options, SNOW_STATUS_BAD_USAGE, "the file has a", SUPPORT_MOST);
 }
 
 static void appended_arrays_lie_at_their_offsets(void **state) {
@@ -127,8 +110,8 @@ static void what_is_no_image_is_refused(void **state) {
          "is truncated"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-        support_refused(files, support_write_text(files, "a.vti", cases[i][0]),
-                        NULL, SNOW_STATUS_BAD_INPUT, cases[i][1], MOST);
+        support_bad_file(files, support_write_text(files, "a.vti", cases[i][0]),
+                         cases[i][1]);
 }
 
 /* A compressed array in three blocks of 2 bytes, the sizes as told. */
@@ -150,24 +133,18 @@ static void blocks_that_lie_are_refused(void **state) {
         for (size_t k = 0; k < 24; k++)
             bytes[sizeof text - 1 + k] =
                 (unsigned char)(heads[i][k / 4] >> (8 * (k % 4)));
-        support_refused(files,
-                        support_write(files, "a.vti", bytes, sizeof bytes),
-                        NULL, SNOW_STATUS_BAD_INPUT, ";", MOST);
+        support_bad_file(
+            files, support_write(files, "a.vti", bytes, sizeof bytes), ";");
     }
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(text_and_base64_are_read_in_place,
-                                        begin, end),
-        cmocka_unit_test_setup_teardown(
-            the_scalars_of_the_file_come_before_others, begin, end),
-        cmocka_unit_test_setup_teardown(appended_arrays_lie_at_their_offsets,
-                                        begin, end),
-        cmocka_unit_test_setup_teardown(what_is_no_image_is_refused, begin,
-                                        end),
-        cmocka_unit_test_setup_teardown(blocks_that_lie_are_refused, begin,
-                                        end),
+        SUPPORT_TEST(text_and_base64_are_read_in_place),
+        SUPPORT_TEST(the_scalars_of_the_file_come_before_others),
+        SUPPORT_TEST(appended_arrays_lie_at_their_offsets),
+        SUPPORT_TEST(what_is_no_image_is_refused),
+        SUPPORT_TEST(blocks_that_lie_are_refused),
     };
     const char *version, *formats;
     if (snow_library_name(0, &version, &formats) && !version)

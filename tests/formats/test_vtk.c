@@ -3,9 +3,6 @@
  * oracle_vtk.py. */
 #include "support/files.h"
 
-/* The most memory that a refusal may ask for at once. */
-#define MOST ((size_t)100 * 1024)
-
 #define HEAD "# vtk DataFile Version 3.0\nby hand\nASCII\n"
 #define GRID HEAD "DATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 1\n"
 #define SPACED GRID "ORIGIN 1 2 3\nSPACING 0.5 1 2\n"
@@ -25,7 +22,7 @@ static void expect_counting(snow_volume *volume) {
 }
 
 static void words_may_be_written_in_many_ways(void **state) {
-    (void)state;
+    support_files *files = *state;
     static const char *const texts[] = {
         SPACED SCALARS NUMBERS,
         GRID "SPACING 0.5 1 2\nORIGIN 1 2 3\n" SCALARS "0 1 2 3 4 5",
@@ -38,10 +35,8 @@ static void words_may_be_written_in_many_ways(void **state) {
         SPACED "POINT_DATA 6\nLOOKUP_TABLE t 1\n1 1 1 1\nFIELD f 1\n"
                "s 1 6 short\n" NUMBERS,
     };
-    support_files files;
-    support_files_begin(&files);
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        snow_volume *volume = opened(&files, texts[i], NULL);
+        snow_volume *volume = opened(files, texts[i], NULL);
         const snow_volume_info *info = snow_volume_get_info(volume);
         assert_true(info->dims[0] == 3 && info->dims[1] == 2);
         assert_true(info->matrix[0][0] == 0.5 && info->matrix[2][2] == 2);
@@ -49,15 +44,12 @@ static void words_may_be_written_in_many_ways(void **state) {
         assert_false(info->medical);
         expect_counting(volume);
     }
-    assert_int_equal(files.warnings, 0);
-    support_files_end(&files);
+    assert_string_equal(files->warnings, "");
 }
 
 static void values_of_cells_lie_between_points(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    snow_volume *volume = opened(&files,
+    support_files *files = *state;
+    snow_volume *volume = opened(files,
                                  SPACED "CELL_DATA 2\nSCALARS c int\n"
                                         "LOOKUP_TABLE default\n7 8\n",
                                  NULL);
@@ -66,32 +58,26 @@ static void values_of_cells_lie_between_points(void **state) {
     assert_true(info->matrix[0][3] == 1.25 && info->matrix[1][3] == 2.5);
     assert_true(info->matrix[2][3] == 3); /* an axis of one point */
     snow_volume_close(volume);
-    support_files_end(&files);
 }
 
 static void an_array_is_chosen_by_name_and_channel(void **state) {
-    (void)state;
+    support_files *files = *state;
     static const char text[] = SPACED
         "POINT_DATA 6\nSCALARS s float 1\nLOOKUP_TABLE default\n9 9 9 9 9 9\n"
         "FIELD f 1\nthe%20one 2 6 short\n0 0 0 1 0 2 0 3 0 4 0 5\n";
-    support_files files;
-    support_files_begin(&files);
     const snow_volume_options options = {
         .size = sizeof options, .dataset = "the one", .channel = 1};
-    expect_counting(opened(&files, text, &options));
-    assert_int_equal(files.warnings, 0); /* the channel was given */
+    expect_counting(opened(files, text, &options));
+    assert_string_equal(files->warnings, ""); /* the channel was given */
     const snow_volume_options wrong = {.size = sizeof wrong,
                                        .dataset = "other"};
-    support_refused(&files, support_write_text(&files, "b.vtk", text), &wrong,
-                    SNOW_STATUS_BAD_USAGE, "s, the one", MOST);
-    support_files_end(&files);
+    support_refused(files, support_write_text(files, "b.vtk", text), &wrong,
+                    SNOW_STATUS_BAD_USAGE, "s, the one", SUPPORT_MOST);
 }
 
 static void shares_of_colours_are_bytes(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    snow_volume *volume = opened(&files,
+    support_files *files = *state;
+    snow_volume *volume = opened(files,
                                  SPACED "POINT_DATA 6\nCOLOR_SCALARS s 1\n"
                                         "0 1 0.5 0.00392157 -1 2\n",
                                  NULL);
@@ -99,11 +85,10 @@ static void shares_of_colours_are_bytes(void **state) {
     assert_int_equal(snow_volume_get_info(volume)->type, SNOW_TYPE_UINT8);
     assert_memory_equal(snow_volume_voxels(volume), wanted, 6);
     snow_volume_close(volume);
-    support_files_end(&files);
 }
 
 static void what_is_no_image_is_refused(void **state) {
-    (void)state;
+    support_files *files = *state;
     static const char *const cases[][2] = {
         {HEAD "DATASET POLYDATA\n", "POLYDATA"},
         {HEAD "DATASET STRUCTURED_GRID\n", "resample"},
@@ -135,22 +120,18 @@ static void what_is_no_image_is_refused(void **state) {
               "POINT_DATA 100000000000\nSCALARS s double\nLOOKUP_TABLE d\n0",
          "is truncated"},
     };
-    support_files files;
-    support_files_begin(&files);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-        support_refused(&files,
-                        support_write_text(&files, "a.vtk", cases[i][0]), NULL,
-                        SNOW_STATUS_BAD_INPUT, cases[i][1], MOST);
-    support_files_end(&files);
+        support_bad_file(files, support_write_text(files, "a.vtk", cases[i][0]),
+                         cases[i][1]);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(words_may_be_written_in_many_ways),
-        cmocka_unit_test(values_of_cells_lie_between_points),
-        cmocka_unit_test(an_array_is_chosen_by_name_and_channel),
-        cmocka_unit_test(shares_of_colours_are_bytes),
-        cmocka_unit_test(what_is_no_image_is_refused),
+        SUPPORT_TEST(words_may_be_written_in_many_ways),
+        SUPPORT_TEST(values_of_cells_lie_between_points),
+        SUPPORT_TEST(an_array_is_chosen_by_name_and_channel),
+        SUPPORT_TEST(shares_of_colours_are_bytes),
+        SUPPORT_TEST(what_is_no_image_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,10 +2,9 @@
  * takes. Values and places are compared with zarr in oracle_zarr.py; stores are
  * records in memory here (formats/zarr/zarr.h). */
 #include "formats/zarr/zarr.h"
-#include "support/volumes.h"
+#include "support/files.h"
 
 #include <dirent.h>
-#include <stdio.h>
 
 typedef struct records {
     unsigned char bytes[1 << 16];
@@ -43,36 +42,37 @@ static void describe(records *r, const char *shape, const char *chunks,
     add_text(r, ".zarray", text);
 }
 
-static snow_status open_records(support_place *place, const records *r,
+static snow_status open_records(support_files *files, const records *r,
                                 const char *path,
                                 const snow_volume_options *options,
                                 snow_volume **out) {
     const snow_volume_options none = {.size = sizeof none, .time = 0};
     const zarr_store store = {
-        .context = place->context, .records = r->bytes, .size = r->size};
+        .context = files->context, .records = r->bytes, .size = r->size};
     snow_volume_info info = {.size = sizeof info};
-    place->largest = 0;
-    *place->warnings = 0;
+    files->largest = 0;
+    *files->warnings = 0;
     return snow_zarr_read_store(&store, path, options ? options : &none, &info,
                                 out);
 }
 
-static void expect_refused(support_place *place, const records *r,
+static void expect_refused(support_files *files, const records *r,
                            const char *path, snow_status status,
                            const char *part, size_t most) {
     snow_volume *volume = NULL;
-    assert_int_equal(open_records(place, r, path, NULL, &volume), status);
+    assert_int_equal(open_records(files, r, path, NULL, &volume), status);
     assert_null(volume);
-    if (!strstr(snow_context_message(place->context), part))
-        fail_msg("\"%s\" lacks \"%s\"", snow_context_message(place->context),
+    if (!strstr(snow_context_message(files->context), part))
+        fail_msg("\"%s\" lacks \"%s\"", snow_context_message(files->context),
                  part);
-    assert_true(place->largest <= most);
+    assert_true(files->largest <= most);
 }
 
 #define PLAIN "\"compressor\": null"
+#define PACKED(id) "\"compressor\": {\"id\": \"" id "\"}"
 
 static void only_the_chunks_of_a_box_are_read(void **state) {
-    support_place *place = *state;
+    support_files *files = *state;
     static records r;
     const unsigned char ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
     const snow_volume_options box = {.size = sizeof box,
@@ -81,36 +81,36 @@ static void only_the_chunks_of_a_box_are_read(void **state) {
     describe(&r, "[2, 2, 4]", "[2, 2, 2]", PLAIN);
     add_text(&r, "0.0.0", "damaged");
     add_bytes(&r, "0.0.1", ones, sizeof ones);
-    assert_int_equal(open_records(place, &r, "", &box, &volume),
+    assert_int_equal(open_records(files, &r, "", &box, &volume),
                      SNOW_STATUS_OK);
     const uint8_t *voxels = snow_volume_voxels(volume);
     for (int i = 0; i < 4; i++)
         assert_int_equal(voxels[i], 1);
-    assert_string_equal(place->warnings, "");
+    assert_string_equal(files->warnings, "");
     snow_volume_close(volume);
-    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "0.0.0: holds 7 bytes",
+    expect_refused(files, &r, "", SNOW_STATUS_BAD_INPUT, "0.0.0: holds 7 bytes",
                    4096);
 }
 
 static void chunks_that_are_missing_are_filled_and_told(void **state) {
-    support_place *place = *state;
+    support_files *files = *state;
     static records r;
     const unsigned char ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
     snow_volume *volume;
     describe(&r, "[2, 2, 4]", "[2, 2, 2]", PLAIN);
     add_bytes(&r, "0.0.1", ones, sizeof ones);
-    assert_int_equal(open_records(place, &r, "", NULL, &volume),
+    assert_int_equal(open_records(files, &r, "", NULL, &volume),
                      SNOW_STATUS_OK);
     const uint8_t *voxels = snow_volume_voxels(volume);
     for (int i = 0; i < 16; i++)
         assert_int_equal(voxels[i], i % 4 < 2 ? 7 : 1);
-    assert_non_null(strstr(place->warnings, "1 of 2 chunks are not stored"));
+    assert_non_null(strstr(files->warnings, "1 of 2 chunks are not stored"));
     snow_volume_close(volume);
 }
 
 /* The volume, and a chunk. */
 static void memory_is_that_of_the_volume_and_a_chunk(void **state) {
-    support_place *place = *state;
+    support_files *files = *state;
     static records r;
     static const unsigned char chunk[4096];
     const snow_volume_options box = {.size = sizeof box,
@@ -122,53 +122,44 @@ static void memory_is_that_of_the_volume_and_a_chunk(void **state) {
         snprintf(name, sizeof name, "%d.0.0", i);
         add_bytes(&r, name, chunk, sizeof chunk);
     }
-    uint64_t before = snow_context_bytes(place->context);
-    assert_int_equal(open_records(place, &r, "", &box, &volume),
+    uint64_t before = snow_context_bytes(files->context);
+    assert_int_equal(open_records(files, &r, "", &box, &volume),
                      SNOW_STATUS_OK);
-    assert_true(snow_context_peak_bytes(place->context) <
+    assert_true(snow_context_peak_bytes(files->context) <
                 before + 3 * sizeof chunk + 8192);
     snow_volume_close(volume);
 }
 
 /* 2^30 bytes from a few: before memory is taken for them. */
 static void sizes_that_lie_take_no_memory(void **state) {
-    support_place *place = *state;
+    support_files *files = *state;
     static records r;
     unsigned char head[64] = {2, 1, 1, 1, 0, 0, 0, 64, 0, 0, 0, 1, 64};
-    describe(&r, "[1, 1, 8]", "[1024, 1024, 1024]", PLAIN);
-    add_bytes(&r, "0.0.0", head, sizeof head);
-    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "holds 64 bytes",
-                   8192);
+    static const char *const cases[][4] = {
+        {"[1, 1, 8]", "[1024, 1024, 1024]", PLAIN, "holds 64 bytes"},
 #if SNOW_HAVE_BLOSC
-    describe(&r, "[1, 1, 8]", "[1, 1, 8]",
-             "\"compressor\": {\"id\": \"blosc\"}");
-    add_bytes(&r, "0.0.0", head, sizeof head);
-    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "0.0.0: ", 8192);
-    describe(&r, "[1, 1, 8]", "[1, 1, 1000000]",
-             "\"compressor\": {\"id\": \"blosc\"}");
-    add_bytes(&r, "0.0.0", head, sizeof head);
-    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "0.0.0: ", 8192);
+        {"[1, 1, 8]", "[1, 1, 8]", PACKED("blosc"), "0.0.0: "},
+        {"[1, 1, 8]", "[1, 1, 1000000]", PACKED("blosc"), "0.0.0: "},
 #endif
-    describe(&r, "[1, 1, 8]", "[4096, 1024, 1024]",
-             "\"compressor\": {\"id\": \"zlib\"}");
-    add_bytes(&r, "0.0.0", head, sizeof head);
-    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "too few for", 8192);
-    describe(&r, "[4096, 4096, 4096]", "[64, 64, 64]", PLAIN);
-    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT,
-                   "most of it is missing", 8192);
-    describe(&r, "[4096, 4096, 4096]", "[1, 1, 64]", PLAIN);
-    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "1048576 chunks",
-                   8192);
+        {"[1, 1, 8]", "[4096, 1024, 1024]", PACKED("zlib"), "too few for"},
+        {"[4096, 4096, 4096]", "[64, 64, 64]", PLAIN, "most of it is missing"},
+        {"[4096, 4096, 4096]", "[1, 1, 64]", PLAIN, "1048576 chunks"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        describe(&r, cases[i][0], cases[i][1], cases[i][2]);
+        add_bytes(&r, "0.0.0", head, sizeof head);
+        expect_refused(files, &r, "", SNOW_STATUS_BAD_INPUT, cases[i][3], 8192);
+    }
 }
 
 static void paths_do_not_climb(void **state) {
-    support_place *place = *state;
+    support_files *files = *state;
     static records r;
     static const char *const bad[] = {"..", "a/../b", "/a", "a//b", ".", "a/"};
     describe(&r, "[1, 1, 1]", "[1, 1, 1]", PLAIN);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         char text[256];
-        expect_refused(place, &r, bad[i], SNOW_STATUS_BAD_USAGE,
+        expect_refused(files, &r, bad[i], SNOW_STATUS_BAD_USAGE,
                        "not a path within", 1 << 16);
         static records image;
         image.size = 0;
@@ -176,13 +167,13 @@ static void paths_do_not_climb(void **state) {
                  "{\"multiscales\": [{\"datasets\": [{\"path\": \"%s\"}]}]}",
                  bad[i]);
         add_text(&image, ".zattrs", text);
-        expect_refused(place, &image, "", SNOW_STATUS_BAD_INPUT, "invalid path",
+        expect_refused(files, &image, "", SNOW_STATUS_BAD_INPUT, "invalid path",
                        1 << 16);
     }
 }
 
 static void names_are_kept_on_one_line(void **state) {
-    support_place *place = *state;
+    support_files *files = *state;
     static records r;
     r.size = 0;
     add_text(&r, ".zattrs",
@@ -191,9 +182,9 @@ static void names_are_kept_on_one_line(void **state) {
     add_text(&r, "p\nq/.zarray",
              "{\"shape\": [2, 1, 1], \"chunks\": [1, 1, 1], \"dtype\": "
              "\"|u1\", \"order\": \"C\", \"compressor\": null}");
-    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "a\\nb", 1 << 16);
-    assert_null(strchr(snow_context_message(place->context), '\n'));
-    assert_non_null(strstr(place->warnings, "level 0 of 2 (p?q)"));
+    expect_refused(files, &r, "", SNOW_STATUS_BAD_INPUT, "a\\nb", 1 << 16);
+    assert_null(strchr(snow_context_message(files->context), '\n'));
+    assert_non_null(strstr(files->warnings, "level 0 of 2 (p\\nq)"));
 }
 
 static void the_check_sum_is_castagnolis(void **state) {
@@ -206,61 +197,57 @@ static void the_check_sum_is_castagnolis(void **state) {
 }
 
 /* Every store of the corpus, with each allocation made to fail. */
-static void check_file(support_place *place, const char *path) {
+static void check_file(support_files *files, const char *path) {
     static records r;
     FILE *file = fopen(path, "rb");
     snow_volume *volume = NULL;
     assert_non_null(file);
     r.size = fread(r.bytes, 1, sizeof r.bytes, file);
     fclose(file);
-    place->fail_at = 0;
-    int64_t before = place->allocations;
-    open_records(place, &r, "", NULL, &volume);
+    files->fail_at = 0;
+    int64_t before = files->allocations;
+    open_records(files, &r, "", NULL, &volume);
     snow_volume_close(volume);
-    int64_t count = place->allocations - before;
+    int64_t count = files->allocations - before;
     for (int64_t i = 1; i <= count; i++) {
-        uint64_t held = snow_context_bytes(place->context);
+        uint64_t held = snow_context_bytes(files->context);
         volume = NULL;
-        place->fail_at = place->allocations + i;
-        assert_int_equal(open_records(place, &r, "", NULL, &volume),
+        files->fail_at = files->allocations + i;
+        assert_int_equal(open_records(files, &r, "", NULL, &volume),
                          SNOW_STATUS_NO_MEMORY);
         assert_null(volume);
-        place->fail_at = 0;
-        assert_true(snow_context_bytes(place->context) == held);
+        files->fail_at = 0;
+        assert_true(snow_context_bytes(files->context) == held);
     }
 }
 
 static void no_store_is_lost_without_memory(void **state) {
-    support_place *place = *state;
+    support_files *files = *state;
     DIR *stream = opendir(SNOW_CORPUS "/zarr");
-    int files = 0;
+    int stores = 0;
     assert_non_null(stream);
     for (const struct dirent *entry; (entry = readdir(stream));) {
         char path[1024];
         if (*entry->d_name == '.')
             continue;
         snprintf(path, sizeof path, SNOW_CORPUS "/zarr/%s", entry->d_name);
-        check_file(place, path);
-        files++;
+        check_file(files, path);
+        stores++;
     }
     closedir(stream);
-    assert_true(files > 20);
+    assert_true(stores > 20);
 }
-
-#define PLACED(test)                                           \
-    cmocka_unit_test_setup_teardown(test, support_place_begin, \
-                                    support_place_end)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        PLACED(only_the_chunks_of_a_box_are_read),
-        PLACED(chunks_that_are_missing_are_filled_and_told),
-        PLACED(memory_is_that_of_the_volume_and_a_chunk),
-        PLACED(sizes_that_lie_take_no_memory),
-        PLACED(paths_do_not_climb),
-        PLACED(names_are_kept_on_one_line),
+        SUPPORT_TEST(only_the_chunks_of_a_box_are_read),
+        SUPPORT_TEST(chunks_that_are_missing_are_filled_and_told),
+        SUPPORT_TEST(memory_is_that_of_the_volume_and_a_chunk),
+        SUPPORT_TEST(sizes_that_lie_take_no_memory),
+        SUPPORT_TEST(paths_do_not_climb),
+        SUPPORT_TEST(names_are_kept_on_one_line),
         cmocka_unit_test(the_check_sum_is_castagnolis),
-        PLACED(no_store_is_lost_without_memory),
+        SUPPORT_TEST(no_store_is_lost_without_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,6 @@
 /* tests/support/volumes.c - see support_volumes.h. */
 #include "support/volumes.h"
 
-#include <math.h>
 #include <unistd.h>
 
 static void *allocate_recorded(void *user, size_t bytes) {
@@ -81,22 +80,4 @@ void support_place_refuse(support_place *place, const char *name,
         fail_msg("\"%s\" lacks \"%s\"", message, part);
     if (place->largest > most)
         fail_msg("%zu bytes were asked for: %s", place->largest, message);
-}
-
-void support_same_voxels(const snow_volume *a, const snow_volume *b) {
-    const snow_volume_info *of_a = snow_volume_get_info(a);
-    const snow_volume_info *of_b = snow_volume_get_info(b);
-    assert_memory_equal(of_a->dims, of_b->dims, sizeof of_a->dims);
-    assert_int_equal(of_a->type, of_b->type);
-    size_t bytes = (size_t)(of_a->dims[0] * of_a->dims[1] * of_a->dims[2]) *
-                   snow_type_size(of_a->type);
-    assert_memory_equal(snow_volume_voxels(a), snow_volume_voxels(b), bytes);
-}
-
-void support_same_matrix(const double a[4][4], const double b[4][4],
-                         double tolerance) {
-    for (int i = 0; i < 16; i++)
-        if (!(fabs(a[i / 4][i % 4] - b[i / 4][i % 4]) <= tolerance))
-            fail_msg("matrix entry %d: %.17g and %.17g", i, a[i / 4][i % 4],
-                     b[i / 4][i % 4]);
 }

@@ -3,8 +3,7 @@
 #ifndef SNOW_TEST_SUPPORT_VOLUMES_H
 #define SNOW_TEST_SUPPORT_VOLUMES_H
 
-#include "support/folder.h"
-#include "support/support.h"
+#include "support/files.h"
 
 typedef struct support_place {
     snow_context *context;
@@ -36,12 +35,5 @@ snow_volume *support_place_open(support_place *place, const char *path);
 void support_place_refuse(support_place *place, const char *name,
                           const void *bytes, size_t size, const char *part,
                           size_t most);
-
-/* Same dims, type and voxels, bit for bit. */
-void support_same_voxels(const snow_volume *a, const snow_volume *b);
-
-/* Matrices that differ by no more than `tolerance` in any entry. */
-void support_same_matrix(const double a[4][4], const double b[4][4],
-                         double tolerance);
 
 #endif
