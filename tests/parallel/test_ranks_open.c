@@ -1,7 +1,7 @@
 /* tests/parallel/test_ranks_open.c - many ranks open one file: each gets its
  * part of it, whole and with its ghosts, and little more is read than there is.
  */
-#include "support/volumes.h"
+#include "support/files.h"
 
 #include "decompose/deterministic.h"
 #include "render/ghosts.h"
@@ -191,7 +191,7 @@ static void check_cover(const order *o, int ranks) {
     free(seen);
 }
 
-static void open_by(support_place *place, order *o, int ranks) {
+static void open_by(support_files *place, order *o, int ranks) {
     if (snow_comm_run_threads(place->context, ranks, open_part, o) !=
         SNOW_STATUS_OK)
         fail_msg("%d ranks, cut %d: %s", ranks, o->how.cut,
@@ -200,20 +200,20 @@ static void open_by(support_place *place, order *o, int ranks) {
 }
 
 /* The phantom engine, small, as a file. */
-static const char *put_engine(support_place *place, const char *name) {
+static const char *put_engine(support_files *place, const char *name) {
     const int64_t dims[3] = {40, 36, 30};
     snow_volume *volume;
     assert_int_equal(
         snow_volume_open_phantom(place->context, "engine", dims, 0, &volume),
         SNOW_STATUS_OK);
-    const char *path = support_place_path(place, name);
+    const char *path = support_path(place, name);
     assert_int_equal(snow_volume_save(volume, path, true), SNOW_STATUS_OK);
     snow_volume_close(volume);
     return path;
 }
 
 static void every_rank_gets_its_part(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const char *const names[] = {"e.nrrd", "e.nii.gz", "e.mha",
                                         "phantom:head"};
     static const int ranks[] = {1, 2, 3, 8, 33};
@@ -251,7 +251,7 @@ static void every_rank_gets_its_part(void **state) {
 }
 
 static void slabs_lie_along_the_slice_axis(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const char *const views[] = {"+x", "+y", "+z"};
     snow_volume *whole;
     const int64_t dims[3] = {40, 36, 30};
@@ -278,7 +278,7 @@ static void slabs_lie_along_the_slice_axis(void **state) {
 
 /* As the picture needs it that is the same for any number of ranks. */
 static void deterministic_cuts_lie_between_groups(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     snow_volume *whole;
     const int64_t dims[3] = {20, 20, 100};
     assert_int_equal(
@@ -306,7 +306,7 @@ static void deterministic_cuts_lie_between_groups(void **state) {
 }
 
 static void a_crop_is_dealt_out_like_a_volume(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     char path[256];
     snprintf(path, sizeof path, "%s", put_engine(place, "e.nrrd"));
     const snow_volume_options options = {.size = sizeof options,
@@ -328,7 +328,7 @@ static void a_crop_is_dealt_out_like_a_volume(void **state) {
 /* 12 MB: what all ranks read together is the file and a buffer for each header,
  * or the equal slabs with their ghosts; nobody reads more than its share. */
 static void the_file_is_read_once(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     const int64_t dims[3] = {192, 160, 200};
     const uint64_t slice = 192 * 160;
     snow_volume *whole;
@@ -336,7 +336,7 @@ static void the_file_is_read_once(void **state) {
         snow_volume_open_phantom(place->context, "engine", dims, 0, &whole),
         SNOW_STATUS_OK);
     char path[256];
-    snprintf(path, sizeof path, "%s", support_place_path(place, "e.nrrd"));
+    snprintf(path, sizeof path, "%s", support_path(place, "e.nrrd"));
     assert_int_equal(snow_volume_save(whole, path, true), SNOW_STATUS_OK);
     for (int cut = SNOW_PARTITION_EQUAL; cut <= SNOW_PARTITION_BRICKS; cut++) {
         order o;
@@ -369,7 +369,7 @@ static void the_file_is_read_once(void **state) {
 
 /* A Zarr array of 100 x 128 x 120 bytes in chunks of 16 x 64 x 128, which are
  * files. */
-static void put_chunks(support_place *place, const char *name) {
+static void put_chunks(support_files *place, const char *name) {
     static const char about[] =
         "{\"zarr_format\":2,\"shape\":[100,128,120],\"chunks\":[16,64,128],"
         "\"dtype\":\"|u1\",\"compressor\":null,\"fill_value\":0,"
@@ -377,25 +377,25 @@ static void put_chunks(support_place *place, const char *name) {
     static unsigned char chunk[16 * 64 * 128];
     char path[64];
     uint64_t random = 1;
-    mkdir(support_place_path(place, name), 0700);
+    mkdir(support_path(place, name), 0700);
     snprintf(path, sizeof path, "%s/.zarray", name);
-    support_place_put(place, path, about, sizeof about - 1);
+    support_write(place, path, about, sizeof about - 1);
     for (int n = 0; n < 14; n++) {
         for (size_t i = 0; i < sizeof chunk; i++)
             chunk[i] = (unsigned char)(support_random(&random) >> 56);
         snprintf(path, sizeof path, "%s/%d.%d.0", name, n / 2, n % 2);
-        support_place_put(place, path, chunk, sizeof chunk);
+        support_write(place, path, chunk, sizeof chunk);
     }
 }
 
 /* Shares begin between chunks, also where a crop cuts the first ones. */
 static void each_chunk_is_unpacked_by_one_rank(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const int ranks[] = {1, 2, 3, 5, 7, 14};
     const uint64_t packed = 14 * 16 * 64 * 128; /* and headers */
     put_chunks(place, "c.zarr");
     char path[256];
-    snprintf(path, sizeof path, "%s", support_place_path(place, "c.zarr"));
+    snprintf(path, sizeof path, "%s", support_path(place, "c.zarr"));
     for (int n = 0; n < 12; n++) {
         const snow_volume_options options = {
             .size = sizeof options, .crop = {{3, 0}, {n / 6 * 30, 0}, {n, 98}}};
@@ -418,7 +418,7 @@ static void each_chunk_is_unpacked_by_one_rank(void **state) {
 }
 
 static void another_view_is_served_without_the_file(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const int ranks[] = {1, 4, 9, 33};
     static const snow_opacity_point curve[] = {{5, 0}, {30, 1}};
     snow_volume *whole;
@@ -459,7 +459,7 @@ static void another_view_is_served_without_the_file(void **state) {
 
 /* With ghosts for every turn nothing has to be cut again but slabs. */
 static void bricks_for_turns_stay_where_they_are(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     snow_volume *whole;
     const int64_t dims[3] = {40, 36, 30};
     assert_int_equal(
@@ -493,7 +493,7 @@ static int count_bricks(const order *o, int ranks, int slice_axis) {
 
 static void
 every_method_is_cut_into_bricks_but_deterministic_pictures(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     const snow_method methods[] = {SNOW_METHOD_SHEAR_WARP,
                                    SNOW_METHOD_FOOTPRINT, SNOW_METHOD_ORIGINAL};
     snow_volume *whole;
@@ -518,11 +518,11 @@ every_method_is_cut_into_bricks_but_deterministic_pictures(void **state) {
 }
 
 static void a_file_that_one_rank_lacks_fails_all(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     char path[256], other[256];
     snprintf(path, sizeof path, "%s", put_engine(place, "e.nrrd"));
-    snprintf(other, sizeof other, "%s", support_place_path(place, "none.nrrd"));
-    snow_volume *whole = support_place_open(place, path);
+    snprintf(other, sizeof other, "%s", support_path(place, "none.nrrd"));
+    snow_volume *whole = support_opened(place, path, NULL);
     for (int cut = SNOW_PARTITION_AUTO; cut <= SNOW_PARTITION_BRICKS; cut++) {
         order o;
         begin_order(&o, whole);
@@ -542,16 +542,16 @@ static void a_file_that_one_rank_lacks_fails_all(void **state) {
 }
 
 static void a_file_that_differs_on_one_rank_is_refused(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     order o;
     char path[256], other[256];
     snprintf(path, sizeof path, "%s", put_engine(place, "e.nrrd"));
-    snow_volume *whole = support_place_open(place, path), *half;
+    snow_volume *whole = support_opened(place, path, NULL), *half;
     const snow_volume_options options = {.size = sizeof options,
                                          .crop = {{0, 0}, {0, 0}, {3, 0}}};
     assert_int_equal(snow_volume_open(place->context, path, &options, &half),
                      SNOW_STATUS_OK);
-    snprintf(other, sizeof other, "%s", support_place_path(place, "o.nrrd"));
+    snprintf(other, sizeof other, "%s", support_path(place, "o.nrrd"));
     assert_int_equal(snow_volume_save(half, other, true), SNOW_STATUS_OK);
     snow_volume_close(half);
     begin_order(&o, whole);
@@ -566,34 +566,33 @@ static void a_file_that_differs_on_one_rank_is_refused(void **state) {
 }
 
 /* A Zarr array of three slices, a file each, of one value. */
-static void put_slices(support_place *place, const char *name, int value) {
+static void put_slices(support_files *place, const char *name, int value) {
     static const char about[] =
         "{\"zarr_format\":2,\"shape\":[3,64,64],\"chunks\":[1,64,64],"
         "\"dtype\":\"|u1\",\"compressor\":null,\"fill_value\":0,"
         "\"order\":\"C\",\"filters\":null}";
     char path[64];
     unsigned char slice[64 * 64];
-    mkdir(support_place_path(place, name), 0700);
+    mkdir(support_path(place, name), 0700);
     snprintf(path, sizeof path, "%s/.zarray", name);
-    support_place_put(place, path, about, sizeof about - 1);
+    support_write(place, path, about, sizeof about - 1);
     for (int z = 0; z < 3; z++) {
         memset(slice, z == 2 ? value : 1, sizeof slice);
         snprintf(path, sizeof path, "%s/%d.0.0", name, z);
-        support_place_put(place, path, slice, sizeof slice);
+        support_write(place, path, slice, sizeof slice);
     }
 }
 
 /* Its files have the same names and sizes: a copy is taken, others are not. */
 static void a_folder_that_differs_on_one_rank_is_refused(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     for (int value = 1; value <= 2; value++) {
         char path[256], other[256];
         put_slices(place, "a.zarr", 1);
         put_slices(place, "b.zarr", value);
-        snprintf(path, sizeof path, "%s", support_place_path(place, "a.zarr"));
-        snprintf(other, sizeof other, "%s",
-                 support_place_path(place, "b.zarr"));
-        snow_volume *whole = support_place_open(place, path);
+        snprintf(path, sizeof path, "%s", support_path(place, "a.zarr"));
+        snprintf(other, sizeof other, "%s", support_path(place, "b.zarr"));
+        snow_volume *whole = support_opened(place, path, NULL);
         order o;
         begin_order(&o, whole);
         o.path = path;
@@ -613,7 +612,7 @@ static void a_folder_that_differs_on_one_rank_is_refused(void **state) {
 typedef enum { PLAIN_BESIDE, PACKED_BESIDE, PACKED_NOISE } ramp_kind;
 
 /* Writes a ramp of square slices, of floats or bytes. */
-static const char *put_ramp(support_place *place, int side, int slices,
+static const char *put_ramp(support_files *place, int side, int slices,
                             bool floats, ramp_kind kind) {
     static const char *const encodings[] = {"raw\ndata file: ramp",
                                             "gzip\ndata file: ramp.gz", "gzip"};
@@ -629,7 +628,7 @@ static const char *put_ramp(support_place *place, int side, int slices,
                 (unsigned char)(i % 16 && kind != PACKED_NOISE
                                     ? i >> 16
                                     : i * i * 2654435761U >> 24);
-    const char *data = support_place_put(place, "ramp", values,
+    const char *data = support_write(place, "ramp", values,
                                          count * (floats ? sizeof *values : 1));
     free(values);
     snprintf(header, sizeof header,
@@ -637,23 +636,23 @@ static const char *put_ramp(support_place *place, int side, int slices,
              "endian: little\nencoding: %s\n\n",
              floats ? "float" : "uint8", side, side, slices, encodings[kind]);
     const char *path =
-        support_place_put(place, "ramp.nhdr", header, strlen(header));
+        support_write(place, "ramp.nhdr", header, strlen(header));
     snprintf(command, sizeof command, "gzip -c1 '%s' >>'%s'", data,
              kind == PACKED_NOISE ? path
-                                  : support_place_path(place, "ramp.gz"));
+                                  : support_path(place, "ramp.gz"));
     assert_int_equal(kind != PLAIN_BESIDE ? system(command) : 0, 0);
     return path;
 }
 
 /* Of two slices the third rank has none; of eight one rank has fewer. */
 static void ranks_with_unequal_room_for_samples_agree(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     for (int slices = 2; slices <= 8; slices += 6) {
         char path[256];
         snow_transfer *expected;
         snprintf(path, sizeof path, "%s",
                  put_ramp(place, 512, slices, true, PLAIN_BESIDE));
-        snow_volume *whole = support_place_open(place, path);
+        snow_volume *whole = support_files_open(place, path);
         assert_int_equal(snow_transfer_new_for_volume(whole, NULL, &expected),
                          SNOW_STATUS_OK);
         order o;
@@ -671,7 +670,7 @@ static void ranks_with_unequal_room_for_samples_agree(void **state) {
  * a share, and before, where it lies beside a header, to see that it is packed;
  * what is plain is read in slabs under a limit, and once without. */
 static void packed_data_are_not_read_in_slabs(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     for (int n = 0; n < 6; n++) {
         static const char *const names[] = {"ramp", "ramp.gz", "ramp.nhdr"};
         const ramp_kind kind = (ramp_kind)(n % 3);
@@ -681,17 +680,17 @@ static void packed_data_are_not_read_in_slabs(void **state) {
         order o;
         snprintf(path, sizeof path, "%s",
                  put_ramp(place, 1024, 17, false, kind));
-        snow_volume *whole = support_place_open(place, path);
+        snow_volume *whole = support_files_open(place, path);
         begin_order(&o, whole);
         o.path = path;
         o.memory = limited ? UINT64_C(1) << 30 : 0;
         open_by(place, &o, 1);
-        assert_int_equal(stat(support_place_path(place, names[kind]), &about),
+        assert_int_equal(stat(support_path(place, names[kind]), &about),
                          0);
         const uint64_t twice = 2 * (uint64_t)about.st_size + 4 * 65536;
         assert_int_equal(o.read[0] <= twice, kind != PLAIN_BESIDE || !limited);
         snow_volume_close(whole);
-        unlink(support_place_path(place, "ramp.gz"));
+        unlink(support_path(place, "ramp.gz"));
     }
 }
 
@@ -709,12 +708,12 @@ static void *feed(void *user) {
 }
 
 static void a_pipe_is_read_by_one_rank_and_sent_to_all(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     char path[256], pipe[256];
     snprintf(path, sizeof path, "%s", put_engine(place, "e.nrrd"));
-    snprintf(pipe, sizeof pipe, "%s", support_place_path(place, "pipe"));
+    snprintf(pipe, sizeof pipe, "%s", support_path(place, "pipe"));
     assert_int_equal(mkfifo(pipe, 0600), 0);
-    snow_volume *whole = support_place_open(place, path);
+    snow_volume *whole = support_opened(place, path, NULL);
     for (int cut = SNOW_PARTITION_AUTO; cut <= SNOW_PARTITION_BRICKS; cut++)
         for (int ranks = 1; ranks <= 7; ranks += 3) {
             order o;
@@ -736,10 +735,10 @@ static void a_pipe_is_read_by_one_rank_and_sent_to_all(void **state) {
 /* Allocations of four ranks fail, one after another, on whichever rank it is.
  */
 static void memory_that_is_missing_fails_all_ranks(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     char path[256];
     snprintf(path, sizeof path, "%s", put_engine(place, "e.nrrd"));
-    snow_volume *whole = support_place_open(place, path);
+    snow_volume *whole = support_opened(place, path, NULL);
     for (int cut = SNOW_PARTITION_EQUAL; cut <= SNOW_PARTITION_BRICKS; cut++) {
         snow_status status = SNOW_STATUS_NO_MEMORY;
         int64_t tries = 0;
@@ -763,7 +762,7 @@ static void memory_that_is_missing_fails_all_ranks(void **state) {
 }
 
 static void a_plan_tells_parts_and_loads(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     snow_volume *whole;
     snow_transfer *transfer;
     const int64_t dims[3] = {64, 60, 56};
@@ -811,7 +810,7 @@ static void a_plan_tells_parts_and_loads(void **state) {
 /* Of 1,040 slices each fourth is counted for the boxes, and all for the loads
  * of those boxes. */
 static void slices_of_a_step_stand_for_all(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     snow_volume *whole;
     snow_transfer *transfer;
     const int64_t dims[3] = {40, 36, 1040};
@@ -846,7 +845,7 @@ static void slices_of_a_step_stand_for_all(void **state) {
 }
 
 static void options_that_are_none_are_refused_by_all(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     snow_volume *whole;
     assert_int_equal(
         snow_volume_open_phantom(place->context, "cube", NULL, 0, &whole),
@@ -925,7 +924,7 @@ static snow_status draw_turntable(snow_comm *comm, void *user) {
     return status;
 }
 
-static void draw_serial(support_place *place, turntable *t,
+static void draw_serial(support_files *place, turntable *t,
                         const snow_volume *whole) {
     snow_transfer *transfer;
     snow_frame *frame;
@@ -957,11 +956,11 @@ static void draw_serial(support_place *place, turntable *t,
  * which a rank leaves out where it sees it; or to the bit where that was asked
  * for. */
 static void pictures_from_all_sides_are_those_of_one_processor(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const int ranks[] = {1, 3, 8, 17};
     char path[256];
     snprintf(path, sizeof path, "%s", put_engine(place, "e.nrrd"));
-    snow_volume *whole = support_place_open(place, path);
+    snow_volume *whole = support_opened(place, path, NULL);
     for (int n = 0; n < 4; n++) {
         turntable t = {.floats = 0};
         begin_order(&t.o, whole);
@@ -992,8 +991,8 @@ static void pictures_from_all_sides_are_those_of_one_processor(void **state) {
 }
 
 #define TEST(name)                                             \
-    cmocka_unit_test_setup_teardown(name, support_place_begin, \
-                                    support_place_end)
+    cmocka_unit_test_setup_teardown(name, support_files_setup, \
+                                    support_files_teardown)
 
 int main(void) {
     const struct CMUnitTest tests[] = {

@@ -2,8 +2,8 @@
  * parts: slabs of both files and many ranks make the picture of one process in
  * memory, which test_shear_warp_layers.c holds against the reference. */
 #include "reference/model.h"
+#include "support/files.h"
 #include "support/scenario.h"
-#include "support/volumes.h"
 
 #include <math.h>
 
@@ -82,7 +82,7 @@ static reference_scene layer_of(const reference_scene *base, int n) {
     return s;
 }
 
-static void save(const support_place *place, const reference_scene *s,
+static void save(const support_files *place, const reference_scene *s,
                  const char *path) {
     snow_volume *volume;
     assert_int_equal(
@@ -100,12 +100,12 @@ static void free_numbered(reference_scene *s) {
 /* --- slabs of files ------------------------------------------------------- */
 
 /* Both in memory (slices 0), or in slabs of so many bytes. */
-static snow_image *picture_of(support_place *place, snow_frame *frame,
+static snow_image *picture_of(support_files *place, snow_frame *frame,
                               const scenario *p,
                               const snow_volume_options *options,
                               uint64_t bytes) {
     snow_context *context = place->context;
-    const char *path = support_place_path(place, "base.mha");
+    const char *path = support_path(place, "base.mha");
     snow_volume *base, *layer, *cut;
     snow_image *image;
     if (bytes) {
@@ -146,16 +146,16 @@ static snow_image *picture_of(support_place *place, snow_frame *frame,
 }
 
 /* Two scenes, and the files that they are in. */
-static scenario open_pair(support_place *place, int n, int64_t depth,
+static scenario open_pair(support_files *place, int n, int64_t depth,
                           reference_scene *base, reference_scene *layer) {
     *base = numbered(n, depth);
     *layer = layer_of(base, n);
-    save(place, base, support_place_path(place, "base.mha"));
-    save(place, layer, support_place_path(place, "layer.mha"));
+    save(place, base, support_path(place, "base.mha"));
+    save(place, layer, support_path(place, "layer.mha"));
     return (scenario){.info = base->info,
                       .voxels = base->voxels,
                       .transfer = model_transfer(place->context, base),
-                      .layer = support_place_path(place, "layer.mha"),
+                      .layer = support_path(place, "layer.mha"),
                       .layer_look = model_transfer(place->context, layer),
                       .view = base->view,
                       .settings = base->settings,
@@ -186,7 +186,7 @@ static double gap_of(snow_image *a, snow_image *b) {
  * table are others. */
 static void slabs_of_both_files_make_the_same_bits(void **state) {
     static const uint64_t slices[] = {1, 7, 12, 1000};
-    support_place *place = *state;
+    support_files *place = *state;
     snow_frame *frame;
     double most = 0;
     assert_int_equal(snow_frame_new(place->context, &frame), SNOW_STATUS_OK);
@@ -230,7 +230,7 @@ static void slabs_of_both_files_make_the_same_bits(void **state) {
 static const int rank_counts[] = {2, 3, 5, 8, 16, 33};
 
 static void ranks_make_the_picture_of_one(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     double most = 0, seen = 0;
     int scenes = 0;
     for (int n = 0; n < 24; n++) {
@@ -260,7 +260,7 @@ static void ranks_make_the_picture_of_one(void **state) {
 }
 
 static void deterministic_pictures_have_the_same_bytes(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     for (int n = 0; n < 16; n++) {
         if (!support_takes((size_t)n, 9))
             continue;
@@ -288,12 +288,14 @@ static void deterministic_pictures_have_the_same_bytes(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(slabs_of_both_files_make_the_same_bits,
-                                        support_place_begin, support_place_end),
+                                        support_files_setup,
+                                        support_files_teardown),
         cmocka_unit_test_setup_teardown(ranks_make_the_picture_of_one,
-                                        support_place_begin, support_place_end),
+                                        support_files_setup,
+                                        support_files_teardown),
         cmocka_unit_test_setup_teardown(
-            deterministic_pictures_have_the_same_bytes, support_place_begin,
-            support_place_end),
+            deterministic_pictures_have_the_same_bytes, support_files_setup,
+            support_files_teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

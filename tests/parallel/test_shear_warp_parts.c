@@ -2,8 +2,8 @@
  * a file and many ranks make the picture of one process, which test_truth.c
  * holds against the truth. */
 #include "reference/model.h"
+#include "support/files.h"
 #include "support/scenario.h"
-#include "support/volumes.h"
 
 #include "render/picture.h"
 
@@ -145,7 +145,7 @@ static bool same_picture(const reference_scene *s, snow_image *a,
 
 /* Slabs of so many slices, ghosts included, make the picture of the volume in
  * memory. */
-static void compare_stream(support_place *place, const reference_scene *s,
+static void compare_stream(support_files *place, const reference_scene *s,
                            const char *path, const snow_volume_options *options,
                            snow_frame *frame, int slices) {
     snow_volume *whole, *stream;
@@ -179,7 +179,7 @@ static void compare_stream(support_place *place, const reference_scene *s,
     snow_volume_close(whole);
 }
 
-static void check_slabs(support_place *place, scene_fn *scene) {
+static void check_slabs(support_files *place, scene_fn *scene) {
     static const int slices[] = {1, 7, 12, 1000};
     snow_frame *frame;
     assert_int_equal(snow_frame_new(place->context, &frame), SNOW_STATUS_OK);
@@ -191,7 +191,7 @@ static void check_slabs(support_place *place, scene_fn *scene) {
         assert_int_equal(
             snow_volume_wrap(place->context, &s.info, s.voxels, &volume),
             SNOW_STATUS_OK);
-        const char *path = support_place_path(place, "scene.mha");
+        const char *path = support_path(place, "scene.mha");
         if (snow_volume_save(volume, path, true) != SNOW_STATUS_OK)
             fail_msg("%s", snow_context_message(place->context));
         snow_volume_close(volume);
@@ -324,9 +324,11 @@ static void deterministic_pictures_have_the_same_bytes(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(slabs_of_a_file_make_the_same_bits,
-                                        support_place_begin, support_place_end),
+                                        support_files_setup,
+                                        support_files_teardown),
         cmocka_unit_test_setup_teardown(slabs_of_a_file_are_projected_alike,
-                                        support_place_begin, support_place_end),
+                                        support_files_setup,
+                                        support_files_teardown),
         cmocka_unit_test(ranks_make_the_picture_of_one),
         cmocka_unit_test(ranks_project_what_one_does),
         cmocka_unit_test(deterministic_pictures_have_the_same_bytes),

@@ -49,13 +49,13 @@ static size_t floats_of(const request *r) {
     return (size_t)r->pictures * SIDE * SIDE * 4;
 }
 
-static void set_view(support_place *place, const char *name, snow_view *view) {
+static void set_view(support_files *place, const char *name, snow_view *view) {
     assert_int_equal(snow_view_from_name(place->context, name, view),
                      SNOW_STATUS_OK);
     view->width = view->height = SIDE;
 }
 
-static void begin_request(support_place *place, const char *path, request *r) {
+static void begin_request(support_files *place, const char *path, request *r) {
     *r = (request){.path = path, .pictures = 1, .how.size = sizeof r->how};
     snow_look_init(&r->look);
     r->look.preset = "linear";
@@ -158,7 +158,7 @@ static snow_status draw(snow_comm *comm, void *user) {
     return status;
 }
 
-static void draw_by(support_place *place, request *r, int ranks) {
+static void draw_by(support_files *place, request *r, int ranks) {
     r->made = calloc(floats_of(r), sizeof(float));
     assert_non_null(r->made);
     if (snow_comm_run_threads(place->context, ranks, draw, r) != SNOW_STATUS_OK)
@@ -177,7 +177,7 @@ typedef struct comparison {
     request all, one;
 } comparison;
 
-static comparison compare(support_place *place, const request *asked,
+static comparison compare(support_files *place, const request *asked,
                           int ranks) {
     comparison c = {*asked, *asked};
     c.one.how.one_look = c.one.trims = true;
@@ -201,7 +201,7 @@ static comparison compare(support_place *place, const request *asked,
 
 /* Each number of ranks meets each cut, and each type. */
 static void pictures_need_no_air(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const snow_type types[] = {SNOW_TYPE_UINT8, SNOW_TYPE_INT16,
                                       SNOW_TYPE_FLOAT32};
     static const char *const views[] = {"+z", "-x", "+y"};
@@ -222,7 +222,7 @@ static void pictures_need_no_air(void **state) {
 }
 
 static void so_does_a_turntable(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const snow_partition cuts[] = {
         SNOW_PARTITION_AUTO, SNOW_PARTITION_COUNTED, SNOW_PARTITION_BRICKS};
     for (int n = 0; n < 6; n++) {
@@ -238,7 +238,7 @@ static void so_does_a_turntable(void **state) {
 }
 
 static void a_look_that_shows_air_keeps_it(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     request r;
     begin_request(place, support_ball_put(place, SNOW_TYPE_UINT8), &r);
     r.look.opacities = all_seen;
@@ -310,7 +310,7 @@ static snow_status draw_others(snow_comm *comm, void *user) {
 }
 
 static void what_needs_the_air_is_refused(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     request r;
     begin_request(place, support_ball_put(place, SNOW_TYPE_UINT8), &r);
     r.how.one_look = true;
@@ -360,7 +360,7 @@ static snow_status open_and_need_more(snow_comm *comm, void *user) {
 }
 
 static void more_than_the_first_ring_is_refused(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     for (int ranks = 2; ranks < 6; ranks++) {
         request r;
         begin_request(place, support_ball_put(place, SNOW_TYPE_UINT8), &r);
@@ -423,7 +423,7 @@ static snow_status stop_trimming(snow_comm *comm, void *user) {
 
 /* However many threads look for the bounds, they find the same ones. */
 static void a_stop_of_any_rank_ends_trimming(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     int64_t stored = 0;
     for (int n = 0; n < 12; n++) {
         request r;
@@ -456,7 +456,7 @@ static snow_status lose_a_slice(snow_comm *comm, void *user) {
 }
 
 static void a_voxel_without_a_rank_is_noticed(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     request r;
     begin_request(place, support_ball_put(place, SNOW_TYPE_UINT8), &r);
     set_view(place, "-x", &r.views[1]);
@@ -467,7 +467,7 @@ static void a_voxel_without_a_rank_is_noticed(void **state) {
 }
 
 static void hidden_values_are_some_way_from_seen_ones(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const snow_color_point grey = {1, 1, 1, 1};
     static const snow_opacity_point points[] = {{10, 0},    {20, 0}, {30, 0.5},
                                                 {40, 0.01}, {60, 0}, {70, 0.9}};
@@ -490,8 +490,8 @@ static void hidden_values_are_some_way_from_seen_ones(void **state) {
 }
 
 #define TEST(name)                                             \
-    cmocka_unit_test_setup_teardown(name, support_place_begin, \
-                                    support_place_end)
+    cmocka_unit_test_setup_teardown(name, support_files_setup, \
+                                    support_files_teardown)
 
 int main(void) {
     const struct CMUnitTest tests[] = {

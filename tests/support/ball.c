@@ -47,7 +47,7 @@ static void write_voxels(char *to, snow_type type) {
             }
 }
 
-const char *support_ball_put(support_place *place, snow_type type) {
+const char *support_ball_put(support_files *place, snow_type type) {
     const int64_t *dims = support_ball_dims;
     char *voxels =
         malloc((size_t)(dims[0] * dims[1] * dims[2]) * snow_type_size(type));
@@ -63,7 +63,7 @@ const char *support_ball_put(support_place *place, snow_type type) {
     snow_volume *volume;
     assert_int_equal(snow_volume_wrap(place->context, &info, voxels, &volume),
                      SNOW_STATUS_OK);
-    const char *path = support_place_path(place, "ball.nii");
+    const char *path = support_path(place, "ball.nii");
     assert_int_equal(snow_volume_save(volume, path, true), SNOW_STATUS_OK);
     snow_volume_close(volume);
     free(voxels);

@@ -1,7 +1,7 @@
 /* tests/transfer/test_tf.c - transfer functions of other programs, by what
  * those make of them, and our own to the last bit.  Numbers of VTK are those of
  * VTK 9.1. */
-#include "support/volumes.h"
+#include "support/files.h"
 
 #include <math.h>
 #include <snowglass/look_file.h>
@@ -416,7 +416,7 @@ static void bad_files_are_refused_in_one_line(void **state) {
 }
 
 static void no_memory_leaves_nothing_behind(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const char *const texts[] = {
         vp, "0,0\n1,1\n",
         "{\"ColorSpace\":\"Lab\",\"RGBPoints\":[0,1,0,0,1,0,0,1]}"};
@@ -454,7 +454,8 @@ int main(void) {
         cmocka_unit_test(a_text_that_does_not_fit_is_not_written),
         cmocka_unit_test(bad_files_are_refused_in_one_line),
         cmocka_unit_test_setup_teardown(no_memory_leaves_nothing_behind,
-                                        support_place_begin, support_place_end),
+                                        support_files_setup,
+                                        support_files_teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

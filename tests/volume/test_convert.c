@@ -1,11 +1,11 @@
 /* tests/volume/test_convert.c - values in another scalar type: kept, rounded
  * with a word, spread over a range, or refused. */
-#include "support/volumes.h"
+#include "support/files.h"
 #include "volume/volume.h"
 
 #include <math.h>
 
-static snow_volume *shared(support_place *place, snow_type type, int64_t count,
+static snow_volume *shared(support_files *place, snow_type type, int64_t count,
                            const void *voxels, double slope, double intercept) {
     snow_volume_info info = {.size = sizeof info,
                              .dims = {count, 1, 1},
@@ -19,7 +19,7 @@ static snow_volume *shared(support_place *place, snow_type type, int64_t count,
 }
 
 /* Converts and closes the volume. */
-static snow_volume *converted(support_place *place, snow_volume *volume,
+static snow_volume *converted(support_files *place, snow_volume *volume,
                               snow_type type, const double range[2]) {
     snow_volume *out = NULL;
     place->warnings[0] = 0;
@@ -38,7 +38,7 @@ static void check(snow_volume *volume, snow_type type, const void *voxels,
     snow_volume_close(volume);
 }
 
-static void refused(support_place *place, snow_volume *volume, snow_type type,
+static void refused(support_files *place, snow_volume *volume, snow_type type,
                     const double range[2], const char *part) {
     snow_volume *out = NULL;
     assert_int_equal(snow_volume_convert(volume, type, range, &out),
@@ -51,7 +51,7 @@ static void refused(support_place *place, snow_volume *volume, snow_type type,
 }
 
 static void values_that_fit_are_kept(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const int16_t from[] = {-128, 0, 127};
     static const int8_t to[] = {-128, 0, 127};
     static const double wide[] = {-128, 0, 127};
@@ -65,7 +65,7 @@ static void values_that_fit_are_kept(void **state) {
 }
 
 static void integers_of_64_bits_stay_whole(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const int64_t from[] = {INT64_MAX, INT64_MIN, (1LL << 53) + 1};
     check(converted(place, shared(place, SNOW_TYPE_INT64, 3, from, 1, 0),
                     SNOW_TYPE_INT64, NULL),
@@ -80,7 +80,7 @@ static void integers_of_64_bits_stay_whole(void **state) {
 }
 
 static void fractions_are_rounded_with_a_word(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const float from[] = {-1.25F, 0, 2.75F, 255.4F};
     static const int16_t to[] = {-1, 0, 3, 255};
     check(converted(place, shared(place, SNOW_TYPE_FLOAT32, 4, from, 1, 0),
@@ -90,7 +90,7 @@ static void fractions_are_rounded_with_a_word(void **state) {
 }
 
 static void what_does_not_fit_is_refused(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const int16_t from[] = {-1, 5, 256};
     static const float holes[] = {1, NAN, INFINITY};
     static const double far[] = {1e39, 0};
@@ -106,7 +106,7 @@ static void what_does_not_fit_is_refused(void **state) {
 }
 
 static void what_is_not_finite_stays_so_in_floats(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const double from[] = {NAN, INFINITY, -INFINITY, 0.1};
     snow_volume *volume =
         converted(place, shared(place, SNOW_TYPE_FLOAT64, 4, from, 1, 0),
@@ -119,7 +119,7 @@ static void what_is_not_finite_stays_so_in_floats(void **state) {
 }
 
 static void a_range_is_spread_over_the_type(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const int16_t from[] = {-500, 0, 60, 100, 3000};
     static const uint8_t bytes[] = {0, 0, 153, 255, 255};
     static const int8_t low[] = {-128, -128, 25, 127, 127};
@@ -143,7 +143,7 @@ static void a_range_is_spread_over_the_type(void **state) {
 
 /* What a file says of its values is not of those that were spread. */
 static void what_is_known_of_values_goes_with_them(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const int16_t from[] = {-1000, 0, 3000};
     static const double range[] = {-1000, 3000};
     for (int spread = 0; spread < 2; spread++) {
@@ -160,7 +160,7 @@ static void what_is_known_of_values_goes_with_them(void **state) {
 }
 
 static void a_scaling_goes_into_the_least_type_that_holds_it(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const uint8_t from[] = {0, 1, 200};
     static const int16_t shifted[] = {-1024, -1023, -824};
     static const float halves[] = {0, 0.5F, 100};
@@ -182,7 +182,7 @@ static void a_scaling_goes_into_the_least_type_that_holds_it(void **state) {
 
 /* Rows 5 and slices 17 voxels apart, of 3x2x2. */
 static void what_lies_apart_is_as_if_dense(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const int64_t pitch[2] = {5, 17};
     int16_t wide[34], dense[12];
     snow_volume_info info = {
@@ -207,7 +207,7 @@ static void what_lies_apart_is_as_if_dense(void **state) {
     assert_int_equal(snow_volume_convert(apart, SNOW_TYPE_NONE, NULL, &out),
                      SNOW_STATUS_OK);
     check(out, SNOW_TYPE_INT16, dense, sizeof dense);
-    const char *path = support_place_path(place, "apart.npy");
+    const char *path = support_path(place, "apart.npy");
     assert_int_equal(snow_volume_save(apart, path, false), SNOW_STATUS_OK);
     assert_int_equal(snow_volume_open(place->context, path, NULL, &out),
                      SNOW_STATUS_OK);
@@ -221,8 +221,8 @@ static void what_lies_apart_is_as_if_dense(void **state) {
 }
 
 #define IN_A_PLACE(name)                                       \
-    cmocka_unit_test_setup_teardown(name, support_place_begin, \
-                                    support_place_end)
+    cmocka_unit_test_setup_teardown(name, support_files_setup, \
+                                    support_files_teardown)
 
 int main(void) {
     const struct CMUnitTest tests[] = {

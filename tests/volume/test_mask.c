@@ -1,6 +1,6 @@
 /* tests/volume/test_mask.c - voxels that a mask leaves out have no value, all
  * others keep theirs; labels as they are written; grids that do not fit. */
-#include "support/volumes.h"
+#include "support/files.h"
 #include "volume/volume.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@ static snow_volume_info info_of(snow_type type, int64_t x, int64_t y,
         .size = sizeof(snow_volume_info), .dims = {x, y, z}, .type = type};
 }
 
-static snow_volume *shared(support_place *place, const snow_volume_info *info,
+static snow_volume *shared(support_files *place, const snow_volume_info *info,
                            const void *voxels) {
     snow_volume *volume = NULL;
     if (snow_volume_wrap(place->context, info, voxels, &volume) !=
@@ -20,14 +20,14 @@ static snow_volume *shared(support_place *place, const snow_volume_info *info,
     return volume;
 }
 
-static snow_volume *row(support_place *place, snow_type type, int64_t count,
+static snow_volume *row(support_files *place, snow_type type, int64_t count,
                         const void *voxels) {
     snow_volume_info info = info_of(type, count, 1, 1);
     return shared(place, &info, voxels);
 }
 
 /* Masks a volume, and closes both. */
-static snow_volume *masked(support_place *place, snow_volume *volume,
+static snow_volume *masked(support_files *place, snow_volume *volume,
                            snow_volume *mask, const snow_label_range *labels,
                            size_t count) {
     snow_volume *out = NULL;
@@ -49,7 +49,7 @@ static unsigned kept(snow_volume *volume) {
 }
 
 static void values_of_every_type_are_kept(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const uint8_t mask[] = {1, 0, 255, 0};
 #define TYPE_CASE(name, c_type, text)                                     \
     {                                                                     \
@@ -71,7 +71,7 @@ static void values_of_every_type_are_kept(void **state) {
 }
 
 static void the_largest_integers_are_exact(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const uint8_t mask[] = {1, 1};
     static const int32_t wide[] = {INT32_MAX, INT32_MIN};
     static const uint16_t narrow[] = {UINT16_MAX, 0};
@@ -87,7 +87,7 @@ static void the_largest_integers_are_exact(void **state) {
 }
 
 static void what_is_known_of_the_volume_stays(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const int16_t v[] = {1, 2};
     static const uint8_t mask[] = {1, 0};
     snow_volume_info info = info_of(SNOW_TYPE_INT16, 2, 1, 1);
@@ -121,7 +121,7 @@ static void what_is_known_of_the_volume_stays(void **state) {
 
 /* Of a scaled mask the data values count. */
 static void inside_is_what_is_neither_0_nor_nan(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const int16_t v[6] = {0};
     const float mask[] = {0, -0.0F, NAN, 1e-30F, -1, INFINITY};
     static const uint8_t scaled[] = {0, 1, 2, 2, 4, 0};
@@ -142,7 +142,7 @@ static void inside_is_what_is_neither_0_nor_nan(void **state) {
 }
 
 static void only_labels_are_inside(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const uint8_t v[10] = {0};
     const double mask[] = {0, 1, 2, 4, 5.5, 7, 8, -3, NAN, 1};
     static const snow_label_range ranges[] = {{1, 1}, {4, 7}, {-3, -3}};
@@ -160,7 +160,7 @@ static void only_labels_are_inside(void **state) {
 
 /* A float that has no value stays so. */
 static void nan_of_the_volume_stays(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     const float v[] = {1, NAN, 3};
     static const uint8_t mask[] = {1, 1, 0};
     assert_int_equal(
@@ -171,7 +171,7 @@ static void nan_of_the_volume_stays(void **state) {
 
 /* Blocks of the loop end within a large volume. */
 static void large_volumes_are_masked_to_their_end(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static uint16_t v[5000];
     static uint32_t mask[5000];
     for (uint32_t i = 0; i < 5000; i++) {
@@ -225,7 +225,7 @@ static void what_is_no_list_of_labels_changes_nothing(void **state) {
 
 /* Beyond a plane of the world, whatever the matrix; in it they stay. */
 static void voxels_beyond_planes_are_left_out(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const int16_t v[24] = {0};
     static const double planes[][4] = {
         {0.3, 0, 0.1, 4}, {0, 0, 0, -9}, {0, -2, 0, 2.6}};
@@ -256,7 +256,7 @@ static void voxels_beyond_planes_are_left_out(void **state) {
     snow_volume_close(volume);
 }
 
-static void refused(support_place *place, const snow_volume_info *a,
+static void refused(support_files *place, const snow_volume_info *a,
                     const snow_volume_info *b, const char *part) {
     static const uint8_t voxels[64] = {0};
     snow_volume *volume = shared(place, a, voxels), *out = NULL;
@@ -311,7 +311,7 @@ static int nearest_mark(const snow_volume_info *info, const uint8_t *marks,
 /* Turned, flipped, finer, elsewhere: by the nearest voxels; only where voxels
  * are not the same is there a note. */
 static void a_mask_of_another_grid_is_resampled(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const struct {
         int64_t dims[3];
         double matrix[4][4];
@@ -358,7 +358,7 @@ static void a_mask_of_another_grid_is_resampled(void **state) {
 
 /* Beyond a mask is 0, whatever its intercept makes of it. */
 static void beyond_a_scaled_mask_is_outside(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const uint8_t voxels[24] = {0}, marks[24] = {7, 7, 8, 7};
     snow_volume_info a = placed(2, 10), b = placed(2, 14);
     b.slope = 3;
@@ -374,7 +374,7 @@ static void beyond_a_scaled_mask_is_outside(void **state) {
 }
 
 static void another_size_without_a_place_is_refused(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     snow_volume_info a = info_of(SNOW_TYPE_UINT8, 4, 3, 2), b = a;
     b.dims[1] = 2;
     refused(place, &a, &b, "the mask has 4x2x2 voxels, the volume 4x3x2");
@@ -384,7 +384,7 @@ static void another_size_without_a_place_is_refused(void **state) {
 }
 
 static void what_tells_no_place_is_believed(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     snow_volume_info a = placed(2, 10),
                      none = info_of(SNOW_TYPE_UINT8, 4, 3, 2);
     refused(place, &a, &none, NULL);
@@ -395,7 +395,7 @@ static void what_tells_no_place_is_believed(void **state) {
 }
 
 /* A file of raw bytes as NRRD, with an origin where `origin` is not 0. */
-static const char *put(support_place *place, const char *name,
+static const char *put(support_files *place, const char *name,
                        const char *sizes, double origin, const void *voxels,
                        size_t size) {
     unsigned char bytes[4096];
@@ -410,11 +410,11 @@ static const char *put(support_place *place, const char *name,
                         "encoding: raw\n\n",
                         sizes, place_line);
     memcpy(bytes + head, voxels, size);
-    return support_place_put(place, name, bytes, (size_t)head + size);
+    return support_write(place, name, bytes, (size_t)head + size);
 }
 
 static void a_box_is_masked_by_the_same_box(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     unsigned char v[64], m[64];
     for (int i = 0; i < 64; i++) {
         v[i] = (unsigned char)(i + 1);
@@ -445,7 +445,7 @@ static void a_box_is_masked_by_the_same_box(void **state) {
 
 /* Both boxes are alike; the wholes are not. */
 static void a_box_of_another_grid_is_refused(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const unsigned char v[64] = {0};
     const char *a = put(place, "a.nrrd", "4 4 4", 0, v, 64);
     snow_volume_options options = {.size = sizeof options,
@@ -467,7 +467,7 @@ static void a_box_of_another_grid_is_refused(void **state) {
 }
 
 static void a_mask_without_voxels_is_told(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const unsigned char v[64] = {5};
     const char *a = put(place, "a.nrrd", "4 4 4", 0, v, 64);
     snow_volume_options options = {
@@ -483,7 +483,7 @@ static void a_mask_without_voxels_is_told(void **state) {
 /* Slabs of a volume read their part of a mask of another grid; one that lies
  * elsewhere is refused, labels that there are not are told. */
 static void what_a_mask_lacks_is_told(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     unsigned char v[64], m[128];
     for (int n = 0; n < 128; n++) {
         v[n / 2] = 5;
@@ -524,7 +524,7 @@ static void what_a_mask_lacks_is_told(void **state) {
 
 /* Every allocation fails once; nothing is left behind. */
 static void failures_of_memory_leave_nothing(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const unsigned char v[64] = {5};
     const char *a = put(place, "a.nrrd", "4 4 4", 0, v, 64);
     snow_volume_options options = {.size = sizeof options, .mask = a};
@@ -542,8 +542,8 @@ static void failures_of_memory_leave_nothing(void **state) {
 }
 
 #define TEST(name)                                             \
-    cmocka_unit_test_setup_teardown(name, support_place_begin, \
-                                    support_place_end)
+    cmocka_unit_test_setup_teardown(name, support_files_setup, \
+                                    support_files_teardown)
 
 int main(void) {
     const struct CMUnitTest tests[] = {

@@ -1,6 +1,6 @@
 /* tests/volume/test_save.c - what is saved comes back: voxels, type, geometry.
  */
-#include "support/volumes.h"
+#include "support/files.h"
 #include "volume/volume.h"
 
 #include <unistd.h>
@@ -12,7 +12,7 @@ static const double oblique[4][4] = {{-0.61, 0.33, 0.21, -101.3},
                                      {0, 0, 0, 1}};
 
 /* 5 x 3 x 4 voxels of random bits (no NaN matters: bits are compared). */
-static snow_volume *make_volume(support_place *place, snow_type type,
+static snow_volume *make_volume(support_files *place, snow_type type,
                                 bool medical, const double matrix[4][4]) {
     static unsigned char bits[60 * 8];
     uint64_t seed = 77;
@@ -29,14 +29,14 @@ static snow_volume *make_volume(support_place *place, snow_type type,
     return volume;
 }
 
-static void save(support_place *place, const snow_volume *volume,
+static void save(support_files *place, const snow_volume *volume,
                  const char *path) {
     if (snow_volume_save(volume, path, true) != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(place->context));
 }
 
 static void every_format_keeps_every_type_and_the_matrix(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const struct {
         const char *name;
         double tolerance; /* NIfTI-1 keeps floats */
@@ -48,11 +48,11 @@ static void every_format_keeps_every_type_and_the_matrix(void **state) {
     };
     for (size_t i = 0; i < 4; i++)
         for (int type = SNOW_TYPE_INT8; type <= SNOW_TYPE_FLOAT64; type++) {
-            const char *path = support_place_path(place, files[i].name);
+            const char *path = support_path(place, files[i].name);
             snow_volume *volume =
                 make_volume(place, (snow_type)type, true, oblique);
             save(place, volume, path);
-            snow_volume *back = support_place_open(place, path);
+            snow_volume *back = support_opened(place, path, NULL);
             const snow_volume_info *info = snow_volume_get_info(back);
             support_same_voxels(volume, back);
             support_same_matrix(info->matrix, oblique, files[i].tolerance);
@@ -65,11 +65,11 @@ static void every_format_keeps_every_type_and_the_matrix(void **state) {
 }
 
 static void raw_keeps_every_type_when_told_what_it_is(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const char *const names[] = {"a.raw", "a.raw.gz"};
     for (size_t i = 0; i < 2; i++)
         for (int type = SNOW_TYPE_INT8; type <= SNOW_TYPE_FLOAT64; type++) {
-            const char *path = support_place_path(place, names[i]);
+            const char *path = support_path(place, names[i]);
             snow_volume *volume =
                 make_volume(place, (snow_type)type, false, oblique);
             save(place, volume, path);
@@ -86,24 +86,24 @@ static void raw_keeps_every_type_when_told_what_it_is(void **state) {
             place->warnings[0] = 0;
         }
     snow_volume *volume = make_volume(place, SNOW_TYPE_UINT8, false, oblique);
-    save(place, volume, support_place_path(place, "a.raw"));
+    save(place, volume, support_path(place, "a.raw"));
     assert_non_null(strstr(place->warnings, "--dims 5x3x4 --type uint8"));
     snow_volume_close(volume);
 }
 
 static void what_is_no_patient_stays_none(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const double spaced[4][4] = {
         {1, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, 0.5, 0}, {0, 0, 0, 1}};
     /* NIfTI would take the axes of any matrix for a patient's. */
     static const char *const names[] = {"a.nrrd", "a.nii", "a.mha"};
     for (size_t i = 0; i < 6; i++) {
-        const char *path = support_place_path(place, names[i / 2]);
+        const char *path = support_path(place, names[i / 2]);
         const double(*matrix)[4] = i % 2 ? oblique : spaced;
         snow_volume *volume =
             make_volume(place, SNOW_TYPE_INT16, false, matrix);
         save(place, volume, path);
-        snow_volume *back = support_place_open(place, path);
+        snow_volume *back = support_opened(place, path, NULL);
         assert_false(snow_volume_get_info(back)->medical);
         support_same_matrix(snow_volume_get_info(back)->matrix, matrix,
                             i % 2 ? 1e-5 : 0);
@@ -113,7 +113,7 @@ static void what_is_no_patient_stays_none(void **state) {
 }
 
 static void scaling_survives_or_is_refused(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const struct {
         const char *name;
         snow_status status;
@@ -123,7 +123,7 @@ static void scaling_survives_or_is_refused(void **state) {
                  {"a.nrrd", SNOW_STATUS_BAD_USAGE},
                  {"a.raw", SNOW_STATUS_BAD_USAGE}};
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
-        const char *path = support_place_path(place, files[i].name);
+        const char *path = support_path(place, files[i].name);
         snow_volume *volume =
             make_volume(place, SNOW_TYPE_UINT8, true, oblique);
         volume->info.slope = 0.25;
@@ -131,7 +131,7 @@ static void scaling_survives_or_is_refused(void **state) {
         assert_int_equal(snow_volume_save(volume, path, false),
                          files[i].status);
         if (files[i].status == SNOW_STATUS_OK) {
-            snow_volume *back = support_place_open(place, path);
+            snow_volume *back = support_opened(place, path, NULL);
             assert_true(snow_volume_get_info(back)->slope == 0.25);
             assert_true(snow_volume_get_info(back)->intercept == -1024);
             snow_volume_close(back);
@@ -145,16 +145,16 @@ static void scaling_survives_or_is_refused(void **state) {
 }
 
 static void what_nifti_1_cannot_hold_becomes_nifti_2(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const unsigned char voxels[40000];
     snow_volume_info info = {
         .size = sizeof info, .dims = {40000, 1, 1}, .type = SNOW_TYPE_UINT8};
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_wrap(place->context, &info, voxels, &volume),
                      SNOW_STATUS_OK);
-    const char *path = support_place_path(place, "a.nii");
+    const char *path = support_path(place, "a.nii");
     save(place, volume, path);
-    snow_volume *back = support_place_open(place, path);
+    snow_volume *back = support_opened(place, path, NULL);
     support_same_voxels(volume, back);
     snow_volume_close(back);
     snow_volume_close(volume);
@@ -164,14 +164,14 @@ static void what_nifti_1_cannot_hold_becomes_nifti_2(void **state) {
                                       {0, 0, 0, 1}};
     volume = make_volume(place, SNOW_TYPE_UINT8, true, tiny);
     save(place, volume, path);
-    back = support_place_open(place, path);
+    back = support_opened(place, path, NULL);
     support_same_matrix(snow_volume_get_info(back)->matrix, tiny, 0);
     snow_volume_close(back);
     snow_volume_close(volume);
 }
 
 static void the_same_volume_gives_the_same_bytes(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const char *const pairs[][2] = {{"a.nii.gz", "b.nii.gz"},
                                            {"a.mha", "b.mha"}};
     snow_volume *volume = make_volume(place, SNOW_TYPE_INT32, true, oblique);
@@ -179,7 +179,7 @@ static void the_same_volume_gives_the_same_bytes(void **state) {
         static char bytes[2][4096];
         size_t sizes[2];
         for (int k = 0; k < 2; k++) {
-            const char *path = support_place_path(place, pairs[i][k]);
+            const char *path = support_path(place, pairs[i][k]);
             save(place, volume, path);
             FILE *file = fopen(path, "rb");
             assert_non_null(file);
@@ -193,13 +193,13 @@ static void the_same_volume_gives_the_same_bytes(void **state) {
 }
 
 static void existing_files_and_unknown_endings_are_refused(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     snow_volume *volume = make_volume(place, SNOW_TYPE_UINT8, true, oblique);
-    const char *path = support_place_put(place, "a.nii", "old", 3);
+    const char *path = support_write(place, "a.nii", "old", 3);
     assert_int_equal(snow_volume_save(volume, path, false),
                      SNOW_STATUS_BAD_OUTPUT);
     assert_non_null(strstr(snow_context_message(place->context), "exists"));
-    path = support_place_path(place, "a.xyz");
+    path = support_path(place, "a.xyz");
     assert_int_equal(snow_volume_save(volume, path, false),
                      SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(snow_context_message(place->context), ".nii.gz"));
@@ -207,7 +207,7 @@ static void existing_files_and_unknown_endings_are_refused(void **state) {
 }
 
 static void a_volume_of_many_buffers_is_packed_whole(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     size_t count = 700000;
     float *voxels = malloc(count * sizeof *voxels);
     assert_non_null(voxels);
@@ -219,9 +219,9 @@ static void a_volume_of_many_buffers_is_packed_whole(void **state) {
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_wrap(place->context, &info, voxels, &volume),
                      SNOW_STATUS_OK);
-    const char *path = support_place_path(place, "a.nii.gz");
+    const char *path = support_path(place, "a.nii.gz");
     save(place, volume, path);
-    snow_volume *back = support_place_open(place, path);
+    snow_volume *back = support_opened(place, path, NULL);
     support_same_voxels(volume, back);
     snow_volume_close(back);
     snow_volume_close(volume);
@@ -230,7 +230,7 @@ static void a_volume_of_many_buffers_is_packed_whole(void **state) {
 
 /* Makes each allocation of a save or an open fail, with all after it, until
  * one succeeds; returns how many allocations that took. */
-static int64_t starve(support_place *place, const snow_volume *volume,
+static int64_t starve(support_files *place, const snow_volume *volume,
                       const char *path, bool saving) {
     const snow_volume_options raw = {
         .size = sizeof raw, .dims = {5, 3, 4}, .type = SNOW_TYPE_INT16};
@@ -256,12 +256,12 @@ static int64_t starve(support_place *place, const snow_volume *volume,
 }
 
 static void every_failing_allocation_is_survived(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const char *const names[] = {"a.nrrd", "a.nii", "a.nii.gz",
                                         "a.mha",  "a.raw", "a.raw.gz"};
     snow_volume *volume = make_volume(place, SNOW_TYPE_INT16, true, oblique);
     for (size_t i = 0; i < 6; i++) {
-        const char *path = support_place_path(place, names[i]);
+        const char *path = support_path(place, names[i]);
         assert_true(starve(place, volume, path, true) > 1);
         assert_true(starve(place, volume, path, false) > 2);
     }
@@ -269,8 +269,8 @@ static void every_failing_allocation_is_survived(void **state) {
 }
 
 #define UNIT(test)                                             \
-    cmocka_unit_test_setup_teardown(test, support_place_begin, \
-                                    support_place_end)
+    cmocka_unit_test_setup_teardown(test, support_files_setup, \
+                                    support_files_teardown)
 
 int main(void) {
     const struct CMUnitTest tests[] = {

@@ -1,7 +1,7 @@
 /* tests/volume/test_stream.c - a volume whose voxels stay in its file makes the
  * looks and pictures of the same volume in memory, bit for bit, however thin
  * its slabs are; and never holds more of it than a slab. */
-#include "support/volumes.h"
+#include "support/files.h"
 
 #include "image/image.h"
 #include "render/tested.h"
@@ -30,7 +30,7 @@ static const struct {
 
 /* A head of a type, with a little noise so that no slice is like its neighbour.
  */
-static snow_volume *make_head(support_place *place, snow_type type) {
+static snow_volume *make_head(support_files *place, snow_type type) {
     snow_volume *head, *made;
     double ends[2] = {0, 255};
     const double *range = type == SNOW_TYPE_FLOAT32 ? NULL : ends;
@@ -49,21 +49,21 @@ static snow_volume *make_head(support_place *place, snow_type type) {
 }
 
 /* Puts it into a file. */
-static const char *write_volume(support_place *place, snow_volume *volume,
+static const char *write_volume(support_files *place, snow_volume *volume,
                                 const char *name) {
-    const char *path = support_place_path(place, name);
+    const char *path = support_path(place, name);
     assert_int_equal(snow_volume_save(volume, path, true), SNOW_STATUS_OK);
     snow_volume_close(volume);
     return path;
 }
 
-static const char *write_head(support_place *place, snow_type type,
+static const char *write_head(support_files *place, snow_type type,
                               const char *name) {
     return write_volume(place, make_head(place, type), name);
 }
 
 /* A head with no values in a corner, in a slice, and here and there. */
-static const char *write_holes(support_place *place) {
+static const char *write_holes(support_files *place) {
     snow_volume *head = make_head(place, SNOW_TYPE_FLOAT32);
     float *voxel = head->owned;
     for (int64_t z = 0; z < dims[2]; z++)
@@ -75,7 +75,7 @@ static const char *write_holes(support_place *place) {
     return write_volume(place, head, "holes.nrrd");
 }
 
-static snow_volume *stream_of(support_place *place, const char *path,
+static snow_volume *stream_of(support_files *place, const char *path,
                               const snow_volume_options *options,
                               uint64_t slab_bytes) {
     snow_volume *volume;
@@ -93,7 +93,7 @@ typedef struct pair {
     int pictures;
 } pair;
 
-static pair open_pair(support_place *place, const char *path,
+static pair open_pair(support_files *place, const char *path,
                       const snow_volume_options *options, uint64_t slab_bytes,
                       const snow_look *look) {
     pair p = {0};
@@ -193,7 +193,7 @@ static void near_pictures(pair *p, const snow_view *view,
     p->pictures++;
 }
 
-static snow_view stand_at(support_place *place, size_t n) {
+static snow_view stand_at(support_files *place, size_t n) {
     snow_view view = {.size = sizeof view};
     assert_int_equal(snow_view_from_name(place->context, stands[n].name, &view),
                      SNOW_STATUS_OK);
@@ -216,7 +216,7 @@ static uint64_t slices_of(snow_type type, int slices) {
 
 static void pictures_are_those_of_the_volume_in_memory(void **state) {
     static const int slices[] = {1, 5, 35, 50, 70, 1000};
-    support_place *place = *state;
+    support_files *place = *state;
     int pictures = 0;
     for (size_t t = 0; t < COUNT(types); t++) {
         const char *path = write_head(place, types[t], "head.nrrd");
@@ -269,7 +269,7 @@ static void same_depths(const pair *p) {
 
 static void other_modes_are_those_of_the_volume_in_memory(void **state) {
     static const int slices[] = {4, 35};
-    support_place *place = *state;
+    support_files *place = *state;
     int pictures = 0;
     for (size_t t = 0; t < COUNT(types); t++) {
         const char *path = write_head(place, types[t], "head.nrrd");
@@ -313,7 +313,7 @@ static void other_modes_are_those_of_the_volume_in_memory(void **state) {
 
 static void modes_of_a_volume_with_holes_are_near(void **state) {
     static const int slices[] = {20, 200};
-    support_place *place = *state;
+    support_files *place = *state;
     const char *path = write_holes(place);
     for (size_t s = 0; s < COUNT(slices); s++) {
         pair p = open_pair(place, path, NULL,
@@ -341,7 +341,7 @@ static void modes_of_a_volume_with_holes_are_near(void **state) {
 static void exact_pictures_are_near(void **state) {
     static const snow_method methods[] = {
         SNOW_METHOD_FOOTPRINT, SNOW_METHOD_ORIGINAL, SNOW_METHOD_TESTED};
-    support_place *place = *state;
+    support_files *place = *state;
     for (size_t t = 0; t < COUNT(types); t++) {
         const char *path = write_head(place, types[t], "head.nrrd");
         pair p = open_pair(place, path, NULL,
@@ -364,7 +364,7 @@ static void exact_pictures_are_near(void **state) {
 
 /* What no lattice has pixels for is left to footprints. */
 static void pictures_of_wide_pixels_are_near(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     pair p = open_pair(place, write_head(place, SNOW_TYPE_UINT8, "head.nrrd"),
                        NULL, slices_of(SNOW_TYPE_UINT8, 40), NULL);
     for (size_t n = 0; n < COUNT(stands); n += 3) {
@@ -381,7 +381,7 @@ static void pictures_of_wide_pixels_are_near(void **state) {
 }
 
 static void depths_of_over_are_those_of_the_volume_in_memory(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     for (size_t t = 0; t < COUNT(types); t++) {
         const char *path = write_head(place, types[t], "head.nrrd");
         pair p = open_pair(place, path, NULL,
@@ -405,7 +405,7 @@ static void opacity_by_gradients_sees_beyond_a_slabs_border(void **state) {
     const snow_look look = {.size = sizeof look,
                             .gradient_opacities = curve,
                             .gradient_opacity_count = COUNT(curve)};
-    support_place *place = *state;
+    support_files *place = *state;
     for (size_t t = 0; t < COUNT(types); t++) {
         const char *path = write_head(place, types[t], "head.nrrd");
         pair p = open_pair(place, path, NULL,
@@ -426,7 +426,7 @@ static void opacity_by_gradients_sees_beyond_a_slabs_border(void **state) {
 }
 
 static void a_box_a_spacing_a_mask_and_a_plane_are_heeded(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     char path[128];
     strcpy(path, write_head(place, SNOW_TYPE_UINT16, "head.nrrd"));
     snow_volume_options options = {
@@ -458,7 +458,7 @@ static void a_box_a_spacing_a_mask_and_a_plane_are_heeded(void **state) {
 
 /* Slabs cut what deterministic pictures take as a whole. */
 static void deterministic_pictures_are_refused(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     const char *path = write_head(place, SNOW_TYPE_UINT8, "head.nrrd");
     pair p = open_pair(place, path, NULL, slices_of(SNOW_TYPE_UINT8, 9), NULL);
     const snow_view view = stand_at(place, 2);
@@ -484,7 +484,7 @@ static void deterministic_pictures_are_refused(void **state) {
 }
 
 static void packed_files_are_served_as_well(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     const char *path = write_head(place, SNOW_TYPE_INT16, "head.nii.gz");
     pair p = open_pair(place, path, NULL, slices_of(SNOW_TYPE_INT16, 40), NULL);
     for (size_t n = 0; n < COUNT(stands); n += 3) {
@@ -516,7 +516,7 @@ static void looks_are_those_of_the_volume_in_memory(void **state) {
          .high = 90},
         {.size = sizeof(snow_look), .preset = "mr-brain"},
     };
-    support_place *place = *state;
+    support_files *place = *state;
     for (size_t t = 0; t < COUNT(types); t++) {
         const char *path = write_head(place, types[t], "head.nrrd");
         for (size_t n = 0; n < COUNT(looks); n++) {
@@ -544,7 +544,7 @@ static void looks_are_those_of_the_volume_in_memory(void **state) {
 }
 
 /* Bytes of the file that a look of floats reads, under a limit. */
-static uint64_t read_for_look(support_place *place, const char *path,
+static uint64_t read_for_look(support_files *place, const char *path,
                               uint64_t limit, char text[1024]) {
     snow_volume *stream =
         stream_of(place, path, NULL, slices_of(SNOW_TYPE_FLOAT32, 7));
@@ -561,7 +561,7 @@ static uint64_t read_for_look(support_place *place, const char *path,
 }
 
 static void a_sample_that_has_room_spares_readings(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     const char *path = write_head(place, SNOW_TYPE_FLOAT32, "head.nrrd");
     uint64_t all = slices_of(SNOW_TYPE_FLOAT32, (int)dims[2]);
     char one[1024], many[1024];
@@ -576,7 +576,7 @@ static void a_sample_that_has_room_spares_readings(void **state) {
 /* --- memory and reading --------------------------------------------------- */
 
 static void no_more_than_a_slab_is_held(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     const char *path = write_head(place, SNOW_TYPE_UINT16, "head.nrrd");
     uint64_t slab = slices_of(SNOW_TYPE_UINT16, 8);
     snow_volume *stream = stream_of(place, path, NULL, slab);
@@ -599,7 +599,7 @@ static void the_file_is_read_for_another_slice_axis_only(void **state) {
         size_t stand;
         bool reads;
     } turns[] = {{2, true}, {3, false}, {2, false}, {4, true}, {5, false}};
-    support_place *place = *state;
+    support_files *place = *state;
     const char *path = write_head(place, SNOW_TYPE_UINT8, "head.raw");
     const snow_volume_options options = {.size = sizeof options,
                                          .dims = {dims[0], dims[1], dims[2]},
@@ -629,7 +629,7 @@ static void the_file_is_read_for_another_slice_axis_only(void **state) {
 
 /* A picture of the stream alone, which is that of the volume in memory; returns
  * the bytes that were read. */
-static uint64_t draw_under_limit(support_place *place, const pair *p,
+static uint64_t draw_under_limit(support_files *place, const pair *p,
                                  const snow_view *view,
                                  const snow_settings *settings,
                                  snow_image *same) {
@@ -647,7 +647,7 @@ static uint64_t draw_under_limit(support_place *place, const pair *p,
 
 /* Encodings of slabs are kept as far as memory allows, and no farther. */
 static void a_limit_leaves_some_slabs_to_be_read_again(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     char path[128];
     strcpy(path, write_head(place, SNOW_TYPE_UINT8, "head.raw"));
     const snow_volume_options options = {.size = sizeof options,
@@ -698,7 +698,7 @@ static void a_limit_leaves_some_slabs_to_be_read_again(void **state) {
 }
 
 /* The first call that fails; nothing may be left of it. */
-static snow_status draw_once(support_place *place, const char *path,
+static snow_status draw_once(support_files *place, const char *path,
                              const snow_view *view, snow_mode mode,
                              bool depth) {
     snow_volume *stream = NULL;
@@ -727,7 +727,7 @@ static snow_status draw_once(support_place *place, const char *path,
     return status;
 }
 
-static void fail_everywhere(support_place *place, const char *path,
+static void fail_everywhere(support_files *place, const char *path,
                             snow_mode mode, bool depth, int step) {
     const snow_view view = stand_at(place, 2);
     snow_status status = SNOW_STATUS_NO_MEMORY;
@@ -745,7 +745,7 @@ static void fail_everywhere(support_place *place, const char *path,
 }
 
 static void any_allocation_may_fail(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     char path[128];
     strcpy(path, write_head(place, SNOW_TYPE_UINT8, "head.nrrd"));
     fail_everywhere(place, path, SNOW_MODE_OVER, false,
@@ -771,7 +771,7 @@ static void refuse(pair *p, const char *part, const snow_view *view,
 }
 
 static void pictures_that_look_at_voxels_are_refused(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     const char *path = write_head(place, SNOW_TYPE_UINT8, "head.nrrd");
     pair p = open_pair(place, path, NULL, 0, NULL);
     snow_view view = stand_at(place, 0);
@@ -798,10 +798,10 @@ static void pictures_that_look_at_voxels_are_refused(void **state) {
 
 static void all_else_that_looks_at_voxels_is_refused(void **state) {
     static const double plane[4] = {1, 0, 0, 5};
-    support_place *place = *state;
+    support_files *place = *state;
     const char *path = write_head(place, SNOW_TYPE_UINT8, "head.nrrd");
     snow_volume *stream = stream_of(place, path, NULL, 0), *made = NULL;
-    snow_volume *whole = support_place_open(place, path);
+    snow_volume *whole = support_opened(place, path, NULL);
     snow_volume_statistics measures = {.size = sizeof measures};
     snow_transfer *transfer;
     uint64_t counts[2];
@@ -818,7 +818,7 @@ static void all_else_that_looks_at_voxels_is_refused(void **state) {
     assert_int_equal(snow_volume_clip(stream, plane, 1, &made),
                      SNOW_STATUS_BAD_USAGE);
     assert_int_equal(
-        snow_volume_save(stream, support_place_path(place, "b.nrrd"), false),
+        snow_volume_save(stream, support_path(place, "b.nrrd"), false),
         SNOW_STATUS_BAD_USAGE);
     snow_volume_get_extent(stream, &part);
     assert_int_equal(snow_volume_set_extent(stream, &part),
@@ -841,7 +841,7 @@ static void all_else_that_looks_at_voxels_is_refused(void **state) {
 
 static void a_file_that_goes_away_or_changes_is_an_error(void **state) {
     static const char *const others[] = {"engine", NULL};
-    support_place *place = *state;
+    support_files *place = *state;
     char path[128];
     strcpy(path, write_head(place, SNOW_TYPE_UINT8, "head.nrrd"));
     for (size_t n = 0; n < COUNT(others); n++) {
@@ -873,7 +873,7 @@ static void a_file_that_goes_away_or_changes_is_an_error(void **state) {
 
 /* Texts of options may go when the volume is open. */
 static void options_are_copied(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     char file[128 + 60], component[] = "y";
     snow_volume_options options = {.size = sizeof options,
                                    .component = component};
@@ -883,7 +883,7 @@ static void options_are_copied(void **state) {
              "'shape': (2, 2, 5, 3)}");
     for (int n = 0; n < 60; n++)
         file[128 + n] = (char)n;
-    const char *path = support_place_put(place, "v.npy", file, sizeof file);
+    const char *path = support_write(place, "v.npy", file, sizeof file);
     snow_volume *volume = stream_of(place, path, &options, 0);
     memset(component, 'z', 1);
     const snow_look look = {
@@ -899,22 +899,22 @@ static void options_are_copied(void **state) {
 }
 
 static void streams_that_cannot_be_read_twice_are_refused(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     snow_volume *volume;
     assert_int_equal(
         snow_volume_open_streamed(place->context, "-", NULL, 0, &volume),
         SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(snow_context_message(place->context),
                            "standard input: can be read only once"));
-    assert_int_equal(snow_volume_open_streamed(
-                         place->context, support_place_path(place, "none.nrrd"),
-                         NULL, 0, &volume),
+    assert_int_equal(snow_volume_open_streamed(place->context,
+                                               support_path(place, "none.nrrd"),
+                                               NULL, 0, &volume),
                      SNOW_STATUS_BAD_INPUT);
 }
 
 #define TEST(name)                                             \
-    cmocka_unit_test_setup_teardown(name, support_place_begin, \
-                                    support_place_end)
+    cmocka_unit_test_setup_teardown(name, support_files_setup, \
+                                    support_files_teardown)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
