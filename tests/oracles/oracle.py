@@ -1,21 +1,41 @@
 """What the oracle_*.py share: the tool's figures of a file beside those that
-an independent reader's voxels and matrix have.
+an independent reader's voxels and matrix have, and files of all kinds.
 
-An oracle is run as `python3 oracle_NAME.py TOOL DATA`; it exits with 77 when
-the independent reader is not installed.
+An oracle is run as `python3 oracle_NAME.py TOOL DATA`, in an empty folder; it
+exits with 77 when the independent reader is not installed.
 """
+import gzip
+import importlib
+import itertools
 import json
 import os
+import shutil
+import struct
 import subprocess
 import sys
 import tempfile
 
-import numpy as np
 
-TOOL, DATA = os.path.abspath(sys.argv[1]), sys.argv[2]
-checked = wrong = 0
+def skip(why):
+    print("skip  ", why)
+    sys.exit(77)
+
+
+def need(*names):
+    """Modules of Python; the oracle is skipped where one is not installed."""
+    try:
+        return [importlib.import_module(name) for name in names]
+    except ImportError as missing:
+        return skip(missing)
+
+
+np, = need("numpy")
+TOOL, DATA = map(os.path.abspath, sys.argv[1:3])
+checked = wrong = files = 0
 usual = np.eye(4)  # the matrix of a file that says nothing of it
 SHORT = os.environ.get("SNOW_TIER", "short") == "short" # docs/testing.md
+place = tempfile.TemporaryDirectory()
+os.chdir(place.name)
 
 
 def few(things, stride, start=0):
@@ -24,15 +44,14 @@ def few(things, stride, start=0):
     return things[start % stride::stride] if SHORT else things
 
 
-def skip(why):
-    print("skip  ", why)
-    sys.exit(77)
+def doctor(key):
+    """What the tool's build has: libraries, picture_outputs."""
+    return json.loads(tool("doctor", "--json").stdout)[key]
 
 
 def library(name):
     """The version of an optional library of the tool's, or None."""
-    told = subprocess.run([TOOL, "doctor", "--json"], capture_output=True)
-    return json.loads(told.stdout)["libraries"].get(name)
+    return doctor("libraries").get(name)
 
 
 def need_modules():
@@ -53,9 +72,77 @@ def data(relative):
     return path if os.path.exists(path) else None
 
 
+def tool(*arguments, **how):
+    """The tool's end, and what it said."""
+    return subprocess.run([TOOL, *map(str, arguments)], capture_output=True,
+                          **{"text": True, **how})
+
+
 def run(path, *options):
-    return subprocess.run([TOOL, "info", "--json", path, *map(str, options)],
-                          capture_output=True, text=True)
+    return tool("info", "--json", path, *options)
+
+
+def told(path, *options):
+    """What info tells as JSON; nothing where the tool fails."""
+    global checked
+    checked += 1
+    done = run(path, *options)
+    if done.returncode:
+        fail(path, done.stderr.strip())
+    return {} if done.returncode else json.loads(done.stdout)
+
+
+def tells(path, options=(), **wanted):
+    """Info tells these values."""
+    found = told(path, *options)
+    for key, value in wanted.items():
+        if found.get(key) != value:
+            fail(path, f"{key} {found.get(key)!r}, not {value!r}")
+
+
+def says(name, path, part, *options):
+    """The remarks contain a part, or there are none where that is None."""
+    global checked
+    checked += 1
+    done = run(path, *options)
+    if done.returncode or (part not in done.stderr if part else done.stderr):
+        fail(name, f"exit {done.returncode}, {done.stderr!r}, not {part!r}")
+
+
+# --- files --------------------------------------------------------------------
+
+
+def put(path, content):
+    """Writes bytes or text."""
+    with open(path, "wb") as file:
+        file.write(content.encode() if isinstance(content, str) else content)
+    return path
+
+
+def got(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def patch(path, at, content):
+    """Replaces bytes from that one on, which counts from the end if below 0."""
+    whole = bytearray(got(path))
+    at %= len(whole)
+    whole[at:at + len(content)] = content
+    return put(path, bytes(whole))
+
+
+def packed(path, to):
+    """Writes a file packed by gzip."""
+    return put(to, gzip.compress(got(path)))
+
+
+def empty_folder(path):
+    shutil.rmtree(path, ignore_errors=True)
+    os.makedirs(path)
+
+
+# --- volumes ------------------------------------------------------------------
 
 
 def figures(voxels):
@@ -70,6 +157,13 @@ def figures(voxels):
             "scale": np.abs(values).sum() * 1009}
 
 
+def wide(voxels):
+    """As the tool keeps them: in the machine's order, halves as float32 and
+    truth as 0 and 1."""
+    kind = {"f2": "f4", "b1": "u1"}.get(voxels.dtype.str[1:])
+    return voxels.astype(kind or voxels.dtype.newbyteorder("="))
+
+
 def magnitude(voxels):
     """The length of vectors along the last axis, rounded after each one."""
     total = np.abs(voxels[..., 0])
@@ -79,46 +173,51 @@ def magnitude(voxels):
     return total
 
 
-def near(a, b, scale):
-    return abs(a - b) <= 1e-12 * scale + 1e-300
+def same_figures(name, found, wanted):
+    for key in ("min", "max", "sum", "wsum", "finite"):
+        if abs(found[key] - wanted[key]) > 1e-12 * wanted["scale"] + 1e-300:
+            fail(name, f"{key} {found[key]}, not {wanted[key]}")
 
 
 def expect(path, voxels, matrix=None, options=(), dtype=None, unit=None,
            name=None):
-    """The file is these voxels (z, y, x), of this type, in this place; and so
-    is a box of it, when nothing else was wrong (in the short tier: of each third
-    file)."""
+    """The file is these voxels (z, y, x), of this type, in this place.  So is a
+    box of it (in the short tier: of each third file), and the whole of it as a
+    box (of each third)."""
+    global files
+    matrix = usual if matrix is None else np.asarray(matrix, float)
+    name = name or " ".join([os.path.basename(path), *map(str, options)])
+    more = figures(voxels), matrix, dtype or voxels.dtype, unit
+    if not expect_one(path, name, options, voxels, *more):
+        return
+    files += 1
+    if files % 3 == 1:
+        expect_one(path, name, [*options, "--crop", ":,:,:"], voxels, *more)
+    if files % 3 == 0 or not SHORT:
+        expect_box(path, name, options, voxels, *more[1:])
+
+
+def expect_one(path, name, options, voxels, wanted, matrix, dtype, unit):
     global checked
     checked += 1
     before = wrong
-    matrix = usual if matrix is None else np.asarray(matrix, float)
-    if "--crop" not in options:
-        expect(path, voxels, matrix, [*options, "--crop", ":,:,:"], dtype,
-               unit, name)
-        if wrong == before and (checked % 3 == 0 or not SHORT):
-            expect_box(path, voxels, matrix, options, dtype, unit, name)
-        return
-    name = name or " ".join([os.path.basename(path), *map(str, options)])
     done = run(path, *options)
     if done.returncode:
         return fail(name, done.stderr.strip())
-    told, wanted = json.loads(done.stdout), figures(voxels)
-    dims = list(voxels.shape[::-1])
-    if told["dims"] != dims:
-        return fail(name, f"dims {told['dims']}, not {dims}")
-    dtype = np.dtype(dtype or voxels.dtype).name
-    if told["type"] != dtype:
-        fail(name, f"type {told['type']}, not {dtype}")
-    for key in ("min", "max", "sum", "wsum", "finite"):
-        if not near(told[key], wanted[key], wanted["scale"]):
-            fail(name, f"{key} {told[key]}, not {wanted[key]}")
-    if not np.allclose(told["matrix"], matrix, rtol=1e-6, atol=1e-7):
-        fail(name, f"matrix\n{np.array(told['matrix'])}, not\n{matrix}")
-    if unit is not None and told["unit"] != unit:
-        fail(name, f"unit {told['unit']!r}, not {unit!r}")
+    found, dims = json.loads(done.stdout), list(voxels.shape[::-1])
+    if found["dims"] != dims:
+        return fail(name, f"dims {found['dims']}, not {dims}")
+    if found["type"] != np.dtype(dtype).name:
+        fail(name, f"type {found['type']}, not {np.dtype(dtype).name}")
+    same_figures(name, found, wanted)
+    if not np.allclose(found["matrix"], matrix, rtol=1e-6, atol=1e-7):
+        fail(name, f"matrix\n{np.array(found['matrix'])}, not\n{matrix}")
+    if unit is not None and found["unit"] != unit:
+        fail(name, f"unit {found['unit']!r}, not {unit!r}")
+    return wrong == before
 
 
-def expect_box(path, voxels, matrix, options, dtype, unit, name):
+def expect_box(path, name, options, voxels, matrix, dtype, unit):
     """A box in the middle of the file, where it was."""
     first = [size // 3 for size in voxels.shape[::-1]]
     end = [max(size - size // 4, low + 1)
@@ -127,8 +226,9 @@ def expect_box(path, voxels, matrix, options, dtype, unit, name):
     (x, y, z), (i, j, k) = first, end
     moved = matrix.copy()
     moved[:3, 3] += matrix[:3, :3] @ first
-    expect(path, voxels[z:k, y:j, x:i], moved, [*options, "--crop", box],
-           dtype, unit, f"{name or os.path.basename(path)} box {box}")
+    part = voxels[z:k, y:j, x:i]
+    expect_one(path, f"{name} box {box}", [*options, "--crop", box], part,
+               figures(part), moved, dtype, unit)
 
 
 def refuse(path, part, options=(), status=3):
@@ -141,18 +241,22 @@ def refuse(path, part, options=(), status=3):
              f"{done.stderr.strip()!r} lacks {part!r}")
 
 
+def refuse_cut(path, sizes, part):
+    """So is a copy of the file, cut to each of these sizes."""
+    whole = got(path)
+    for size in sizes:
+        refuse(put("cut" + os.path.splitext(path)[1], whole[:size]), part)
+
+
 def voxels_of(path, options=()):
     """The voxels that are stored (z, y, x), and the upper rows of the matrix;
     None where the tool fails.  A box has those of the whole."""
-    global checked
-    checked += 1
-    done = run(path, *options)
-    made = subprocess.run([TOOL, "convert", "-q", "-y", path, "-o", "out.npy",
-                           *map(str, options)], capture_output=True, text=True)
-    if done.returncode or made.returncode:
-        fail(path, done.stderr.strip() or made.stderr.strip())
+    found = told(path, *options)
+    made = tool("convert", "-q", "-y", path, "-o", "out.npy", *options)
+    if not found or made.returncode:
+        if found:
+            fail(path, made.stderr.strip())
         return None, None
-    found = json.loads(done.stdout)
     values = np.load("out.npy")
     if list(values.shape[::-1]) != found["dims"]:
         fail(path, f"dims {found['dims']}, but the file has {values.shape}")
@@ -194,10 +298,63 @@ def sample(dtype, shape=(7, 6, 5), seed=1):
     return (random.standard_normal(shape) * 100).astype(dtype)
 
 
-def folder():
-    place = tempfile.TemporaryDirectory()
-    os.chdir(place.name)
-    return place
+# --- one volume in all directions ---------------------------------------------
+
+TURNS = list(itertools.product(itertools.permutations(range(3)),
+                               itertools.product((1, -1), repeat=3)))
+
+
+def turned(voxels, matrix, order, signs):
+    """The same voxels [x, y, z] with new axis j the old order[j], backwards
+    where signs[j] is -1; and the matrix that puts them where they were."""
+    out = np.eye(4)
+    new = voxels.transpose(order)
+    out[:3, 3] = matrix[:3, 3]
+    for j in range(3):
+        column = matrix[:3, order[j]]
+        if signs[j] < 0:
+            new = np.flip(new, j)
+            out[:3, 3] += column * (new.shape[j] - 1)
+        out[:3, j] = column * signs[j]
+    return new, out
+
+
+def rotation(*degrees):
+    """About x, then y, then z."""
+    a, b, c = np.radians(degrees)
+    return (np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)],
+                      [0, np.sin(a), np.cos(a)]]) @
+            np.array([[np.cos(b), 0, np.sin(b)], [0, 1, 0],
+                      [-np.sin(b), 0, np.cos(b)]]) @
+            np.array([[np.cos(c), -np.sin(c), 0], [np.sin(c), np.cos(c), 0],
+                      [0, 0, 1]]))
+
+
+def nifti(voxels, matrix, code=512):
+    """The bytes of a file with an sform, in mm, of voxels [x, y, z]; code 512:
+    uint16, 16: float32, 4: int16, 128: colours [x, y, z, 3]."""
+    header = bytearray(352)
+    bits = 24 if code == 128 else 8 * voxels.itemsize
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, *voxels.shape[:3], 1, 1, 1, 1)
+    struct.pack_into("<hh", header, 70, code, bits)
+    spacing = np.linalg.norm(matrix[:3, :3], axis=0)
+    struct.pack_into("<8f", header, 76, 1, *spacing, 1, 1, 1, 1)
+    struct.pack_into("<fff", header, 108, 352, 1, 0)
+    header[123] = 2
+    struct.pack_into("<hh", header, 252, 0, 1)
+    struct.pack_into("<12f", header, 280, *matrix[:3].ravel())
+    header[344:348] = b"n+1\0"
+    if code == 128:
+        voxels = np.moveaxis(voxels, 3, 0)
+    return bytes(header) + voxels.tobytes(order="F")
+
+
+def nrrd(kind, shape, fields, data):
+    """The bytes of a little-endian file; shape as in its header."""
+    return (f"NRRD0004\ntype: {kind}\ndimension: {len(shape)}\nsizes: "
+            f"{' '.join(map(str, shape))}\nendian: little\n{fields}"
+            "encoding: raw\n\n").encode() + data
 
 
 def finish():

@@ -1,25 +1,14 @@
 """Channels of OME-TIFF, ImageJ, OME-Zarr and NIfTI: what info says of them, and
 slices and projections beside NumPy's own sums of light."""
-import sys
-
-try:
-    import numpy as np
-    import tifffile
-    import zarr
-    from PIL import Image
-except ImportError as missing:
-    print("skip  ", missing)
-    sys.exit(77)
 import gzip
-import json
-import struct
-import subprocess
 
 import oracle
+from oracle import np
 
+tifffile, zarr, _ = oracle.need("tifffile", "zarr", "PIL")
+from PIL import Image
 oracle.need_modules()
 
-place = oracle.folder()
 random = np.random.default_rng(7)
 SHAPE = (3, 9, 14, 11)  # c, z, y, x
 CZYX = random.integers(0, 4000, SHAPE).astype(np.uint16)
@@ -38,16 +27,11 @@ def light(values, windows, colors):
     return np.minimum(total, 1)
 
 
-def tool(verb, path, *options):
-    oracle.checked += 1
-    return subprocess.run([oracle.TOOL, verb, path, *options],
-                          capture_output=True, text=True)
-
-
 def draw(verb, path, *options):
     """A picture in colours, on black."""
-    done = tool(verb, path, "-o", "out.png", "-y", "-q",
-                       "--no-labels", "--background", "#000", *options)
+    oracle.checked += 1
+    done = oracle.tool(verb, path, "-o", "out.png", "-y", "-q", "--no-labels",
+                       "--background", "#000", *options)
     if done.returncode:
         oracle.fail(f"{verb} {path} {options}", done.stderr.strip())
         return np.zeros((1, 1, 3))
@@ -55,10 +39,7 @@ def draw(verb, path, *options):
 
 
 def expect_info(path, names, colors, windows, shown):
-    done = tool("info", "--json", path)
-    if done.returncode:
-        return oracle.fail(path, done.stderr.strip())
-    says = json.loads(done.stdout).get("channels", [])
+    says = oracle.told(path).get("channels", [])
     same = [c["name"] for c in says] == names
     same &= [c["shown"] for c in says] == shown
     for own, color, window in zip(says, colors, windows):
@@ -151,23 +132,16 @@ expect_info("rgb.tif", ["red", "green", "blue"], PURE, [(0, 255)] * 3,
             [True] * 3)
 expect_light(draw("slice", "rgb.tif", "--axis", "z", "--at", "4"),
              RGB[4] / 255, "TIFF in colour", LEVEL)
-head = bytearray(352)
-struct.pack_into("<i", head, 0, 348)
-struct.pack_into("<8h", head, 40, 3, *RGB.shape[2::-1], 1, 1, 1, 1)
-struct.pack_into("<hh", head, 70, 128, 24)
-struct.pack_into("<8f", head, 76, 1, 1, 1, 1, 1, 1, 1, 1)
-struct.pack_into("<fff", head, 108, 352, 1, 0)
-head[344:348] = b"n+1\0"
-open("rgb.nii", "wb").write(bytes(head) + RGB.tobytes())
+oracle.put("rgb.nii", oracle.nifti(RGB.transpose(2, 1, 0, 3), np.eye(4), 128))
+oracle.patch("rgb.nii", 254, bytes(2))  # of no patient
 got = draw("slice", "rgb.nii", "--axis", "z", "--at", "4")
 expect_light(got[::-1], RGB[4] / 255, "NIfTI in colour", LEVEL)
 for kind, packed in (("RGB-color", False), ("vector", True)):
     data = RGB.tobytes()
-    open("rgb.nrrd", "wb").write(
-        b"NRRD0005\ntype: uint8\ndimension: 4\nsizes: 3 11 14 9\n"
-        b"kinds: %s domain domain domain\nencoding: %s\n\n" %
-        (kind.encode(), b"gzip" if packed else b"raw") +
-        (gzip.compress(data) if packed else data))
+    file = oracle.nrrd("uint8", (3, 11, 14, 9),
+                       f"kinds: {kind} domain domain domain\n",
+                       gzip.compress(data) if packed else data)
+    oracle.put("rgb.nrrd", file.replace(b"raw", b"gzip", 1) if packed else file)
     expect_info("rgb.nrrd", ["red", "green", "blue"], PURE, [(0, 255)] * 3,
                 [True] * 3)
     got = draw("slice", "rgb.nrrd", "--axis", "z", "--at", "4")

@@ -2,20 +2,13 @@
 at each edge, in one view, in perspective, and in all frames of a turntable;
 pictures of files that are read in slabs are the same."""
 import glob
-import os
-import subprocess
-import sys
-
-try:
-    import numpy as np
-    from PIL import Image
-except ImportError as missing:
-    print("skip  ", missing)
-    sys.exit(77)
 
 import oracle
+from oracle import np
 
-place = oracle.folder()
+oracle.need("PIL")
+from PIL import Image
+
 SIDE = 200
 MARGIN = 0.04 * SIDE
 # A voxel's look reaches up to half a voxel beyond its box, half a pixel here.
@@ -31,10 +24,9 @@ def scene():
 
 
 def draw(*options, out="b.npy", verb="render", status=0):
-    done = subprocess.run(
-        [oracle.TOOL, verb, "-q", "a.npy", "-y", "-o", out, "-s",
-         f"{SIDE}x{SIDE}", "--no-labels", "--opacity", "0:0,99:0,100:1",
-         "--spacing", "1x1.2x0.9", *options], capture_output=True, text=True)
+    done = oracle.tool(verb, "-q", "a.npy", "-y", "-o", out, "-s",
+                       f"{SIDE}x{SIDE}", "--no-labels", "--opacity",
+                       "0:0,99:0,100:1", "--spacing", "1x1.2x0.9", *options)
     if done.returncode != status:
         oracle.fail(" ".join(options), f"exit {done.returncode}: {done.stderr.strip()}")
         return np.zeros((SIDE, SIDE, 4))

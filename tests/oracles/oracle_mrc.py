@@ -1,18 +1,12 @@
 """MRC maps beside mrcfile, which is numpy's view of the same bytes."""
-import sys
-
-try:
-    import mrcfile
-    import numpy as np
-except ImportError as missing:
-    print("skip  ", missing)
-    sys.exit(77)
 import warnings
 
 import oracle
+from oracle import np
+
+mrcfile, = oracle.need("mrcfile")
 
 warnings.simplefilter("ignore")
-place = oracle.folder()
 
 
 def cell_axes(header):
@@ -49,14 +43,13 @@ for relative in ("formats/mrc/EMD-3001.map", "formats/mrc/EMD-3197.map",
 
 for kind in ("i1", "i2", "f4", "u2", "f2"):
     a = oracle.sample(kind)
-    wide = np.float32 if kind == "f2" else a.dtype
     with mrcfile.new("a.mrc", overwrite=True) as file:
         file.set_data(a)
         file.set_volume()
         file.voxel_size = (1.5, 2, 2.5)
         file.header.origin = (10, -20, 30)
         matrix = matrix_of(file.header)
-    oracle.expect("a.mrc", a.astype(wide), matrix, unit="angstrom", name=kind)
+    oracle.expect("a.mrc", oracle.wide(a), matrix, unit="angstrom", name=kind)
 
 # Other orders of axes, slanted cells, starts, an extended header, big endian.
 for order in [(2, 1, 3), (3, 2, 1), (2, 3, 1)]:
@@ -71,15 +64,15 @@ for order in [(2, 1, 3), (3, 2, 1), (2, 3, 1)]:
         file.set_extended_header(np.zeros(100, "V1"))
         matrix = matrix_of(file.header)
     oracle.expect("b.mrc", a, matrix, name=str(order))
-with open("b.mrc", "rb") as file:
-    whole = file.read()
-words = np.frombuffer(whole[:208], "<u4").astype(">u4").tobytes()
-stamp = bytes([0x11, 0x11, 0, 0])
-swapped = words + whole[208:212] + stamp + whole[216:1024] + \
-    whole[1024:1124] + np.frombuffer(whole[1124:], "<u4").astype(
-        ">u4").tobytes()
-with open("c.mrc", "wb") as file:
-    file.write(swapped)
+whole = oracle.got("b.mrc")
+
+
+def swapped(first, end=None):
+    return np.frombuffer(whole[first:end], "<u4").astype(">u4").tobytes()
+
+
+oracle.put("c.mrc", swapped(0, 208) + whole[208:212] + b"\x11\x11\0\0" +
+           whole[216:1124] + swapped(1124))
 oracle.expect("c.mrc", a, matrix, name="big endian")
 
 # A stack of volumes; a cell without sense; bytes by IMOD.
@@ -100,13 +93,9 @@ with mrcfile.new("f.mrc", overwrite=True) as file:
     file.set_data(a)
     file.set_volume()
     file.voxel_size = 1
-with open("f.mrc", "r+b") as file:
-    file.seek(152)
-    file.write(np.array([1146047817, 0], "<i4").tobytes())
+oracle.patch("f.mrc", 152, np.array([1146047817, 0], "<i4").tobytes())
 oracle.expect("f.mrc", a.view("u1"), name="IMOD, unsigned")
-with open("f.mrc", "r+b") as file:
-    file.seek(156)
-    file.write(np.array([1], "<i4").tobytes())
+oracle.patch("f.mrc", 156, b"\1\0\0\0")
 oracle.expect("f.mrc", a, name="IMOD, signed")
 with mrcfile.new("g.mrc", overwrite=True) as file:
     file.set_data(np.zeros((2, 2, 2), np.complex64))

@@ -2,31 +2,20 @@
 in every format that can say so, gives the same voxels in the same places of the
 world and the same picture; so it does in an oblique place.
 """
-import itertools
-import json
 import os
 import struct
-import subprocess
-import sys
-
-try:
-    import numpy as np
-except ImportError as missing:
-    print("skip  ", missing)
-    sys.exit(77)
 
 import oracle
+from oracle import np
 
-place = oracle.folder()
 # The footprint method, whose pictures do not depend on how the grid is numbered.
-LOOK = ["-q", "-s", "48x48", "--method", "footprint", "--azimuth", "25", "--elevation", "20", "--view",
-        "+y", "--range", "0,3000", "--preset", "linear", "--no-labels"]
+LOOK = ["-q", "-s", "48x48", "--method", "footprint", "--azimuth", "25",
+        "--elevation", "20", "--view", "+y", "--range", "0,3000", "--preset",
+        "linear", "--no-labels"]
 TOLERANCE = "1/255"
 # Under sanitizers one in five: all are read by the same code.
-TURNS = list(itertools.product(itertools.permutations(range(3)),
-                               itertools.product((1, -1), repeat=3)))
-SHORT = os.environ.get("SNOW_TIER", "short") == "short"
-TURNS = TURNS[::5 if SHORT or "SNOW_SANITIZED" in os.environ else 1]
+FEW = oracle.SHORT or "SNOW_SANITIZED" in os.environ
+TURNS = oracle.TURNS[::5 if FEW else 1]
 
 
 def base():
@@ -46,31 +35,9 @@ def straight():
 
 
 def oblique():
-    a, b, c = np.radians([20, -35, 50])
-    x = np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)],
-                  [0, np.sin(a), np.cos(a)]])
-    y = np.array([[np.cos(b), 0, np.sin(b)], [0, 1, 0],
-                  [-np.sin(b), 0, np.cos(b)]])
-    z = np.array([[np.cos(c), -np.sin(c), 0], [np.sin(c), np.cos(c), 0],
-                  [0, 0, 1]])
     matrix = straight()
-    matrix[:3, :3] = x @ y @ z @ matrix[:3, :3]
+    matrix[:3, :3] = oracle.rotation(20, -35, 50) @ matrix[:3, :3]
     return matrix
-
-
-def turned(voxels, matrix, order, signs):
-    """The same voxels with new axis j the old order[j], backwards where
-    signs[j] is -1; and the matrix that puts them where they were."""
-    out = np.eye(4)
-    new = voxels.transpose(order)
-    out[:3, 3] = matrix[:3, 3]
-    for j in range(3):
-        column = matrix[:3, order[j]]
-        if signs[j] < 0:
-            new = np.flip(new, j)
-            out[:3, 3] += column * (new.shape[j] - 1)
-        out[:3, j] = column * signs[j]
-    return new, out
 
 
 def lines(m, columns=4):
@@ -85,28 +52,15 @@ def nrrd(space, flip):
     def write(voxels, matrix):
         m = np.diag([*flip, 1]) @ matrix
         vectors = ["(" + ",".join(line.split()) + ")" for line in lines(m)]
-        header = (f"NRRD0004\ntype: uint16\ndimension: 3\nspace: {space}\n"
-                  f"sizes: {' '.join(map(str, voxels.shape))}\n"
-                  f"space directions: {' '.join(vectors[:3])}\n"
-                  f"space origin: {vectors[3]}\n"
-                  "endian: little\nencoding: raw\n\n")
-        return "a.nrrd", header.encode() + raw(voxels)
+        return "a.nrrd", oracle.nrrd(
+            "uint16", voxels.shape,
+            f"space: {space}\nspace directions: {' '.join(vectors[:3])}\n"
+            f"space origin: {vectors[3]}\n", raw(voxels))
     return write
 
 
 def nifti(voxels, matrix):
-    header = bytearray(352)
-    struct.pack_into("<i", header, 0, 348)
-    struct.pack_into("<8h", header, 40, 3, *voxels.shape, 1, 1, 1, 1)
-    struct.pack_into("<hh", header, 70, 512, 16)
-    spacing = np.linalg.norm(matrix[:3, :3], axis=0)
-    struct.pack_into("<8f", header, 76, 1, *spacing, 1, 1, 1, 1)
-    struct.pack_into("<fff", header, 108, 352, 1, 0)
-    header[123] = 2  # millimetres
-    struct.pack_into("<hh", header, 252, 0, 1)
-    struct.pack_into("<12f", header, 280, *matrix[:3].ravel())
-    header[344:348] = b"n+1\0"
-    return "a.nii", bytes(header) + raw(voxels)
+    return "a.nii", oracle.nifti(voxels, matrix)
 
 
 def quaternion(r):
@@ -180,22 +134,8 @@ FORMATS = [
 ]
 
 
-def tool(*arguments):
-    done = subprocess.run([oracle.TOOL, *arguments], capture_output=True,
-                          text=True)
-    return done.returncode, done.stdout, done.stderr.strip()
-
-
-def where(path):
-    """Value to place in the world, of all but 0, and the file's matrix."""
-    code, told, error = tool("info", "-q", "--json", path)
-    if code:
-        return error
-    matrix = np.array(json.loads(told)["matrix"])
-    code, _, error = tool("convert", "-q", "-y", path, "-o", "b.npy")
-    if code:
-        return error
-    voxels = np.load("b.npy").transpose()
+def where(voxels, matrix):
+    """Value to place in the world, of all voxels [x, y, z] but 0."""
     places = np.argwhere(voxels)
     values = voxels[tuple(places.T)]
     order = np.argsort(values)
@@ -203,39 +143,33 @@ def where(path):
 
 
 def check(name, path, values, places, drawn):
-    found = where(path)
-    if isinstance(found, str):
-        return oracle.fail(name, found)
+    voxels, matrix = oracle.voxels_of(path)
+    if voxels is None:
+        return
+    found = where(voxels.transpose(), matrix)
     if not np.array_equal(found[0], values):
         return oracle.fail(name, "other values")
     gap = np.abs(found[1] - places).max()
     if gap > 1e-4:
         return oracle.fail(name, f"voxels are {gap} mm from their places")
     if not drawn:
-        return None
-    code, _, error = tool("render", path, "-y", "-o", "b.png", *LOOK)
-    if code:
-        return oracle.fail(name, error)
-    code, told, error = tool("compare", "a.png", "b.png", "--tolerance",
-                             TOLERANCE)
-    return oracle.fail(name, told.replace("\n", "; ") + error) if code else None
+        return
+    oracle.tool("render", path, "-y", "-o", "b.png", *LOOK, check=True)
+    done = oracle.tool("compare", "a.png", "b.png", "--tolerance", TOLERANCE)
+    if done.returncode:
+        oracle.fail(name, done.stdout.replace("\n", "; ") + done.stderr)
 
 
 def sweep(kind, matrix):
     voxels = base()
-    places = np.argwhere(voxels)
-    values = voxels[tuple(places.T)]
-    places = places @ matrix[:3, :3].T + matrix[:3, 3]
+    values, places = where(voxels, matrix)
     name, data = FORMATS[0][1](voxels, matrix)
-    open(name, "wb").write(data)
-    tool("render", name, "-y", "-o", "a.png", *LOOK)
+    oracle.tool("render", oracle.put(name, data), "-y", "-o", "a.png", *LOOK)
     for format_name, write, drawn in FORMATS:
         for order, signs in TURNS:
-            name, data = write(*turned(voxels, matrix, order, signs))
-            open(name, "wb").write(data)
-            oracle.checked += 1
-            check(f"{format_name} {kind} {order} {signs}", name, values, places,
-                  drawn)
+            name, data = write(*oracle.turned(voxels, matrix, order, signs))
+            check(f"{format_name} {kind} {order} {signs}",
+                  oracle.put(name, data), values, places, drawn)
 
 
 sweep("straight", straight())

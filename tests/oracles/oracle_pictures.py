@@ -1,32 +1,22 @@
 """Pictures beside what Pillow, tifffile and ffmpeg read of them."""
-import sys
-
-try:
-    import numpy as np
-    import tifffile
-    from PIL import Image, features
-except ImportError as missing:
-    print("skip  ", missing)
-    sys.exit(77)
 import itertools
-import json
 import shutil
 import struct
 import subprocess
 import zlib
 
 import oracle
+from oracle import np
 
-place = oracle.folder()
-doctor = json.loads(subprocess.run([oracle.TOOL, "doctor", "--json"],
-                                   capture_output=True, check=True).stdout)
-outputs = doctor["picture_outputs"]
+tifffile, _ = oracle.need("tifffile", "PIL")
+from PIL import Image, features
+
+outputs = oracle.doctor("picture_outputs")
 
 
 def render(path, *options, verb="render"):
-    subprocess.run([oracle.TOOL, verb, "-q", "phantom:head", "--dims",
-                    "48x44x40", "-s", "150x131", "-o", path, *options],
-                   check=True)
+    oracle.tool(verb, "-q", "phantom:head", "--dims", "48x44x40", "-s",
+                "150x131", "-o", path, *options, check=True)
 
 
 def same(name, a, b):
@@ -38,7 +28,7 @@ def same(name, a, b):
 def read_exr(path):
     """Channels of float32 by name, from the format's description: one part of
     scan lines, ZIP blocks of 16 lines, predicted and interleaved bytes."""
-    data = open(path, "rb").read()
+    data = oracle.got(path)
     assert struct.unpack_from("<II", data) == (20000630, 2)
     at, header = 8, {}
     while data[at]:
@@ -155,8 +145,8 @@ for mode, (colors, low) in itertools.product(
             "--no-labels", "-s", "90x80", "-y")
     np.save("ball.npy", 255 - ball if mode == "minip" else ball)
     for name, back in (("clear.png", "none"), ("solid.png", "#%02x%02x%02x" % low)):
-        subprocess.run([oracle.TOOL, "render", "-q", "ball.npy", "-o", name,
-                        "--background", back, *look], check=True)
+        oracle.tool("render", "-q", "ball.npy", "-o", name, "--background",
+                    back, *look, check=True)
     clear = Image.open("clear.png").convert("RGBA")
     laid = Image.new("RGBA", clear.size, low)
     laid.alpha_composite(clear)

@@ -1,34 +1,24 @@
 """Pictures of image stacks beside NumPy's own maximum projection of them: with
 no view given, rows go down, columns to the right, and slice 0 is in front."""
-import sys
-
-try:
-    import numpy as np
-    import tifffile
-    from PIL import Image
-except ImportError as missing:
-    print("skip  ", missing)
-    sys.exit(77)
 import json
 import os
-import subprocess
 
 import oracle
+from oracle import np
 
+tifffile, _ = oracle.need("tifffile", "PIL")
+from PIL import Image
 oracle.need_modules()
 
-place = oracle.folder()
 # The box's diagonal is 50 voxels, so that a pixel of 50 x 50 is one voxel.
 SHAPE, SIDE = (18, 24, 40), 50
-RENDER = [oracle.TOOL, "render", "-q", "-s", f"{SIDE}x{SIDE}", "-y", "--fit",
-          "volume", "-c",
-          "grey", "--range", "0,255", "--no-labels", "-o", "a.npy"]
+RENDER = ("render", "-q", "-s", f"{SIDE}x{SIDE}", "-y", "--fit", "volume", "-c",
+          "grey", "--range", "0,255", "--no-labels", "-o", "a.npy")
 
 
 def picture(path, *options):
     """Grey of the pixels that the volume covers, 0 to 255."""
-    done = subprocess.run([*RENDER, path, *options], capture_output=True,
-                          text=True)
+    done = oracle.tool(*RENDER, path, *options)
     if done.returncode:
         oracle.fail(path, done.stderr.strip())
         return np.zeros(SHAPE[1:])
@@ -74,8 +64,7 @@ def zarr(path, voxels):
                       "filters": None, "fill_value": 0,
                       "dimension_separator": "/"}}
     for name, text in files.items():
-        with open(f"{path}/{name}", "w") as file:
-            json.dump(text, file)
+        oracle.put(f"{path}/{name}", json.dumps(text))
     voxels.tofile(f"{path}/0/0/0/0")
 
 
@@ -101,15 +90,10 @@ if oracle.library("libjpeg"):
     check("jpg", np.stack([np.asarray(Image.open(f"jpg/{z:03}.jpg"))
                            for z in range(len(voxels))]))
 # An image is the mask of a grid with a place and the other way round.
-with open("placed.nrrd", "wb") as file:
-    file.write(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 40 24 18\n"
-               b"space dimension: 3\nspace origin: (5,6,7)\n"
-               b"space directions: (1,0,0) (0,1,0) (0,0,1)\nencoding: raw\n\n"
-               + voxels.tobytes())
+oracle.put("placed.nrrd", oracle.nrrd(
+           "uint8", (40, 24, 18), "space dimension: 3\nspace origin: (5,6,7)\n"
+           "space directions: (1,0,0) (0,1,0) (0,0,1)\n", voxels.tobytes()))
 for pair in (("placed.nrrd", "pages.tif"), ("pages.tif", "placed.nrrd")):
     for box in ((), ("--crop", "1:9,2:9,3:9")):
-        oracle.checked += 1
-        done = oracle.run(pair[0], "--mask", pair[1], *box)
-        if done.returncode:
-            oracle.fail(" in ".join(pair), done.stderr.strip())
+        oracle.told(pair[0], "--mask", pair[1], *box)
 oracle.finish()

@@ -1,44 +1,20 @@
 """DICOM segmentations beside NumPy, made with pydicom: frames of bits, of
 fractions and of numbers become one volume of labels.
 """
-import sys
-
-try:
-    import numpy as np
-    import pydicom
-    from pydicom.dataset import Dataset, FileMetaDataset
-    from pydicom.encaps import encapsulate
-    from pydicom.pixel_data_handlers.rle_handler import rle_encode_frame
-    from pydicom.sequence import Sequence
-    from pydicom.uid import (DeflatedExplicitVRLittleEndian,
-                             ExplicitVRBigEndian, ExplicitVRLittleEndian,
-                             ImplicitVRLittleEndian, RLELossless, generate_uid)
-except ImportError as missing:
-    print("skip  ", missing)
-    sys.exit(77)
-import json
 import os
-import subprocess
 import time
 
 import oracle
+from oracle import np
+from dicom_sets import (CT, ExplicitVRBigEndian, ExplicitVRLittleEndian,
+                        ImplicitVRLittleEndian, RLELossless, blank, fill, grid,
+                        holds, packed, write)
+from pydicom.uid import DeflatedExplicitVRLittleEndian
 
-oracle.need_modules()
-place = oracle.folder()
 SEG, LABELMAP = (f"1.2.840.10008.5.1.4.1.1.66.{n}" for n in (4, 7))
 AXIAL = np.eye(3)
-RAS = np.diag([-1.0, -1, 1, 1])
 
 # --- files of our own ---------------------------------------------------------
-
-
-def holds(**tags):
-    """A data set of these values; lists of data sets are sequences."""
-    data = Dataset()
-    for name, value in tags.items():
-        setattr(data, name, Sequence(value) if name.endswith("Sequence")
-                else value)
-    return data
 
 
 def scaled_lab(red, green, blue):
@@ -83,73 +59,31 @@ def frame_groups(position, number):
 
 
 def segmentation(frames, kind="BINARY", turn=AXIAL, spacing=(0.5, 0.75, 2.5),
-                 segments=None, depth=True, syntax=ExplicitVRLittleEndian,
-                 **tags):
+                 segments=None, depth=True, **tags):
     """Frames are (position, number of the segment, pixels (y, x))."""
-    data = Dataset()
-    data.file_meta = FileMetaDataset()
-    data.file_meta.MediaStorageSOPClassUID = \
-        LABELMAP if kind == "LABELMAP" else SEG
-    data.SOPClassUID = data.file_meta.MediaStorageSOPClassUID
-    data.SOPInstanceUID = generate_uid()
-    data.file_meta.MediaStorageSOPInstanceUID = data.SOPInstanceUID
-    data.file_meta.TransferSyntaxUID = syntax
-    data.is_little_endian = syntax != ExplicitVRBigEndian
-    data.is_implicit_VR = syntax == ImplicitVRLittleEndian
-    data.SpecificCharacterSet = "ISO_IR 192"
-    data.SeriesInstanceUID = "1.2.9"
-    data.SeriesDescription = "Organs"
-    data.Modality = "SEG"
-    data.PatientName = "Hidden^Person"
-    data.SegmentationType = kind
     pixels = np.stack([f[2] for f in frames])
-    data.NumberOfFrames = len(pixels)
-    data.Rows, data.Columns = pixels.shape[1:]
-    data.SamplesPerPixel = 1
-    data.PhotometricInterpretation = "MONOCHROME2"
-    data.PixelRepresentation = 0
-    bits = kind == "BINARY"
-    data.BitsAllocated = data.BitsStored = \
-        1 if bits else 8 * pixels.dtype.itemsize
-    data.HighBit = data.BitsStored - 1
+    bits = 1 if kind == "BINARY" else 8 * pixels.dtype.itemsize
+    measures = {"PixelSpacing": [spacing[1], spacing[0]], "SliceThickness": 7}
+    if depth:
+        measures["SpacingBetweenSlices"] = spacing[2]
+    data = blank(**{
+        "SOPClassUID": LABELMAP if kind == "LABELMAP" else SEG,
+        "SpecificCharacterSet": "ISO_IR 192", "SeriesInstanceUID": "1.2.9",
+        "SeriesDescription": "Organs", "Modality": "SEG",
+        "SegmentationType": kind, "NumberOfFrames": len(pixels),
+        "Rows": pixels.shape[1], "Columns": pixels.shape[2],
+        "PixelRepresentation": 0, "BitsAllocated": bits, "BitsStored": bits,
+        "HighBit": bits - 1,
+        "SegmentSequence": described(segments or SEGMENTS),
+        "SharedFunctionalGroupsSequence": [holds(
+            PixelMeasuresSequence=[holds(**measures)],
+            PlaneOrientationSequence=[holds(ImageOrientationPatient=[
+                float(f"{v:.9g}") for v in (*turn[0], *turn[1])])])],
+        "PerFrameFunctionalGroupsSequence": [
+            frame_groups(f[0], f[1]) for f in frames], **tags})
     if kind == "FRACTIONAL":
         data.MaximumFractionalValue = 200
-    data.SegmentSequence = Sequence(described(segments or SEGMENTS))
-    measures = holds(PixelSpacing=[spacing[1], spacing[0]], SliceThickness=7)
-    if depth:
-        measures.SpacingBetweenSlices = spacing[2]
-    data.SharedFunctionalGroupsSequence = Sequence([holds(
-        PixelMeasuresSequence=[measures],
-        PlaneOrientationSequence=[holds(ImageOrientationPatient=[
-            float(f"{v:.9g}") for v in (*turn[0], *turn[1])])])])
-    data.PerFrameFunctionalGroupsSequence = Sequence(
-        [frame_groups(f[0], f[1]) for f in frames])
-    for name, value in tags.items():
-        setattr(data, name, value)
-    if syntax == RLELossless:
-        data.PixelData = encapsulate([rle_encode_frame(p) for p in pixels])
-        data["PixelData"].is_undefined_length = True
-    else:
-        order = "<" if data.is_little_endian else ">"
-        data.PixelData = np.packbits(pixels.astype(bool).ravel(),
-                                     bitorder="little").tobytes() if bits \
-            else pixels.astype(pixels.dtype.newbyteorder(order)).tobytes()
-        data.PixelData += b"\0" * (len(data.PixelData) % 2)
-    data["PixelData"].VR = "OW" if data.BitsAllocated == 16 else "OB"
-    return data
-
-
-def write(path, data):
-    data.save_as(path, write_like_original=False)
-
-
-def grid(turn, spacing, origin):
-    """The matrix from voxels to RAS."""
-    lps = np.eye(4)
-    lps[:3, :3] = np.stack([turn[0] * spacing[0], turn[1] * spacing[1],
-                            np.cross(turn[0], turn[1]) * spacing[2]], 1)
-    lps[:3, 3] = origin
-    return RAS @ lps
+    return fill(data, pixels)
 
 
 def masks(shape, numbers, seed=1):
@@ -164,15 +98,6 @@ def cut(labels, turn, spacing, origin, numbers=None):
     return [(np.array(origin) + z * spacing[2] * normal, n, labels[z] == n)
             for n in numbers or np.unique(labels[labels > 0])
             for z in range(len(labels)) if (labels[z] == n).any()]
-
-
-def says(name, path, part, *options):
-    """The remarks contain a part, or are none."""
-    oracle.checked += 1
-    done = oracle.run(path, *options)
-    if done.returncode or (part not in done.stderr if part else done.stderr):
-        oracle.fail(name, f"exit {done.returncode}, {done.stderr!r}, not "
-                    f"{part!r}")
 
 
 # --- one volume of labels -----------------------------------------------------
@@ -193,7 +118,7 @@ swapped["PixelData"].VR = "OW"
 write("swapped.dcm", swapped)
 oracle.expect("swapped.dcm", labels, wanted, name="bits in big endian words")
 write("plain.dcm", segmentation(frames))
-says("nothing to remark", "plain.dcm", None)
+oracle.says("nothing to remark", "plain.dcm", None)
 shuffled = [frames[i] for i in np.random.default_rng(4).permutation(len(frames))]
 write("mixed.dcm", segmentation(shuffled))
 oracle.expect("mixed.dcm", labels, wanted, name="frames in any order")
@@ -214,7 +139,7 @@ oracle.expect("lone.dcm", labels[:1] * (labels[:1] == 1), wanted,
               name="one frame")
 with open("lone.dcm", "rb") as file, open("cut.dcm", "wb") as to:
     to.write(file.read()[:600])
-says("one frame beside a file that is cut", "lone.dcm", None)
+oracle.says("one frame beside a file that is cut", "lone.dcm", None)
 os.remove("cut.dcm")
 wide = masks((9, 150, 200), numbers).astype("u1")
 write("wide.dcm", segmentation(cut(wide, AXIAL, spacing, origin),
@@ -233,7 +158,7 @@ for depth in (True, False):
     write("empty.dcm", segmentation(frames, depth=depth))
     oracle.expect("empty.dcm", tall[3:35], grid(
         AXIAL, spacing, (3, -4, 7 + 3 * 2.5)), name=f"empty slices {depth}")
-says("empty slices", "empty.dcm", None)
+oracle.says("empty slices", "empty.dcm", None)
 write("even.dcm", segmentation(cut(tall[[3, 33]].repeat([1, 1], 0), AXIAL,
                                    (0.5, 0.75, 25), origin)))
 far = np.zeros((11, 5, 9), "u1")
@@ -248,7 +173,34 @@ nearest = [int(np.argmin(np.abs(np.array(heights) - i * 7.5 / steps)))
            for i in range(steps + 1)]
 oracle.expect("uneven.dcm", labels[nearest],
               grid(AXIAL, (0.5, 0.75, 7.5 / steps), origin), name="uneven")
-says("uneven", "uneven.dcm", "its 6 slices lie 1.1 to 2 mm apart; of 8")
+oracle.says("uneven", "uneven.dcm", "its 6 slices lie 1.1 to 2 mm apart; of 8")
+# Heights of two segments, mm between slices as they are told, the slices that
+# are made of which places, "-" of none, and how far apart they are.
+for heights, depth, slices, gap in (
+        ((0, 1, 2, 1, 2, 3), 0, "0123", 1),
+        ((0, 2, 4, 2, 4, 6), 2, "0123", 2),
+        ((0, 2, 4, 2, 4, 6), 1, "0-1-2-3", 1),  # the file says so
+        ((0, 2, 4, 2, 4, 6), 1.7, "0123", 2),  # that cannot be
+        ((0, 1, 2, 5, 6, 9), 0, "012--34--5", 1),
+        ((0, 3, 5, 0, 3, 5), 1, "0--1-2", 1),
+        ((0, 0, 0, 7, 7, 7), 1, "0------1", 1),
+        ((0, 0, 0, 7, 7, 7), 0, "01", 7),
+        ((0, 1, 2.5, 3.5, 4.5, 5.5), 0, "0122345", 5.5 / 6),  # the nearest
+        ((0, 1, 2.5, 3.5, 10.5, 11.5), 0, "01223-----445", 11.5 / 12)):
+    made = [((3, -4, h), 1 + i // 3, labels[i % 3] > 0)
+            for i, h in enumerate(heights)]
+    # Several frames of a segment at one place are not allowed.
+    made = [f for i, f in enumerate(made)
+            if not any(f[:2] == g[:2] for g in made[:i])]
+    write("slices.dcm", segmentation(made, spacing=(0.5, 0.75, depth),
+                                     depth=depth > 0))
+    places = [np.max([n * m for (_, _, z), n, m in made if z == at], 0)
+              for at in sorted(set(heights))]
+    stack = np.stack([np.zeros((5, 9)) if c == "-" else places[int(c)]
+                              for c in slices]).astype("u1")
+    oracle.expect("slices.dcm", stack,
+                  grid(AXIAL, (0.5, 0.75, gap), (3, -4, heights[0])),
+                  name=f"slices {heights} {depth}")
 
 # --- other types --------------------------------------------------------------
 
@@ -258,7 +210,7 @@ write("overlap.dcm", segmentation(overlaid))
 most = np.max([np.stack([n * m for _, n, m in overlaid[i:i + 3]])
                for i in (0, 3, 6)], 0).astype("u1")
 oracle.expect("overlap.dcm", most, wanted, name="overlap")
-says("overlap", "overlap.dcm", "some of its segments overlap")
+oracle.says("overlap", "overlap.dcm", "some of its segments overlap")
 whole = cut(labels, AXIAL, spacing, origin)
 eights = segmentation(whole, BitsAllocated=8, BitsStored=8, HighBit=7)
 eights.PixelData = np.stack([255 * f[2].astype("u1")
@@ -274,7 +226,7 @@ for syntax in (ExplicitVRLittleEndian, RLELossless):
         "FRACTIONAL", syntax=syntax))
     oracle.expect("shares.dcm", (2 * (shares >= 100)).astype("u1"), wanted,
                   name=f"fractions {syntax}")
-says("fractions", "shares.dcm", "at least one half")
+oracle.says("fractions", "shares.dcm", "at least one half")
 for map_type in ("u1", "u2"):
     for syntax in (ExplicitVRLittleEndian, RLELossless, ExplicitVRBigEndian):
         numbered = labels.astype(map_type) * (1 if map_type == "u1" else 200)
@@ -286,8 +238,7 @@ for map_type in ("u1", "u2"):
 
 # --- names, colours, masks ----------------------------------------------------
 
-oracle.checked += 1
-told = json.loads(oracle.run("plain.dcm").stdout)
+told = oracle.told("plain.dcm")
 found = {label["value"]: (label["name"], label["color"], label["opacity"])
          for label in told["labels"]}
 for number, (name, color) in SEGMENTS.items():
@@ -300,22 +251,15 @@ if told["modality"] != "SEG" or found[0][2] != 0:
 long = "ab" + "肝" * 30
 write("long.dcm", segmentation(cut(labels, AXIAL, spacing, origin),
                                segments={1: (long, (1, 1, 1))}))
-oracle.checked += 1
-names = [label["name"] for label in json.loads(
-    oracle.run("long.dcm").stdout)["labels"]]
+names = [label["name"] for label in oracle.told("long.dcm")["labels"]]
 if names[1] != long[:len(names[1])] or len(names[1]) < 15:
     oracle.fail("a long name", names)
 grey = oracle.sample("u2", labels.shape)
-flat = grey.astype("<u2")
-with open("grey.nrrd", "wb") as file:
-    lps = np.diag([-1.0, -1, 1]) @ wanted[:3]
-    directions = " ".join("(%r,%r,%r)" % tuple(map(float, lps[:, i]))
-                          for i in range(3))
-    file.write(("NRRD0004\ntype: uint16\ndimension: 3\nsizes: 9 5 7\n"
-                "space: left-posterior-superior\nspace directions: "
-                f"{directions}\nspace origin: (%r,%r,%r)\nencoding: raw\n"
-                "endian: little\n\n" % tuple(map(float, lps[:, 3]))).encode())
-    file.write(flat.tobytes())
+vectors = ["(%r,%r,%r)" % tuple(map(float, wanted[:3, i])) for i in range(4)]
+oracle.put("grey.nrrd", oracle.nrrd(
+           "uint16", (9, 5, 7), "space: RAS\nspace directions: "
+           f"{' '.join(vectors[:3])}\nspace origin: {vectors[3]}\n",
+           grey.astype("<u2").tobytes()))
 oracle.expect("grey.nrrd", np.where(labels == 2, grey.astype("f4"),
                                     np.nan).astype("f4"), wanted,
               ["--mask", "mixed.dcm", "--labels", 2], name="a mask")
@@ -328,8 +272,7 @@ for z in range(4):
     for name in ("SegmentSequence", "SegmentationType", "NumberOfFrames",
                  "PerFrameFunctionalGroupsSequence"):
         delattr(ct, name)
-    ct.SOPClassUID = ct.file_meta.MediaStorageSOPClassUID = \
-        "1.2.840.10008.5.1.4.1.1.2"
+    ct.SOPClassUID = ct.file_meta.MediaStorageSOPClassUID = CT
     ct.Modality, ct.SeriesInstanceUID = "CT", "1.2.8"
     ct.ImagePositionPatient = [3, -4, 7 + 2.5 * z]
     ct.ImageOrientationPatient = [1, 0, 0, 0, 1, 0]
@@ -339,8 +282,9 @@ for i in range(2):
     write(f"both/seg{i}.dcm", segmentation(cut(
         np.roll(labels, i), AXIAL, spacing, origin)))
 oracle.expect("both", grey[:4], wanted, name="a CT with its segmentations")
-says("a CT with its segmentations", "both", "0: CT 9x5, 4 images (taken); 1: "
-     "SEG 9x5, 21 images; 2: SEG 9x5, 21 images")
+oracle.says("a CT with its segmentations", "both",
+            "0: CT 9x5, 4 images (taken); 1: "
+            "SEG 9x5, 21 images; 2: SEG 9x5, 21 images")
 oracle.expect("both/seg0.dcm", labels, wanted, name="a segmentation beside")
 
 # --- what is refused ----------------------------------------------------------
@@ -360,9 +304,12 @@ def without(*names):
     return change
 
 
-def at(data, index, name, value):
-    setattr(data.PerFrameFunctionalGroupsSequence[index], name,
-            Sequence(value))
+def moved(index, *position):
+    """The frame lies elsewhere."""
+    def change(data):
+        data.PerFrameFunctionalGroupsSequence[index].PlanePositionSequence[
+            0].ImagePositionPatient = list(position)
+    return change
 
 
 spoilt("claims 21 frames of 9x500 pixels, which its",
@@ -385,28 +332,16 @@ spoilt("frame 4 of its segmentation names no segment", lambda d: delattr(
 spoilt("only 20 of 21 frames have positions on one grid", lambda d: delattr(
     d.PerFrameFunctionalGroupsSequence[4], "PlanePositionSequence"))
 spoilt("frames 0 and 1 of its segmentation have the same place and segment",
-       lambda d: at(d, 1, "PlanePositionSequence",
-                    [holds(ImagePositionPatient=[3, -4, 7])]))
-spoilt("beside one another in a plane",
-       lambda d: at(d, 1, "PlanePositionSequence",
-                    [holds(ImagePositionPatient=[30, -4, 7])]))
+       moved(1, 3, -4, 7))
+spoilt("beside one another in a plane", moved(1, 30, -4, 7))
 spoilt("an unknown type", lambda d: setattr(d, "SegmentationType", "OTHER"))
 spoilt("an unknown type", without("SegmentationType"))
 spoilt("1 values of 1 bits per pixel",
        lambda d: setattr(d, "SegmentationType", "LABELMAP"))
 spoilt("has no integer pixels", without("PixelData"))
-
-
-def packed(data):
-    data.file_meta.TransferSyntaxUID = RLELossless
-    data.PixelData = encapsulate([bytes(64)] * 21)
-    data["PixelData"].is_undefined_length = True
-
-
-spoilt("its single bits are compressed", packed)
+spoilt("its single bits are compressed", lambda d: packed(d, [bytes(64)] * 21))
 spoilt("too unevenly", lambda d: [
-    at(d, i, "PlanePositionSequence", [holds(ImagePositionPatient=[
-        3, -4, [0, 0.3, 5000][i % 3]])]) for i in range(21)], depth=False)
+    moved(i, 3, -4, [0, 0.3, 5000][i % 3])(d) for i in range(21)], depth=False)
 
 # --- a large one --------------------------------------------------------------
 
@@ -420,8 +355,7 @@ if not oracle.SHORT:
     write("big.dcm", segmentation(cut(big, AXIAL, (1, 1, 1), (0, 0, 0)),
                                   spacing=(1, 1, 1)))
     begun = time.monotonic()
-    done = subprocess.run([oracle.TOOL, "convert", "-q", "-y", "big.dcm",
-                           "-o", "big.npy"])
+    done = oracle.tool("convert", "-q", "-y", "big.dcm", "-o", "big.npy")
     oracle.checked += 1
     took = time.monotonic() - begun
     if done.returncode or not np.array_equal(np.load("big.npy"), big):

@@ -1,22 +1,12 @@
 """Files that name others, as simulations write them: series of VTK, VisIt, XDMF
 and openPMD, and parts of one grid, each beside an analytic field."""
-import sys
-
-try:
-    import h5py
-    import numpy as np
-    import vtk
-    from vtk.util.numpy_support import numpy_to_vtk
-except ImportError as missing:
-    print("skip  ", missing)
-    sys.exit(77)
-
-import json
-
 import oracle
+from oracle import np, put
 
+h5py, vtk = oracle.need("h5py", "vtk")
+from vtk.util.numpy_support import numpy_to_vtk
 oracle.need_modules()
-place = oracle.folder()
+
 N, STEP, ORIGIN = (12, 10, 8), (0.5, 1, 2), (-3, 1, 5)
 WHOLE = (0, 11, 0, 9, 0, 7)
 BOX = ["--crop", "1:9,2:6,3:7"]
@@ -50,18 +40,6 @@ def check(path, options=(), time=0, wanted=(8, 10, 12), name=None):
             oracle.fail(name or path, f"differs from the field by {wrong}")
 
 
-def says(path, options, **wanted):
-    """The report has these values."""
-    oracle.checked += 1
-    done = oracle.run(path, *options)
-    if done.returncode:
-        return oracle.fail(path, done.stderr.strip())
-    found = json.loads(done.stdout)
-    for key, value in wanted.items():
-        if found.get(key) != value:
-            oracle.fail(path, f"{key} {found.get(key)!r}, not {value!r}")
-
-
 def image(extent, time=0):
     grid = vtk.vtkImageData()
     grid.SetOrigin(*ORIGIN)
@@ -86,11 +64,6 @@ def write_image(path, grid):
     assert writer.Write()
 
 
-def text(path, content):
-    with open(path, "w") as file:
-        file.write(content)
-
-
 def words(numbers):
     return " ".join(map(str, numbers))
 
@@ -98,21 +71,22 @@ def words(numbers):
 # --- VTK ---------------------------------------------------------------------
 for t in range(4):
     write_image(f"p_{t}.vti", image(WHOLE, t))
-says("p_1.vti", (), time_value=1.25, quantity="rho")
-text("s.pvd", '<?xml version="1.0"?><VTKFile type="Collection"><Collection>' +
-     "".join(f'<DataSet timestep="{t / 4}" part="0" file="p_{t}.vti"/>'
-             for t in range(4)) + "</Collection></VTKFile>")
+oracle.tells("p_1.vti", (), time_value=1.25, quantity="rho")
+put("s.pvd", '<?xml version="1.0"?><VTKFile type="Collection"><Collection>' +
+    "".join(f'<DataSet timestep="{t / 4}" part="0" file="p_{t}.vti"/>'
+            for t in range(4)) + "</Collection></VTKFile>")
 check("s.pvd")
 check("s.pvd", ["--time", 2], 2)
 check("s.pvd", ["--time", -1], 3)
 check("s.pvd", ["--time", "last"], 3)
 check("s.pvd", ["--time", "0.5"], 2)
-says("s.pvd", ["--time", 3], times=4, time=3, time_value=0.75, format="pvd")
+oracle.tells("s.pvd", ["--time", 3], times=4, time=3, time_value=0.75,
+             format="pvd")
 oracle.refuse("s.pvd", "there is no time step 4", ["--time", 4], 2)
 LEFT, RIGHT = (0, 6, 0, 9, 0, 7), (6, 11, 0, 9, 0, 7)
 write_image("q_0.vti", image(LEFT))
 write_image("q_1.vti", image(RIGHT))
-text("q.pvti", f'''<?xml version="1.0"?><VTKFile type="PImageData">
+put("q.pvti", f'''<?xml version="1.0"?><VTKFile type="PImageData">
 <PImageData WholeExtent="{words(WHOLE)}" Origin="{words(ORIGIN)}"
 Spacing="{words(STEP)}"><PPointData Scalars="rho"/>
 <Piece Extent="{words(LEFT)}" Source="q_0.vti"/>
@@ -136,31 +110,31 @@ blocks("g.vtm", (0, 3, 0, 9, 0, 7), (6, 11, 0, 9, 0, 7))
 voxels, matrix = oracle.voxels_of("g.vtm")
 if np.isnan(voxels).sum() != 2 * 10 * 8 or not np.isnan(voxels[0, 0, 4:6]).all():
     oracle.fail("g.vtm", "the gap is not missing")
-text("u.pvd", '<VTKFile type="Collection"><Collection>'
-     '<DataSet timestep="0" file="q.pvti"/><DataSet timestep="1" file="m.vtm"/>'
-     '</Collection></VTKFile>')
+put("u.pvd", '<VTKFile type="Collection"><Collection>'
+    '<DataSet timestep="0" file="q.pvti"/><DataSet timestep="1" file="m.vtm"/>'
+    '</Collection></VTKFile>')
 check("u.pvd", ["--time", 0])
 check("u.pvd", ["--time", 1])
-text("loop.pvd", '<VTKFile type="Collection"><Collection>'
-     '<DataSet timestep="0" file="loop.pvd"/></Collection></VTKFile>')
+put("loop.pvd", '<VTKFile type="Collection"><Collection>'
+    '<DataSet timestep="0" file="loop.pvd"/></Collection></VTKFile>')
 oracle.refuse("loop.pvd", "names a file that names others")
-text("none.pvd", '<VTKFile type="Collection"/>')
+put("none.pvd", '<VTKFile type="Collection"/>')
 oracle.refuse("none.pvd", "names no files")
 for kind, part in (("PRectilinearGrid", "pieces of a rectilinear grid"),
                    ("vtkOverlappingAMR", "names no files"),
                    ("vtkNonOverlappingAMR", "blocks do not overlap"),
                    ("UnstructuredGrid", "an unstructured grid"),
                    ("PolyData", "surfaces")):
-    text("a.vth", f'<VTKFile type="{kind}"/>')
+    put("a.vth", f'<VTKFile type="{kind}"/>')
     oracle.refuse("a.vth", part)
 
 # --- VisIt -------------------------------------------------------------------
-text("l.visit", "!NBLOCKS 2\n!TIME 0.5\n# a remark\nq_0.vti\nq_1.vti\n")
+put("l.visit", "!NBLOCKS 2\n!TIME 0.5\n# a remark\nq_0.vti\nq_1.vti\n")
 check("l.visit")
-says("l.visit", (), time_value=0.5, times=1)
-text("s.visit", "p_0.vti\np_1.vti\n")
+oracle.tells("l.visit", (), time_value=0.5, times=1)
+put("s.visit", "p_0.vti\np_1.vti\n")
 check("s.visit", ["--time", 1], 1)
-text("b.visit", "!NBLOCKS 2\np_0.vti\n")
+put("b.visit", "!NBLOCKS 2\np_0.vti\n")
 oracle.refuse("b.visit", "no multiple of its 2 blocks")
 HEAD = ("DATA_SIZE: 12 10 8\nDATA_FORMAT: FLOAT\nVARIABLE: rho\n"
         "BRICK_ORIGIN: -3 1 5\nBRICK_SIZE: 6 10 16\n")
@@ -171,25 +145,24 @@ for centre in ("zonal", "nodal"):
                              np.arange(N[i]) * n / (N[i] - 1))
                 for i, n in enumerate((6, 10, 16))]
         brick = values(0, axes)
-        with open("b.raw", "wb") as file:
-            file.write(b"head" + brick.astype(kind).tobytes())
-        text("b.bov", f"TIME: 1.5\nDATA_FILE: b.raw\n{HEAD}DATA_ENDIAN: {order}"
-             f"\nCENTERING: {centre}\nBYTE_OFFSET: 4\n")
+        put("b.raw", b"head" + brick.astype(kind).tobytes())
+        put("b.bov", f"TIME: 1.5\nDATA_FILE: b.raw\n{HEAD}DATA_ENDIAN: {order}"
+            f"\nCENTERING: {centre}\nBYTE_OFFSET: 4\n")
         check("b.bov", name=f"bov {centre} {order}")
-says("b.bov", (), time_value=1.5, quantity="rho")
+oracle.tells("b.bov", (), time_value=1.5, quantity="rho")
 number = 0
 for z in (0, 4):
     for y in (0, 5):
         for x in (0, 4, 8):
             brick[z:z + 4, y:y + 5, x:x + 4].tofile(f"b_{number:03d}.raw")
             number += 1
-text("c.bov", f"DATA_FILE: b_%03d.raw\nDATA_BRICKLETS: 4 5 4\n{HEAD}"
-     "DATA_ENDIAN: LITTLE\nCENTERING: nodal\n")
+put("c.bov", f"DATA_FILE: b_%03d.raw\nDATA_BRICKLETS: 4 5 4\n{HEAD}"
+    "DATA_ENDIAN: LITTLE\nCENTERING: nodal\n")
 check("c.bov")
-text("c.bov", "# a remark\nDATA_FILE: b_%03d.raw # of each\n"
-     f"DATA_BRICKLETS: 4 5 4\n{HEAD.replace('FLOAT', 'FLOATS')}CENTERING: nodal\n")
+put("c.bov", "# a remark\nDATA_FILE: b_%03d.raw # of each\n"
+    f"DATA_BRICKLETS: 4 5 4\n{HEAD.replace('FLOAT', 'FLOATS')}CENTERING: nodal\n")
 check("c.bov")
-text("c.bov", "DATA_FILE: b.raw\n")
+put("c.bov", "DATA_FILE: b.raw\n")
 oracle.refuse("c.bov", "lacks DATA_FILE or DATA_SIZE")
 
 # --- XDMF --------------------------------------------------------------------
@@ -217,36 +190,30 @@ def item(name, what, centre="Node", more='Format="HDF"'):
             f"{what}</DataItem></Attribute>")
 
 
-text("x.xmf", START + '<Grid GridType="Collection" CollectionType="Temporal">' +
-     "".join(grid(f'<Time Value="{t / 4}"/>' +
-                  item("rho", f"x.h5:/step{t}/rho") +
-                  item("cell", f" x.h5:/step{t}/cell\n", "Cell"))
-             for t in range(3)) + "</Grid>" + END)
+put("x.xmf", START + '<Grid GridType="Collection" CollectionType="Temporal">' +
+    "".join(grid(f'<Time Value="{t / 4}"/>' +
+                 item("rho", f"x.h5:/step{t}/rho") +
+                 item("cell", f" x.h5:/step{t}/cell\n", "Cell"))
+            for t in range(3)) + "</Grid>" + END)
 check("x.xmf")
 check("x.xmf", ["--time", 2], 2)
 check("x.xmf", ["--time", "last"], 2)
-says("x.xmf", ["--time", 1], times=3, time_value=0.25, quantity="rho")
-says("x.xmf", ["--time", 1, "--dataset", "cell"], dims=[11, 9, 7], max=1)
+oracle.tells("x.xmf", ["--time", 1], times=3, time_value=0.25, quantity="rho")
+oracle.tells("x.xmf", ["--time", 1, "--dataset", "cell"], dims=[11, 9, 7],
+             max=1)
 oracle.refuse("x.xmf", "the file has rho, cell", ["--dataset", "no"], 2)
-text("v.xmf", START + grid(item("v", "x.h5:/v")) + END)
+put("v.xmf", START + grid(item("v", "x.h5:/v")) + END)
 check("v.xmf", ["--component", "x"])
-for kind, numbers in (("List", "0.25 0.5 0.75"), ("HyperSlab", "0.25 0.25 3"),
-                      ("List", "0.25")):
-    text("t.xmf", START + '<Grid GridType="Collection" '
-         f'CollectionType="Temporal"><Time TimeType="{kind}"><DataItem '
-         f'Format="XML" Dimensions="3">{numbers}</DataItem></Time>' +
-         "".join(grid(item("rho", f"x.h5:/step{t}/rho"))
-                 for t in range(3)) + "</Grid>" + END)
-    check("t.xmf", ["--time", 2], 2)
-    says("t.xmf", ["--time", 2],
-         time_value=0.75 if len(numbers) > 5 else None)
-# Times in HDF5; times that are none; a grid's own time beside a list.
+# Times as text and in HDF5; those that are none; a grid's own beside a list.
 with h5py.File("times.h5", "w") as file:
     file["list"] = (0.25, 0.5, 0.75)
     file["even"] = (0.25, 0.25, 3)
     file["two"] = (0.25, 0.5)
 NOTE = "its list of times has none"
 for kind, form, numbers, own, times in (
+        ("List", "XML", "0.25 0.5 0.75", {}, (0.25, 0.5, 0.75)),
+        ("HyperSlab", "XML", "0.25 0.25 3", {}, (0.25, 0.5, 0.75)),
+        ("List", "XML", "0.25", {}, (0.25, None, None)),
         ("List", "HDF", "times.h5:/list", {}, (0.25, 0.5, 0.75)),
         ("HyperSlab", "HDF", "times.h5:/even", {}, (0.25, 0.5, 0.75)),
         ("List", "HDF", "times.h5:/two", {}, (None,) * 3),
@@ -255,31 +222,32 @@ for kind, form, numbers, own, times in (
         ("List", "XML", "nan inf 5", {}, (None, None, 5)),
         ("HyperSlab", "XML", "1 0.5 9", {1: 7}, (1, 7, 2)),
         ("List", "XML", "1 3 9", {1: 7, 2: "inf"}, (1, 7, None))):
-    text("t.xmf", START + '<Grid GridType="Collection" '
-         f'CollectionType="Temporal"><Time TimeType="{kind}"><DataItem '
-         f'Format="{form}" Dimensions="3">{numbers}</DataItem></Time>' +
-         "".join(grid((f'<Time Value="{own[t]}"/>' if t in own else "") +
-                      item("rho", f"x.h5:/step{t}/rho"))
-                 for t in range(3)) + "</Grid>" + END)
+    put("t.xmf", START + '<Grid GridType="Collection" '
+        f'CollectionType="Temporal"><Time TimeType="{kind}"><DataItem '
+        f'Format="{form}" Dimensions="3">{numbers}</DataItem></Time>' +
+        "".join(grid((f'<Time Value="{own[t]}"/>' if t in own else "") +
+                     item("rho", f"x.h5:/step{t}/rho"))
+                for t in range(3)) + "</Grid>" + END)
+    check("t.xmf", ["--time", 2], 2)
     for t in range(3):
-        says("t.xmf", ["--time", t], time_value=times[t])
+        oracle.tells("t.xmf", ["--time", t], time_value=times[t])
         if ((NOTE in oracle.run("t.xmf", "--time", t).stderr) !=
                 (times[t] is None and t not in own)):
             oracle.fail("t.xmf", f"the note on the time of step {t}")
 values().tofile("x.bin")
-text("r.xmf", START + grid(item("r", "x.bin", more='Format="Binary" '
-                                'NumberType="Float" Precision="4" '
-                                'Endian="Little"')) + END)
+put("r.xmf", START + grid(item("r", "x.bin", more='Format="Binary" '
+                         'NumberType="Float" Precision="4" '
+                         'Endian="Little"')) + END)
 check("r.xmf")
-text("n.xmf", START + grid(item("n", "x.h5:/uneven"), '''<Topology
+put("n.xmf", START + grid(item("n", "x.h5:/uneven"), '''<Topology
 TopologyType="3DRectMesh" Dimensions="8 10 12"/><Geometry GeometryType="VXVYVZ">
 <DataItem Format="XML">%s</DataItem><DataItem Format="XML">%s</DataItem>
 <DataItem Format="HDF">x.h5:/z</DataItem></Geometry>''' %
                            (words(at(0)), words(at(1)))) + END)
 check("n.xmf", wanted=(34, 10, 12))
-text("w.xmf", START + grid(item("w", "x.h5:/z")) + END)
+put("w.xmf", START + grid(item("w", "x.h5:/z")) + END)
 oracle.refuse("w.xmf", "not the size of its grid")
-text("e.xmf", '<!DOCTYPE Xdmf [<!ENTITY a "x">]><Xdmf/>')
+put("e.xmf", '<!DOCTYPE Xdmf [<!ENTITY a "x">]><Xdmf/>')
 oracle.refuse("e.xmf", "declares entities")
 
 # --- HDF5: names with numbers, openPMD ---------------------------------------
@@ -299,10 +267,10 @@ NAME = "o.h5:/data/%T/fields/E/x"
 check(NAME)
 check(NAME, ["--time", -1], 10)
 check("o.h5", ["--dataset", "/data/%T/fields/E/x", "--time", 2], 2)
-says(NAME, ["--time", 2], times=4, time=2, time_unit="s", quantity="x",
-     value_unit="m kg s^-3 A^-1")
-says("o.h5:/step_%04d/rho", ["--time", 3], times=4, time_value=1000,
-     time_unit="step")
+oracle.tells(NAME, ["--time", 2], times=4, time=2, time_unit="s", quantity="x",
+             value_unit="m kg s^-3 A^-1")
+oracle.tells("o.h5:/step_%04d/rho", ["--time", 3], times=4, time_value=1000,
+             time_unit="step")
 oracle.refuse("o.h5", "no data set has such a name",
               ["--dataset", "/data/%06T/x"], 2)
 for version in ("earliest", "latest"):
@@ -312,6 +280,6 @@ for version in ("earliest", "latest"):
             v.attrs[f"x{i}"] = "v" * i * 20
         v.attrs["units"], v.attrs["long_name"] = "kg/m\u00b3", "density"
         v.parent.attrs["time"] = 0.125
-    says("a.h5", (), value_unit="kg/m\u00b3", long_name="density",
-         time_value=0.125)
+    oracle.tells("a.h5", (), value_unit="kg/m\u00b3", long_name="density",
+                 time_value=0.125)
 oracle.finish()

@@ -2,25 +2,14 @@
 place and the number of a slice, spacing, sizes, kernels, values that are
 missing, looks, labels and oblique grids.
 """
-import itertools
 import json
 import os
 import struct
-import subprocess
-import sys
-
-try:
-    import numpy as np
-except ImportError as missing:
-    print("skip  ", missing)
-    sys.exit(77)
 
 import oracle
+from oracle import np
 
-place = oracle.folder()
 PATIENT = ("sagittal", "coronal", "axial")
-TURNS = list(itertools.product(itertools.permutations(range(3)),
-                               itertools.product((1, -1), repeat=3)))
 
 
 def check(name, good):
@@ -32,8 +21,7 @@ def check(name, good):
 def run(path, *options, out="out.npy"):
     if os.path.exists(out):
         os.remove(out)
-    return subprocess.run([oracle.TOOL, "slice", path, "-o", out, *options],
-                          capture_output=True, text=True)
+    return oracle.tool("slice", path, "-o", out, *options)
 
 
 def values(path, *options):
@@ -46,35 +34,7 @@ def values(path, *options):
 
 
 def nifti(name, voxels, matrix, code=512):
-    """voxels [x, y, z]; code 512: uint16, 16: float32, 4: int16."""
-    header = bytearray(352)
-    struct.pack_into("<i", header, 0, 348)
-    struct.pack_into("<8h", header, 40, 3, *voxels.shape, 1, 1, 1, 1)
-    struct.pack_into("<hh", header, 70, code, 8 * voxels.itemsize)
-    spacing = np.linalg.norm(matrix[:3, :3], axis=0)
-    struct.pack_into("<8f", header, 76, 1, *spacing, 1, 1, 1, 1)
-    struct.pack_into("<fff", header, 108, 352, 1, 0)
-    header[123] = 2  # millimetres
-    struct.pack_into("<hh", header, 252, 0, 1)
-    struct.pack_into("<12f", header, 280, *matrix[:3].ravel())
-    header[344:348] = b"n+1\0"
-    with open(name, "wb") as out:
-        out.write(bytes(header) + voxels.tobytes(order="F"))
-    return name
-
-
-def turned(voxels, matrix, order, signs):
-    """New axis j is the old order[j], backwards where signs[j] is -1."""
-    out = np.eye(4)
-    new = voxels.transpose(order)
-    out[:3, 3] = matrix[:3, 3]
-    for j in range(3):
-        column = matrix[:3, order[j]]
-        if signs[j] < 0:
-            new = np.flip(new, j)
-            out[:3, 3] += column * (new.shape[j] - 1)
-        out[:3, j] = column * signs[j]
-    return new, out
+    return oracle.put(name, oracle.nifti(voxels, matrix, code))
 
 
 def plane(voxels, axis, index, medical=True):
@@ -137,8 +97,8 @@ MATRIX[:3, 3] = [-20, 31, 7]
 
 # Every numbering of the grid gives the slices of the patient; numbers of slices
 # count in the grid, positions in the world.
-for order, signs in oracle.few(TURNS, 5):
-    new, matrix = turned(VOXELS, MATRIX, order, signs)
+for order, signs in oracle.few(oracle.TURNS, 5):
+    new, matrix = oracle.turned(VOXELS, MATRIX, order, signs)
     path = nifti("turned.nii", new, matrix)
     for world, name in enumerate(PATIENT):
         grid = order.index(world)
@@ -217,17 +177,10 @@ check("holes, enlarged",
       is_scaled(got, flat.astype(float), (0.75, 1.0), 100, 90))
 
 # A grid that no axis of the world follows: its own slice, seen the nearest way.
-a, b, c = np.radians([20, -15, 10])
-turn = (np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)],
-                  [0, np.sin(a), np.cos(a)]]) @
-        np.array([[np.cos(b), 0, np.sin(b)], [0, 1, 0],
-                  [-np.sin(b), 0, np.cos(b)]]) @
-        np.array([[np.cos(c), -np.sin(c), 0], [np.sin(c), np.cos(c), 0],
-                  [0, 0, 1]]))
 oblique = MATRIX.copy()
-oblique[:3, :3] = turn @ MATRIX[:3, :3]
-for order, signs in oracle.few(TURNS, 9, 2):
-    new, matrix = turned(VOXELS, oblique, order, signs)
+oblique[:3, :3] = oracle.rotation(20, -15, 10) @ MATRIX[:3, :3]
+for order, signs in oracle.few(oracle.TURNS, 9, 2):
+    new, matrix = oracle.turned(VOXELS, oblique, order, signs)
     path = nifti("oblique.nii", new, matrix)
     for world, name in enumerate(PATIENT):
         grid = order.index(world)
@@ -245,9 +198,9 @@ path = nifti("tilted.nii", VOXELS, tilted)
 for index in (0, 9):
     check(f"slice {index} of a tilted gantry", np.array_equal(
         values(path, "--at", str(index)), plane(VOXELS, 2, index)))
-    with open(path, "rb") as file:  # all of it is read, and not just a slice
-        subprocess.run([oracle.TOOL, "slice", "-", "-o", "out.npy", "-y", "-q",
-                        "--at", str(index)], stdin=file, check=False)
+    # All of it is read, and not just a slice.
+    oracle.tool("slice", "-", "-o", "out.npy", "-y", "-q", "--at", index,
+                input=oracle.got(path), text=False)
     check(f"slice {index} of a pipe", np.array_equal(
         np.load("out.npy"), plane(VOXELS, 2, index)))
 got = values(path, "--axis", "coronal", "--at", "3", "--kernel", "box")
@@ -262,19 +215,21 @@ flat = plane(VOXELS, 2, 5).astype(float) - 1500
 native = flat
 
 
-def same_colors(name, options, grey, alpha=None):
-    """Of a PNG of 16 bits, that of the float pixels of the reference."""
-    done = run(path, "--bits", "16", "--no-labels", "--background", "none",
-               *options, out="out.png")
-    alpha = np.ones_like(grey) if alpha is None else alpha
-    np.save("wanted.npy", np.stack([grey * alpha] * 3 + [alpha],
-                                   -1).astype(np.float32))
-    other = subprocess.run([oracle.TOOL, "compare", "out.png", "wanted.npy",
-                            "--tolerance", "0.00002"], capture_output=True,
-                           text=True)
+def same_picture(name, options, pixels, tolerance):
+    """A PNG of 16 bits is that of the float pixels of the reference."""
+    done = run(path, "--bits", "16", "--no-labels", *options, out="out.png")
+    np.save("wanted.npy", pixels.astype(np.float32))
+    other = oracle.tool("compare", "out.png", "wanted.npy", "--tolerance",
+                        tolerance)
     oracle.checked += 1
     if done.returncode or other.returncode:
         oracle.fail(name, done.stderr + other.stdout + other.stderr)
+
+
+def same_colors(name, options, grey, alpha=None):
+    alpha = np.ones_like(grey) if alpha is None else alpha
+    same_picture(name, ("--background", "none", *options),
+                 np.stack([grey * alpha] * 3 + [alpha], -1), 0.00002)
 
 
 def ramp(low, high):
@@ -292,10 +247,9 @@ look = {"colors": [[0, 0.2, 0.2, 0.2], [500, 0.2, 0.2, 0.2],
                    [500, 0.6, 0.6, 0.6], [900, 0.6, 0.6, 0.6],
                    [900, 1, 1, 1], [1000, 1, 1, 1]],
         "opacity": [[0, 0], [1000, 0.5]]}
-with open("labels.csv", "w") as out:
-    out.write("value,r,g,b,a\n")
-    for value, r, g, b in look["colors"]:
-        out.write(f"{value},{r},{g},{b},{value / 2000}\n")
+oracle.put("labels.csv", "value,r,g,b,a\n" + "".join(
+           f"{value},{r},{g},{b},{value / 2000}\n"
+           for value, r, g, b in look["colors"]))
 steps = np.where(flat < 500, 0.2, np.where(flat < 900, 0.6, 1.0))
 same_colors("labels", ("--tf", "labels.csv"), steps)
 big = np.kron(steps, np.ones((4, 4)))
@@ -314,26 +268,18 @@ INKS = np.array([[0, 0, 0], [1, 0, 0], [0, 0.2, 1]])
 def nrrd(name, voxels, more=""):
     """On the grid of b.nii, with x the other way."""
     kind = {"u1": "uint8", "f4": "float"}[voxels.dtype.str[1:]]
-    head = (f"NRRD0004\ntype: {kind}\ndimension: 3\nsizes: 12 14 10\n"
-            "space: RAS\nspace directions: (-1.5,0,0) (0,1.5,0) (0,0,1.5)\n"
-            f"space origin: ({-20 + 11 * 1.5},31,7)\nendian: little\n"
-            f"{more}encoding: raw\n\n")
-    with open(name, "wb") as out:
-        out.write(head.encode() + voxels[::-1].tobytes(order="F"))
+    oracle.put(name, oracle.nrrd(
+        kind, (12, 14, 10),
+        "space: RAS\nspace directions: (-1.5,0,0) (0,1.5,0) (0,0,1.5)\n"
+        f"space origin: ({-20 + 11 * 1.5},31,7)\n{more}",
+        voxels[::-1].tobytes(order="F")))
 
 
 def overlaid(name, options, inks, share):
-    done = run(path, "--bits", "16", "--no-labels", "--range", "-1500,2500",
-               "--overlay", *options, out="out.png")
     made = share * inks + (1 - share) * grey[..., None]
-    opaque = np.ones(grey.shape + (1,))
-    np.save("wanted.npy", np.concatenate([made, opaque], -1).astype(np.float32))
-    other = subprocess.run([oracle.TOOL, "compare", "out.png", "wanted.npy",
-                            "--tolerance", "0.00005"], capture_output=True,
-                           text=True)
-    oracle.checked += 1
-    if done.returncode or other.returncode:
-        oracle.fail(name, done.stderr + other.stdout + other.stderr)
+    same_picture(name, ("--range", "-1500,2500", "--overlay", *options),
+                 np.concatenate([made, np.ones(grey.shape + (1,))], -1),
+                 0.00005)
 
 
 nrrd("cells.nrrd", cells, "".join(
@@ -368,9 +314,7 @@ if done.returncode != 2 or "without --overlay" not in done.stderr:
     oracle.fail("numbers with an overlay", "are not refused")
 
 # Values are those after slope and intercept.
-with open("b.nii", "r+b") as file:
-    file.seek(112)
-    file.write(struct.pack("<ff", 2.5, -1000))
+oracle.patch("b.nii", 112, struct.pack("<ff", 2.5, -1000))
 check("a slope", np.array_equal(values("b.nii", "--at", "5"),
                                 (2.5 * native - 1000).astype(np.float32)))
 
@@ -381,8 +325,7 @@ check("a crop", np.array_equal(
 
 # The figures say which slice it was.
 run("a.nii", "--axis", "coronal", "--at", "3", "--stats", "s.json")
-with open("s.json") as figures:
-    told = json.load(figures)
+told = json.loads(oracle.got("s.json"))
 check("figures", told["slice"] == {"axis": "coronal", "index": 3,
                                    "position": 35.5, "unit": "mm"} and
       told["volume"]["dims"] == [12, 14, 10])

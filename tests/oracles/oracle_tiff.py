@@ -1,58 +1,18 @@
 """TIFF, PNG and JPEG stacks beside tifffile and Pillow."""
-import sys
-
-try:
-    import numpy as np
-    import tifffile
-except ImportError as missing:
-    print("skip  ", missing)
-    sys.exit(77)
-import gzip
 import os
 import shutil
 import subprocess
 import tarfile
 
 import oracle
+from oracle import np
 
+tifffile, = oracle.need("tifffile")
 oracle.need_modules()
 
-place = oracle.folder()
 oracle.usual = oracle.image()
 TYPES = ["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8", "f4", "f8", "f2"]
 tiffcp = shutil.which("tiffcp")
-
-
-def compare_jpeg():
-    """Grey and colours, sampled alike or not, of sizes that no block divides:
-    what Pillow reads of what it wrote."""
-    y, x = np.mgrid[:53, :75]
-    pages = [(100 + 60 * np.sin(x / 9 + z) + y).astype("u1") for z in range(5)]
-    kinds = [("L", {}), ("L", {"progressive": True}), ("RGB", {}),
-             ("RGB", {"subsampling": 0}), ("RGB", {"subsampling": 1}),
-             ("RGB", {"progressive": True, "quality": 60})]
-    for mode, how in kinds:
-        shutil.rmtree("jpeg", ignore_errors=True)
-        os.mkdir("jpeg")
-        for z, page in enumerate(pages):
-            whole = np.stack([page, page[::-1], 255 - page], -1)
-            Image.fromarray(page if mode == "L" else whole).save(
-                f"jpeg/p_{z}.jpg", **how)
-        read = np.stack([np.asarray(Image.open(f"jpeg/p_{z}.jpg"))
-                         for z in range(len(pages))])
-        if mode == "L":
-            oracle.expect("jpeg", read, name=f"JPEG {how}")
-        else:
-            for channel in range(3):
-                oracle.expect("jpeg/p_%d.jpg", read[..., channel],
-                              options=["--channel", channel],
-                              name=f"JPEG {how} channel {channel}")
-    shutil.copy("stack/s20.png", "jpeg/p_9.png")
-    oracle.expect("jpeg", a[3:4], name="previews beside PNG")
-
-
-def wide(a):
-    return a.astype(np.float32) if a.dtype == np.float16 else a
 
 
 for kind in TYPES:
@@ -62,18 +22,16 @@ for kind in TYPES:
                               TYPES.index(kind) + "<>".index(order)):
             tifffile.imwrite("a.tif", a, byteorder=order, bigtiff=big,
                              photometric="minisblack")
-            oracle.expect("a.tif", wide(a), name=f"{kind} {order} {big}")
+            oracle.expect("a.tif", oracle.wide(a), name=f"{kind} {order} {big}")
     tifffile.imwrite("a.tif", a, photometric="minisblack", rowsperstrip=2)
-    oracle.expect("a.tif", wide(a), name=f"{kind} strips")
+    oracle.expect("a.tif", oracle.wide(a), name=f"{kind} strips")
     if kind != "f2":
         tifffile.imwrite("a.tif", a, photometric="minisblack", tile=(16, 16))
-        oracle.expect("a.tif", wide(a), name=f"{kind} tiles")
+        oracle.expect("a.tif", oracle.wide(a), name=f"{kind} tiles")
 
 a = oracle.sample("u2", (9, 50, 70))
 tifffile.imwrite("a.tif", a, photometric="minisblack", rowsperstrip=7)
-with open("a.tif", "rb") as file, gzip.open("b.tif.gz", "wb") as to:
-    to.write(file.read())
-oracle.expect("b.tif.gz", a)
+oracle.expect(oracle.packed("a.tif", "b.tif.gz"), a)
 for options in (["-c", "lzw"], ["-c", "lzw:2"], ["-c", "zip:2"],
                 ["-c", "packbits"], ["-t", "-w", "32", "-l", "16"],
                 ["-t", "-w", "32", "-l", "16", "-c", "zip"], ["-B"],
@@ -135,16 +93,12 @@ for axes in ("TYX", "CYX", "ZYX"):
 # One page and the others behind it, as ImageJ writes more than 4 GB.
 with tifffile.TiffWriter("g.tif", imagej=True) as writer:
     writer.write(h[0, :, 0], contiguous=True, metadata={"axes": "ZYX"})
-with open("g.tif", "rb") as file:
-    whole = bytearray(file.read())
+whole = oracle.got("g.tif")
 with tifffile.TiffFile("g.tif") as file:
     second = file.pages[0].offset
-    order = ">" if whole[:2] == b"MM" else "<"
-    entries = int(np.frombuffer(whole, order + "u2", 1, second)[0])
-    nextifd = second + 2 + 12 * entries
-whole[nextifd:nextifd + 4] = bytes(4)
-with open("g.tif", "wb") as file:
-    file.write(whole)
+order = ">" if whole[:2] == b"MM" else "<"
+entries = int(np.frombuffer(whole, order + "u2", 1, second)[0])
+oracle.patch("g.tif", second + 2 + 12 * entries, bytes(4))  # the next page
 oracle.expect("g.tif", h[0, :, 0], name="ImageJ, one page")
 
 # OME: every order of channels, slices and times.
@@ -166,8 +120,7 @@ os.mkdir("stack")
 a = oracle.sample("u2", (12, 8, 9))
 for z, page in enumerate(a):
     tifffile.imwrite(f"stack/s{z + 5}.tif", page, photometric="minisblack")
-with open("stack/notes.txt", "w") as file:
-    file.write("not a slice")
+oracle.put("stack/notes.txt", "not a slice")
 oracle.expect("stack", a)
 oracle.expect("stack/", a, name="with a slash")
 oracle.expect("stack/s*.tif", a, name="pattern")
@@ -191,36 +144,62 @@ with tifffile.TiffWriter("j.tif") as writer:
     writer.write(a[0])
     writer.write(a[0, 1:])
 oracle.refuse("j.tif", "must be alike")
-with open("i.tif", "rb") as file:
-    whole = file.read()
-for size in (9, 100, len(whole) // 2):
-    with open("k.tif", "wb") as file:
-        file.write(whole[:size])
-    oracle.refuse("k.tif", "truncated")
+oracle.refuse_cut("i.tif", (9, 100, os.path.getsize("i.tif") // 2),
+                  "truncated")
 
-try:
-    from PIL import Image
-    os.mkdir("png")
-    for z, page in enumerate(a):
-        Image.fromarray(page).save(f"png/p_{z:03}.png")
+
+
+def pages(folder, values, name="{}.png", **how):
+    """A picture for each slice, as Pillow writes it."""
+    oracle.empty_folder(folder)
+    for z, page in enumerate(values):
+        Image.fromarray(page).save(f"{folder}/{name.format(z)}", **how)
+
+
+def compare_png():
+    pages("png", a, "p_{:03}.png")
     oracle.expect("png", a, name="PNG of 16 bits")
-    rgb = oracle.sample("u1", (4, 12, 20, 4))
-    os.mkdir("rgba")
-    for z, page in enumerate(rgb):
-        Image.fromarray(page, "RGBA").save(f"rgba/{z}.png")
+    colours = oracle.sample("u1", (4, 12, 20, 4))
+    pages("rgba", colours)
     for channel in range(4):
-        oracle.expect("rgba", rgb[..., channel],
+        oracle.expect("rgba", colours[..., channel],
                       options=["--channel", channel])
-    os.mkdir("bits")
-    for z, page in enumerate(bits):
-        Image.fromarray(page).save(f"bits/{z}.png")
+    pages("bits", bits)
     oracle.expect("bits", bits.astype("u1"))
-    Image.fromarray(rgb[0, ..., 0]).quantize(16).save("p.png")
-    index = np.array(Image.open("p.png"))
-    oracle.expect("p.png", index[None], name="palette")
+    Image.fromarray(colours[0, ..., 0]).quantize(16).save("p.png")
+    oracle.expect("p.png", np.array(Image.open("p.png"))[None], name="palette")
     shutil.copy("png/p_003.png", "stack/s20.png")
     os.remove("stack/s17.tif")
     oracle.refuse("stack", "one kind")
+
+
+def compare_jpeg():
+    """Grey and colours, sampled alike or not, of sizes that no block divides:
+    what Pillow reads of what it wrote."""
+    y, x = np.mgrid[:53, :75]
+    grey = [(100 + 60 * np.sin(x / 9 + z) + y).astype("u1") for z in range(5)]
+    colours = [np.stack([page, page[::-1], 255 - page], -1) for page in grey]
+    for values, how in (
+            (grey, {}), (grey, {"progressive": True}), (colours, {}),
+            (colours, {"subsampling": 0}), (colours, {"subsampling": 1}),
+            (colours, {"progressive": True, "quality": 60})):
+        pages("jpeg", values, "p_{}.jpg", **how)
+        read = np.stack([np.asarray(Image.open(f"jpeg/p_{z}.jpg"))
+                         for z in range(5)])
+        if values is grey:
+            oracle.expect("jpeg", read, name=f"JPEG {how}")
+            continue
+        for channel in range(3):
+            oracle.expect("jpeg/p_%d.jpg", read[..., channel],
+                          options=["--channel", channel],
+                          name=f"JPEG {how} channel {channel}")
+    shutil.copy("stack/s20.png", "jpeg/p_9.png")
+    oracle.expect("jpeg", a[3:4], name="previews beside PNG")
+
+
+try:
+    from PIL import Image
+    compare_png()
     if oracle.library("libjpeg"):
         compare_jpeg()
 except ImportError:

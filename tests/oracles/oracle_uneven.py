@@ -1,23 +1,11 @@
 """Grids with uneven coordinates, written by netCDF4, h5py and VTK: every voxel of
 the even grid has the value of an analytic field at its place in the world."""
-import sys
-
-try:
-    import h5py
-    import netCDF4
-    import numpy as np
-    import vtk
-    from vtk.util.numpy_support import numpy_to_vtk
-except ImportError as missing:
-    print("skip  ", missing)
-    sys.exit(77)
-import gzip
-
 import oracle
-from oracle import affine
+from oracle import np, affine
 
+h5py, netCDF4, vtk = oracle.need("h5py", "netCDF4", "vtk")
+from vtk.util.numpy_support import numpy_to_vtk
 oracle.need_modules()
-place = oracle.folder()
 
 
 def field(x, y, z):
@@ -32,6 +20,18 @@ def on_grid(x, y, z):
 X = np.cumsum(np.linspace(1, 3, 12))
 Y = np.array([-4, -3.9, -3.5, -2, 0, 1, 1.5, 1.75, 2])
 Z = np.array([0, 1, 3, 7, 15, 31.])
+
+
+def netcdf(path, axes, kind="f4", form="NETCDF4", **how):
+    """Coordinates by name, with their units; gives the variable on them."""
+    file = netCDF4.Dataset(path, "w", format=form)
+    for name, (at, unit) in axes.items():
+        file.createDimension(name, len(at))
+        v = file.createVariable(name, "f8", (name,))
+        v[:] = at
+        if unit:
+            v.units = unit
+    return file, file.createVariable("t", kind, tuple(axes), **how)
 
 
 def check(path, options=(), wanted=None, tolerance=2e-4, name=None):
@@ -50,27 +50,18 @@ def check(path, options=(), wanted=None, tolerance=2e-4, name=None):
 for form in ("NETCDF3_CLASSIC", "NETCDF4"):
     for x, y, z in ((X, Y, Z), (X, Y[::-1], Z[::-1]),
                     (np.arange(12.), Y, Z)):
-        with netCDF4.Dataset("a.nc", "w", format=form) as file:
-            for name, at in (("z", z), ("y", y), ("x", x)):
-                file.createDimension(name, len(at))
-                v = file.createVariable(name, "f8", (name,))
-                v[:] = at
-                v.units = "m"
-            file.createVariable("t", "f4", ("z", "y", "x"))[:] = \
-                on_grid(x, y, z)
+        file, v = netcdf("a.nc", {"z": (z, "m"), "y": (y, "m"), "x": (x, "m")},
+                         form=form)
+        with file:
+            v[:] = on_grid(x, y, z)
         check("a.nc", wanted=(32, 61, 21 if x is X else 12), name=form)
         check("a.nc", ["--crop", "2:9,1:40,5:20"], (15, 39, 7), name=form)
-said = oracle.run("a.nc")
-if "are not evenly spaced" not in said.stderr:
-    oracle.fail("a.nc", f"no note of uneven levels: {said.stderr}")
+oracle.says("uneven levels", "a.nc", "are not evenly spaced")
 
 # Packed integers with missing values, which end half-way to their neighbours.
-with netCDF4.Dataset("a.nc", "w") as file:
-    for name, at in (("z", Z), ("y", Y), ("x", X)):
-        file.createDimension(name, len(at))
-        v = file.createVariable(name, "f8", (name,))
-        v[:] = at
-    v = file.createVariable("t", "i2", ("z", "y", "x"), fill_value=-999)
+file, v = netcdf("a.nc", {"z": (Z, ""), "y": (Y, ""), "x": (X, "")}, "i2",
+                 fill_value=-999)
+with file:
     v.scale_factor, v.add_offset = 0.01, 5
     a = on_grid(X, Y, Z)
     v[:] = np.ma.masked_where(np.indices(a.shape)[0] == 2, a)
@@ -92,15 +83,12 @@ with h5py.File("a.h5", "w") as file:
 values, matrix = oracle.voxels_of("a.h5")
 if values.dtype != np.float64 or values.shape != (32, 9, 12):
     oracle.fail("int64", f"{values.dtype} {values.shape}")
-with netCDF4.Dataset("a.nc", "w") as file:
-    for name, at, unit in (("lev", np.array([1000, 900, 700, 400, 100, 1.]),
-                            "hPa"),
-                           ("lat", np.arange(8) * 2. - 8, "degrees_north"),
-                           ("lon", np.arange(10) * 2., "degrees_east")):
-        file.createDimension(name, len(at))
-        v = file.createVariable(name, "f8", (name,))
-        v[:], v.units = at, unit
-    file.createVariable("t", "f4", ("lev", "lat", "lon"))[:] = 0
+file, v = netcdf("a.nc", {
+    "lev": (np.array([1000, 900, 700, 400, 100, 1.]), "hPa"),
+    "lat": (np.arange(8) * 2. - 8, "degrees_north"),
+    "lon": (np.arange(10) * 2., "degrees_east")})
+with file:
+    v[:] = 0
 values, matrix = oracle.voxels_of("a.nc")
 if values.shape != (12, 8, 10) or not np.allclose(
         matrix, affine((2, 2, 10 / 11), (0, -8, 0))[:3]):
@@ -140,12 +128,7 @@ for cells in (False, True):
         getattr(writer, "SetFileTypeTo" + kind)()
         assert writer.Write()
         check("a.vtk", name=f"legacy {kind} cells {cells}")
-with open("a.vtr", "rb") as file, gzip.open("b.vtr.gz", "wb") as to:
-    to.write(file.read())
-check("b.vtr.gz")
-with open("a.vtk", "rb") as file:
-    text = file.read()
-with open("b.vtk", "wb") as file:
-    file.write(text.replace(b"Y_COORDINATES 9", b"Y_COORDINATES 8"))
-oracle.refuse("b.vtk", "not valid in this place")
+check(oracle.packed("a.vtr", "b.vtr.gz"))
+oracle.refuse(oracle.put("b.vtk", oracle.got("a.vtk").replace(
+    b"Y_COORDINATES 9", b"Y_COORDINATES 8")), "not valid in this place")
 oracle.finish()

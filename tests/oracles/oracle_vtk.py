@@ -1,18 +1,10 @@
 """Legacy VTK files and VTI beside VTK, whose writers and readers are used."""
-import sys
-
-try:
-    import numpy as np
-    import vtk
-    from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-except ImportError as missing:
-    print("skip  ", missing)
-    sys.exit(77)
-import gzip
-
 import oracle
+from oracle import np
 
-place = oracle.folder()
+vtk, = oracle.need("vtk")
+from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
 TYPES = ["i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f4", "f8"]
 TURN = np.array([[0, -1, 0], [0.6, 0, -0.8], [0.8, 0, 0.6]])
 
@@ -96,9 +88,8 @@ for mode in ("ascii", "binary", "appended raw", "appended base64"):
                 oracle.expect("a.vti", oracle.sample("i2", b.shape),
                               matrix_of(grid), ["--dataset", "behind"],
                               name=said + " behind")
-        with open("a.vti", "rb") as file, gzip.open("b.vti.gz", "wb") as to:
-            to.write(file.read())
-        oracle.expect("b.vti.gz", b, matrix_of(grid), name=said + " gzip")
+        oracle.expect(oracle.packed("a.vti", "b.vti.gz"), b, matrix_of(grid),
+                      name=said + " gzip")
 oracle.refuse("a.vti", "before, wanted, behind", ["--dataset", "none"], 2)
 
 MODES = ("ascii", "binary", "appended raw")
@@ -113,7 +104,7 @@ for n, kind in enumerate(TYPES):
 # Vectors by channel; values of cells.
 a = oracle.sample("f8", (7, 6, 5, 3))
 c = oracle.sample("u2", (6, 5, 4))
-for mode in ("ascii", "binary", "appended raw"):
+for mode in MODES:
     grid = image()
     add(grid, "v", a)
     add(grid, "c", c, cells=True)
@@ -166,13 +157,11 @@ for version in (42, 51):
             oracle.expect("a.vtk", c, matrix_of(grid, True),
                           ["--dataset", "c"], name=said + " cells")
 
-for relative, reader in (
-        ("formats/vtk/ironProt.vtk", vtk.vtkStructuredPointsReader()),
-        ("sim/hydrogen.vti", vtk.vtkXMLImageDataReader()),
-        ("sim/isabel_30.vti", vtk.vtkXMLImageDataReader()),
-        ("classic/engine.vti", vtk.vtkXMLImageDataReader()),
-        ("classic/bonsai.vti", vtk.vtkXMLImageDataReader()),
-        ("classic/aneurism.vti", vtk.vtkXMLImageDataReader())):
+for relative in oracle.few(("formats/vtk/ironProt.vtk", "sim/isabel_30.vti",
+                            "sim/hydrogen.vti", "classic/engine.vti",
+                            "classic/bonsai.vti", "classic/aneurism.vti"), 2):
+    reader = vtk.vtkStructuredPointsReader() if relative.endswith("vtk") else \
+        vtk.vtkXMLImageDataReader()
     path = oracle.data(relative)
     if path:
         reader.SetFileName(path)
