@@ -32,8 +32,8 @@ set(SNOW_LABEL_late
     cli_shear_warp cli_show mpi_comm oracle_amr oracle_dicom oracle_fit oracle_hdf5
     oracle_mrc oracle_netcdf oracle_npy oracle_orientation oracle_pictures
     oracle_seg oracle_series oracle_slice oracle_tiff oracle_vtk oracle_zarr test_comm
-    test_darken test_histogram test_model_encodings
-    test_model_raycast test_phantom test_raycast test_splat_threads test_stream)
+    test_histogram test_model_encodings
+    test_phantom test_raycast test_splat_threads test_stream)
 file(GLOB formats CONFIGURE_DEPENDS formats/test_*.c)
 list(TRANSFORM formats REPLACE ".*/(.*)[.]c$" "\\1")
 set(SNOW_LABEL_surface ${formats} test_base test_compare test_convert test_image
@@ -44,9 +44,9 @@ set(SNOW_LABEL_threads test_affinity test_same_bits test_combine test_comm test_
     test_raycast test_shear_warp test_shear_warp_layer_parts test_shear_warp_parts test_simulated test_stop test_progress test_ranks test_ranks_open test_redistribute
     test_pool_signals serve_hostile serve_places serve_sockets)
 set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
-    test_model_raycast test_model_reference test_model_rules test_model_slabs
+    test_model_reference test_model_rules
     test_truth test_truth_edges test_laws
-    test_phantom test_perspective test_camera_points
+    test_phantom test_camera_points
     cli_documents cli_bench cli_figures cli_ranks cli_stream
     cli_again cli_matrix cli_turntable cli_modules cli_memory cli_progress
     serve_browser cli_interrupt cli_large cli_measurements oracle_zarr oracle_tiff
@@ -61,7 +61,7 @@ set(SNOW_COSTS
     mpi_render 260 wasm_page 300
     package_within 200 package_wheel 200
     mpi_serve 300 serve_browser 245 mpi_fail 240 mpi_comm 230 cli_progress 200 cli_large 190
-    test_model_raycast 37 cli_stream 87 test_ranks 62 test_stream 57
+    cli_stream 87 test_ranks 62 test_stream 57
     cli_figures 25 oracle_zarr 46 test_modes 44
     cli_turntable 41 oracle_vtk 40 cli_render 39 test_stop 37
     test_combine 35 cli_bench 34 cli_interrupt 34

@@ -12,9 +12,30 @@ model_stage model_open(void) {
 }
 
 void model_close(model_stage *stage) {
+    double opacity = stage->opacity / stage->pictures;
     snow_frame_free(stage->frame);
     assert_int_equal(snow_context_bytes(stage->context), 0);
     snow_context_free(stage->context);
+    if (!stage->pictures)
+        return;
+    print_message("             %d pictures differ by up to %.2g; their "
+                  "strongest opacity is %.2f in the mean\n",
+                  stage->pictures, stage->largest, opacity);
+    assert_true(opacity > 0.4);
+}
+
+int model_setup(void **state) {
+    model_stage *stage = malloc(sizeof *stage);
+    assert_non_null(stage);
+    *stage = model_open();
+    *state = stage;
+    return 0;
+}
+
+int model_teardown(void **state) {
+    model_close(*state);
+    free(*state);
+    return 0;
 }
 
 snow_transfer *model_transfer(snow_context *context,
@@ -33,22 +54,42 @@ snow_transfer *model_transfer(snow_context *context,
     return transfer;
 }
 
-snow_image *model_image(const model_stage *stage,
-                        const reference_scene *scene) {
+snow_volume *model_volume(snow_context *context, const reference_scene *scene) {
     snow_volume *volume = NULL;
-    snow_context *context = stage->context;
-    snow_transfer *transfer = model_transfer(context, scene);
-    snow_image *image = NULL;
-    snow_status status =
-        snow_volume_wrap(context, &scene->info, scene->voxels, &volume);
-    if (status == SNOW_STATUS_OK)
-        status = snow_frame_render(stage->frame, volume, transfer, &scene->view,
-                                   &scene->settings, &image);
+    if (snow_volume_wrap(context, &scene->info, scene->voxels, &volume) !=
+        SNOW_STATUS_OK)
+        fail_msg("%s: %s", model_words(scene), snow_context_message(context));
+    return volume;
+}
+
+static snow_status render(const model_stage *stage,
+                          const reference_scene *scene, snow_image **image) {
+    snow_volume *volume = model_volume(stage->context, scene);
+    snow_transfer *transfer = model_transfer(stage->context, scene);
+    snow_status status = snow_frame_render(
+        stage->frame, volume, transfer, &scene->view, &scene->settings, image);
     snow_transfer_free(transfer);
     snow_volume_close(volume);
-    if (status != SNOW_STATUS_OK)
-        fail_msg("%s: %s", model_words(scene), snow_context_message(context));
+    return status;
+}
+
+snow_image *model_image(const model_stage *stage,
+                        const reference_scene *scene) {
+    snow_image *image = NULL;
+    if (render(stage, scene, &image) != SNOW_STATUS_OK)
+        fail_msg("%s: %s", model_words(scene),
+                 snow_context_message(stage->context));
     return image;
+}
+
+void model_refused(const model_stage *stage, const reference_scene *scene,
+                   const char *words) {
+    snow_image *image = NULL;
+    assert_int_equal(render(stage, scene, &image), SNOW_STATUS_BAD_USAGE);
+    assert_null(image);
+    const char *message = snow_context_message(stage->context);
+    if (!strstr(message, words) || strchr(message, '\n'))
+        fail_msg("\"%s\" lacks \"%s\"", message, words);
 }
 
 float *model_spread(snow_image *image) {
@@ -74,8 +115,9 @@ float *model_picture(const model_stage *stage, const reference_scene *scene) {
     return picture;
 }
 
-double model_distance(const reference_scene *scene, const float *picture,
-                      const double *reference) {
+/* The largest difference; NaN where either is not a number. */
+static double distance_of(const reference_scene *scene, const float *picture,
+                          const double *reference) {
     size_t count = (size_t)scene->view.width * (size_t)scene->view.height * 4;
     double largest = 0;
     for (size_t n = 0; n < count; n++) {
@@ -95,24 +137,16 @@ static double strongest_opacity(const reference_scene *scene,
     return strongest;
 }
 
-void model_check(const model_stage *stage, const reference_scene *scene,
-                 double bound, model_summary *summary) {
+void model_check(model_stage *stage, const reference_scene *scene,
+                 double bound) {
     float *picture = model_picture(stage, scene);
     double *reference = reference_render(scene);
-    double distance = model_distance(scene, picture, reference);
+    double distance = distance_of(scene, picture, reference);
     if (!(distance < bound))
         fail_msg("differs by %g: %s", distance, model_words(scene));
-    summary->pictures++;
-    summary->largest = fmax(summary->largest, distance);
-    summary->opacity += strongest_opacity(scene, reference);
+    stage->pictures++;
+    stage->largest = fmax(stage->largest, distance);
+    stage->opacity += strongest_opacity(scene, reference);
     free(picture);
     free(reference);
-}
-
-void model_report(const model_summary *summary) {
-    double opacity = summary->opacity / summary->pictures;
-    print_message("             %d pictures differ by up to %.2g; their "
-                  "strongest opacity is %.2f in the mean\n",
-                  summary->pictures, summary->largest, opacity);
-    assert_true(opacity > 0.4);
 }

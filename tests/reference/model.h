@@ -15,16 +15,26 @@ void model_near(double actual, double expected, double bound, const char *what,
                 const char *file, int line);
 
 /* One frame for all pictures of a test, so that what a picture leaves behind
- * in its buffers meets the next. */
+ * in its buffers meets the next; and what model_check found. */
 typedef struct model_stage {
     snow_context *context;
     snow_frame *frame;
+    int pictures;
+    double largest; /* difference of a picture and its reference */
+    double opacity; /* strongest of each picture, summed up */
 } model_stage;
 
 model_stage model_open(void);
 
-/* Frees the stage; the test fails when an object of it is still alive. */
+/* Frees the stage; the test fails when an object of it is still alive, or when
+ * the pictures that were checked showed next to nothing. */
 void model_close(model_stage *stage);
+
+/* A test whose *state is a stage. */
+#define MODEL_TEST(name) \
+    cmocka_unit_test_setup_teardown(name, model_setup, model_teardown)
+int model_setup(void **state);
+int model_teardown(void **state);
 
 /* How indices lie in the world. */
 typedef enum model_matrix {
@@ -39,7 +49,7 @@ typedef enum model_matrix {
 /* A scene of `dims` voxels: smooth structure with noise, data values about 0
  * to 100 whatever the native type, slope and intercept; view +z of 64x48
  * pixels, default settings, colours that differ (or greys), opacity a ramp
- * with a step and an empty part.  Free with model_free. */
+ * with a step and an empty part.  Free with model_free, which frees voxels. */
 reference_scene model_scene(const int64_t dims[3], snow_type type, bool grey,
                             model_matrix matrix, uint64_t seed);
 
@@ -66,25 +76,22 @@ void model_look(reference_scene *scene, const double back[3],
 void model_turn(reference_scene *scene, double azimuth, double elevation,
                 double roll, double zoom);
 
-/* Where a camera stands in a table of views, and the view "iso" in it. */
-typedef struct model_stand {
-    double back[3], up[3];
-    double azimuth, elevation, roll;
-} model_stand;
+/* Points it from stand `n`, of straight and oblique ones in turn. */
+#define MODEL_STANDS 15
+void model_stand_at(reference_scene *scene, size_t n, double zoom);
 
-#define MODEL_THIRD 0.57735026918962576 /* 1 / sqrt(3) */
-#define MODEL_SIXTH 0.40824829046386302 /* 1 / sqrt(6) */
-#define MODEL_ISO                                   \
-    {MODEL_THIRD, MODEL_THIRD, MODEL_THIRD}, {      \
-        -MODEL_SIXTH, -MODEL_SIXTH, 2 * MODEL_SIXTH \
-    }
+/* Types and kernels in turn, and a number below `count`. */
+#define MODEL_TYPES 10
+#define MODEL_KERNELS 4
+snow_type model_type(size_t n);
+snow_kernel model_kernel(size_t n);
+size_t model_draw(uint64_t *random, size_t count);
 
-void model_stand_at(reference_scene *scene, const model_stand *stand,
-                    double zoom);
-
-/* The scene's transfer function; the test fails unless it can be made. */
+/* The scene's transfer function, and its volume over its voxels; the test fails
+ * unless they can be made. */
 snow_transfer *model_transfer(snow_context *context,
                               const reference_scene *scene);
+snow_volume *model_volume(snow_context *context, const reference_scene *scene);
 
 /* The scene by snow_frame_render; the test fails unless that succeeds. */
 snow_image *model_image(const model_stage *stage, const reference_scene *scene);
@@ -95,25 +102,15 @@ float *model_picture(const model_stage *stage, const reference_scene *scene);
 /* Four channels from an image's two or four; free with free(). */
 float *model_spread(snow_image *image);
 
-/* The largest absolute difference of a picture from the library and one of
- * the reference; NaN where either is not a number. */
-double model_distance(const reference_scene *scene, const float *picture,
-                      const double *reference);
-
-/* What a sweep of pictures came to. */
-typedef struct model_summary {
-    int pictures;
-    double largest; /* difference of a picture and its reference */
-    double opacity; /* strongest of each picture, summed up */
-} model_summary;
-
 /* Renders the scene both ways and fails the test, with the scene in words,
  * unless the pictures differ by less than `bound`. */
-void model_check(const model_stage *stage, const reference_scene *scene,
-                 double bound, model_summary *summary);
+void model_check(model_stage *stage, const reference_scene *scene,
+                 double bound);
 
-/* Prints a summary; fails the test when the pictures showed next to nothing. */
-void model_report(const model_summary *summary);
+/* The scene by snow_frame_render, which must refuse it as bad usage, by a
+ * message of one line with `words` in it. */
+void model_refused(const model_stage *stage, const reference_scene *scene,
+                   const char *words);
 
 /* The scene's settings in words; lasts until the next call. */
 const char *model_words(const reference_scene *scene);

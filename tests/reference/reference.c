@@ -60,17 +60,14 @@ static void lay_over(const double front[4], const double back[4],
 }
 
 static void gather_pixel(const gather *g, const reference_ray *ray,
-                         bool back_to_front, double pixel[4]) {
+                         double pixel[4]) {
     int64_t count = g->scene->info.dims[g->axis];
     /* Along the ray indices grow or fall: that is the order of slices. */
-    bool rising = (ray->step[g->axis] > 0) != back_to_front;
+    bool rising = ray->step[g->axis] > 0;
     for (int64_t n = 0; n < count; n++) {
         double sheet[4];
         gather_sheet(g, ray, rising ? n : count - 1 - n, sheet);
-        if (back_to_front)
-            lay_over(sheet, pixel, pixel);
-        else
-            lay_over(pixel, sheet, pixel);
+        lay_over(pixel, sheet, pixel);
     }
 }
 
@@ -137,7 +134,7 @@ void reference_gather_end(gather *g) {
     free(g->v_weights);
 }
 
-static double *render(const reference_scene *scene, bool back_to_front) {
+double *reference_render(const reference_scene *scene) {
     reference_camera camera;
     gather g;
     reference_camera_of(scene, &camera);
@@ -151,18 +148,10 @@ static double *render(const reference_scene *scene, bool back_to_front) {
             reference_ray ray =
                 reference_ray_at(scene, &camera, x + 0.5, y + 0.5);
             size_t at = (size_t)y * (size_t)width + (size_t)x;
-            gather_pixel(&g, &ray, back_to_front, pixels + 4 * at);
+            gather_pixel(&g, &ray, pixels + 4 * at);
         }
     }
     reference_gather_end(&g);
     free(samples);
     return pixels;
-}
-
-double *reference_render(const reference_scene *scene) {
-    return render(scene, false);
-}
-
-double *reference_render_back_to_front(const reference_scene *scene) {
-    return render(scene, true);
 }

@@ -5,8 +5,7 @@
  * grid position (u, v); there the sheet is the weighted sum of the voxels in
  * reach, and sheets are laid over each other.  It shares no code with the
  * library, only the public records, so that an error has to be made twice, in
- * two ways, to pass unseen.  Beside it, a ray caster of the usual kind says how
- * the same volume looks to everybody else. */
+ * two ways, to pass unseen. */
 #ifndef SNOW_TEST_REFERENCE_H
 #define SNOW_TEST_REFERENCE_H
 
@@ -125,21 +124,15 @@ double reference_opacity_length(const reference_scene *scene);
 double *reference_samples(const reference_scene *scene,
                           const reference_camera *camera, int axis);
 
-/* The picture: width * height * 4 doubles, premultiplied.  Free with free().
- * The second composites the same sheets from the back to the front. */
+/* The picture: width * height * 4 doubles, premultiplied.  Free with free(). */
 double *reference_render(const reference_scene *scene);
-double *reference_render_back_to_front(const reference_scene *scene);
 
-/* The picture in a mode other than over: width * height * 4 doubles of mip,
- * minip and iso; of mean and sum width * height in data units, NaN where the
- * ray misses. */
+/* The picture as a projection: width * height * 4 doubles of mip and minip; of
+ * mean and sum width * height in data units, NaN where the ray misses. */
 double *reference_mode(const reference_scene *scene);
 
-/* The depth of a picture in modes over and iso: width * height doubles, NaN
- * where there is none. */
+/* The depth of a picture in mode over: width * height doubles, NaN where there
+ * is none. */
 double *reference_depth(const reference_scene *scene);
-
-/* The picture of raycast.h of trilinear values. */
-double *reference_raycast(const reference_scene *scene);
 
 #endif

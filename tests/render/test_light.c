@@ -44,77 +44,55 @@ static double difference(const float *a, const float *b) {
     return most;
 }
 
-static void without_angles_the_light_is_a_key_light(void **state) {
-    (void)state;
-    for (int n = 0; n < 12; n++) {
-        model_stage stage = model_open();
-        reference_scene scene = scene_of(n);
-        float *key = picture_with(&stage, &scene, SNOW_LIGHT_KEY, 40, 50);
-        float *automatic = picture_with(&stage, &scene, SNOW_LIGHT_AUTO, 0, 0);
-        float *head = picture_with(&stage, &scene, SNOW_LIGHT_HEAD, 40, 50);
-        assert_memory_equal(key, automatic, PIXELS * PIXELS * 4 * sizeof *key);
-        assert_true(difference(key, head) > 0.02);
-        free(key);
-        free(automatic);
-        free(head);
-        model_free(&scene);
-        model_close(&stage);
-    }
-}
-
-static void angles_are_those_of_a_direction(void **state) {
-    (void)state;
-    for (int n = 0; n < 12; n++) {
-        model_stage stage = model_open();
-        reference_scene scene = scene_of(n);
-        float *told = picture_with(&stage, &scene, SNOW_LIGHT_DIRECTION, 40, 9);
-        float *automatic = picture_with(&stage, &scene, SNOW_LIGHT_AUTO, 40, 9);
-        float *ahead = picture_with(&stage, &scene, SNOW_LIGHT_DIRECTION, 0, 0);
-        float *head = picture_with(&stage, &scene, SNOW_LIGHT_HEAD, 0, 0);
-        assert_memory_equal(told, automatic,
-                            PIXELS * PIXELS * 4 * sizeof *told);
-        assert_memory_equal(ahead, head, PIXELS * PIXELS * 4 * sizeof *ahead);
-        assert_true(difference(told, head) > 0.02);
-        free(told);
-        free(automatic);
-        free(ahead);
-        free(head);
-        model_free(&scene);
-        model_close(&stage);
-    }
-}
-
 /* Shear-warp rounds light to 15 bits for each slab. */
 #define ROUNDING 1e-3
 
-static void
-a_key_light_is_the_mean_of_a_distant_and_a_head_light(void **state) {
-    (void)state;
-    for (int n = 0; n < 12; n++) {
-        model_stage stage = model_open();
-        reference_scene scene = scene_of(n);
-        float *key = picture_with(&stage, &scene, SNOW_LIGHT_KEY, 0, 0);
-        float *head = picture_with(&stage, &scene, SNOW_LIGHT_HEAD, 0, 0);
-        float *mean =
-            picture_with(&stage, &scene, SNOW_LIGHT_DIRECTION, -25, 35);
-        for (int i = 0; i < PIXELS * PIXELS * 4; i++)
-            mean[i] = 0.65F * mean[i] + 0.35F * head[i];
-        double most = difference(key, mean);
-        if (!(most < ROUNDING))
-            fail_msg("scene %d: %g", n, most);
-        free(key);
-        free(head);
-        free(mean);
-        model_free(&scene);
-        model_close(&stage);
+/* Pictures of a scene with lights by name and by angles. */
+static void check_lights(model_stage *stage, int n) {
+    reference_scene scene = scene_of(n);
+    const snow_settings *settings = &scene.settings;
+    float *head = picture_with(stage, &scene, SNOW_LIGHT_HEAD, 40, 50);
+    float *side = picture_with(stage, &scene, SNOW_LIGHT_DIRECTION, -25, 35);
+    static const struct {
+        snow_light light;
+        double azimuth, elevation, of_side, of_head;
+    } lights[] = {
+        {SNOW_LIGHT_KEY, 40, 50, 0.65, 0.35},
+        {SNOW_LIGHT_AUTO, 0, 0, 0.65, 0.35},
+        {SNOW_LIGHT_AUTO, -25, 35, 1, 0},
+        {SNOW_LIGHT_DIRECTION, 0, 0, 0, 1},
+    };
+    assert_true(difference(head, side) > 0.02);
+    for (size_t i = 0; i < sizeof lights / sizeof *lights; i++) {
+        const bool mean = lights[i].of_side > 0 && lights[i].of_head > 0;
+        float wanted[PIXELS * PIXELS * 4];
+        for (int at = 0; at < PIXELS * PIXELS * 4; at++)
+            wanted[at] = (float)(lights[i].of_side * (double)side[at] +
+                                 lights[i].of_head * (double)head[at]);
+        float *picture = picture_with(stage, &scene, lights[i].light,
+                                      lights[i].azimuth, lights[i].elevation);
+        if (!(difference(picture, wanted) <= (mean ? ROUNDING : 0)))
+            fail_msg("scene %d, light %d at %g: off by %g", n,
+                     (int)settings->light, settings->light_azimuth,
+                     difference(picture, wanted));
+        free(picture);
     }
+    free(head);
+    free(side);
+    model_free(&scene);
+}
+
+/* Of a key light angles do not matter, and without angles light is one: 0.65
+ * from 25 degrees at the left and 35 above, and 0.35 from the viewer.  With
+ * angles it is from there; from 0 degrees it is a head light. */
+static void lights_have_names_and_angles(void **state) {
+    for (int n = 0; n < 12; n++)
+        check_lights(*state, n);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(without_angles_the_light_is_a_key_light),
-        cmocka_unit_test(angles_are_those_of_a_direction),
-        cmocka_unit_test(a_key_light_is_the_mean_of_a_distant_and_a_head_light),
+        MODEL_TEST(lights_have_names_and_angles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,65 +39,51 @@ static void frame_of(const char *side, double back[3], double up[3]) {
 }
 
 static void each_view_stands_where_its_name_says(void **state) {
-    (void)state;
-    snow_context *context = support_context();
+    const model_stage *stage = *state;
+    size_t count = 0, known = 0;
     for (size_t n = 0; n < NAMES; n++) {
         snow_view view = {.size = sizeof view};
         double back[3], up[3];
         frame_of(names[n].side, back, up);
-        assert_int_equal(snow_view_from_name(context, names[n].name, &view),
-                         SNOW_STATUS_OK);
+        assert_int_equal(
+            snow_view_from_name(stage->context, names[n].name, &view),
+            SNOW_STATUS_OK);
         for (int c = 0; c < 3; c++) {
             assert_near(view.back[c], back[c], 1e-15);
             assert_near(view.up[c], up[c], 1e-15);
         }
-        assert_int_equal(view.width, 512);
-        assert_int_equal(view.height, 512);
+        assert_true(view.width == 512 && view.height == 512);
         assert_true(view.azimuth == 0 && view.elevation == 0 &&
                     view.roll == 0 && view.zoom == 1 && view.fov == 0);
     }
-    snow_context_free(context);
-}
-
-static void every_view_has_its_name_listed(void **state) {
-    (void)state;
-    size_t count = 0, known = 0;
     for (; snow_view_name(count); count++)
         for (size_t n = 0; n < NAMES; n++)
             known += strcmp(snow_view_name(count), names[n].name) == 0;
-    assert_int_equal(count, NAMES);
-    assert_int_equal(known, NAMES);
+    assert_true(count == NAMES && known == NAMES);
 }
 
 static void an_unknown_view_is_refused(void **state) {
-    (void)state;
-    snow_context *context = support_context();
+    const model_stage *stage = *state;
     snow_view view = {.size = sizeof view, .width = 7};
-    assert_int_equal(snow_view_from_name(context, "above", &view),
+    assert_int_equal(snow_view_from_name(stage->context, "above", &view),
                      SNOW_STATUS_BAD_USAGE);
     assert_int_equal(view.width, 7);
-    assert_non_null(strstr(snow_context_message(context), "above"));
-    snow_context_free(context);
+    assert_non_null(strstr(snow_context_message(stage->context), "above"));
 }
 
 static void medical_volumes_are_seen_from_the_front(void **state) {
-    (void)state;
-    snow_context *context = support_context();
-    const unsigned char voxel = 0;
-    snow_volume_info info = {
-        .size = sizeof info, .dims = {1, 1, 1}, .type = SNOW_TYPE_UINT8};
+    const model_stage *stage = *state;
+    reference_scene scene = model_blank((int64_t[]){1, 1, 1}, 1);
     for (int medical = 0; medical < 2; medical++) {
-        snow_volume *volume = NULL;
         snow_view view = {.size = sizeof view};
-        info.medical = medical;
-        assert_int_equal(snow_volume_wrap(context, &info, &voxel, &volume),
-                         SNOW_STATUS_OK);
+        scene.info.medical = medical;
+        snow_volume *volume = model_volume(stage->context, &scene);
         snow_view_default(volume, &view);
         assert_true(view.back[1] == medical && view.back[2] == 1 - medical);
         assert_true(view.up[2] == medical && view.up[1] == 1 - medical);
         snow_volume_close(volume);
     }
-    snow_context_free(context);
+    model_free(&scene);
 }
 
 /* Sides and directions of a volume, and its default view. */
@@ -192,8 +178,7 @@ static reference_scene cube_scene(const double back[3], const double up[3]) {
 }
 
 static void what_is_up_is_at_the_top_and_nothing_is_mirrored(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     /* Neighbours of the middle towards +x, +y and +z, and the steps in the
      * picture (right, down) that they must be seen at. */
     static const struct {
@@ -211,83 +196,51 @@ static void what_is_up_is_at_the_top_and_nothing_is_mirrored(void **state) {
         for (int axis = 0; axis < 3; axis++) {
             snow_view view = {.size = sizeof view};
             assert_int_equal(
-                snow_view_from_name(stage.context, seen[n].name, &view),
+                snow_view_from_name(stage->context, seen[n].name, &view),
                 SNOW_STATUS_OK);
             reference_scene scene = cube_scene(view.back, view.up);
             double place[2], pitch = 9 * sqrt(3) / 90;
             int64_t at[3] = {4, 4, 4};
             at[axis] = 6;
-            place_of_voxel(&stage, &scene, at, place);
+            place_of_voxel(stage, &scene, at, place);
             assert_near(place[0], 45 + 2 * seen[n].right[axis] / pitch, 0.01);
             assert_near(place[1], 45 + 2 * seen[n].down[axis] / pitch, 0.01);
             model_free(&scene);
         }
-    model_close(&stage);
 }
 
-/* Where the corner voxel (8, 4, 6) is seen from +z after turns. */
-static void place_after(double azimuth, double elevation, double roll,
-                        double place[2]) {
-    model_stage stage = model_open();
+/* Where the voxel that is 4 to the right of the middle and 2 before it is seen
+ * from +z after turns, in voxels to the right and up.  After an azimuth of 90
+ * the camera is at +x, where right is -z; after an elevation of 90 at +y, where
+ * up is -z; what was at the right is at the top after a roll of 90; and turns
+ * follow each other: at +x, then up to +y, where the camera's up is -x. */
+static void turns_are_azimuth_then_elevation_then_roll(void **state) {
+    static const double half = 0.5, side = 0.86602540378443865;
+    const struct {
+        double azimuth, elevation, roll, right, up;
+    } turns[] = {
+        {90, 0, 0, -2, 0},   {30, 0, 0, 4 * side - 2 * half, 0},
+        {0, 90, 0, 4, -2},   {0, 30, 0, 4, -2 * half},
+        {0, 0, 90, 0, 4},    {0, 0, 30, 4 * side, 4 * half},
+        {90, 90, 0, -2, -4}, {90, 90, 90, 4, -2},
+    };
+    model_stage *stage = *state;
     reference_scene scene =
         cube_scene((double[]){0, 0, 1}, (double[]){0, 1, 0});
-    model_turn(&scene, azimuth, elevation, roll, 1);
-    place_of_voxel(&stage, &scene, (int64_t[]){8, 4, 6}, place);
-    /* In voxels from the middle, to the right and up. */
-    place[0] = (place[0] - 45) * 9 * sqrt(3) / 90;
-    place[1] = (45 - place[1]) * 9 * sqrt(3) / 90;
+    const double pitch = 9 * sqrt(3) / 90;
+    for (size_t n = 0; n < sizeof turns / sizeof *turns; n++) {
+        double place[2];
+        model_turn(&scene, turns[n].azimuth, turns[n].elevation, turns[n].roll,
+                   1);
+        place_of_voxel(stage, &scene, (int64_t[]){8, 4, 6}, place);
+        assert_near((place[0] - 45) * pitch, turns[n].right, 1e-2);
+        assert_near((45 - place[1]) * pitch, turns[n].up, 1e-2);
+    }
     model_free(&scene);
-    model_close(&stage);
-}
-
-static void azimuth_moves_the_camera_to_its_right(void **state) {
-    (void)state;
-    double place[2], angle = acos(-1.0) / 6;
-    place_after(90, 0, 0, place); /* from +x: right is -z */
-    assert_near(place[0], -2, 1e-3);
-    assert_near(place[1], 0, 1e-3);
-    place_after(30, 0, 0, place);
-    assert_near(place[0], 4 * cos(angle) - 2 * sin(angle), 1e-2);
-}
-
-static void elevation_moves_the_camera_up(void **state) {
-    (void)state;
-    double place[2], angle = acos(-1.0) / 6;
-    place_after(0, 90, 0, place); /* from +y: up is -z */
-    assert_near(place[0], 4, 1e-3);
-    assert_near(place[1], -2, 1e-3);
-    place_after(0, 30, 0, place);
-    assert_near(place[1], -2 * sin(angle), 1e-2);
-}
-
-static void roll_turns_the_camera_clockwise(void **state) {
-    (void)state;
-    double place[2], angle = acos(-1.0) / 6;
-    /* What was at the right is then at the top. */
-    place_after(0, 0, 90, place);
-    assert_near(place[0], 0, 1e-3);
-    assert_near(place[1], 4, 1e-3);
-    place_after(0, 0, 30, place);
-    assert_near(place[0], 4 * cos(angle), 1e-2);
-    assert_near(place[1], 4 * sin(angle), 1e-2);
-}
-
-static void turns_are_azimuth_then_elevation_then_roll(void **state) {
-    (void)state;
-    double place[2];
-    /* From +x; then up to +y, where the camera's up is -x; the voxel (4, 0, 2)
-     * from the middle is seen 2 to the left and 4 down; then rolled. */
-    place_after(90, 90, 0, place);
-    assert_near(place[0], -2, 1e-3);
-    assert_near(place[1], -4, 1e-3);
-    place_after(90, 90, 90, place);
-    assert_near(place[0], 4, 1e-3);
-    assert_near(place[1], -2, 1e-3);
 }
 
 static void corners_stay_in_the_picture_whatever_the_turn(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     uint64_t random = 11;
     reference_scene scene =
         cube_scene((double[]){0, 0, 1}, (double[]){0, 1, 0});
@@ -298,19 +251,17 @@ static void corners_stay_in_the_picture_whatever_the_turn(void **state) {
         model_turn(&scene, 360 * support_uniform(&random),
                    180 * support_uniform(&random) - 90,
                    360 * support_uniform(&random), 1);
-        place_of_voxel(&stage, &scene, (int64_t[]){8, 8, 8}, place);
+        place_of_voxel(stage, &scene, (int64_t[]){8, 8, 8}, place);
         double distance = hypot(place[0] - 45, place[1] - 45);
         assert_true(distance < radius + 0.05);
         farthest = fmax(farthest, distance);
     }
     assert_true(farthest > 0.95 * radius);
     model_free(&scene);
-    model_close(&stage);
 }
 
 static void the_matrix_carries_voxels_to_the_world(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     /* i runs along world z, j along -x, k along y, with spacings 1, 2, 3. */
     static const double matrix[4][4] = {
         {0, -2, 0, 10}, {0, 0, 3, 20}, {1, 0, 0, 30}, {0, 0, 0, 1}};
@@ -319,29 +270,23 @@ static void the_matrix_carries_voxels_to_the_world(void **state) {
     memcpy(scene.info.matrix, matrix, sizeof matrix);
     double place[2], pitch = 9 * sqrt(1 + 4 + 9) / 90;
     /* Seen from +y, where -x is right and +z up. */
-    place_of_voxel(&stage, &scene, (int64_t[]){4, 6, 4}, place);
+    place_of_voxel(stage, &scene, (int64_t[]){4, 6, 4}, place);
     assert_near(place[0], 45 + 2 * 2 / pitch, 0.05);
     assert_near(place[1], 45, 0.05);
-    place_of_voxel(&stage, &scene, (int64_t[]){7, 4, 8}, place);
+    place_of_voxel(stage, &scene, (int64_t[]){7, 4, 8}, place);
     assert_near(place[0], 45, 0.05);
     assert_near(place[1], 45 - 3 / pitch, 0.05);
     model_free(&scene);
-    model_close(&stage);
 }
 
+/* The smallest spacing is not the first one. */
 static void one_voxel_per_pixel_is_the_zoom_for_voxels(void **state) {
-    (void)state;
-    snow_context *context = support_context();
+    const model_stage *stage = *state;
     reference_scene scene = model_scene((int64_t[]){13, 7, 10}, SNOW_TYPE_UINT8,
                                         true, MODEL_ANISOTROPIC, 1);
-    snow_volume *volume = NULL;
     scene.info.matrix[0][0] = 1.1;
     scene.info.matrix[1][1] = 0.7;
-    assert_int_equal(
-        snow_volume_wrap(context, &scene.info, scene.voxels, &volume),
-        SNOW_STATUS_OK);
-    /* The smallest spacing is not the first one. */
-    assert_true(scene.info.matrix[1][1] < scene.info.matrix[0][0]);
+    snow_volume *volume = model_volume(stage->context, &scene);
     scene.view.zoom =
         snow_view_zoom_for_voxels(volume, scene.view.width, scene.view.height);
     reference_camera camera;
@@ -349,7 +294,6 @@ static void one_voxel_per_pixel_is_the_zoom_for_voxels(void **state) {
     assert_near(camera.pitch, 0.7, 1e-12);
     snow_volume_close(volume);
     model_free(&scene);
-    snow_context_free(context);
 }
 
 /* Checks the slice axis that a picture was made with. */
@@ -360,8 +304,7 @@ static void check_axis(const model_stage *stage, reference_scene *scene,
 }
 
 static void slices_are_taken_along_the_most_parallel_normal(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     uint64_t random = 9;
     for (int n = 0; n < 200; n++) {
         reference_scene scene =
@@ -372,83 +315,82 @@ static void slices_are_taken_along_the_most_parallel_normal(void **state) {
         model_turn(&scene, 360 * support_uniform(&random),
                    180 * support_uniform(&random) - 90, 0, 1);
         reference_camera_of(&scene, &camera);
-        check_axis(&stage, &scene, reference_slice_axis(&scene, &camera));
+        check_axis(stage, &scene, reference_slice_axis(&scene, &camera));
         model_free(&scene);
     }
-    model_close(&stage);
 }
 
 static void of_equally_parallel_axes_the_last_is_taken(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     reference_scene scene = model_blank((int64_t[]){5, 4, 3}, 0.5);
     for (int quarter = 0; quarter < 4; quarter++) {
         model_turn(&scene, 45 + 90 * quarter, 0, 0, 1); /* x and z */
-        check_axis(&stage, &scene, 2);
+        check_axis(stage, &scene, 2);
         model_turn(&scene, 0, 45 + 90 * quarter, 0, 1); /* y and z */
-        check_axis(&stage, &scene, 2);
+        check_axis(stage, &scene, 2);
         model_turn(&scene, 90, 45 + 90 * quarter, 0, 1); /* x and y */
-        check_axis(&stage, &scene, 1);
+        check_axis(stage, &scene, 1);
     }
     double back[3], up[3];
     frame_of("+x+y+z", back, up);
     model_look(&scene, back, up);
     model_turn(&scene, 0, 0, 0, 1);
-    check_axis(&stage, &scene, 2);
+    check_axis(stage, &scene, 2);
     model_free(&scene);
-    model_close(&stage);
 }
 
 static void settings_and_views_out_of_range_are_refused(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    static const double nan = (double)NAN, infinity = (double)INFINITY;
+    model_stage *stage = *state;
     reference_scene scene = model_blank((int64_t[]){2, 2, 2}, 0.5);
     const snow_settings fine = scene.settings;
     const snow_view view = scene.view;
-    snow_settings bad[15];
-    snow_view blind[8];
-    for (int i = 0; i < 15; i++)
-        bad[i] = fine;
-    for (int i = 0; i < 8; i++)
-        blind[i] = view;
-    bad[0].threshold = 255.5, bad[1].threshold = -1;
-    bad[2].threshold = (double)NAN, bad[3].footprint = 1;
-    bad[4].footprint = 10, bad[5].ambient = 1.5, bad[6].diffuse = -0.1;
-    bad[7].specular = (double)INFINITY, bad[8].shininess = -1;
-    bad[9].opacity_length = -1, bad[10].light_azimuth = (double)NAN;
-    bad[11].method = (snow_method)9, bad[12].kernel = (snow_kernel)5;
-    bad[13].encoding = (snow_encoding)4;
-    bad[14].light = (snow_light)4;
-    blind[0].width = 0, blind[1].height = 32769, blind[2].zoom = 0;
-    blind[3].zoom = (double)NAN, blind[4].roll = (double)INFINITY;
-    blind[5].back[0] = (double)NAN, blind[6].up[1] = 2;
-    memcpy(blind[7].up, blind[7].back, sizeof blind[7].up);
-    for (int i = 0; i < 15 + 8; i++) {
-        snow_volume *volume = NULL;
-        snow_transfer *transfer = NULL;
-        snow_image *image = NULL;
-        assert_int_equal(
-            snow_volume_wrap(stage.context, &scene.info, scene.voxels, &volume),
-            SNOW_STATUS_OK);
-        assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
-                         SNOW_STATUS_OK);
-        assert_int_equal(snow_frame_render(stage.frame, volume, transfer,
-                                           i < 15 ? &view : &blind[i - 15],
-                                           i < 15 ? &bad[i] : &fine, &image),
-                         SNOW_STATUS_BAD_USAGE);
-        assert_null(image);
-        snow_transfer_free(transfer);
-        snow_volume_close(volume);
-    }
+#define REFUSED(field, value, words)     \
+    scene.field = value;                 \
+    model_refused(stage, &scene, words); \
+    scene.settings = fine, scene.view = view
+    REFUSED(settings.threshold, 255.5, "threshold");
+    REFUSED(settings.threshold, -1, "threshold");
+    REFUSED(settings.threshold, nan, "threshold");
+    REFUSED(settings.footprint, 1, "");
+    REFUSED(settings.footprint, 10, "");
+    REFUSED(settings.ambient, 1.5, "");
+    REFUSED(settings.diffuse, -0.1, "");
+    REFUSED(settings.specular, infinity, "");
+    REFUSED(settings.shininess, -1, "");
+    REFUSED(settings.opacity_length, -1, "");
+    REFUSED(settings.light_azimuth, nan, "");
+    REFUSED(settings.depth_darkening, -0.1, "depth darkening");
+    REFUSED(settings.depth_darkening, 1.1, "depth darkening");
+    REFUSED(settings.depth_darkening, nan, "depth darkening");
+    REFUSED(settings.occlusion, 1.1, "occlusion");
+    REFUSED(settings.method, (snow_method)9, "");
+    REFUSED(settings.kernel, (snow_kernel)5, "");
+    REFUSED(settings.encoding, (snow_encoding)4, "");
+    REFUSED(settings.light, (snow_light)4, "");
+    REFUSED(view.width, 0, "");
+    REFUSED(view.height, 32769, "");
+    REFUSED(view.zoom, 0, "zoom");
+    REFUSED(view.zoom, nan, "zoom");
+    REFUSED(view.roll, infinity, "");
+    REFUSED(view.back[0], nan, "");
+    REFUSED(view.up[1], 2, "");
+    REFUSED(view.up[1], 0, ""); /* no up at all */
+    REFUSED(view.fov, -1, "field of view");
+    REFUSED(view.fov, 1e-9, "field of view");
+    REFUSED(view.fov, 121, "field of view");
+    REFUSED(view.fov, nan, "field of view");
+    REFUSED(view.fov, infinity, "field of view");
+#undef REFUSED
+    memcpy(scene.view.up, scene.view.back, sizeof scene.view.up);
+    model_refused(stage, &scene, "");
     model_free(&scene);
-    model_close(&stage);
 }
 
 /* A record of an older header ends before the light (newer ones: test_api.c).
  */
 static void
 settings_of_an_older_version_are_read_as_far_as_they_reach(void **state) {
-    (void)state;
     snow_settings older;
     memset(&older, 7, sizeof older);
     size_t known = offsetof(snow_settings, light_azimuth);
@@ -456,27 +398,25 @@ settings_of_an_older_version_are_read_as_far_as_they_reach(void **state) {
     const unsigned char *bytes = (const unsigned char *)&older;
     for (size_t i = known; i < sizeof older; i++)
         assert_int_equal(bytes[i], 7);
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     reference_scene scene = model_scene((int64_t[]){9, 8, 7}, SNOW_TYPE_UINT8,
                                         true, MODEL_PLAIN, 1);
     scene.settings.light = SNOW_LIGHT_AUTO; /* the initialiser's */
-    float *plain = model_picture(&stage, &scene);
+    float *plain = model_picture(stage, &scene);
     older.method = SNOW_METHOD_FOOTPRINT;
     memcpy(&scene.settings, &older, sizeof scene.settings);
-    float *picture = model_picture(&stage, &scene);
+    float *picture = model_picture(stage, &scene);
     assert_memory_equal(picture, plain, 64 * 48 * 4 * sizeof *plain);
     free(picture);
     free(plain);
     model_free(&scene);
-    model_close(&stage);
 }
 
 /* Magnified without end the picture is its middle; diminished without end it
  * has next to nothing, at no cost.  Tables are not read past their ends: the
  * sanitizers see that. */
 static void any_zoom_is_safe_and_quick(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     reference_scene scene = model_blank((int64_t[]){16, 16, 16}, 0.5);
     float *voxels = model_voxels(&scene);
     for (int i = 0; i < 16 * 16 * 16; i++)
@@ -487,7 +427,7 @@ static void any_zoom_is_safe_and_quick(void **state) {
             scene.settings.kernel = (snow_kernel)kernel;
             scene.settings.shade = SNOW_SHADE_NONE;
             model_turn(&scene, 30, 20, 10, pow(10, exponent));
-            snow_image *image = model_image(&stage, &scene);
+            snow_image *image = model_image(stage, &scene);
             int channels = snow_image_channels(image);
             const float *pixels = snow_image_pixels(image);
             for (int i = 0; i < 16 * 16; i++) {
@@ -500,31 +440,25 @@ static void any_zoom_is_safe_and_quick(void **state) {
             snow_image_free(image);
         }
     model_free(&scene);
-    model_close(&stage);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_view_stands_where_its_name_says),
-        cmocka_unit_test(every_view_has_its_name_listed),
-        cmocka_unit_test(an_unknown_view_is_refused),
-        cmocka_unit_test(medical_volumes_are_seen_from_the_front),
+        MODEL_TEST(each_view_stands_where_its_name_says),
+        MODEL_TEST(an_unknown_view_is_refused),
+        MODEL_TEST(medical_volumes_are_seen_from_the_front),
         cmocka_unit_test(a_thin_volume_is_shown_from_its_face),
         cmocka_unit_test(names_of_planes_are_sides_of_the_volumes_world),
-        cmocka_unit_test(what_is_up_is_at_the_top_and_nothing_is_mirrored),
-        cmocka_unit_test(azimuth_moves_the_camera_to_its_right),
-        cmocka_unit_test(elevation_moves_the_camera_up),
-        cmocka_unit_test(roll_turns_the_camera_clockwise),
-        cmocka_unit_test(turns_are_azimuth_then_elevation_then_roll),
-        cmocka_unit_test(corners_stay_in_the_picture_whatever_the_turn),
-        cmocka_unit_test(the_matrix_carries_voxels_to_the_world),
-        cmocka_unit_test(one_voxel_per_pixel_is_the_zoom_for_voxels),
-        cmocka_unit_test(slices_are_taken_along_the_most_parallel_normal),
-        cmocka_unit_test(of_equally_parallel_axes_the_last_is_taken),
-        cmocka_unit_test(any_zoom_is_safe_and_quick),
-        cmocka_unit_test(
-            settings_of_an_older_version_are_read_as_far_as_they_reach),
-        cmocka_unit_test(settings_and_views_out_of_range_are_refused),
+        MODEL_TEST(what_is_up_is_at_the_top_and_nothing_is_mirrored),
+        MODEL_TEST(turns_are_azimuth_then_elevation_then_roll),
+        MODEL_TEST(corners_stay_in_the_picture_whatever_the_turn),
+        MODEL_TEST(the_matrix_carries_voxels_to_the_world),
+        MODEL_TEST(one_voxel_per_pixel_is_the_zoom_for_voxels),
+        MODEL_TEST(slices_are_taken_along_the_most_parallel_normal),
+        MODEL_TEST(of_equally_parallel_axes_the_last_is_taken),
+        MODEL_TEST(any_zoom_is_safe_and_quick),
+        MODEL_TEST(settings_of_an_older_version_are_read_as_far_as_they_reach),
+        MODEL_TEST(settings_and_views_out_of_range_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -127,11 +127,10 @@ static bool check_sides(const model_stage *stage, reference_scene *scene) {
 }
 
 static void random_voxels_of_every_density_and_width(void **state) {
-    (void)state;
     static const double densities[] = {0, 1e-4, 0.01, 0.1, 0.5, 0.99, 1};
     static const int64_t widths[] = {1,  7,   8,   9,   63, 64,
                                      65, 255, 256, 257, 300};
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     for (size_t d = 0; d < sizeof densities / sizeof *densities; d++)
         for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
             if (!support_takes(w + d, 4))
@@ -145,21 +144,19 @@ static void random_voxels_of_every_density_and_width(void **state) {
                 if (support_uniform(&random) < densities[d])
                     model_voxels(&scene)[n] =
                         (float)(0.5 + 1.5 * support_uniform(&random));
-            bool seen = check_sides(&stage, &scene);
+            bool seen = check_sides(stage, &scene);
             if (densities[d] == 0)
                 assert_false(seen);
             if (densities[d] == 1)
                 assert_true(seen);
             model_free(&scene);
         }
-    model_close(&stage);
 }
 
 static void runs_around_the_longest_that_a_byte_holds(void **state) {
-    (void)state;
     static const int64_t lengths[] = {1,   2,   254, 255, 256, 257,
                                       509, 510, 511, 512, 765, 766};
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     for (size_t a = 0; a < sizeof lengths / sizeof *lengths; a++)
         for (size_t b = 0; b < sizeof lengths / sizeof *lengths; b++) {
             if (!support_takes(b + a, 11))
@@ -175,63 +172,55 @@ static void runs_around_the_longest_that_a_byte_holds(void **state) {
                     bool early = phase < lengths[a];
                     model_voxels(&scene)[at++] = early == (row % 2 == 0);
                 }
-            assert_true(check_ways(&stage, &scene));
+            assert_true(check_ways(stage, &scene));
             model_look(&scene, sides[1].back, sides[1].up);
-            assert_true(check_ways(&stage, &scene));
+            assert_true(check_ways(stage, &scene));
             model_free(&scene);
         }
-    model_close(&stage);
 }
 
 static void runs_that_pass_from_row_to_row(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     for (int64_t length = 240; length <= 520; length += 5) {
         if (!support_takes((size_t)length / 5, 7))
             continue;
         reference_scene scene = small_scene((int64_t[]){50, 30, 2}, false);
         for (size_t n = 0; n < voxel_count(&scene); n++)
             model_voxels(&scene)[n] = (int64_t)n / length % 2 == 0;
-        assert_true(check_sides(&stage, &scene));
+        assert_true(check_sides(stage, &scene));
         model_free(&scene);
     }
-    model_close(&stage);
 }
 
 static void slices_larger_than_what_is_classified_at_once(void **state) {
-    (void)state;
     static const int64_t large[][3] = {{210, 150, 3}, {17000, 3, 2}};
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     uint64_t random = 24;
     for (int n = 0; n < 2; n++) {
         reference_scene scene = small_scene(large[n], n == 0);
         scene.settings.kernel = SNOW_KERNEL_BOX;
         for (size_t at = 0; at < voxel_count(&scene); at++)
             model_voxels(&scene)[at] = support_uniform(&random) < 0.2;
-        assert_true(check_sides(&stage, &scene));
+        assert_true(check_sides(stage, &scene));
         model_free(&scene);
     }
-    model_close(&stage);
 }
 
 static void one_voxel_anywhere(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     reference_scene scene = small_scene((int64_t[]){65, 3, 3}, true);
     for (size_t n = 0; n < voxel_count(&scene); n += 4) {
         if (!support_takes(n / 4, 13))
             continue;
         model_voxels(&scene)[n] = 1;
-        assert_true(check_sides(&stage, &scene));
+        assert_true(check_sides(stage, &scene));
         model_voxels(&scene)[n] = 0;
     }
     model_free(&scene);
-    model_close(&stage);
 }
 
 static void every_kernel_footprint_threshold_and_view(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     for (int n = 0; n < 4 * 8 * 6; n++) {
         if (!support_takes((size_t)n, 13))
             continue;
@@ -250,23 +239,21 @@ static void every_kernel_footprint_threshold_and_view(void **state) {
         double turn = straight ? 0 : 90 * support_uniform(&random);
         model_look(&scene, sides[n % 3].back, sides[n % 3].up);
         model_turn(&scene, turn, -turn / 3, turn / 2, 1 + turn / 45);
-        assert_true(check_ways(&stage, &scene));
+        assert_true(check_ways(stage, &scene));
         model_free(&scene);
     }
-    model_close(&stage);
 }
 
 static void a_frame_gives_the_same_bits_again_and_a_new_one_too(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     reference_scene scene = model_scene(
         (int64_t[]){17, 12, 14}, SNOW_TYPE_UINT8, false, MODEL_OBLIQUE, 5);
     reference_scene other = model_scene(
         (int64_t[]){30, 22, 9}, SNOW_TYPE_FLOAT64, true, MODEL_SHEARED, 6);
     model_turn(&scene, 40, 10, 5, 1);
-    float *first = model_picture(&stage, &scene);
-    free(model_picture(&stage, &other));
-    float *again = model_picture(&stage, &scene);
+    float *first = model_picture(stage, &scene);
+    free(model_picture(stage, &other));
+    float *again = model_picture(stage, &scene);
     model_stage fresh = model_open();
     float *anew = model_picture(&fresh, &scene);
     assert_memory_equal(first, again, 64 * 48 * 4 * sizeof *first);
@@ -277,12 +264,10 @@ static void a_frame_gives_the_same_bits_again_and_a_new_one_too(void **state) {
     model_free(&scene);
     model_free(&other);
     model_close(&fresh);
-    model_close(&stage);
 }
 
 static void figures_count_the_interesting_voxels(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     reference_scene scene = small_scene((int64_t[]){19, 11, 7}, false);
     uint64_t random = 23;
     int64_t interesting = 0;
@@ -292,8 +277,8 @@ static void figures_count_the_interesting_voxels(void **state) {
             interesting++;
         }
     for (size_t w = 0; w < WAYS; w++) {
-        free(picture_by(&stage, &scene, ways[w]));
-        const snow_stats *stats = snow_frame_stats(stage.frame);
+        free(picture_by(stage, &scene, ways[w]));
+        const snow_stats *stats = snow_frame_stats(stage->frame);
         assert_int_equal(stats->voxels, 19 * 11 * 7);
         assert_int_equal(stats->interesting, interesting);
         assert_near(stats->sparse_ratio,
@@ -306,24 +291,22 @@ static void figures_count_the_interesting_voxels(void **state) {
         }
     }
     model_free(&scene);
-    model_close(&stage);
 }
 
 /* The baseline of Tables 2 and 3 works on every voxel: were it to skip those
  * below the threshold it would be the tested method. */
 static void original_splatting_knows_no_threshold(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     reference_scene scene = small_scene((int64_t[]){6, 5, 4}, false);
     size_t floats = (size_t)scene.view.width * (size_t)scene.view.height * 4;
     for (size_t n = 0; n < voxel_count(&scene); n++)
         model_voxels(&scene)[n] = 1; /* opacity 0.4, 102 of 255 */
     const way original = {SNOW_METHOD_ORIGINAL, SNOW_ENCODING_AUTO};
     const way tested = {SNOW_METHOD_TESTED, SNOW_ENCODING_AUTO};
-    float *expected = picture_by(&stage, &scene, original);
+    float *expected = picture_by(stage, &scene, original);
     scene.settings.threshold = 150;
-    float *whole = picture_by(&stage, &scene, original);
-    float *empty = picture_by(&stage, &scene, tested);
+    float *whole = picture_by(stage, &scene, original);
+    float *empty = picture_by(stage, &scene, tested);
     assert_memory_equal(whole, expected, floats * sizeof *whole);
     for (size_t n = 0; n < floats; n++)
         assert_true(empty[n] == 0);
@@ -331,20 +314,19 @@ static void original_splatting_knows_no_threshold(void **state) {
     free(whole);
     free(empty);
     model_free(&scene);
-    model_close(&stage);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(original_splatting_knows_no_threshold),
-        cmocka_unit_test(random_voxels_of_every_density_and_width),
-        cmocka_unit_test(runs_around_the_longest_that_a_byte_holds),
-        cmocka_unit_test(runs_that_pass_from_row_to_row),
-        cmocka_unit_test(slices_larger_than_what_is_classified_at_once),
-        cmocka_unit_test(one_voxel_anywhere),
-        cmocka_unit_test(every_kernel_footprint_threshold_and_view),
-        cmocka_unit_test(a_frame_gives_the_same_bits_again_and_a_new_one_too),
-        cmocka_unit_test(figures_count_the_interesting_voxels),
+        MODEL_TEST(original_splatting_knows_no_threshold),
+        MODEL_TEST(random_voxels_of_every_density_and_width),
+        MODEL_TEST(runs_around_the_longest_that_a_byte_holds),
+        MODEL_TEST(runs_that_pass_from_row_to_row),
+        MODEL_TEST(slices_larger_than_what_is_classified_at_once),
+        MODEL_TEST(one_voxel_anywhere),
+        MODEL_TEST(every_kernel_footprint_threshold_and_view),
+        MODEL_TEST(a_frame_gives_the_same_bits_again_and_a_new_one_too),
+        MODEL_TEST(figures_count_the_interesting_voxels),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

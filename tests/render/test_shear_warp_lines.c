@@ -111,7 +111,7 @@ static void lines_have_the_bits_of_the_whole(void **state) {
         check_lines(&used, n, &s, n % 2);
         check_lines(&fresh, n, &s, true);
         model_close(&fresh);
-        free((void *)(uintptr_t)s.voxels);
+        model_free(&s);
     }
     model_close(&used);
 }
@@ -163,7 +163,7 @@ static void check_turns(int n, bool frozen) {
     for (int i = 0; i < 2; i++) {
         snow_image_free(whole[i]);
         snow_volume_close(volumes[i]);
-        free((void *)(uintptr_t)scenes[i].voxels);
+        model_free(&scenes[i]);
     }
     model_close(&stage);
 }
@@ -230,7 +230,7 @@ static void lines_take_their_tiles(void **state) {
         assert_true(all > 40);
         assert_true(together >= all);
         assert_true(together < 2 * all);
-        free((void *)(uintptr_t)s.voxels);
+        model_free(&s);
         model_close(&stage);
     }
 }

@@ -70,8 +70,7 @@ static void check(const model_stage *stage, int n, reference_scene *s) {
 }
 
 static void rows_in_place_give_the_bits_of_copies(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     for (int n = 0; n < 216; n++) {
         if (!support_takes((size_t)n, 19))
             continue;
@@ -79,16 +78,15 @@ static void rows_in_place_give_the_bits_of_copies(void **state) {
         for (snow_isa isa = SNOW_ISA_SCALAR; isa <= SNOW_ISA_AVX512; isa++) {
             s.settings.isa = isa;
             if (snow_isa_runs(isa))
-                check(&stage, n, &s);
+                check(stage, n, &s);
         }
-        free((void *)(uintptr_t)s.voxels);
+        model_free(&s);
     }
-    model_close(&stage);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_in_place_give_the_bits_of_copies),
+        MODEL_TEST(rows_in_place_give_the_bits_of_copies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

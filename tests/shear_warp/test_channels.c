@@ -63,8 +63,7 @@ static void check_orders(const model_stage *stage, const reference_scene *s) {
 }
 
 static void channels_add_up_in_any_order(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     for (int n = 0; n < NOISY_SCENES; n += 13 * (int)support_stride(9)) {
         warp_scene scene = noisy_scene(n);
         reference_scene *s = &scene.base;
@@ -73,17 +72,16 @@ static void channels_add_up_in_any_order(void **state) {
         s->color_count = 2;
         s->opacities = few; /* of steep ones colours place the table's nodes */
         s->opacity_count = 4;
-        check_orders(&stage, s);
+        check_orders(stage, s);
         s->settings.method = SNOW_METHOD_RAYCAST;
-        check_orders(&stage, s);
+        check_orders(stage, s);
         warp_scene_free(&scene);
     }
-    model_close(&stage);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(channels_add_up_in_any_order),
+        MODEL_TEST(channels_add_up_in_any_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

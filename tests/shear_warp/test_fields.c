@@ -192,13 +192,12 @@ static warp_scene labelled(double opacity) {
 }
 
 static void labels_do_not_mix(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     warp_scene scene = labelled(0.2);
     scene.base.view.zoom = 3;
     for (int n = 0; n < QUALITIES; n++) {
         scene.base.settings.quality = qualities[n];
-        float *picture = warp_scene_render(&stage, &scene), most = 0;
+        float *picture = warp_scene_render(stage, &scene), most = 0;
         for (int p = 0; p < 49 * 41; p++)
             most = fmaxf(most, picture[4 * p + 1]);
         assert_true(most == 0); /* no label between the two */
@@ -208,7 +207,6 @@ static void labels_do_not_mix(void **state) {
         free(picture);
     }
     model_free(&scene.base);
-    model_close(&stage);
 }
 
 static void labels_are_lit_by_their_membership(void **state) {
@@ -317,7 +315,7 @@ int main(void) {
         cmocka_unit_test(cut_values_are_those_of_the_uncut_field),
         cmocka_unit_test(a_single_slice_is_one_spacing_thick),
         cmocka_unit_test(a_spline_lifts_a_parabola_by_a_third),
-        cmocka_unit_test(labels_do_not_mix),
+        MODEL_TEST(labels_do_not_mix),
         cmocka_unit_test(labels_are_lit_by_their_membership),
         cmocka_unit_test(gradient_opacity_does_not_depend_on_slabs),
         cmocka_unit_test(gradient_opacity_is_of_the_data_under_logarithms),

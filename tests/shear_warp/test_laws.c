@@ -321,19 +321,16 @@ static void check_order(const model_stage *stage, int n) {
 }
 
 static void data_turned_and_reordered_give_the_same_picture(void **state) {
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     for (int n = 1; n < 144; n += (int)support_stride(29))
-        check_order(&stage, n);
-    model_close(&stage);
+        check_order(stage, n);
 }
 
 /* --- a sphere ------------------------------------------------------------- */
 
 static void a_hard_sphere_has_its_radius(void **state) {
-    (void)state;
     static const snow_opacity_point edge[] = {{128, 0}, {128, 1}};
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     warp_scene made = formula_scene((int64_t[]){24, 24, 24}, ball, 0);
     for (int n = 0; n < QUALITIES; n++) {
         warp_scene scene = made;
@@ -344,14 +341,13 @@ static void a_hard_sphere_has_its_radius(void **state) {
         scene.base.settings.quality = qualities[n];
         scene.base.view.width = scene.base.view.height = 160;
         reference_camera_of(&scene.base, &camera);
-        float *picture = warp_scene_render(&stage, &scene);
+        float *picture = warp_scene_render(stage, &scene);
         for (int p = 0; p < 160 * 160; p++)
             area += (double)picture[4 * p + 3];
         assert_near(sqrt(area / acos(-1.0)) * camera.pitch, 8, 0.02);
         free(picture);
     }
     model_free(&made.base);
-    model_close(&stage);
 }
 
 int main(void) {
@@ -359,8 +355,8 @@ int main(void) {
         cmocka_unit_test(a_uniform_block_has_the_opacity_of_its_chord),
         cmocka_unit_test(projections_of_a_linear_field_are_exact),
         cmocka_unit_test(a_plane_is_lit_as_phong_says),
-        cmocka_unit_test(data_turned_and_reordered_give_the_same_picture),
-        cmocka_unit_test(a_hard_sphere_has_its_radius),
+        MODEL_TEST(data_turned_and_reordered_give_the_same_picture),
+        MODEL_TEST(a_hard_sphere_has_its_radius),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -262,24 +262,22 @@ static void nothing_changes_a_bit(void **state) {
         {"layers", layered, 10},
         {"channels", mixed, 10},
     };
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     for (size_t k = 0; k < COUNT(kinds); k++) {
         const int count = (int)support_sweep(kinds[k].count, 1);
         for (int i = 0; i < count; i++) {
             int n = (int)((support_seed() * 7 + k * 11 + (uint64_t)i * 37) %
                           NOISY_SCENES);
             warp_scene scene = kinds[k].make(n);
-            check(&stage, kinds[k].name, n, &scene);
+            check(stage, kinds[k].name, n, &scene);
             free_scene(&scene);
         }
     }
-    model_close(&stage);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_changes_a_bit),
+        MODEL_TEST(nothing_changes_a_bit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

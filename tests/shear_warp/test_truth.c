@@ -291,12 +291,11 @@ static closeness measure_kind(const model_stage *stage, const struct kind *kind,
 }
 
 static void smooth_fields_are_near_the_truth(void **state) {
-    (void)state;
     const uint64_t seed = support_seed() % SCENES;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     for (size_t n = seed % support_stride(5); n < COUNT(kinds);
          n += support_stride(5)) {
-        closeness found = measure_kind(&stage, &kinds[n], seed);
+        closeness found = measure_kind(stage, &kinds[n], seed);
         print_message("%-24s %5.1f dB, at most %.4f off\n", kinds[n].name,
                       found.decibels, found.worst);
         assert_true(found.pixels > 50);
@@ -305,14 +304,12 @@ static void smooth_fields_are_near_the_truth(void **state) {
             fail_msg("%s, scene %d: %.2f dB, a pixel is off by %.4f",
                      kinds[n].name, (int)seed, found.decibels, found.worst);
     }
-    model_close(&stage);
 }
 
 static void each_quality_is_nearer_than_the_one_below(void **state) {
-    (void)state;
     uint64_t random = 7 + 2 * (support_seed() % SCENES);
     double before = 0;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     for (int n = 0; n < 8; n++)
         support_random(&random);
     warp_scene scene =
@@ -321,18 +318,17 @@ static void each_quality_is_nearer_than_the_one_below(void **state) {
         SNOW_QUALITY_DRAFT, SNOW_QUALITY_NORMAL, SNOW_QUALITY_HIGH};
     for (int n = 0; n < 3; n++) {
         scene.base.settings.quality = rising[n];
-        closeness found = closeness_of(&stage, &scene);
+        closeness found = closeness_of(stage, &scene);
         assert_true(found.decibels > before);
         before = found.decibels;
     }
     warp_scene_free(&scene);
-    model_close(&stage);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(smooth_fields_are_near_the_truth),
-        cmocka_unit_test(each_quality_is_nearer_than_the_one_below),
+        MODEL_TEST(smooth_fields_are_near_the_truth),
+        MODEL_TEST(each_quality_is_nearer_than_the_one_below),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

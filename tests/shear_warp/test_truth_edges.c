@@ -28,7 +28,6 @@ static warp_scene ball_scene(void) {
                                              {200, 0.4, 0.6, 1}};
     static const snow_opacity_point ramp[] = {{110, 0}, {200, 0.3}};
     warp_scene scene = formula_scene(dims, soft_ball, 1);
-    free((void *)(uintptr_t)scene.base.opacities);
     scene.base.opacities = ramp;
     scene.base.opacity_count = COUNT(ramp);
     scene.base.colors = tints;
@@ -247,11 +246,10 @@ static void edges_are_as_near_the_truth_as_they_were(void **state) {
         {"noise of words", noise_of_words, 31.72},
         {"noise, steep look", noise_with_a_steep_look, 31.75},
     };
-    (void)state;
-    model_stage stage = model_open();
+    model_stage *stage = *state;
     for (size_t n = 0; n < COUNT(scenes); n += support_stride(3)) {
         warp_scene scene = scenes[n].make();
-        closeness found = closeness_of(&stage, &scene);
+        closeness found = closeness_of(stage, &scene);
         print_message("%-24s %5.2f dB\n", scenes[n].name, found.decibels);
         assert_true(found.pixels > 100);
         if (!(found.decibels >= scenes[n].decibels - SLACK))
@@ -259,12 +257,11 @@ static void edges_are_as_near_the_truth_as_they_were(void **state) {
                      scenes[n].decibels);
         warp_scene_free(&scene);
     }
-    model_close(&stage);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(edges_are_as_near_the_truth_as_they_were),
+        MODEL_TEST(edges_are_as_near_the_truth_as_they_were),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

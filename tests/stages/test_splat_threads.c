@@ -122,7 +122,7 @@ static void a_second_picture_takes_no_memory_but_its_own(void **state) {
     snow_allocator functions = {allocate_counted, release, &count};
     uint64_t random = 34;
     for (int n = 0; n < 4 * (int)COUNT(ways); n++) {
-        model_stage stage;
+        model_stage stage = {0};
         assert_int_equal(snow_context_new(&functions, &stage.context),
                          SNOW_STATUS_OK);
         assert_int_equal(snow_frame_new(stage.context, &stage.frame),
