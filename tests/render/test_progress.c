@@ -29,11 +29,19 @@ double __wrap_snow_seconds(void) {
     return now += tick;
 }
 
-static int set_clock(void **state) {
-    (void)state;
+/* Each test has a clock that begins anew, and a context. */
+static int begin(void **state) {
     caller = pthread_self();
     now = 0;
     tick = 0.03;
+    *state = support_context();
+    return 0;
+}
+
+static int end(void **state) {
+    snow_context *context = *state;
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
     return 0;
 }
 
@@ -87,114 +95,134 @@ static int check_stage(const listener *l, snow_stage stage) {
     return calls;
 }
 
-/* No other stage was reported, and this one so often at least. */
-static void check_alone(const listener *l, snow_stage stage, int least) {
-    check_rate(l);
-    assert_true(l->calls >= least);
-    assert_int_equal(check_stage(l, stage), l->calls);
-}
-
-/* --- volumes -------------------------------------------------------------- */
+/* --- work of one stage ---------------------------------------------------- */
 
 #define SIDE 96
 
-static const char *write_volume(const char *folder, const char *name) {
-    const char *path = support_folder_path(folder, name);
-    snow_context *context = support_context();
+static snow_volume *phantom(snow_context *context, const char *name,
+                            int64_t side) {
     snow_volume *volume;
-    assert_int_equal(snow_volume_open_phantom(
-                         context, "turbulence",
-                         (const int64_t[3]){SIDE, SIDE, SIDE}, 0, &volume),
-                     SNOW_STATUS_OK);
-    assert_int_equal(snow_volume_save(volume, path, true), SNOW_STATUS_OK);
-    snow_volume_close(volume);
-    snow_context_free(context);
-    return path;
-}
-
-static void a_phantom_is_reported_while_it_is_made(void **state) {
-    (void)state;
-    snow_context *context = support_context();
-    snow_volume *volume;
-    listener l;
-    listen_to(context, &l, 0);
-    assert_int_equal(snow_volume_open_phantom(context, "turbulence",
-                                              (const int64_t[3]){64, 64, 64}, 0,
+    assert_int_equal(snow_volume_open_phantom(context, name,
+                                              (int64_t[3]){side, side, side}, 0,
                                               &volume),
                      SNOW_STATUS_OK);
-    check_alone(&l, SNOW_STAGE_READ, 2);
-    assert_true(l.fractions[0] < 1);
-    snow_volume_close(volume);
-    assert_int_equal(snow_context_bytes(context), 0);
-    snow_context_free(context);
+    return volume;
 }
 
-static void reading_is_reported_and_can_be_stopped(void **state) {
-    static const char *const names[] = {"v.nrrd", "v.nii.gz", "v.mha",
-                                        "v.raw.gz"};
-    char folder[SUPPORT_FOLDER_BYTES];
-    (void)state;
-    support_folder_make(folder);
-    for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
-        const char *path = write_volume(folder, names[n]);
-        snow_context *context = support_context();
-        snow_volume_options options = {.size = sizeof options};
-        snow_volume *volume = NULL;
-        listener l;
-        if (n == 3) {
-            options.type = SNOW_TYPE_FLOAT32;
-            for (int axis = 0; axis < 3; axis++)
-                options.dims[axis] = SIDE;
-        }
-        listen_to(context, &l, 0);
-        assert_int_equal(snow_volume_open(context, path, &options, &volume),
-                         SNOW_STATUS_OK);
+/* What is done, with what was there before. */
+typedef struct work {
+    snow_context *context;
+    snow_volume *volume;
+    snow_image *image;
+    const char *path;
+} work;
+
+typedef snow_status work_fn(work *w);
+
+static snow_status make_phantom(work *w) {
+    snow_volume *made = NULL;
+    snow_status status = snow_volume_open_phantom(
+        w->context, "turbulence", (int64_t[3]){64, 64, 64}, 0, &made);
+    snow_volume_close(made);
+    return status;
+}
+
+static snow_status open_file(work *w) {
+    snow_volume_options options = {.size = sizeof options};
+    snow_volume *opened = NULL;
+    if (strstr(w->path, ".raw")) {
+        options.type = SNOW_TYPE_FLOAT32;
+        for (int axis = 0; axis < 3; axis++)
+            options.dims[axis] = SIDE;
+    }
+    snow_status status =
+        snow_volume_open(w->context, w->path, &options, &opened);
+    snow_volume_close(opened);
+    return status;
+}
+
+/* No file is in the way of the second. */
+static snow_status save_volume(work *w) {
+    return snow_volume_save(w->volume, w->path, false);
+}
+
+static snow_status save_image(work *w) {
+    return snow_image_save(w->image, w->path, NULL);
+}
+
+static snow_status take_statistics(work *w) {
+    snow_volume_statistics figures = {.size = sizeof figures};
+    return snow_volume_get_statistics(w->volume, &figures);
+}
+
+static snow_status count_values(work *w) {
+    uint64_t counts[16];
+    return snow_volume_histogram(w->volume, 0, 1, 16, counts);
+}
+
+static snow_status choose_look(work *w) {
+    snow_transfer *transfer = NULL;
+    snow_status status =
+        snow_transfer_new_for_volume(w->volume, NULL, &transfer);
+    snow_transfer_free(transfer);
+    return status;
+}
+
+/* The stage alone is reported, often enough; stopped at its first call, and at
+ * some later ones, the work ends there, and leaves nothing. */
+static void check_work(work *w, work_fn *run, snow_stage stage, bool later) {
+    const uint64_t held = snow_context_bytes(w->context);
+    int all = 2;
+    listener l;
+    for (int at = 1; at < all; at += later ? 1 + all / 8 : all) {
+        listen_to(w->context, &l, at);
+        assert_int_equal(run(w), SNOW_STATUS_STOPPED);
+        assert_int_equal(l.calls, at); /* nobody is asked again */
+        assert_int_equal(snow_context_bytes(w->context), held);
+        if (at > 1)
+            continue;
+        listen_to(w->context, &l, 0);
+        assert_int_equal(run(w), SNOW_STATUS_OK);
         check_rate(&l);
-        int calls = check_stage(&l, SNOW_STAGE_READ);
-        assert_int_equal(calls, l.calls);
-        snow_volume_close(volume);
-        volume = NULL;
-        assert_true(calls >= 3);
-        listen_to(context, &l, 1);
-        assert_int_equal(snow_volume_open(context, path, &options, &volume),
-                         SNOW_STATUS_STOPPED);
-        assert_int_equal(l.calls, 1);
-        assert_null(volume);
-        assert_int_equal(snow_context_bytes(context), 0);
-        snow_context_set_progress(context, NULL, NULL);
-        assert_int_equal(snow_volume_open(context, path, &options, &volume),
-                         SNOW_STATUS_OK);
-        snow_volume_close(volume);
-        snow_context_free(context);
+        all = l.calls;
+        assert_true(all >= 3);
+        if (!later) /* else it has several passes */
+            assert_int_equal(check_stage(&l, stage), all);
     }
-    support_folder_remove(folder);
+    snow_context_set_progress(w->context, NULL, NULL);
 }
 
-static void saving_is_reported_and_can_be_stopped(void **state) {
-    static const char *const names[] = {"v.nrrd", "v.nii.gz", "v.npy"};
+static void files_and_measures_are_reported_and_can_be_stopped(void **state) {
+    static const struct {
+        const char *name; /* of a file, or NULL */
+        work_fn *run;
+        snow_stage stage;
+    } works[] = {
+        {NULL, make_phantom, SNOW_STAGE_READ},
+        {"w.nrrd", save_volume, SNOW_STAGE_WRITE},
+        {"w.nii.gz", save_volume, SNOW_STAGE_WRITE},
+        {"w.npy", save_volume, SNOW_STAGE_WRITE},
+        {"v.nrrd", open_file, SNOW_STAGE_READ},
+        {"v.nii.gz", open_file, SNOW_STAGE_READ},
+        {"v.mha", open_file, SNOW_STAGE_READ},
+        {"v.raw.gz", open_file, SNOW_STAGE_READ},
+        {NULL, take_statistics, SNOW_STAGE_READ},
+        {NULL, count_values, SNOW_STAGE_READ},
+        {NULL, choose_look, SNOW_STAGE_READ},
+    };
     char folder[SUPPORT_FOLDER_BYTES];
-    (void)state;
+    work w = {.context = *state, .volume = phantom(*state, "turbulence", SIDE)};
     support_folder_make(folder);
-    for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
-        const char *path = support_folder_path(folder, names[n]);
-        snow_context *context = support_context();
-        snow_volume *volume;
-        listener l;
-        assert_int_equal(snow_volume_open_phantom(
-                             context, "turbulence",
-                             (const int64_t[3]){SIDE, SIDE, SIDE}, 0, &volume),
-                         SNOW_STATUS_OK);
-        listen_to(context, &l, 1);
-        assert_int_equal(snow_volume_save(volume, path, false),
-                         SNOW_STATUS_STOPPED);
-        assert_int_equal(l.calls, 1);
-        listen_to(context, &l, 0); /* no file is in the way */
-        assert_int_equal(snow_volume_save(volume, path, false), SNOW_STATUS_OK);
-        check_alone(&l, SNOW_STAGE_WRITE, 3);
-        snow_volume_close(volume);
-        snow_context_free(context);
+    for (size_t n = 0; n < sizeof works / sizeof *works; n++) {
+        if (works[n].name)
+            w.path = support_folder_path(folder, works[n].name);
+        if (works[n].run == open_file)
+            assert_int_equal(snow_volume_save(w.volume, w.path, true),
+                             SNOW_STATUS_OK);
+        check_work(&w, works[n].run, works[n].stage, false);
     }
     support_folder_remove(folder);
+    snow_volume_close(w.volume);
 }
 
 /* In each format that is built. */
@@ -202,114 +230,38 @@ static void saving_a_picture_is_reported_and_can_be_stopped(void **state) {
     char folder[SUPPORT_FOLDER_BYTES], name[32];
     const char *suffix;
     bool built;
-    (void)state;
+    work w = {.context = *state};
     support_folder_make(folder);
+    assert_int_equal(snow_image_new(w.context, 40, 200, 4, &w.image),
+                     SNOW_STATUS_OK);
+    for (int i = 0; i < 4 * 40 * 200; i++)
+        snow_image_pixels(w.image)[i] = (float)(i * 7919 % 1001) / 1000;
     for (size_t n = 0; (suffix = snow_image_format_suffix(n, &built)); n++) {
-        snow_context *context = support_context();
-        snow_image *image;
-        listener l;
         if (!built)
             continue;
         snprintf(name, sizeof name, "p%s", suffix);
-        const char *path = support_folder_path(folder, name);
-        assert_int_equal(snow_image_new(context, 40, 200, 4, &image),
-                         SNOW_STATUS_OK);
-        for (int i = 0; i < 4 * 40 * 200; i++)
-            snow_image_pixels(image)[i] = (float)(i * 7919 % 1001) / 1000;
-        listen_to(context, &l, 2);
-        assert_int_equal(snow_image_save(image, path, NULL),
-                         SNOW_STATUS_STOPPED);
-        assert_int_equal(l.calls, 2);
-        listen_to(context, &l, 0); /* no file is in the way */
-        assert_int_equal(snow_image_save(image, path, NULL), SNOW_STATUS_OK);
-        check_alone(&l, SNOW_STAGE_WRITE, 3);
-        snow_image_free(image);
-        assert_int_equal(snow_context_bytes(context), 0);
-        snow_context_free(context);
+        w.path = support_folder_path(folder, name);
+        check_work(&w, save_image, SNOW_STAGE_WRITE, false);
     }
+    snow_image_free(w.image);
     support_folder_remove(folder);
-}
-
-static snow_status measure(const snow_volume *volume, int what) {
-    uint64_t counts[16];
-    snow_volume_statistics figures = {.size = sizeof figures};
-    snow_transfer *transfer = NULL;
-    if (what == 2) {
-        snow_status status =
-            snow_transfer_new_for_volume(volume, NULL, &transfer);
-        snow_transfer_free(transfer);
-        return status;
-    }
-    return what ? snow_volume_histogram(volume, 0, 1, 16, counts)
-                : snow_volume_get_statistics(volume, &figures);
-}
-
-static void measuring_is_reported_and_can_be_stopped(void **state) {
-    (void)state;
-    snow_context *context = support_context();
-    snow_volume *volume;
-    listener l;
-    assert_int_equal(snow_volume_open_phantom(
-                         context, "turbulence",
-                         (const int64_t[3]){SIDE, SIDE, SIDE}, 0, &volume),
-                     SNOW_STATUS_OK);
-    for (int what = 0; what < 3; what++) {
-        listen_to(context, &l, 1);
-        assert_int_equal(measure(volume, what), SNOW_STATUS_STOPPED);
-        assert_int_equal(l.calls, 1);
-        listen_to(context, &l, 0);
-        assert_int_equal(measure(volume, what), SNOW_STATUS_OK);
-        check_alone(&l, SNOW_STAGE_READ, 3);
-    }
-    snow_volume_close(volume);
-    assert_int_equal(snow_context_bytes(context), 0);
-    snow_context_free(context);
-}
-
-/* A volume over voxels of the caller. */
-static snow_volume *wrap(snow_context *context, snow_type type,
-                         const void *voxels) {
-    snow_volume_info info;
-    snow_volume *volume;
-    snow_volume_info_init(&info);
-    info.type = type;
-    for (int axis = 0; axis < 3; axis++)
-        info.dims[axis] = SIDE;
-    assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
-                     SNOW_STATUS_OK);
-    return volume;
 }
 
 /* Values of any type are counted in passes, each of which can be ended. */
 static void a_look_can_be_stopped_while_it_is_chosen(void **state) {
-    (void)state;
     static const snow_type types[] = {SNOW_TYPE_UINT8, SNOW_TYPE_INT16,
                                       SNOW_TYPE_FLOAT32};
     static float voxels[SIDE * SIDE * SIDE];
+    work w = {.context = *state};
     for (int n = 0; n < SIDE * SIDE * SIDE; n++)
         voxels[n] = (float)(n % 977) / 977;
     for (size_t n = 0; n < sizeof types / sizeof *types; n++) {
-        snow_context *context = support_context();
-        snow_volume *volume = wrap(context, types[n], voxels);
-        snow_transfer *transfer = NULL;
-        listener l;
-        listen_to(context, &l, 0);
-        assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
+        const snow_volume_info info = {
+            .size = sizeof info, .dims = {SIDE, SIDE, SIDE}, .type = types[n]};
+        assert_int_equal(snow_volume_wrap(w.context, &info, voxels, &w.volume),
                          SNOW_STATUS_OK);
-        snow_transfer_free(transfer);
-        check_rate(&l);
-        const int calls = l.calls;
-        assert_true(calls >= 3);
-        for (int at = 1; at < calls; at += 1 + calls / 8) {
-            listen_to(context, &l, at);
-            assert_int_equal(
-                snow_transfer_new_for_volume(volume, NULL, &transfer),
-                SNOW_STATUS_STOPPED);
-            assert_int_equal(l.calls, at); /* nobody is asked again */
-        }
-        snow_volume_close(volume);
-        assert_int_equal(snow_context_bytes(context), 0);
-        snow_context_free(context);
+        check_work(&w, choose_look, SNOW_STAGE_READ, true);
+        snow_volume_close(w.volume);
     }
 }
 
@@ -321,9 +273,8 @@ static bool refuse(void *user) {
 }
 
 static void a_view_can_be_stopped_while_it_is_fitted(void **state) {
-    (void)state;
-    snow_context *context = support_context();
-    snow_volume *volume;
+    snow_context *context = *state;
+    snow_volume *volume = phantom(context, "head", 48);
     snow_transfer *transfer;
     snow_view view;
     snow_settings settings;
@@ -332,43 +283,34 @@ static void a_view_can_be_stopped_while_it_is_fitted(void **state) {
     snow_view_init(&view);
     snow_settings_init(&settings);
     settings.threads = 1; /* of several the others may do all that there is */
-    assert_int_equal(snow_volume_open_phantom(context, "head",
-                                              (const int64_t[3]){48, 48, 48}, 0,
-                                              &volume),
-                     SNOW_STATUS_OK);
     assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
                      SNOW_STATUS_OK);
     const snow_view before = view;
     listen_to(context, &l, 1);
-    assert_int_equal(
-        snow_view_fit(NULL, volume, transfer, &settings, NULL, 0, &view),
-        SNOW_STATUS_STOPPED);
-    assert_int_equal(l.calls, 1);
+    for (int way = 0; way < 3; way++) { /* by progress, by its own, not */
+        if (way == 1) {
+            snow_context_set_progress(context, NULL, NULL);
+            settings.stop = refuse;
+            settings.stop_user = &asked;
+        } else if (way == 2)
+            settings.stop = NULL;
+        assert_int_equal(
+            snow_view_fit(NULL, volume, transfer, &settings, NULL, 0, &view),
+            way < 2 ? SNOW_STATUS_STOPPED : SNOW_STATUS_OK);
+        if (way < 2)
+            assert_memory_equal(&view, &before, sizeof view);
+    }
+    assert_true(l.calls == 1 && asked == 1);
     assert_int_equal(check_stage(&l, SNOW_STAGE_ENCODE), 0);
-    snow_context_set_progress(context, NULL, NULL);
-    settings.stop = refuse;
-    settings.stop_user = &asked;
-    assert_int_equal(
-        snow_view_fit(NULL, volume, transfer, &settings, NULL, 0, &view),
-        SNOW_STATUS_STOPPED);
-    assert_int_equal(asked, 1);
-    assert_memory_equal(&view, &before, sizeof view);
-    settings.stop = NULL;
-    assert_int_equal(
-        snow_view_fit(NULL, volume, transfer, &settings, NULL, 0, &view),
-        SNOW_STATUS_OK);
     assert_true(view.has_target);
     snow_transfer_free(transfer);
     snow_volume_close(volume);
-    assert_int_equal(snow_context_bytes(context), 0);
-    snow_context_free(context);
 }
 
 static void clearing_can_be_stopped(void **state) {
-    (void)state;
     static unsigned char block[(5 << 20) + 3];
     const size_t last = sizeof block - 1;
-    snow_context *context = support_context();
+    snow_context *context = *state;
     snow_monitor monitor;
     listener l;
     memset(block, 7, sizeof block);
@@ -383,61 +325,51 @@ static void clearing_can_be_stopped(void **state) {
                      SNOW_STATUS_STOPPED);
     assert_int_equal(block[last], 7);
     snow_monitor_leave(&monitor);
-    snow_context_free(context);
 }
 
 static void a_picture_is_reported(void **state) {
-    (void)state;
-    static const snow_quality qualities[] = {SNOW_QUALITY_NORMAL,
-                                             SNOW_QUALITY_HIGH};
     static const snow_method methods[] = {
         SNOW_METHOD_SHEAR_WARP, SNOW_METHOD_FOOTPRINT, SNOW_METHOD_ORIGINAL};
-    snow_context *context = support_context();
-    snow_volume *volume;
+    snow_context *context = *state;
+    snow_volume *volume = phantom(context, "head", 48);
     snow_transfer *transfer;
     snow_view view = {.size = sizeof view};
     listener l;
-    assert_int_equal(snow_volume_open_phantom(context, "head",
-                                              (const int64_t[3]){48, 48, 48}, 0,
-                                              &volume),
-                     SNOW_STATUS_OK);
     assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
                      SNOW_STATUS_OK);
     snow_view_default(volume, &view);
     view.azimuth = 41;
-    for (int n = 0; n < 6; n++) {
+    for (int n = 0; n < 12; n++) { /* each is stopped, in the same frame */
+        const bool stops = n % 2;
+        static snow_frame *frame;
         snow_settings settings;
-        snow_frame *frame;
         snow_image *image = NULL;
         snow_settings_init(&settings);
-        settings.method = methods[n / 2];
-        settings.quality = qualities[n % 2];
-        settings.threads = 1 + n % 2;
-        assert_int_equal(snow_frame_new(context, &frame), SNOW_STATUS_OK);
-        listen_to(context, &l, 0);
+        settings.method = methods[n / 4];
+        settings.quality = n / 2 % 2 ? SNOW_QUALITY_HIGH : SNOW_QUALITY_NORMAL;
+        settings.threads = 1 + n / 2 % 2;
+        if (!stops)
+            assert_int_equal(snow_frame_new(context, &frame), SNOW_STATUS_OK);
+        listen_to(context, &l, stops);
         assert_int_equal(snow_frame_render(frame, volume, transfer, &view,
                                            &settings, &image),
-                         SNOW_STATUS_OK);
+                         stops ? SNOW_STATUS_STOPPED : SNOW_STATUS_OK);
+        assert_int_equal(image == NULL, stops);
         snow_image_free(image);
+        if (stops) {
+            assert_int_equal(l.calls, 1);
+            snow_frame_free(frame);
+            continue;
+        }
         check_rate(&l);
         assert_int_equal(check_stage(&l, SNOW_STAGE_READ), 0);
-        int all = check_stage(&l, SNOW_STAGE_ENCODE) +
-                  check_stage(&l, SNOW_STAGE_RENDER);
-        assert_int_equal(all, l.calls);
+        assert_int_equal(check_stage(&l, SNOW_STAGE_ENCODE) +
+                             check_stage(&l, SNOW_STAGE_RENDER),
+                         l.calls);
         assert_true(l.calls >= 3);
-        image = NULL;
-        listen_to(context, &l, 1);
-        assert_int_equal(snow_frame_render(frame, volume, transfer, &view,
-                                           &settings, &image),
-                         SNOW_STATUS_STOPPED);
-        assert_int_equal(l.calls, 1);
-        assert_null(image);
-        snow_frame_free(frame);
     }
     snow_transfer_free(transfer);
     snow_volume_close(volume);
-    assert_int_equal(snow_context_bytes(context), 0);
-    snow_context_free(context);
 }
 
 /* Calls of one thread for a picture that is darkened so much; it is stopped at
@@ -471,14 +403,9 @@ static int darken(snow_context *context, const snow_volume *volume,
 
 /* Line by line, once the picture is there. */
 static void darkening_can_be_stopped(void **state) {
-    (void)state;
-    snow_context *context = support_context();
-    snow_volume *volume;
+    snow_context *context = *state;
+    snow_volume *volume = phantom(context, "head", 48);
     snow_transfer *transfer;
-    assert_int_equal(snow_volume_open_phantom(context, "head",
-                                              (const int64_t[3]){48, 48, 48}, 0,
-                                              &volume),
-                     SNOW_STATUS_OK);
     assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
                      SNOW_STATUS_OK);
     const int plain = darken(context, volume, transfer, 0, 0, 0);
@@ -495,14 +422,11 @@ static void darkening_can_be_stopped(void **state) {
     }
     snow_transfer_free(transfer);
     snow_volume_close(volume);
-    assert_int_equal(snow_context_bytes(context), 0);
-    snow_context_free(context);
 }
 
 /* Work of one long item, or before the first batch, can be ended, too. */
 static void a_long_item_can_be_stopped(void **state) {
-    (void)state;
-    snow_context *context = support_context();
+    snow_context *context = *state;
     snow_monitor monitor;
     listener l;
     int looks = 0;
@@ -516,13 +440,11 @@ static void a_long_item_can_be_stopped(void **state) {
     assert_true(looks < 10);
     assert_int_equal(l.calls, 1);
     assert_int_equal(l.stages[0], SNOW_STAGE_RENDER);
-    snow_context_free(context);
 }
 
 /* What was too early to be reported is not lost to the next look. */
 static void a_look_reports_how_far_the_work_is(void **state) {
-    (void)state;
-    snow_context *context = support_context();
+    snow_context *context = *state;
     snow_monitor monitor;
     listener l;
     listen_to(context, &l, 0);
@@ -537,13 +459,11 @@ static void a_look_reports_how_far_the_work_is(void **state) {
     assert_true(l.fractions[0] == 0.5);
     assert_int_equal(snow_monitor_end(&monitor, SNOW_STATUS_OK),
                      SNOW_STATUS_OK);
-    snow_context_free(context);
 }
 
 /* Calls of many short works, each of which reports its end. */
 static void many_calls_are_not_reported_more_often(void **state) {
-    (void)state;
-    snow_context *context = support_context();
+    snow_context *context = *state;
     listener l;
     listen_to(context, &l, 0);
     tick = 0.001;
@@ -558,36 +478,24 @@ static void many_calls_are_not_reported_more_often(void **state) {
     }
     check_rate(&l);
     assert_true(l.calls > 800);
-    snow_context_free(context);
 }
 
 static void nothing_is_reported_of_what_is_short(void **state) {
-    (void)state;
-    snow_context *context = support_context();
+    snow_context *context = *state;
     listener l;
     tick = 0.0005;
     listen_to(context, &l, 0);
-    for (int n = 0; n < 20; n++) {
-        snow_volume *volume;
-        assert_int_equal(snow_volume_open_phantom(context, "cube",
-                                                  (const int64_t[3]){8, 8, 8},
-                                                  0, &volume),
-                         SNOW_STATUS_OK);
-        snow_volume_close(volume);
-    }
+    for (int n = 0; n < 20; n++)
+        snow_volume_close(phantom(context, "cube", 8));
     assert_int_equal(l.calls, 0);
-    snow_context_free(context);
 }
 
-#define TEST(name) cmocka_unit_test_setup(name, set_clock)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        TEST(a_phantom_is_reported_while_it_is_made),
-        TEST(reading_is_reported_and_can_be_stopped),
-        TEST(saving_is_reported_and_can_be_stopped),
+        TEST(files_and_measures_are_reported_and_can_be_stopped),
         TEST(saving_a_picture_is_reported_and_can_be_stopped),
-        TEST(measuring_is_reported_and_can_be_stopped),
         TEST(a_look_can_be_stopped_while_it_is_chosen),
         TEST(a_view_can_be_stopped_while_it_is_fitted),
         TEST(clearing_can_be_stopped),
