@@ -26,56 +26,44 @@ static void fill(int32_t *voxels, int noise, int more) {
     }
 }
 
-static snow_volume *wrapped(snow_context *context, snow_type type,
+static snow_volume *wrapped(looks_fixture *f, snow_type type,
                             const void *voxels) {
-    snow_volume_info info = {
-        .size = sizeof info, .dims = {SIDE, SIDE, SIDE}, .type = type};
-    snow_volume *volume = NULL;
-    assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
-                     SNOW_STATUS_OK);
-    return volume;
+    const snow_volume_info info = {.dims = {SIDE, SIDE, SIDE}, .type = type};
+    return looks_volume(f, info, voxels);
 }
 
-static const snow_look nothing = {.size = sizeof nothing};
-
-static bool are_labels(snow_volume *volume) {
-    snow_transfer *transfer = support_look(volume, nothing);
-    bool are = snow_transfer_label(transfer, 0) != NULL;
-    snow_transfer_free(transfer);
-    snow_volume_close(volume);
-    return are;
+static bool are_labels(looks_fixture *f, const snow_volume *volume) {
+    snow_transfer *transfer = looks_of(f, volume, (snow_look){0});
+    return snow_transfer_label(transfer, 0) != NULL;
 }
 
 static void regions_of_few_whole_numbers_are(void **state) {
-    (void)state;
     static int32_t voxels[ALL];
     static int16_t words[ALL];
     static float floats[ALL];
-    snow_context *context = support_context();
+    looks_fixture *f = *state;
     fill(voxels, 0, 0);
     for (int n = 0; n < ALL; n++) {
         words[n] = (int16_t)(voxels[n] % 100);
         floats[n] = (float)voxels[n];
     }
-    assert_true(are_labels(wrapped(context, SNOW_TYPE_INT32, voxels)));
-    assert_true(are_labels(wrapped(context, SNOW_TYPE_INT16, words)));
-    assert_false(are_labels(wrapped(context, SNOW_TYPE_FLOAT32, floats)));
+    assert_true(are_labels(f, wrapped(f, SNOW_TYPE_INT32, voxels)));
+    assert_true(are_labels(f, wrapped(f, SNOW_TYPE_INT16, words)));
+    assert_false(are_labels(f, wrapped(f, SNOW_TYPE_FLOAT32, floats)));
     fill(voxels, 50, 0);
-    assert_false(are_labels(wrapped(context, SNOW_TYPE_INT32, voxels)));
+    assert_false(are_labels(f, wrapped(f, SNOW_TYPE_INT32, voxels)));
     fill(voxels, 0, 60);
-    assert_true(are_labels(wrapped(context, SNOW_TYPE_INT32, voxels)));
+    assert_true(are_labels(f, wrapped(f, SNOW_TYPE_INT32, voxels)));
     fill(voxels, 0, 61);
-    assert_false(are_labels(wrapped(context, SNOW_TYPE_INT32, voxels)));
-    snow_context_free(context);
+    assert_false(are_labels(f, wrapped(f, SNOW_TYPE_INT32, voxels)));
 }
 
 static void each_has_a_colour_of_its_own(void **state) {
-    (void)state;
     static int32_t voxels[ALL];
-    snow_context *context = support_context();
+    looks_fixture *f = *state;
     fill(voxels, 0, 0);
-    snow_volume *volume = wrapped(context, SNOW_TYPE_INT32, voxels);
-    snow_transfer *transfer = support_look(volume, nothing);
+    snow_volume *volume = wrapped(f, SNOW_TYPE_INT32, voxels);
+    snow_transfer *transfer = looks_of(f, volume, (snow_look){0});
     double rgba[4], others[3][4];
     snow_transfer_evaluate(transfer, 0, rgba);
     assert_true(rgba[3] == 0);
@@ -91,27 +79,21 @@ static void each_has_a_colour_of_its_own(void **state) {
         assert_true(n == 0 || apart > 0.3);
     }
     assert_null(snow_transfer_label(transfer, 4));
-    snow_transfer_free(transfer);
-    snow_volume_close(volume);
-    snow_context_free(context);
 }
 
 /* What a file says goes before what is chosen, and what is asked before both.
  */
 static void names_colours_and_opacities_are_taken(void **state) {
-    (void)state;
     static int32_t voxels[ALL];
     static const snow_label known[] = {{1000, {0.1, 0.2, 0.3, 0.5}, "liver"},
                                        {7, {-1, 0, 0, -1}, "spleen"}};
     static const snow_opacity_point asked[] = {{7, 0.25}, {1007, 1}};
-    snow_context *context = support_context();
+    looks_fixture *f = *state;
     fill(voxels, 50, 0); /* only declared */
-    snow_volume *volume = wrapped(context, SNOW_TYPE_INT32, voxels);
+    snow_volume *volume = wrapped(f, SNOW_TYPE_INT32, voxels);
     assert_int_equal(snow_volume_set_labels(volume, known, 2), SNOW_STATUS_OK);
-    snow_transfer *transfer =
-        support_look(volume, (snow_look){.size = sizeof(snow_look),
-                                         .opacities = asked,
-                                         .opacity_count = 2});
+    snow_transfer *transfer = looks_of(
+        f, volume, (snow_look){.opacities = asked, .opacity_count = 2});
     double rgba[4];
     snow_transfer_evaluate(transfer, 1000, rgba);
     assert_true(rgba[0] == 0.1 && rgba[2] == 0.3 &&
@@ -124,25 +106,19 @@ static void names_colours_and_opacities_are_taken(void **state) {
     assert_true(rgba[3] == 1);
     assert_string_equal(snow_transfer_label(transfer, 1)->name, "spleen");
     assert_string_equal(snow_transfer_label(transfer, 2)->name, "liver");
-    snow_transfer_free(transfer);
-    snow_volume_close(volume);
-    snow_context_free(context);
 }
 
 static void a_list_has_colours_of_single_labels(void **state) {
-    (void)state;
     static int32_t voxels[ALL];
-    const snow_look plain = {.size = sizeof plain, .preset = "labels"};
-    const snow_look listed = {.size = sizeof listed,
-                              .preset = "labels",
+    const snow_look plain = {.preset = "labels"};
+    const snow_look listed = {.preset = "labels",
                               .colormap = "8:#00ff00,1000:#ff0033"};
-    const snow_look map = {
-        .size = sizeof map, .preset = "labels", .colormap = "hot"};
-    snow_context *context = support_context();
+    const snow_look map = {.preset = "labels", .colormap = "hot"};
+    looks_fixture *f = *state;
     fill(voxels, 0, 0);
-    snow_volume *volume = wrapped(context, SNOW_TYPE_INT32, voxels);
-    snow_transfer *before = support_look(volume, plain);
-    snow_transfer *after = support_look(volume, listed), *none = NULL;
+    snow_volume *volume = wrapped(f, SNOW_TYPE_INT32, voxels);
+    snow_transfer *before = looks_of(f, volume, plain);
+    snow_transfer *after = looks_of(f, volume, listed);
     double a[4], b[4];
     for (int n = 0; n < 3; n++) {
         snow_transfer_evaluate(before, three[n], a);
@@ -153,94 +129,70 @@ static void a_list_has_colours_of_single_labels(void **state) {
     snow_transfer_evaluate(after, 1000, b);
     assert_true(b[0] == 1 && b[1] == 0 && b[2] == 0.2);
     assert_true(snow_transfer_label(after, 2)->color[2] == 0.2);
-    assert_int_equal(snow_transfer_new_for_volume(volume, &map, &none),
-                     SNOW_STATUS_BAD_USAGE);
-    assert_non_null(strstr(snow_context_message(context), "3:#ff8800"));
-    snow_transfer_free(before);
-    snow_transfer_free(after);
-    snow_volume_close(volume);
-    snow_context_free(context);
+    looks_refused(f, volume, map, "3:#ff8800");
 }
 
 static void the_preset_is_for_any_whole_numbers(void **state) {
-    (void)state;
     static int32_t voxels[ALL];
     static float floats[ALL];
-    const snow_look look = {.size = sizeof look, .preset = "labels"};
-    const snow_look ranged = {
-        .size = sizeof look, .preset = "labels", .range = SNOW_RANGE_FULL};
-    snow_context *context = support_context();
+    const snow_look look = {.preset = "labels"};
+    const snow_look ranged = {.preset = "labels", .range = SNOW_RANGE_FULL};
+    looks_fixture *f = *state;
     fill(voxels, 0, 500);
-    snow_volume *volume = wrapped(context, SNOW_TYPE_INT32, voxels);
-    snow_transfer *transfer = support_look(volume, look), *none = NULL;
+    snow_volume *volume = wrapped(f, SNOW_TYPE_INT32, voxels);
+    snow_transfer *transfer = looks_of(f, volume, look);
     assert_non_null(snow_transfer_label(transfer, 503));
     assert_null(snow_transfer_label(transfer, 504));
-    assert_int_equal(snow_transfer_new_for_volume(volume, &ranged, &none),
-                     SNOW_STATUS_BAD_USAGE);
-    snow_transfer_free(transfer);
-    snow_volume_close(volume);
-    volume = wrapped(context, SNOW_TYPE_FLOAT32, floats);
-    assert_int_equal(snow_transfer_new_for_volume(volume, &look, &none),
-                     SNOW_STATUS_BAD_USAGE);
+    looks_refused(f, volume, ranged, "");
+    volume = wrapped(f, SNOW_TYPE_FLOAT32, floats);
+    looks_refused(f, volume, look, "");
     floats[5] = 0.5F;
-    assert_int_equal(snow_transfer_new_for_volume(volume, &look, &none),
-                     SNOW_STATUS_BAD_USAGE);
-    assert_non_null(strstr(snow_context_message(context), "has fractions"));
-    snow_volume_close(volume);
-    snow_context_free(context);
+    looks_refused(f, volume, look, "has fractions");
 }
 
 /* Programs keep labels as floats; they are some where the file says so, or
  * whoever draws them. */
 static void labels_may_be_floats(void **state) {
-    (void)state;
     static int32_t voxels[ALL];
     static double doubles[ALL];
-    const snow_look look = {.size = sizeof look, .preset = "labels"};
-    snow_context *context = support_context();
+    const snow_look look = {.preset = "labels"};
+    looks_fixture *f = *state;
     fill(voxels, 0, 0);
     for (int n = 0; n < ALL; n++)
         doubles[n] = voxels[n];
-    snow_volume *volume = wrapped(context, SNOW_TYPE_FLOAT64, doubles);
-    snow_transfer *transfer = support_look(volume, look);
+    snow_volume *volume = wrapped(f, SNOW_TYPE_FLOAT64, doubles);
+    snow_transfer *transfer = looks_of(f, volume, look);
     assert_true(snow_transfer_label(transfer, 3)->value == three[2]);
     assert_true(snow_transfer_has_labels(transfer, &volume->info));
-    snow_transfer_free(transfer);
     snow_volume_set_labels(volume, NULL, 0);
-    assert_true(are_labels(volume));
+    assert_true(are_labels(f, volume));
     doubles[7] = 0.5;
-    volume = wrapped(context, SNOW_TYPE_FLOAT64, doubles);
+    volume = wrapped(f, SNOW_TYPE_FLOAT64, doubles);
     snow_volume_set_labels(volume, NULL, 0);
-    assert_false(are_labels(volume));
-    snow_context_free(context);
+    assert_false(are_labels(f, volume));
 }
 
 /* In a volume without 0 the smallest value is the background. */
 static void what_is_not_labelled_is_hidden(void **state) {
-    (void)state;
     static int32_t voxels[ALL];
-    snow_context *context = support_context();
+    looks_fixture *f = *state;
     fill(voxels, 0, 0);
     for (int n = 0; n < ALL; n++)
         voxels[n] = voxels[n] ? voxels[n] : -1;
-    snow_volume *volume = wrapped(context, SNOW_TYPE_INT32, voxels);
-    snow_transfer *transfer = support_look(volume, nothing);
+    snow_volume *volume = wrapped(f, SNOW_TYPE_INT32, voxels);
+    snow_transfer *transfer = looks_of(f, volume, (snow_look){0});
     double rgba[4];
     snow_transfer_evaluate(transfer, -1, rgba);
     assert_true(rgba[3] == 0);
     snow_transfer_evaluate(transfer, 7, rgba);
     assert_true(rgba[3] == 1);
-    snow_transfer_free(transfer);
-    snow_volume_close(volume);
-    snow_context_free(context);
 }
 
 /* Single voxels in a background, and a coarse heap, are no regions; balls of
  * few voxels are. */
 static void few_values_alone_are_not(void **state) {
-    (void)state;
     static int32_t single[ALL], heap[ALL], balls[ALL];
-    snow_context *context = support_context();
+    looks_fixture *f = *state;
     for (int at = 0; at < ALL; at++) {
         int i = at % SIDE, j = at / SIDE % SIDE, k = at / SIDE / SIDE;
         double x = (i - 24) / 24.0, y = (j - 24) / 24.0, z = (k - 24) / 24.0;
@@ -250,23 +202,17 @@ static void few_values_alone_are_not(void **state) {
         bool inside = i * i + j * j + k * k < 17;
         balls[at] = inside ? 1 + at % SIDE / 12 + at / SIDE % SIDE / 12 * 4 : 0;
     }
-    assert_false(are_labels(wrapped(context, SNOW_TYPE_INT32, single)));
-    assert_false(are_labels(wrapped(context, SNOW_TYPE_INT32, heap)));
-    assert_true(are_labels(wrapped(context, SNOW_TYPE_INT32, balls)));
+    assert_false(are_labels(f, wrapped(f, SNOW_TYPE_INT32, single)));
+    assert_false(are_labels(f, wrapped(f, SNOW_TYPE_INT32, heap)));
+    assert_true(are_labels(f, wrapped(f, SNOW_TYPE_INT32, balls)));
     /* Hounsfield units are measured, whatever their regions. */
     for (int medical = 0; medical < 2; medical++) {
         for (int at = 0; at < ALL && !medical; at++)
             balls[at] = balls[at] ? 40 : -1000;
-        const snow_volume_info info = {.size = sizeof info,
-                                       .dims = {SIDE, SIDE, SIDE},
-                                       .type = SNOW_TYPE_INT32,
-                                       .medical = medical};
-        snow_volume *volume = NULL;
-        assert_int_equal(snow_volume_wrap(context, &info, balls, &volume),
-                         SNOW_STATUS_OK);
-        assert_int_equal(are_labels(volume), !medical);
+        snow_volume *volume = wrapped(f, SNOW_TYPE_INT32, balls);
+        volume->info.medical = medical;
+        assert_int_equal(are_labels(f, volume), !medical);
     }
-    snow_context_free(context);
 }
 
 /* --- files ---------------------------------------------------------------- */
@@ -382,14 +328,14 @@ static void labels_are_picked(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(regions_of_few_whole_numbers_are),
-        cmocka_unit_test(each_has_a_colour_of_its_own),
-        cmocka_unit_test(names_colours_and_opacities_are_taken),
-        cmocka_unit_test(a_list_has_colours_of_single_labels),
-        cmocka_unit_test(the_preset_is_for_any_whole_numbers),
-        cmocka_unit_test(labels_may_be_floats),
-        cmocka_unit_test(what_is_not_labelled_is_hidden),
-        cmocka_unit_test(few_values_alone_are_not),
+        LOOKS_TEST(regions_of_few_whole_numbers_are),
+        LOOKS_TEST(each_has_a_colour_of_its_own),
+        LOOKS_TEST(names_colours_and_opacities_are_taken),
+        LOOKS_TEST(a_list_has_colours_of_single_labels),
+        LOOKS_TEST(the_preset_is_for_any_whole_numbers),
+        LOOKS_TEST(labels_may_be_floats),
+        LOOKS_TEST(what_is_not_labelled_is_hidden),
+        LOOKS_TEST(few_values_alone_are_not),
         cmocka_unit_test(segments_of_slicer_are_read),
         cmocka_unit_test(wrong_segments_are_not_read),
         cmocka_unit_test(tables_are_read),

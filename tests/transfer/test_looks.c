@@ -6,18 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static double opacity_at(const snow_transfer *transfer, double value) {
-    double rgba[4];
-    snow_transfer_evaluate(transfer, value, rgba);
-    return rgba[3];
-}
-
-static double red_at(const snow_transfer *transfer, double value) {
-    double rgba[4];
-    snow_transfer_evaluate(transfer, value, rgba);
-    return rgba[0];
-}
-
 static bool near(double a, double b) {
     return fabs(a - b) < 1e-9;
 }
@@ -28,85 +16,56 @@ static const float decades[] = {0.001F, 0.01F, 0.1F, 1,    10,
 #define DECADES (sizeof decades / sizeof *decades)
 
 static void linear_over_decades_is_linear_in_decades(void **state) {
-    (void)state;
-    snow_context *context = support_context();
-    snow_volume *volume =
-        support_row(context, SNOW_TYPE_FLOAT32, decades, DECADES);
-    snow_look look = {.size = sizeof look, .preset = "linear", .log = true};
-    snow_transfer *transfer = support_look(volume, look);
+    looks_fixture *f = *state;
+    snow_volume *volume = looks_row(f, SNOW_TYPE_FLOAT32, decades, DECADES);
+    snow_look look = {.preset = "linear", .log = true};
+    snow_transfer *transfer = looks_of(f, volume, look);
     assert_true(snow_transfer_is_log(transfer));
     for (int i = 0; i < 7; i++) {
-        assert_true(fabs(opacity_at(transfer, (double)decades[i]) - i / 6.0) <
-                    1e-7);
-        assert_true(fabs(red_at(transfer, (double)decades[i]) - i / 6.0) <
+        assert_true(
+            fabs(looks_opacity(transfer, (double)decades[i]) - i / 6.0) < 1e-7);
+        assert_true(fabs(looks_red(transfer, (double)decades[i]) - i / 6.0) <
                     1e-7);
     }
-    assert_true(opacity_at(transfer, 0) == 0);
-    assert_true(opacity_at(transfer, -500) == 0);
-    assert_true(opacity_at(transfer, (double)NAN) == 0);
-    assert_true(opacity_at(transfer, (double)INFINITY) == 1);
-    assert_non_null(strstr(snow_transfer_description(transfer), "logarithmic"));
-    snow_transfer_free(transfer);
-    snow_volume_close(volume);
-    snow_context_free(context);
+    assert_true(looks_opacity(transfer, 0) == 0);
+    assert_true(looks_opacity(transfer, -500) == 0);
+    assert_true(looks_opacity(transfer, (double)NAN) == 0);
+    assert_true(looks_opacity(transfer, (double)INFINITY) == 1);
+    assert_true(looks_say(transfer, "logarithmic"));
 }
 
 static void a_range_is_spread_by_decades(void **state) {
-    (void)state;
-    snow_context *context = support_context();
-    snow_volume *volume =
-        support_row(context, SNOW_TYPE_FLOAT32, decades, DECADES);
-    snow_look look = {.size = sizeof look,
-                      .preset = "ct-bone",
+    looks_fixture *f = *state;
+    snow_volume *volume = looks_row(f, SNOW_TYPE_FLOAT32, decades, DECADES);
+    snow_look look = {.preset = "ct-bone",
                       .range = SNOW_RANGE_VALUES,
                       .low = 0.1,
                       .high = 1000,
                       .log = true};
-    snow_transfer *transfer = support_look(volume, look);
+    snow_transfer *transfer = looks_of(f, volume, look);
     /* ct-bone goes from 150 to 1500; 350 is 200 / 1350 of the way. */
     double value = 0.1 * pow(1e4, 200.0 / 1350);
-    assert_true(near(opacity_at(transfer, value), 0.40));
-    assert_true(opacity_at(transfer, 0.1) == 0);
-    assert_true(opacity_at(transfer, 1000) == 0.85);
-    snow_transfer_free(transfer);
+    assert_true(near(looks_opacity(transfer, value), 0.40));
+    assert_true(looks_opacity(transfer, 0.1) == 0);
+    assert_true(looks_opacity(transfer, 1000) == 0.85);
     look.range = SNOW_RANGE_PERCENTILES;
     look.low = 0;
     look.high = 100; /* of the values above 0 */
     look.colormap = "grey";
-    transfer = support_look(volume, look);
-    assert_true(fabs(red_at(transfer, 1) - 0.5) < 1e-7);
-    snow_transfer_free(transfer);
-    snow_volume_close(volume);
-    snow_context_free(context);
+    transfer = looks_of(f, volume, look);
+    assert_true(fabs(looks_red(transfer, 1) - 0.5) < 1e-7);
 }
 
 static void what_has_no_logarithm_is_refused(void **state) {
-    (void)state;
     static const snow_opacity_point from_0[] = {{0, 0}, {10, 1}};
-    snow_context *context = support_context();
-    snow_volume *volume =
-        support_row(context, SNOW_TYPE_FLOAT32, decades, DECADES);
+    looks_fixture *f = *state;
+    snow_volume *volume = looks_row(f, SNOW_TYPE_FLOAT32, decades, DECADES);
     const snow_look looks[] = {
-        {.size = sizeof(snow_look), .preset = "ct-soft", .log = true},
-        {.size = sizeof(snow_look),
-         .opacities = from_0,
-         .opacity_count = 2,
-         .log = true},
-        {.size = sizeof(snow_look),
-         .range = SNOW_RANGE_VALUES,
-         .low = 0,
-         .high = 9,
-         .log = true}};
-    for (size_t i = 0; i < 3; i++) {
-        snow_transfer *transfer = NULL;
-        assert_int_equal(
-            snow_transfer_new_for_volume(volume, &looks[i], &transfer),
-            SNOW_STATUS_BAD_USAGE);
-        assert_null(transfer);
-        assert_non_null(strstr(snow_context_message(context), "logarithm"));
-    }
-    snow_volume_close(volume);
-    snow_context_free(context);
+        {.preset = "ct-soft", .log = true},
+        {.opacities = from_0, .opacity_count = 2, .log = true},
+        {.range = SNOW_RANGE_VALUES, .low = 0, .high = 9, .log = true}};
+    for (size_t i = 0; i < 3; i++)
+        looks_refused(f, volume, looks[i], "logarithm");
 }
 
 /* --- symmetric logarithms --------------------------------------------------
@@ -120,81 +79,56 @@ static double symlog_of(double value, double linear) {
 
 /* Opacity and colour follow the scale, on both sides and in the middle. */
 static void a_symmetric_logarithm_is_linear_around_0(void **state) {
-    (void)state;
-    snow_context *context = support_context();
+    looks_fixture *f = *state;
     const double wide[] = {-1000, 1000, 0, 1, -1};
-    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT64, wide, 5);
+    snow_volume *volume = looks_row(f, SNOW_TYPE_FLOAT64, wide, 5);
     const double linears[] = {0.01, 0.5, 20, 5000};
     for (size_t n = 0; n < 4; n++) {
         const double linear = linears[n], end = symlog_of(1000, linear);
-        snow_look look = {
-            .size = sizeof look, .preset = "linear", .symlog = linear};
-        snow_transfer *transfer = support_look(volume, look);
+        snow_look look = {.preset = "linear", .symlog = linear};
+        snow_transfer *transfer = looks_of(f, volume, look);
         assert_false(snow_transfer_is_log(transfer));
         for (double value = -1000; value <= 1000;
              value += fmax(0.003, fabs(value) / 70)) {
             double share = (symlog_of(value, linear) / end + 1) / 2;
-            assert_true(fabs(opacity_at(transfer, value) - share) < 0.002);
-            assert_true(fabs(red_at(transfer, value) - share) < 0.002);
+            assert_true(fabs(looks_opacity(transfer, value) - share) < 0.002);
+            assert_true(fabs(looks_red(transfer, value) - share) < 0.002);
         }
-        assert_true(opacity_at(transfer, -1000) == 0);
-        assert_true(near(opacity_at(transfer, 0), 0.5));
-        assert_true(opacity_at(transfer, 1000) == 1);
-        snow_transfer_free(transfer);
+        assert_true(looks_opacity(transfer, -1000) == 0);
+        assert_true(near(looks_opacity(transfer, 0), 0.5));
+        assert_true(looks_opacity(transfer, 1000) == 1);
     }
-    snow_volume_close(volume);
-    snow_context_free(context);
 }
 
 static void a_symmetric_logarithm_begins_where_it_says(void **state) {
-    (void)state;
-    snow_context *context = support_context();
+    looks_fixture *f = *state;
     const float wide[] = {-300, 2500, 0, 1, -1};
-    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, wide, 5);
-    snow_look look = {.size = sizeof look, .preset = "linear", .symlog = -1};
-    snow_transfer *transfer = support_look(volume, look);
-    assert_non_null(strstr(snow_transfer_description(transfer),
-                           " -300..2500 logarithmic beyond -2..2;"));
-    snow_transfer_free(transfer);
+    snow_volume *volume = looks_row(f, SNOW_TYPE_FLOAT32, wide, 5);
+    snow_look look = {.preset = "linear", .symlog = -1};
+    snow_transfer *transfer = looks_of(f, volume, look);
+    assert_true(looks_say(transfer, " -300..2500 logarithmic beyond -2..2;"));
     look.range = SNOW_RANGE_VALUES;
     look.low = -7;
     look.high = 70;
-    transfer = support_look(volume, look);
-    assert_non_null(strstr(snow_transfer_description(transfer),
-                           " -7..70 logarithmic beyond -0.05..0.05;"));
-    snow_transfer_free(transfer);
+    transfer = looks_of(f, volume, look);
+    assert_true(looks_say(transfer, " -7..70 logarithmic beyond -0.05..0.05;"));
     look.log = true;
-    assert_int_equal(snow_transfer_new_for_volume(volume, &look, &transfer),
-                     SNOW_STATUS_BAD_USAGE);
-    snow_volume_close(volume);
-    snow_context_free(context);
-}
-
-static void keep_text(void *user, const char *text) {
-    snprintf(user, 200, "%s", text);
+    looks_refused(f, volume, look, "");
 }
 
 static void logarithms_say_what_they_leave_out(void **state) {
-    (void)state;
-    char said[200] = "";
     const int16_t narrow[] = {-3, 0, 0, 1, 2, 30};
     const float nan_too[] = {-3, 0, 0, 1, 2, 30, NAN};
-    snow_context *context = support_context();
-    snow_context_set_warning(context, keep_text, said);
+    looks_fixture *f = *state;
     for (int n = 0; n < 2; n++) {
-        snow_volume *volume =
-            n ? support_row(context, SNOW_TYPE_FLOAT32, nan_too, 7)
-              : support_row(context, SNOW_TYPE_INT16, narrow, 6);
-        snow_transfer_free(support_look(
-            volume, (snow_look){.size = sizeof(snow_look), .log = true}));
-        assert_non_null(strstr(said, "leave out 3 of 6 voxels"));
-        said[0] = 0;
-        snow_transfer_free(support_look(
-            volume, (snow_look){.size = sizeof(snow_look), .symlog = -1}));
-        assert_string_equal(said, "");
-        snow_volume_close(volume);
+        snow_volume *volume = n ? looks_row(f, SNOW_TYPE_FLOAT32, nan_too, 7)
+                                : looks_row(f, SNOW_TYPE_INT16, narrow, 6);
+        looks_of(f, volume, (snow_look){.log = true});
+        assert_non_null(strstr(f->warning, "leave out 3 of 6 voxels"));
+        f->warning[0] = 0;
+        looks_of(f, volume, (snow_look){.symlog = -1});
+        assert_string_equal(f->warning, "");
     }
-    snow_context_free(context);
 }
 
 /* --- fields -----------------------------------------------------------------
@@ -202,20 +136,17 @@ static void logarithms_say_what_they_leave_out(void **state) {
 
 #define SIDE 16
 
+typedef double field_fn(double x, double y, double z);
+
 /* A block of a field of floats. */
-static snow_volume *field_of(snow_context *context, float *values,
-                             double (*f)(double x, double y, double z)) {
-    const snow_volume_info info = {.size = sizeof info,
-                                   .dims = {SIDE, SIDE, SIDE},
+static snow_volume *field_of(looks_fixture *f, float *values, field_fn *field) {
+    const snow_volume_info info = {.dims = {SIDE, SIDE, SIDE},
                                    .type = SNOW_TYPE_FLOAT32};
-    snow_volume *volume = NULL;
     for (int n = 0; n < SIDE * SIDE * SIDE; n++)
-        values[n] =
-            (float)f((n % SIDE + 0.5) / SIDE, (n / SIDE % SIDE + 0.5) / SIDE,
-                     (n / SIDE / SIDE + 0.5) / SIDE);
-    assert_int_equal(snow_volume_wrap(context, &info, values, &volume),
-                     SNOW_STATUS_OK);
-    return volume;
+        values[n] = (float)field((n % SIDE + 0.5) / SIDE,
+                                 (n / SIDE % SIDE + 0.5) / SIDE,
+                                 (n / SIDE / SIDE + 0.5) / SIDE);
+    return looks_volume(f, info, values);
 }
 
 static double wave(double x, double y, double z) {
@@ -231,7 +162,7 @@ static double blob(double x, double y, double z) {
 static void check_signed(const snow_transfer *transfer, double low,
                          double high) {
     double at[4], rgba[4];
-    assert_true(opacity_at(transfer, 0) == 0);
+    assert_true(looks_opacity(transfer, 0) == 0);
     for (int n = 1; n <= 10; n++) {
         snow_transfer_evaluate(transfer, low * n / 10, at);
         snow_transfer_evaluate(transfer, high * n / 10, rgba);
@@ -242,35 +173,28 @@ static void check_signed(const snow_transfer *transfer, double low,
 }
 
 static void a_field_of_both_signs_is_diverging_around_0(void **state) {
-    (void)state;
     static float values[SIDE * SIDE * SIDE];
-    snow_context *context = support_context();
-    snow_volume *volume = field_of(context, values, wave);
+    looks_fixture *f = *state;
+    snow_volume *volume = field_of(f, values, wave);
     snow_look look = {.size = sizeof look};
     double low, high;
-    snow_transfer *transfer = support_look(volume, look);
+    snow_transfer *transfer = looks_of(f, volume, look);
     snow_transfer_domain(transfer, &low, &high);
     assert_true(near(low, -high) && high > 3 && high < 3.5);
     check_signed(transfer, low, high);
-    snow_transfer_free(transfer);
     look.range = SNOW_RANGE_VALUES; /* the shape stays, and 0 where it is */
     look.low = -2.5;
     look.high = 5;
-    transfer = support_look(volume, look);
+    transfer = looks_of(f, volume, look);
     check_signed(transfer, -2.5, 5);
-    snow_transfer_free(transfer);
     look.colormap = "RdBu_r";
-    transfer = support_look(volume, look);
+    transfer = looks_of(f, volume, look);
     check_signed(transfer, -2.5, 5);
-    assert_true(fabs(red_at(transfer, 0) - 0xf7 / 255.0) < 1e-9);
-    snow_transfer_free(transfer);
+    assert_true(fabs(looks_red(transfer, 0) - 0xf7 / 255.0) < 1e-9);
     look.low = 1; /* no sign but one */
-    transfer = support_look(volume, look);
-    assert_true(opacity_at(transfer, 1) == 0);
-    assert_true(opacity_at(transfer, 5) > 0);
-    snow_transfer_free(transfer);
-    snow_volume_close(volume);
-    snow_context_free(context);
+    transfer = looks_of(f, volume, look);
+    assert_true(looks_opacity(transfer, 1) == 0);
+    assert_true(looks_opacity(transfer, 5) > 0);
 }
 
 /* Noise of -1 to 1, the same for a place. */
@@ -312,60 +236,44 @@ static double far_blob(double x, double y, double z) {
 }
 
 static void a_scan_in_floats_is_grey_and_shaded(void **state) {
-    (void)state;
     static const struct {
-        double (*f)(double x, double y, double z);
+        field_fn *field;
         bool scan;
     } cases[] = {{noisy_blob, true},   {stepped_blob, true},
                  {blob, false},        {smooth_steps, false},
                  {noisy_wave, false},  {dense_blob, false},
                  {strong_wave, false}, {far_blob, true}};
     static float values[SIDE * SIDE * SIDE];
-    snow_context *context = support_context();
+    looks_fixture *f = *state;
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
-        snow_volume *volume = field_of(context, values, cases[n].f);
-        snow_transfer *transfer =
-            support_look(volume, (snow_look){.size = sizeof(snow_look)});
+        snow_volume *volume = field_of(f, values, cases[n].field);
+        snow_transfer *transfer = looks_of(f, volume, (snow_look){0});
         assert_int_equal(snow_transfer_is_grey(transfer), cases[n].scan);
         assert_false(cases[n].scan && snow_transfer_is_unshaded(transfer));
-        snow_transfer_free(transfer);
-        snow_volume_close(volume);
     }
-    snow_context_free(context);
 }
 
 static void a_field_is_a_veil_in_colours(void **state) {
-    (void)state;
     static float values[SIDE * SIDE * SIDE];
     static int16_t whole[SIDE * SIDE * SIDE];
-    const snow_volume_info info = {.size = sizeof info,
-                                   .dims = {SIDE, SIDE, SIDE},
+    const snow_volume_info info = {.dims = {SIDE, SIDE, SIDE},
                                    .type = SNOW_TYPE_INT16};
-    snow_context *context = support_context();
-    snow_volume *volume = field_of(context, values, blob), *scan = NULL;
-    snow_transfer *transfer =
-        support_look(volume, (snow_look){.size = sizeof(snow_look)});
+    looks_fixture *f = *state;
+    snow_volume *volume = field_of(f, values, blob);
+    snow_transfer *transfer = looks_of(f, volume, (snow_look){0});
     assert_false(snow_transfer_is_grey(transfer));
     assert_true(snow_transfer_is_unshaded(transfer));
-    assert_true(opacity_at(transfer, 0) == 0);
-    assert_true(opacity_at(transfer, 0.5) < 0.3);
-    assert_true(opacity_at(transfer, 1) > 0.4);
-    snow_transfer_free(transfer);
-    snow_volume_close(volume);
+    assert_true(looks_opacity(transfer, 0) == 0);
+    assert_true(looks_opacity(transfer, 0.5) < 0.3);
+    assert_true(looks_opacity(transfer, 1) > 0.4);
     for (int n = 0; n < SIDE * SIDE * SIDE; n++)
         whole[n] = (int16_t)(1000 * values[n]);
-    assert_int_equal(snow_volume_wrap(context, &info, whole, &scan),
-                     SNOW_STATUS_OK);
-    transfer = support_look(scan, (snow_look){.size = sizeof(snow_look)});
+    transfer = looks_of(f, looks_volume(f, info, whole), (snow_look){0});
     assert_true(snow_transfer_is_grey(transfer));
-    snow_transfer_free(transfer);
-    snow_volume_close(scan);
-    snow_context_free(context);
 }
 
 /* matplotlib's definitions of three maps, at all 256 entries. */
 static void maps_agree_with_their_definitions(void **state) {
-    (void)state;
     static const double rdbu[11][3] = {
         {103, 0, 31},    {178, 24, 43},   {214, 96, 77},   {244, 165, 130},
         {253, 219, 199}, {247, 247, 247}, {209, 229, 240}, {146, 197, 222},
@@ -381,17 +289,14 @@ static void maps_agree_with_their_definitions(void **state) {
                 {{"seismic", "seismic_r"}, seismic, 5},
                 {{"bwr", "BWR_R"}, bwr, 3}};
     static const snow_opacity_point one = {0, 1};
-    snow_context *context = support_context();
+    looks_fixture *f = *state;
     for (int m = 0; m < 6; m++) {
         snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
-        snow_transfer *transfer = NULL;
         int index = snow_colormap_from_name(maps[m / 2].names[m % 2]);
         assert_true(index >= 0);
         size_t count = snow_colormap_points((size_t)index, points,
                                             SNOW_COLORMAP_POINTS_MAX);
-        assert_int_equal(
-            snow_transfer_new(context, points, count, &one, 1, &transfer),
-            SNOW_STATUS_OK);
+        snow_transfer *transfer = looks_of_points(f, points, count, &one, 1);
         for (int n = 0; n < 256; n++) {
             double rgba[4], at = (m % 2 ? 255 - n : n) / 255.0;
             double place = at * (maps[m / 2].count - 1);
@@ -404,59 +309,46 @@ static void maps_agree_with_their_definitions(void **state) {
                 assert_true(fabs(255 * rgba[c] - wanted) <= 1);
             }
         }
-        snow_transfer_free(transfer);
     }
     assert_int_equal(snow_colormap_from_name("viridis_q"), -1);
-    snow_context_free(context);
 }
 
 /* The type, and its table of counts, must not matter. */
 static void counted_types_give_the_same_look_by_decades(void **state) {
-    (void)state;
     int16_t narrow[400];
     double wide[400];
     uint64_t seed = 3;
     for (int i = 0; i < 400; i++)
         wide[i] = narrow[i] =
             (int16_t)(pow(10, 4.4 * support_uniform(&seed)) - 5);
-    snow_context *context = support_context();
-    snow_volume *a = support_row(context, SNOW_TYPE_INT16, narrow, 400);
-    snow_volume *b = support_row(context, SNOW_TYPE_FLOAT64, wide, 400);
-    snow_look look = {.size = sizeof look, .log = true};
-    snow_transfer *first = support_look(a, look),
-                  *second = support_look(b, look);
+    looks_fixture *f = *state;
+    snow_volume *a = looks_row(f, SNOW_TYPE_INT16, narrow, 400);
+    snow_volume *b = looks_row(f, SNOW_TYPE_FLOAT64, wide, 400);
+    snow_look look = {.log = true};
+    snow_transfer *first = looks_of(f, a, look), *second = looks_of(f, b, look);
     assert_string_equal(snow_transfer_description(first),
                         snow_transfer_description(second));
     for (int i = 0; i < 400; i++)
-        assert_true(opacity_at(first, wide[i]) == opacity_at(second, wide[i]));
-    snow_transfer_free(first);
-    snow_transfer_free(second);
-    snow_volume_close(a);
-    snow_volume_close(b);
-    snow_context_free(context);
+        assert_true(looks_opacity(first, wide[i]) ==
+                    looks_opacity(second, wide[i]));
 }
 
 static void odd_volumes_have_a_logarithmic_look_too(void **state) {
-    (void)state;
     const float odd[][3] = {{0, 0, 0},      {-1, -2, -3},
                             {5, 5, 5},      {NAN, NAN, NAN},
                             {0, 0, 1e-40F}, {1e-40F, 1, 3e38F}};
-    snow_context *context = support_context();
+    looks_fixture *f = *state;
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
-        snow_volume *volume =
-            support_row(context, SNOW_TYPE_FLOAT32, odd[i], 3);
+        snow_volume *volume = looks_row(f, SNOW_TYPE_FLOAT32, odd[i], 3);
         for (size_t p = 0; p < 4; p++) {
-            snow_look look = {.size = sizeof look,
-                              .log = true,
+            snow_look look = {.log = true,
                               .preset = p == 1   ? "linear"
                                         : p == 2 ? "mr-angio"
                                                  : NULL,
                               .colormap = p == 3 ? "turbo" : NULL};
-            snow_transfer_free(support_look(volume, look));
+            looks_of(f, volume, look);
         }
-        snow_volume_close(volume);
     }
-    snow_context_free(context);
 }
 
 /* --- points as data ------------------------------------------------------- */
@@ -465,7 +357,6 @@ static const snow_color_point red_blue[] = {{0, 1, 0, 0}, {1, 0, 0, 1}};
 static const snow_opacity_point half[] = {{0, 0}, {1, 0.5}};
 
 static void points_in_data_units_stay_where_they_are(void **state) {
-    (void)state;
     const snow_color_point colors[] = {{20, 1, 0, 0}, {40, 0, 0, 1}};
     const snow_opacity_point opacities[] = {{10, 0}, {50, 0.5}};
     const snow_opacity_point gradients[] = {{0, 0}, {4, 1}};
@@ -478,65 +369,46 @@ static void points_in_data_units_stay_where_they_are(void **state) {
                               .opacity_count = 2,
                               .gradient_opacities = gradients,
                               .gradient_opacity_count = 2};
-    snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
-    snow_transfer *transfer = support_look(
-        volume, (snow_look){.size = sizeof(snow_look), .base = &points});
-    assert_true(near(opacity_at(transfer, 30), 0.25));
-    assert_true(near(red_at(transfer, 30), 0.5));
+    looks_fixture *f = *state;
+    snow_volume *volume = looks_row(f, SNOW_TYPE_UINT8, bytes, 2);
+    snow_transfer *transfer = looks_of(f, volume, (snow_look){.base = &points});
+    assert_true(near(looks_opacity(transfer, 30), 0.25));
+    assert_true(near(looks_red(transfer, 30), 0.5));
     assert_true(near(snow_transfer_evaluate_gradient(transfer, 2), 0.5));
-    assert_non_null(strstr(snow_transfer_description(transfer), "mine 10..50"));
-    snow_transfer_free(transfer);
+    assert_true(looks_say(transfer, "mine 10..50"));
     /* The same without a base: a look with colours stands for a preset. */
-    transfer = support_look(volume, points);
-    assert_true(near(opacity_at(transfer, 30), 0.25));
-    assert_true(near(red_at(transfer, 30), 0.5));
+    transfer = looks_of(f, volume, points);
+    assert_true(near(looks_opacity(transfer, 30), 0.25));
+    assert_true(near(looks_red(transfer, 30), 0.5));
     assert_true(near(snow_transfer_evaluate_gradient(transfer, 2), 0.5));
-    assert_non_null(strstr(snow_transfer_description(transfer),
-                           "mine 10..50; opacity 0 at 10, 0.5 at 50 (as "));
-    snow_transfer_free(transfer);
+    assert_true(
+        looks_say(transfer, "mine 10..50; opacity 0 at 10, 0.5 at 50 (as "));
     /* Over twice the range gradients are half as steep. */
-    transfer = support_look(volume, (snow_look){.size = sizeof(snow_look),
-                                                .base = &points,
-                                                .range = SNOW_RANGE_VALUES,
-                                                .low = 100,
-                                                .high = 180});
-    assert_true(near(opacity_at(transfer, 140), 0.25));
-    assert_true(near(red_at(transfer, 120), 1));
+    transfer = looks_of(f, volume,
+                        (snow_look){.base = &points,
+                                    .range = SNOW_RANGE_VALUES,
+                                    .low = 100,
+                                    .high = 180});
+    assert_true(near(looks_opacity(transfer, 140), 0.25));
+    assert_true(near(looks_red(transfer, 120), 1));
     assert_true(near(snow_transfer_evaluate_gradient(transfer, 2), 0.25));
-    snow_transfer_free(transfer);
-    snow_volume_close(volume);
-    snow_context_free(context);
 }
 
 static void two_sources_of_colours_are_refused(void **state) {
-    (void)state;
     const uint8_t bytes[] = {0, 255};
     const snow_look base = {
         .size = sizeof base, .colors = red_blue, .color_count = 2};
     const snow_look looks[] = {
-        {.size = sizeof base, .preset = "linear", .base = &base},
-        {.size = sizeof base,
-         .preset = "linear",
-         .colors = red_blue,
-         .color_count = 2},
-        {.size = sizeof base, .base = &base, .domain = SNOW_DOMAIN_RANGE}};
-    snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
-    snow_transfer *transfer = NULL;
-    for (int n = 0; n < 3; n++) {
-        assert_int_equal(
-            snow_transfer_new_for_volume(volume, &looks[n], &transfer),
-            SNOW_STATUS_BAD_USAGE);
-        assert_non_null(strstr(snow_context_message(context), "only one of"));
-    }
-    assert_null(transfer);
-    snow_volume_close(volume);
-    snow_context_free(context);
+        {.preset = "linear", .base = &base},
+        {.preset = "linear", .colors = red_blue, .color_count = 2},
+        {.base = &base, .domain = SNOW_DOMAIN_RANGE}};
+    looks_fixture *f = *state;
+    snow_volume *volume = looks_row(f, SNOW_TYPE_UINT8, bytes, 2);
+    for (int n = 0; n < 3; n++)
+        looks_refused(f, volume, looks[n], "only one of");
 }
 
 static void points_without_values_are_spread(void **state) {
-    (void)state;
     const uint8_t bytes[] = {50, 150};
     const snow_look points = {.size = sizeof points,
                               .name = "mine",
@@ -547,28 +419,20 @@ static void points_without_values_are_spread(void **state) {
                               .opacity_count = 2};
     snow_look colors_only = points;
     colors_only.opacity_count = 0;
-    snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
-    snow_transfer *transfer = support_look(
-        volume, (snow_look){.size = sizeof(snow_look), .base = &points});
-    assert_true(near(opacity_at(transfer, 100), 0.25));
-    assert_true(near(red_at(transfer, 75), 0.75));
-    snow_transfer_free(transfer);
-    transfer = support_look(
-        volume, (snow_look){.size = sizeof(snow_look), .base = &colors_only});
-    snow_transfer *automatic = support_look(
-        volume, (snow_look){.size = sizeof(snow_look), .preset = NULL});
-    assert_true(near(opacity_at(transfer, 150), opacity_at(automatic, 150)));
-    assert_true(red_at(transfer, 150) == 0);
-    snow_transfer_free(automatic);
-    snow_transfer_free(transfer);
-    snow_volume_close(volume);
-    snow_context_free(context);
+    looks_fixture *f = *state;
+    snow_volume *volume = looks_row(f, SNOW_TYPE_UINT8, bytes, 2);
+    snow_transfer *transfer = looks_of(f, volume, (snow_look){.base = &points});
+    assert_true(near(looks_opacity(transfer, 100), 0.25));
+    assert_true(near(looks_red(transfer, 75), 0.75));
+    transfer = looks_of(f, volume, (snow_look){.base = &colors_only});
+    snow_transfer *automatic = looks_of(f, volume, (snow_look){.preset = NULL});
+    assert_true(
+        near(looks_opacity(transfer, 150), looks_opacity(automatic, 150)));
+    assert_true(looks_red(transfer, 150) == 0);
 }
 
 /* More than drafts of our own have. */
 static void hundreds_of_points_are_taken(void **state) {
-    (void)state;
     snow_color_point colors[700];
     snow_opacity_point opacities[900];
     for (int i = 0; i < 700; i++)
@@ -582,20 +446,16 @@ static void hundreds_of_points_are_taken(void **state) {
                               .color_count = 700,
                               .opacities = opacities,
                               .opacity_count = 900};
-    snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, 2);
-    snow_transfer *transfer = support_look(
-        volume, (snow_look){.size = sizeof(snow_look), .base = &points});
-    assert_true(near(opacity_at(transfer, 655.25), 0.75));
-    assert_true(near(red_at(transfer, 350), 0.5));
-    snow_transfer_free(transfer);
-    snow_volume_close(volume);
-    snow_context_free(context);
+    looks_fixture *f = *state;
+    snow_volume *volume = looks_row(f, SNOW_TYPE_FLOAT32, values, 2);
+    snow_transfer *transfer = looks_of(f, volume, (snow_look){.base = &points});
+    assert_true(near(looks_opacity(transfer, 655.25), 0.75));
+    assert_true(near(looks_red(transfer, 350), 0.5));
 }
 
 static void presets_and_colour_maps_are_data(void **state) {
-    (void)state;
     snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
+    (void)state;
     for (size_t i = 0; snow_preset_name(i); i++) {
         const snow_look *preset = snow_preset_look(i);
         if (!strcmp(snow_preset_name(i), "labels")) /* made of a volume */
@@ -618,17 +478,14 @@ static void presets_and_colour_maps_are_data(void **state) {
 
 /* Tableau's ten, in equal steps. */
 static void categories_are_not_mixed(void **state) {
-    (void)state;
     static const unsigned rgb[10] = {0x1f77b4, 0xff7f0e, 0x2ca02c, 0xd62728,
                                      0x9467bd, 0x8c564b, 0xe377c2, 0x7f7f7f,
                                      0xbcbd22, 0x17becf};
     const float values[] = {0, 10};
-    snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, 2);
-    snow_transfer *transfer =
-        support_look(volume, (snow_look){.size = sizeof(snow_look),
-                                         .preset = "linear",
-                                         .colormap = "tab10"});
+    looks_fixture *f = *state;
+    snow_volume *volume = looks_row(f, SNOW_TYPE_FLOAT32, values, 2);
+    snow_transfer *transfer = looks_of(
+        f, volume, (snow_look){.preset = "linear", .colormap = "tab10"});
     for (int i = 0; i < 100; i++) {
         double found[4];
         snow_transfer_evaluate(transfer, i / 10.0 + 0.05, found);
@@ -636,27 +493,16 @@ static void categories_are_not_mixed(void **state) {
             assert_true(
                 near(found[c], (rgb[i / 10] >> (16 - 8 * c) & 255) / 255.0));
     }
-    snow_transfer_free(transfer);
-    snow_volume_close(volume);
-    snow_context_free(context);
 }
 
 /* --- volumes without surfaces --------------------------------------------- */
 
 /* Of a scan: without the modality they would be a computed field. */
-static snow_transfer *look_at_block(snow_context *context, const float *values,
-                                    const int64_t dims[3]) {
-    snow_volume_info info = {.size = sizeof info,
-                             .dims = {dims[0], dims[1], dims[2]},
-                             .type = SNOW_TYPE_FLOAT32,
-                             .modality = "MR"};
-    snow_volume *volume = NULL;
-    assert_int_equal(snow_volume_wrap(context, &info, values, &volume),
-                     SNOW_STATUS_OK);
-    snow_transfer *transfer = support_look(
-        volume, (snow_look){.size = sizeof(snow_look), .preset = NULL});
-    snow_volume_close(volume);
-    return transfer;
+static snow_transfer *look_at_block(looks_fixture *f, const float *values,
+                                    int64_t x, int64_t y, int64_t z) {
+    const snow_volume_info info = {
+        .dims = {x, y, z}, .type = SNOW_TYPE_FLOAT32, .modality = "MR"};
+    return looks_of(f, looks_volume(f, info, values), (snow_look){0});
 }
 
 /* Twelve dice make one heap. */
@@ -671,200 +517,175 @@ static void fill_heap(float *values, int count, double middle, double width) {
 }
 
 static void one_heap_of_values_is_a_solid_block(void **state) {
-    (void)state;
     static float values[20 * 20 * 20], left[20 * 20 * 20];
-    const int64_t cube[3] = {20, 20, 20}, slice[3] = {80, 100, 1};
-    const int64_t few[3] = {2, 50, 80}, many[3] = {50, 32, 5};
-    snow_context *context = support_context();
+    looks_fixture *f = *state;
     fill_heap(values, 8000, 100, 10);
-    snow_transfer *transfer = look_at_block(context, values, cube);
+    snow_transfer *transfer = look_at_block(f, values, 20, 20, 20);
     assert_true(snow_transfer_is_unshaded(transfer));
-    assert_true(opacity_at(transfer, 100) > 0.3);
-    assert_true(red_at(transfer, 100) > 0.3 && red_at(transfer, 100) < 0.7);
-    snow_transfer_free(transfer);
+    assert_true(looks_opacity(transfer, 100) > 0.3);
+    assert_true(looks_red(transfer, 100) > 0.3 &&
+                looks_red(transfer, 100) < 0.7);
     /* Densities about a mean of 0 are not. */
     fill_heap(values, 8000, 0, 10);
-    transfer = look_at_block(context, values, cube);
+    transfer = look_at_block(f, values, 20, 20, 20);
     assert_false(snow_transfer_is_unshaded(transfer));
-    assert_true(opacity_at(transfer, -5) == 0);
-    snow_transfer_free(transfer);
+    assert_true(looks_opacity(transfer, -5) == 0);
     /* An object in its background is not. */
     for (int i = 0; i < 8000; i++)
         values[i] = i % 3 ? 0 : 100 + (float)(i % 7);
-    transfer = look_at_block(context, values, cube);
+    transfer = look_at_block(f, values, 20, 20, 20);
     assert_false(snow_transfer_is_unshaded(transfer));
-    snow_transfer_free(transfer);
     /* Of two organs that a mask has left, the noise of one is not split. */
     fill_heap(left, 3000, 900, 20);
     fill_heap(left + 3000, 600, 50, 20);
     for (int i = 3600; i < 8000; i++)
         left[i] = NAN;
-    transfer = look_at_block(context, left, cube);
+    transfer = look_at_block(f, left, 20, 20, 20);
     assert_false(snow_transfer_is_unshaded(transfer));
-    assert_true(opacity_at(transfer, 860) > 0.25);
-    snow_transfer_free(transfer);
+    assert_true(looks_opacity(transfer, 860) > 0.25);
     /* A slice is a picture, whatever its values. */
-    transfer = look_at_block(context, values, slice);
+    transfer = look_at_block(f, values, 80, 100, 1);
     assert_true(snow_transfer_is_unshaded(transfer));
-    assert_true(opacity_at(transfer, 100) == 1);
-    snow_transfer_free(transfer);
+    assert_true(looks_opacity(transfer, 100) == 1);
     /* So are two, and not five of few rows. */
-    transfer = look_at_block(context, values, few);
+    transfer = look_at_block(f, values, 2, 50, 80);
     assert_true(snow_transfer_is_unshaded(transfer));
-    assert_true(opacity_at(transfer, 100) == 1);
-    snow_transfer_free(transfer);
-    transfer = look_at_block(context, values, many);
+    assert_true(looks_opacity(transfer, 100) == 1);
+    transfer = look_at_block(f, values, 50, 32, 5);
     assert_false(snow_transfer_is_unshaded(transfer));
-    snow_transfer_free(transfer);
-    snow_context_free(context);
 }
 
 /* --- what a volume says of itself ----------------------------------------- */
 
-static snow_transfer *look_at_patient(snow_context *context, const void *voxels,
+static snow_transfer *look_at_patient(looks_fixture *f, const void *voxels,
                                       snow_volume_info info, snow_look look) {
-    snow_volume *volume = NULL;
-    info.size = sizeof info;
-    look.size = sizeof look;
     info.dims[0] = info.dims[1] = 20;
     info.dims[2] = info.dims[2] ? info.dims[2] : 20;
-    assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
-                     SNOW_STATUS_OK);
-    snow_transfer *transfer = support_look(volume, look);
-    snow_volume_close(volume);
-    return transfer;
+    return looks_of(f, looks_volume(f, info, voxels), look);
 }
 
-static bool says(snow_transfer *transfer, const char *words) {
-    bool found = strstr(snow_transfer_description(transfer), words) != NULL;
-    snow_transfer_free(transfer);
-    return found;
+/* Tissue, with bone or without, in air. */
+static void fill_ct(int16_t voxels[8000], bool bone) {
+    for (int i = 0; i < 8000; i++)
+        voxels[i] = (int16_t)(i % 2   ? i % 30 - 1000
+                              : !bone ? i % 60
+                              : i % 3 ? 40
+                                      : 700);
 }
 
 static void ct_in_hounsfield_units_has_a_look_of_ct(void **state) {
-    (void)state;
     static int16_t ct[8000], soft[8000], shifted[8000];
     static uint8_t bytes[8000];
-    const snow_look any = {.log = false};
     const snow_volume_info patient = {.type = SNOW_TYPE_INT16, .medical = true};
-    snow_volume_info named = patient, thing = patient;
+    snow_volume_info named = patient, thing = patient, slab = patient;
     snow_volume_info eight = {.type = SNOW_TYPE_UINT8, .medical = true};
-    snow_context *context = support_context();
+    looks_fixture *f = *state;
+    fill_ct(ct, true);
+    fill_ct(soft, false);
     for (int i = 0; i < 8000; i++) {
-        ct[i] = (int16_t)(i % 2 ? i % 30 - 1000 : i % 3 ? 40 : 700);
-        soft[i] = (int16_t)(i % 2 ? i % 30 - 1000 : i % 60);
         shifted[i] = (int16_t)(ct[i] + 1024);
         bytes[i] = (uint8_t)(i % 2 ? i % 9 : 200);
     }
-    assert_true(
-        says(look_at_patient(context, ct, patient, any), "(ct-bone, for Houn"));
-    assert_true(says(look_at_patient(context, soft, patient, any),
-                     "(ct-soft, for Houn"));
-    snow_volume_info slab = patient;
     slab.dims[2] = 4;
-    assert_true(
-        says(look_at_patient(context, ct, slab, any), "(ct-soft, for Houn"));
-    assert_true(says(look_at_patient(context, shifted, patient, any),
-                     "from the histogram"));
-    assert_true(says(look_at_patient(context, bytes, eight, any),
-                     "from the histogram"));
     thing.medical = false;
-    assert_true(
-        says(look_at_patient(context, ct, thing, any), "from the histogram"));
     memcpy(named.modality, "MR", 3);
-    assert_true(
-        says(look_at_patient(context, ct, named, any), "from the histogram"));
+    const struct {
+        const void *voxels;
+        const snow_volume_info *info;
+        const char *words;
+    } cases[] = {{ct, &patient, "(ct-bone, for Houn"},
+                 {soft, &patient, "(ct-soft, for Houn"},
+                 {ct, &slab, "(ct-soft, for Houn"},
+                 {shifted, &patient, "from the histogram"},
+                 {bytes, &eight, "from the histogram"},
+                 {ct, &thing, "from the histogram"},
+                 {ct, &named, "from the histogram"}};
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++)
+        assert_true(looks_say(
+            look_at_patient(f, cases[n].voxels, *cases[n].info, (snow_look){0}),
+            cases[n].words));
     /* Values of 8 bits are none of those units: the object's are used. */
-    snow_transfer *transfer = look_at_patient(context, bytes, eight,
-                                              (snow_look){.preset = "ct-bone"});
-    assert_true(opacity_at(transfer, 8) == 0);
-    assert_true(near(opacity_at(transfer, 200), 0.85));
-    snow_transfer_free(transfer);
+    snow_transfer *transfer =
+        look_at_patient(f, bytes, eight, (snow_look){.preset = "ct-bone"});
+    assert_true(looks_opacity(transfer, 8) == 0);
+    assert_true(near(looks_opacity(transfer, 200), 0.85));
     /* So are those that a mask has left. */
     static float floats[8000];
     for (int i = 0; i < 8000; i++)
         floats[i] = bytes[i];
     eight.type = SNOW_TYPE_FLOAT32;
     eight.eight_bits = true;
-    transfer = look_at_patient(context, floats, eight,
-                               (snow_look){.preset = "ct-bone"});
-    assert_true(near(opacity_at(transfer, 200), 0.85));
-    snow_transfer_free(transfer);
-    snow_context_free(context);
+    transfer =
+        look_at_patient(f, floats, eight, (snow_look){.preset = "ct-bone"});
+    assert_true(near(looks_opacity(transfer, 200), 0.85));
 }
 
 /* A range that is asked for is that of a grey look, and the look that was found
  * makes the same one. */
 static void what_is_known_of_an_automatic_look_makes_it_again(void **state) {
-    (void)state;
     static int16_t ct[8000];
     const snow_volume_info patient = {.type = SNOW_TYPE_INT16, .medical = true};
-    snow_context *context = support_context();
-    for (int i = 0; i < 8000; i++)
-        ct[i] = (int16_t)(i % 2 ? i % 30 - 1000 : i % 3 ? 40 : 700);
-    assert_true(says(
+    looks_fixture *f = *state;
+    fill_ct(ct, true);
+    assert_true(looks_say(
         look_at_patient(
-            context, ct, patient,
+            f, ct, patient,
             (snow_look){.range = SNOW_RANGE_VALUES, .low = 0, .high = 800}),
         "from the histogram"));
     snow_transfer *found =
-        look_at_patient(context, ct, patient, (snow_look){.low = 0});
+        look_at_patient(f, ct, patient, (snow_look){.low = 0});
     snow_look look = {.size = sizeof look};
     assert_int_equal(snow_transfer_get_look(found, &look), SNOW_STATUS_OK);
     assert_string_equal(look.name, "ct-bone");
-    snow_transfer *again = look_at_patient(context, ct, patient, look);
+    snow_transfer *again = look_at_patient(f, ct, patient, look);
     for (double value = -1000; value < 800; value += 50)
-        assert_true(opacity_at(found, value) == opacity_at(again, value) &&
-                    red_at(found, value) == red_at(again, value));
-    snow_transfer_free(found);
-    snow_transfer_free(again);
-    snow_context_free(context);
+        assert_true(looks_opacity(found, value) ==
+                        looks_opacity(again, value) &&
+                    looks_red(found, value) == looks_red(again, value));
 }
 
 static void a_projection_survives_a_hot_voxel(void **state) {
-    (void)state;
     static uint16_t voxels[8000 * 5];
-    snow_context *context = support_context();
+    looks_fixture *f = *state;
     snow_volume_info info = {.type = SNOW_TYPE_UINT16, .dims = {0, 0, 100}};
     const snow_look look = {.preset = "linear", .range = SNOW_RANGE_ROBUST};
     for (int i = 0; i < 40000; i++)
         voxels[i] = (uint16_t)(i % 301);
-    snow_transfer *transfer = look_at_patient(context, voxels, info, look);
-    assert_true(near(opacity_at(transfer, 300), 1)); /* nothing is cut */
-    assert_true(says(transfer, "(linear)"));
+    snow_transfer *transfer = look_at_patient(f, voxels, info, look);
+    assert_true(near(looks_opacity(transfer, 300), 1)); /* nothing is cut */
+    assert_true(looks_say(transfer, "(linear)"));
     voxels[777] = 60000;
-    transfer = look_at_patient(context, voxels, info, look);
-    assert_true(near(opacity_at(transfer, 300), 1));
-    assert_true(near(opacity_at(transfer, 150), 0.5));
-    assert_true(says(transfer, "few values outside, the data are 0..60000"));
+    transfer = look_at_patient(f, voxels, info, look);
+    assert_true(near(looks_opacity(transfer, 300), 1));
+    assert_true(near(looks_opacity(transfer, 150), 0.5));
+    assert_true(
+        looks_say(transfer, "few values outside, the data are 0..60000"));
     info.window[0] = 100, info.window[1] = 200;
-    transfer = look_at_patient(context, voxels, info, look);
-    assert_true(near(opacity_at(transfer, 150), 0.5));
-    assert_true(near(opacity_at(transfer, 200), 1));
-    assert_true(says(transfer, "the file's own window"));
+    transfer = look_at_patient(f, voxels, info, look);
+    assert_true(near(looks_opacity(transfer, 150), 0.5));
+    assert_true(near(looks_opacity(transfer, 200), 1));
+    assert_true(looks_say(transfer, "the file's own window"));
     info.dims[2] = 1; /* a slice takes it by itself */
-    transfer = look_at_patient(context, voxels, info, (snow_look){.low = 0});
-    assert_true(red_at(transfer, 100) == 0 && red_at(transfer, 200) > 0.9);
-    assert_true(says(transfer, "the file's own window"));
-    snow_context_free(context);
+    transfer = look_at_patient(f, voxels, info, (snow_look){.low = 0});
+    assert_true(looks_red(transfer, 100) == 0 &&
+                looks_red(transfer, 200) > 0.9);
+    assert_true(looks_say(transfer, "the file's own window"));
 }
 
 /* Colours of one's own lie where they are, whatever the range and the scale. */
 static void a_list_of_colours_is_a_map(void **state) {
-    (void)state;
     static const float values[] = {1, 10, 100, 1000};
-    snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, 4);
+    looks_fixture *f = *state;
+    snow_volume *volume = looks_row(f, SNOW_TYPE_FLOAT32, values, 4);
     for (int kind = 0; kind < 4; kind++) {
-        snow_look look = {.size = sizeof look,
-                          .preset = kind == 1 ? "ct-bone" : NULL,
+        snow_look look = {.preset = kind == 1 ? "ct-bone" : NULL,
                           .range =
                               kind > 1 ? SNOW_RANGE_VALUES : SNOW_RANGE_AUTO,
                           .low = 5,
                           .high = 700,
                           .log = kind == 3,
                           .colormap = "10:#000000,100:#ff3300,1e3:#ff33FF"};
-        snow_transfer *transfer = support_look(volume, look);
+        snow_transfer *transfer = looks_of(f, volume, look);
         double rgba[4], ends[2];
         const double middle = kind == 3 ? sqrt(1e3) : 55;
         snow_transfer_evaluate(transfer, middle, rgba);
@@ -875,16 +696,11 @@ static void a_list_of_colours_is_a_map(void **state) {
         assert_true(near(rgba[0], 1) && near(rgba[1], 0.2) && near(rgba[2], 1));
         snow_transfer_domain(transfer, &ends[0], &ends[1]);
         assert_true(near(ends[0], 10) && near(ends[1], 1000));
-        assert_non_null(strstr(snow_transfer_description(transfer),
-                               "own colours 10..1000"));
-        snow_transfer_free(transfer);
+        assert_true(looks_say(transfer, "own colours 10..1000"));
     }
-    snow_volume_close(volume);
-    snow_context_free(context);
 }
 
 static void what_is_no_list_of_colours_is_refused(void **state) {
-    (void)state;
     static const char *const wrong[] = {
         "",          ":",           "1:",          "1:#",
         "1:#12345",  "1:#1234567",  "1:#12345g",   "1:123456",
@@ -892,6 +708,7 @@ static void what_is_no_list_of_colours_is_refused(void **state) {
         ",1:#12345", "2:#0,1:#0",   "1:# 12345",   "2:#123456,1:#123456",
         "1:#0x1234", "1:#123456 ,", "inf:#123456", "1:#123456;2:#123456"};
     char many[1000] = "", *at = many;
+    (void)state;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         assert_int_equal(snow_colormap_from_name(wrong[i]), -1);
     for (int i = 0; i < 33; i++) {
@@ -905,29 +722,29 @@ static void what_is_no_list_of_colours_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(linear_over_decades_is_linear_in_decades),
-        cmocka_unit_test(a_range_is_spread_by_decades),
-        cmocka_unit_test(a_field_of_both_signs_is_diverging_around_0),
-        cmocka_unit_test(a_scan_in_floats_is_grey_and_shaded),
-        cmocka_unit_test(a_field_is_a_veil_in_colours),
-        cmocka_unit_test(maps_agree_with_their_definitions),
-        cmocka_unit_test(a_symmetric_logarithm_is_linear_around_0),
-        cmocka_unit_test(a_symmetric_logarithm_begins_where_it_says),
-        cmocka_unit_test(logarithms_say_what_they_leave_out),
-        cmocka_unit_test(what_has_no_logarithm_is_refused),
-        cmocka_unit_test(counted_types_give_the_same_look_by_decades),
-        cmocka_unit_test(odd_volumes_have_a_logarithmic_look_too),
-        cmocka_unit_test(points_in_data_units_stay_where_they_are),
-        cmocka_unit_test(points_without_values_are_spread),
-        cmocka_unit_test(two_sources_of_colours_are_refused),
-        cmocka_unit_test(hundreds_of_points_are_taken),
+        LOOKS_TEST(linear_over_decades_is_linear_in_decades),
+        LOOKS_TEST(a_range_is_spread_by_decades),
+        LOOKS_TEST(a_field_of_both_signs_is_diverging_around_0),
+        LOOKS_TEST(a_scan_in_floats_is_grey_and_shaded),
+        LOOKS_TEST(a_field_is_a_veil_in_colours),
+        LOOKS_TEST(maps_agree_with_their_definitions),
+        LOOKS_TEST(a_symmetric_logarithm_is_linear_around_0),
+        LOOKS_TEST(a_symmetric_logarithm_begins_where_it_says),
+        LOOKS_TEST(logarithms_say_what_they_leave_out),
+        LOOKS_TEST(what_has_no_logarithm_is_refused),
+        LOOKS_TEST(counted_types_give_the_same_look_by_decades),
+        LOOKS_TEST(odd_volumes_have_a_logarithmic_look_too),
+        LOOKS_TEST(points_in_data_units_stay_where_they_are),
+        LOOKS_TEST(points_without_values_are_spread),
+        LOOKS_TEST(two_sources_of_colours_are_refused),
+        LOOKS_TEST(hundreds_of_points_are_taken),
         cmocka_unit_test(presets_and_colour_maps_are_data),
-        cmocka_unit_test(categories_are_not_mixed),
-        cmocka_unit_test(ct_in_hounsfield_units_has_a_look_of_ct),
-        cmocka_unit_test(what_is_known_of_an_automatic_look_makes_it_again),
-        cmocka_unit_test(a_projection_survives_a_hot_voxel),
-        cmocka_unit_test(one_heap_of_values_is_a_solid_block),
-        cmocka_unit_test(a_list_of_colours_is_a_map),
+        LOOKS_TEST(categories_are_not_mixed),
+        LOOKS_TEST(ct_in_hounsfield_units_has_a_look_of_ct),
+        LOOKS_TEST(what_is_known_of_an_automatic_look_makes_it_again),
+        LOOKS_TEST(a_projection_survives_a_hot_voxel),
+        LOOKS_TEST(one_heap_of_values_is_a_solid_block),
+        LOOKS_TEST(a_list_of_colours_is_a_map),
         cmocka_unit_test(what_is_no_list_of_colours_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
