@@ -6,10 +6,7 @@
 
 static snow_image *picture(image_fixture *f, int width, int height,
                            int channels) {
-    snow_image *image = NULL;
-    assert_int_equal(
-        snow_image_new(f->context, width, height, channels, &image),
-        SNOW_STATUS_OK);
+    snow_image *image = support_blank(f->context, width, height, channels);
     return image;
 }
 

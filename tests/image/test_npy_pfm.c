@@ -81,20 +81,27 @@ static void assert_pixels(image_fixture *f, const file *data, int width,
 
 /* A grey and a colour picture of 2 x 2. */
 static snow_image *grey_picture(snow_context *context) {
-    snow_image *image = NULL;
-    assert_int_equal(snow_image_new(context, 2, 2, 2, &image), SNOW_STATUS_OK);
+    snow_image *image = support_blank(context, 2, 2, 2);
     memcpy(snow_image_pixels(image), ((float[]){1, 2, 3, 4, 5, 6, 7, 8}), 32);
     return image;
+}
+
+/* A picture's file has those bytes; the picture is freed. */
+static void assert_saved(image_fixture *f, snow_image *image, const char *name,
+                         const file *wanted) {
+    const char *path = support_image_path(f, name);
+    assert_int_equal(snow_image_save(image, path, NULL), SNOW_STATUS_OK);
+    support_bytes got = support_read_file(path);
+    assert_int_equal(got.size, wanted->size);
+    assert_memory_equal(got.bytes, wanted->bytes, got.size);
+    free(got.bytes);
+    snow_image_free(image);
 }
 
 /* --- NPY ------------------------------------------------------------------ */
 
 static void npy_bytes_are_as_numpy_writes_them(void **state) {
     image_fixture *f = *state;
-    snow_image *image = grey_picture(f->context);
-    const char *path = support_image_path(f, "a.npy");
-    assert_int_equal(snow_image_save(image, path, NULL), SNOW_STATUS_OK);
-    snow_image_free(image);
     char header[128];
     snprintf(header, sizeof header, "%-117s\n",
              "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 2, 4), }");
@@ -102,11 +109,8 @@ static void npy_bytes_are_as_numpy_writes_them(void **state) {
     put_floats(&wanted,
                (double[]){1, 1, 1, 2, 3, 3, 3, 4, 5, 5, 5, 6, 7, 7, 7, 8}, 16,
                4, false);
-    support_bytes got = support_read_file(path);
-    assert_int_equal(got.size, 128 + 64);
-    assert_int_equal(got.size, wanted.size);
-    assert_memory_equal(got.bytes, wanted.bytes, got.size);
-    free(got.bytes);
+    assert_int_equal(wanted.size, 128 + 64);
+    assert_saved(f, grey_picture(f->context), "a.npy", &wanted);
 }
 
 static void floats_survive_npy_bit_for_bit(void **state) {
@@ -119,11 +123,7 @@ static void floats_survive_npy_bit_for_bit(void **state) {
         float *pixels = snow_image_pixels(image);
         pixels[0] = NAN, pixels[1] = -INFINITY, pixels[2] = -0.0f;
         pixels[3] = 1e-44f;
-        const char *path = support_image_path(f, "a.npy");
-        assert_int_equal(snow_image_save(image, path, NULL), SNOW_STATUS_OK);
-        snow_image *again = NULL;
-        assert_int_equal(snow_image_load(f->context, path, &again),
-                         SNOW_STATUS_OK);
+        snow_image *again = support_round_trip(f, image, "a.npy", NULL);
         assert_int_equal(snow_image_width(again), sizes[i][0]);
         assert_int_equal(snow_image_height(again), sizes[i][1]);
         assert_memory_equal(pixels, snow_image_pixels(again),
@@ -255,21 +255,13 @@ static void damaged_npy_headers_are_refused(void **state) {
 
 static void pfm_rows_go_from_the_bottom_up(void **state) {
     image_fixture *f = *state;
-    snow_image *image = NULL;
-    assert_int_equal(snow_image_new(f->context, 2, 2, 4, &image),
-                     SNOW_STATUS_OK);
+    snow_image *image = support_blank(f->context, 2, 2, 4);
     for (int i = 0; i < 16; i++)
         snow_image_pixels(image)[i] = (float)i;
-    const char *path = support_image_path(f, "a.pfm");
-    assert_int_equal(snow_image_save(image, path, NULL), SNOW_STATUS_OK);
     file wanted = pfm("PF\n2 2\n-1.0\n");
     put_floats(&wanted, (double[]){8, 9, 10, 12, 13, 14, 0, 1, 2, 4, 5, 6}, 12,
                4, false);
-    support_bytes got = support_read_file(path);
-    assert_int_equal(got.size, wanted.size);
-    assert_memory_equal(got.bytes, wanted.bytes, got.size);
-    free(got.bytes);
-    snow_image_free(image);
+    assert_saved(f, image, "a.pfm", &wanted);
     assert_pixels(
         f, &wanted, 2, 2,
         (float[]){0, 1, 2, 1, 4, 5, 6, 1, 8, 9, 10, 1, 12, 13, 14, 1});
@@ -277,10 +269,8 @@ static void pfm_rows_go_from_the_bottom_up(void **state) {
 
 static void grey_pictures_become_colour_in_pfm(void **state) {
     image_fixture *f = *state;
-    snow_image *image = grey_picture(f->context), *again = NULL;
-    const char *path = support_image_path(f, "a.pfm");
-    assert_int_equal(snow_image_save(image, path, NULL), SNOW_STATUS_OK);
-    assert_int_equal(snow_image_load(f->context, path, &again), SNOW_STATUS_OK);
+    snow_image *image = grey_picture(f->context);
+    snow_image *again = support_round_trip(f, image, "a.pfm", NULL);
     const float wanted[] = {1, 1, 1, 1, 3, 3, 3, 1, 5, 5, 5, 1, 7, 7, 7, 1};
     assert_memory_equal(snow_image_pixels(again), wanted, sizeof wanted);
     snow_image_free(image);

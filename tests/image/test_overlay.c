@@ -284,21 +284,16 @@ static void letters_stand_out_on_any_background(void **state) {
 /* The darkest and the lightest red of a file with a letter, on a background. */
 static void draw_on(image_fixture *f, double grey, bool flat, float *dark,
                     float *bright) {
-    snow_image *image = NULL, *read = NULL;
+    snow_image *image = support_blank(f->context, 60, 60, 2);
     snow_overlay *overlay = overlay_of(f->context, 60, 60);
-    assert_int_equal(snow_image_new(f->context, 60, 60, 2, &image),
-                     SNOW_STATUS_OK);
     assert_int_equal(snow_overlay_text(overlay, 30, 30, 0.5, 0.5, 30, "S"),
                      SNOW_STATUS_OK);
     const snow_image_options options = {.size = sizeof options,
                                         .overlay = overlay,
-                                        .overwrite = true,
                                         .flatten = flat,
                                         .background = {grey, grey, grey}};
-    const char *path = support_image_path(f, "a.png");
     unsigned char *bytes = malloc(60 * 60 * 3);
-    assert_int_equal(snow_image_save(image, path, &options), SNOW_STATUS_OK);
-    assert_int_equal(snow_image_load(f->context, path, &read), SNOW_STATUS_OK);
+    snow_image *read = support_round_trip(f, image, "a.png", &options);
     snow_image_to_rgb8_with(image, &options, bytes);
     *dark = 1;
     *bright = 0;
@@ -555,14 +550,8 @@ static void files_show_it_and_the_picture_stays(void **state) {
         for (int flat = 0; flat < 2; flat++) {
             const snow_image_options options = {.size = sizeof options,
                                                 .overlay = overlay,
-                                                .overwrite = true,
                                                 .flatten = flat};
-            snow_image *read = NULL;
-            const char *path = support_image_path(f, "a.png");
-            assert_int_equal(snow_image_save(image, path, &options),
-                             SNOW_STATUS_OK);
-            assert_int_equal(snow_image_load(f->context, path, &read),
-                             SNOW_STATUS_OK);
+            snow_image *read = support_round_trip(f, image, "a.png", &options);
             /* The middle of the letter is white and opaque. */
             const float *pixel = snow_image_pixels(read) + 4 * (60 * 140 + 70);
             bool found = false;
@@ -595,7 +584,6 @@ static void files_show_it_and_the_picture_stays(void **state) {
         snow_overlay_free(other);
         snow_overlay_free(overlay);
         snow_image_free(image);
-        support_image_path(f, "a.png");
     }
 }
 
@@ -608,10 +596,7 @@ static void a_grey_picture_with_a_colored_bar_is_colored(void **state) {
                      SNOW_STATUS_OK);
     const snow_image_options options = {.size = sizeof options,
                                         .overlay = overlay};
-    const char *path = support_image_path(f, "a.png");
-    snow_image *read = NULL;
-    assert_int_equal(snow_image_save(image, path, &options), SNOW_STATUS_OK);
-    assert_int_equal(snow_image_load(f->context, path, &read), SNOW_STATUS_OK);
+    snow_image *read = support_round_trip(f, image, "a.png", &options);
     const float *pixel = snow_image_pixels(read) + 4 * (4 * 40 + 5);
     assert_true(pixel[0] == 1 && pixel[1] == 0 && pixel[3] == 1);
     snow_image_free(read);

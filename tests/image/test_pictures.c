@@ -66,9 +66,7 @@ static const int sizes[][2] = {{1, 1},   {1, 100}, {100, 1},
 
 /* Values in data units, some missing. */
 static snow_image *values_of(snow_context *context, int width, int height) {
-    snow_image *image = NULL;
-    assert_int_equal(snow_image_new(context, width, height, 1, &image),
-                     SNOW_STATUS_OK);
+    snow_image *image = support_blank(context, width, height, 1);
     for (int i = 0; i < width * height; i++)
         snow_image_pixels(image)[i] = i % 7 ? 1000.5f * (float)i : NAN;
     return image;
@@ -91,22 +89,11 @@ static void floats_come_back_bit_for_bit(void **state) {
                 pixels[0] = INFINITY;
                 if (channels > 1)
                     pixels[1] = -1e-30f;
-                const char *path = support_image_path(f, names[n]);
-                const snow_image_options over = {.size = sizeof over,
-                                                 .overwrite = true};
-                snow_image *read = NULL;
-                snow_image_difference difference = {.size = sizeof difference};
-                assert_int_equal(snow_image_save(image, path, &over),
-                                 SNOW_STATUS_OK);
-                assert_int_equal(snow_image_load(f->context, path, &read),
-                                 SNOW_STATUS_OK);
+                snow_image *read = support_round_trip(f, image, names[n], NULL);
                 assert_int_equal(snow_image_channels(read), 4);
-                assert_int_equal(snow_image_compare(image, read, &difference),
-                                 SNOW_STATUS_OK);
-                assert_true(difference.largest == 0);
+                assert_true(support_apart(image, read) == 0);
                 snow_image_free(read);
                 snow_image_free(image);
-                remove(path);
             }
 }
 
@@ -127,18 +114,10 @@ static void a_depth_lies_beside_an_exr_picture_only(void **state) {
         const snow_image_options beside = {.size = sizeof beside,
                                            .depth = depth},
                                  wrong = {.size = sizeof wrong, .depth = other};
-        snow_image *read = NULL;
-        snow_image_difference difference = {.size = sizeof difference};
         refuse_save(f, image, "a.npy", &beside, "cannot hold depth");
         refuse_save(f, image, "a.exr", &wrong, "the depth has 20 x 33");
-        const char *path = support_image_path(f, "a.exr");
-        assert_int_equal(snow_image_save(image, path, &beside), SNOW_STATUS_OK);
-        assert_int_equal(snow_image_load(f->context, path, &read),
-                         SNOW_STATUS_OK);
-        assert_int_equal(snow_image_compare(image, read, &difference),
-                         SNOW_STATUS_OK);
-        assert_true(difference.largest == 0);
-        remove(path);
+        snow_image *read = support_round_trip(f, image, "a.exr", &beside);
+        assert_true(support_apart(image, read) == 0);
         snow_image_free(read);
         snow_image_free(other);
         snow_image_free(depth);
@@ -158,19 +137,8 @@ static void webp_holds_what_png_holds(void **state) {
                 .size = sizeof options,
                 .flatten = n / 2 > 0,
                 .background = {0.2, n / 2 == 1 ? 0.2 : 0.7, 0.2}};
-            snow_image *png = NULL, *webp = NULL;
-            const char *path = support_image_path(f, "a.png");
-            assert_int_equal(snow_image_save(image, path, &options),
-                             SNOW_STATUS_OK);
-            assert_int_equal(snow_image_load(f->context, path, &png),
-                             SNOW_STATUS_OK);
-            remove(path);
-            path = support_image_path(f, "a.webp");
-            assert_int_equal(snow_image_save(image, path, &options),
-                             SNOW_STATUS_OK);
-            assert_int_equal(snow_image_load(f->context, path, &webp),
-                             SNOW_STATUS_OK);
-            remove(path);
+            snow_image *png = support_round_trip(f, image, "a.png", &options);
+            snow_image *webp = support_round_trip(f, image, "a.webp", &options);
             assert_true(snow_image_checksum(png) == snow_image_checksum(webp));
             snow_image_free(png);
             snow_image_free(webp);
@@ -180,9 +148,7 @@ static void webp_holds_what_png_holds(void **state) {
 
 /* Smooth enough that a lossy file stays near: half is transparent. */
 static snow_image *slope(snow_context *context, int channels) {
-    snow_image *image = NULL;
-    assert_int_equal(snow_image_new(context, 60, 44, channels, &image),
-                     SNOW_STATUS_OK);
+    snow_image *image = support_blank(context, 60, 44, channels);
     float *at = snow_image_pixels(image);
     for (int i = 0; i < 60 * 44; i++, at += channels) {
         float alpha = i % 60 < 30 ? 0.5f : 0.9f;
@@ -200,23 +166,13 @@ static void jpeg_is_laid_on_the_background(void **state) {
         skip();
     for (int n = 0; n < 6; n++) {
         snow_image *image = slope(f->context, n % 2 ? 2 : 4);
-        snow_image *png = NULL, *jpeg = NULL;
         snow_image_options options = {
             .size = sizeof options,
             .flatten = true,
             .background = {n / 2 ? 0.2 : 0, n / 2 == 1 ? 0.2 : 0, 0}};
-        const char *path = support_image_path(f, "a.png");
-        assert_int_equal(snow_image_save(image, path, &options),
-                         SNOW_STATUS_OK);
-        assert_int_equal(snow_image_load(f->context, path, &png),
-                         SNOW_STATUS_OK);
-        remove(path);
-        path = support_image_path(f, n % 2 ? "a.jpg" : "a.jpeg");
-        assert_int_equal(snow_image_save(image, path, n / 2 ? &options : NULL),
-                         SNOW_STATUS_OK);
-        assert_int_equal(snow_image_load(f->context, path, &jpeg),
-                         SNOW_STATUS_OK);
-        remove(path);
+        snow_image *png = support_round_trip(f, image, "a.png", &options);
+        snow_image *jpeg = support_round_trip(
+            f, image, n % 2 ? "a.jpg" : "a.jpeg", n / 2 ? &options : NULL);
         snow_image_difference difference = {.size = sizeof difference};
         assert_int_equal(snow_image_compare(png, jpeg, &difference),
                          SNOW_STATUS_OK);

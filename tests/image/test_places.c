@@ -111,9 +111,7 @@ static void all_keep_off_the_object(void **state) {
     snow_overlay *plain = draw_all(f->context, NULL, &view, "mm", 1000, free);
     for (size_t n = 0; n < free[3]; n++) {
         const double *at = plain->shapes[n].box;
-        snow_image *image = NULL;
-        assert_int_equal(snow_image_new(f->context, 400, 300, 4, &image),
-                         SNOW_STATUS_OK);
+        snow_image *image = support_blank(f->context, 400, 300, 4);
         int x = (int)(at[0] + at[2]) / 2, y = (int)(at[1] + at[3]) / 2;
         snow_image_pixels(image)[4 * (400 * y + x) + 3] = 0.51f;
         snow_overlay *overlay =

@@ -59,11 +59,35 @@ support_bytes support_read_file(const char *path) {
     return data;
 }
 
-snow_image *support_picture(snow_context *context, int width, int height,
-                            int channels, uint64_t seed) {
+snow_image *support_blank(snow_context *context, int width, int height,
+                          int channels) {
     snow_image *image = NULL;
     assert_int_equal(snow_image_new(context, width, height, channels, &image),
                      SNOW_STATUS_OK);
+    return image;
+}
+
+snow_image *support_round_trip(image_fixture *fixture, const snow_image *image,
+                               const char *name,
+                               const snow_image_options *options) {
+    snow_image *read = NULL;
+    const char *path = support_image_path(fixture, name);
+    assert_int_equal(snow_image_save(image, path, options), SNOW_STATUS_OK);
+    assert_int_equal(snow_image_load(fixture->context, path, &read),
+                     SNOW_STATUS_OK);
+    unlink(path);
+    return read;
+}
+
+double support_apart(const snow_image *a, const snow_image *b) {
+    snow_image_difference difference = {.size = sizeof difference};
+    assert_int_equal(snow_image_compare(a, b, &difference), SNOW_STATUS_OK);
+    return difference.largest;
+}
+
+snow_image *support_picture(snow_context *context, int width, int height,
+                            int channels, uint64_t seed) {
+    snow_image *image = support_blank(context, width, height, channels);
     float *pixel = snow_image_pixels(image);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++, pixel += channels) {

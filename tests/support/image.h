@@ -34,6 +34,15 @@ typedef struct support_bytes {
 /* A whole file; free the bytes. */
 support_bytes support_read_file(const char *path);
 
+/* A transparent picture; what comes back of one that is written to a file of
+ * that name; the largest difference of two. */
+snow_image *support_blank(snow_context *context, int width, int height,
+                          int channels);
+snow_image *support_round_trip(image_fixture *fixture, const snow_image *image,
+                               const char *name,
+                               const snow_image_options *options);
+double support_apart(const snow_image *a, const snow_image *b);
+
 /* A picture of smooth and random premultiplied pixels with transparent ones. */
 snow_image *support_picture(snow_context *context, int width, int height,
                             int channels, uint64_t seed);
