@@ -124,17 +124,6 @@ static void check_raw(support_files *files, snow_type type, bool big) {
     check_file(files, "a.raw.gz", &given, 1);
 }
 
-static void a_box_of_raw_data_equals_that_of_the_whole(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    for (int type = SNOW_TYPE_INT8; type <= SNOW_TYPE_FLOAT64; type++) {
-        check_raw(&files, (snow_type)type, false);
-        check_raw(&files, (snow_type)type, true);
-    }
-    support_files_end(&files);
-}
-
 static void check_nrrd(support_files *files, snow_type type, bool big) {
     static const char *const encodings[] = {"raw", "gzip"};
     size_t size = VOXELS * TIMES * snow_type_size(type);
@@ -151,17 +140,6 @@ static void check_nrrd(support_files *files, snow_type type, bool big) {
         put(files, name, header, size, i % 2);
         check_file(files, name, NULL, TIMES);
     }
-}
-
-static void a_box_of_a_nrrd_equals_that_of_the_whole(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    for (int type = SNOW_TYPE_INT8; type <= SNOW_TYPE_FLOAT64; type++) {
-        check_nrrd(&files, (snow_type)type, false);
-        check_nrrd(&files, (snow_type)type, true);
-    }
-    support_files_end(&files);
 }
 
 static void check_metaimage(support_files *files, snow_type type, bool big) {
@@ -183,17 +161,6 @@ static void check_metaimage(support_files *files, snow_type type, bool big) {
         put(files, "m.mha", header, size, packed);
         check_file(files, "m.mha", NULL, TIMES);
     }
-}
-
-static void a_box_of_a_metaimage_equals_that_of_the_whole(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    for (int type = SNOW_TYPE_INT8; type <= SNOW_TYPE_FLOAT64; type++) {
-        check_metaimage(&files, (snow_type)type, false);
-        check_metaimage(&files, (snow_type)type, true);
-    }
-    support_files_end(&files);
 }
 
 /* Turns the bytes of a NIfTI-1 header's fields. */
@@ -243,21 +210,16 @@ static void check_nifti(support_files *files, snow_type type, bool big) {
     check_file(files, "t.nii.gz", NULL, TIMES);
 }
 
-static void a_box_of_a_nifti_equals_that_of_the_whole(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    for (int type = SNOW_TYPE_INT8; type <= SNOW_TYPE_FLOAT64; type++) {
-        check_nifti(&files, (snow_type)type, false);
-        check_nifti(&files, (snow_type)type, true);
-    }
-    support_files_end(&files);
+static void a_box_equals_that_of_the_whole(void **state) {
+    static void (*const checks[])(support_files *, snow_type, bool) = {
+        check_raw, check_nrrd, check_metaimage, check_nifti};
+    for (int type = SNOW_TYPE_INT8; type <= SNOW_TYPE_FLOAT64; type++)
+        for (int way = 0; way < 8; way++)
+            checks[way / 2](*state, (snow_type)type, way % 2);
 }
 
 static void a_box_of_numbers_in_text_equals_that_of_the_whole(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
+    support_files *files = *state;
     char text[VOXELS * 8], line[VOXELS * 8 + 300];
     size_t used = 0;
     for (int i = 0; i < VOXELS; i++)
@@ -267,16 +229,23 @@ static void a_box_of_numbers_in_text_equals_that_of_the_whole(void **state) {
              "NRRD0001\ntype: short\ndimension: 3\nsizes: 11 9 7\n"
              "encoding: ascii\n\n%s",
              text);
-    support_write_text(&files, "t.nrrd", line);
-    check_file(&files, "t.nrrd", NULL, 1);
+    support_write_text(files, "t.nrrd", line);
+    check_file(files, "t.nrrd", NULL, 1);
     snprintf(line, sizeof line,
              "NDims = 3\nDimSize = 11 9 7\nElementType = MET_SHORT\n"
              "BinaryData = False\nElementDataFile = LOCAL\n%s",
              text);
-    support_write_text(&files, "t.mha", line);
-    check_file(&files, "t.mha", NULL, 1);
-    support_files_end(&files);
+    support_write_text(files, "t.mha", line);
+    check_file(files, "t.mha", NULL, 1);
 }
+
+#define NRRD_OF_FILES                                                     \
+    "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 11 9 7\nencoding: raw\n" \
+    "data file: "
+#define META_OF_FILES \
+    "NDims = 3\nDimSize = 11 9 7\nElementType = MET_UCHAR\nElementDataFile = "
+#define LIST "LIST\ns0.raw\ns1.raw\ns2.raw\ns3.raw\ns4.raw\ns5.raw\ns6.raw\n"
+#define PATTERN "s%d.raw 0 6 1\n"
 
 /* A file for each row of slice 0 and each whole slice: pieces of one array. */
 static void write_slices(support_files *files) {
@@ -288,95 +257,66 @@ static void write_slices(support_files *files) {
 }
 
 static void a_box_reaches_over_the_files_of_a_series(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    write_slices(&files);
-    support_write_text(&files, "l.nhdr",
-                       "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 11 9 7\n"
-                       "encoding: raw\ndata file: LIST\ns0.raw\ns1.raw\n"
-                       "s2.raw\ns3.raw\ns4.raw\ns5.raw\ns6.raw\n");
-    support_write_text(&files, "p.nhdr",
-                       "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 11 9 7\n"
-                       "encoding: raw\ndata file: s%d.raw 0 6 1\n");
-    support_write_text(&files, "l.mhd",
-                       "NDims = 3\nDimSize = 11 9 7\nElementType = MET_UCHAR\n"
-                       "ElementDataFile = LIST\ns0.raw\ns1.raw\n"
-                       "s2.raw\ns3.raw\ns4.raw\ns5.raw\ns6.raw\n");
-    support_write_text(&files, "p.mhd",
-                       "NDims = 3\nDimSize = 11 9 7\nElementType = MET_UCHAR\n"
-                       "ElementDataFile = s%d.raw 0 6 1\n");
-    check_file(&files, "l.nhdr", NULL, 1);
-    check_file(&files, "p.nhdr", NULL, 1);
-    check_file(&files, "l.mhd", NULL, 1);
-    check_file(&files, "p.mhd", NULL, 1);
-    support_files_end(&files);
+    static const char *const series[][2] = {{"l.nhdr", NRRD_OF_FILES LIST},
+                                            {"p.nhdr", NRRD_OF_FILES PATTERN},
+                                            {"l.mhd", META_OF_FILES LIST},
+                                            {"p.mhd", META_OF_FILES PATTERN}};
+    support_files *files = *state;
+    write_slices(files);
+    for (size_t n = 0; n < 4; n++) {
+        support_write_text(files, series[n][0], series[n][1]);
+        check_file(files, series[n][0], NULL, 1);
+    }
 }
 
 static void files_outside_the_box_are_not_opened(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    write_slices(&files);
-    unlink(support_path(&files, "s1.raw"));
-    const char *nrrd = support_write_text(
-        &files, "p.nhdr",
-        "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 11 9 7\n"
-        "encoding: raw\ndata file: s%d.raw 0 6 1\n");
-    const char *meta = support_write_text(
-        &files, "p.mhd",
-        "NDims = 3\nDimSize = 11 9 7\nElementType = MET_UCHAR\n"
-        "ElementDataFile = s%d.raw 0 6 1\n");
-    snow_volume_options options = {.size = sizeof options,
-                                   .crop = {{0, 3}, {0, 3}, {2, 7}}};
-    snow_volume_close(support_opened(&files, nrrd, &options));
-    snow_volume_close(support_opened(&files, meta, &options));
-    options.crop[2][0] = 1;
-    support_refused(&files, nrrd, &options, SNOW_STATUS_BAD_INPUT, "s1.raw",
-                    300000);
-    support_refused(&files, meta, &options, SNOW_STATUS_BAD_INPUT, "s1.raw",
-                    300000);
-    support_files_end(&files);
+    static const char *const series[][2] = {{"p.nhdr", NRRD_OF_FILES PATTERN},
+                                            {"p.mhd", META_OF_FILES PATTERN}};
+    support_files *files = *state;
+    write_slices(files);
+    unlink(support_path(files, "s1.raw"));
+    for (size_t n = 0; n < 2; n++) {
+        const char *path =
+            support_write_text(files, series[n][0], series[n][1]);
+        snow_volume_options options = {.size = sizeof options,
+                                       .crop = {{0, 3}, {0, 3}, {2, 7}}};
+        snow_volume_close(support_opened(files, path, &options));
+        options.crop[2][0] = 1;
+        support_refused(files, path, &options, SNOW_STATUS_BAD_INPUT, "s1.raw",
+                        300000);
+    }
 }
 
 static void a_box_of_a_phantom_equals_that_of_the_whole(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
+    support_files *files = *state;
     const snow_volume_options given = {
         .size = sizeof given, .dims = {11, 9, 7}, .spacing = {0.5, 0, 3}};
     for (size_t i = 0; snow_phantom_name(i); i++) {
         char name[64];
         snprintf(name, sizeof name, "phantom:%s", snow_phantom_name(i));
-        check_file(&files, name, &given, 1);
+        check_file(files, name, &given, 1);
     }
-    support_files_end(&files);
 }
 
 static void the_box_moves_by_the_spacing_that_was_given(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    put(&files, "a.raw", "", VOXELS, false);
+    support_files *files = *state;
+    put(files, "a.raw", "", VOXELS, false);
     const snow_volume_options options = {.size = sizeof options,
                                          .dims = {11, 9, 7},
                                          .type = SNOW_TYPE_UINT8,
                                          .spacing = {2, 3, 4},
                                          .crop = {{1, 3}, {2, 4}, {3, 5}}};
     snow_volume *volume =
-        support_opened(&files, support_path(&files, "a.raw"), &options);
+        support_opened(files, support_path(files, "a.raw"), &options);
     const snow_volume_info *info = snow_volume_get_info(volume);
     assert_true(info->matrix[0][3] == 2 && info->matrix[1][3] == 6 &&
                 info->matrix[2][3] == 12);
     snow_volume_close(volume);
-    support_files_end(&files);
 }
 
 static void a_box_outside_the_volume_is_refused_with_its_sizes(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    put(&files, "a.raw", "", VOXELS, false);
+    support_files *files = *state;
+    put(files, "a.raw", "", VOXELS, false);
     static const int64_t bad[][3][2] = {
         {{0, 12}, {0, 9}, {0, 7}},         {{3, 3}, {0, 9}, {0, 7}},
         {{5, 3}, {0, 9}, {0, 7}},          {{0, 11}, {-1, 9}, {0, 7}},
@@ -387,16 +327,15 @@ static void a_box_outside_the_volume_is_refused_with_its_sizes(void **state) {
                                        .dims = {11, 9, 7},
                                        .type = SNOW_TYPE_UINT8};
         memcpy(options.crop, bad[i], sizeof options.crop);
-        support_refused(&files, support_path(&files, "a.raw"), &options,
+        support_refused(files, support_path(files, "a.raw"), &options,
                         SNOW_STATUS_BAD_USAGE, "11x9x7", 70000);
         options.type = SNOW_TYPE_NONE;
         snow_volume *volume;
         assert_int_equal(
-            snow_volume_open(files.context, "phantom:cube", &options, &volume),
+            snow_volume_open(files->context, "phantom:cube", &options, &volume),
             SNOW_STATUS_BAD_USAGE);
-        assert_non_null(strstr(snow_context_message(files.context), "11x9x7"));
+        assert_non_null(strstr(snow_context_message(files->context), "11x9x7"));
     }
-    support_files_end(&files);
 }
 
 /* --- how much is read ----------------------------------------------------- */
@@ -448,127 +387,125 @@ static void check_large(support_files *files, const char *name,
 }
 
 static void little_more_than_the_box_is_read_of_a_huge_file(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
+    support_files *files = *state;
     const snow_volume_options given = {.size = sizeof given,
                                        .dims = {3000, 1000, 800},
                                        .type = SNOW_TYPE_UINT16};
-    check_large(&files, "big.raw", "", &given);
-    check_large(&files, "big.nrrd",
+    check_large(files, "big.raw", "", &given);
+    check_large(files, "big.nrrd",
                 "NRRD0004\ntype: ushort\ndimension: 3\nsizes: 3000 1000 800\n"
                 "endian: little\nencoding: raw\n\n",
                 &(snow_volume_options){.size = sizeof(snow_volume_options)});
-    support_files_end(&files);
 }
 
 /* 0.9 MB: of a box of 30 x 20 x 10 voxels the gaps between rows are read, as
  * they are small; those between slices are not. */
 static void near_rows_are_read_in_one_go_and_far_slices_are_not(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
+    support_files *files = *state;
     char *bytes = calloc(1, 900000);
-    const char *path = support_write(&files, "a.raw", bytes, 900000);
+    const char *path = support_write(files, "a.raw", bytes, 900000);
     free(bytes);
     const snow_volume_options options = {.size = sizeof options,
                                          .dims = {100, 90, 100},
                                          .type = SNOW_TYPE_UINT8,
                                          .crop = {{50, 80}, {5, 25}, {80, 90}}};
-    uint64_t before = snow_context_bytes_read(files.context);
-    snow_volume_close(support_opened(&files, path, &options));
-    uint64_t read = snow_context_bytes_read(files.context) - before;
+    uint64_t before = snow_context_bytes_read(files->context);
+    snow_volume_close(support_opened(files, path, &options));
+    uint64_t read = snow_context_bytes_read(files->context) - before;
     assert_int_equal(read, 65536 + 10 * (19 * 100 + 30));
-    support_files_end(&files);
 }
 
 static void inspect_reads_the_header_alone(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
+    support_files *files = *state;
     char *bytes = calloc(1, 1000000);
-    const char *path = support_write(&files, "a.raw", bytes, 1000000);
+    const char *path = support_write(files, "a.raw", bytes, 1000000);
     free(bytes);
     const snow_volume_options options = {.size = sizeof options,
                                          .dims = {100, 100, 100},
                                          .type = SNOW_TYPE_UINT8};
     snow_volume_info info = {.size = sizeof info};
-    assert_int_equal(snow_volume_inspect(files.context, path, &options, &info),
+    assert_int_equal(snow_volume_inspect(files->context, path, &options, &info),
                      SNOW_STATUS_OK);
     assert_int_equal(info.dims[2], 100);
-    assert_int_equal(snow_context_bytes_read(files.context), 65536);
-    assert_in_range(files.largest, 1, 70000);
+    assert_int_equal(snow_context_bytes_read(files->context), 65536);
+    assert_in_range(files->largest, 1, 70000);
     info.dims[0] = -5;
-    assert_int_equal(snow_volume_inspect(files.context, "none", NULL, &info),
+    assert_int_equal(snow_volume_inspect(files->context, "none", NULL, &info),
                      SNOW_STATUS_BAD_INPUT);
     assert_int_equal(info.dims[0], -5);
-    support_files_end(&files);
 }
 
 /* 4 MB of voxels that pack badly: of them the box alone is kept, and the check
  * sum behind them is still verified. */
 static void of_packed_data_only_the_box_is_kept(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
+    support_files *files = *state;
     size_t size = 160 * 160 * 160;
     unsigned char *bytes = malloc(size), *packed = malloc(size + 10000);
     uint64_t random = 3;
     for (size_t i = 0; i < size; i++)
         bytes[i] = (unsigned char)support_random(&random);
     size_t used = support_gzip(bytes, size, packed, size + 10000);
-    const char *path = support_write(&files, "a.raw.gz", packed, used);
+    const char *path = support_write(files, "a.raw.gz", packed, used);
     const snow_volume_options options = {.size = sizeof options,
                                          .dims = {160, 160, 160},
                                          .type = SNOW_TYPE_UINT8,
                                          .crop = {{3, 9}, {5, 8}, {100, 110}}};
-    snow_volume *volume = support_opened(&files, path, &options);
+    snow_volume *volume = support_opened(files, path, &options);
     const unsigned char *voxels = snow_volume_voxels(volume);
     assert_memory_equal(voxels, bytes + (100 * 160 + 5) * 160 + 3, 6);
-    assert_in_range(snow_context_peak_bytes(files.context), 1, 250000);
+    assert_in_range(snow_context_peak_bytes(files->context), 1, 250000);
     snow_volume_close(volume);
     packed[used - 6] ^= 16;
-    path = support_write(&files, "b.raw.gz", packed, used);
-    support_refused(&files, path, &options, SNOW_STATUS_BAD_INPUT, "damaged",
+    path = support_write(files, "b.raw.gz", packed, used);
+    support_refused(files, path, &options, SNOW_STATUS_BAD_INPUT, "damaged",
                     70000);
-    path = support_write(&files, "c.raw.gz", packed, used / 2);
-    support_refused(&files, path, &options, SNOW_STATUS_BAD_INPUT, "", 70000);
+    path = support_write(files, "c.raw.gz", packed, used / 2);
+    support_refused(files, path, &options, SNOW_STATUS_BAD_INPUT, "", 70000);
     free(bytes);
     free(packed);
-    support_files_end(&files);
 }
 
 static void a_file_cut_behind_the_box_is_refused_all_the_same(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    put(&files, "a.raw", "", VOXELS - 1, false);
+    support_files *files = *state;
+    put(files, "a.raw", "", VOXELS - 1, false);
     const snow_volume_options options = {.size = sizeof options,
                                          .dims = {11, 9, 7},
                                          .type = SNOW_TYPE_UINT8,
                                          .crop = {{0, 2}, {0, 2}, {0, 2}}};
-    support_refused(&files, support_path(&files, "a.raw"), &options,
+    support_refused(files, support_path(files, "a.raw"), &options,
                     SNOW_STATUS_BAD_INPUT, "692", 70000);
-    support_files_end(&files);
 }
+
+static int begin(void **state) {
+    support_files *files = malloc(sizeof *files);
+    assert_non_null(files);
+    support_files_begin(files);
+    *state = files;
+    return 0;
+}
+
+static int end(void **state) {
+    support_files_end(*state);
+    free(*state);
+    return 0;
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_box_of_raw_data_equals_that_of_the_whole),
-        cmocka_unit_test(a_box_of_a_nrrd_equals_that_of_the_whole),
-        cmocka_unit_test(a_box_of_a_metaimage_equals_that_of_the_whole),
-        cmocka_unit_test(a_box_of_a_nifti_equals_that_of_the_whole),
-        cmocka_unit_test(a_box_of_numbers_in_text_equals_that_of_the_whole),
-        cmocka_unit_test(a_box_reaches_over_the_files_of_a_series),
-        cmocka_unit_test(files_outside_the_box_are_not_opened),
-        cmocka_unit_test(a_box_of_a_phantom_equals_that_of_the_whole),
-        cmocka_unit_test(the_box_moves_by_the_spacing_that_was_given),
-        cmocka_unit_test(a_box_outside_the_volume_is_refused_with_its_sizes),
-        cmocka_unit_test(little_more_than_the_box_is_read_of_a_huge_file),
-        cmocka_unit_test(near_rows_are_read_in_one_go_and_far_slices_are_not),
-        cmocka_unit_test(inspect_reads_the_header_alone),
-        cmocka_unit_test(of_packed_data_only_the_box_is_kept),
-        cmocka_unit_test(a_file_cut_behind_the_box_is_refused_all_the_same),
+        TEST(a_box_equals_that_of_the_whole),
+        TEST(a_box_of_numbers_in_text_equals_that_of_the_whole),
+        TEST(a_box_reaches_over_the_files_of_a_series),
+        TEST(files_outside_the_box_are_not_opened),
+        TEST(a_box_of_a_phantom_equals_that_of_the_whole),
+        TEST(the_box_moves_by_the_spacing_that_was_given),
+        TEST(a_box_outside_the_volume_is_refused_with_its_sizes),
+        TEST(little_more_than_the_box_is_read_of_a_huge_file),
+        TEST(near_rows_are_read_in_one_go_and_far_slices_are_not),
+        TEST(inspect_reads_the_header_alone),
+        TEST(of_packed_data_only_the_box_is_kept),
+        TEST(a_file_cut_behind_the_box_is_refused_all_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
