@@ -105,18 +105,33 @@ static const snow_volume_info block = {
     .spacing = {1, 2, 1},
     .unit = "mm"};
 
+static snow_overlay *overlay_of(const image_fixture *f, int side) {
+    snow_overlay *overlay = NULL;
+    assert_int_equal(snow_overlay_new(f->context, side, side, &overlay),
+                     SNOW_STATUS_OK);
+    return overlay;
+}
+
+static snow_view view_of(int side) {
+    snow_view view;
+    snow_view_init(&view);
+    view.width = view.height = side;
+    return view;
+}
+
+static void draw_box(snow_overlay *overlay, const snow_volume_info *info,
+                     const snow_view *view, bool axes) {
+    assert_int_equal(snow_overlay_box(overlay, info, view, axes),
+                     SNOW_STATUS_OK);
+}
+
 /* What a face-on box covers: its middle is the picture's, and a pixel is a
  * 400th of the diagonal. */
 static void a_box_face_on_is_its_rectangle(void **state) {
     image_fixture *f = *state;
-    snow_overlay *overlay = NULL;
-    snow_view view;
-    snow_view_init(&view);
-    view.width = view.height = 400;
-    assert_int_equal(snow_overlay_new(f->context, 400, 400, &overlay),
-                     SNOW_STATUS_OK);
-    assert_int_equal(snow_overlay_box(overlay, &block, &view, false),
-                     SNOW_STATUS_OK);
+    snow_overlay *overlay = overlay_of(f, 400);
+    snow_view view = view_of(400);
+    draw_box(overlay, &block, &view, false);
     assert_int_equal(overlay->shape_count, 1);
     const snow_shape *shape = &overlay->shapes[0];
     double pixel = sqrt(20 * 20 + 60 * 60 + 40 * 40) / 400;
@@ -135,22 +150,17 @@ static void edges_behind_are_hidden_by_the_picture(void **state) {
     image_fixture *f = *state;
     size_t strokes[3];
     for (int n = 0; n < 3; n++) {
-        snow_overlay *overlay = NULL;
-        snow_image *image = NULL;
+        snow_overlay *overlay = overlay_of(f, 400);
+        snow_image *image = support_blank(f->context, 400, 400, 4);
         snow_view view = {.size = sizeof view};
         assert_int_equal(snow_view_from_name(f->context, "iso", &view),
                          SNOW_STATUS_OK);
         view.width = view.height = 400;
-        assert_int_equal(snow_image_new(f->context, 400, 400, 4, &image),
-                         SNOW_STATUS_OK);
         for (int y = 0; y < 400 && n; y++)
             for (int x = 0; x < (n == 1 ? 200 : 400); x++)
                 snow_image_pixels(image)[(y * 400 + x) * 4 + 3] = 1;
-        assert_int_equal(snow_overlay_new(f->context, 400, 400, &overlay),
-                         SNOW_STATUS_OK);
         snow_overlay_keep_off(overlay, image);
-        assert_int_equal(snow_overlay_box(overlay, &block, &view, false),
-                         SNOW_STATUS_OK);
+        draw_box(overlay, &block, &view, false);
         strokes[n] = overlay->shapes[0].count;
         snow_overlay_free(overlay);
         snow_image_free(image);
@@ -162,15 +172,10 @@ static void edges_behind_are_hidden_by_the_picture(void **state) {
 /* Ticks of the axes lie at round coordinates of the world. */
 static void axes_have_ticks_at_their_coordinates(void **state) {
     image_fixture *f = *state;
-    snow_overlay *overlay = NULL;
-    snow_view view;
-    snow_view_init(&view);
-    view.width = view.height = 400;
+    snow_overlay *overlay = overlay_of(f, 400);
+    snow_view view = view_of(400);
     view.zoom = 1.6;
-    assert_int_equal(snow_overlay_new(f->context, 400, 400, &overlay),
-                     SNOW_STATUS_OK);
-    assert_int_equal(snow_overlay_box(overlay, &block, &view, true),
-                     SNOW_STATUS_OK);
+    draw_box(overlay, &block, &view, true);
     double pixel = sqrt(20 * 20 + 60 * 60 + 40 * 40) / 400 / 1.6;
     const snow_shape *x = &overlay->shapes[1];
     assert_true(x->count >= 2);
@@ -187,10 +192,8 @@ static void axes_have_ticks_at_their_coordinates(void **state) {
 
 /* --- letters -------------------------------------------------------------- */
 
-static size_t strokes_of(snow_context *context, const char *text) {
-    snow_overlay *overlay = NULL;
-    assert_int_equal(snow_overlay_new(context, 400, 400, &overlay),
-                     SNOW_STATUS_OK);
+static size_t strokes_of(const image_fixture *f, const char *text) {
+    snow_overlay *overlay = overlay_of(f, 400);
     assert_int_equal(snow_overlay_text(overlay, 9, 9, 0, 0, 20, text),
                      SNOW_STATUS_OK);
     size_t count = overlay->shapes[0].count;
@@ -207,8 +210,7 @@ static void letters_of_latin_1_have_their_marks(void **state) {
     for (size_t n = 0; n < sizeof pairs / sizeof *pairs; n++) {
         assert_true(fabs(snow_font_width(pairs[n][0]) -
                          snow_font_width(pairs[n][1])) < 1e-12);
-        assert_true(strokes_of(f->context, pairs[n][0]) >
-                    strokes_of(f->context, pairs[n][1]));
+        assert_true(strokes_of(f, pairs[n][0]) > strokes_of(f, pairs[n][1]));
     }
     assert_true(snow_font_width("\xc2\xb0") < snow_font_width("o"));
     /* one box for what the font lacks, not one for each byte */
@@ -237,17 +239,12 @@ static void axes_keep_off_others(void **state) {
     image_fixture *f = *state;
     size_t shapes[2];
     for (int n = 0; n < 2; n++) {
-        snow_overlay *overlay = NULL;
-        snow_view view;
-        snow_view_init(&view);
-        view.width = view.height = 256;
-        assert_int_equal(snow_overlay_new(f->context, 256, 256, &overlay),
-                         SNOW_STATUS_OK);
+        snow_overlay *overlay = overlay_of(f, 256);
+        snow_view view = view_of(256);
         assert_int_equal(snow_overlay_text(overlay, 20, 128, 0, 0.5, n ? 60 : 9,
                                            n ? "ml" : "."),
                          SNOW_STATUS_OK);
-        assert_int_equal(snow_overlay_box(overlay, &block, &view, true),
-                         SNOW_STATUS_OK);
+        draw_box(overlay, &block, &view, true);
         shapes[n] = overlay->shape_count;
         snow_overlay_free(overlay);
     }
@@ -262,17 +259,12 @@ static void numbers_and_names_of_axes_stay_in_the_picture(void **state) {
     for (int i = 0; i < 3; i++)
         wide.matrix[i][i] = wide.spacing[i] = 20000. / (double)wide.dims[i];
     for (int turn = 0; turn < 8; turn++) {
-        snow_overlay *overlay = NULL;
-        snow_view view;
-        snow_view_init(&view);
-        view.width = view.height = 256;
+        snow_overlay *overlay = overlay_of(f, 256);
+        snow_view view = view_of(256);
         view.azimuth = 15 * turn;
         view.elevation = 5 * turn;
         view.zoom = turn ? 1 : 1.5;
-        assert_int_equal(snow_overlay_new(f->context, 256, 256, &overlay),
-                         SNOW_STATUS_OK);
-        assert_int_equal(snow_overlay_box(overlay, &wide, &view, true),
-                         SNOW_STATUS_OK);
+        draw_box(overlay, &wide, &view, true);
         assert_true(overlay->shape_count > 6);
         for (size_t n = 1; n < overlay->shape_count; n++) /* 0: the box */
             for (int i = 0; i < 2; i++)

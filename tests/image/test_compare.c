@@ -6,8 +6,7 @@
 
 static snow_image *picture(image_fixture *f, int width, int height,
                            int channels) {
-    snow_image *image = support_blank(f->context, width, height, channels);
-    return image;
+    return support_blank(f->context, width, height, channels);
 }
 
 static snow_image_difference compare(snow_image *a, snow_image *b) {
@@ -21,15 +20,18 @@ static void free_both(snow_image *a, snow_image *b) {
     snow_image_free(b);
 }
 
+/* Whatever its samples are, also where they are not finite. */
 static void a_picture_does_not_differ_from_itself(void **state) {
     image_fixture *f = *state;
     static const int sizes[][2] = {{1, 1}, {1, 30}, {30, 1},
                                    {7, 7}, {8, 8},  {33, 21}};
+    static const float odd[] = {0, NAN, INFINITY, -INFINITY, 1, 2};
     for (int i = 0; i < 6; i++) {
         snow_image *a =
             support_picture(f->context, sizes[i][0], sizes[i][1], 4, 8);
         snow_image *b =
             support_picture(f->context, sizes[i][0], sizes[i][1], 4, 8);
+        snow_image_pixels(a)[1] = snow_image_pixels(b)[1] = odd[i];
         snow_image_difference d = compare(a, b);
         assert_true(d.largest == 0 && d.mean == 0 && d.ssim == 1);
         assert_true(isinf(d.psnr) && d.psnr > 0);
@@ -108,19 +110,6 @@ static void pictures_of_two_sizes_differ(void **state) {
     assert_non_null(strstr(snow_context_message(f->context), "3 x 4"));
     assert_non_null(strstr(snow_context_message(f->context), "4 x 3"));
     free_both(a, b);
-}
-
-static void equal_samples_that_are_not_finite_do_not_differ(void **state) {
-    image_fixture *f = *state;
-    static const float odd[] = {NAN, INFINITY, -INFINITY};
-    for (int i = 0; i < 3; i++) {
-        snow_image *a = support_picture(f->context, 12, 12, 4, 8);
-        snow_image *b = support_picture(f->context, 12, 12, 4, 8);
-        snow_image_pixels(a)[40] = snow_image_pixels(b)[40] = odd[i];
-        snow_image_difference d = compare(a, b);
-        assert_true(d.largest == 0 && d.mean == 0 && d.ssim == 1);
-        free_both(a, b);
-    }
 }
 
 static void others_are_infinitely_far_apart(void **state) {
@@ -246,7 +235,6 @@ int main(void) {
         TEST(the_first_of_equal_differences_is_told),
         TEST(two_channels_count_as_grey),
         TEST(pictures_of_two_sizes_differ),
-        TEST(equal_samples_that_are_not_finite_do_not_differ),
         TEST(others_are_infinitely_far_apart),
         TEST(similarity_is_as_defined),
         TEST(a_bright_spot_spoils_its_own_windows_only),

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-static double dot(const double a[3], const double b[3]) {
+double reference_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
@@ -28,7 +28,16 @@ static void turn(double a[3], double b[3], double degrees) {
 static void world_of(const double matrix[4][4], const double index[3],
                      double world[3]) {
     for (int r = 0; r < 3; r++)
-        world[r] = dot(matrix[r], index) + matrix[r][3];
+        world[r] = reference_dot(matrix[r], index) + matrix[r][3];
+}
+
+double reference_behind(const reference_scene *scene,
+                        const reference_camera *camera, const double index[3]) {
+    double world[3];
+    world_of(scene->info.matrix, index, world);
+    for (int n = 0; n < 3; n++)
+        world[n] -= camera->target[n];
+    return -reference_dot(world, camera->back);
 }
 
 static void measure_boxes(const snow_volume_info *info,
@@ -45,7 +54,8 @@ static void measure_boxes(const snow_volume_info *info,
         world_of(info->matrix, index, world);
         for (int n = 0; n < 3; n++)
             world[n] -= camera->target[n];
-        camera->radius = fmax(camera->radius, sqrt(dot(world, world)));
+        camera->radius =
+            fmax(camera->radius, sqrt(reference_dot(world, world)));
     }
 }
 
@@ -55,7 +65,7 @@ static double place_back(const snow_view *view, reference_camera *out) {
     double step[3];
     for (int n = 0; n < 3; n++)
         step[n] = view->position[n] - out->target[n];
-    double length = sqrt(dot(step, step));
+    double length = sqrt(reference_dot(step, step));
     for (int n = 0; n < 3; n++)
         out->back[n] = step[n] / length;
     return length;
@@ -65,7 +75,7 @@ static double place_back(const snow_view *view, reference_camera *out) {
  * up then across these. */
 static void place_up(const double upward[3], reference_camera *out) {
     cross(upward, out->back, out->right);
-    double length = sqrt(dot(out->right, out->right));
+    double length = sqrt(reference_dot(out->right, out->right));
     for (int n = 0; n < 3; n++)
         out->right[n] /= length;
     cross(out->back, out->right, out->up);
@@ -127,11 +137,12 @@ void reference_project(const reference_scene *scene,
     for (int n = 0; n < 3; n++)
         from[n] = world[n] - camera->target[n];
     if (camera->distance > 0) /* similar triangles */
-        scale = camera->distance / (camera->distance - dot(from, camera->back));
+        scale = camera->distance /
+                (camera->distance - reference_dot(from, camera->back));
     pixel[0] = scene->view.width / 2.0 +
-               scale * dot(from, camera->right) / camera->pitch;
+               scale * reference_dot(from, camera->right) / camera->pitch;
     pixel[1] = scene->view.height / 2.0 -
-               scale * dot(from, camera->up) / camera->pitch;
+               scale * reference_dot(from, camera->up) / camera->pitch;
 }
 
 void reference_inverse(const double matrix[4][4], double inverse[3][3]) {
@@ -141,7 +152,7 @@ void reference_inverse(const double matrix[4][4], double inverse[3][3]) {
             column[c][r] = matrix[r][c];
     for (int n = 0; n < 3; n++) {
         cross(column[(n + 1) % 3], column[(n + 2) % 3], inverse[n]);
-        double volume = dot(inverse[n], column[n]);
+        double volume = reference_dot(inverse[n], column[n]);
         for (int r = 0; r < 3; r++)
             inverse[n][r] /= volume;
     }
@@ -160,7 +171,7 @@ reference_ray reference_ray_at(const reference_scene *scene,
         eye_of(camera, from);
         for (int n = 0; n < 3; n++)
             along[n] = point[n] - from[n];
-        length = sqrt(dot(along, along));
+        length = sqrt(reference_dot(along, along));
         for (int n = 0; n < 3; n++)
             along[n] /= length;
     }
@@ -169,8 +180,8 @@ reference_ray reference_ray_at(const reference_scene *scene,
     reference_inverse(scene->info.matrix, inverse);
     reference_ray ray;
     for (int n = 0; n < 3; n++) {
-        ray.start[n] = dot(inverse[n], from);
-        ray.step[n] = dot(inverse[n], along);
+        ray.start[n] = reference_dot(inverse[n], from);
+        ray.step[n] = reference_dot(inverse[n], along);
     }
     return ray;
 }
@@ -183,7 +194,8 @@ static double slice_cosine(const reference_scene *scene,
     double inverse[3][3];
     reference_inverse(scene->info.matrix, inverse);
     const double *normal = inverse[axis];
-    return fabs(dot(normal, camera->back)) / sqrt(dot(normal, normal));
+    return fabs(reference_dot(normal, camera->back)) /
+           sqrt(reference_dot(normal, normal));
 }
 
 int reference_slice_axis(const reference_scene *scene,
@@ -210,7 +222,8 @@ double reference_slice_step(const reference_scene *scene,
     for (int n = 0; n < 3; n++)
         along[n] = camera->distance > 0 ? world[n] - eye[n] : -camera->back[n];
     /* The slices' distance is one over the normal's length. */
-    double cosine = fabs(dot(normal, along)) /
-                    sqrt(dot(normal, normal) * dot(along, along));
-    return 1 / (sqrt(dot(normal, normal)) * cosine);
+    double cosine =
+        fabs(reference_dot(normal, along)) /
+        sqrt(reference_dot(normal, normal) * reference_dot(along, along));
+    return 1 / (sqrt(reference_dot(normal, normal)) * cosine);
 }

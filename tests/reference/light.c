@@ -5,10 +5,6 @@
 
 #include <math.h>
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Degrees to the camera's right, then up. */
 static void from_camera(const reference_camera *camera, double azimuth,
                         double elevation, double light[3]) {
@@ -23,12 +19,13 @@ static void from_camera(const reference_camera *camera, double azimuth,
 static void add_light(const snow_settings *s, const double normal[3],
                       const double eye[3], const double light[3], double share,
                       double lit[2]) {
-    double half[3], diffuse = dot(normal, light);
+    double half[3], diffuse = reference_dot(normal, light);
     if (!(diffuse > 0))
         return;
     for (int n = 0; n < 3; n++)
         half[n] = light[n] + eye[n];
-    double shine = fmax(0, dot(normal, half) / sqrt(dot(half, half)));
+    double shine =
+        fmax(0, reference_dot(normal, half) / sqrt(reference_dot(half, half)));
     lit[0] += share * s->diffuse * fmin(1, diffuse);
     lit[1] += share * s->specular * pow(fmin(1, shine), s->shininess);
 }
@@ -36,7 +33,7 @@ static void add_light(const snow_settings *s, const double normal[3],
 void reference_light(const snow_settings *s, const reference_camera *camera,
                      const double normal[3], const double eye[3],
                      double lit[2]) {
-    double length = sqrt(dot(normal, normal)), n[3], light[3];
+    double length = sqrt(reference_dot(normal, normal)), n[3], light[3];
     bool angles = s->light_azimuth != 0 || s->light_elevation != 0;
     bool key =
         s->light == SNOW_LIGHT_KEY || (s->light == SNOW_LIGHT_AUTO && !angles);
@@ -45,7 +42,7 @@ void reference_light(const snow_settings *s, const reference_camera *camera,
     if (!(length > 0))
         return;
     for (int c = 0; c < 3; c++)
-        n[c] = (dot(normal, eye) < 0 ? -1 : 1) * normal[c] / length;
+        n[c] = (reference_dot(normal, eye) < 0 ? -1 : 1) * normal[c] / length;
     if (key) {
         from_camera(camera, -25, 35, light);
         add_light(s, n, eye, light, 0.65, lit);

@@ -63,30 +63,41 @@ snow_volume *model_volume(snow_context *context, const reference_scene *scene) {
 }
 
 static snow_status render(const model_stage *stage,
-                          const reference_scene *scene, snow_image **image) {
-    snow_volume *volume = model_volume(stage->context, scene);
+                          const reference_scene *scene,
+                          const snow_volume *volume, snow_image **image) {
     snow_transfer *transfer = model_transfer(stage->context, scene);
     snow_status status = snow_frame_render(
         stage->frame, volume, transfer, &scene->view, &scene->settings, image);
     snow_transfer_free(transfer);
-    snow_volume_close(volume);
     return status;
 }
 
-snow_image *model_image(const model_stage *stage,
-                        const reference_scene *scene) {
+snow_image *model_image_of(const model_stage *stage,
+                           const reference_scene *scene,
+                           const snow_volume *volume) {
     snow_image *image = NULL;
-    if (render(stage, scene, &image) != SNOW_STATUS_OK)
+    if (render(stage, scene, volume, &image) != SNOW_STATUS_OK)
         fail_msg("%s: %s", model_words(scene),
                  snow_context_message(stage->context));
     return image;
 }
 
+snow_image *model_image(const model_stage *stage,
+                        const reference_scene *scene) {
+    snow_volume *volume = model_volume(stage->context, scene);
+    snow_image *image = model_image_of(stage, scene, volume);
+    snow_volume_close(volume);
+    return image;
+}
+
 void model_refused(const model_stage *stage, const reference_scene *scene,
                    const char *words) {
+    snow_volume *volume = model_volume(stage->context, scene);
     snow_image *image = NULL;
-    assert_int_equal(render(stage, scene, &image), SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(render(stage, scene, volume, &image),
+                     SNOW_STATUS_BAD_USAGE);
     assert_null(image);
+    snow_volume_close(volume);
     const char *message = snow_context_message(stage->context);
     if (!strstr(message, words) || strchr(message, '\n'))
         fail_msg("\"%s\" lacks \"%s\"", message, words);

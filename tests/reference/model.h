@@ -96,7 +96,12 @@ snow_volume *model_volume(snow_context *context, const reference_scene *scene);
 /* The scene by snow_frame_render; the test fails unless that succeeds. */
 snow_image *model_image(const model_stage *stage, const reference_scene *scene);
 
-/* The same as width * height * 4 floats RGBA; free with free(). */
+/* A picture of another volume that the scene is of, say a part of its own. */
+snow_image *model_image_of(const model_stage *stage,
+                           const reference_scene *scene,
+                           const snow_volume *volume);
+
+/* That of its own as width * height * 4 floats RGBA; free with free(). */
 float *model_picture(const model_stage *stage, const reference_scene *scene);
 
 /* Four channels from an image's two or four; free with free(). */

@@ -92,15 +92,10 @@ static void pixel_of(const reference_gather *g, const reference_camera *camera,
 static double depth_of(const reference_gather *g,
                        const reference_camera *camera, const reference_ray *ray,
                        double slice) {
-    double t = (slice - ray->start[g->axis]) / ray->step[g->axis], depth = 0;
-    for (int r = 0; r < 3; r++) {
-        double world = g->scene->info.matrix[r][3];
-        for (int c = 0; c < 3; c++)
-            world += g->scene->info.matrix[r][c] *
-                     (ray->start[c] + t * ray->step[c]);
-        depth -= (world - camera->target[r]) * camera->back[r];
-    }
-    return depth;
+    double t = (slice - ray->start[g->axis]) / ray->step[g->axis], at[3];
+    for (int n = 0; n < 3; n++)
+        at[n] = ray->start[n] + t * ray->step[n];
+    return reference_behind(g->scene, camera, at);
 }
 
 double *reference_depth(const reference_scene *scene) {

@@ -326,26 +326,14 @@ static void at_step(const walk *w, double i, double at[3]) {
         at[n] = w->ray.start[n] + (w->enter + i * w->step) * w->ray.step[n];
 }
 
-/* How far behind the target's plane. */
 static double depth_at(const walk *w, double i) {
-    const double(*m)[4] = w->cast->scene->info.matrix;
-    double at[3], depth = 0;
+    double at[3];
     at_step(w, i, at);
-    for (int r = 0; r < 3; r++) {
-        double world = m[r][3];
-        for (int c = 0; c < 3; c++)
-            world += m[r][c] * at[c];
-        depth -= (world - w->camera->target[r]) * w->camera->back[r];
-    }
-    return depth;
-}
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    return reference_behind(w->cast->scene, w->camera, at);
 }
 
 static void normalise(double a[3]) {
-    double length = sqrt(dot(a, a));
+    double length = sqrt(reference_dot(a, a));
     for (int n = 0; length > 0 && n < 3; n++)
         a[n] /= length;
 }

@@ -56,6 +56,13 @@ void reference_project(const reference_scene *scene,
                        const reference_camera *camera, const double index[3],
                        double pixel[2]);
 
+/* How far an index position lies behind the plane of the target. */
+double reference_behind(const reference_scene *scene,
+                        const reference_camera *camera, const double index[3]);
+
+/* The scalar product. */
+double reference_dot(const double a[3], const double b[3]);
+
 /* Rows of the inverse of the matrix' linear part. */
 void reference_inverse(const double matrix[4][4], double inverse[3][3]);
 

@@ -101,10 +101,6 @@ void reference_gradient(const reference_scene *scene, const int64_t at[3],
                              reference_native(scene, i, j, k + 1));
 }
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* By the transpose of the inverse. */
 static void to_world(const reference_scene *scene, const double gradient[3],
                      double world[3]) {
@@ -121,7 +117,8 @@ double reference_fade(const reference_scene *scene, const double gradient[3]) {
         return 1;
     to_world(scene, gradient, world);
     return opacity_of(scene->gradients, scene->gradient_count, false,
-                      fabs(scene->info.slope) * sqrt(dot(world, world)));
+                      fabs(scene->info.slope) *
+                          sqrt(reference_dot(world, world)));
 }
 
 void reference_shade(const reference_scene *scene,
@@ -148,7 +145,7 @@ double reference_opacity_length(const reference_scene *scene) {
         double column[3];
         for (int r = 0; r < 3; r++)
             column[r] = scene->info.matrix[r][c];
-        smallest = fmin(smallest, sqrt(dot(column, column)));
+        smallest = fmin(smallest, sqrt(reference_dot(column, column)));
     }
     return smallest;
 }

@@ -245,18 +245,6 @@ static double open_at(const field *f, const reference_ray *ray, double t,
     return open;
 }
 
-static double depth_of(const reference_scene *scene,
-                       const reference_camera *camera, const double index[3]) {
-    double depth = 0;
-    for (int r = 0; r < 3; r++) {
-        double world = scene->info.matrix[r][3];
-        for (int n = 0; n < 3; n++)
-            world += scene->info.matrix[r][n] * index[n];
-        depth -= (world - camera->target[r]) * camera->back[r];
-    }
-    return depth;
-}
-
 /* What is left of the light of each pixel. */
 static void left_by_occlusion(const reference_scene *scene, const float *depth,
                               const float *picture, double left[COUNT]) {
@@ -273,10 +261,10 @@ static void left_by_occlusion(const reference_scene *scene, const float *depth,
     for (int n = 0; n < COUNT; n++) {
         reference_ray ray =
             reference_ray_at(scene, &camera, n % WIDTH + 0.5, n / WIDTH + 0.5);
-        double next[3], from = depth_of(scene, &camera, ray.start);
+        double next[3], from = reference_behind(scene, &camera, ray.start);
         for (int i = 0; i < 3; i++)
             next[i] = ray.start[i] + ray.step[i];
-        double cosine = depth_of(scene, &camera, next) - from;
+        double cosine = reference_behind(scene, &camera, next) - from;
         left[n] =
             isnan(depth[n])
                 ? 1

@@ -1,5 +1,6 @@
 /* tests/render/test_model_encodings.c - however the places of interesting
- * voxels are written, the picture has the same bits.
+ * voxels are written, the picture has the same bits.  That runs of any length
+ * are read as they were written is test_encode's.
  *
  * With the scalar loops original splatting, tested splatting and the three
  * encodings walk the same voxels in the same order with the same arithmetic, so
@@ -153,45 +154,6 @@ static void random_voxels_of_every_density_and_width(void **state) {
         }
 }
 
-static void runs_around_the_longest_that_a_byte_holds(void **state) {
-    static const int64_t lengths[] = {1,   2,   254, 255, 256, 257,
-                                      509, 510, 511, 512, 765, 766};
-    model_stage *stage = *state;
-    for (size_t a = 0; a < sizeof lengths / sizeof *lengths; a++)
-        for (size_t b = 0; b < sizeof lengths / sizeof *lengths; b++) {
-            if (!support_takes(b + a, 11))
-                continue;
-            /* Lengths a and b take turns; every second row begins with an
-             * interesting run. */
-            reference_scene scene = small_scene((int64_t[]){1600, 2, 2}, false);
-            scene.settings.kernel = SNOW_KERNEL_BOX;
-            size_t at = 0;
-            for (int row = 0; row < 4; row++)
-                for (int64_t i = 0; i < 1600; i++) {
-                    int64_t phase = i % (lengths[a] + lengths[b]);
-                    bool early = phase < lengths[a];
-                    model_voxels(&scene)[at++] = early == (row % 2 == 0);
-                }
-            assert_true(check_ways(stage, &scene));
-            model_look(&scene, sides[1].back, sides[1].up);
-            assert_true(check_ways(stage, &scene));
-            model_free(&scene);
-        }
-}
-
-static void runs_that_pass_from_row_to_row(void **state) {
-    model_stage *stage = *state;
-    for (int64_t length = 240; length <= 520; length += 5) {
-        if (!support_takes((size_t)length / 5, 7))
-            continue;
-        reference_scene scene = small_scene((int64_t[]){50, 30, 2}, false);
-        for (size_t n = 0; n < voxel_count(&scene); n++)
-            model_voxels(&scene)[n] = (int64_t)n / length % 2 == 0;
-        assert_true(check_sides(stage, &scene));
-        model_free(&scene);
-    }
-}
-
 static void slices_larger_than_what_is_classified_at_once(void **state) {
     static const int64_t large[][3] = {{210, 150, 3}, {17000, 3, 2}};
     model_stage *stage = *state;
@@ -204,19 +166,6 @@ static void slices_larger_than_what_is_classified_at_once(void **state) {
         assert_true(check_sides(stage, &scene));
         model_free(&scene);
     }
-}
-
-static void one_voxel_anywhere(void **state) {
-    model_stage *stage = *state;
-    reference_scene scene = small_scene((int64_t[]){65, 3, 3}, true);
-    for (size_t n = 0; n < voxel_count(&scene); n += 4) {
-        if (!support_takes(n / 4, 13))
-            continue;
-        model_voxels(&scene)[n] = 1;
-        assert_true(check_sides(stage, &scene));
-        model_voxels(&scene)[n] = 0;
-    }
-    model_free(&scene);
 }
 
 static void every_kernel_footprint_threshold_and_view(void **state) {
@@ -320,10 +269,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         MODEL_TEST(original_splatting_knows_no_threshold),
         MODEL_TEST(random_voxels_of_every_density_and_width),
-        MODEL_TEST(runs_around_the_longest_that_a_byte_holds),
-        MODEL_TEST(runs_that_pass_from_row_to_row),
         MODEL_TEST(slices_larger_than_what_is_classified_at_once),
-        MODEL_TEST(one_voxel_anywhere),
         MODEL_TEST(every_kernel_footprint_threshold_and_view),
         MODEL_TEST(a_frame_gives_the_same_bits_again_and_a_new_one_too),
         MODEL_TEST(figures_count_the_interesting_voxels),

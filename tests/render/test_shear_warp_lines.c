@@ -38,40 +38,19 @@ static reference_scene scene_of(int n, bool large) {
     return s;
 }
 
-static snow_volume *open_volume(const model_stage *stage,
-                                const reference_scene *s) {
-    snow_volume *volume = NULL;
-    assert_int_equal(
-        snow_volume_wrap(stage->context, &s->info, s->voxels, &volume),
-        SNOW_STATUS_OK);
-    return volume;
-}
-
 /* Of a volume whose voxels may change between two pictures nothing is kept. */
 static snow_volume *open_frozen(const model_stage *stage,
                                 const reference_scene *s) {
-    snow_volume *volume = open_volume(stage, s);
+    snow_volume *volume = model_volume(stage->context, s);
     snow_volume_freeze(volume);
     return volume;
-}
-
-static snow_image *draw_volume(const model_stage *stage,
-                               const reference_scene *s,
-                               const snow_volume *volume) {
-    snow_transfer *transfer = model_transfer(stage->context, s);
-    snow_image *image = NULL;
-    assert_int_equal(snow_frame_render(stage->frame, volume, transfer, &s->view,
-                                       &s->settings, &image),
-                     SNOW_STATUS_OK);
-    snow_transfer_free(transfer);
-    return image;
 }
 
 static void check_lines(const model_stage *stage, int n,
                         const reference_scene *s, bool keeps) {
     static const int ends[] = {0, 5, 8, 31, 32, 64};
     snow_volume *volume = open_frozen(stage, s);
-    snow_image *whole = draw_volume(stage, s, volume);
+    snow_image *whole = model_image_of(stage, s, volume);
     const float *all = snow_image_pixels(whole);
     const size_t line =
         (size_t)(s->view.width * snow_image_channels(whole)) * sizeof *all;
@@ -80,7 +59,7 @@ static void check_lines(const model_stage *stage, int n,
         stage->frame->lines[0] = first;
         stage->frame->lines[1] = end;
         stage->frame->more = keeps && first > 0;
-        snow_image *some = draw_volume(stage, s, volume);
+        snow_image *some = model_image_of(stage, s, volume);
         const size_t from =
             (size_t)(first * s->view.width * snow_image_channels(whole));
         if (memcmp(snow_image_pixels(some) + from, all + from,
@@ -90,7 +69,7 @@ static void check_lines(const model_stage *stage, int n,
     }
     stage->frame->lines[0] = stage->frame->lines[1] = 0;
     stage->frame->more = false;
-    snow_image *again = draw_volume(stage, s, volume);
+    snow_image *again = model_image_of(stage, s, volume);
     if (memcmp(snow_image_pixels(again), all, (size_t)s->view.height * line) !=
         0)
         fail_msg("scene %d: after its lines the whole has other bits", n);
@@ -139,8 +118,8 @@ static void check_turns(int n, bool frozen) {
     for (int i = 0; i < 2; i++) {
         scenes[i].view.roll = 20;
         volumes[i] = frozen ? open_frozen(&stage, &scenes[i])
-                            : open_volume(&stage, &scenes[i]);
-        whole[i] = draw_volume(&stage, &scenes[i], volumes[i]);
+                            : model_volume(stage.context, &scenes[i]);
+        whole[i] = model_image_of(&stage, &scenes[i], volumes[i]);
     }
     const size_t line = (size_t)(70 * snow_image_channels(whole[0]));
     assert_memory_not_equal(snow_image_pixels(whole[0]),
@@ -152,7 +131,7 @@ static void check_turns(int n, bool frozen) {
             stage.frame->lines[0] = first;
             stage.frame->lines[1] = first + 8;
             stage.frame->more = first > 0;
-            snow_image *some = draw_volume(&stage, &scenes[i], volumes[i]);
+            snow_image *some = model_image_of(&stage, &scenes[i], volumes[i]);
             if (memcmp(snow_image_pixels(some) + from,
                        snow_image_pixels(whole[i]) + from,
                        8 * line * sizeof(float)) != 0)
@@ -223,7 +202,7 @@ static void lines_take_their_tiles(void **state) {
             stage.frame->lines[0] = 100 * quarter;
             stage.frame->lines[1] = 100 * (quarter + 1);
             stage.frame->more = quarter > 0;
-            snow_image_free(draw_volume(&stage, &s, volume));
+            snow_image_free(model_image_of(&stage, &s, volume));
         }
         snow_volume_close(volume);
         assert_true(is_current(&stage));

@@ -259,9 +259,11 @@ static void a_sample_of_a_large_volume_is_the_same_one(void **state) {
     size_t voxels = (size_t)(dims[0] * dims[1] * dims[2]);
     float *values = malloc(voxels * sizeof *values);
     assert_non_null(values);
-    for (size_t i = 0; i < voxels; i++)
-        values[i] = i < PERIOD ? (float)value_at(&random, (int64_t)(i / 20))
-                               : values[i - PERIOD];
+    for (size_t i = 0; i < PERIOD; i++)
+        values[i] = (float)value_at(&random, (int64_t)(i / 20));
+    for (size_t i = PERIOD; i < voxels; i += PERIOD)
+        memcpy(values + i, values,
+               (voxels - i < PERIOD ? voxels - i : PERIOD) * sizeof *values);
     w.voxels = (unsigned char *)values;
     snow_volume *volume;
     snow_transfer *expected;

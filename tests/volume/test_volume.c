@@ -1,5 +1,6 @@
 /* tests/volume/test_volume.c - what every volume promises, whatever its format.
  */
+#include "support/failing.h"
 #include "support/files.h"
 
 #include "volume/volume.h"
@@ -22,6 +23,12 @@ static snow_volume *shared(snow_context *context, const snow_volume_info *info,
     if (snow_volume_wrap(context, info, voxels, &volume) != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(context));
     return volume;
+}
+
+static snow_volume *row_of(snow_context *context, snow_type type,
+                           const void *values, int64_t count) {
+    const snow_volume_info info = info_of(count, 1, 1, type);
+    return shared(context, &info, values);
 }
 
 static void types_know_their_names_and_sizes(void **state) {
@@ -73,9 +80,7 @@ static void sizes_that_overflow_are_no_count(void **state) {
 }
 
 static void impossible_headers_are_refused_before_any_allocation(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
+    support_files *files = *state;
     snow_volume_info infos[8];
     for (int i = 0; i < 8; i++)
         infos[i] = info_of(100, 100, 100, SNOW_TYPE_FLOAT64);
@@ -87,15 +92,14 @@ static void impossible_headers_are_refused_before_any_allocation(void **state) {
     infos[5].matrix[2][2] = INFINITY;
     infos[6].slope = 0;
     infos[7].intercept = NAN;
-    files.largest = 0;
+    files->largest = 0;
     for (int i = 0; i < 8; i++) {
         snow_volume *volume = NULL;
-        assert_int_equal(snow_volume_new(files.context, &infos[i], &volume),
+        assert_int_equal(snow_volume_new(files->context, &infos[i], &volume),
                          SNOW_STATUS_BAD_INPUT);
         assert_null(volume);
     }
-    assert_int_equal(files.largest, 0);
-    support_files_end(&files);
+    assert_int_equal(files->largest, 0);
 }
 
 static void a_matrix_of_flat_axes_has_no_inverse(void **state) {
@@ -116,12 +120,11 @@ static void a_matrix_of_flat_axes_has_no_inverse(void **state) {
 }
 
 static void a_shared_volume_gets_its_defaults(void **state) {
-    (void)state;
-    snow_context *context = support_context();
+    const support_files *files = *state;
     static const uint8_t voxels[24] = {0};
     snow_volume_info info = {
         .size = sizeof info, .dims = {4, 3, 2}, .type = SNOW_TYPE_UINT8};
-    snow_volume *volume = shared(context, &info, voxels);
+    snow_volume *volume = shared(files->context, &info, voxels);
     const snow_volume_info *known = snow_volume_get_info(volume);
     assert_ptr_equal(snow_volume_voxels(volume), voxels);
     assert_string_equal(known->format, "memory");
@@ -129,31 +132,26 @@ static void a_shared_volume_gets_its_defaults(void **state) {
     assert_true(known->spacing[1] == 1 && known->times == 1);
     snow_volume_close(volume);
     info.dims[0] = 0;
-    assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
+    assert_int_equal(snow_volume_wrap(files->context, &info, voxels, &volume),
                      SNOW_STATUS_BAD_USAGE);
-    assert_int_equal(snow_context_bytes(context), 0);
-    snow_context_free(context);
 }
 
 static void spacing_is_the_length_of_the_columns(void **state) {
-    (void)state;
-    snow_context *context = support_context();
+    const support_files *files = *state;
     static const uint8_t voxel = 0;
     snow_volume_info info = info_of(1, 1, 1, SNOW_TYPE_UINT8);
     static const double matrix[4][4] = {
         {3, 0, 0, 9}, {4, 0, -2, 9}, {0, 0.5, 0, 9}, {0, 0, 0, 1}};
     memcpy(info.matrix, matrix, sizeof matrix);
-    snow_volume *volume = shared(context, &info, &voxel);
+    snow_volume *volume = shared(files->context, &info, &voxel);
     const double *spacing = snow_volume_get_info(volume)->spacing;
     assert_true(spacing[0] == 5 && spacing[1] == 0.5 && spacing[2] == 2);
     snow_volume_close(volume);
-    snow_context_free(context);
 }
 
 /* Each type's largest value survives; sums follow the formula. */
 static void figures_are_right_for_every_type(void **state) {
-    (void)state;
-    snow_context *context = support_context();
+    const support_files *files = *state;
 #define CHECK_FIGURES(name, c_type, text)                              \
     do {                                                               \
         c_type voxels[2018];                                           \
@@ -166,7 +164,7 @@ static void figures_are_right_for_every_type(void **state) {
         snow_volume_info info = info_of(2018, 1, 1, SNOW_TYPE_##name); \
         info.slope = 2;                                                \
         info.intercept = 3;                                            \
-        snow_volume *volume = shared(context, &info, voxels);          \
+        snow_volume *volume = shared(files->context, &info, voxels);   \
         snow_volume_statistics m = {.size = sizeof m};                 \
         snow_volume_get_statistics(volume, &m);                        \
         assert_true(m.voxels == 2018 && m.finite == 2018);             \
@@ -177,47 +175,33 @@ static void figures_are_right_for_every_type(void **state) {
     } while (0);
     SNOW_TYPE_MAP(CHECK_FIGURES)
 #undef CHECK_FIGURES
-    snow_context_free(context);
 }
 
 static void only_finite_values_are_measured(void **state) {
-    (void)state;
-    snow_context *context = support_context();
-    const float voxels[6] = {NAN, 2, INFINITY, -4, -INFINITY, NAN};
-    snow_volume_info info = info_of(3, 2, 1, SNOW_TYPE_FLOAT32);
-    snow_volume *volume = shared(context, &info, voxels);
+    static const double voxels[6] = {NAN, 2, INFINITY, -4, -INFINITY, NAN};
+    const support_files *files = *state;
     snow_volume_statistics m = {.size = sizeof m};
+    snow_volume *volume = row_of(files->context, SNOW_TYPE_FLOAT64, voxels, 6);
     snow_volume_get_statistics(volume, &m);
     assert_true(m.voxels == 6 && m.finite == 2);
     assert_true(m.min == -4 && m.max == 2 && m.sum == -2);
     assert_true(m.wsum == 2 * 2 - 4 * 4);
     snow_volume_close(volume);
-    snow_context_free(context);
-}
-
-static void nothing_finite_has_no_range(void **state) {
-    (void)state;
-    snow_context *context = support_context();
-    const double voxels[2] = {NAN, NAN};
-    snow_volume_info info = info_of(2, 1, 1, SNOW_TYPE_FLOAT64);
-    snow_volume *volume = shared(context, &info, voxels);
-    snow_volume_statistics m = {.size = sizeof m};
+    volume = row_of(files->context, SNOW_TYPE_FLOAT64, voxels, 1); /* none */
     snow_volume_get_statistics(volume, &m);
     assert_true(m.finite == 0 && isnan(m.min) && isnan(m.max) && m.sum == 0);
     snow_volume_close(volume);
-    snow_context_free(context);
 }
 
 static void a_histogram_counts_both_ends(void **state) {
-    (void)state;
-    snow_context *context = support_context();
-    const double voxels[8] = {0, 0.99, 1, 2.5, 4, 4.01, -0.01, NAN};
-    snow_volume_info info = info_of(8, 1, 1, SNOW_TYPE_FLOAT64);
-    snow_volume *volume = shared(context, &info, voxels);
+    static const double voxels[8] = {0, 0.99, 1, 2.5, 4, 4.01, -0.01, NAN};
+    static const double wide[3] = {-1.7e308, 1, 1.7e308};
+    static const uint64_t wanted[4] = {2, 1, 1, 1}, ones[3] = {1, 1, 1};
+    const support_files *files = *state;
     uint64_t counts[4];
+    snow_volume *volume = row_of(files->context, SNOW_TYPE_FLOAT64, voxels, 8);
     assert_int_equal(snow_volume_histogram(volume, 0, 4, 4, counts),
                      SNOW_STATUS_OK);
-    static const uint64_t wanted[4] = {2, 1, 1, 1};
     assert_memory_equal(counts, wanted, sizeof wanted);
     assert_int_equal(snow_volume_histogram(volume, 4, 4, 4, counts),
                      SNOW_STATUS_BAD_USAGE);
@@ -226,22 +210,12 @@ static void a_histogram_counts_both_ends(void **state) {
     assert_int_equal(snow_volume_histogram(volume, 0, 1, 0, counts),
                      SNOW_STATUS_BAD_USAGE);
     snow_volume_close(volume);
-    snow_context_free(context);
-}
-
-static void a_histogram_spans_all_doubles(void **state) {
-    (void)state;
-    snow_context *context = support_context();
-    const double voxels[3] = {-1.7e308, 1, 1.7e308};
-    snow_volume_info info = info_of(3, 1, 1, SNOW_TYPE_FLOAT64);
-    snow_volume *volume = shared(context, &info, voxels);
-    uint64_t counts[3];
+    volume = row_of(files->context, SNOW_TYPE_FLOAT64, wide, 3);
     assert_int_equal(
         snow_volume_histogram(volume, -1.7e308, 1.7e308, 3, counts),
         SNOW_STATUS_OK);
-    assert_true(counts[0] == 1 && counts[1] == 1 && counts[2] == 1);
+    assert_memory_equal(counts, ones, sizeof ones);
     snow_volume_close(volume);
-    snow_context_free(context);
 }
 
 static void formats_are_listed(void **state) {
@@ -257,82 +231,54 @@ static void formats_are_listed(void **state) {
 }
 
 static void an_empty_file_is_refused_by_name(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
+    support_files *files = *state;
     static const char *const names[] = {"a.nrrd", "a.nhdr", "a.raw",
                                         "a.nii",  "a.mha",  "a"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        support_refused(&files, support_write(&files, names[i], "", 0), NULL,
+        support_refused(files, support_write(files, names[i], "", 0), NULL,
                         SNOW_STATUS_BAD_INPUT, "empty", 70000);
-    support_files_end(&files);
 }
 
 static void a_missing_file_is_refused_by_name(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
-    support_refused(&files, support_path(&files, "nothing.nrrd"), NULL,
+    support_files *files = *state;
+    support_refused(files, support_path(files, "nothing.nrrd"), NULL,
                     SNOW_STATUS_BAD_INPUT, "cannot be opened", 1000);
-    support_files_end(&files);
 }
 
 static void a_phantom_has_its_own_type(void **state) {
-    (void)state;
-    snow_context *context = support_context();
+    const support_files *files = *state;
     snow_volume *volume = NULL;
     const snow_volume_options options = {.size = sizeof options,
                                          .type = SNOW_TYPE_UINT8};
     assert_int_equal(
-        snow_volume_open(context, "phantom:cube", &options, &volume),
+        snow_volume_open(files->context, "phantom:cube", &options, &volume),
         SNOW_STATUS_BAD_USAGE);
-    assert_int_equal(snow_volume_open(context, "phantom:nobody", NULL, &volume),
-                     SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(
+        snow_volume_open(files->context, "phantom:nobody", NULL, &volume),
+        SNOW_STATUS_BAD_USAGE);
     assert_null(volume);
-    snow_context_free(context);
 }
 
 static void a_spacing_that_makes_no_space_is_refused(void **state) {
-    (void)state;
-    snow_context *context = support_context();
+    const support_files *files = *state;
     snow_volume *volume = NULL;
     const snow_volume_options options = {.size = sizeof options,
                                          .dims = {1, 1, 1},
                                          .type = SNOW_TYPE_UINT8,
                                          .spacing = {1, 1, 1e-320}};
     assert_int_equal(
-        snow_volume_open_memory(context, "a", "x", 1, &options, &volume),
+        snow_volume_open_memory(files->context, "a", "x", 1, &options, &volume),
         SNOW_STATUS_BAD_USAGE);
-    assert_non_null(strstr(snow_context_message(context), "--spacing"));
+    assert_non_null(strstr(snow_context_message(files->context), "--spacing"));
     assert_null(volume);
-    assert_int_equal(snow_context_bytes(context), 0);
-    snow_context_free(context);
-}
-
-/* Gives memory `left` times more, then, unless `once`, never again. */
-typedef struct failing {
-    int left;
-    bool once;
-} failing;
-
-static void *allocate_or_fail(void *user, size_t bytes) {
-    failing *state = user;
-    if (state->left-- > 0 || (state->once && state->left < -1))
-        return malloc(bytes);
-    return NULL;
-}
-
-static void release(void *user, void *block) {
-    (void)user;
-    free(block);
 }
 
 /* Opens with the n-th allocation failing, for all n until it succeeds; returns
  * how many there are. */
-static int fail_each_allocation(const char *path, bool once) {
-    for (int n = 1;; n++) {
-        failing failing_state = {n, once};
-        snow_allocator allocator = {allocate_or_fail, release, &failing_state};
+static long fail_each_allocation(const char *path, bool once) {
+    for (long n = 1;; n++) {
+        support_failing failing = {.failing = n, .for_good = !once};
+        snow_allocator allocator = support_failing_allocator(&failing);
         snow_context *context = NULL;
         snow_volume *volume = NULL;
         assert_int_equal(snow_context_new(&allocator, &context),
@@ -354,21 +300,19 @@ static int fail_each_allocation(const char *path, bool once) {
 }
 
 static void each_allocation_may_fail(void **state) {
-    (void)state;
-    support_files files;
-    support_files_begin(&files);
+    support_files *files = *state;
     static const char voxels[48] = "some voxels";
     unsigned char packed[300];
     size_t size = support_gzip(voxels, 48, packed, sizeof packed);
-    support_write(&files, "s1", packed, size);
+    support_write(files, "s1", packed, size);
     const char *paths[] = {
-        support_write(&files, "a_4x3x2_u16.raw.gz", packed, size),
-        support_write_text(&files, "a.nhdr",
+        support_write(files, "a_4x3x2_u16.raw.gz", packed, size),
+        support_write_text(files, "a.nhdr",
                            "NRRD0005\ntype: double\ndimension: 4\n"
                            "sizes: 1 1 3 2\nendian: big\nencoding: gzip\n"
                            "kinds: space space space time\nbyte skip: -1\n"
                            "data file: LIST 4\ns1"),
-        support_write_text(&files, "b.nhdr",
+        support_write_text(files, "b.nhdr",
                            "NRRD0005\ntype: float\ndimension: 1\n"
                            "sizes: 12\nendian: big\nencoding: gzip\n"
                            "data file: s1"),
@@ -376,29 +320,42 @@ static void each_allocation_may_fail(void **state) {
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
         for (int once = 0; once < 2; once++)
             assert_true(fail_each_allocation(paths[i], once) >= 5);
-    support_files_end(&files);
 }
+
+static int begin(void **state) {
+    support_files *files = malloc(sizeof *files);
+    assert_non_null(files);
+    support_files_begin(files);
+    *state = files;
+    return 0;
+}
+
+static int end(void **state) {
+    support_files_end(*state);
+    free(*state);
+    return 0;
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(types_know_their_names_and_sizes),
         cmocka_unit_test(bytes_swap_in_every_width),
         cmocka_unit_test(sizes_that_overflow_are_no_count),
-        cmocka_unit_test(impossible_headers_are_refused_before_any_allocation),
+        TEST(impossible_headers_are_refused_before_any_allocation),
         cmocka_unit_test(a_matrix_of_flat_axes_has_no_inverse),
-        cmocka_unit_test(a_shared_volume_gets_its_defaults),
-        cmocka_unit_test(spacing_is_the_length_of_the_columns),
-        cmocka_unit_test(figures_are_right_for_every_type),
-        cmocka_unit_test(only_finite_values_are_measured),
-        cmocka_unit_test(nothing_finite_has_no_range),
-        cmocka_unit_test(a_histogram_counts_both_ends),
-        cmocka_unit_test(a_histogram_spans_all_doubles),
+        TEST(a_shared_volume_gets_its_defaults),
+        TEST(spacing_is_the_length_of_the_columns),
+        TEST(figures_are_right_for_every_type),
+        TEST(only_finite_values_are_measured),
+        TEST(a_histogram_counts_both_ends),
         cmocka_unit_test(formats_are_listed),
-        cmocka_unit_test(an_empty_file_is_refused_by_name),
-        cmocka_unit_test(a_missing_file_is_refused_by_name),
-        cmocka_unit_test(a_phantom_has_its_own_type),
-        cmocka_unit_test(a_spacing_that_makes_no_space_is_refused),
-        cmocka_unit_test(each_allocation_may_fail),
+        TEST(an_empty_file_is_refused_by_name),
+        TEST(a_missing_file_is_refused_by_name),
+        TEST(a_phantom_has_its_own_type),
+        TEST(a_spacing_that_makes_no_space_is_refused),
+        TEST(each_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
