@@ -61,13 +61,14 @@ static reference_scene kernels_and_footprints(size_t n, uint64_t *random) {
     return scene;
 }
 
+/* Not by the box, on whose edges rays fall by rounding. */
 static reference_scene in_perspective(size_t n, uint64_t *random) {
     static const double fovs[] = {5, 30, 60, 100}, near[] = {0.3, 1, 2, 8};
     reference_scene scene = drawn_scene(random);
-    scene.settings.kernel = model_kernel(n);
+    scene.settings.kernel = model_kernel(n % 3);
     scene.settings.footprint = 2 + (int)model_draw(random, 6);
-    scene.view.fov = fovs[n / 4 % 4];
-    model_stand_at(&scene, n / 16, near[n / 16 / MODEL_STANDS]);
+    scene.view.fov = fovs[n / 3 % 4];
+    model_stand_at(&scene, n / 12, near[n / 12 / MODEL_STANDS]);
     return scene;
 }
 
@@ -159,16 +160,16 @@ static reference_scene kernels_widened_a_little(size_t n, uint64_t *random) {
     return scene;
 }
 
-/* Footprints from any direction. */
+/* Footprints from any direction, without the box's edges. */
 static reference_scene voxels_here_and_there(size_t n, uint64_t *random) {
     reference_scene scene = model_blank((int64_t[]){11, 12, 9}, 1);
     for (int at = 0; at < 11 * 12 * 9; at++)
         model_voxels(&scene)[at] = support_uniform(random) < 0.1;
     scene.view.width = 30;
     scene.view.height = 33;
-    scene.settings.kernel = model_kernel(n);
-    scene.settings.footprint = 2 + (int)(n / 4 % 8);
-    model_stand_at(&scene, n / 32, 0.4 + 2 * support_uniform(random));
+    scene.settings.kernel = model_kernel(n % 3);
+    scene.settings.footprint = 2 + (int)(n / 3 % 8);
+    model_stand_at(&scene, n / 24, 0.4 + 2 * support_uniform(random));
     scene.view.azimuth += 90 * support_uniform(random);
     return scene;
 }
@@ -290,7 +291,7 @@ static void pictures_equal_the_references(void **state) {
         double bound;
     } sweeps[] = {
         {"kernels", kernels_and_footprints, 96 * MODEL_STANDS, 19, BOUND},
-        {"perspective", in_perspective, 64 * MODEL_STANDS, 17, BOUND},
+        {"perspective", in_perspective, 48 * MODEL_STANDS, 17, BOUND},
         {"on the grid", pixels_on_the_grid, 9 * 32 * 5, 19, BOUND},
         {"types", types_and_thresholds, 600, 13, BOUND},
         {"sizes", sizes_of_pictures, 10 * MODEL_STANDS, 7, BOUND},
