@@ -6,6 +6,7 @@
  * would be too many, one factor runs through all its values while the others
  * are drawn. */
 #include "reference/model.h"
+#include "render/tested.h"
 #include "transform/perspective.h"
 
 #include <math.h>
@@ -366,7 +367,8 @@ static void slices_on_both_sides_of_the_eye(void **state) {
             snow_placement_make(stage->context, &scene.info, &scene.view, &p),
             SNOW_STATUS_OK);
         assert_true(p.eye.at[2] > 0 && p.eye.at[2] < 30);
-        scene.settings.method = (snow_method)(SNOW_METHOD_TESTED + n % 2);
+        scene.settings.method =
+            n % 2 ? SNOW_METHOD_FOOTPRINT : SNOW_METHOD_TESTED;
         model_check(stage, &scene, BOUND);
         model_free(&scene);
     }
