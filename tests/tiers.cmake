@@ -72,7 +72,7 @@ set(SNOW_COSTS
     cli_real 22 test_model_encodings 20 test_truth 25 test_same_bits 25
     serve_sockets 20 serve_hostile 20 oracle_orientation 20 oracle_hdf5 20 oracle_netcdf 18 test_comm 17
     cli_formats 16 cli_config 16 test_gradient_opacity 16
-    test_api 13 test_kernels 13 cli_usage 12
+    test_api 13 cli_usage 12
     test_splat_threads 11 
     test_phantom 11 oracle_pictures 11 test_early 10)
 

@@ -1,10 +1,9 @@
 /* tests/stages/test_ray_grid.c - how much of a slab is predicted to be drawn,
- * and slabs that are cut by it. */
+ * and volumes that are cut by it, and by what their voxels cost. */
 #include "support/support.h"
 
 #include "decompose/ray_grid.h"
-
-#include <string.h>
+#include "parallel/partition.h"
 
 #define SIDE 64
 
@@ -199,17 +198,6 @@ static void steep_rays_need_no_more_memory(void **state) {
     }
 }
 
-static void faint_voxels_close_rays(void **state) {
-    (void)state;
-    snow_context *context = support_context();
-    const snow_ray_grid grid = fill(context, plate, 0, true);
-    for (int n = 1; n < 8; n++)
-        assert_true(grid.closes[n] > grid.closes[n - 1]);
-    assert_true(grid.closes[2] > 1.9 * grid.closes[1]);
-    snow_release(context, grid.sums);
-    snow_context_free(context);
-}
-
 /* A cell full of opaque voxels; of large volumes not all slices count. */
 static void sums_of_large_cells_do_not_overflow(void **state) {
     (void)state;
@@ -228,6 +216,180 @@ static void sums_of_large_cells_do_not_overflow(void **state) {
     }
 }
 
+/* --- cuts of volumes ------------------------------------------------------ */
+
+#define VOXELS (SIDE * SIDE * SIDE)
+
+/* Two slabs of a volume whose values are opacities in quarters. */
+typedef struct cut_volume {
+    const unsigned char *values;
+    bool floats;
+    bool halved; /* by a constant gradient opacity */
+    int span;
+    bool hides, farthest_first;
+} cut_volume;
+
+static void open_quarters(snow_context *context, const cut_volume *c,
+                          const void *voxels, snow_volume **volume,
+                          snow_transfer **transfer) {
+    static const snow_opacity_point quarters[] = {{0, 0}, {4, 1}};
+    static const snow_opacity_point halves[] = {{0, 0.5}, {100, 0.5}};
+    static const snow_color_point white[] = {{0, 1, 1, 1}};
+    const snow_look look = {.size = sizeof look,
+                            .colors = white,
+                            .color_count = 1,
+                            .opacities = quarters,
+                            .opacity_count = 2,
+                            .gradient_opacities = c->halved ? halves : NULL,
+                            .gradient_opacity_count = c->halved ? 2 : 0};
+    snow_volume_info info;
+    snow_volume_info_init(&info);
+    memcpy(info.dims, dims, sizeof info.dims);
+    info.type = c->floats ? SNOW_TYPE_FLOAT32 : SNOW_TYPE_UINT8;
+    assert_int_equal(snow_volume_wrap(context, &info, voxels, volume),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_transfer_new_for_volume(*volume, &look, transfer),
+                     SNOW_STATUS_OK);
+}
+
+/* How many slices the first slab has. */
+static int64_t cut_in_two(snow_comm *comm, snow_context *context,
+                          const cut_volume *c) {
+    float *floats = malloc(VOXELS * sizeof *floats);
+    for (int n = 0; n < VOXELS; n++)
+        floats[n] = c->values[n];
+    snow_volume *volume;
+    snow_transfer *transfer;
+    snow_box boxes[2];
+    open_quarters(context, c,
+                  c->floats ? (const void *)floats : (const void *)c->values,
+                  &volume, &transfer);
+    const snow_partition_params order = {
+        .cut = SNOW_PARTITION_COUNTED,
+        .ranks = 2,
+        .grid = {.dims = {SIDE, SIDE, SIDE}, .axis = 2},
+        .span = c->span,
+        .hides = c->hides,
+        .rays = {.axes = {0, 1, 2},
+                 .path = 0.01,
+                 .nearest_first = !c->farthest_first}};
+    assert_int_equal(
+        snow_partition_boxes(comm, &order, volume, transfer, boxes, NULL),
+        SNOW_STATUS_OK);
+    assert_int_equal(boxes[0].count[2] + boxes[1].count[2], SIDE);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    free(floats);
+    return boxes[0].count[2];
+}
+
+/* Four opaque slices in front, and faint ones behind them. */
+static unsigned char opaque[VOXELS];
+
+static void fill_opaque(void) {
+    memset(opaque, 1, sizeof opaque);
+    memset(opaque, 4, (size_t)SIDE * SIDE * 4);
+}
+
+/* The slab in front has more slices, for the plate hides most of them, but
+ * where gradients make it faint. */
+static void slices_behind_an_opaque_plate_cost_less(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    cut_volume c = {.values = opaque, .span = 24};
+    fill_opaque();
+    assert_int_equal(cut_in_two(NULL, context, &c), SIDE / 2);
+    c.hides = true;
+    for (int floats = 0; floats < 2; floats++) {
+        c.floats = floats;
+        assert_true(cut_in_two(NULL, context, &c) >= 40);
+    }
+    c.halved = true;
+    assert_true(cut_in_two(NULL, context, &c) < 36);
+    snow_context_free(context);
+}
+
+/* As many voxels in each slice: in whole rows, and scattered over all. */
+static void scattered_voxels_cost_more(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    static unsigned char values[VOXELS];
+    for (int n = 0; n < VOXELS; n++)
+        values[n] = n < VOXELS / 2 ? n / SIDE % 4 == 0 : n % 4 == 0;
+    cut_volume c = {.values = values};
+    assert_int_equal(cut_in_two(NULL, context, &c), SIDE / 2);
+    c.span = 24;
+    assert_in_range(cut_in_two(NULL, context, &c), SIDE / 2 + 4, SIDE - 4);
+    snow_context_free(context);
+}
+
+/* Ranks whose rays differ: as those of two machines may, by a last bit. */
+static snow_status cut_by_own_rays(snow_comm *comm, void *user) {
+    int64_t *counts = user;
+    const int rank = snow_comm_rank(comm);
+    const cut_volume c = {.values = opaque,
+                          .span = 24,
+                          .hides = true,
+                          .farthest_first = rank != 0};
+    counts[rank] = cut_in_two(comm, snow_comm_context(comm), &c);
+    return SNOW_STATUS_OK;
+}
+
+static void all_ranks_take_the_same_boxes(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    int64_t counts[2];
+    const cut_volume c = {
+        .values = opaque, .span = 24, .hides = true, .farthest_first = true};
+    fill_opaque();
+    const int64_t alone = cut_in_two(NULL, context, &c);
+    assert_int_equal(snow_comm_run_threads(context, 2, cut_by_own_rays, counts),
+                     SNOW_STATUS_OK);
+    assert_int_equal(counts[0], counts[1]);
+    assert_int_not_equal(counts[1], alone);
+    snow_context_free(context);
+}
+
+/* Of boxes of all kinds, by any number of threads. */
+static void loads_are_the_voxels_in_boxes(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    static unsigned char values[VOXELS];
+    uint64_t seed = 5;
+    for (int n = 0; n < VOXELS; n++)
+        values[n] = (n / 9 + n / 3000) % 11 < 2 && support_random(&seed) % 3;
+    snow_volume *volume;
+    snow_transfer *transfer;
+    open_quarters(context, &(const cut_volume){NULL}, values, &volume,
+                  &transfer);
+    for (int n = 0; n < 18; n++) {
+        enum { RANKS = 5 };
+        const snow_partition_params order = {
+            .cut = n % 2 ? SNOW_PARTITION_BRICKS : SNOW_PARTITION_COUNTED,
+            .ranks = RANKS,
+            .grid = {.dims = {SIDE, SIDE, SIDE}, .axis = n / 2 % 3},
+            .threads = 1 + n / 6};
+        snow_box boxes[RANKS];
+        int64_t loads[RANKS];
+        assert_int_equal(
+            snow_partition_boxes(NULL, &order, volume, transfer, boxes, loads),
+            SNOW_STATUS_OK);
+        for (int at = 0; at < VOXELS; at++) {
+            const snow_box voxel = {
+                {at % SIDE, at / SIDE % SIDE, at / SIDE / SIDE}, {1, 1, 1}};
+            snow_box shared;
+            for (int rank = 0; values[at] && rank < RANKS; rank++)
+                loads[rank] -=
+                    snow_box_intersect(&voxel, &boxes[rank], &shared);
+        }
+        for (int rank = 0; rank < RANKS; rank++)
+            assert_int_equal(loads[rank], 0);
+    }
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_behind_an_opaque_plate_is_not_drawn),
@@ -236,8 +398,11 @@ int main(void) {
         cmocka_unit_test(slabs_with_hidden_slices_are_thicker),
         cmocka_unit_test(cells_cover_large_volumes),
         cmocka_unit_test(steep_rays_need_no_more_memory),
-        cmocka_unit_test(faint_voxels_close_rays),
         cmocka_unit_test(sums_of_large_cells_do_not_overflow),
+        cmocka_unit_test(slices_behind_an_opaque_plate_cost_less),
+        cmocka_unit_test(scattered_voxels_cost_more),
+        cmocka_unit_test(all_ranks_take_the_same_boxes),
+        cmocka_unit_test(loads_are_the_voxels_in_boxes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
