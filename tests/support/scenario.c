@@ -8,6 +8,19 @@
 
 #include <math.h>
 
+scenario scenario_of(const reference_scene *scene, int n,
+                     const snow_transfer *transfer) {
+    return (scenario){.info = scene->info,
+                      .voxels = scene->voxels,
+                      .masked = scene->masked,
+                      .transfer = transfer,
+                      .view = scene->view,
+                      .settings = scene->settings,
+                      .how = {.size = sizeof(snow_ranks_options),
+                              .combining = (snow_combine)(n % 5)},
+                      .pictures = 1 + n % 2};
+}
+
 size_t scenario_floats(const scenario *p) {
     return (size_t)p->view.width * (size_t)p->view.height * (size_t)p->channels;
 }
@@ -61,9 +74,9 @@ void scenario_partition(snow_context *context, scenario *p, int ranks) {
     }
 }
 
-snow_status scenario_open_part(snow_context *context, const scenario *p,
-                               const snow_box *box, void **voxels,
-                               snow_volume **volume) {
+/* A box with its ghosts, as a volume. */
+static snow_status open_part(snow_context *context, const scenario *p,
+                             const snow_box *box, scenario_rank *r) {
     snow_volume_info info = p->info;
     size_t size = snow_type_size(info.type);
     int64_t layers[3];
@@ -88,7 +101,7 @@ snow_status scenario_open_part(snow_context *context, const scenario *p,
             info.matrix[row][3] +=
                 info.matrix[row][axis] * (double)part.stored[axis];
     size_t line = (size_t)info.dims[0] * size;
-    char *to = *voxels = malloc(line * (size_t)(info.dims[1] * info.dims[2]));
+    char *to = r->voxels = malloc(line * (size_t)(info.dims[1] * info.dims[2]));
     for (int64_t z = 0; z < info.dims[2]; z++)
         for (int64_t y = 0; y < info.dims[1]; y++, to += line) {
             int64_t at =
@@ -97,120 +110,125 @@ snow_status scenario_open_part(snow_context *context, const scenario *p,
                 part.stored[0];
             memcpy(to, (const char *)p->voxels + (size_t)at * size, line);
         }
-    SNOW_TRY(snow_volume_wrap(context, &info, *voxels, volume));
-    (*volume)->masked = p->masked;
-    snow_volume_freeze(*volume);
-    return snow_volume_set_extent(*volume, &part);
+    SNOW_TRY(snow_volume_wrap(context, &info, r->voxels, &r->volume));
+    snow_volume_freeze(r->volume);
+    return snow_volume_set_extent(r->volume, &part);
 }
 
-snow_status scenario_copy_transfer(snow_context *context,
-                                   const snow_transfer *t,
-                                   snow_transfer **out) {
+static snow_status copy_transfer(snow_context *context, const snow_transfer *t,
+                                 snow_transfer **out) {
     SNOW_TRY(snow_transfer_new(context, t->colors, t->color_count, t->opacities,
                                t->opacity_count, out));
     return snow_transfer_set_gradient_opacity(*out, t->gradients,
                                               t->gradient_count);
 }
 
-snow_status scenario_add_layer(const scenario *p, snow_frame *frame,
-                               const snow_volume *grid, snow_volume **volume,
-                               snow_transfer **look) {
-    snow_context *context = frame->context;
+static snow_status add_layer(const scenario *p, bool alone, scenario_rank *r) {
+    snow_context *context = r->frame->context;
     if (!p->layer)
         return SNOW_STATUS_OK;
-    SNOW_TRY(scenario_copy_transfer(context, p->layer_look, look));
-    SNOW_TRY(grid ? snow_volume_open(context, p->layer, NULL, volume)
-                  : snow_volume_open_streamed(context, p->layer, NULL, 3000,
-                                              volume));
-    if (grid)
+    SNOW_TRY(copy_transfer(context, p->layer_look, &r->look));
+    SNOW_TRY(alone ? snow_volume_open(context, p->layer, NULL, &r->layer)
+                   : snow_volume_open_streamed(context, p->layer, NULL, 3000,
+                                               &r->layer));
+    if (alone)
         SNOW_TRY(snow_volume_regrid(
-            volume, grid, snow_transfer_has_labels(*look, &(*volume)->info)));
-    const snow_layer layer = {.volume = *volume, .transfer = *look};
-    return snow_frame_set_layers(frame, &layer, 1);
+            &r->layer, r->volume,
+            snow_transfer_has_labels(r->look, &r->layer->info)));
+    const snow_layer layer = {.volume = r->layer, .transfer = r->look};
+    return snow_frame_set_layers(r->frame, &layer, 1);
+}
+
+void scenario_leave(scenario_rank *r) {
+    snow_frame_free(r->frame);
+    snow_transfer_free(r->transfer);
+    snow_transfer_free(r->look);
+    snow_volume_close(r->layer);
+    snow_volume_close(r->volume);
+    free(r->voxels);
+}
+
+snow_status scenario_enter(snow_context *context, const scenario *p,
+                           const snow_box *box, scenario_rank *r) {
+    *r = (scenario_rank){.voxels = NULL};
+    snow_status status =
+        box ? open_part(context, p, box, r)
+            : snow_volume_wrap(context, &p->info, p->voxels, &r->volume);
+    if (status == SNOW_STATUS_OK) {
+        r->volume->masked = p->masked;
+        status = copy_transfer(context, p->transfer, &r->transfer);
+    }
+    if (status == SNOW_STATUS_OK)
+        status = snow_frame_new(context, &r->frame);
+    if (status == SNOW_STATUS_OK)
+        status = add_layer(p, !box, r);
+    if (status != SNOW_STATUS_OK)
+        scenario_leave(r);
+    return status;
+}
+
+/* Of the picture that a frame has made. */
+static void keep_depths(const scenario *p, snow_frame *frame) {
+    if (p->depths)
+        memcpy(p->depths, snow_frame_depth(frame)->pixels,
+               (size_t)p->view.width * (size_t)p->view.height * sizeof(float));
+}
+
+static snow_status draw_part(snow_comm *comm, scenario *p, scenario_rank *r) {
+    snow_context *context = snow_comm_context(comm);
+    int rank = snow_comm_rank(comm);
+    snow_image *image = NULL;
+    SNOW_TRY(snow_ranks_render(r->frame, comm, r->volume, r->transfer, &p->view,
+                               &p->settings, &p->how, &image));
+    if ((rank == 0) != (image != NULL)) {
+        snow_image_free(image);
+        return snow_fail(context, SNOW_STATUS_BAD_OUTPUT, "a picture too many");
+    }
+    if (rank == 0) {
+        memcpy(p->picture, snow_image_pixels(image),
+               scenario_floats(p) * sizeof(float));
+        p->stats = *snow_frame_stats(r->frame);
+        p->ranks = snow_frame_ranks_stats(r->frame)->ranks;
+        keep_depths(p, r->frame);
+    }
+    p->each[rank] = *snow_frame_stats(r->frame);
+    snow_image_free(image);
+    return SNOW_STATUS_OK;
 }
 
 snow_status scenario_perform(snow_comm *comm, void *user) {
     scenario *p = user;
-    snow_context *context = snow_comm_context(comm);
-    int rank = snow_comm_rank(comm);
-    void *voxels = NULL;
-    snow_volume *volume = NULL, *layer = NULL;
-    snow_transfer *transfer = NULL, *look = NULL;
-    snow_frame *frame = NULL;
-    snow_status status =
-        scenario_open_part(context, p, &p->boxes[rank], &voxels, &volume);
-    if (status == SNOW_STATUS_OK)
-        status = scenario_copy_transfer(context, p->transfer, &transfer);
-    if (status == SNOW_STATUS_OK)
-        status = snow_frame_new(context, &frame);
-    if (status == SNOW_STATUS_OK)
-        status = scenario_add_layer(p, frame, NULL, &layer, &look);
-    for (int n = 0; n < p->pictures && status == SNOW_STATUS_OK; n++) {
-        snow_image *image = NULL;
-        status = snow_ranks_render(frame, comm, volume, transfer, &p->view,
-                                   &p->settings, &p->how, &image);
-        if (status == SNOW_STATUS_OK && (rank == 0) != (image != NULL))
-            status = snow_fail(context, SNOW_STATUS_BAD_OUTPUT,
-                               "a picture too many");
-        if (status == SNOW_STATUS_OK && rank == 0) {
-            memcpy(p->picture, snow_image_pixels(image),
-                   scenario_floats(p) * sizeof(float));
-            p->stats = *snow_frame_stats(frame);
-            p->ranks = snow_frame_ranks_stats(frame)->ranks;
-            if (p->depths)
-                memcpy(p->depths, snow_frame_depth(frame)->pixels,
-                       scenario_floats(p) / (size_t)p->channels *
-                           sizeof(float));
-        }
-        snow_image_free(image);
-    }
-    if (status == SNOW_STATUS_OK && frame)
-        p->each[rank] = *snow_frame_stats(frame);
-    snow_frame_free(frame);
-    snow_transfer_free(transfer);
-    snow_transfer_free(look);
-    snow_volume_close(layer);
-    snow_volume_close(volume);
-    free(voxels);
+    scenario_rank r;
+    SNOW_TRY(scenario_enter(snow_comm_context(comm), p,
+                            &p->boxes[snow_comm_rank(comm)], &r));
+    snow_status status = SNOW_STATUS_OK;
+    for (int n = 0; n < p->pictures && status == SNOW_STATUS_OK; n++)
+        status = draw_part(comm, p, &r);
+    scenario_leave(&r);
     return status;
 }
 
 float *scenario_alone(snow_context *context, scenario *p, double *strongest) {
-    snow_volume *volume = NULL, *layer = NULL;
-    snow_transfer *transfer = NULL, *look = NULL;
-    snow_frame *frame = NULL;
+    scenario_rank r;
     snow_image *image = NULL;
-    assert_int_equal(snow_volume_wrap(context, &p->info, p->voxels, &volume),
-                     SNOW_STATUS_OK);
-    volume->masked = p->masked;
-    assert_int_equal(scenario_copy_transfer(context, p->transfer, &transfer),
-                     SNOW_STATUS_OK);
-    assert_int_equal(snow_frame_new(context, &frame), SNOW_STATUS_OK);
-    if (scenario_add_layer(p, frame, volume, &layer, &look) != SNOW_STATUS_OK)
-        fail_msg("%s", snow_context_message(context));
-    if (snow_frame_render(frame, volume, transfer, &p->view, &p->settings,
+    if (scenario_enter(context, p, NULL, &r) != SNOW_STATUS_OK ||
+        snow_frame_render(r.frame, r.volume, r.transfer, &p->view, &p->settings,
                           &image) != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(context));
-    p->interesting = snow_frame_stats(frame)->interesting;
-    p->voxels_drawn = snow_frame_stats(frame)->voxels;
+    p->interesting = snow_frame_stats(r.frame)->interesting;
+    p->voxels_drawn = snow_frame_stats(r.frame)->voxels;
     p->channels = snow_image_channels(image);
     float *pixels = malloc(scenario_floats(p) * sizeof(float));
     assert_non_null(pixels);
     memcpy(pixels, snow_image_pixels(image),
            scenario_floats(p) * sizeof(float));
-    if (p->depths)
-        memcpy(p->depths, snow_frame_depth(frame)->pixels,
-               scenario_floats(p) / (size_t)p->channels * sizeof(float));
+    keep_depths(p, r.frame);
     size_t channels = (size_t)p->channels;
     *strongest = 0;
     for (size_t n = channels - 1; n < scenario_floats(p); n += channels)
         *strongest = fmax(*strongest, (double)pixels[n]);
     snow_image_free(image);
-    snow_frame_free(frame);
-    snow_transfer_free(transfer);
-    snow_transfer_free(look);
-    snow_volume_close(layer);
-    snow_volume_close(volume);
+    scenario_leave(&r);
     return pixels;
 }
 
@@ -223,15 +241,18 @@ void scenario_by_ranks(snow_context *context, scenario *p, int ranks) {
         fail_msg("%d ranks: %s", ranks, snow_context_message(context));
 }
 
-double scenario_gap(const scenario *p, const float *serial) {
-    double most = 0;
-    for (size_t n = 0; n < scenario_floats(p); n++) {
-        double gap = fabs((double)p->picture[n] - (double)serial[n]);
-        if (isnan(p->picture[n]) && isnan(serial[n])) /* no value */
+double scenario_difference(const float *a, const float *b, size_t count,
+                           bool relative) {
+    double most = 0, gap = 0;
+    for (size_t n = 0; n < count; n++) {
+        if (isnan(a[n]) != isnan(b[n]))
+            return INFINITY;
+        if (isnan(a[n]))
             continue;
-        most = gap <= most ? most : gap;
+        gap = fmax(gap, fabs((double)a[n] - (double)b[n]));
+        most = fmax(most, fabs((double)b[n]));
     }
-    return most;
+    return relative && most > 0 ? gap / most : gap;
 }
 
 void scenario_check_counts(const scenario *p, int ranks) {

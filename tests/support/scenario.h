@@ -1,8 +1,10 @@
 /* tests/support/scenario.h - one picture by many processors, which are threads
- * here, beside the one by one process. */
+ * here, beside the one by one process; and scenes for it, in which everything
+ * varies with a number. */
 #ifndef SNOW_TEST_SUPPORT_SCENARIO_H
 #define SNOW_TEST_SUPPORT_SCENARIO_H
 
+#include "reference/model.h"
 #include "support/support.h"
 
 #include "decompose/partition.h"
@@ -23,6 +25,22 @@ typedef enum partitioning {
     GROUPED,      /* slabs along the slice axis, of whole groups */
     PARTITIONINGS
 } partitioning;
+
+/* --- scenes --------------------------------------------------------------- */
+
+/* Slices along all axes from both sides, oblique, some in perspective; all
+ * types, spacings, qualities, encodings, densities, shades and looks, labels,
+ * holes, gradient opacities and pictures of few pixels.  Free the voxels with
+ * scenario_free_scene. */
+reference_scene scenario_scene(int n, int64_t depth);
+
+/* Another volume for its picture, of labels or values: on the grid, with half
+ * the voxels along each axis, or along x the other way. */
+reference_scene scenario_front(const reference_scene *base, int n);
+
+void scenario_free_scene(reference_scene *scene);
+
+/* --- pictures ------------------------------------------------------------- */
 
 /* A scene that ranks share. */
 typedef struct scenario {
@@ -48,24 +66,29 @@ typedef struct scenario {
     int64_t interesting, voxels_drawn;
 } scenario;
 
+/* Of a scene, whose transfer function it takes over. */
+scenario scenario_of(const reference_scene *scene, int n,
+                     const snow_transfer *transfer);
+
 size_t scenario_floats(const scenario *p);
 
 /* Gives each rank a box. */
 void scenario_partition(snow_context *context, scenario *p, int ranks);
 
-/* A box with its ghosts, as a volume; its voxels are to be freed. */
-snow_status scenario_open_part(snow_context *context, const scenario *p,
-                               const snow_box *box, void **voxels,
-                               snow_volume **volume);
+/* What a rank draws with, or one process. */
+typedef struct scenario_rank {
+    void *voxels; /* of its part */
+    snow_volume *volume, *layer;
+    snow_transfer *transfer, *look;
+    snow_frame *frame;
+} scenario_rank;
 
-snow_status scenario_copy_transfer(snow_context *context,
-                                   const snow_transfer *t, snow_transfer **out);
-
-/* Gives a frame the layer: of one process in memory, on the volume's grid; of
- * ranks in its file.  Both are to be freed, NULL where there is none. */
-snow_status scenario_add_layer(const scenario *p, snow_frame *frame,
-                               const snow_volume *grid, snow_volume **volume,
-                               snow_transfer **look);
+/* Opens a box with its ghosts, or (NULL) the whole volume; the layer is in its
+ * file for ranks, and in memory, on the volume's grid, for one process.
+ * Nothing is left where it fails. */
+snow_status scenario_enter(snow_context *context, const scenario *p,
+                           const snow_box *box, scenario_rank *r);
+void scenario_leave(scenario_rank *r);
 
 /* The picture by one process, to be freed; its strongest opacity. */
 float *scenario_alone(snow_context *context, scenario *p, double *strongest);
@@ -76,8 +99,10 @@ snow_status scenario_perform(snow_comm *comm, void *user);
 /* Renders by so many ranks; p->picture is to be freed. */
 void scenario_by_ranks(snow_context *context, scenario *p, int ranks);
 
-/* The largest difference of the ranks' picture from another one. */
-double scenario_gap(const scenario *p, const float *serial);
+/* The largest difference of two pictures; of projections (`relative`) as a part
+ * of the largest value.  Infinite where one of both has no value. */
+double scenario_difference(const float *a, const float *b, size_t count,
+                           bool relative);
 
 /* Fails unless the ranks have counted what one process has: voxels of borders,
  * which several ranks hold, count for their owner only. */
