@@ -39,7 +39,7 @@ list(TRANSFORM formats REPLACE ".*/(.*)[.]c$" "\\1")
 set(SNOW_LABEL_surface ${formats} test_base test_compare test_convert test_image
     test_guard test_live_file test_mask test_message test_npy_pfm test_pictures test_png test_recipe test_save
     test_source test_tf test_volume test_writer test_writer_named)
-set(SNOW_LABEL_threads test_affinity test_same_bits test_combine test_comm test_early
+set(SNOW_LABEL_threads test_affinity test_same_bits test_combine test_comm
     test_pipeline test_frames test_insitu test_insitu_levels test_insitu_marks
     test_raycast test_shear_warp test_shear_warp_slabs test_simulated test_stop test_progress test_ranks test_ranks_open test_redistribute
     test_pool_signals serve_hostile serve_places serve_sockets)
@@ -73,8 +73,7 @@ set(SNOW_COSTS
     serve_sockets 20 serve_hostile 20 oracle_orientation 20 oracle_hdf5 20 oracle_netcdf 18 test_comm 17
     cli_formats 16 cli_config 16 test_gradient_opacity 16
     test_api 13 cli_usage 12
-    test_splat_threads 11 
-    test_phantom 11 oracle_pictures 11 test_early 10)
+    test_splat_threads 11 test_phantom 11 oracle_pictures 11)
 
 file(GLOB_RECURSE sources *.c *.sh *.py)
 get_property(tests DIRECTORY PROPERTY TESTS)

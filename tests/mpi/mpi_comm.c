@@ -7,23 +7,11 @@
 #include <snowglass/extend.h>
 #include <snowglass/mpi.h>
 
-#define BODY(name) \
-    { #name, name }
-
 static int run_bodies(snow_comm *comm) {
-    static const struct {
-        const char *name;
-        snow_comm_body_fn *body;
-    } bodies[] = {BODY(send_all_to_all),   BODY(mix_tags),
-                  BODY(receive_first),     BODY(send_sizes),
-                  BODY(wait_for_none),     BODY(work_while_waiting),
-                  BODY(reduce_ints),       BODY(broadcast),
-                  BODY(one_after_another), BODY(share)};
-    for (size_t i = 0; i < sizeof bodies / sizeof bodies[0]; i++)
-        if (bodies[i].body(comm, NULL) != SNOW_STATUS_OK) {
+    for (const comm_body *b = comm_bodies; b->body; b++)
+        if (b->body(comm, NULL) != SNOW_STATUS_OK) {
             fprintf(stderr, "mpi_comm: rank %d: %s: %s\n", snow_comm_rank(comm),
-                    bodies[i].name,
-                    snow_context_message(snow_comm_context(comm)));
+                    b->name, snow_context_message(snow_comm_context(comm)));
             return 1;
         }
     return 0;

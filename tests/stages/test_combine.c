@@ -1,12 +1,13 @@
 /* test_combine - the exchange and the gather, by every method, for 1 to 33
  * ranks in one process, against all local images laid over one another in
- * double precision.
+ * double precision; and local images that are exchanged while they are drawn.
  *
  * The bound: an "over" of floats in [0, 1] has three roundings of at most 2^-25
  * each (of 1 - a, the product, the sum), and hands the errors of both colours
  * on no larger, but for that of the front's alpha, which it adds once.  A pixel
  * of n layers is thus off by less than 6 n 2^-25, in any order of laying. */
 #include "support/comm.h"
+#include "support/failing.h"
 
 #include "combine/combiner.h"
 #include "combine/rounds.h"
@@ -14,6 +15,7 @@
 #include <math.h>
 
 #define RANKS_MOST 33
+#define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])
 
 static double bound(int layers) {
     return 6.0 * layers / (1 << 25);
@@ -75,16 +77,35 @@ static void pixel_of(const job *j, int rank, int x, int y, float *out) {
                  (float)(draw(j, rank, x, y, 8 + c) % 256) / 255;
 }
 
-/* The local image; what is not drawn must not be read. */
-static void fill_local(const job *j, int rank, float *pixels, size_t stride) {
-    const snow_rectangle d = drawn_by(j, rank);
-    for (int y = 0; y < j->height; y++)
-        for (size_t i = 0; i < stride; i++)
-            pixels[(size_t)y * stride + i] = NAN;
+/* What is not drawn must not be read. */
+static void clear_local(const job *j, float *pixels, size_t stride) {
+    for (size_t n = 0; n < stride * (size_t)j->height; n++)
+        pixels[n] = NAN;
+}
+
+/* What a rank has drawn into lines y0 .. y1 - 1. */
+static snow_rectangle drawn_lines(const job *j, int rank, int y0, int y1) {
+    snow_rectangle d = drawn_by(j, rank);
+    d.y0 = d.y0 > y0 ? d.y0 : y0;
+    d.y1 = d.y1 < y1 ? d.y1 : y1;
+    return d.y0 < d.y1 ? d : (snow_rectangle){0, 0, 0, 0};
+}
+
+static void draw_lines(const job *j, int rank, int y0, int y1, float *pixels,
+                       size_t stride) {
+    const snow_rectangle d = drawn_lines(j, rank, y0, y1);
     for (int y = d.y0; y < d.y1; y++)
         for (int x = d.x0; x < d.x1; x++)
             pixel_of(j, rank, x, y,
                      pixels + (size_t)y * stride + x * j->channels);
+}
+
+/* The local image, to be freed. */
+static float *local_image(const job *j, int rank, size_t stride) {
+    float *pixels = malloc(stride * (size_t)j->height * sizeof *pixels);
+    clear_local(j, pixels, stride);
+    draw_lines(j, rank, 0, j->height, pixels, stride);
+    return pixels;
 }
 
 /* All local images, one over the other. */
@@ -101,9 +122,38 @@ static void expect(const job *j, int x, int y, double *out) {
     }
 }
 
+/* A job of four channels with a shuffled order of ranks. */
+static job job_of(const snow_comm *comm, int width, int height, int seed) {
+    job j = {.width = width,
+             .height = height,
+             .channels = 4,
+             .seed = seed,
+             .count = comm->ranks};
+    for (int i = 0; i < j.count; i++)
+        j.ranks[i] = i;
+    for (int i = j.count - 1; i > 0; i--) {
+        int k = (int)(draw(&j, i, 0, 0, 99) % (uint64_t)(i + 1));
+        int swapped = j.ranks[i];
+        j.ranks[i] = j.ranks[k];
+        j.ranks[k] = swapped;
+    }
+    return j;
+}
+
 /* --- one exchange --------------------------------------------------------- */
 
-static snow_exchange_params order_of(const job *j, int rank,
+typedef struct way {
+    snow_combine method;
+    int radix;
+} way;
+
+static const way ways[] = {
+    {SNOW_COMBINE_AUTO, 0},   {SNOW_COMBINE_TREE, 0},  {SNOW_COMBINE_SWAP, 0},
+    {SNOW_COMBINE_DIRECT, 0}, {SNOW_COMBINE_RADIX, 3}, {SNOW_COMBINE_RADIX, 4},
+    {SNOW_COMBINE_RADIX, 8},
+};
+
+static snow_exchange_params order_of(const job *j, int rank, const way *w,
                                      const float *pixels, size_t stride) {
     return (snow_exchange_params){.width = j->width,
                                   .height = j->height,
@@ -112,6 +162,8 @@ static snow_exchange_params order_of(const job *j, int rank,
                                   .stride = stride,
                                   .drawn = drawn_by(j, rank),
                                   .ranks = j->ranks,
+                                  .method = w->method,
+                                  .radix = w->radix,
                                   .grain = 1};
 }
 
@@ -181,15 +233,18 @@ static size_t runs_of(const job *j, const snow_image_region *region,
     return count;
 }
 
-static snow_status check_gather(snow_comm *comm, snow_combiner *combiner,
-                                const job *j, const snow_image_region *region) {
-    const size_t pixels = (size_t)j->width * (size_t)j->height;
+/* The picture on rank 0, to be freed; NULL elsewhere. */
+static snow_status gather_pieces(snow_comm *comm, snow_combiner *combiner,
+                                 const job *j, const snow_image_region *region,
+                                 float **picture) {
     const size_t bytes = (size_t)j->channels * sizeof(float);
     snow_pixel_run *runs = calloc((size_t)region->count + 1, sizeof *runs);
     float *packed = calloc((size_t)region->count + 1, bytes);
-    float *picture = comm->rank == 0 ? calloc(pixels, bytes) : NULL;
     size_t count = runs_of(j, region, runs, packed);
     int64_t some = 0;
+    *picture = comm->rank == 0
+                   ? calloc((size_t)j->width * (size_t)j->height, bytes)
+                   : NULL;
     for (size_t i = 0; i < count; i++)
         some += runs[i].count;
     snow_status status = snow_comm_agree_status(
@@ -197,60 +252,34 @@ static snow_status check_gather(snow_comm *comm, snow_combiner *combiner,
         snow_gather_reserve(combiner, j->width, j->height, count, some, bytes));
     if (status == SNOW_STATUS_OK)
         status = snow_gather(combiner, j->width, j->height, runs, count, packed,
-                             bytes, picture);
-    for (size_t i = 0; i < pixels && picture && status == SNOW_STATUS_OK; i++) {
-        double want[4];
-        expect(j, (int)i % j->width, (int)i / j->width, want);
-        for (int c = 0; c < j->channels; c++)
-            if (!(fabs((double)picture[i * (size_t)j->channels + (size_t)c] -
-                       want[c]) <= bound(j->count)))
-                status = snow_fail(comm->context, SNOW_STATUS_FAILED,
-                                   "pixel %zu of the picture differs", i);
-    }
+                             bytes, *picture);
     free(runs);
     free(packed);
+    return status;
+}
+
+static snow_status check_gather(snow_comm *comm, snow_combiner *combiner,
+                                const job *j, const snow_image_region *region) {
+    float *picture;
+    snow_status status = gather_pieces(comm, combiner, j, region, &picture);
+    const snow_image_region all = {0, (int64_t)j->width * j->height, picture,
+                                   NULL};
+    if (status == SNOW_STATUS_OK && picture)
+        status = check_piece(comm, j, &all);
     free(picture);
     return status;
 }
 
 /* --- all methods ---------------------------------------------------------- */
 
-typedef struct way {
-    snow_combine method;
-    int radix;
-} way;
-
-static const way ways[] = {
-    {SNOW_COMBINE_AUTO, 0},   {SNOW_COMBINE_TREE, 0},  {SNOW_COMBINE_SWAP, 0},
-    {SNOW_COMBINE_DIRECT, 0}, {SNOW_COMBINE_RADIX, 3}, {SNOW_COMBINE_RADIX, 4},
-    {SNOW_COMBINE_RADIX, 8},
-};
-
 static const int sizes[][2] = {{1, 1}, {5, 3}, {61, 7}, {64, 16}, {37, 41}};
-
-#define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])
-
-/* A shuffled order of ranks. */
-static void shuffle(job *j) {
-    for (int i = 0; i < j->count; i++)
-        j->ranks[i] = i;
-    for (int i = j->count - 1; i > 0; i--) {
-        int k = (int)(draw(j, i, 0, 0, 99) % (uint64_t)(i + 1));
-        int swapped = j->ranks[i];
-        j->ranks[i] = j->ranks[k];
-        j->ranks[k] = swapped;
-    }
-}
 
 static snow_status combine_once(snow_comm *comm, snow_combiner *combiner,
                                 const job *j, const way *w, int grain,
                                 snow_image_partition regions) {
     const size_t stride = (size_t)(j->width * j->channels) + 3;
-    float *pixels = malloc(stride * (size_t)j->height * sizeof *pixels);
-    fill_local(j, comm->rank, pixels, stride);
-    snow_exchange_params order = order_of(j, comm->rank, pixels, stride);
-    order.method = w->method;
-    order.radix = w->radix;
+    float *pixels = local_image(j, comm->rank, stride);
+    snow_exchange_params order = order_of(j, comm->rank, w, pixels, stride);
     order.grain = grain;
     order.regions = regions;
     snow_image_region region;
@@ -303,12 +332,8 @@ static snow_status combine_all_ways(snow_comm *comm, void *user) {
         for (size_t k = 0; k < COUNT_OF(sizes) && status == SNOW_STATUS_OK;
              k++) {
             turn++;
-            job j = {.width = sizes[k][0],
-                     .height = sizes[k][1],
-                     .channels = turn % 2 ? 2 : 4,
-                     .seed = turn,
-                     .count = comm->ranks};
-            shuffle(&j);
+            job j = job_of(comm, sizes[k][0], sizes[k][1], turn);
+            j.channels = turn % 2 ? 2 : 4;
             status = combine_once(comm, combiner, &j, &ways[i],
                                   turn % 3 ? 1 : j.width,
                                   (snow_image_partition)(turn / 2 % 3));
@@ -341,12 +366,7 @@ static snow_status share_elsewhere(void *self, size_t bytes, void **own) {
 static snow_status combine_size(snow_comm *comm, snow_combiner *combiner,
                                 int width, int height) {
     const way w = {SNOW_COMBINE_DIRECT, 0};
-    job j = {.width = width,
-             .height = height,
-             .channels = 4,
-             .seed = width,
-             .count = comm->ranks};
-    shuffle(&j);
+    const job j = job_of(comm, width, height, width);
     return snow_comm_agree_status(
         comm,
         combine_once(comm, combiner, &j, &w, 1, SNOW_IMAGE_PARTITION_EVEN));
@@ -389,27 +409,6 @@ static snow_status combine_on_nodes(snow_comm *comm, void *user) {
     return SNOW_STATUS_OK;
 }
 
-static void
-every_method_gives_the_picture_of_a_chain_for_1_to_33_ranks(void **state) {
-    (void)state;
-    snow_context *context = support_context();
-    for (int ranks = 1; ranks <= RANKS_MOST; ranks++) {
-        if (!support_takes_ranks(ranks, RANKS_MOST))
-            continue;
-        for (int turn = 0; turn < 2; turn++) {
-            int first = turn * 1000;
-            snow_status status =
-                snow_comm_run_threads(context, ranks, combine_all_ways, &first);
-            if (status != SNOW_STATUS_OK)
-                print_message("%d ranks: %s\n", ranks,
-                              snow_context_message(context));
-            assert_int_equal(status, SNOW_STATUS_OK);
-        }
-    }
-    assert_int_equal(snow_context_bytes(context), 0);
-    snow_context_free(context);
-}
-
 static void run_body(int ranks, snow_comm_body_fn *body, void *user) {
     snow_context *context = support_context();
     snow_status status = snow_comm_run_threads(context, ranks, body, user);
@@ -420,10 +419,173 @@ static void run_body(int ranks, snow_comm_body_fn *body, void *user) {
     snow_context_free(context);
 }
 
+/* For numbers of ranks up to the most. */
+static void run_all(snow_comm_body_fn *body, void *user) {
+    for (int ranks = 1; ranks <= RANKS_MOST; ranks++)
+        if (support_takes_ranks(ranks, RANKS_MOST))
+            run_body(ranks, body, user);
+}
+
+static void
+every_method_gives_the_picture_of_a_chain_for_1_to_33_ranks(void **state) {
+    (void)state;
+    for (int turn = 0; turn <= 1000; turn += 1000)
+        run_all(combine_all_ways, &turn);
+}
+
 static void nodes_with_memory_and_without_work_together(void **state) {
     (void)state;
     run_body(4, combine_on_nodes, NULL);
     run_body(7, combine_on_nodes, NULL);
+}
+
+/* --- images that are still drawn ------------------------------------------ */
+
+#define BAND 3 /* lines that are drawn together */
+
+/* Bands of lines are begun in order, and finished as many steps later as `lag`,
+ * as by other threads. */
+typedef struct sketch {
+    const job *j;
+    int rank;
+    float *pixels;
+    size_t stride;
+    int bands, first, begun, finished, lag;
+} sketch;
+
+static void finish_bands(sketch *s, int until) {
+    for (; s->finished < until; s->finished++) {
+        const int y = (s->first + s->finished) % s->bands * BAND;
+        draw_lines(s->j, s->rank, y, y + BAND, s->pixels, s->stride);
+    }
+}
+
+static bool step(sketch *s) {
+    bool any = s->begun < s->bands;
+    s->begun += any;
+    if (s->begun - s->lag > s->finished)
+        finish_bands(s, s->begun - s->lag);
+    return any;
+}
+
+static bool is_finished(const sketch *s, int y0, int y1) {
+    for (int band = y0 / BAND; band * BAND < y1; band++)
+        if ((band - s->first + s->bands) % s->bands >= s->finished)
+            return false;
+    return true;
+}
+
+/* Sends what is finished while the rest is drawn. */
+static snow_status exchange_early(snow_combiner *combiner, sketch *s,
+                                  const snow_exchange_params *order,
+                                  snow_image_region *region) {
+    int y0, y1;
+    SNOW_TRY(snow_exchange_begin(combiner, order));
+    for (bool any = true; any;) {
+        for (int n = 0; snow_exchange_awaits(combiner, n, &y0, &y1);)
+            if (is_finished(s, y0, y1))
+                SNOW_TRY(snow_exchange_send(
+                    combiner, n, drawn_lines(s->j, s->rank, y0, y1)));
+            else
+                n++;
+        any = step(s);
+        if (any)
+            snow_exchange_progress(combiner);
+    }
+    finish_bands(s, s->bands);
+    return snow_exchange_end(combiner, drawn_by(s->j, s->rank), region);
+}
+
+/* Whether both combiners have cut the picture alike. */
+static bool same_pieces(const snow_comm *comm, snow_combiner *const both[2]) {
+    int64_t firsts[2][RANKS_MOST], counts[2][RANKS_MOST];
+    const size_t bytes = (size_t)comm->ranks * sizeof **firsts;
+    for (int i = 0; i < 2; i++)
+        snow_exchange_regions(both[i], firsts[i], counts[i]);
+    return memcmp(firsts[0], firsts[1], bytes) == 0 &&
+           memcmp(counts[0], counts[1], bytes) == 0;
+}
+
+/* The same picture by the second combiner, with what it has counted before. */
+static snow_status draw_early(snow_comm *comm, snow_combiner *combiner,
+                              snow_exchange_params order, sketch *s,
+                              const float *wanted) {
+    const int64_t *mine;
+    int64_t counts[SNOW_COUNTS_MOST];
+    snow_image_region region;
+    float *picture;
+    const double begin_at = snow_exchange_get_figures(combiner)->begin_at;
+    CHECK(begin_at >= 0 && begin_at < 1);
+    s->bands = (s->j->height + BAND - 1) / BAND;
+    s->first = (int)(begin_at * s->bands) % s->bands;
+    s->begun = s->finished = 0;
+    clear_local(s->j, s->pixels, s->stride);
+    order.counts = counts;
+    order.count_groups = snow_exchange_counts(combiner, &mine);
+    memcpy(counts, mine, (size_t)order.count_groups * sizeof *counts);
+    SNOW_TRY(
+        snow_comm_reduce_both(comm, counts, 0, (size_t)order.count_groups));
+    SNOW_TRY(exchange_early(combiner, s, &order, &region));
+    CHECK(s->finished == s->bands);
+    SNOW_TRY(gather_pieces(comm, combiner, s->j, &region, &picture));
+    const size_t bytes = (size_t)(order.width * order.height) *
+                         (size_t)order.channels * sizeof(float);
+    const bool same = !picture || memcmp(picture, wanted, bytes) == 0;
+    free(picture);
+    CHECK(same);
+    return SNOW_STATUS_OK;
+}
+
+/* Each picture at once, and twice while it is drawn, so that what was counted
+ * in the one is right for the other. */
+static snow_status draw_both_ways(snow_comm *comm, snow_combiner *const both[2],
+                                  const job *j, const way *w, int turn) {
+    const size_t stride = (size_t)(j->width * j->channels);
+    sketch s = {j, comm->rank, local_image(j, comm->rank, stride), stride,
+                .lag = turn % 3};
+    snow_exchange_params order = order_of(j, comm->rank, w, s.pixels, stride);
+    order.grain = turn % 2 ? j->width : 1;
+    order.regions = (snow_image_partition)(turn % 3);
+    snow_image_region region;
+    float *wanted = NULL;
+    int64_t early = 0;
+    snow_status status = snow_exchange(both[0], &order, &region);
+    if (status == SNOW_STATUS_OK)
+        status = gather_pieces(comm, both[0], j, &region, &wanted);
+    for (int again = 0; again < 2 && status == SNOW_STATUS_OK; again++)
+        status = draw_early(comm, both[1], order, &s, wanted);
+    free(s.pixels);
+    free(wanted);
+    SNOW_TRY(status);
+    CHECK(snow_exchange_get_figures(both[0])->early == 0);
+    CHECK(same_pieces(comm, both));
+    early = snow_exchange_get_figures(both[1])->early;
+    SNOW_TRY(snow_comm_reduce_ints(comm, &early, 1, SNOW_REDUCE_SUM));
+    /* Only what cannot be cut into parts of the picture is not early. */
+    CHECK((comm->ranks > 1 && w->method != SNOW_COMBINE_TREE) == (early > 0));
+    return SNOW_STATUS_OK;
+}
+
+static snow_status draw_all_ways(snow_comm *comm, void *user) {
+    snow_combiner *both[2] = {NULL, NULL};
+    snow_status status = snow_combiner_new(comm, &both[0]);
+    (void)user;
+    if (status == SNOW_STATUS_OK)
+        status = snow_combiner_new(comm, &both[1]);
+    for (size_t i = 0; i < COUNT_OF(ways) && status == SNOW_STATUS_OK; i++) {
+        const int turn = (int)i + comm->ranks;
+        job j = job_of(comm, 37 + (int)i, turn % 2 ? 70 : 41, turn);
+        j.channels = turn % 4 < 2 ? 4 : 2;
+        status = draw_both_ways(comm, both, &j, &ways[i], turn);
+    }
+    snow_combiner_free(both[0]);
+    snow_combiner_free(both[1]);
+    return status;
+}
+
+static void images_that_are_still_drawn_give_the_same_bits(void **state) {
+    (void)state;
+    run_all(draw_all_ways, NULL);
 }
 
 /* --- threads -------------------------------------------------------------- */
@@ -443,16 +605,12 @@ static snow_status exchange_by(snow_combiner *combiner,
 }
 
 static snow_status combine_by_threads(snow_comm *comm, const way *w) {
-    job j = {.width = 301, .height = 240, .channels = 4, .count = comm->ranks};
-    shuffle(&j);
+    const job j = job_of(comm, 301, 240, 0);
     snow_combiner *combiner;
     SNOW_TRY(snow_combiner_new(comm, &combiner));
-    float *pixels = malloc(301 * 240 * 4 * sizeof *pixels);
+    float *pixels = local_image(&j, comm->rank, 301 * 4);
     float *alone = NULL, *shared = NULL;
-    fill_local(&j, comm->rank, pixels, 301 * 4);
-    snow_exchange_params order = order_of(&j, comm->rank, pixels, 301 * 4);
-    order.method = w->method;
-    order.radix = w->radix;
+    snow_exchange_params order = order_of(&j, comm->rank, w, pixels, 301 * 4);
     snow_image_region region;
     snow_status status = exchange_by(combiner, &order, 1, &region, &alone);
     const snow_exchange_figures by_one = *snow_exchange_get_figures(combiner);
@@ -493,32 +651,23 @@ static void threads_of_ranks_change_no_bit(void **state) {
 
 /* --- what it costs -------------------------------------------------------- */
 
-/* An allocator that fails from some point on. */
-typedef struct stop {
-    bool stopped;
-    long asked, refused; /* the number of one that fails, from 1 */
-} stop;
-
-static void *allocate_until_stopped(void *user, size_t bytes) {
-    stop *s = user;
-    s->asked++;
-    return s->stopped || s->asked == s->refused ? NULL : malloc(bytes);
+/* From now on there is no memory, or there is again. */
+static void refuse_all(support_failing *memory, bool refuses) {
+    memory->failing = refuses ? memory->allocations : -1;
+    memory->for_good = refuses;
 }
 
-static void release_plain(void *user, void *block) {
-    (void)user;
-    free(block);
-}
-
-/* Runs a body's work with the communicator's memory taken from `s`: only what
- * is made meanwhile is, not the transport's own. */
-static snow_status with_memory(snow_comm *comm, stop *s,
-                               snow_status (*work)(snow_comm *, stop *)) {
-    const snow_allocator allocator = {allocate_until_stopped, release_plain, s};
+/* Runs a body's work with the communicator's memory taken from an allocator:
+ * only what is made meanwhile is, not the transport's own. */
+static snow_status with_memory(snow_comm *comm,
+                               snow_status (*work)(snow_comm *,
+                                                   support_failing *)) {
+    support_failing memory = {.failing = -1};
+    const snow_allocator allocator = support_failing_allocator(&memory);
     snow_context *usual = comm->context, *own;
     SNOW_TRY(snow_context_new(&allocator, &own));
     comm->context = own;
-    snow_status status = work(comm, s);
+    snow_status status = work(comm, &memory);
     comm->context = usual;
     if (status != SNOW_STATUS_OK)
         status = snow_fail(usual, status, "%s", snow_context_message(own));
@@ -532,26 +681,19 @@ static snow_status with_memory(snow_comm *comm, stop *s,
  * of all, for counted pieces and for packed pixels of views not seen before. */
 static snow_status combine_view(snow_comm *comm, snow_combiner *combiner,
                                 const way *w, snow_image_partition regions,
-                                int turn, stop *s) {
-    job j = {.width = 61,
-             .height = 33,
-             .channels = 4,
-             .seed = turn % VIEWS,
-             .count = comm->ranks};
-    shuffle(&j);
+                                int turn, support_failing *memory) {
+    const job j = job_of(comm, 61, 33, turn % VIEWS);
     snow_gather_radix(combiner, 3);
-    float *pixels = malloc(61 * 33 * 4 * sizeof *pixels);
-    fill_local(&j, comm->rank, pixels, 61 * 4);
-    snow_exchange_params order = order_of(&j, comm->rank, pixels, 61 * 4);
-    order.method = w->method;
-    order.radix = w->radix;
+    float *pixels = local_image(&j, comm->rank, 61 * 4);
+    snow_exchange_params order = order_of(&j, comm->rank, w, pixels, 61 * 4);
     order.regions = regions;
     snow_image_region region;
-    s->stopped =
-        turn > (regions == SNOW_IMAGE_PARTITION_COUNTED ? VIEWS - 1 : 0);
+    refuse_all(memory,
+               turn >
+                   (regions == SNOW_IMAGE_PARTITION_COUNTED ? VIEWS - 1 : 0));
     snow_status status = snow_exchange(combiner, &order, &region);
     free(pixels);
-    s->stopped = turn >= VIEWS;
+    refuse_all(memory, turn >= VIEWS);
     if (status == SNOW_STATUS_OK)
         status = check_piece(comm, &j, &region);
     if (status == SNOW_STATUS_OK)
@@ -559,7 +701,7 @@ static snow_status combine_view(snow_comm *comm, snow_combiner *combiner,
     return status;
 }
 
-static snow_status combine_twice(snow_comm *comm, stop *s) {
+static snow_status combine_twice(snow_comm *comm, support_failing *memory) {
     static const snow_image_partition cuts[] = {SNOW_IMAGE_PARTITION_EVEN,
                                                 SNOW_IMAGE_PARTITION_COUNTED};
     snow_combiner *combiner;
@@ -568,15 +710,14 @@ static snow_status combine_twice(snow_comm *comm, stop *s) {
     for (size_t i = 0; i < 2 * COUNT_OF(ways) && status == SNOW_STATUS_OK; i++)
         for (int turn = 0; turn < 2 * VIEWS && status == SNOW_STATUS_OK; turn++)
             status = combine_view(comm, combiner, &ways[i / 2], cuts[i % 2],
-                                  turn, s);
+                                  turn, memory);
     snow_combiner_free(combiner);
     return status;
 }
 
 static snow_status combine_twice_with_memory_once(snow_comm *comm, void *user) {
-    stop s = {0};
     (void)user;
-    return with_memory(comm, &s, combine_twice);
+    return with_memory(comm, combine_twice);
 }
 
 static void
@@ -592,16 +733,15 @@ pictures_that_need_no_more_than_others_take_no_memory(void **state) {
 /* All that is active lies in some lines: how many pixels of layers the busiest
  * rank gets, against the mean. */
 static snow_status lay_band(snow_comm *comm, void *user) {
-    job j = {.width = 128, .height = 256, .channels = 4, .count = comm->ranks};
-    shuffle(&j);
+    const way w = {SNOW_COMBINE_DIRECT, 0};
+    const job j = job_of(comm, 128, 256, 0);
     float *pixels = calloc(128 * 256 * 4, sizeof *pixels);
     for (int n = 80 * 128 * 4; n < 120 * 128 * 4; n++)
         pixels[n] = 0.25f;
     snow_combiner *combiner;
     SNOW_TRY(snow_combiner_new(comm, &combiner));
-    snow_exchange_params order = order_of(&j, comm->rank, pixels, 128 * 4);
+    snow_exchange_params order = order_of(&j, comm->rank, &w, pixels, 128 * 4);
     order.drawn = (snow_rectangle){0, 0, 128, 256};
-    order.method = SNOW_COMBINE_DIRECT;
     order.regions = *(snow_image_partition *)user;
     snow_image_region region;
     snow_status status = snow_exchange(combiner, &order, &region);
@@ -704,14 +844,14 @@ static void what_is_sent_is_waited_for_with_any_number_of_ranks(void **state) {
 
 /* --- failures ------------------------------------------------------------- */
 
+/* Nor does one begin that awaits something. */
 static snow_status combine_bad_orders(snow_comm *comm, void *user) {
-    job j = {.width = 6, .height = 4, .channels = 4, .count = comm->ranks};
+    const job j = job_of(comm, 6, 4, 0);
     (void)user;
-    shuffle(&j);
     snow_combiner *combiner;
     SNOW_TRY(snow_combiner_new(comm, &combiner));
     snow_image_region region = {.first = 7};
-    snow_exchange_params good = order_of(&j, comm->rank, NULL, 0), bad[6];
+    snow_exchange_params good = order_of(&j, comm->rank, ways, NULL, 0), bad[6];
     good.drawn = (snow_rectangle){-5, -5, -1, 90};
     for (int i = 0; i < 6; i++)
         bad[i] = good;
@@ -723,10 +863,13 @@ static snow_status combine_bad_orders(snow_comm *comm, void *user) {
     const int outsiders[] = {8, 9, 10};
     bad[5].ranks = outsiders;
     snow_status status = SNOW_STATUS_OK;
+    int y0, y1;
     for (int i = 0; i < 6; i++)
         if (snow_exchange(combiner, &bad[i], &region) !=
                 SNOW_STATUS_BAD_USAGE ||
-            region.first != 7)
+            region.first != 7 ||
+            snow_exchange_begin(combiner, &bad[i]) != SNOW_STATUS_BAD_USAGE ||
+            snow_exchange_awaits(combiner, 0, &y0, &y1))
             status =
                 snow_fail(comm->context, SNOW_STATUS_FAILED, "order %d", i);
     if (status == SNOW_STATUS_OK)
@@ -764,22 +907,22 @@ static void wrong_runs_of_one_rank_fail_there_and_nobody_waits(void **state) {
     run_body(4, gather_bad_runs, NULL);
 }
 
-static snow_status combine_until_stopped(snow_comm *comm, stop *s) {
-    job j = {.width = 16, .height = 16, .channels = 2, .count = comm->ranks};
-    shuffle(&j);
+static snow_status combine_until_stopped(snow_comm *comm,
+                                         support_failing *memory) {
+    const job j = job_of(comm, 16, 16, 0);
     snow_combiner *combiner;
     SNOW_TRY(snow_combiner_new(comm, &combiner));
-    snow_exchange_params order = order_of(&j, comm->rank, NULL, 0);
+    snow_exchange_params order = order_of(&j, comm->rank, ways, NULL, 0);
     order.drawn = (snow_rectangle){0, 0, 0, 0};
     snow_image_region region;
-    s->stopped = comm->rank == 1;
+    refuse_all(memory, comm->rank == 1);
     snow_status status = snow_exchange(combiner, &order, &region);
-    s->stopped = false;
+    refuse_all(memory, false);
     if (status == SNOW_STATUS_NO_MEMORY) /* all is well with memory again */
         status = snow_exchange(combiner, &order, &region);
     else
         status = SNOW_STATUS_FAILED;
-    s->stopped = comm->rank == 1;
+    refuse_all(memory, comm->rank == 1);
     unsigned char picture[256] = {0};
     if (status == SNOW_STATUS_OK &&
         snow_gather(combiner, 16, 16, NULL, 0, NULL, 1, picture) !=
@@ -790,9 +933,8 @@ static snow_status combine_until_stopped(snow_comm *comm, stop *s) {
 }
 
 static snow_status combine_with_little_memory(snow_comm *comm, void *user) {
-    stop s = {0};
     (void)user;
-    return with_memory(comm, &s, combine_until_stopped);
+    return with_memory(comm, combine_until_stopped);
 }
 
 static void one_rank_without_memory_fails_all_and_nobody_waits(void **state) {
@@ -801,29 +943,24 @@ static void one_rank_without_memory_fails_all_and_nobody_waits(void **state) {
 }
 
 /* One rank is refused one block after another. */
-static snow_status combine_with_gaps(snow_comm *comm, stop *s) {
+static snow_status combine_with_gaps(snow_comm *comm, support_failing *memory) {
     snow_status status = SNOW_STATUS_OK;
     int failed = 0;
     for (int n = 1; n <= 40 && status == SNOW_STATUS_OK; n++) {
-        job j = {.width = 61,
-                 .height = 33,
-                 .channels = 4,
-                 .seed = n,
-                 .count = comm->ranks};
+        const job j = job_of(comm, 61, 33, n);
         snow_combiner *combiner;
         SNOW_TRY(snow_combiner_new(comm, &combiner));
-        shuffle(&j);
-        float *pixels = malloc(61 * 33 * 4 * sizeof *pixels);
-        fill_local(&j, comm->rank, pixels, 61 * 4);
-        snow_exchange_params order = order_of(&j, comm->rank, pixels, 61 * 4);
+        float *pixels = local_image(&j, comm->rank, 61 * 4);
+        snow_exchange_params order =
+            order_of(&j, comm->rank, ways, pixels, 61 * 4);
         order.regions = SNOW_IMAGE_PARTITION_COUNTED;
         snow_image_region region;
-        s->refused = comm->rank == 3 ? s->asked + n : 0;
+        memory->failing = comm->rank == 3 ? memory->allocations + n - 1 : -1;
         status = snow_exchange(combiner, &order, &region);
         if (status == SNOW_STATUS_OK)
             status = snow_comm_agree_status(
                 comm, check_gather(comm, combiner, &j, &region));
-        s->refused = 0;
+        memory->failing = -1;
         failed += status == SNOW_STATUS_NO_MEMORY;
         if (status ==
             SNOW_STATUS_NO_MEMORY) /* the combiner is as good as before */
@@ -840,9 +977,8 @@ static snow_status combine_with_gaps(snow_comm *comm, stop *s) {
 }
 
 static snow_status combine_with_gaps_in_memory(snow_comm *comm, void *user) {
-    stop s = {0};
     (void)user;
-    return with_memory(comm, &s, combine_with_gaps);
+    return with_memory(comm, combine_with_gaps);
 }
 
 static void any_block_that_one_rank_does_not_get_fails_all(void **state) {
@@ -855,6 +991,7 @@ int main(void) {
         cmocka_unit_test(
             every_method_gives_the_picture_of_a_chain_for_1_to_33_ranks),
         cmocka_unit_test(nodes_with_memory_and_without_work_together),
+        cmocka_unit_test(images_that_are_still_drawn_give_the_same_bits),
         cmocka_unit_test(threads_of_ranks_change_no_bit),
         cmocka_unit_test(pictures_that_need_no_more_than_others_take_no_memory),
         cmocka_unit_test(counted_pieces_are_balanced),

@@ -72,7 +72,8 @@ snow_status mix_tags(snow_comm *comm, void *user) {
     return snow_comm_wait_all(comm, sent, 2 * TAGS);
 }
 
-snow_status receive_first(snow_comm *comm, void *user) {
+/* Receives are posted before their messages are sent. */
+static snow_status receive_first(snow_comm *comm, void *user) {
     (void)user;
     const int ranks = snow_comm_size(comm), rank = snow_comm_rank(comm);
     snow_message messages[99] = {{0}};
@@ -96,7 +97,8 @@ snow_status receive_first(snow_comm *comm, void *user) {
     return SNOW_STATUS_OK;
 }
 
-snow_status send_sizes(snow_comm *comm, void *user) {
+/* Nothing, one byte, and 3 MB, where there is room for more. */
+static snow_status send_sizes(snow_comm *comm, void *user) {
     (void)user;
     enum { LARGE = 3000000 };
     const size_t counts[] = {0, 1, LARGE};
@@ -165,7 +167,7 @@ static snow_status work_once(snow_comm *comm, int left, int64_t *worked) {
 }
 
 /* On a busy machine the message comes before rank 1 waits: then once more. */
-snow_status work_while_waiting(snow_comm *comm, void *user) {
+static snow_status work_while_waiting(snow_comm *comm, void *user) {
     (void)user;
     if (snow_comm_size(comm) == 1)
         return SNOW_STATUS_OK;
@@ -203,7 +205,7 @@ snow_status leave_much_undone(snow_comm *comm, void *user) {
 /* More numbers than go in one piece. */
 enum { MANY = SNOW_COMM_SCRATCH * 2 + 3 };
 
-snow_status reduce_ints(snow_comm *comm, void *user) {
+static snow_status reduce_ints(snow_comm *comm, void *user) {
     (void)user;
     static const snow_reduce kinds[] = {SNOW_REDUCE_SUM, SNOW_REDUCE_MIN,
                                         SNOW_REDUCE_MAX};
@@ -244,7 +246,7 @@ snow_status reduce_doubles(snow_comm *comm, void *user) {
     return SNOW_STATUS_OK;
 }
 
-snow_status broadcast(snow_comm *comm, void *user) {
+static snow_status broadcast(snow_comm *comm, void *user) {
     (void)user;
     for (int root = 0; root < snow_comm_size(comm); root++) {
         int64_t value = snow_comm_rank(comm) == root ? root + 5 : -1;
@@ -255,7 +257,7 @@ snow_status broadcast(snow_comm *comm, void *user) {
     return SNOW_STATUS_OK;
 }
 
-snow_status share(snow_comm *comm, void *user) {
+static snow_status share(snow_comm *comm, void *user) {
     (void)user;
     struct {
         char bytes[3];
@@ -274,7 +276,9 @@ snow_status share(snow_comm *comm, void *user) {
     return SNOW_STATUS_OK;
 }
 
-snow_status one_after_another(snow_comm *comm, void *user) {
+/* Calls of several kinds after one another do not take each other's messages,
+ * though some ranks are late. */
+static snow_status one_after_another(snow_comm *comm, void *user) {
     (void)user;
     const int ranks = snow_comm_size(comm), rank = snow_comm_rank(comm);
     uint64_t seed = (uint64_t)rank + 1;
@@ -311,3 +315,13 @@ snow_status agree_on_failure(snow_comm *comm, void *user) {
     return snow_comm_agree_status(comm, rank == 3 ? SNOW_STATUS_FAILED
                                                   : SNOW_STATUS_OK);
 }
+
+#define BODY(name) \
+    { #name, name }
+
+const comm_body comm_bodies[] = {
+    BODY(send_all_to_all),   BODY(mix_tags),      BODY(receive_first),
+    BODY(send_sizes),        BODY(wait_for_none), BODY(work_while_waiting),
+    BODY(reduce_ints),       BODY(broadcast),     BODY(share),
+    BODY(one_after_another), {NULL, NULL},
+};

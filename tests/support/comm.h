@@ -22,28 +22,23 @@ snow_status receive_number(snow_comm *comm, int64_t *number, int from, int tag);
 /* Sleeps. */
 void rest(long microseconds);
 
-/* Every rank sends to every rank, itself included, before anybody receives. */
+/* Bodies that succeed with any transport and any number of ranks; `user` is not
+ * used.  The last has none. */
+typedef struct comm_body {
+    const char *name;
+    snow_comm_body_fn *body;
+} comm_body;
+extern const comm_body comm_bodies[];
+
+/* Two of them: every rank sends to every rank, itself included, before anybody
+ * receives; and the last of many tags is received first, and of one tag in
+ * order, also when the second receive is waited for before the first. */
 snow_status send_all_to_all(snow_comm *comm, void *user);
-
-/* The last of many tags is received first, and of one tag in order, also when
- * the second receive is waited for before the first. */
 snow_status mix_tags(snow_comm *comm, void *user);
-
-/* Receives are posted before their messages are sent. */
-snow_status receive_first(snow_comm *comm, void *user);
-
-/* Nothing, one byte, and 3 MB, where there is room for more. */
-snow_status send_sizes(snow_comm *comm, void *user);
-
 snow_status wait_for_none(snow_comm *comm, void *user);
-
-/* A rank that waits works meanwhile, as long as there is work and no longer. */
-snow_status work_while_waiting(snow_comm *comm, void *user);
 
 /* What was sent and asked for, and never met. */
 snow_status leave_much_undone(snow_comm *comm, void *user);
-
-snow_status reduce_ints(snow_comm *comm, void *user);
 
 /* A sum whose rounding depends on its order: all ranks have the same bits, and
  * each run has those of the last one. */
@@ -52,14 +47,6 @@ typedef struct rank_sums {
 } rank_sums;
 
 snow_status reduce_doubles(snow_comm *comm, void *user);
-
-snow_status broadcast(snow_comm *comm, void *user);
-
-snow_status share(snow_comm *comm, void *user);
-
-/* Calls of several kinds after one another do not take each other's messages,
- * though some ranks are late. */
-snow_status one_after_another(snow_comm *comm, void *user);
 
 /* Ranks 2 and 3 fail; all hear of rank 2, and may go on together. */
 snow_status agree_on_failure(snow_comm *comm, void *user);
