@@ -2,8 +2,9 @@
  * grid is cut, dealt to ranks and laid out in memory, the picture is that of
  * one process; what is wrong on one rank is told to all; limits are kept; no
  * step takes more memory than the one before. */
+#include "support/failing.h"
 #include "support/folder.h"
-#include "support/support.h"
+#include "support/scenario.h"
 
 #include "image/image.h"
 #include "insitu/internal.h"
@@ -298,30 +299,14 @@ static snow_status describe_picture(snow_insitu *insitu, const scene *s) {
                .clip_count = s->clipped ? 2 : 0);
 }
 
-/* Of values as a part of the largest; infinite where one of both has none. */
-static double values_difference(const snow_image *a, const snow_image *b) {
-    size_t count = (size_t)a->width * (size_t)a->height;
-    double gap = 0, most = 0;
-    for (size_t n = 0; n < count; n++) {
-        if (isnan(a->pixels[n]) != isnan(b->pixels[n]))
-            return INFINITY;
-        if (isnan(a->pixels[n]))
-            continue;
-        gap = fmax(gap, fabs((double)a->pixels[n] - (double)b->pixels[n]));
-        most = fmax(most, fabs((double)b->pixels[n]));
-    }
-    return most > 0 ? gap / most : INFINITY;
-}
-
+/* Of values as a part of the largest. */
 static double largest_difference(const snow_image *a, const snow_image *b) {
-    snow_image_difference d = {.size = sizeof d};
-    if (a->width != b->width || a->height != b->height)
+    if (a->width != b->width || a->height != b->height ||
+        a->channels != b->channels)
         return INFINITY;
-    if (a->channels == 1 && b->channels == 1)
-        return values_difference(a, b);
-    if (snow_image_compare(a, b, &d) != SNOW_STATUS_OK)
-        return INFINITY;
-    return d.largest;
+    return scenario_difference(a->pixels, b->pixels,
+                               (size_t)(a->width * a->height * a->channels),
+                               a->channels == 1);
 }
 
 /* Two pictures on each rank; the first is compared on rank 0. */
@@ -405,102 +390,96 @@ static void expect_serial(scene *s, const char *what) {
 
 /* --- the picture ---------------------------------------------------------- */
 
-static void any_cut_gives_the_picture_of_one_process(void **state) {
-    (void)state;
+/* Halos as wide as any picture needs. */
+#define WIDE 8
+
+static const snow_mode modes[] = {
+    SNOW_MODE_OVER, SNOW_MODE_OVER, SNOW_MODE_OVER,  SNOW_MODE_OVER,
+    SNOW_MODE_OVER, SNOW_MODE_MIP,  SNOW_MODE_MINIP, SNOW_MODE_MEAN,
+    SNOW_MODE_SUM,  SNOW_MODE_ISO};
+
+/* Everything varies with the number. */
+static scene scene_of(int n) {
     static const int cuts[][4] = {{1, 1, 1, 1},  {2, 1, 1, 2}, {2, 2, 1, 1},
                                   {3, 1, 3, 1},  {4, 2, 2, 1}, {8, 2, 2, 2},
-                                  {12, 3, 2, 2}, {7, 1, 7, 1}};
-    for (size_t i = 0; i < sizeof cuts / sizeof *cuts; i++) {
-        scene s = make_scene(cuts[i][0], cuts[i][1], cuts[i][2], cuts[i][3]);
-        expect_serial(&s, "a cut");
-        assert_false(s.figures.recut);
-        assert_true(s.figures.exchanged == (s.ranks > 1));
-    }
-}
-
-static void every_view_does(void **state) {
-    (void)state;
-    static const double turns[][3] = {
-        {0, 0, 0}, {90, 0, 0}, {180, 20, 0}, {0, 90, 10}, {-120, -45, 30}};
-    for (size_t i = 0; i < sizeof turns / sizeof *turns; i++) {
-        scene s = make_scene(4, 2, 1, 2);
-        s.view.azimuth = turns[i][0];
-        s.view.elevation = turns[i][1];
-        s.view.roll = turns[i][2];
-        expect_serial(&s, "a view");
-        s.view.fov = 40;
-        expect_serial(&s, "perspective");
-    }
-}
-
-/* Their pixels are means of many samples. */
-static void drafts_of_few_pixels_do(void **state) {
-    (void)state;
-    static const int cuts[][4] = {
-        {1, 1, 1, 1}, {2, 1, 1, 2}, {3, 1, 3, 1}, {8, 2, 2, 2}, {12, 3, 2, 2}};
-    for (size_t i = 0; i < 4 * sizeof cuts / sizeof *cuts; i++) {
-        if (!support_takes(i, 3))
-            continue;
-        const int *cut = cuts[i / 4];
-        scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
-        s.settings.quality = SNOW_QUALITY_DRAFT;
+                                  {12, 3, 2, 2}, {7, 1, 7, 1}, {3, 1, 4, 3},
+                                  {3, 1, 2, 3},  {4, 2, 1, 2}};
+    static const snow_type types[] = {SNOW_TYPE_UINT8, SNOW_TYPE_UINT16,
+                                      SNOW_TYPE_INT16, SNOW_TYPE_FLOAT32,
+                                      SNOW_TYPE_FLOAT64};
+    static const double turns[][3] = {{0, 0, 0},   {90, 0, 0},  {180, 20, 0},
+                                      {0, 90, 10}, {95, 10, 0}, {-120, -45, 30},
+                                      {37, 5, 0}};
+    static const int64_t halos[] = {WIDE, 0, 1, WIDE};
+    const int *cut = cuts[n % 11];
+    scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
+    s.type = types[n % 5];
+    s.layout = n % 3 == 2 ? 1 + n / 3 % 2 : 0;
+    s.halo = halos[n % 4];
+    s.view.azimuth = turns[n % 7][0] + n;
+    s.view.elevation = turns[n % 7][1];
+    s.view.roll = turns[n % 7][2];
+    s.view.fov = n % 9 == 2 ? 40 : 0;
+    s.settings.mode = modes[n / 2 % 10];
+    s.settings.iso = 90 * scale_of(s.type);
+    s.settings.method = n % 8 == 3     ? SNOW_METHOD_TESTED
+                        : n % 8 != 5   ? SNOW_METHOD_AUTO
+                        : s.ranks == 1 ? SNOW_METHOD_RAYCAST
+                                       : SNOW_METHOD_FOOTPRINT;
+    s.balance = n % 6 == 4 ? SNOW_BALANCE_REPARTITION : s.balance;
+    s.first_deterministic = n % 16 == 7;
+    if (s.settings.mode != SNOW_MODE_OVER)
+        return s;
+    if (s.settings.method == SNOW_METHOD_AUTO && n % 12 < 4) {
+        s.settings.quality = SNOW_QUALITY_DRAFT; /* pixels are means */
         s.view.width = s.view.height = 15;
-        s.view.azimuth = 30.0 * (double)i;
-        s.fades = i % 4 == 1;
-        s.balance = i % 4 == 2 ? SNOW_BALANCE_REPARTITION : s.balance;
-        s.layout = i % 4 == 3;
-        expect_serial(&s, "a small draft");
     }
+    s.fades = n % 7 == 3;
+    s.preset = n % 7 == 5;
+    s.automatic = n % 7 == 6;
+    s.clipped = n % 9 == 7 && !s.automatic;
+    if (s.fades || s.preset)
+        s.settings.quality = n % 2 ? SNOW_QUALITY_HIGH : s.settings.quality;
+    return s;
 }
 
 /* Largest and smallest values to the bit, sums but for rounding. */
-static void every_mode_does(void **state) {
-    (void)state;
-    static const snow_mode modes[] = {SNOW_MODE_MIP, SNOW_MODE_MINIP,
-                                      SNOW_MODE_MEAN, SNOW_MODE_SUM,
-                                      SNOW_MODE_ISO};
-    static const int cuts[][4] = {{1, 1, 1, 1}, {2, 1, 1, 2}, {3, 1, 3, 1},
-                                  {3, 1, 2, 3}, {8, 2, 2, 2}, {12, 3, 2, 2}};
-    static const snow_type types[] = {SNOW_TYPE_FLOAT32, SNOW_TYPE_UINT8,
-                                      SNOW_TYPE_INT16, SNOW_TYPE_FLOAT64};
-    for (int n = 0; n < 60; n++) {
-        if (!support_takes((size_t)n, 13))
-            continue;
-        const int *cut = cuts[n / 5 % 6];
-        scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
-        s.settings.mode = modes[n % 5];
-        s.type = types[n / 3 % 4];
-        s.settings.iso = 90 * scale_of(s.type);
-        s.settings.method = n / 7 % 3 ? SNOW_METHOD_AUTO : SNOW_METHOD_TESTED;
-        s.balance = n / 4 % 3 == 1 ? SNOW_BALANCE_REPARTITION : s.balance;
-        s.layout = n / 2 % 3;
-        s.halo = n / 11 % 2;
-        s.view.azimuth = 37.0 * n;
-        s.view.fov = n / 30 ? 40 : 0;
-        run_scene(&s);
-        const double bounds[] = {0, 0, 2e-6, 2e-6, 1e-4};
-        if (!(s.difference <= bounds[n % 5]))
-            fail_msg("mode %s, %d ranks, picture %d: it differs by %g",
-                     snow_mode_name(s.settings.mode), s.ranks, n, s.difference);
+static double bound_of(const scene *s) {
+    switch (s->settings.mode) {
+    case SNOW_MODE_OVER:
+        return BOUND;
+    case SNOW_MODE_ISO:
+        return 1e-4;
+    default:
+        return s->settings.mode == SNOW_MODE_MEAN ||
+                       s->settings.mode == SNOW_MODE_SUM
+                   ? 2e-6
+                   : 0;
     }
 }
 
-static void a_gradient_opacity_does(void **state) {
+/* Parts with wide halos are used as they lie, also beyond the grid, where
+ * nonsense lies: neither sent nor copied. */
+static void any_simulation_is_seen_as_by_one_process(void **state) {
     (void)state;
-    static const int cuts[][4] = {{1, 1, 1, 1}, {3, 1, 3, 1}, {4, 2, 2, 1}};
-    for (int n = 0; n < 12; n++) {
-        if (!support_takes((size_t)n, 11))
+    for (int n = 0; n < 330; n++) {
+        if (!support_takes((size_t)n, 13))
             continue;
-        const int *cut = cuts[n % 3];
-        scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
-        s.fades = true;
-        s.type = n % 2 ? SNOW_TYPE_INT16 : SNOW_TYPE_FLOAT32;
-        s.settings.quality = n / 3 % 2 ? SNOW_QUALITY_HIGH : s.settings.quality;
-        s.settings.shade = n / 6 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
-        expect_serial(&s, "gradient opacity");
-        s.fades = false;
-        s.preset = true;
-        expect_serial(&s, "a preset's gradient opacity");
+        scene s = scene_of(n);
+        run_scene(&s);
+        if (!(s.difference <= bound_of(&s)))
+            fail_msg("scene %d, mode %s, %d ranks: it differs by %g", n,
+                     snow_mode_name(s.settings.mode), s.ranks, s.difference);
+        if (s.balance == SNOW_BALANCE_REPARTITION)
+            continue;
+        assert_false(s.figures.recut);
+        if (s.halo == 0)
+            assert_true(s.figures.exchanged == (s.ranks > 1));
+        if (s.halo == WIDE && s.layout == 0 && s.bricks == s.ranks &&
+            !s.clipped)
+            assert_int_equal(s.figures.ranks_copied, 0);
+        if (s.halo == WIDE && s.settings.method == SNOW_METHOD_AUTO)
+            assert_false(s.figures.exchanged);
     }
 }
 
@@ -518,76 +497,6 @@ static void a_list_of_colours_does(void **state) {
     scene s = make_scene(3, 1, 1, 3);
     s.colormap = list;
     expect_serial(&s, "a list of 32 colours");
-}
-
-static void every_type_and_layout_does(void **state) {
-    (void)state;
-    static const snow_type types[] = {SNOW_TYPE_UINT8, SNOW_TYPE_UINT16,
-                                      SNOW_TYPE_INT16, SNOW_TYPE_FLOAT32,
-                                      SNOW_TYPE_FLOAT64};
-    for (int type = 0; type < 5; type++)
-        for (int layout = 0; layout < 3; layout++) {
-            scene s = make_scene(3, 1, 2, 3);
-            s.type = types[type];
-            s.layout = layout;
-            s.halo = layout == 1 ? 8 : layout;
-            expect_serial(&s, "a layout");
-        }
-}
-
-static void clip_planes_cut_the_voxels_of_all_ranks(void **state) {
-    static const snow_type types[] = {SNOW_TYPE_FLOAT64, SNOW_TYPE_UINT8};
-    (void)state;
-    for (int n = 0; n < 4; n++) {
-        scene s = make_scene(3, n == 1 ? 1 : 3, 1, n == 1 ? 3 : 1);
-        s.clipped = true;
-        s.halo = n == 2 ? 3 : 0;
-        s.type = types[n == 3];
-        expect_serial(&s, "clip planes");
-    }
-}
-
-static void wide_halos_are_used_in_place_of_messages(void **state) {
-    (void)state;
-    scene s = make_scene(4, 2, 2, 1);
-    s.halo = 8;
-    expect_serial(&s, "halos");
-    assert_false(s.figures.exchanged);
-    assert_int_equal(s.figures.ranks_copied, 0); /* past the grid, too */
-    s.halo = 1;
-    expect_serial(&s, "narrow halos");
-    assert_true(s.figures.exchanged);
-}
-
-/* Halos on all sides of a grid that is not periodic, where nonsense lies beyond
- * it: rows and slices lie apart. */
-static void halos_beyond_the_grid_do_not_make_copies(void **state) {
-    (void)state;
-    static const int cuts[][4] = {{1, 1, 1, 1}, {2, 1, 2, 1}, {4, 2, 2, 1}};
-    static const double turns[][2] = {{10, 0}, {95, 10}, {30, 80}};
-    static const snow_method methods[] = {SNOW_METHOD_AUTO, SNOW_METHOD_TESTED,
-                                          SNOW_METHOD_FOOTPRINT};
-    static const snow_type types[] = {SNOW_TYPE_FLOAT32, SNOW_TYPE_FLOAT64,
-                                      SNOW_TYPE_UINT8, SNOW_TYPE_UINT16,
-                                      SNOW_TYPE_INT16};
-    for (int n = 0; n < 135; n++) {
-        if (!support_takes((size_t)n, 7))
-            continue;
-        const int *cut = cuts[n % 3];
-        scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
-        s.halo = 8;
-        s.settings.method = methods[n / 3 % 3];
-        if (s.ranks == 1 && n / 3 % 3 == 2)
-            s.settings.method = SNOW_METHOD_RAYCAST;
-        s.view.azimuth = turns[n / 9 % 3][0];
-        s.view.elevation = turns[n / 9 % 3][1];
-        s.type = types[n / 27];
-        s.fades = n % 2;
-        s.automatic = n % 5 == 2;
-        s.first_deterministic = n % 4 == 3;
-        expect_serial(&s, "halos");
-        assert_int_equal(s.figures.ranks_copied, 0);
-    }
 }
 
 static void without_ghosts_there_are_seams_and_no_messages(void **state) {
@@ -611,13 +520,6 @@ static void voxels_that_lie_as_wanted_are_not_copied(void **state) {
     assert_int_equal(s.figures.ranks_copied, 1);
 }
 
-static void several_bricks_of_a_rank_are_one_part(void **state) {
-    (void)state;
-    scene s = make_scene(3, 1, 4, 3); /* four each, a slab together */
-    expect_serial(&s, "bricks");
-    assert_false(s.figures.recut);
-}
-
 static void bricks_that_are_no_box_are_recut(void **state) {
     (void)state;
     scene s = make_scene(3, 3, 3, 3);
@@ -636,15 +538,6 @@ static void ranks_without_bricks_help(void **state) {
     s.balance = SNOW_BALANCE_REPARTITION;
     expect_serial(&s, "empty ranks, recut");
     assert_true(s.figures.recut);
-}
-
-static void the_footprint_methods_do_too(void **state) {
-    (void)state;
-    scene s = make_scene(4, 2, 2, 1);
-    s.settings.method = SNOW_METHOD_FOOTPRINT;
-    expect_serial(&s, "footprint");
-    s.view.azimuth = 100;
-    expect_serial(&s, "footprint, turned");
 }
 
 /* A scattered picture's parts, added up. */
@@ -716,16 +609,6 @@ static void a_deterministic_picture_is_the_same_bit_for_bit(void **state) {
         assert_true(s.difference == 0);
         assert_true(s.figures.recut);
     }
-}
-
-/* Whose boxes nobody has told, and others have come meanwhile. */
-static void
-a_picture_after_a_deterministic_one_is_drawn_in_place(void **state) {
-    (void)state;
-    scene s = make_scene(4, 2, 2, 1);
-    s.first_deterministic = true;
-    expect_serial(&s, "after a deterministic picture");
-    assert_false(s.figures.recut);
 }
 
 /* Three bars, each before the next, and a cube in what they leave: boxes that
@@ -851,6 +734,7 @@ typedef struct movie {
     int steps;
     double speed;       /* of the field, a step */
     const char *suffix; /* of the frames; NULL: png */
+    int run;            /* in the name of its frames */
     char pattern[256];
     double limit_seconds;
     uint64_t limit_bytes;
@@ -866,23 +750,6 @@ static void hear(void *user, const char *text) {
     movie *m = user;
     size_t used = strlen(m->given);
     snprintf(m->given + used, sizeof m->given - used, "%s\n", text);
-}
-
-/* An allocator that counts blocks. */
-typedef struct allocations {
-    int64_t blocks, most;
-} allocations;
-
-static void *count_allocate(void *user, size_t bytes) {
-    allocations *count = user;
-    if (++count->blocks > count->most)
-        count->most = count->blocks;
-    return malloc(bytes);
-}
-
-static void count_release(void *user, void *block) {
-    ((allocations *)user)->blocks--;
-    free(block);
 }
 
 static snow_status make_movie(snow_insitu *insitu, movie *m, int rank) {
@@ -924,60 +791,94 @@ static snow_status movie_rank(snow_comm *comm, void *user) {
     return status;
 }
 
-/* Runs a movie into a folder of its own, which the caller empties. */
-static void run_movie(movie *m, const char *folder) {
-    allocations count = {0};
-    const snow_allocator allocator = {count_allocate, count_release, &count};
+/* The movie must come to this status. */
+static void run_movie(movie *m, const char *folder, snow_status wanted) {
+    support_failing memory = {.failing = -1};
+    const snow_allocator allocator = support_failing_allocator(&memory);
     snow_context *context = NULL;
+    m->given[0] = 0;
     assert_int_equal(snow_context_new(&allocator, &context), SNOW_STATUS_OK);
-    snprintf(m->pattern, sizeof m->pattern, "%s/u_%%03d.%s", folder,
+    snprintf(m->pattern, sizeof m->pattern, "%s/u%d_%%03d.%s", folder, m->run,
              m->suffix ? m->suffix : "png");
-    m->status = snow_comm_run_threads(context, m->scene.ranks, movie_rank, m);
+    const snow_status status =
+        snow_comm_run_threads(context, m->scene.ranks, movie_rank, m);
     snprintf(m->message, sizeof m->message, "%s",
              snow_context_message(context));
-    if (m->status != SNOW_STATUS_OK)
-        print_message("%s\n", m->message);
+    if (status != wanted)
+        fail_msg("status %d: %s", (int)status, m->message);
     snow_context_free(context);
-    assert_int_equal(count.blocks, 0);
-    m->most_blocks = count.most;
+    assert_int_equal(memory.held, 0);
+    m->most_blocks = memory.most_held;
 }
 
-static bool has_frame(const char *folder, int step, bool unlink_it) {
-    char path[300];
-    snprintf(path, sizeof path, "%s/u_%03d.png", folder, step);
-    return unlink_it ? unlink(path) == 0 : access(path, R_OK) == 0;
+static void path_of_frame(const movie *m, int step, char path[300]) {
+    const int length = (int)(strstr(m->pattern, "%03d") - m->pattern);
+    snprintf(path, 300, "%.*s%03d%s", length, m->pattern, step,
+             m->pattern + length + 4);
 }
 
-static int count_frames(const char *folder, int steps) {
+static int count_frames(const movie *m) {
     int count = 0;
-    for (int step = 0; step < steps; step++)
-        count += has_frame(folder, step, true);
+    char path[300];
+    for (int step = 0; step < m->steps; step++) {
+        path_of_frame(m, step, path);
+        count += access(path, R_OK) == 0;
+    }
     return count;
+}
+
+static snow_image *load_frame(snow_context *context, const movie *m, int step) {
+    char path[300];
+    snow_image *image = NULL;
+    path_of_frame(m, step, path);
+    assert_int_equal(snow_image_load(context, path, &image), SNOW_STATUS_OK);
+    return image;
+}
+
+/* A frame is what one process draws of its field with a look. */
+static void expect_frame(const movie *m, int step, const snow_look *look,
+                         snow_image_difference *d) {
+    snow_context *context = support_context();
+    snow_image *frame = load_frame(context, m, step);
+    snow_image *serial =
+        serial_picture(context, &m->scene, m->speed * step, look);
+    *d = (snow_image_difference){.size = sizeof *d};
+    assert_int_equal(snow_image_compare(frame, serial, d), SNOW_STATUS_OK);
+    snow_image_free(serial);
+    snow_image_free(frame);
+    snow_context_free(context);
+}
+
+static int begin_folder(void **state) {
+    static char folder[SUPPORT_FOLDER_BYTES];
+    support_folder_make(folder);
+    *state = folder;
+    return 0;
+}
+
+static int end_folder(void **state) {
+    support_folder_remove(*state);
+    return 0;
 }
 
 /* Of bricks that stay in place, and of ones that are recut; of a field that
  * stands still, and of one that moves: which voxels are interesting then
  * changes a little, and rows of the encoding with it. */
 static void no_step_takes_more_memory_than_the_one_before(void **state) {
-    (void)state;
-    static const int cuts[][4] = {{3, 1, 1, 3}, {3, 3, 1, 3}};
     for (int i = 0; i < 4; i++) {
-        char folder[SUPPORT_FOLDER_BYTES];
-        support_folder_make(folder);
-        const int *cut = cuts[i % 2];
-        movie m = {.scene = make_scene(cut[0], cut[1], cut[2], cut[3]),
+        movie m = {.scene = make_scene(3, i % 2 ? 3 : 1, 1, 3),
                    .steps = 6,
+                   .run = 2 * i,
                    .speed = i < 2 ? 0 : 0.02};
         if (i % 2) /* recut */
             for (int n = 0; n < m.scene.bricks; n++)
                 m.scene.owner[n] = (n + n / 3) % 3;
-        run_movie(&m, folder);
-        assert_int_equal(m.status, SNOW_STATUS_OK);
+        run_movie(&m, *state, SNOW_STATUS_OK);
         int64_t most_blocks = m.most_blocks;
-        assert_int_equal(count_frames(folder, 6), 6);
+        assert_int_equal(count_frames(&m), 6);
         m.steps = 18;
-        run_movie(&m, folder);
-        assert_int_equal(m.status, SNOW_STATUS_OK);
+        m.run++;
+        run_movie(&m, *state, SNOW_STATUS_OK);
         assert_int_equal(m.figures[17].pictures, 18);
         double slack = i < 2 ? 1 : 1.05;
         const snow_spread *late = &m.figures[17].bytes_held,
@@ -986,41 +887,20 @@ static void no_step_takes_more_memory_than_the_one_before(void **state) {
         assert_true(late->most <= slack * early->most);
         /* Messages on their way are blocks too, now more, now fewer. */
         assert_true(m.most_blocks <= most_blocks + 20);
-        assert_int_equal(count_frames(folder, 18), 18);
-        support_folder_remove(folder);
+        assert_int_equal(count_frames(&m), 18);
     }
 }
 
-/* The frame of a step. */
-static snow_image *load_frame(snow_context *context, const char *folder,
-                              int step) {
-    char path[300];
-    snow_image *image = NULL;
-    snprintf(path, sizeof path, "%s/u_%03d.png", folder, step);
-    assert_int_equal(snow_image_load(context, path, &image), SNOW_STATUS_OK);
-    return image;
-}
-
-/* An automatic look chosen from the first step stays: the last frame is what
- * one process draws of the last step with the first step's transfer function,
- * and not with its own. */
-static void colours_keep_their_meaning_through_a_movie(void **state) {
-    (void)state;
-    char folder[SUPPORT_FOLDER_BYTES];
-    support_folder_make(folder);
+/* An automatic look is chosen from the first step. */
+static void colours_are_those_of_the_first_step(void **state) {
     movie m = {.scene = make_scene(3, 1, 1, 3), .steps = 4, .automatic = true};
-    run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_STATUS_OK);
-    snow_context *context = support_context();
     const snow_look automatic = {.size = sizeof automatic};
-    snow_image *first = load_frame(context, folder, 0);
-    snow_image *generation = serial_picture(context, &m.scene, 0, &automatic);
-    assert_true(largest_difference(first, generation) < 1.01 / 255);
-    snow_image_free(first);
-    snow_image_free(generation);
-    snow_context_free(context);
-    assert_int_equal(count_frames(folder, 4), 4);
-    support_folder_remove(folder);
+    snow_image_difference d;
+    run_movie(&m, *state, SNOW_STATUS_OK);
+    for (int step = 0; step < 4; step++) {
+        expect_frame(&m, step, &automatic, &d);
+        assert_true(d.largest < 1.01 / 255);
+    }
 }
 
 /* The range that automatic looks of one process have together at both times. */
@@ -1057,34 +937,27 @@ static void colours_are_spread_for_voxels_used_in_place(void **state) {
     (void)state;
     static const int cuts[][4] = {{1, 1, 1, 1}, {2, 1, 2, 1}, {4, 2, 2, 1}};
     for (int n = 0; n < 6; n++) {
-        char folder[SUPPORT_FOLDER_BYTES];
-        support_folder_make(folder);
         const int *cut = cuts[n % 3];
         movie m = {.scene = make_scene(cut[0], cut[1], cut[2], cut[3]),
                    .steps = 2,
+                   .run = n,
                    .speed = 0.01,
                    .automatic = true};
         m.scene.grows = true;
-        m.scene.halo = 8;
+        m.scene.halo = WIDE;
         m.scene.type = n / 3 ? SNOW_TYPE_FLOAT64 : SNOW_TYPE_FLOAT32;
-        run_movie(&m, folder);
-        assert_int_equal(m.status, SNOW_STATUS_OK);
+        run_movie(&m, *state, SNOW_STATUS_OK);
         assert_int_equal(m.figures[1].ranks_copied, 0);
         assert_non_null(strstr(m.given, "values go beyond those before"));
         snow_look look = {.size = sizeof look};
         snow_context *context = support_context();
+        snow_image_difference d;
         find_range(context, &m.scene, m.speed, &look);
-        snow_image *frame = load_frame(context, folder, 1);
-        snow_image *wide = serial_picture(context, &m.scene, m.speed, &look);
-        const double difference = largest_difference(frame, wide);
-        if (!(difference < 1.01 / 255))
-            fail_msg("case %d: it differs by %g from a picture of %g to %g; %s",
-                     n, difference, look.low, look.high, m.given);
-        snow_image_free(wide);
-        snow_image_free(frame);
         snow_context_free(context);
-        assert_int_equal(count_frames(folder, 2), 2);
-        support_folder_remove(folder);
+        expect_frame(&m, 1, &look, &d);
+        if (!(d.largest < 1.01 / 255))
+            fail_msg("case %d: it differs by %g from a picture of %g to %g; %s",
+                     n, d.largest, look.low, look.high, m.given);
     }
 }
 
@@ -1093,16 +966,13 @@ static void colours_are_spread_for_voxels_used_in_place(void **state) {
 static void values_become_colours_in_files_of_colours(void **state) {
     (void)state;
     for (int n = 0; n < 2; n++) {
-        char folder[SUPPORT_FOLDER_BYTES];
-        support_folder_make(folder);
-        movie m = {.scene = make_scene(3, 1, 1, 3), .steps = 1};
+        movie m = {.scene = make_scene(3, 1, 1, 3), .steps = 1, .run = n};
         m.scene.settings.mode = n ? SNOW_MODE_SUM : SNOW_MODE_MEAN;
-        run_movie(&m, folder);
-        assert_int_equal(m.status, SNOW_STATUS_OK);
+        run_movie(&m, *state, SNOW_STATUS_OK);
         snow_context *context = support_context();
         snow_opacity_point scaled[5];
         snow_look look = look_of(&m.scene, scaled);
-        snow_image *frame = load_frame(context, folder, 0), *painted = NULL;
+        snow_image *frame = load_frame(context, &m, 0), *painted = NULL;
         snow_image *values = serial_picture(context, &m.scene, 0, &look);
         snow_volume *volume = NULL;
         snow_transfer *transfer = NULL;
@@ -1122,192 +992,121 @@ static void values_become_colours_in_files_of_colours(void **state) {
         snow_transfer_free(transfer);
         snow_volume_close(volume);
         snow_context_free(context);
-        assert_int_equal(count_frames(folder, 1), 1);
-        support_folder_remove(folder);
     }
 }
 
 static void sums_without_a_range_are_for_files_of_numbers(void **state) {
-    (void)state;
-    char folder[SUPPORT_FOLDER_BYTES], path[300];
-    support_folder_make(folder);
     movie m = {.scene = make_scene(2, 1, 1, 2), .steps = 1, .automatic = true};
     m.scene.settings.mode = SNOW_MODE_SUM;
-    run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_STATUS_BAD_USAGE);
+    run_movie(&m, *state, SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(m.message, "one range of sums for all pictures"));
-    assert_int_equal(count_frames(folder, 1), 0);
+    assert_int_equal(count_frames(&m), 0);
     m.suffix = "npy";
-    run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_STATUS_OK);
-    snprintf(path, sizeof path, "%s/u_000.npy", folder);
-    assert_int_equal(unlink(path), 0);
-    support_folder_remove(folder);
+    run_movie(&m, *state, SNOW_STATUS_OK);
+    assert_int_equal(count_frames(&m), 1);
 }
 
 /* Rays that meet nothing have no value: what a picture made larger has of them
  * is as much. */
 static void values_that_are_made_larger_keep_their_outline(void **state) {
-    (void)state;
-    char folder[SUPPORT_FOLDER_BYTES], path[300];
-    double empty[8];
-    support_folder_make(folder);
+    double empty[4] = {0};
     movie m = {.scene = make_scene(2, 1, 1, 2),
                .steps = 4,
                .limit_seconds = 1e-9,
                .suffix = "npy"};
     m.scene.settings.mode = SNOW_MODE_MEAN;
-    run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_STATUS_OK);
+    run_movie(&m, *state, SNOW_STATUS_OK);
     assert_int_equal(m.figures[3].lowering, SNOW_DEGRADATION_QUARTER);
     snow_context *context = support_context();
     for (int step = 0; step < 4; step++) {
-        snow_image *image = NULL;
-        snprintf(path, sizeof path, "%s/u_%03d.npy", folder, step);
-        assert_int_equal(snow_image_load(context, path, &image),
-                         SNOW_STATUS_OK);
+        snow_image *image = load_frame(context, &m, step);
         int pixels = image->width * image->height;
-        empty[step] = 0;
         for (int n = 0; n < pixels; n++)
             empty[step] += (double)isnan(image->pixels[n]) / pixels;
         snow_image_free(image);
-        assert_int_equal(unlink(path), 0);
     }
     assert_true(empty[0] > 0.1 && empty[0] < 0.9);
     assert_true(fabs(empty[3] / empty[0] - 1) < 0.07);
     snow_context_free(context);
-    support_folder_remove(folder);
 }
 
 static void frames_of_an_earlier_run_are_kept(void **state) {
-    (void)state;
-    char folder[SUPPORT_FOLDER_BYTES];
-    support_folder_make(folder);
     movie m = {.scene = make_scene(2, 1, 1, 2), .steps = 1};
-    run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_STATUS_OK);
-    run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_STATUS_BAD_OUTPUT);
-    assert_non_null(strstr(m.message, "u_000.png"));
-    assert_int_equal(count_frames(folder, 1), 1);
-    support_folder_remove(folder);
+    run_movie(&m, *state, SNOW_STATUS_OK);
+    run_movie(&m, *state, SNOW_STATUS_BAD_OUTPUT);
+    assert_non_null(strstr(m.message, "u0_000.png"));
+    assert_int_equal(count_frames(&m), 1);
 }
 
+/* Frames have the size that was asked for, and show the same. */
 static void
 a_limit_of_time_lowers_pictures_and_then_leaves_some_out(void **state) {
-    (void)state;
-    char folder[SUPPORT_FOLDER_BYTES];
-    support_folder_make(folder);
     movie m = {.scene = make_scene(2, 1, 1, 2),
                .steps = 12,
                .speed = 0.02,
                .limit_seconds = 1e-7};
-    run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_STATUS_OK);
-    assert_int_equal(m.figures[0].lowering, SNOW_DEGRADATION_NONE);
-    assert_int_equal(m.figures[1].lowering, SNOW_DEGRADATION_DRAFT);
-    assert_int_equal(m.figures[2].lowering, SNOW_DEGRADATION_HALF);
-    assert_int_equal(m.figures[3].lowering, SNOW_DEGRADATION_QUARTER);
-    assert_int_equal(m.figures[4].lowering, SNOW_DEGRADATION_SKIPPED);
+    static const snow_degradation steps[] = {
+        SNOW_DEGRADATION_NONE, SNOW_DEGRADATION_DRAFT, SNOW_DEGRADATION_HALF,
+        SNOW_DEGRADATION_QUARTER, SNOW_DEGRADATION_SKIPPED};
+    run_movie(&m, *state, SNOW_STATUS_OK);
+    for (int n = 0; n < 5; n++)
+        assert_int_equal(m.figures[n].lowering, steps[n]);
     assert_int_equal(m.figures[11].pictures, 4);
     assert_int_equal(m.figures[11].skipped, 8);
     assert_non_null(strstr(m.given, "quarter of the size"));
     assert_non_null(strstr(m.given, "left out"));
-    /* All frames have the size that was asked for. */
-    snow_context *context = support_context();
-    snow_image *image = load_frame(context, folder, 3);
-    assert_int_equal(snow_image_width(image), m.scene.view.width);
-    assert_int_equal(snow_image_height(image), m.scene.view.height);
     snow_opacity_point scaled[5];
     snow_look look = look_of(&m.scene, scaled);
-    snow_image *generation = serial_picture(context, &m.scene, 0.06, &look);
-    snow_image_difference d = {.size = sizeof d};
-    assert_int_equal(snow_image_compare(image, generation, &d), SNOW_STATUS_OK);
-    assert_true(d.psnr > 20); /* a quarter of the size, but the same */
-    snow_image_free(generation);
-    snow_image_free(image);
-    snow_context_free(context);
-    assert_int_equal(count_frames(folder, 12), 4);
-    support_folder_remove(folder);
+    snow_image_difference d;
+    expect_frame(&m, 3, &look, &d);
+    assert_true(d.psnr > 20);
+    assert_int_equal(count_frames(&m), 4);
 }
 
 static void a_limit_that_suffices_lowers_nothing(void **state) {
-    (void)state;
-    char folder[SUPPORT_FOLDER_BYTES];
-    support_folder_make(folder);
     movie m = {.scene = make_scene(2, 1, 1, 2),
                .steps = 4,
                .limit_seconds = 1000,
                .limit_bytes = UINT64_C(1) << 32};
-    run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_STATUS_OK);
+    run_movie(&m, *state, SNOW_STATUS_OK);
     assert_int_equal(m.figures[3].pictures, 4);
     assert_int_equal(m.figures[3].lowering, SNOW_DEGRADATION_NONE);
     assert_string_equal(m.given, "");
-    assert_int_equal(count_frames(folder, 4), 4);
-    support_folder_remove(folder);
+    assert_int_equal(count_frames(&m), 4);
 }
 
 static void a_limit_of_memory_is_kept_and_told(void **state) {
-    (void)state;
-    char folder[SUPPORT_FOLDER_BYTES];
-    support_folder_make(folder);
     movie m = {.scene = make_scene(2, 1, 1, 2),
                .steps = 6,
                .limit_bytes = 40000}; /* less than the voxels of a rank */
-    run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_STATUS_OK);
+    run_movie(&m, *state, SNOW_STATUS_OK);
     assert_int_equal(m.figures[5].pictures, 0);
     assert_int_equal(m.figures[5].skipped, 6);
     assert_true(m.figures[5].bytes_peak.most <= 40000);
     assert_non_null(strstr(m.given, "under a limit"));
-    assert_int_equal(count_frames(folder, 6), 0);
-    support_folder_remove(folder);
+    assert_int_equal(count_frames(&m), 0);
 }
 
 /* What a movie held at most without a limit is too much by half: pictures get
  * smaller until they fit, and what the first try took is given back. */
 static void pictures_are_smaller_where_memory_lacks(void **state) {
-    (void)state;
-    char folder[SUPPORT_FOLDER_BYTES];
-    support_folder_make(folder);
     movie m = {.scene = make_scene(2, 1, 1, 2), .steps = 8};
     m.scene.view.width = 900;
     m.scene.view.height = 700;
-    run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_STATUS_OK);
+    run_movie(&m, *state, SNOW_STATUS_OK);
     double most = m.figures[7].bytes_peak.most;
-    assert_int_equal(count_frames(folder, 8), 8);
     m.limit_bytes = (uint64_t)(0.75 * most);
-    run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_STATUS_OK);
+    m.run++;
+    run_movie(&m, *state, SNOW_STATUS_OK);
     assert_true(m.figures[7].pictures > 0);
     assert_int_equal(m.figures[0].lowering, SNOW_DEGRADATION_SKIPPED);
     assert_true(m.figures[0].bytes_held.most < 0.01 * most);
     assert_true(m.figures[7].lowering > SNOW_DEGRADATION_NONE);
     assert_true(m.figures[7].bytes_peak.most <= (double)m.limit_bytes);
-    assert_int_equal(count_frames(folder, 8), m.figures[7].pictures);
-    support_folder_remove(folder);
+    assert_int_equal(count_frames(&m), m.figures[7].pictures);
 }
 
 /* --- memory that fails ---------------------------------------------------- */
-
-/* An allocator that refuses one block, and counts those that are there. */
-typedef struct miser {
-    int64_t until, blocks;
-} miser;
-
-static void *miser_allocate(void *user, size_t bytes) {
-    miser *m = user;
-    void *block = m->until-- == 0 ? NULL : malloc(bytes);
-    m->blocks += block != NULL;
-    return block;
-}
-
-static void miser_release(void *user, void *block) {
-    ((miser *)user)->blocks--;
-    free(block);
-}
 
 /* A rank that draws one picture of scattered bricks. */
 static snow_status draw_once(snow_comm *comm, void *user) {
@@ -1332,30 +1131,27 @@ static snow_status draw_once(snow_comm *comm, void *user) {
 static void no_block_that_is_refused_hangs_or_leaks(void **state) {
     (void)state;
     scene s = make_scene(3, 3, 1, 2);
-    snow_status status = SNOW_STATUS_NO_MEMORY;
-    int64_t refused = 0;
+    long refused = 0;
     for (int n = 0; n < s.bricks; n++)
         s.owner[n] = n % 3 == 0 ? 2 : n / 3;
-    for (int64_t n = 1; status != SNOW_STATUS_OK; n += n < 100 ? 1 : 3) {
-        miser m = {.until = n};
-        const snow_allocator allocator = {miser_allocate, miser_release, &m};
+    for (long n = 1;; n += n < 100 ? 1 : 3) {
+        support_failing memory = {.failing = n};
+        const snow_allocator allocator = support_failing_allocator(&memory);
         snow_context *context = NULL;
         assert_int_equal(snow_context_new(&allocator, &context),
                          SNOW_STATUS_OK);
-        status = snow_comm_run_threads(context, s.ranks, draw_once, &s);
-        refused += m.until < 0;
-        if (status != SNOW_STATUS_OK && status != SNOW_STATUS_NO_MEMORY)
-            fail_msg("block %lld: %s", (long long)n,
-                     snow_context_message(context));
-        if (m.until >= 0) /* there were no more */
-            assert_int_equal(status, SNOW_STATUS_OK);
-        else if (status != SNOW_STATUS_OK)
-            assert_int_equal(status, SNOW_STATUS_NO_MEMORY);
-        status = m.until >= 0 ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+        const snow_status status =
+            snow_comm_run_threads(context, s.ranks, draw_once, &s);
+        const bool all = memory.allocations <= n; /* there were no more */
+        if (status != SNOW_STATUS_OK &&
+            (all || status != SNOW_STATUS_NO_MEMORY))
+            fail_msg("block %ld: %s", n, snow_context_message(context));
         snow_context_free(context);
-        if (m.blocks)
-            fail_msg("block %lld: %lld are left", (long long)n,
-                     (long long)m.blocks);
+        if (memory.held)
+            fail_msg("block %ld: %ld are left", n, memory.held);
+        if (all)
+            break;
+        refused++;
     }
     assert_true(refused > 50);
 }
@@ -1537,8 +1333,8 @@ static void setters_refuse_what_cannot_be(void **state) {
 
 static void an_adopted_communicator_goes_with_it(void **state) {
     (void)state;
-    allocations count = {0};
-    const snow_allocator allocator = {count_allocate, count_release, &count};
+    support_failing memory = {.failing = -1};
+    const snow_allocator allocator = support_failing_allocator(&memory);
     snow_context *context = NULL;
     snow_comm *comm = NULL;
     snow_insitu *insitu = NULL;
@@ -1547,46 +1343,37 @@ static void an_adopted_communicator_goes_with_it(void **state) {
     assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_STATUS_OK);
     snow_insitu_own_comm(insitu, true);
     snow_insitu_free(insitu);
-    assert_int_equal(count.blocks, 0);
+    assert_int_equal(memory.held, 0);
 }
+
+#define MOVIE(test) \
+    cmocka_unit_test_setup_teardown(test, begin_folder, end_folder)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(any_cut_gives_the_picture_of_one_process),
-        cmocka_unit_test(every_view_does),
-        cmocka_unit_test(drafts_of_few_pixels_do),
-        cmocka_unit_test(every_mode_does),
-        cmocka_unit_test(a_gradient_opacity_does),
+        cmocka_unit_test(any_simulation_is_seen_as_by_one_process),
         cmocka_unit_test(a_list_of_colours_does),
-        cmocka_unit_test(every_type_and_layout_does),
-        cmocka_unit_test(clip_planes_cut_the_voxels_of_all_ranks),
-        cmocka_unit_test(wide_halos_are_used_in_place_of_messages),
-        cmocka_unit_test(halos_beyond_the_grid_do_not_make_copies),
         cmocka_unit_test(without_ghosts_there_are_seams_and_no_messages),
         cmocka_unit_test(voxels_that_lie_as_wanted_are_not_copied),
-        cmocka_unit_test(several_bricks_of_a_rank_are_one_part),
         cmocka_unit_test(bricks_that_are_no_box_are_recut),
         cmocka_unit_test(ranks_without_bricks_help),
-        cmocka_unit_test(the_footprint_methods_do_too),
         cmocka_unit_test(parts_of_a_scattered_picture_add_up_to_it),
         cmocka_unit_test(a_deterministic_picture_is_the_same_bit_for_bit),
-        cmocka_unit_test(a_picture_after_a_deterministic_one_is_drawn_in_place),
         cmocka_unit_test(bars_in_a_ring_are_recut),
         cmocka_unit_test(another_picture_of_the_same_voxels_encodes_nothing),
         cmocka_unit_test(bricks_in_the_world_find_their_grid),
         cmocka_unit_test(bricks_that_fit_no_grid_are_refused),
-        cmocka_unit_test(no_step_takes_more_memory_than_the_one_before),
-        cmocka_unit_test(colours_keep_their_meaning_through_a_movie),
-        cmocka_unit_test(colours_are_spread_for_voxels_used_in_place),
-        cmocka_unit_test(values_become_colours_in_files_of_colours),
-        cmocka_unit_test(sums_without_a_range_are_for_files_of_numbers),
-        cmocka_unit_test(values_that_are_made_larger_keep_their_outline),
-        cmocka_unit_test(frames_of_an_earlier_run_are_kept),
-        cmocka_unit_test(
-            a_limit_of_time_lowers_pictures_and_then_leaves_some_out),
-        cmocka_unit_test(a_limit_that_suffices_lowers_nothing),
-        cmocka_unit_test(a_limit_of_memory_is_kept_and_told),
-        cmocka_unit_test(pictures_are_smaller_where_memory_lacks),
+        MOVIE(no_step_takes_more_memory_than_the_one_before),
+        MOVIE(colours_are_those_of_the_first_step),
+        MOVIE(colours_are_spread_for_voxels_used_in_place),
+        MOVIE(values_become_colours_in_files_of_colours),
+        MOVIE(sums_without_a_range_are_for_files_of_numbers),
+        MOVIE(values_that_are_made_larger_keep_their_outline),
+        MOVIE(frames_of_an_earlier_run_are_kept),
+        MOVIE(a_limit_of_time_lowers_pictures_and_then_leaves_some_out),
+        MOVIE(a_limit_that_suffices_lowers_nothing),
+        MOVIE(a_limit_of_memory_is_kept_and_told),
+        MOVIE(pictures_are_smaller_where_memory_lacks),
         cmocka_unit_test(no_block_that_is_refused_hangs_or_leaks),
         cmocka_unit_test(what_is_wrong_on_one_rank_is_told_to_all),
         cmocka_unit_test(setters_refuse_what_cannot_be),

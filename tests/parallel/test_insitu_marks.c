@@ -26,35 +26,73 @@ static void read_comment(const char *path) {
              bytes + at + sizeof key);
 }
 
+/* --- a movie of one rank ---------------------------------------------------
+ */
+
+#define SIDE 12
+#define VOXELS (SIDE * SIDE * SIDE)
+static const int64_t cube[3] = {SIDE, SIDE, SIDE};
+
+typedef struct fixture {
+    float field[VOXELS]; /* which the test changes */
+    snow_comm *comm;
+    snow_insitu *insitu;
+    char recipe[512], said[512];
+} fixture;
+
+static void keep_text(void *user, const char *text) {
+    snprintf(user, 512, "%s", text);
+}
+
+static void set_grid(snow_insitu *insitu, const int64_t dims[3], snow_type type,
+                     const void *voxels) {
+    static const int64_t first[3] = {0, 0, 0};
+    assert_int_equal(snow_insitu_set_grid(insitu, dims, NULL, NULL),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_insitu_set_brick(insitu, 0, first, dims, NULL),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_insitu_set_voxels(insitu, 0, type, voxels, NULL),
+                     SNOW_STATUS_OK);
+}
+
+static fixture *open_in(image_fixture *f, snow_context *context) {
+    static fixture m;
+    m = (fixture){.comm = NULL};
+    for (int i = 0; i < VOXELS; i++)
+        m.field[i] = (float)(i % SIDE);
+    snprintf(m.recipe, sizeof m.recipe, "%s", support_image_path(f, "r.json"));
+    assert_int_equal(snow_comm_new_self(context, &m.comm), SNOW_STATUS_OK);
+    assert_int_equal(snow_insitu_new(m.comm, &m.insitu), SNOW_STATUS_OK);
+    snow_insitu_set_warning(m.insitu, keep_text, m.said);
+    set_grid(m.insitu, cube, SNOW_TYPE_FLOAT32, m.field);
+    return &m;
+}
+
+static fixture *open_movie(image_fixture *f) {
+    return open_in(f, f->context);
+}
+
+static void close_movie(fixture *m) {
+    snow_insitu_free(m->insitu);
+    snow_comm_free(m->comm);
+    remove(m->recipe);
+}
+
 /* Two steps of a field that does not change, as `recipe` says.  `sums` are of
  * the files' pixels. */
 static void make_steps(image_fixture *f, const char *recipe, uint64_t sums[2]) {
-    static float field[12 * 12 * 12];
-    const int64_t dims[3] = {12, 12, 12}, first[3] = {0, 0, 0};
-    snow_comm *comm = NULL;
-    snow_insitu *insitu = NULL;
+    fixture *m = open_movie(f);
     snow_recipe r = {.size = sizeof r};
-    for (int i = 0; i < 12 * 12 * 12; i++)
-        field[i] = (float)(i % 12);
-    assert_int_equal(snow_comm_new_self(f->context, &comm), SNOW_STATUS_OK);
-    assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_STATUS_OK);
     assert_int_equal(
         snow_recipe_parse(f->context, "text", recipe, strlen(recipe), &r),
         SNOW_STATUS_OK);
     r.output = support_image_path(f, "s_%d.png");
     r.width = r.height = 160;
-    assert_int_equal(snow_insitu_set_grid(insitu, dims, NULL, NULL),
-                     SNOW_STATUS_OK);
-    assert_int_equal(snow_insitu_set_brick(insitu, 0, first, dims, NULL),
-                     SNOW_STATUS_OK);
-    assert_int_equal(
-        snow_insitu_set_voxels(insitu, 0, SNOW_TYPE_FLOAT32, field, NULL),
-        SNOW_STATUS_OK);
-    assert_int_equal(snow_recipe_apply(&r, insitu), SNOW_STATUS_OK);
+    assert_int_equal(snow_recipe_apply(&r, m->insitu), SNOW_STATUS_OK);
     for (int step = 0; step < 2; step++) {
         snow_image *image = NULL;
         char name[8] = {'s', '_', (char)('0' + step), '.', 'p', 'n', 'g', 0};
-        assert_int_equal(snow_insitu_step(insitu, step), SNOW_STATUS_OK);
+        assert_int_equal(snow_insitu_step(m->insitu, step), SNOW_STATUS_OK);
         assert_int_equal(
             snow_image_load(f->context, support_image_path(f, name), &image),
             SNOW_STATUS_OK);
@@ -64,9 +102,11 @@ static void make_steps(image_fixture *f, const char *recipe, uint64_t sums[2]) {
         remove(f->path);
     }
     snow_recipe_clear(&r);
-    snow_insitu_free(insitu);
-    snow_comm_free(comm);
+    close_movie(m);
 }
+
+/* --- texts of recipes ------------------------------------------------------
+ */
 
 static void a_picture_tells_its_grid_and_look(void **state) {
     uint64_t sums[2];
@@ -108,64 +148,23 @@ static void others_are_refused_in_situ(void **state) {
         {"{\"label-table\": \"t\"}", "\"label-table\" is for pictures"},
         {"{\"levels\": 1}", "\"levels\" is for pictures of files"}};
     for (size_t n = 0; n < sizeof texts / sizeof *texts; n++) {
-        snow_comm *comm = NULL;
-        snow_insitu *insitu = NULL;
+        fixture *m = open_movie(f);
         snow_recipe r = {.size = sizeof r};
         const char *text = texts[n][0];
-        assert_int_equal(snow_comm_new_self(f->context, &comm), SNOW_STATUS_OK);
-        assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_STATUS_OK);
         assert_int_equal(
             snow_recipe_parse(f->context, "text", text, strlen(text), &r),
             SNOW_STATUS_OK);
-        assert_int_equal(snow_recipe_apply(&r, insitu), SNOW_STATUS_BAD_USAGE);
-        assert_non_null(
-            strstr(snow_context_message(snow_comm_context(comm)), texts[n][1]));
+        assert_int_equal(snow_recipe_apply(&r, m->insitu),
+                         SNOW_STATUS_BAD_USAGE);
+        assert_non_null(strstr(snow_context_message(snow_comm_context(m->comm)),
+                               texts[n][1]));
         snow_recipe_clear(&r);
-        snow_insitu_free(insitu);
-        snow_comm_free(comm);
+        close_movie(m);
     }
 }
 
 /* --- recipes in files ------------------------------------------------------
  */
-
-/* A movie of one rank over a field that the test changes. */
-typedef struct fixture {
-    float field[12 * 12 * 12];
-    snow_comm *comm;
-    snow_insitu *insitu;
-    char recipe[512], said[512];
-} fixture;
-
-static void keep_text(void *user, const char *text) {
-    snprintf(user, 512, "%s", text);
-}
-
-static fixture *open_movie(image_fixture *f) {
-    static fixture m;
-    const int64_t dims[3] = {12, 12, 12}, first[3] = {0, 0, 0};
-    m = (fixture){.comm = NULL};
-    for (int i = 0; i < 12 * 12 * 12; i++)
-        m.field[i] = (float)(i % 12);
-    snprintf(m.recipe, sizeof m.recipe, "%s", support_image_path(f, "r.json"));
-    assert_int_equal(snow_comm_new_self(f->context, &m.comm), SNOW_STATUS_OK);
-    assert_int_equal(snow_insitu_new(m.comm, &m.insitu), SNOW_STATUS_OK);
-    snow_insitu_set_warning(m.insitu, keep_text, m.said);
-    assert_int_equal(snow_insitu_set_grid(m.insitu, dims, NULL, NULL),
-                     SNOW_STATUS_OK);
-    assert_int_equal(snow_insitu_set_brick(m.insitu, 0, first, dims, NULL),
-                     SNOW_STATUS_OK);
-    assert_int_equal(
-        snow_insitu_set_voxels(m.insitu, 0, SNOW_TYPE_FLOAT32, m.field, NULL),
-        SNOW_STATUS_OK);
-    return &m;
-}
-
-static void close_movie(fixture *m) {
-    snow_insitu_free(m->insitu);
-    snow_comm_free(m->comm);
-    remove(m->recipe);
-}
 
 /* Files of other lengths differ, whatever the clock's steps. */
 static void write_recipe(const fixture *m, const char *text) {
@@ -173,6 +172,17 @@ static void write_recipe(const fixture *m, const char *text) {
     assert_non_null(file);
     assert_true(fputs(text, file) >= 0);
     assert_int_equal(fclose(file), 0);
+}
+
+static void apply_recipe(const fixture *m, const char *text) {
+    write_recipe(m, text);
+    assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
+                     SNOW_STATUS_OK);
+}
+
+static void scale_field(fixture *m, float factor) {
+    for (int i = 0; i < VOXELS; i++)
+        m->field[i] *= factor;
 }
 
 /* The picture's pixels as a number. */
@@ -199,18 +209,14 @@ static void a_wrong_recipe_makes_no_picture(void **state) {
                          SNOW_STATUS_BAD_INPUT);
         assert_null(image);
     }
-    write_recipe(m, "{\"size\": 64}");
-    assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
-                     SNOW_STATUS_OK);
+    apply_recipe(m, "{\"size\": 64}");
     draw(m);
     close_movie(m);
 }
 
 static void a_recipe_that_changes_is_read_again(void **state) {
     fixture *m = open_movie(*state);
-    write_recipe(m, "{\"size\": 64, \"reread\": true}");
-    assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
-                     SNOW_STATUS_OK);
+    apply_recipe(m, "{\"size\": 64, \"reread\": true}");
     uint64_t before = draw(m);
     assert_true(draw(m) == before);
     write_recipe(m, "{\"size\": 64, \"reread\": true, \"azimuth\": 40}");
@@ -234,22 +240,17 @@ static void a_recipe_that_changes_is_read_again(void **state) {
 
 static void a_range_is_kept_and_widened_with_a_note(void **state) {
     fixture *m = open_movie(*state);
-    write_recipe(m, "{\"size\": 64, \"preset\": \"linear\"}");
-    assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
-                     SNOW_STATUS_OK);
+    apply_recipe(m, "{\"size\": 64, \"preset\": \"linear\"}");
     uint64_t before = draw(m);
-    for (int i = 0; i < 12 * 12 * 12; i++)
-        m->field[i] *= 0.5F;
+    scale_field(m, 0.5F);
     uint64_t darker = draw(m);
     assert_true(darker != before);
     assert_string_equal(m->said, "");
-    for (int i = 0; i < 12 * 12 * 12; i++)
-        m->field[i] *= 8;
+    scale_field(m, 8);
     draw(m);
     assert_non_null(strstr(m->said, "spread over 0 to 44"));
     m->said[0] = 0;
-    for (int i = 0; i < 12 * 12 * 12; i++)
-        m->field[i] /= 4;
+    scale_field(m, 0.25F);
     assert_true(draw(m) != before); /* 11 is no longer white */
     assert_string_equal(m->said, "");
     close_movie(m);
@@ -257,11 +258,9 @@ static void a_range_is_kept_and_widened_with_a_note(void **state) {
 
 static void a_range_begins_where_values_differ(void **state) {
     fixture *m = open_movie(*state);
-    write_recipe(m, "{\"size\": 64, \"preset\": \"linear\"}");
-    assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
-                     SNOW_STATUS_OK);
+    apply_recipe(m, "{\"size\": 64, \"preset\": \"linear\"}");
     for (int step = 0; step < 3; step++) { /* 300, 400, and 300 to 400 */
-        for (int i = 0; i < 12 * 12 * 12; i++)
+        for (int i = 0; i < VOXELS; i++)
             m->field[i] =
                 (float)(step == 2 ? 300 + 100 * (i % 2) : 300 + 100 * step);
         draw(m);
@@ -276,19 +275,11 @@ static uint64_t draw_blocks(image_fixture *f, const char *recipe, int first) {
     static uint8_t field[8 * 8 * 512];
     static const uint8_t labels[2][8] = {{0, 7, 0, 3, 0, 3, 0, 7},
                                          {0, 7, 0, 3, 0, 5, 0, 9}};
-    const int64_t dims[3] = {8, 8, 512}, none[3] = {0, 0, 0};
+    const int64_t dims[3] = {8, 8, 512};
     fixture *m = open_movie(f);
     uint64_t sum = 0;
-    write_recipe(m, recipe);
-    assert_int_equal(snow_insitu_set_grid(m->insitu, dims, NULL, NULL),
-                     SNOW_STATUS_OK);
-    assert_int_equal(snow_insitu_set_brick(m->insitu, 0, none, dims, NULL),
-                     SNOW_STATUS_OK);
-    assert_int_equal(
-        snow_insitu_set_voxels(m->insitu, 0, SNOW_TYPE_UINT8, field, NULL),
-        SNOW_STATUS_OK);
-    assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
-                     SNOW_STATUS_OK);
+    set_grid(m->insitu, dims, SNOW_TYPE_UINT8, field);
+    apply_recipe(m, recipe);
     for (int step = first; step < 2; step++) {
         for (int i = 0; i < 8 * 8 * 512; i++)
             field[i] = labels[step][i / (8 * 8 * 64)];
@@ -314,7 +305,7 @@ static void labels_that_appear_have_their_colours(void **state) {
 static uint64_t draw_field(image_fixture *f, const char *recipe) {
     fixture *m = open_movie(f);
     write_recipe(m, recipe);
-    for (int i = 0; i < 12 * 12 * 12; i++)
+    for (int i = 0; i < VOXELS; i++)
         m->field[i] = (float)(i % 12) + 0.5F;
     assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
                      SNOW_STATUS_OK);
@@ -335,20 +326,18 @@ static void a_shade_that_is_named_is_kept(void **state) {
 static void slices_beyond_the_grid_are_left_out_in_place(void **state) {
     fixture *m = open_movie(*state);
     static float more[14 * 12 * 12];
-    const int64_t dims[3] = {12, 12, 12}, first[3] = {0, 0, 0};
+    const int64_t first[3] = {0, 0, 0};
     const snow_halo halo = {{0, 0, 1}, {0, 0, 1}};
     snow_insitu_stats figures = {.size = sizeof figures};
-    write_recipe(m,
+    apply_recipe(m,
                  "{\"size\": 64, \"preset\": \"linear\", \"view\": \"iso\"}");
-    assert_int_equal(snow_recipe_apply_file(m->insitu, m->recipe),
-                     SNOW_STATUS_OK);
-    for (int i = 0; i < 12 * 12 * 12; i++)
+    for (int i = 0; i < VOXELS; i++)
         m->field[i] = (float)(i % 12 + i / 144);
     uint64_t plain = draw(m);
     for (int i = 0; i < 14 * 12 * 12; i++)
         more[i] = 1e9F;
     memcpy(more + 144, m->field, sizeof m->field);
-    assert_int_equal(snow_insitu_set_brick(m->insitu, 0, first, dims, &halo),
+    assert_int_equal(snow_insitu_set_brick(m->insitu, 0, first, cube, &halo),
                      SNOW_STATUS_OK);
     assert_int_equal(snow_insitu_set_voxels(m->insitu, 0, SNOW_TYPE_FLOAT32,
                                             more + 144, NULL),
@@ -386,9 +375,8 @@ typedef struct rereading {
 
 static snow_status describe_half(snow_insitu *insitu, const float *field) {
     const int rank = snow_comm_rank(snow_insitu_comm(insitu));
-    const int64_t dims[3] = {12, 12, 12}, half[3] = {12, 12, 6},
-                  first[3] = {0, 0, 6 * rank};
-    SNOW_TRY(snow_insitu_set_grid(insitu, dims, NULL, NULL));
+    const int64_t half[3] = {12, 12, 6}, first[3] = {0, 0, 6 * rank};
+    SNOW_TRY(snow_insitu_set_grid(insitu, cube, NULL, NULL));
     SNOW_TRY(snow_insitu_set_brick(insitu, 0, first, half, NULL));
     return snow_insitu_set_voxels(insitu, 0, SNOW_TYPE_FLOAT32,
                                   field + rank * 6 * 144, NULL);
@@ -440,7 +428,7 @@ static void a_recipe_that_fails_on_one_rank_is_applied_on_none(void **state) {
     const snow_allocator allocator = {allocate_little, release, NULL};
     snow_context *context = NULL;
     char tf[128];
-    for (int i = 0; i < 12 * 12 * 12; i++)
+    for (int i = 0; i < VOXELS; i++)
         r.files.field[i] = (float)(i % 12);
     snprintf(r.files.recipe, sizeof r.files.recipe, "%s/r.json", f->folder);
     snprintf(tf, sizeof tf, "%s/look.csv", f->folder);
@@ -510,47 +498,33 @@ static int64_t sum_of_counts(void) {
 static void count_step(image_fixture *f, counting *c) {
     const snow_allocator allocator = {picky_allocate, picky_release,
                                       &c->memory};
-    const int64_t first[3] = {0};
     const size_t size = (size_t)(c->dims[0] * c->dims[1] * c->dims[2]);
     unsigned char *field = malloc(size);
-    char recipe[512], name[32], text[1024], path[512];
+    char name[32], text[1024];
     snow_context *context = NULL;
-    snow_comm *comm = NULL;
-    snow_insitu *insitu = NULL;
     assert_non_null(field);
     for (size_t n = 0; n < size; n++)
         field[n] = (unsigned char)(n % 200);
-    snprintf(recipe, sizeof recipe, "%s", support_image_path(f, "r.json"));
+    assert_int_equal(snow_context_new(&allocator, &context), SNOW_STATUS_OK);
+    fixture *m = open_in(f, context);
+    set_grid(m->insitu, c->dims, SNOW_TYPE_UINT8, field);
     snprintf(name, sizeof name, "c_%%d%s", c->suffix);
-    snprintf(path, sizeof path, "%s", support_image_path(f, name));
     snprintf(text, sizeof text,
              "{\"size\": 16, \"reread\": true, \"range\": [0, 255], "
              "\"overwrite\": true, \"output\": \"%s\"}",
-             path);
-    FILE *file = fopen(recipe, "w");
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-    assert_int_equal(snow_context_new(&allocator, &context), SNOW_STATUS_OK);
-    assert_int_equal(snow_comm_new_self(context, &comm), SNOW_STATUS_OK);
-    assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_STATUS_OK);
-    snow_insitu_set_warning(insitu, keep_text, c->said);
-    snow_insitu_set_grid(insitu, c->dims, NULL, NULL);
-    snow_insitu_set_brick(insitu, 0, first, c->dims, NULL);
-    snow_insitu_set_voxels(insitu, 0, SNOW_TYPE_UINT8, field, NULL);
-    assert_int_equal(snow_recipe_apply_file(insitu, recipe), SNOW_STATUS_OK);
-    if (snow_insitu_step(insitu, 0) != SNOW_STATUS_OK)
-        fail_msg("%s", snow_insitu_message(insitu));
+             support_image_path(f, name));
+    apply_recipe(m, text);
+    if (snow_insitu_step(m->insitu, 0) != SNOW_STATUS_OK)
+        fail_msg("%s", snow_insitu_message(m->insitu));
     snprintf(name, sizeof name, "c_0%s", c->suffix);
-    snprintf(path, sizeof path, "%s", support_image_path(f, name));
+    const char *path = support_image_path(f, name);
     if (strcmp(c->suffix, ".png") == 0) {
         read_comment(path);
         c->counted = sum_of_counts();
     }
     assert_int_equal(remove(path), 0);
-    remove(recipe);
-    snow_insitu_free(insitu);
-    snow_comm_free(comm);
+    memcpy(c->said, m->said, sizeof c->said);
+    close_movie(m);
     snow_context_free(context);
     free(field);
 }

@@ -13,7 +13,8 @@ static void *allocate_or_fail(void *user, size_t bytes) {
     support_failing *f = user;
     if (fails(f, f->allocations++, bytes))
         return NULL;
-    f->held++;
+    if (++f->held > f->most_held)
+        f->most_held = f->held;
     return malloc(bytes);
 }
 

@@ -9,8 +9,8 @@
 typedef struct support_failing {
     long failing;
     bool for_good;
-    size_t largest;         /* bytes */
-    long allocations, held; /* so far */
+    size_t largest;                    /* bytes */
+    long allocations, held, most_held; /* so far */
 } support_failing;
 
 /* Functions over it, which has to outlive them. */
