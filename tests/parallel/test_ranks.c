@@ -3,7 +3,7 @@
  */
 #include "support/failing.h"
 #include "support/scenario.h"
-#include "support/volumes.h"
+#include "support/files.h"
 
 #include <math.h>
 
@@ -187,10 +187,10 @@ static reference_scene scene_of(const kind *k, int n) {
 }
 
 /* Writes the second volume; p->layer lasts as long as the next. */
-static void add_layer(support_place *place, scenario *p,
+static void add_layer(support_files *place, scenario *p,
                       const reference_scene *front) {
     snow_volume *volume;
-    p->layer = support_place_path(place, "layer.mha");
+    p->layer = support_path(place, "layer.mha");
     p->layer_look = model_transfer(place->context, front);
     assert_int_equal(
         snow_volume_wrap(place->context, &front->info, front->voxels, &volume),
@@ -215,7 +215,7 @@ static void measure_move(snow_context *context, scenario *p,
 }
 
 /* Each scene with each number of ranks, all cuts in turn. */
-static void sweep(support_place *place, const kind *k) {
+static void sweep(support_files *place, const kind *k) {
     sweep_summary summary = {0};
     for (int at = 0; at < k->scenes * COUNTS; at++) {
         const int n = at / COUNTS, ranks = rank_counts[at % COUNTS];
@@ -294,7 +294,7 @@ static void look_around(const char *name, const snow_volume *volume,
 }
 
 static void phantoms_are_seen_alike_by_many_ranks(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const struct {
         const char *name;
         int64_t dims[3];
@@ -504,7 +504,7 @@ static long draw_with_little(scenario *p, long failing) {
 /* Ranks' allocations come in any order, so a number is another one each time;
  * what counts is that all ranks end, and nothing is left. */
 static void ranks_without_memory_fail_together(void **state) {
-    support_place *place = *state;
+    support_files *place = *state;
     static const kind cases[] = {
         {"shear-warp", .mode = SNOW_MODE_OVER},
         {"deterministic", .mode = SNOW_MODE_OVER, .deterministic = true},
@@ -543,8 +543,8 @@ static void ranks_without_memory_fail_together(void **state) {
 
 int main(int argc, char **argv) {
 #define HERE(test)                                             \
-    cmocka_unit_test_setup_teardown(test, support_place_begin, \
-                                    support_place_end)
+    cmocka_unit_test_setup_teardown(test, support_files_begin, \
+                                    support_files_end)
     const struct CMUnitTest tests[] = {
         HERE(any_number_of_ranks_makes_the_serial_picture),
         HERE(phantoms_are_seen_alike_by_many_ranks),

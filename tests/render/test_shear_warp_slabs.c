@@ -2,7 +2,7 @@
  * and of two files in one picture: the bits of what is in memory, which
  * test_truth.c holds against the truth. */
 #include "support/scenario.h"
-#include "support/volumes.h"
+#include "support/files.h"
 
 #include <math.h>
 
@@ -21,23 +21,23 @@ typedef struct pair {
     snow_volume_options options; /* of both but for the crop */
 } pair;
 
-static void save(const support_place *place, const reference_scene *s,
+static void save(const support_files *place, const reference_scene *s,
                  const char *name) {
     snow_volume *volume;
     assert_int_equal(
         snow_volume_wrap(place->context, &s->info, s->voxels, &volume),
         SNOW_STATUS_OK);
-    if (snow_volume_save(volume, support_place_path(place, name), true) !=
+    if (snow_volume_save(volume, support_path(place, name), true) !=
         SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(place->context));
     snow_volume_close(volume);
 }
 
 /* In memory (0), or in slabs of so many bytes. */
-static snow_volume *open_by(support_place *place, const char *name,
+static snow_volume *open_by(support_files *place, const char *name,
                             const snow_volume_options *options,
                             uint64_t bytes) {
-    const char *path = support_place_path(place, name);
+    const char *path = support_path(place, name);
     snow_volume *volume;
     if ((bytes ? snow_volume_open_streamed(place->context, path, options, bytes,
                                            &volume)
@@ -48,7 +48,7 @@ static snow_volume *open_by(support_place *place, const char *name,
 }
 
 /* The second volume, in memory on the grid of the first. */
-static snow_volume *open_front(support_place *place, const pair *p,
+static snow_volume *open_front(support_files *place, const pair *p,
                                const snow_volume *base, uint64_t bytes) {
     snow_volume_options own = p->options;
     memset(own.crop, 0, sizeof own.crop);
@@ -69,7 +69,7 @@ static snow_volume *open_front(support_place *place, const pair *p,
 }
 
 /* By a frame that has made others. */
-static snow_image *picture_of(support_place *place, snow_frame *frame,
+static snow_image *picture_of(support_files *place, snow_frame *frame,
                               const pair *p, uint64_t bytes) {
     snow_volume *base = open_by(place, "base.mha", &p->options, bytes);
     snow_volume *front = p->layered ? open_front(place, p, base, bytes) : NULL;
@@ -106,7 +106,7 @@ static void compare_pictures(const pair *p, int n, snow_image *a,
 
 /* Slabs of so many slices, ghosts included, twice: what the first picture has
  * read may serve the second. */
-static void check_slabs(support_place *place, snow_frame *frame, const pair *p,
+static void check_slabs(support_files *place, snow_frame *frame, const pair *p,
                         int n) {
     static const uint64_t slices[] = {1, 7, 12, 1000};
     const uint64_t bytes = slices[(size_t)(n + n / 4) % COUNT(slices)] * 25 *
@@ -129,7 +129,7 @@ static void check_slabs(support_place *place, snow_frame *frame, const pair *p,
     snow_image_free(a);
 }
 
-static pair pair_of(support_place *place, int n, bool layered) {
+static pair pair_of(support_files *place, int n, bool layered) {
     static char mask[256];
     pair p = {.base = scenario_scene(n, 29), .layered = layered};
     p.options = (snow_volume_options){.size = sizeof p.options};
@@ -143,7 +143,7 @@ static pair pair_of(support_place *place, int n, bool layered) {
         p.options.crop[2][0] = layered ? 0 : 3;
         p.options.crop[2][1] = 28;
         snprintf(mask, sizeof mask, "%s",
-                 support_place_path(place, "base.mha"));
+                 support_path(place, "base.mha"));
         p.options.mask = p.base.masked ? mask : NULL;
     }
     if (layered) {
@@ -154,7 +154,7 @@ static pair pair_of(support_place *place, int n, bool layered) {
     return p;
 }
 
-static void check_pictures(support_place *place, bool projected, bool layered) {
+static void check_pictures(support_files *place, bool projected, bool layered) {
     static const snow_mode modes[] = {SNOW_MODE_MIP, SNOW_MODE_MEAN,
                                       SNOW_MODE_MINIP, SNOW_MODE_SUM,
                                       SNOW_MODE_ISO};
@@ -189,8 +189,8 @@ static void slabs_of_two_files_make_the_same_bits(void **state) {
 }
 
 #define TEST(name)                                             \
-    cmocka_unit_test_setup_teardown(name, support_place_begin, \
-                                    support_place_end)
+    cmocka_unit_test_setup_teardown(name, support_files_begin, \
+                                    support_files_end)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
