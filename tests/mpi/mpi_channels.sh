@@ -42,8 +42,6 @@ as_one "a plane, from an eye" 2 1/255 "${many[@]}" --clip 1,0.5,0,30 \
 as_one "maxima" "$MOST" bits "${many[@]}" -m mip --elevation 20 --deterministic
 # A mask cuts all channels.
 "$TOOL" convert c.npy --channel 1 -o seg.nrrd -q
-"$TOOL" convert c.npy --channel 1 --time 1 -o other.npy -q
-as_one "a mask" 3 1/255 "${many[@]}" --mask other.npy --labels 20:200
 as_one "a deterministic mask" 3 bits "${many[@]}" --mask seg.nrrd \
     --labels 9:30 --deterministic
 run 0 "without it" "$TOOL" "${many[@]}" -q --deterministic -y -o whole.npy
@@ -58,6 +56,5 @@ says "$(grep -o 'channels 0 red 20..200, 1 #20ff40 [^;]*' "$ERR" | head -1)"
 WAY="--memory 7M" as_one "a large one with little memory" 2 1/255 \
     render big.npy "${list[@]}" -s 60x50 --azimuth 20
 
-frames_as_one "a turntable" 3 turntable c.npy --frames 3 "${list[@]}"
 frames_as_one "a movie" 3 movie c.npy -m mip "${list[@]}"
 finish

@@ -28,8 +28,6 @@ fails 3 "a file that is missing on one machine" \
 head -c 30000 a/v.nrrd >b/v.nrrd
 fails 3 "a file that is cut on one machine" '^snowglass: rank [12]: v.nrrd: ' \
     job v.nrrd -o out.png -q
-fails 3 "a movie of it" '^snowglass: rank [12]: v.nrrd: ' \
-    job turntable v.nrrd --frames 3 -o out_%d.png -q
 run 0 "another volume" "$TOOL" phantom head --dims 40x40x31 -q -y -o b/v.nrrd
 fails 3 "machines with different files" '^snowglass: .*v.nrrd' \
     job v.nrrd -o out.png -q
@@ -55,10 +53,8 @@ run 0 "a copy" job large.nrrd -o ../out.png
 says "was changed at another time on some ranks"
 rm -f out.png
 poke b/raw.raw 1
-fails 3 "voxels beside a header" '^snowglass: v.mhd: is not the same' \
-    job v.mhd -o out.png -q
-fails 3 "the same, clipped" '^snowglass: v.mhd: is not the same' \
-    job v.mhd -o out.png -q --clip=1,0,0,20
+fails 3 "voxels beside a header, clipped" \
+    '^snowglass: v.mhd: is not the same' job v.mhd -o out.png -q --clip=1,0,0,20
 cp a/v.nrrd b/v.nrrd
 "$TOOL" convert a/v.nrrd -q -y -o a/mask.nrrd
 cp a/mask.nrrd b/mask.nrrd
@@ -83,12 +79,11 @@ differ() {
     timeout -k 5 "$LIMIT" "$MPIEXEC" -n 2 "$MPI_TOOL" render a/v.nrrd -o out.png \
         -q : -n 1 "$MPI_TOOL" "$@"
 }
-for word in --wrong render\ --wrong render\ a/v.nrrd\ --cut\ wide; do
+for word in --wrong render\ a/v.nrrd\ --cut\ wide; do
     # shellcheck disable=SC2086
     fails 2 "rank 2 with '$word'" '^snowglass: rank 2: ' differ $word
 done
-for word in "info a/v.nrrd" "turntable a/v.nrrd -o x_%d.png" "help" \
-    "render --help" "bench ranks"; do
+for word in "turntable a/v.nrrd -o x_%d.png" "render --help" "bench ranks"; do
     # The other MPI's benchmarks are not built.
     [ "$word" != "bench ranks" ] || [ -e "$(dirname "$MPI_TOOL")/snowglass-bench-mpi" ] ||
         continue

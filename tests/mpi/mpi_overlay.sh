@@ -7,8 +7,7 @@ command -v python3 >/dev/null || {
     exit 77
 }
 
-# A volume; labels on its grid, and along x the other way; values on a coarser
-# grid.
+# A volume; labels on its grid, and along x the other way.
 python3 - <<'END'
 nx, ny, nz = 40, 36, 44
 
@@ -27,13 +26,10 @@ def label(x, y, z):
     return (3 <= x < 16 and 4 <= y < 18) + 3 * (22 <= x < 36 and 10 <= z < 30)
 
 grid = [(x, y, z) for z in range(nz) for y in range(ny) for x in range(nx)]
-half = [(x, y, z) for z in range(22) for y in range(18) for x in range(20)]
 write("v.nrrd", (nx, ny, nz), (1, 1, 1), (5, 6, 7), [value(*p) for p in grid], 0)
 write("seg.nrrd", (nx, ny, nz), (1, 1, 1), (5, 6, 7), [label(*p) for p in grid], 1)
 write("flip.nrrd", (nx, ny, nz), (-1, 1, 1), (5 + nx - 1, 6, 7),
       [label(nx - 1 - x, y, z) for x, y, z in grid], 1)
-write("pet.nrrd", (20, 18, 22), (2, 2, 2), (5.5, 6.5, 7.5),
-      [min(255, x * y + z * x) for x, y, z in half], 0)
 END
 
 look=(-s 80x70 --range 20,120 --opacity 20:0,60:0.05,120:0.2 --azimuth 33)
@@ -41,10 +37,8 @@ seg=(render v.nrrd --overlay seg.nrrd "${look[@]}")
 as_one "labels on the grid" 3 bits "${seg[@]}" --deterministic
 run 0 "without" "$TOOL" render v.nrrd "${look[@]}" -q --deterministic -o none.npy
 check "are seen" [ -n "$(cmp one.npy none.npy)" ]
-as_one "labels the other way" "$MOST" 1/255 render v.nrrd --overlay flip.nrrd \
-    "${look[@]}"
-WAY="--cut bricks" as_one "a coarser grid" "$MOST" 1/255 render v.nrrd \
-    --overlay pet.nrrd "${look[@]}"
+WAY="--cut bricks" as_one "labels the other way" "$MOST" 1/255 render v.nrrd \
+    --overlay flip.nrrd "${look[@]}"
 as_one "a plane cuts both" "$MOST" 1/255 "${seg[@]}" --labels 3 \
     --clip 1,0.5,0,30 --perspective
 frames_as_one "a turntable" 3 turntable v.nrrd --overlay seg.nrrd --frames 3
@@ -53,8 +47,6 @@ frames_as_one "a turntable" 3 turntable v.nrrd --overlay seg.nrrd --frames 3
 "$TOOL" convert v.nrrd -o v.npy -q
 as_one "a crop of both, one without a place" 3 1/255 render v.npy \
     --spacing 0.5x0.5x0.9 --overlay bare.npy "${look[@]}" --crop 3:36,0:30,4:40
-as_one "a mask without a place" 3 1/255 render v.npy --spacing 0.5x0.5x0.9 \
-    --mask bare.npy --labels 1 "${look[@]}"
 
 run 0 "a slice alone" "$TOOL" slice v.nrrd --overlay bare.npy -q -y -o one.png
 run 0 "a slice by 2" launch 2 "$MPI_TOOL" slice v.nrrd --overlay bare.npy -q -y \

@@ -7,21 +7,12 @@ oblique=(--azimuth 33 --elevation 21)
 step=1/255
 
 as_one "along an axis" 2 $step "${head[@]}" --view +x
-as_one "from an eye" 3 $step "${head[@]}" --view iso --perspective
-WAY="--cut bricks" as_one "bricks" "$MOST" $step "${head[@]}" "${oblique[@]}" \
-    --roll 10 --zoom 1.3
 WAY="--cut bricks" as_one "footprints" "$MOST" 1e-6 "${head[@]}" \
     "${oblique[@]}" --method footprint --perspective 60
-as_one "deterministic footprints" 3 bits "${head[@]}" --deterministic \
-    --method footprint
 as_one "deterministic values" 3 bits "${head[@]}" "${oblique[@]}" \
     --deterministic --method shear-warp
-ways=(radix:3)
-long_tier && ways+=(tree swap direct)
-for way in "${ways[@]}"; do
-    WAY="--cut equal --combine $way" as_one "$way" "$MOST" $step "${head[@]}" \
-        --azimuth 70
-done
+WAY="--cut equal --combine radix:3" as_one "a way to combine" "$MOST" $step \
+    "${head[@]}" --azimuth 70
 
 # Ranks without voxels of their own know the planes too.
 run 0 "a thin volume" "$TOOL" phantom head --dims 12x10x3 -o thin.nrrd -y
@@ -41,8 +32,6 @@ check "bytes of EA are those of one process" [ "$(number ea)" = \
 # --- modes and depths ---------------------------------------------------------
 
 as_one "a maximum" 3 bits "${head[@]}" "${oblique[@]}" -m mip --perspective
-# In data units: sums of 18,000.
-as_one "a sum" "$MOST" 0.1 "${head[@]}" "${oblique[@]}" -m sum
 as_one "a deterministic mean" 3 bits "${head[@]}" -m mean --deterministic
 # depths NAME TOLERANCE OPTION...: a picture's depths are those of one as well.
 depths() {
@@ -137,8 +126,8 @@ refused 3 "a mask of another grid" 'the mask has 40x36x44 voxels' \
 peak() { grep -o '"peak": [0-9]*' "$1" | grep -o '[0-9]*'; }
 "$TOOL" phantom engine --dims 160x150x170 -q -o slab.nrrd
 "$TOOL" convert slab.nrrd -o packed.nii.gz -q
-for way in "slab.nrrd --cut equal --mode mip" "packed.nii.gz --shade phong" \
-    "slab.nrrd --mode iso --iso 90 --perspective"; do
+for way in "packed.nii.gz --shade phong" \
+    "slab.nrrd --cut equal --mode iso --iso 90 --perspective"; do
     # shellcheck disable=SC2086
     run 0 "$way in memory" launch 3 "$MPI_TOOL" $way --azimuth 70 -s 64x64 -q -y \
         -o one.npy

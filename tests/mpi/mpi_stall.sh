@@ -1,16 +1,17 @@
 #!/bin/bash
 # mpi_stall.sh - one rank of four is stopped: the job ends when its timeout is
 # over, with one message that names the rank, and leaves nothing unfinished. A
-# rank that goes on in time is waited for.
+# rank that goes on in time is waited for.  One that is killed, or told to end,
+# ends the job at once.
 . "$(dirname "$0")/../support/mpi.sh"
 need_proc
 LIMIT=540
 
-# begin WHEN COMMAND...: starts four ranks, and stops rank $RANK once WHEN is
-# true.
+# begin SIGNAL WHEN COMMAND...: starts four ranks, and sends rank $RANK a signal
+# once WHEN is true.
 begin() {
-    local when=$1 tries=0
-    shift
+    local signal=$1 when=$2 tries=0
+    shift 2
     victim=
     launch 4 "$@" >"$OUT" 2>"$ERR" </dev/null &
     job=$!
@@ -20,13 +21,13 @@ begin() {
         eval "$when" && victim=$(process_of_rank "$RANK")
     done
     check "$NAME: there is a rank $RANK" [ -n "$victim" ]
-    [ -n "$victim" ] && kill -STOP "$victim"
+    [ -n "$victim" ] && kill "-$signal" "$victim"
 }
 
 # stalled WHEN COMMAND...
 stalled() {
     local started
-    begin "$@" --timeout 9
+    begin STOP "$@" --timeout 9
     started=$(date +%s)
     wait "$job"
     check "$NAME: the job fails" [ $? -ne 0 ]
@@ -46,7 +47,7 @@ stalled() {
 }
 
 movie="turntable phantom:head --dims 40x40x40 -s 64x64 --frames 100000 -q -y"
-for RANK in 2 0 3; do
+for RANK in 2 0; do # 0 writes
     NAME="rank $RANK of a movie"
     rm -f f_*
     # shellcheck disable=SC2086
@@ -70,7 +71,7 @@ line_comes() {
 for timeout in 24 0; do
     NAME="a rank that goes on, timeout $timeout" RANK=2
     rm -f f_*
-    begin '[ -e f_000003.png ]' "$MPI_TOOL" turntable phantom:head \
+    begin STOP '[ -e f_000003.png ]' "$MPI_TOOL" turntable phantom:head \
         --dims 40x40x40 -s 64x64 --frames 400 -y -o f_%06d.png \
         --timeout $timeout
     if [ $timeout -eq 0 ]; then
@@ -84,6 +85,41 @@ for timeout in 24 0; do
     check "$NAME: the job succeeds" [ $? -eq 0 ]
     check "$NAME: its frames are there" [ -e f_000399.png ]
 done
+# ended SIGNAL WHEN COMMAND...: how long the others go on.
+ended() {
+    local signal=$1 started code
+    NAME="rank $RANK, $signal, $2"
+    begin "$@"
+    started=$(date +%s)
+    wait "$job"
+    code=$?
+    check "$NAME: the job fails" [ $code -ne 0 ]
+    check "$NAME: within 30 s" [ $(($(date +%s) - started)) -le 30 ]
+    if [ "$signal" = TERM ]; then
+        is_open_mpi && check "$NAME: as when one process is" [ $code -eq 130 ]
+    elif is_open_mpi; then
+        check "$NAME: mpirun names the rank" grep -q 'rank 2 .*Killed' "$ERR"
+    else # MPICH's names the process and the machine
+        check "$NAME: mpirun tells of it" \
+            grep -q 'BAD TERMINATION' "$OUT" "$ERR"
+    fi
+    check "$NAME: nothing half written" \
+        [ -z "$(find . -name '*snow-*' -o -name out.png)" ]
+}
+rm -f f_*
+for signal in KILL TERM; do
+    RANK=2 ended $signal 'sleep 1' "$MPI_TOOL" phantom:head --dims 600x600x600 \
+        -o out.png -q
+done
+# shellcheck disable=SC2086
+RANK=0 ended TERM '[ -e g_000003.png ]' "$MPI_TOOL" $movie -o g_%06d.png
+# shellcheck disable=SC2086
+RANK=2 ended KILL '[ -e f_000003.png ]' "$MPI_TOOL" $movie -o f_%06d.png
+for frame in f_*.png g_*.png; do
+    "$TOOL" compare "$frame" "$frame" >/dev/null 2>&1 ||
+        fail "$frame is whole"
+done
+
 run 2 "a timeout below 0" launch 2 "$MPI_TOOL" phantom:head --timeout -1 \
     -o out.png
 says '^snowglass: --timeout'
