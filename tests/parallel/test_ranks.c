@@ -172,7 +172,8 @@ static reference_scene scene_of(const kind *k, int n) {
     s.settings.deterministic = k->deterministic;
     if (method != SNOW_METHOD_AUTO)
         s.settings.method = method;
-    if (s.settings.method != SNOW_METHOD_SHEAR_WARP) {
+    if (s.settings.method != SNOW_METHOD_SHEAR_WARP &&
+        k->mode == SNOW_MODE_OVER) {
         s.settings.kernel = (snow_kernel)(n / 2 % 5);
         s.settings.footprint = n % 7 == 3 ? 4 : 2;
     }

@@ -539,7 +539,8 @@ static snow_status draw_early(snow_comm *comm, snow_combiner *combiner,
 /* Each picture at once, and twice while it is drawn, so that what was counted
  * in the one is right for the other. */
 static snow_status draw_both_ways(snow_comm *comm, snow_combiner *const both[2],
-                                  const job *j, const way *w, int turn) {
+                                  const job *j, const way *w, int turn,
+                                  int64_t *early) {
     const size_t stride = (size_t)(j->width * j->channels);
     sketch s = {j, comm->rank, local_image(j, comm->rank, stride), stride,
                 .lag = turn % 3};
@@ -548,7 +549,6 @@ static snow_status draw_both_ways(snow_comm *comm, snow_combiner *const both[2],
     order.regions = (snow_image_partition)(turn % 3);
     snow_image_region region;
     float *wanted = NULL;
-    int64_t early = 0;
     snow_status status = snow_exchange(both[0], &order, &region);
     if (status == SNOW_STATUS_OK)
         status = gather_pieces(comm, both[0], j, &region, &wanted);
@@ -559,16 +559,17 @@ static snow_status draw_both_ways(snow_comm *comm, snow_combiner *const both[2],
     SNOW_TRY(status);
     CHECK(snow_exchange_get_figures(both[0])->early == 0);
     CHECK(same_pieces(comm, both));
-    early = snow_exchange_get_figures(both[1])->early;
-    SNOW_TRY(snow_comm_reduce_ints(comm, &early, 1, SNOW_REDUCE_SUM));
-    /* Only what cannot be cut into parts of the picture is not early. */
-    CHECK((comm->ranks > 1 && w->method != SNOW_COMBINE_TREE) == (early > 0));
+    /* A tree cannot cut the picture into parts. */
+    CHECK(w->method != SNOW_COMBINE_TREE ||
+          snow_exchange_get_figures(both[1])->early == 0);
+    *early += snow_exchange_get_figures(both[1])->early;
     return SNOW_STATUS_OK;
 }
 
 static snow_status draw_all_ways(snow_comm *comm, void *user) {
     snow_combiner *both[2] = {NULL, NULL};
     snow_status status = snow_combiner_new(comm, &both[0]);
+    int64_t early = 0;
     (void)user;
     if (status == SNOW_STATUS_OK)
         status = snow_combiner_new(comm, &both[1]);
@@ -576,10 +577,13 @@ static snow_status draw_all_ways(snow_comm *comm, void *user) {
         const int turn = (int)i + comm->ranks;
         job j = job_of(comm, 37 + (int)i, turn % 2 ? 70 : 41, turn);
         j.channels = turn % 4 < 2 ? 4 : 2;
-        status = draw_both_ways(comm, both, &j, &ways[i], turn);
+        status = draw_both_ways(comm, both, &j, &ways[i], turn, &early);
     }
+    if (status == SNOW_STATUS_OK)
+        status = snow_comm_reduce_ints(comm, &early, 1, SNOW_REDUCE_SUM);
     snow_combiner_free(both[0]);
     snow_combiner_free(both[1]);
+    CHECK(status != SNOW_STATUS_OK || (comm->ranks > 1) == (early > 0));
     return status;
 }
 

@@ -1,15 +1,13 @@
 /* tests/stages/test_pixels.c - the inner loops of the exchange on every level
  * of vectors, against plain loops over single pixels: the same bits and the
  * same pixels for masks of every density, for runs of every length that begin
- * anywhere, and for numbers at the ends of their range.  It also tells what
- * each level takes. */
+ * anywhere, and for numbers at the ends of their range. */
 #include "support/support.h"
 
 #include "combine/active.h"
 #include "combine/pixels.h"
 
 #include <float.h>
-#include <time.h>
 
 #define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])
 
@@ -316,75 +314,10 @@ static void every_level_lays_the_same_pixels(void **state) {
         }
 }
 
-/* --- what it takes -------------------------------------------------------- */
-
-#define TIMED (1 << 14) /* pixels; they stay in a second-level cache */
-
-static double cpu_nanoseconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return 1e9 * (double)now.tv_sec + (double)now.tv_nsec;
-}
-
-/* Nanoseconds for each pixel looked at, and for each laid: the least of some
- * runs. */
-static void time_level(const snow_pixel_loops *loops, const float *pixels,
-                       double *scan, double *lay) {
-    static uint64_t words[TIMED / 64], merged[TIMED / 64];
-    static float packed[TIMED * 4 + SLACK], out[TIMED * 4 + SLACK];
-    *scan = *lay = 1e30;
-    for (int run = 0; run < 30; run++) {
-        int64_t laid = 0;
-        memset(words, 0, sizeof words);
-        double start = cpu_nanoseconds();
-        loops->scan(pixels, 0, TIMED, words, packed);
-        double seen = cpu_nanoseconds();
-        snow_active layers[4];
-        for (int n = 0; n < 4; n++)
-            layers[n] =
-                (snow_active){0, TIMED, words, packed, packed, false, 0};
-        loops->merge(layers, 4, 0, TIMED, merged, out, true, &laid);
-        double done = (cpu_nanoseconds() - seen) / (double)laid;
-        seen = (seen - start) / TIMED;
-        *scan = seen < *scan ? seen : *scan;
-        *lay = done < *lay ? done : *lay;
-    }
-}
-
-static void each_level_is_timed(void **state) {
-    static float pixels[TIMED * 4];
-    static const pattern kinds[] = {SOME, RUNS, ALL};
-    static const char *const names[] = {"30 of 100", "runs", "all"};
-    (void)state;
-    for (int channels = 2; channels <= 4; channels += 2)
-        for (size_t k = 0; k < COUNT_OF(kinds); k++) {
-            uint64_t random = 3;
-            for (int64_t i = 0; i < TIMED; i++) {
-                bool on = is_active(kinds[k], &random, i);
-                for (int c = 0; c < channels; c++)
-                    pixels[i * channels + c] = on ? 0.25f : 0;
-            }
-            for (size_t l = 0; l < COUNT_OF(levels); l++) {
-                double scan, lay;
-                if (!snow_isa_runs(levels[l]))
-                    continue;
-                time_level(
-                    snow_pixels_pick(levels[l], channels, SNOW_COMPOSITE_OVER),
-                    pixels, &scan, &lay);
-                print_message("             %d floats, %-9s %-7s %.2f ns to "
-                              "look at a pixel, %.2f to lay one\n",
-                              channels, names[k], snow_isa_name(levels[l]),
-                              scan, lay);
-                assert_true(scan > 0 && lay > 0);
-            }
-        }
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_level_sees_and_packs_the_same_pixels),
         cmocka_unit_test(every_level_lays_the_same_pixels),
-        cmocka_unit_test(each_level_is_timed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

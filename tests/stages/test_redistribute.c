@@ -190,6 +190,8 @@ static void any_cut_moves_to_any_boxes(void **state) {
     (void)state;
     static const int ranks[] = {1, 2, 3, 4, 5, 7, 8, 13, 16, 27, 33};
     for (uint64_t seed = 0; seed < 66; seed++) {
+        if (!support_takes((size_t)seed, 5))
+            continue;
         int count = ranks[seed % 11];
         scene s = make_scene(count, 1 + (int)(seed * 5 % BOXES_MOST), seed);
         run_scene(&s);
@@ -298,85 +300,6 @@ static void what_has_moved_gives_its_memory_back(void **state) {
     snow_context_free(context);
 }
 
-/* A box with so many voxels more on every side, as far as the grid goes. */
-static snow_box grow(const scene *s, snow_box box, int64_t by) {
-    for (int i = 0; i < 3; i++) {
-        int64_t end = box.first[i] + box.count[i] + by;
-        box.first[i] = box.first[i] > by ? box.first[i] - by : 0;
-        box.count[i] = (end < s->dims[i] ? end : s->dims[i]) - box.first[i];
-    }
-    return box;
-}
-
-/* Thin boxes: ghosts come from neighbours of neighbours too. */
-static void ghost_voxels_come_from_all_around(void **state) {
-    (void)state;
-    for (int ranks = 1; ranks <= 33; ranks += 8)
-        for (int64_t by = 1; by <= 4; by += 3) {
-            scene s = make_scene(ranks, ranks, (uint64_t)(ranks + by));
-            for (int n = 0; n < ranks; n++) {
-                s.owner[n] = n;
-                s.wanted[n] = grow(&s, s.box[n], by);
-            }
-            run_scene(&s);
-        }
-}
-
-/* What all ranks answer to a scene that is wrong. */
-typedef struct refusal {
-    scene scene;
-    snow_status status[8];
-    bool given[8]; /* the message has the word */
-    const char *word;
-} refusal;
-
-static snow_status plan_wrong(snow_comm *comm, void *user) {
-    refusal *r = user;
-    int me = snow_comm_rank(comm);
-    snow_voxels *voxels = NULL;
-    SNOW_TRY(snow_voxels_new(comm, &voxels));
-    r->status[me] =
-        snow_voxels_plan(voxels, &r->scene.box[me], 1, &r->scene.wanted[me]);
-    r->given[me] =
-        strstr(snow_context_message(snow_comm_context(comm)), r->word) != NULL;
-    snow_voxels_free(voxels);
-    return SNOW_STATUS_OK;
-}
-
-static void expect_refusal(refusal *r) {
-    snow_context *context = support_context();
-    assert_int_equal(
-        snow_comm_run_threads(context, r->scene.ranks, plan_wrong, r),
-        SNOW_STATUS_OK);
-    for (int n = 0; n < r->scene.ranks; n++) {
-        assert_int_equal(r->status[n], SNOW_STATUS_BAD_USAGE);
-        assert_true(r->given[n]);
-    }
-    snow_context_free(context);
-}
-
-static void overlapping_boxes_are_refused_everywhere(void **state) {
-    (void)state;
-    refusal r = {.word = "belongs to two ranks"};
-    r.scene = (scene){.ranks = 3, .boxes = 3};
-    for (int n = 0; n < 3; n++) {
-        r.scene.box[n] = (snow_box){{4 * n, 0, 0}, {4, 4, 4}};
-        r.scene.wanted[n] = r.scene.box[n];
-    }
-    r.scene.box[2].first[0]--;
-    expect_refusal(&r);
-}
-
-static void voxels_that_nobody_holds_are_refused_everywhere(void **state) {
-    (void)state;
-    refusal r = {.word = "no rank holds 16 of the 64"};
-    r.scene = (scene){.ranks = 3, .boxes = 3};
-    for (int n = 0; n < 3; n++)
-        r.scene.box[n] = (snow_box){{5 * n, 0, 0}, {4, 4, 4}};
-    r.scene.wanted[1] = (snow_box){{2, 0, 0}, {4, 4, 4}};
-    expect_refusal(&r);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_cut_moves_to_any_boxes),
@@ -384,9 +307,6 @@ int main(void) {
         cmocka_unit_test(large_values_move_too),
         cmocka_unit_test(what_is_kept_is_not_held_twice),
         cmocka_unit_test(what_has_moved_gives_its_memory_back),
-        cmocka_unit_test(ghost_voxels_come_from_all_around),
-        cmocka_unit_test(overlapping_boxes_are_refused_everywhere),
-        cmocka_unit_test(voxels_that_nobody_holds_are_refused_everywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
