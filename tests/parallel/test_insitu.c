@@ -76,28 +76,25 @@ static double value_of(const scene *s, int64_t x, int64_t y, int64_t z,
     return (grown ? 9 : 1) * field(s->dims, (double)x, (double)y, (double)z, t);
 }
 
+static double scale_of(snow_type type) {
+    return type == SNOW_TYPE_UINT16 || type == SNOW_TYPE_INT16 ? 100 : 1;
+}
+
 static void put_value(snow_type type, char *at, double value) {
-    uint8_t byte = (uint8_t)fmax(value, 0);
-    uint16_t word = (uint16_t)fmax(value * 100, 0);
-    int16_t small = (int16_t)(value * 100);
-    float real = (float)value;
+    const double scaled = value * scale_of(type);
+    const bool below = type == SNOW_TYPE_UINT8 || type == SNOW_TYPE_UINT16;
+#define PUT(name, ctype, text)                                       \
+    case SNOW_TYPE_##name: {                                         \
+        const ctype put = (ctype)(below ? fmax(scaled, 0) : scaled); \
+        memcpy(at, &put, sizeof put);                                \
+        break;                                                       \
+    }
     switch (type) {
-    case SNOW_TYPE_UINT8:
-        memcpy(at, &byte, sizeof byte);
-        break;
-    case SNOW_TYPE_UINT16:
-        memcpy(at, &word, sizeof word);
-        break;
-    case SNOW_TYPE_INT16:
-        memcpy(at, &small, sizeof small);
-        break;
-    case SNOW_TYPE_FLOAT32:
-        memcpy(at, &real, sizeof real);
-        break;
-    default:
-        memcpy(at, &value, sizeof value);
+        SNOW_TYPE_MAP(PUT)
+    case SNOW_TYPE_NONE:
         break;
     }
+#undef PUT
 }
 
 /* The whole grid, as one process has it. */
@@ -111,10 +108,6 @@ static void *whole_field(const scene *s, double t) {
             for (int64_t x = 0; x < s->dims[0]; x++, at += value)
                 put_value(s->type, at, value_of(s, x, y, z, t));
     return voxels;
-}
-
-static double scale_of(snow_type type) {
-    return type == SNOW_TYPE_UINT16 || type == SNOW_TYPE_INT16 ? 100 : 1;
 }
 
 /* Opacities, and factors by gradients behind them. */

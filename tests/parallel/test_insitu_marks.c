@@ -322,33 +322,6 @@ static void a_shade_that_is_named_is_kept(void **state) {
                 plain);
 }
 
-/* A halo along z that reaches beyond the grid, where nonsense lies. */
-static void slices_beyond_the_grid_are_left_out_in_place(void **state) {
-    fixture *m = open_movie(*state);
-    static float more[14 * 12 * 12];
-    const int64_t first[3] = {0, 0, 0};
-    const snow_halo halo = {{0, 0, 1}, {0, 0, 1}};
-    snow_insitu_stats figures = {.size = sizeof figures};
-    apply_recipe(m,
-                 "{\"size\": 64, \"preset\": \"linear\", \"view\": \"iso\"}");
-    for (int i = 0; i < VOXELS; i++)
-        m->field[i] = (float)(i % 12 + i / 144);
-    uint64_t plain = draw(m);
-    for (int i = 0; i < 14 * 12 * 12; i++)
-        more[i] = 1e9F;
-    memcpy(more + 144, m->field, sizeof m->field);
-    assert_int_equal(snow_insitu_set_brick(m->insitu, 0, first, cube, &halo),
-                     SNOW_STATUS_OK);
-    assert_int_equal(snow_insitu_set_voxels(m->insitu, 0, SNOW_TYPE_FLOAT32,
-                                            more + 144, NULL),
-                     SNOW_STATUS_OK);
-    assert_true(draw(m) == plain);
-    assert_int_equal(snow_insitu_get_stats(m->insitu, &figures),
-                     SNOW_STATUS_OK);
-    assert_int_equal(figures.ranks_copied, 0);
-    close_movie(m);
-}
-
 /* --- two ranks -------------------------------------------------------------
  */
 
@@ -581,7 +554,6 @@ int main(void) {
         HERE(a_range_begins_where_values_differ),
         HERE(labels_that_appear_have_their_colours),
         HERE(a_recipe_that_fails_on_one_rank_is_applied_on_none),
-        HERE(slices_beyond_the_grid_are_left_out_in_place),
         HERE(values_are_counted_for_viewers),
         HERE(a_picture_is_written_without_counts),
         HERE(files_of_values_have_no_counts)};

@@ -15,7 +15,7 @@
  * parts do later than the whole, and Catmull-Rom's weights along both axes may
  * make 1.25^2 times that of it (docs/model.md). */
 #define BOUND 4e-6
-#define BOUND_VALUES (40.0 / 32767)
+#define BOUND_VALUES (60.0 / 32767)
 #define BOUND_OPAQUE(ranks) (1.25 * 1.25 * (0.5 / 255 + (ranks) / 32767.0))
 
 /* Rounding of sums. */
@@ -427,6 +427,16 @@ static void modest(scenario *p, snow_volume *volume) {
     set_part(volume, false, 1);
 }
 
+/* Takes some of a neighbour's, and leaves as many to nobody. */
+static void shifted(scenario *p, snow_volume *volume) {
+    snow_extent part = {.size = sizeof part};
+    (void)p;
+    snow_volume_get_extent(volume, &part);
+    for (int axis = 0; axis < 3; axis++)
+        part.first[axis] -= part.first[axis] > 0;
+    assert_int_equal(snow_volume_set_extent(volume, &part), SNOW_STATUS_OK);
+}
+
 /* The part without its ghosts: refused by that rank alone. */
 static void ghostless(scenario *p, snow_volume *volume) {
     (void)p;
@@ -449,6 +459,7 @@ static void what_one_rank_finds_wrong_all_are_told(void **state) {
          ALONG_SLICES, false},
         {modest, "every voxel must belong to", false, false, 0, ALONG_OTHER,
          false},
+        {shifted, "overlap", false, false, 0, ALONG_OTHER, false},
         {ghostless, "rank 2: this view needs", false, false, 0, ALONG_OTHER,
          false},
         {ghostless, "rank 2: this view needs", false, false, 0, ALONG_SLICES,

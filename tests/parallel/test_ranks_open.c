@@ -4,7 +4,6 @@
 #include "support/opened.h"
 #include "support/files.h"
 
-#include "decompose/deterministic.h"
 #include "render/ghosts.h"
 #include "transfer/transfer.h"
 #include "volume/volume.h"
@@ -235,8 +234,14 @@ static void every_rank_gets_its_part(void **state) {
         char path[256];
         snprintf(path, sizeof path, "%s",
                  n < 3 ? put_engine(place, names[n]) : names[n]);
-        snow_volume_options options = {.size = sizeof options,
-                                       .spacing = {1, 1.5, 2}};
+        snow_volume_options options = {
+            .size = sizeof options, .spacing = {1, 1.5, 2}, .crop = {{0, 0}}};
+        if (n == 0) { /* dealt out like a volume */
+            options.crop[0][0] = 5;
+            options.crop[0][1] = 33;
+            options.crop[2][0] = 11;
+            options.crop[2][1] = 29;
+        }
         if (n == 3)
             options.dims[0] = options.dims[1] = options.dims[2] = 37;
         snow_volume *whole;
@@ -281,47 +286,6 @@ static void slabs_lie_along_the_slice_axis(void **state) {
                         : o.parts[rank].count[i] == whole->info.dims[i]);
         snow_volume_close(whole);
     }
-}
-
-/* As the picture needs it that is the same for any number of ranks. */
-static void deterministic_cuts_lie_between_groups(void **state) {
-    support_files *place = *state;
-    for (int cut = SNOW_PARTITION_EQUAL; cut <= SNOW_PARTITION_BRICKS; cut++) {
-        order o;
-        snow_volume *whole = phantom(place, "phantom:shells", 20, 20, 100, &o);
-        o.how.cut = (snow_partition)cut;
-        o.settings.deterministic = 1;
-        set_view(place, "+z", &o);
-        open_by(place, &o, 7);
-        for (int rank = 0; rank < 7; rank++) {
-            bool found = false;
-            for (int group = 0; group < SNOW_GROUPS; group++)
-                found = found || snow_group_slab(100, group).first ==
-                                     o.parts[rank].first[2];
-            assert_true(found);
-        }
-        snow_volume_close(whole);
-    }
-}
-
-static void a_crop_is_dealt_out_like_a_volume(void **state) {
-    support_files *place = *state;
-    char path[256];
-    snprintf(path, sizeof path, "%s", put_engine(place, "e.nrrd"));
-    const snow_volume_options options = {.size = sizeof options,
-                                         .crop = {{5, 33}, {0, 0}, {11, 29}}};
-    snow_volume *whole;
-    assert_int_equal(snow_volume_open(place->context, path, &options, &whole),
-                     SNOW_STATUS_OK);
-    for (int cut = SNOW_PARTITION_EQUAL; cut <= SNOW_PARTITION_BRICKS; cut++) {
-        order o;
-        begin_order(&o, whole);
-        o.path = path;
-        o.options = options;
-        o.how.cut = (snow_partition)cut;
-        open_by(place, &o, 6);
-    }
-    snow_volume_close(whole);
 }
 
 /* 12 MB: what all ranks read together is the file and a buffer for each header,
@@ -933,8 +897,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(every_rank_gets_its_part),
         TEST(slabs_lie_along_the_slice_axis),
-        TEST(deterministic_cuts_lie_between_groups),
-        TEST(a_crop_is_dealt_out_like_a_volume),
         TEST(the_file_is_read_once),
         TEST(each_chunk_is_unpacked_by_one_rank),
         TEST(another_view_is_served_without_the_file),

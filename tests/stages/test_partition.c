@@ -197,64 +197,6 @@ static void cuts_of_an_ellipsoid_are_as_equal_as_they_can_be(void **state) {
     }
 }
 
-/* The least possible maximum by dynamic programming. */
-static int64_t least_by_trying(const int64_t *costs, int items, int parts,
-                               int longest) {
-    int64_t best[2][64];
-    for (int end = 0; end <= items; end++)
-        best[0][end] = end ? INT64_MAX : 0;
-    for (int part = 0; part < parts; part++) {
-        int64_t *from = best[part % 2], *to = best[1 - part % 2];
-        for (int end = 0; end <= items; end++) {
-            int64_t sum = 0;
-            to[end] = from[end];
-            for (int begin = end; begin-- > 0 && end - begin <= longest;) {
-                sum += costs[begin];
-                int64_t most = from[begin] > sum ? from[begin] : sum;
-                if (most < to[end])
-                    to[end] = most;
-            }
-        }
-    }
-    return best[parts % 2][items];
-}
-
-static void no_slabs_are_cheaper_than_counted_ones(void **state) {
-    (void)state;
-    snow_context *context = support_context();
-    for (int round = 0; round < 300; round++) {
-        int items = 1 + (int)(support_random(&random_state) % 40);
-        int ranks = 1 + (int)(support_random(&random_state) % 12);
-        const int64_t dims[3] = {50, 40, items};
-        int64_t costs[64], all = 0, dearest = 0;
-        snow_box boxes[12];
-        const snow_partition_grid grid = grid_of(dims, 2, 1);
-        snow_block_counts block_counts = count(COUNTED, &grid, ranks, noise);
-        const int emptiness =
-            round % 2 ? SNOW_EMPTINESS_ENCODED : SNOW_EMPTINESS;
-        block_counts.emptiness = round % 2 ? emptiness : 0;
-        for (int i = 0; i < items; i++)
-            all += block_counts.counts[i];
-        for (int i = 0; i < items; i++)
-            costs[i] = emptiness * block_counts.counts[i] + 1 +
-                       (int64_t)((double)all * (1.0 / items));
-        cut(context, COUNTED, &block_counts, ranks, boxes);
-        for (int rank = 0; rank < ranks; rank++) {
-            int64_t cost = 0;
-            for (int64_t i = 0; i < boxes[rank].count[2]; i++)
-                cost += costs[boxes[rank].first[2] + i];
-            if (cost > dearest)
-                dearest = cost;
-        }
-        assert_int_equal(
-            dearest,
-            least_by_trying(costs, items, ranks,
-                            SNOW_THICKEST * ((items - 1) / ranks + 1)));
-        free(block_counts.counts);
-    }
-    snow_context_free(context);
-}
-
 /* All that is interesting lies in slice 500. */
 static int64_t one_slice(const int64_t dims[3], const snow_box *block) {
     (void)dims;
@@ -334,7 +276,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_voxel_is_in_exactly_one_box),
         cmocka_unit_test(cuts_of_an_ellipsoid_are_as_equal_as_they_can_be),
-        cmocka_unit_test(no_slabs_are_cheaper_than_counted_ones),
         cmocka_unit_test(no_rank_stores_all_that_is_empty),
         cmocka_unit_test(a_grid_without_interesting_voxels_is_cut_equally),
         cmocka_unit_test(blocks_of_a_huge_grid_fit_the_memory),

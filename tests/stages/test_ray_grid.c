@@ -21,13 +21,6 @@ static float half_plate(int64_t u, int64_t v, int64_t slice) {
     return u < SIDE / 2 && slice < 2 ? 1 : 0.001F;
 }
 
-static float nearly_clear(int64_t u, int64_t v, int64_t slice) {
-    (void)u;
-    (void)v;
-    (void)slice;
-    return 0.001F;
-}
-
 static const int64_t dims[3] = {SIDE, SIDE, SIDE};
 
 /* Slices along z, all of whose voxels are interesting. */
@@ -101,66 +94,6 @@ static void the_shear_moves_what_is_hidden(void **state) {
     assert_true(straight[SIDE - 1] > 0.49 && straight[SIDE - 1] < 0.51);
     assert_true(aside[0][SIDE - 1] > 0.49 && aside[0][SIDE - 1] < 0.51);
     assert_true(aside[1][SIDE - 1] > 0.9);
-}
-
-/* The dearest slab of some boxes, by slices that cost 1000 each. */
-static double dearest(snow_context *context, const snow_ray_grid *grid,
-                      const snow_box *boxes, int ranks) {
-    snow_ray_walk walk;
-    double most = 0, shares[SIDE];
-    assert_int_equal(snow_ray_walk_new(context, grid, 24, &walk),
-                     SNOW_STATUS_OK);
-    for (int rank = 0; rank < ranks; rank++) {
-        double sum = 0;
-        snow_ray_walk_slab(&walk, boxes[rank].first[2], boxes[rank].count[2],
-                           shares);
-        for (int64_t n = 0; n < boxes[rank].count[2]; n++)
-            sum += 1000 * shares[n];
-        most = sum > most ? sum : most;
-    }
-    snow_ray_walk_free(context, &walk);
-    return most;
-}
-
-static void cut(opacity_fn *opacity, int ranks, double *by_counts,
-                double *by_rays) {
-    snow_context *context = support_context();
-    snow_ray_grid grid = fill(context, opacity, 0, true);
-    const snow_partition_grid all = {.dims = {SIDE, SIDE, SIDE}, .axis = 2};
-    snow_block_counts counts = snow_block_counts_for_slabs(&all);
-    int64_t costs[SIDE], next = 0;
-    snow_box boxes[SIDE];
-    for (int n = 0; n < SIDE; n++)
-        costs[n] = 1000;
-    counts.counts = costs;
-    counts.span = 24;
-    assert_int_equal(snow_partition_counted(context, &counts, ranks, boxes),
-                     SNOW_STATUS_OK);
-    *by_counts = dearest(context, &grid, boxes, ranks);
-    counts.rays = &grid;
-    assert_int_equal(snow_partition_by_rays(context, &counts, ranks, boxes),
-                     SNOW_STATUS_OK);
-    *by_rays = dearest(context, &grid, boxes, ranks);
-    for (int rank = 0; rank < ranks; rank++) {
-        assert_int_equal(boxes[rank].first[2], next);
-        next += boxes[rank].count[2];
-    }
-    assert_int_equal(next, SIDE);
-    snow_release(context, grid.sums);
-    snow_context_free(context);
-}
-
-static void slabs_with_hidden_slices_are_thicker(void **state) {
-    (void)state;
-    double by_counts, by_rays;
-    cut(plate, 2, &by_counts, &by_rays);
-    assert_true(by_rays < 0.85 * by_counts);
-    for (int ranks = 1; ranks < 12; ranks++) {
-        cut(plate, ranks, &by_counts, &by_rays);
-        assert_true(by_rays <= by_counts);
-        cut(nearly_clear, ranks, &by_counts, &by_rays);
-        assert_true(by_rays <= by_counts);
-    }
 }
 
 /* Cells of every size count every voxel once, and words of a cell do not run
@@ -395,7 +328,6 @@ int main(void) {
         cmocka_unit_test(what_is_behind_an_opaque_plate_is_not_drawn),
         cmocka_unit_test(a_slab_begins_with_open_pixels),
         cmocka_unit_test(the_shear_moves_what_is_hidden),
-        cmocka_unit_test(slabs_with_hidden_slices_are_thicker),
         cmocka_unit_test(cells_cover_large_volumes),
         cmocka_unit_test(steep_rays_need_no_more_memory),
         cmocka_unit_test(sums_of_large_cells_do_not_overflow),

@@ -1,49 +1,9 @@
 /* tests/stages/test_splat_threads.c - the footprint methods by any number of
- * threads, on random runs of random samples, and in memory that is there. */
-#include "reference/model.h"
+ * threads, and in memory that is there. */
+#include "support/failing.h"
+#include "support/scenario.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
-
-/* Random spans of random samples: values 0.5 to 2 where something is, of which
- * the colours, but not the opacity, are a function. */
-static reference_scene random_scene(uint64_t *random, bool grey) {
-    static const snow_color_point rainbow[] = {
-        {0.5, 1, 0.2, 0}, {1.2, 0.1, 0.9, 0.4}, {2, 0.1, 0.3, 1}};
-    static const snow_color_point ramp[] = {{0.5, 0.1, 0.1, 0.1}, {2, 1, 1, 1}};
-    int64_t dims[3];
-    for (int n = 0; n < 3; n++)
-        dims[n] = 1 + (int64_t)(support_uniform(random) * 22);
-    /* Every other one is opaque behind a few slices. */
-    reference_scene scene =
-        model_blank(dims, support_uniform(random) < 0.5 ? 0.35 : 0.97);
-    scene.colors = grey ? ramp : rainbow;
-    scene.color_count = grey ? COUNT(ramp) : COUNT(rainbow);
-    scene.settings.method = SNOW_METHOD_FOOTPRINT;
-    scene.settings.threads = 1;
-    double density = support_uniform(random), change = support_uniform(random);
-    bool inside = false;
-    for (int64_t n = 0; n < dims[0] * dims[1] * dims[2]; n++) {
-        if (support_uniform(random) < change)
-            inside = support_uniform(random) < density;
-        if (inside)
-            model_voxels(&scene)[n] =
-                (float)(0.5 + 1.5 * support_uniform(random));
-    }
-    return scene;
-}
-
-/* Aligned, nearly aligned and oblique; whole, magnified until a voxel is wider
- * than the picture, and until the volume is a dot. */
-static void random_view(uint64_t *random, int n, reference_scene *scene) {
-    static const double zooms[] = {1, 0.5, 3, 0.08, 1.7, 60, 8, 0.01};
-    static const double turns[] = {0, 90, 1e-5, 45};
-    double turn = n % 3 ? 180 * support_uniform(random) - 90
-                        : turns[n / 3 % (int)COUNT(turns)];
-    double roll = n % 4 ? 0 : 30 * support_uniform(random);
-    model_turn(scene, turn, n % 3 == 1 ? turn / 3 : 0, roll, zooms[n % 8]);
-    scene->view.width = 1 + (int)(support_uniform(random) * 70);
-    scene->view.height = 1 + (int)(support_uniform(random) * 50);
-}
 
 static uint64_t checksum(const model_stage *stage,
                          const reference_scene *scene) {
@@ -93,58 +53,49 @@ static void check_threads(const model_stage *stage, reference_scene *scene) {
 static void any_number_of_threads_gives_the_same_bits(void **state) {
     (void)state;
     model_stage stage = model_open();
-    uint64_t random = 33;
     for (int n = 0; n < 48; n++) {
-        reference_scene scene = random_scene(&random, n % 2 == 0);
-        random_view(&random, n, &scene);
+        static const double zooms[] = {1, 0.5, 3, 0.08, 1.7, 60, 8, 0.01};
+        if (!support_takes((size_t)n, 5))
+            continue;
+        reference_scene scene = scenario_scene(n, 20);
+        /* Until a voxel hides all, and until the volume is a dot. */
+        scene.view.zoom = zooms[n % 8];
+        scene.view.width = 1 + n * 29 % 70;
+        scene.view.height = 1 + n * 37 % 50;
         scene.settings.kernel = (snow_kernel)(n / 2 % 4);
-        scene.settings.shade = n % 3 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
+        scene.settings.footprint = 0;
         check_threads(&stage, &scene);
-        model_free(&scene);
+        scenario_free_scene(&scene);
     }
     model_close(&stage);
 }
 
-/* Counts what is asked of it. */
-static void *allocate_counted(void *user, size_t bytes) {
-    ++*(long *)user;
-    return malloc(bytes);
-}
-
-static void release(void *user, void *block) {
-    (void)user;
-    free(block);
-}
-
 static void a_second_picture_takes_no_memory_but_its_own(void **state) {
     (void)state;
-    long count = 0;
-    snow_allocator functions = {allocate_counted, release, &count};
-    uint64_t random = 34;
+    support_failing memory = {.failing = -1};
+    const snow_allocator functions = support_failing_allocator(&memory);
     for (int n = 0; n < 4 * (int)COUNT(ways); n++) {
         model_stage stage = {0};
         assert_int_equal(snow_context_new(&functions, &stage.context),
                          SNOW_STATUS_OK);
         assert_int_equal(snow_frame_new(stage.context, &stage.frame),
                          SNOW_STATUS_OK);
-        reference_scene scene = random_scene(&random, n % 2 == 0);
-        model_turn(&scene, n % 3 * 30, n % 3 * 20, 0, 1);
+        reference_scene scene = scenario_scene(n, 20);
         scene.settings.method = ways[n / 4].method;
         scene.settings.encoding = ways[n / 4].encoding;
         scene.settings.threads = n % 2 ? 1 : 3;
+        scene.settings.kernel = SNOW_KERNEL_TENT;
+        scene.settings.footprint = 0;
+        scene.view.fov = 0;
         snow_volume *volume;
-        snow_transfer *transfer;
+        snow_transfer *transfer = model_transfer(stage.context, &scene);
         snow_image *image;
         assert_int_equal(
             snow_volume_wrap(stage.context, &scene.info, scene.voxels, &volume),
             SNOW_STATUS_OK);
-        assert_int_equal(snow_transfer_new(stage.context, scene.colors,
-                                           scene.color_count, scene.opacities,
-                                           scene.opacity_count, &transfer),
-                         SNOW_STATUS_OK);
         long before[2];
         for (int i = 0; i < 2; i++) {
-            before[i] = count;
+            before[i] = memory.allocations;
             assert_int_equal(snow_frame_render(stage.frame, volume, transfer,
                                                &scene.view, &scene.settings,
                                                &image),
@@ -152,13 +103,13 @@ static void a_second_picture_takes_no_memory_but_its_own(void **state) {
             snow_image_free(image);
         }
         /* The record of the image and its pixels. */
-        if (count - before[1] != 2)
-            fail_msg("%ld allocations: %s", count - before[1],
+        if (memory.allocations - before[1] != 2)
+            fail_msg("%ld allocations: %s", memory.allocations - before[1],
                      model_words(&scene));
         assert_true(before[1] - before[0] > 2);
         snow_transfer_free(transfer);
         snow_volume_close(volume);
-        model_free(&scene);
+        scenario_free_scene(&scene);
         model_close(&stage);
     }
 }
