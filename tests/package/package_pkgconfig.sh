@@ -9,7 +9,6 @@ program=examples/minimal.c
 # What pkg-config says of ours, where it finds no package but ours.
 alone() { PKG_CONFIG_LIBDIR=$LIB/pkgconfig pkg-config "$@"; }
 # The words of pkg-config are separate arguments.
-# shellcheck disable=SC2046
 compile() { # SOURCE PROGRAM PKG-CONFIG...
     local source=$1 out=$2
     shift 2

@@ -33,7 +33,6 @@ names_all() { # FILE PATTERN PART...: each part stands in the file, behind the p
     done
     [ -z "$lacking" ] || { echo "not$lacking" && return 1; }
 }
-# shellcheck disable=SC2086  # words
 check "Debian's rules name all parts" names_all "$PACKAGING/debian/rules" -DSNOW_ $parts
 # The formats' libraries are those of conda itself.
 check "conda's script names the others" names_all "$PACKAGING/conda/build.sh" \
@@ -88,7 +87,6 @@ if [ -n "$python" ]; then
         [ "$option" = BUILD_TESTING ] || known "$option" || lacking+=" $option"
     done <"$OUT"
     check "and its options exist${lacking:+, but for$lacking}" [ -z "$lacking" ]
-    # shellcheck disable=SC2086  # words
     check "all of them" names_all "$OUT" ^SNOW_ $parts
 fi
 if [ -n "$python" ] && "$python" -c 'import yaml' 2>/dev/null; then
@@ -122,7 +120,6 @@ for list in "$PACKAGING"/debian/*.install "$PACKAGING"/debian/*.manpages; do
         # A folder of libraries may be deeper; pages are what CMake installs.
         pattern=${pattern/usr\/lib\/\*/$libdir}
         pattern=${pattern/usr\/lib\/python3\*\/dist-packages/usr/lib/python3*/*-packages}
-        # shellcheck disable=SC2086  # patterns
         files=$(find $pattern ! -type d 2>/dev/null)
         [ -n "$files" ] || echo "${list##*/}: $pattern" >>idle
         echo "$files" >>listed

@@ -41,7 +41,6 @@ else
     run 0 "the core is installed" cmake --install snowglass/core --prefix "$WORK/fourth"
     export PKG_CONFIG_PATH
     PKG_CONFIG_PATH=$(dirname "$(find fourth -name snowglass.pc)")
-    # shellcheck disable=SC2046
     run 0 "pkg-config --static is for cc -static" "$CC" -std=c11 -static \
         array.c -o alone $(pkg-config --static --cflags --libs snowglass)
     run 0 "so is the archive's package" "$CC" -std=c11 -static array.c \

@@ -62,7 +62,6 @@ as_one() {
     local name=$1 ranks=$2 tolerance=$3
     shift 3
     run 0 "$name alone" "$TOOL" "$@" -q -y -o one.npy
-    # shellcheck disable=SC2086
     run 0 "$name by $ranks" launch "$ranks" "$MPI_TOOL" "$@" -q -y \
         -o many.npy ${WAY-}
     if [ "$tolerance" = bits ]; then
@@ -83,7 +82,6 @@ frames_as_one() {
     rm -f one_*.png many_*.png
     run 0 "$name alone" "$TOOL" "$@" -s 64x64 -q -y --background black \
         -o one_%d.png
-    # shellcheck disable=SC2086
     run 0 "$name by $ranks" launch "$ranks" "$MPI_TOOL" "$@" -s 64x64 -q -y \
         --background black -o many_%d.png ${WAY-}
     check "$name has frames" [ -e one_1.png ]

@@ -106,6 +106,102 @@ refused() {
     says "$pattern"
 }
 
+# refusals CODE COMMAND...: with the arguments of each line "ARGUMENTS|PATTERN" the
+# command is refused with that code and message.
+refusals() {
+    local code=$1 arguments pattern
+    shift
+    while IFS='|' read -r arguments pattern; do
+        eval "refused $code \"\$arguments\" \"\$pattern\" \"\$@\" $arguments"
+    done
+}
+
+# told NAME PATTERN COMMAND..., printed NAME PATTERN COMMAND...: it succeeds, and
+# says, or prints, that.
+told() {
+    run 0 "$1" "${@:3}"
+    says "$2"
+}
+
+printed() {
+    run 0 "$1" "${@:3}"
+    prints "$2"
+}
+
+# Of the last run: nothing was said, no line matches.
+silent() { check "$NAME: nothing is said" [ ! -s "$ERR" ]; }
+not_said() { check "$NAME: does not say '$1'" bash -c '! grep -Eq -- "$1" "$2"' - "$1" "$ERR"; }
+
+# same_file NAME FILE FILE, other_file NAME FILE FILE
+same_file() { check "$1" cmp -s "$2" "$3"; }
+other_file() { check "$1" differ "$2" "$3"; }
+differ() { [ -e "$1" ] && [ -e "$2" ] && ! cmp -s "$1" "$2"; }
+
+# pairs SUFFIX WORDS...: of each line "NAME | MORE | RELATION | MORE" the tool makes two
+# files, by the words and those of the line.  They are the same (=), or not (!=), or
+# `compare` finds them apart by at most a number, or by more (>0.1).  A " is the first
+# file of the line before.
+pairs() {
+    local suffix=$1 name one relation two
+    shift
+    while IFS='|' read -r name one relation two; do
+        name=${name%"${name##*[! ]}"} relation=${relation// /}
+        [ "${one// /}" = '"' ] || make ".one.$suffix" "$name" "$one" "$@"
+        make ".two.$suffix" "$name, and" "$two" "$@"
+        case $relation in
+        =) same_file "$name: the same" ".one.$suffix" ".two.$suffix" ;;
+        !=) other_file "$name: others" ".one.$suffix" ".two.$suffix" ;;
+        *)
+            run $([ "$relation" = "${relation#>}" ] && echo 0 || echo 6) \
+                "$name: $relation" "$TOOL" compare ".one.$suffix" ".two.$suffix" \
+                --tolerance "${relation#>}"
+            ;;
+        esac
+    done
+}
+
+make() {
+    local file=$1 name=$2 more=$3
+    shift 3
+    rm -f "$file"
+    eval "run 0 \"\$name\$more\" \"\$TOOL\" \"\$@\" $more -q -o \"\$file\""
+}
+
+# again NAME VERB OUT WORDS...: the command that -v prints and the configuration that is
+# saved (first.json) make the files of OUT, which may be a pattern of frames, once more.
+again() {
+    local name=$1 verb=$2 out=$3 command
+    shift 3
+    rm -rf first && mkdir first
+    run 0 "$name" "$TOOL" "$verb" -v "$@" -o "$out" --save-config first.json -y
+    command=$(sed -n 's/^snowglass: again: //p' "$ERR")
+    check "$name: a command is printed" [ -n "$command" ]
+    outputs "$out" | xargs -d '\n' mv -t first
+    eval "\"\$TOOL\" ${command#snowglass } -q"
+    as_first "$name: the command" "$out"
+    run 0 "$name: the configuration" "$TOOL" --config first.json -q
+    as_first "$name: it" "$out"
+}
+
+outputs() { compgen -G "${1/\%d/?}"; }
+
+as_first() {
+    local file
+    for file in first/*; do
+        same_file "$1 gives ${file##*/} again" "$file" "${file##*/}"
+    done
+    outputs "$2" | xargs -d '\n' rm -f .*.frames
+}
+
+# Scripts in Python find tests/support; where there is no Python all is skipped.
+need_python() {
+    command -v python3 >/dev/null || {
+        skipped all "there is no python3"
+        exit 77
+    }
+    export PYTHONPATH=$HERE/support PYTHONDONTWRITEBYTECODE=1
+}
+
 # Whether what takes long is done too: not in the short tier (docs/testing.md).
 long_tier() { [ "${SNOW_TIER:-short}" != short ]; }
 release_tier() { [ "${SNOW_TIER:-short}" = release ]; }
@@ -120,7 +216,6 @@ is_png() {
 # same_bytes FILES FILES: whether two lists of files, each end to end, are equal.
 # (Process substitution would need /dev/fd, which a plain chroot lacks.)
 same_bytes() {
-    # shellcheck disable=SC2086
     cat $1 >.first && cat $2 >.second && cmp .first .second
 }
 
@@ -161,7 +256,6 @@ raw_cube() {
         printf -v byte '\\%03o' $((i % 251))
         bytes+=$byte
     done
-    # shellcheck disable=SC2059
     printf "$bytes" >"$1"
 }
 

@@ -4,10 +4,7 @@
 . "$(dirname "$0")/../../support/shell.sh"
 
 # Python is a tool of the tests, not of Snowglass.
-command -v python3 >/dev/null || {
-    skipped all "there is no python3"
-    exit 77
-}
+need_python
 
 speed() { "$TOOL" bench speed --quick "$@"; }
 
@@ -90,9 +87,8 @@ check "only what was asked for" \
     [ -z "$(grep -E 'original|tested|footprint|draft|opaque|phong' "$OUT" |
         grep -v '^tested:\|^rates;\|^way ')" ]
 
-run 0 "raycast where it is named" speed --only raycast,rgba,unshaded,translucent \
-    --threads 1
-prints '^raycast draft  *tent  *2   1 '
+printed "raycast where it is named" '^raycast draft  *tent  *2   1 ' \
+    speed --only raycast,rgba,unshaded,translucent --threads 1
 prints '^raycast normal  *tent  *2   1 '
 
 run 0 "two sizes" speed --sizes 48,32 --only grey,unshaded,opaque,crs,footprint \
@@ -137,11 +133,7 @@ refused 4 "a chart that exists" "size.svg: exists" speed --chart size.svg
 refused 4 "a chart in no folder" "No such file" speed --chart no/where.svg
 refused 3 "a folder without volumes" "nowhere/classic/CThead.*: No such file|nowhere/classic/engine.*: No such file" \
     "$TOOL" bench speed --data nowhere
-while IFS='|' read -r arguments pattern; do
-    [ -n "$arguments" ] || continue
-    eval "set -- $arguments"
-    refused 2 "bench $arguments" "$pattern" "$TOOL" bench "$@"
-done <<'END'
+refusals 2 "$TOOL" bench <<'END'
 speed --quik|there is no option '--quik'
 speed --qui|there is no option '--qui'
 speed --sizes 0|this value is not possible: '0'
@@ -204,8 +196,7 @@ write("float", voxels, head="Float32")
 END
 vti() { "$TOOL" bench speed --volumes bonsai --sizes 32 --threads 1 --data "$1" \
     --only tested,original,rgba,unshaded,translucent,tent; }
-run 0 "a volume of VTK's" vti good
-prints '^Bonsai 16x16x12 \(classic/bonsai.vti\)'
+printed "a volume of VTK's" '^Bonsai 16x16x12 \(classic/bonsai.vti\)' vti good
 check "it has its voxels" grep -q "sparse $(python3 -c '
 v = [x * y % 256 for y in range(16) for x in range(16)]
 print("%.1f" % (100 * sum(0.2 * x <= 10.0001 for x in v) / len(v)))') %" "$OUT"

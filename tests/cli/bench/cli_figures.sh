@@ -3,10 +3,7 @@
 # are that of one, and the chart is well-formed.
 . "$(dirname "$0")/../../support/shell.sh"
 
-command -v python3 >/dev/null || {
-    skipped all "there is no python3"
-    exit 77
-}
+need_python
 
 # hang_together FILE CHART: speed-ups are those of the seconds; of a file of
 # `bench all`, too.
@@ -39,10 +36,8 @@ run 0 "figure 12" "$TOOL" bench figure12 --quick --json --chart chart.svg
 says "^snowglass: bench figure12: Head, original, 1 node: [0-9]+ %, [0-9]+ s, about [0-9]+ (s|min) left$"
 check "figure 12 hangs together" hang_together "$OUT" chart.svg
 if long_tier; then
-    run 0 "figure 11 as a table" "$TOOL" bench figure11 --quick
-    prints "nodes: 32 take, efficiency"
-    run 0 "all" "$TOOL" bench all --quick --json
-    says "^snowglass: bench all: speed, 6 of 6$"
+    printed "figure 11 as a table" "nodes: 32 take, efficiency" "$TOOL" bench figure11 --quick
+    told "all" "^snowglass: bench all: speed, 6 of 6$" "$TOOL" bench all --quick --json
     check "figures of all hang together" hang_together "$OUT" chart.svg
     check "has an object of each" python3 - "$OUT" <<'END'
 import json, sys

@@ -4,18 +4,14 @@
 . "$(dirname "$0")/../../support/shell.sh"
 
 # Python is a tool of the tests, not of Snowglass.
-command -v python3 >/dev/null || {
-    skipped all "there is no python3"
-    exit 77
-}
+need_python
 
 ranks() {
     "$TOOL" bench ranks phantom:head --dims 40x36x44 --size 96 --runs 2 \
         --azimuth 30 "$@"
 }
 
-run 0 "a table" ranks --ranks 1,3
-prints '^phantom:head, 96x96: one rank takes [0-9.]+ ms$'
+printed "a table" '^phantom:head, 96x96: one rank takes [0-9.]+ ms$' ranks --ranks 1,3
 prints '^ranks are threads, on [0-9]+ processors$'
 prints '^    1 +[0-9.]+ +[0-9.]+ +0\.00 +0\.00 +[0-9.]+ +0 +1\.00 +[0-9]+ %$'
 prints '^    3 +([0-9.]+ +){5}[1-9][0-9]+ +1\.[0-9]+ +[0-9]+ %$'
@@ -62,16 +58,11 @@ run 0 "a cut, and the paper's tree" ranks --ranks 5 --cut bricks --combine tree
 raw_cube v.raw 16
 run 0 "a raw file" "$TOOL" bench ranks v.raw --dims 16x16x16 --type uint8 \
     --size 64 --runs 1 --ranks 3
-run 0 "help" "$TOOL" bench ranks --help
-prints "^usage: snowglass bench ranks FILE"
+printed "help" "^usage: snowglass bench ranks FILE" "$TOOL" bench ranks --help
 
 refused 3 "no such file" "missing.nrrd" "$TOOL" bench ranks missing.nrrd
 refused 2 "a file without its size" "--dims XxYxZ" "$TOOL" bench ranks v.raw
-while IFS='|' read -r arguments pattern; do
-    [ -n "$arguments" ] || continue
-    eval "set -- $arguments"
-    refused 2 "bench ranks $arguments" "$pattern" "$TOOL" bench ranks "$@"
-done <<'END'
+refusals 2 "$TOOL" bench ranks <<'END'
 --json|there is no FILE
 a b|one word too many: 'b'
 a --foo|there is no option '--foo'

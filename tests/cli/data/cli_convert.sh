@@ -20,8 +20,7 @@ same() {
 
 "$TOOL" phantom head --dims 33x21x17 -q -o a.nrrd
 for end in nii nii.gz mha nrrd; do
-    run 0 "to $end" "$TOOL" convert a.nrrd -o "b.$end"
-    says "b.$end: 33x21x17"
+    told "to $end" "b.$end: 33x21x17" "$TOOL" convert a.nrrd -o "b.$end"
     check "voxels and matrix are the same in $end" same a.nrrd "b.$end"
 done
 run 0 "to npy" "$TOOL" convert b.nii.gz -o c.npy
@@ -70,8 +69,7 @@ check "stays one" grep -aq "ElementToIntensityFunctionOffset = -1024" ct.mha
     printf 'Segment0_Color:=1 0.5 0\n\n0 7 0 7 0 7 0 7\n'
 } >seg.nrrd
 run 0 "a segmentation" "$TOOL" convert -q seg.nrrd -o seg2.nrrd --as uint16
-run 0 "as it is" "$TOOL" info seg2.nrrd
-prints '7 .*liver'
+printed "as it is" '7 .*liver' "$TOOL" info seg2.nrrd
 check "the unit stays" grep -aq '^sample units: mSv$' seg2.nrrd
 printf '7 10 20 30 0.5 1 1 "spleen"\n' >labels.txt
 mkdir -p page/bin page/share/snowglass/web
@@ -82,19 +80,16 @@ run 0 "a page" page/bin/snowglass export page.html seg.nrrd --legend \
 check "opens no other file" test "$(grep -c labels.txt page.html)" = 0
 sed -n 's/.*data-recipe="[^>]*>\(.*\)<.script>/\1/p' page.html | base64 -d |
     gunzip >paged.nrrd
-run 0 "its volume" "$TOOL" info paged.nrrd
-prints '7 .*spleen'
+printed "its volume" '7 .*spleen' "$TOOL" info paged.nrrd
 check "has opacities" grep -aq '^Segment0_Opacity:=0.5$' paged.nrrd
 
-refused 2 "no output" "no output file given" "$TOOL" convert a.nrrd
-refused 2 "an unknown ending" "volumes are written as" \
-    "$TOOL" convert a.nrrd -o a.xyz
-refused 2 "values that do not fit" "nrrd: .* do not fit int8; convert to float32" \
-    "$TOOL" convert j.nrrd -o k.nrrd --as int8
-refused 2 "a range without a type" "add --as uint8" \
-    "$TOOL" convert a.nrrd -o k.nrrd --range 0,5
-refused 2 "percentiles" "two data values or full" \
-    "$TOOL" convert a.nrrd -o k.nrrd --as uint8 --range p1,p99
+refusals 2 "$TOOL" convert <<'END'
+a.nrrd|no output file given
+a.nrrd -o a.xyz|volumes are written as
+j.nrrd -o k.nrrd --as int8|nrrd: .* do not fit int8; convert to float32
+a.nrrd -o k.nrrd --range 0,5|add --as uint8
+a.nrrd -o k.nrrd --as uint8 --range p1,p99|two data values or full
+END
 refused 4 "a file that exists" "exists" "$TOOL" convert a.nrrd -o b.nii
 refused 3 "no such file" "none.nrrd" "$TOOL" convert none.nrrd -o k.nrrd
 refused 2 "a look" "is not an option of convert" "$TOOL" convert a.nrrd -o k.nrrd --preset linear

@@ -6,7 +6,6 @@
 # 2 x 2 x 2 voxels of 1 .. 8: sum 36, wsum 1*1 + 2*2 + ... + 8*8 = 204.
 printf '\1\2\3\4\5\6\7\10' >eight.raw
 raw="--dims 2x2x2 --type uint8"
-# shellcheck disable=SC2086
 run 0 "info of eight voxels" "$TOOL" info eight.raw $raw --spacing 1x2x3 --json
 check "is one line" [ "$(wc -l <"$OUT")" -eq 1 ]
 prints '"format": "raw"'
@@ -22,47 +21,37 @@ prints '"histogram": \{"low": 1.0, "high": 8.0, "counts": \[1, 0'
 prints '"sparse_ratio": \[\{"threshold": 0.0, .*"threshold": 10.0, .*"threshold": 30.0'
 prints '"look": "..*"'
 
-# shellcheck disable=SC2086
 run 0 "the same as text" "$TOOL" info eight.raw $raw --spacing 1x2x3
-prints '^dims +2 x 2 x 2 \(8 voxels\)$'
-prints '^type +uint8$'
-prints '^spacing +1 x 2 x 3$'
-prints '^values +1 .. 8, mean 4.5$'
-prints '^finite +8 of 8 voxels$'
-prints '^histogram'
+for line in 'dims +2 x 2 x 2 \(8 voxels\)$' 'type +uint8$' 'spacing +1 x 2 x 3$' \
+    'values +1 .. 8, mean 4.5$' 'finite +8 of 8 voxels$' histogram; do
+    prints "^$line"
+done
 check "the histogram counts every voxel" \
     [ "$(sed '1,/^histogram/d' "$OUT" | awk '{s += $2} END {print s}')" -eq 8 ]
 
 # Opacity is value / 8; above 100/255 are 4 .. 8, so 3 of 8 are uninteresting.
-# shellcheck disable=SC2086
-run 0 "the sparse ratio of one threshold" "$TOOL" info eight.raw $raw --json \
-    --opacity 0:0,8:1 --threshold 100
-prints '"sparse_ratio": \[\{"threshold": 100.0, "ratio": 0.375\}\]'
+printed "the sparse ratio of one threshold" '"sparse_ratio": \[\{"threshold": 100.0, "ratio": 0.375\}\]' \
+    "$TOOL" info eight.raw $raw --json --opacity 0:0,8:1 --threshold 100
 
 # Along x the values step by 1, along y by 2, along z by 4: all gradients are of
 # sqrt(21).  Half of each opacity is left, so that 100/255 is passed by 7 and 8.
-# shellcheck disable=SC2086
 run 0 "the sparse ratio with a gradient opacity" "$TOOL" info eight.raw $raw \
     --json --opacity 0:0,8:1 --threshold 100 --gradient-opacity 0:0,9.165151:1
 prints '"sparse_ratio": \[\{"threshold": 100.0, "ratio": 0.75\}\]'
 prints 'gradient opacity 0 at 0, 1 at 9.1652'
 
 # The same bytes as big endian 16 bit: 0x0102, 0x0304, 0x0506, 0x0708.
-run 0 "big endian" "$TOOL" info eight.raw --dims 2x2x1 --type uint16 \
-    --endian big --json
-prints '"min": 258.0, "max": 1800.0'
-run 0 "an offset" "$TOOL" info eight.raw --dims 2x2x1 --type uint8 --offset 4 \
-    --json
-prints '"min": 5.0, "max": 8.0'
+printed "big endian" '"min": 258.0, "max": 1800.0' \
+    "$TOOL" info eight.raw --dims 2x2x1 --type uint16 --endian big --json
+printed "an offset" '"min": 5.0, "max": 8.0' \
+    "$TOOL" info eight.raw --dims 2x2x1 --type uint8 --offset 4 --json
 
 printf '\0\0\300\177' >nan.raw
-run 0 "a volume of NaN alone" "$TOOL" info nan.raw --dims 1x1x1 --type float32 \
-    --json
-prints '"finite": 0, "min": null, "max": null'
+printed "a volume of NaN alone" '"finite": 0, "min": null, "max": null' \
+    "$TOOL" info nan.raw --dims 1x1x1 --type float32 --json
 prints '"histogram": null'
-run 0 "a volume of NaN alone as text" "$TOOL" info nan.raw --dims 1x1x1 \
-    --type float32
-prints '^finite +0 of 1 voxels$'
+printed "a volume of NaN alone as text" '^finite +0 of 1 voxels$' \
+    "$TOOL" info nan.raw --dims 1x1x1 --type float32
 
 check "standard input" bash -c "'$TOOL' info - $raw --json <eight.raw |
     grep -q '\"sum\": 36.0'"
@@ -83,7 +72,6 @@ for suffix in nrrd nii nii.gz mha raw raw.gz; do
         "$TOOL" phantom engine --dims 20x18x16 -o engine.$suffix
     options=
     case $suffix in raw*) options="--dims 20x18x16 --type uint8" ;; esac
-    # shellcheck disable=SC2086
     run 0 "info of .$suffix" "$TOOL" info engine.$suffix $options --json
     figures "$OUT" >read_back
     check ".$suffix holds the same voxels" cmp -s direct read_back
@@ -105,40 +93,22 @@ for channel in 0 2; do
 done
 
 if command -v python3 >/dev/null; then
+    need_python
     python3 - <<'END'
-import os, struct
+import os
+from volumes import tiff
 
-def tiff(path, pages, text):
+def stack(path, pages, text):
     """Pages of 4x3 bytes, 4 pixels a unit, with a description."""
-    out = bytearray(b"II*\0\0\0\0\0")
-    link = 4
-    for page in range(pages):
-        text_at = len(out)
-        out += text.encode() + b"\0" * (2 - len(text) % 2)
-        pixels_at = len(out)
-        out += bytes(range(12 * page, 12 * page + 12))
-        ratio_at = len(out)
-        out += struct.pack("<II", 4, 1)
-        out[link:link + 4] = struct.pack("<I", len(out))
-        rows = [(256, 3, 1, 4), (257, 3, 1, 3), (258, 3, 1, 8), (259, 3, 1, 1),
-                (262, 3, 1, 1), (270, 2, len(text) + 1, text_at),
-                (273, 4, 1, pixels_at), (277, 3, 1, 1), (278, 3, 1, 3),
-                (279, 4, 1, 12), (282, 5, 1, ratio_at), (283, 5, 1, ratio_at),
-                (296, 3, 1, 1)]
-        out += struct.pack("<H", len(rows))
-        for row in rows:
-            out += struct.pack("<HHII", *row)
-        link = len(out)
-        out += bytes(4)
-    with open(path, "wb") as file:
-        file.write(out)
+    tiff(path, 4, 3, [bytes(range(12 * n, 12 * n + 12)) for n in range(pages)],
+         text.encode(), resolution=4)
 
 head = "ImageJ=1.53t\nimages=3\nslices=3\nunit=um\n"
-tiff("flat.tif", 3, head)
-tiff("deep.tif", 3, head + "spacing=2\n")
+stack("flat.tif", 3, head)
+stack("deep.tif", 3, head + "spacing=2\n")
 os.mkdir("flat")
 for z in range(3):
-    tiff(f"flat/{z}.tif", 1, "ImageJ=1.53t\nunit=um\n")
+    stack(f"flat/{z}.tif", 1, "ImageJ=1.53t\nunit=um\n")
 END
 fi
 if [ -d flat ] && "$TOOL" info -q flat.tif >/dev/null 2>&1; then
@@ -146,13 +116,11 @@ if [ -d flat ] && "$TOOL" info -q flat.tif >/dev/null 2>&1; then
         run 0 "slices of $input without a distance" "$TOOL" info $input
         prints "^spacing  *0.25 x 0.25 x 0.25 um"
         says "note: .*the distance of the slices is taken to be the width of a pixel, 0.25; --spacing sets another"
-        run 0 "and with one that is given" \
+        printed "and with one that is given" "^spacing  *0.25 x 0.25 x 1 " \
             "$TOOL" info $input --spacing 0.25x0.25x1
-        prints "^spacing  *0.25 x 0.25 x 1 "
         quiet_note
     done
-    run 0 "slices with a distance" "$TOOL" info deep.tif
-    prints "^spacing  *0.25 x 0.25 x 2 um"
+    printed "slices with a distance" "^spacing  *0.25 x 0.25 x 2 um" "$TOOL" info deep.tif
     quiet_note
 else
     skipped "distances of TIFF slices" "there is no python3 or no libtiff"
@@ -161,22 +129,16 @@ fi
 if command -v python3 >/dev/null; then
     python3 - <<'END'
 import struct
-for name, kind, shape in (("v", "<f4", (4, 4, 4, 3)), ("c", "|u1", (5, 5, 5, 4))):
-    count = shape[0] ** 3 * shape[3]
-    head = "{'descr': '%s', 'fortran_order': False, 'shape': %s}" % (kind, shape)
-    with open(name + ".npy", "wb") as out:
-        out.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", 118))
-        out.write(head.ljust(117).encode() + b"\n")
-        out.write(struct.pack("<%d%s" % (count, "f" if name == "v" else "B"),
-                              *(n % 256 for n in range(count))))
+from volumes import npy
+npy("v.npy", "<f4", (4, 4, 4, 3), struct.pack("<192f", *range(192)))
+npy("c.npy", "|u1", (5, 5, 5, 4), bytes(n % 256 for n in range(500)))
 END
     components() { # FILE TEXT COUNT MAGNITUDE OPTION...
         local file=$1 text=$2 count=$3 magnitude=$4
         shift 4
-        run 0 "components of $file $*" "$TOOL" info -q "$file" "$@"
-        prints "^components  *$text$"
-        run 0 "as JSON" "$TOOL" info -q "$file" --json "$@"
-        prints "\"components\": $count, \"magnitude\": $magnitude"
+        printed "components of $file $*" "^components  *$text$" "$TOOL" info -q "$file" "$@"
+        printed "as JSON" "\"components\": $count, \"magnitude\": $magnitude" \
+            "$TOOL" info -q "$file" --json "$@"
     }
     components v.npy "3 .these values: the magnitude." 3 true
     components v.npy "3 .these values: component y." 3 false --component Y
@@ -234,8 +196,7 @@ cat >pipe.xmf <<END
 END
 run 3 "nor is a pipe that an XDMF file names" timeout 60 "$TOOL" info pipe.xmf
 says "pipe.xmf: .*many/pipe: is a pipe; give a regular file"
-run 0 "a folder and a file" "$TOOL" info many/deep/ phantom:cube
-prints '^many/deep/c.nrrd: '
+printed "a folder and a file" '^many/deep/c.nrrd: ' "$TOOL" info many/deep/ phantom:cube
 prints '^phantom:cube: '
 mkdir empty
 run 3 "a folder without volumes is refused as it was" "$TOOL" info empty

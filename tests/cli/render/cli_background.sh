@@ -10,21 +10,14 @@ kind() { od -An -tu1 -j25 -N1 "$1" | tr -d ' '; }
 for mode in over mip minip mean "iso --iso 40"; do
     dark='#141414'
     case $mode in m*) dark='black' ;; esac
-    rm -f ./*.png
-    # shellcheck disable=SC2086
-    run 0 "$mode on what it lies on by default" head_of render -m $mode -o a.png
-    # shellcheck disable=SC2086
-    run 0 "by its name" head_of render -m $mode -o b.png --background auto
-    # shellcheck disable=SC2086
-    run 0 "in dark" head_of render -m $mode -o c.png --background "$dark"
-    # shellcheck disable=SC2086
-    run 0 "and transparent" head_of render -m $mode -o d.png --background none
-    check "the default is auto" cmp -s a.png b.png
-    check "and $dark" cmp -s a.png c.png
-    check "opaque, and grey as it is" [ "$(kind a.png)" = 0 ]
-    check "none has alpha" [ "$(kind d.png)" = 4 ]
+    pairs png render phantom:head --dims 40x40x40 -s 90x80 -m $mode <<END
+$mode lies on auto by default | | = | --background auto
+which is $dark | " | = | --background '$dark'
+and not nothing | " | != | --background none
+END
+    check "opaque, and grey as it is" [ "$(kind .one.png)" = 0 ]
+    check "none has alpha" [ "$(kind .two.png)" = 4 ]
 done
-run 6 "which is another picture" "$TOOL" compare a.png d.png
 run 0 "colours" head_of render -c hot -o e.png
 check "are opaque" [ "$(kind e.png)" = 2 ]
 run 0 "with alpha" head_of render -c hot -o f.png --background none
@@ -32,10 +25,10 @@ check "they are not" [ "$(kind f.png)" = 6 ]
 run 0 "16 bits" head_of render -o g.png --bits 16
 check "are opaque" [ "$(kind g.png)" = 0 ]
 run 0 "floats" head_of render -o a.npy
-for back in auto none; do
-    run 0 "floats with $back" head_of render -o $back.npy --background $back
-    check "are the same" cmp -s a.npy $back.npy
-done
+pairs npy render phantom:head --dims 40x40x40 -s 90x80 <<'END'
+floats by default | | = | --background auto
+and on nothing | " | = | --background none
+END
 run 0 "a picture without a background" head_of render -o h.png --no-labels \
     --background none
 run 0 "is that of the floats" "$TOOL" compare a.npy h.png --tolerance 1/255
@@ -51,13 +44,10 @@ for verb in turntable movie; do
     check "has transparent ones" [ "$(kind t_0.png)" = 4 ]
 done
 
-run 0 "nothing asked" head_of render -o i.png --save-config i.json
-run 0 "is kept" "$TOOL" render -q --config i.json -o j.png
-check "in the same picture" cmp -s i.png j.png
-run 0 "a format of floats too" "$TOOL" render -q --config i.json -o i.npy
-run 0 "none" head_of render -o k.png --background none --save-config k.json
-run 0 "is kept" "$TOOL" render -q --config k.json -o l.png
-check "in the same picture" cmp -s k.png l.png
+head="phantom:head --dims 40x40x40 -s 90x80"
+again "nothing asked" render i.png $head
+run 0 "which is kept for a format of floats too" "$TOOL" render -q --config first.json -o i.npy
+again "none" render k.png $head --background none
 
 # --- the unit of values --------------------------------------------------------
 # A block of 200 in air, and once more with a corner that no CT has.
@@ -75,16 +65,9 @@ ct -800 >mr.nrrd
 sed -i 's/^-900$/-700/' mr.nrrd
 look="-s 200x180 --opacity 0:0,100:1 -c grey --no-labels"
 for preset in "" "--preset ct-bone"; do
-    rm -f ./*.png
-    for name in ct mr; do
-        # shellcheck disable=SC2086
-        run 0 "$name $preset" "$TOOL" render -q $name.nrrd $look $preset \
-            --shade none --range 0,200 -o $name.png
-        # shellcheck disable=SC2086
-        run 0 "with a legend" "$TOOL" render -q $name.nrrd $look $preset \
-            --shade none --range 0,200 --legend -o $name.legend.png
-    done
-    run 0 "one picture" "$TOOL" compare ct.png mr.png
-    run 6 "but one is in HU" "$TOOL" compare ct.legend.png mr.legend.png
+    pairs png render $look $preset --shade none --range 0,200 <<'END'
+one picture | ct.nrrd | 0 | mr.nrrd
+but one is in HU | ct.nrrd --legend | != | mr.nrrd --legend
+END
 done
 finish

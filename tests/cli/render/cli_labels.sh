@@ -12,39 +12,32 @@ checksum() { grep -o '"checksum": "[^"]*"' "$1"; }
 
 run 0 "letters are drawn" head_of render -q -o a.png --stats a.json
 run 0 "and left out" head_of render -q -o b.png --no-labels --stats b.json
-run 6 "which is another picture" "$TOOL" compare a.png b.png
+other_file "which is another picture" a.png b.png
 check "of the same check sum" [ "$(checksum a.json)" = "$(checksum b.json)" ]
-run 0 "floats have none" head_of render -q -o a.npy
-run 0 "with or without" head_of render -q -o b.npy --no-labels
-check "of the same bytes" cmp -s a.npy b.npy
-run 0 "what is no patient has none" "$TOOL" render -q phantom:cube -o c.png
-run 0 "with or without them" "$TOOL" render -q phantom:cube -o d.png --no-labels
-check "byte for byte" cmp -s c.png d.png
-run 0 "nor have tiny pictures" head_of render -q -o e.png -s 60x60
-run 0 "with or without them" head_of render -q -o f.png -s 60x60 --no-labels
-check "byte for byte" cmp -s e.png f.png
-
+head="phantom:head --dims 40x40x40"
+pairs npy render $head -s 150x140 <<'END'
+floats have none | | = | --no-labels
+END
+pairs png render <<END
+what is no patient has none | phantom:cube | = | phantom:cube --no-labels
+nor have tiny pictures | $head -s 60x60 | = | $head -s 60x60 --no-labels
+END
 run 0 "a legend" head_of render -q -o g.png --legend -c viridis --stats g.json
 run 0 "without" head_of render -q -o h.png -c viridis --stats h.json
-run 6 "is drawn" "$TOOL" compare g.png h.png
+other_file "is drawn" g.png h.png
 check "of the same check sum" [ "$(checksum g.json)" = "$(checksum h.json)" ]
-run 0 "in perspective" head_of render -o i.png --legend --perspective
-says 'the scale bar is left out'
-run 0 "a scale bar" head_of render -q -o sb.png --legend scale -c viridis \
-    --save-config sb.json
-run 6 "is drawn" "$TOOL" compare sb.png h.png
-run 6 "without the colour bar" "$TOOL" compare sb.png g.png
-run 0 "it is kept" "$TOOL" render -q --config sb.json -o sc.png
-check "in the same picture" cmp -s sb.png sc.png
-run 0 "a scale bar in perspective" head_of render -o se.png --legend=scale \
-    --perspective
-says '^snowglass: --legend: the scale bar is left out'
-refused 2 "a scale bar in floats" '--legend cannot be drawn' \
-    head_of render -o x.npy --legend scale
-refused 2 "a legend in floats" 'remove it or name a .png' \
-    head_of render -o x.npy --legend
-refused 2 "in frames of floats" 'remove it or name a .png' \
-    head_of turntable -o 'x_%d.pfm' --legend
+told "in perspective" 'the scale bar is left out' \
+    head_of render -o i.png --legend --perspective
+again "a scale bar" render sb.png $head -s 150x140 --legend scale -c viridis
+other_file "is drawn" first/sb.png h.png
+other_file "without the colour bar" first/sb.png g.png
+told "a scale bar in perspective" '^snowglass: --legend: the scale bar is left out' \
+    head_of render -o se.png --legend=scale --perspective
+refusals 2 head_of <<'END'
+render -o x.npy --legend scale|--legend cannot be drawn
+render -o x.npy --legend|remove it or name a .png
+turntable -o x_%d.pfm --legend|remove it or name a .png
+END
 check "nothing is written then" absent x.npy
 
 run 0 "letters turn in a turntable" head_of turntable -q -o 't_%d.png' \
@@ -67,13 +60,10 @@ run 6 "differ" "$TOOL" compare m_0.png n_0.png
 run 6 "from step to step" "$TOOL" compare m_0.png m_1.png
 run 0 "that alone does" "$TOOL" compare n_0.png n_1.png
 
-run 0 "wishes" head_of render -q -o v.png --legend --no-labels \
-    --save-config v.json
-run 0 "are kept" "$TOOL" render -q --config v.json -o w.png
-check "in the same picture" cmp -s v.png w.png
+again "wishes" render v.png $head -s 150x140 --legend --no-labels
 run 0 "to standard output" bash -c \
     "'$TOOL' render -q phantom:head --dims 40x40x40 -s 150x140 -o - >y.png"
-check "with letters" cmp -s a.png y.png
+same_file "with letters" a.png y.png
 
 # --- titles, times, boxes -----------------------------------------------------
 for step in 0 1; do
@@ -91,22 +81,15 @@ done
 of_time() { "$TOOL" render s_1.vti -q -s 160x150 -y "$@"; }
 run 0 "a picture" of_time -o w0.png
 for said in "--title Run" "--annotate time" "--box outline" "--box axes" \
-    "--annotate time=%.3f"; do
-    run 0 "$said" of_time -o w1.png $said
-    run 6 "$said is drawn" "$TOOL" compare w0.png w1.png
-    run 0 "$said by a recipe" of_time -o w2.png --save-config w.json $said
-    run 0 "$said: the recipe" "$TOOL" render --config w.json -q -y -o w2.png
-    check "$said: the same picture" cmp -s w1.png w2.png
+    "--annotate time=%.3f" "--legend=(kg)"; do
+    again "$said" render w1.png s_1.vti -s 160x150 $said
+    other_file "$said is drawn" w0.png first/w1.png
 done
-run 0 "the file's quantity" of_time -o w1.png --legend
-run 0 "said as it is" of_time -o w2.png --legend=rho
-check "is the same" cmp -s w1.png w2.png
-run 0 "a unit alone" of_time -o w2.png '--legend=(kg)' --save-config w.json
-run 6 "makes another" "$TOOL" compare w1.png w2.png
-run 0 "with the quantity" of_time -o w3.png '--legend=rho (kg)'
-check "it is the same" cmp -s w2.png w3.png
-run 0 "as by its recipe" "$TOOL" render --config w.json -q -y -o w3.png
-check "which keeps it" cmp -s w2.png w3.png
+pairs png render s_1.vti -s 160x150 <<'END'
+the file's quantity, said as it is | --legend | = | --legend=rho
+a unit alone makes another | --legend | != | '--legend=(kg)'
+with the quantity it is the same | '--legend=(kg)' | = | '--legend=rho (kg)'
+END
 run 0 "a movie with times" "$TOOL" movie s_0.vti s_1.vti -q -s 160x150 \
     -o 'x_%d.png' --annotate time --range 0,255 --preset linear
 run 0 "its second frame as a picture" of_time -o x.png --annotate time \

@@ -2,14 +2,12 @@
 # --mask, --labels and --clip: what is left out is as if it had never had a value, in
 # pictures, figures, movies and conversions; what does not fit is refused.
 . "$(dirname "$0")/../../support/shell.sh"
-command -v python3 >/dev/null || {
-    skipped all "there is no python3"
-    exit 77
-}
+need_python
 
-render() { "$TOOL" render -q --no-labels -s 90x80 "$@"; }
+view="render -s 90x80 --no-labels"
+render() { "$TOOL" $view -q "$@"; }
 
-# figure FILE: of info.
+# figure KEY OPTION...: of info.
 figure() { "$TOOL" info --json "${@:2}" | python3 -c "
 import json, sys
 print(json.load(sys.stdin)['$1'])"; }
@@ -17,120 +15,86 @@ print(json.load(sys.stdin)['$1'])"; }
 "$TOOL" phantom head --dims 32x28x30 -o v.npy -q
 "$TOOL" convert v.npy -o v.nrrd -q
 
-# Labels 0 to 3 in blocks; the volume masked here by hand, labels 2 and 3, and
-# all but 0; a mask of all, with which the border of what is masked by hand is lit;
-# a mask of another size.
+# Labels 0 to 3 in blocks; the volume masked here by hand: labels 2 and 3, and all but
+# 0, and the first also by planes, x up to 15 and z from 4; a mask of all, with which
+# the border of what is masked by hand is lit; one of another size; one that has its
+# place, and one that is flipped; of voxels that are no cubes.
 python3 - <<'END'
 import array
+from volumes import each, npy, nrrd, placed
 
-def head(kind, shape):
-    text = "{'descr': '%s', 'fortran_order': False, 'shape': %s, }" % (kind, shape)
-    text += " " * (-(len(text) + 11) % 64) + "\n"
-    return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text.encode()
-
-nx, ny, nz = 32, 28, 30
-data = open("v.npy", "rb").read()[-nx * ny * nz:]
-labels = bytes((x >= 16) + 2 * (z >= 14)
-               for z in range(nz) for y in range(ny) for x in range(nx))
+dims, shape = (32, 28, 30), (30, 28, 32)
+data = open("v.npy", "rb").read()[-32 * 28 * 30:]
+labels = each(dims, lambda x, y, z: (x >= 16) + 2 * (z >= 14))
 nan = float("nan")
 
 def write(name, inside):
-    values = array.array("f", (v if inside(m) else nan
-                               for v, m in zip(data, labels)))
-    open(name, "wb").write(head("<f4", (nz, ny, nx)) + values.tobytes())
+    npy(name, "<f4", shape, array.array("f", (
+        v if inside(m, n % 32, n // 896) else nan
+        for n, (v, m) in enumerate(zip(data, labels)))).tobytes())
 
-write("two.npy", lambda m: m in (2, 3))
-write("any.npy", lambda m: m != 0)
-open("m.npy", "wb").write(head("|u1", (nz, ny, nx)) + labels)
-open("all.npy", "wb").write(head("|u1", (nz, ny, nx)) + b"\1" * len(labels))
+write("two.npy", lambda m, x, z: m in (2, 3))
+write("clip.npy", lambda m, x, z: m in (2, 3) and x <= 15 and z >= 4)
+write("any.npy", lambda m, x, z: m != 0)
+npy("m.npy", "|u1", shape, labels)
+npy("all.npy", "|u1", shape, b"\1" * len(labels))
+npy("nan.npy", "<f8", shape, array.array("d", (m or nan for m in labels)).tobytes())
+npy("small.npy", "|u1", (30, 28, 31), labels[:30 * 28 * 31])
 open("m.raw", "wb").write(labels)
-floats = array.array("d", (m if m else nan for m in labels))
-open("nan.npy", "wb").write(head("<f8", (nz, ny, nx)) + floats.tobytes())
-open("small.npy", "wb").write(head("|u1", (nz, ny, nx - 1)) +
-                              labels[:nz * ny * (nx - 1)])
-# The volume's file with its header's geometry, and flipped.
 for name, x, origin in ("place", 1, 5), ("flip", -1, 36):
-    text = ("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 32 28 30\n"
-            "space: RAS\nspace directions: (%d,0,0) (0,1,0) (0,0,1)\n"
-            "space origin: (%d,0,0)\nencoding: raw\n\n" % (x, origin))
-    open(name + ".nrrd", "wb").write(text.encode() + labels)
+    nrrd(name + ".nrrd", dims, labels, *placed((x, 1, 1), (origin, 0, 0)))
+for name, voxels in ("v", data), ("m", labels):
+    nrrd(name + "-half.nrrd", dims, voxels, "spacings: 0.5 0.5 0.9")
 END
 
 # --- pictures -----------------------------------------------------------------
-for way in "" "--method footprint" "--method original" "--mode mip" \
+box="--labels 1,3 --crop 10:30,2:,:20"
+run 0 "a converted mask" "$TOOL" convert v.npy -o box.npy -q --mask m.npy $box
+pairs npy $view <<END
+$(for way in "" "--method footprint" "--method original" "--mode mip" \
     "--mode iso --iso 90" "--quality high --encoding rle" \
     "--gradient-opacity 0:0,20:1"; do
-    # shellcheck disable=SC2086
-    run 0 "labels 2 and 3 ${way:-as usual}" render v.npy $way -o a.npy -y \
-        --mask m.npy --labels 2-3
-    # shellcheck disable=SC2086
-    run 0 "masked by hand" render two.npy --mask all.npy $way -o b.npy -y
-    check "is the same picture" cmp -s a.npy b.npy
-done
-run 0 "the whole volume" render v.npy -o whole.npy
-check "is another" bash -c '! cmp -s whole.npy a.npy'
-run 0 "all but 0" render v.npy -o c.npy --mask m.npy --stats c.json
-run 0 "by hand" render any.npy --mask all.npy -o d.npy --stats d.json
-check "is the same picture" cmp -s c.npy d.npy
-run 0 "NaN in the mask is outside" render v.npy -o e.npy --mask nan.npy
-check "as 0 is" cmp -s c.npy e.npy
-# shellcheck disable=SC2016
+    echo "labels 2 and 3 | v.npy --mask m.npy --labels 2-3 $way | = | two.npy --mask all.npy $way"
+done)
+the whole volume | v.npy --mask m.npy --labels 2-3 | != | v.npy
+NaN in the mask | v.npy --mask m.npy | = | v.npy --mask nan.npy
+all but 0 by hand | v.npy --mask m.npy --stats c.json -y | = | any.npy --mask all.npy --stats d.json -y
+a box of both, but for its place | v.npy --shade none --mask m.npy $box | = | box.npy --shade none
+a box of flat voxels, with a mask of cubes | v-half.nrrd --mask m-half.nrrd $box | = | \
+    v-half.nrrd --mask m.npy $box
+a mask without a place | place.nrrd --mask place.nrrd | = | place.nrrd --mask m.npy
+END
 check "as many interesting voxels" python3 -c '
 import json
 a, b = (json.load(open(n)) for n in ("c.json", "d.json"))
 assert a["sparse_ratio"] == b["sparse_ratio"] > 0.25, a
 assert a["volume"]["type"] == "float32", a'
-run 0 "a box of both" render v.npy --shade none -o f.npy --mask m.npy --labels 1,3 \
-    --crop 10:30,2:,:20
-run 0 "a converted mask" "$TOOL" convert v.npy -o box.npy -q --mask m.npy \
-    --labels 1,3 --crop 10:30,2:,:20
-run 0 "is the same box" render box.npy --shade none -o g.npy
-check "and picture, but for its place" cmp -s f.npy g.npy
-# Of voxels that are no cubes, neither of which has a place.
-for name in v m; do
-    printf '%s\n' NRRD0004 'type: uint8' 'dimension: 3' 'sizes: 32 28 30' \
-        'spacings: 0.5 0.5 0.9' 'encoding: raw' '' >$name-half.nrrd
-    tail -c $((32 * 28 * 30)) $name.npy >>$name-half.nrrd
-done
-run 0 "a box of both, of flat voxels" render v-half.nrrd -o flat.npy \
-    --mask m-half.nrrd --labels 1,3 --crop 10:30,2:,:20
-run 0 "with a mask of cubes" "$TOOL" render v-half.nrrd --no-labels -s 90x80 \
-    -o cubes.npy --mask m.npy --labels 1,3 --crop 10:30,2:,:20
-check "is the same" cmp -s flat.npy cubes.npy
-check "nothing is resampled" bash -c "! grep -q 'another grid' '$ERR'"
+run 0 "a box of flat voxels, aloud" "$TOOL" $view v-half.nrrd -o cubes.npy --mask m.npy $box
+not_said 'another grid'
+run 0 "all but 0" render v.npy -o c.npy --mask m.npy
 run 0 "from standard input" bash -c \
     "'$TOOL' render - -q --no-labels -s 90x80 -o h.npy --mask m.npy <v.npy"
-check "is the same" cmp -s c.npy h.npy
+same_file "is the same" c.npy h.npy
 run 7 "a mask of no voxel" "$TOOL" render v.npy -o i.png --mask m.npy --labels 9
 says 'm.npy: no voxel is left inside this mask, whose values are 0 to 3'
+run 0 "a mask that is flipped is used as it is" \
+    render place.nrrd -o f.png --mask flip.nrrd
 
 # --- planes: x up to 15 of 0 to 31, a sixth plane beyond all ------------------
-python3 - <<'END'
-import array
-data = open("two.npy", "rb").read()
-head, values = data[:-4 * 32 * 28 * 30], array.array("f", data[-4 * 32 * 28 * 30:])
-for i in range(len(values)):
-    if i % 32 > 15 or i // 896 < 4:
-        values[i] = float("nan")
-open("clip.npy", "wb").write(head + values.tobytes())
-END
 # Footprints leave out voxels, as by hand; of values planes cut slabs exactly.
 run 0 "a mask and planes" render v.npy --method footprint -o n.npy --mask m.npy --labels 2-3 \
     --clip 2,0,0,30,0,0,-1,-4,1,0,0,99,1,0,0,99,1,0,0,99,1,1,1,999 \
     --save-config n.json
 run 0 "masked and clipped by hand" \
     render clip.npy --method footprint -o o.npy
-check "is the same picture" cmp -s n.npy o.npy
+same_file "is the same picture" n.npy o.npy
 run 0 "taken from a recipe" render --config n.json -o q.npy
-check "they are the same" cmp -s n.npy q.npy
-run 0 "planes alone" "$TOOL" info v.npy --clip 1,0,0,15
-prints '^finite  *13440 of 26880'
-run 0 "of a box lie where they were" "$TOOL" info v.npy --clip 1,0,0,15 \
-    --crop 10:,0:7,0:5
-prints '^finite  *210 of'
+same_file "they are the same" n.npy q.npy
+printed "planes alone" '^finite  *13440 of 26880' "$TOOL" info v.npy --clip 1,0,0,15
+printed "of a box lie where they were" '^finite  *210 of' \
+    "$TOOL" info v.npy --clip 1,0,0,15 --crop 10:,0:7,0:5
 # A plane cuts the object and the background alike, as a crop does.
 for cut in "--clip 0,0,1,0" "--crop :,:,:57"; do
-    # shellcheck disable=SC2086
     run 0 "a look with $cut" "$TOOL" info phantom:head $cut
     grep '^look' "$OUT" >>looks
 done
@@ -141,48 +105,42 @@ says 'clip: no voxel is left'
 # --- figures and movies -------------------------------------------------------
 check "info counts what is inside" test \
     "$(figure finite v.npy --mask m.npy --labels 3)" = $((16 * 28 * 16))
-check "with the values that are left" test \
-    "$(figure sum v.npy --mask m.npy --labels 2,3)" = "$(figure sum two.npy)"
-check "and the look is chosen of them alone" test \
-    "$(figure look v.npy --mask m.npy --labels 2,3)" = "$(figure look two.npy)"
-run 0 "a turntable" "$TOOL" turntable v.npy -q --no-labels -s 60x50 \
-    --frames 2 -o 't_%d.png' --mask m.npy --labels 2-3
-run 0 "of the volume masked by hand" "$TOOL" turntable two.npy --mask all.npy -q --no-labels \
-    -s 60x50 --frames 2 -o 'u_%d.png'
-check "is the same" cmp -s t_1.png u_1.png
-run 0 "a movie of files" "$TOOL" movie v.npy v.nrrd -q --no-labels -s 60x50 \
-    -o 'w_%d.png' --mask m.npy --labels 2-3
-run 0 "of files masked by hand" "$TOOL" movie two.npy two.npy -q --no-labels --mask all.npy \
-    -s 60x50 -o 'x_%d.png'
-check "is the same" cmp -s w_1.png x_1.png
+for key in sum look; do
+    check "its $key is of the values that are left" test \
+        "$(figure $key v.npy --mask m.npy --labels 2,3)" = "$(figure $key two.npy)"
+done
+both() { # both VERB INPUTS BY_HAND OPTION...: frames of what a mask leaves
+    run 0 "a $1" "$TOOL" $1 $2 -q --no-labels -s 60x50 "${@:4}" -y -o 't_%d.png' \
+        --mask m.npy --labels 2-3
+    run 0 "of what is masked by hand" "$TOOL" $1 $3 -q --no-labels -s 60x50 "${@:4}" -y \
+        -o 'u_%d.png' --mask all.npy
+    same_file "is the same" t_1.png u_1.png
+}
+both turntable v.npy two.npy --frames 2
+both movie "v.npy v.nrrd" "two.npy two.npy"
 
 # --- light --------------------------------------------------------------------
 # Matter of one value, and a ball of it: its middle faces a light at the eye, its
 # rim does not.
 python3 - <<'END'
 import array
-head = ("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 28 28 28\nencoding: raw\n\n")
+from volumes import each, nrrd
 n = 28
+dims = (n,) * 3
 even = bytearray(b"\x64" * n ** 3)
 even[0], even[1] = 0, 200
-ball = bytes((x - 13) ** 2 + (y - 14) ** 2 + (z - 13) ** 2 < 120
-             for z in range(n) for y in range(n) for x in range(n))
-open("even.nrrd", "wb").write(head.encode() + even)
-open("ball.nrrd", "wb").write(head.encode() + ball)
-nan = float("nan")
-by_hand = array.array("f", (v if b else nan for v, b in zip(even, ball)))
-open("hand.nrrd", "wb").write(head.replace("uint8", "float").replace(
-    "encoding", "endian: little\nencoding").encode() + by_hand.tobytes())
-grad = bytes(102 + 3 * (i % n) + i % 7 for i in range(n ** 3))
-open("grad.nrrd", "wb").write(head.encode() + grad)
-slope = bytes(60 + 2 * (i % n + i // n % n + i // n ** 2) for i in range(n ** 3))
-open("slope.nrrd", "wb").write(head.encode() + slope)
+ball = each(dims, lambda x, y, z: (x - 13) ** 2 + (y - 14) ** 2 + (z - 13) ** 2 < 120)
+nrrd("even.nrrd", dims, even)
+nrrd("ball.nrrd", dims, ball)
+nrrd("hand.nrrd", dims, array.array("f", (
+    v if b else float("nan") for v, b in zip(even, ball))).tobytes(), kind="float")
+nrrd("grad.nrrd", dims, bytes(102 + 3 * (i % n) + i % 7 for i in range(n ** 3)))
+nrrd("slope.nrrd", dims, each(dims, lambda x, y, z: 60 + 2 * (x + y + z)))
 # CT numbers, and the same with an offset, all outside the ball air.
 for name, kind, offset in ("hu", "short", 0), ("offset", "ushort", 1024):
-    ct = array.array("h", (offset + (40 + i % 9 if b else -1000)
-                           for i, b in enumerate(ball)))
-    open(name + ".nrrd", "wb").write(head.replace("uint8", kind).replace(
-        "encoding", "endian: little\nencoding").encode() + ct.tobytes())
+    nrrd(name + ".nrrd", dims, array.array("h", (
+        offset + (40 + i % 9 if b else -1000) for i, b in enumerate(ball))).tobytes(),
+         kind=kind)
 END
 lit="even.nrrd --mask ball.nrrd --light head --range 0,200 -c light-grey"
 for method in shear-warp raycast; do
@@ -208,27 +166,24 @@ for method in shear-warp raycast; do
         --range 0,200 -c light-grey --opacity 0:0.9,200:0.9 --method $method
     check "have no border that is lit" python3 -c '
 import array
+from volumes import each, nrrd
 a = array.array("f", open("hand.npy", "rb").read()[-90 * 80 * 4 * 4:])
 inside = [a[n] / a[n + 3] for n in range(4 * 90 * 40, 4 * 90 * 41, 4)
           if a[n + 3] > 0.95]
 assert len(inside) > 20 and max(inside) < 1.1 * min(inside), inside'
 done
 for cut in "--mask ball.nrrd" "--clip 0,0,1,12"; do
-    # shellcheck disable=SC2086
     run 0 "CT numbers with $cut" "$TOOL" render hu.nrrd $cut --preset ct-soft \
         -s 40x40 -o hu.png -y
-    check "have no offset" bash -c "! grep -q 'have an offset' '$ERR'"
-    # shellcheck disable=SC2086
-    run 0 "those with an offset, with $cut" "$TOOL" render offset.nrrd $cut \
-        --preset ct-soft -s 40x40 -o hu.png -y
-    says 'if the values have an offset of 1024, give --range [0-9-]*,[0-9]*$'
+    not_said 'have an offset'
+    told "those with an offset, with $cut" \
+        'if the values have an offset of 1024, give --range [0-9-]*,[0-9]*$' \
+        "$TOOL" render offset.nrrd $cut --preset ct-soft -s 40x40 -o hu.png -y
 done
-run 0 "the look of what fills a mask" "$TOOL" render grad.nrrd --mask ball.nrrd \
-    -s 40x40 -o grad.png -y
-says 'light-grey'
-run 0 "and of what planes cut, whose faces are not lit" "$TOOL" render slope.nrrd \
-    --clip 1,0,0,14 -s 40x40 -o grad.png -y
-says 'not shaded'
+told "the look of what fills a mask" 'light-grey' \
+    "$TOOL" render grad.nrrd --mask ball.nrrd -s 40x40 -o grad.png
+told "and of what planes cut, whose faces are not lit" 'not shaded' \
+    "$TOOL" render slope.nrrd --clip 1,0,0,14 -s 40x40 -o slope.png
 run 0 "the automatic look" "$TOOL" render even.nrrd --mask ball.nrrd -o auto.png
 run 0 "a preset of Hounsfield units" "$TOOL" render even.nrrd --mask ball.nrrd \
     --preset ct-soft --range -200,300 -o preset.png
@@ -237,41 +192,30 @@ run 0 "a preset of Hounsfield units" "$TOOL" render even.nrrd --mask ball.nrrd \
 run 0 "a recipe is saved" render v.npy -o j.npy --mask m.npy --labels 1,2-3 \
     --save-config j.json
 check "with both keys" grep -q '"labels": "1,2-3"' j.json
-run 0 "and taken" render --config j.json -o k.npy
-check "gives the same" cmp -s j.npy k.npy
-run 0 "other labels count more" render --config j.json -o l.npy --labels 2-3
-run 0 "than those of the file" render --config j.json two.npy -o b.npy -y
-check "and are heeded" cmp -s l.npy b.npy
+pairs npy $view <<END
+and taken | v.npy --mask m.npy --labels 1-3 | = | --config j.json
+other labels count more than those of the file | --config j.json --labels 2-3 | = | \
+    --config j.json two.npy
+END
 
 # --- refused ------------------------------------------------------------------
-refused 3 "another size" \
-    'small.npy: the mask has 31x28x30 voxels, the volume 32x28x30' \
-    "$TOOL" render v.npy -o z.png --mask small.npy
-refused 3 "another size, where the boxes are alike" 'the mask has 31x28x30' \
-    "$TOOL" render v.npy -o z.png --mask small.npy --crop 0:9,0:9,0:9
-run 0 "a mask that is flipped is used as it is" \
-    render place.nrrd -o f.png --mask flip.nrrd
-run 0 "a mask in its place" render place.nrrd -o y.png --mask place.nrrd
-run 0 "a mask without a place" render place.nrrd -o y2.png --mask m.npy
-check "is believed" cmp -s y.png y2.png
-refused 3 "no mask" 'none.nrrd: cannot be opened' \
-    "$TOOL" info v.npy --mask none.nrrd
-refused 2 "a raw mask" 'm.raw: .* snowglass convert makes' \
-    "$TOOL" info v.npy --mask m.raw
 mkfifo pipe
-refused 2 "a pipe as a mask" '^snowglass: pipe: a mask is read from a file' \
-    timeout 10 "$TOOL" info v.npy --mask pipe
-refused 3 "a device as a mask" '/dev/zero: is a device' \
-    "$TOOL" info v.npy --mask /dev/zero
 mkdir empty
-refused 3 "a folder without slices as a mask" 'empty: names no slices' \
-    "$TOOL" info v.npy --mask empty
-refused 2 "a mask from standard input" '^snowglass: -: a mask is read from' \
-    "$TOOL" info v.npy --mask -
+refusals 3 "$TOOL" <<'END'
+render v.npy -o z.png --mask small.npy|small.npy: the mask has 31x28x30 voxels, the volume 32x28x30
+render v.npy -o z.png --mask small.npy --crop 0:9,0:9,0:9|the mask has 31x28x30
+info v.npy --mask none.nrrd|none.nrrd: cannot be opened
+info v.npy --mask /dev/zero|/dev/zero: is a device
+info v.npy --mask empty|empty: names no slices
+END
+refusals 2 "$TOOL" <<'END'
+info v.npy --mask m.raw|m.raw: .* snowglass convert makes
+info v.npy --mask pipe|^snowglass: pipe: a mask is read from a file
+info v.npy --mask -|^snowglass: -: a mask is read from
+convert v.npy -o z.nrrd --as uint8 --mask m.npy|convert to float32, which has NaN
+END
 refused 2 "a box of standard input" 'with a mask both must be files' bash -c \
     "'$TOOL' info - --mask m.npy --crop 0:9,0:9,0:9 <v.npy"
-refused 2 "NaN in integers" 'convert to float32, which has NaN' \
-    "$TOOL" convert v.npy -o z.nrrd --as uint8 --mask m.npy
 # 26880 voxels: of one byte, of the mask's and of floats.
 refused 5 "both volumes count" 'need 157.5 KiB, over the --memory' \
     "$TOOL" render v.npy -o z.png -s 9x9 --mask m.npy --memory 100K

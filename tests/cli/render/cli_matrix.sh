@@ -8,7 +8,6 @@
 # A scene whose voxels end within the volume, and whose pixels are a voxel wide.
 scene="phantom:shells --dims 40x36x44 -s 70x60 --azimuth 30 --elevation 20
     --fit volume -y"
-# shellcheck disable=SC2086
 render() { "$TOOL" render $scene --preset linear "$@"; }
 
 # near NAME METHOD MODEL BOUND: the mean difference of its picture, of colours 0

@@ -4,39 +4,28 @@
 . "$(dirname "$0")/../../support/shell.sh"
 
 small="phantom:head --dims 24x24x20 -s 40x30 --azimuth 30 --elevation 20"
-# shellcheck disable=SC2086
 render() { "$TOOL" $small "$@"; }
 # The shape that the header of a .npy tells.
 shape() { head -c 128 "$1" | tr -d '\0' | grep -ao "'shape': ([0-9, ]*)"; }
 
-run 0 "over" render -q -o over.npy
 for mode in mip minip mean sum; do
-    run 0 "mode $mode" render -m $mode -o $mode.npy
+    told "mode $mode" "mode $mode of all voxels, method" render -m $mode -o $mode.npy
     check "it is told on one line" [ "$(wc -l <"$ERR")" -eq 1 ]
-    says "mode $mode of all voxels, method"
     says "grey .* \(linear\)"
-    run 6 "$mode is another picture than over" \
-        "$TOOL" compare over.npy $mode.npy
-    for encoding in crs bitmap rle; do
-        run 0 "$mode in $encoding" render -q -m $mode --encoding $encoding \
-            -o $mode.$encoding.npy
-        run 0 "encoding $encoding does not change $mode" \
-            "$TOOL" compare $mode.npy $mode.$encoding.npy
-    done
-    run 0 "$mode with a threshold" render -m $mode --threshold 30 \
-        -o $mode.threshold.npy
-    says "of all voxels \(no threshold\)"
-    run 0 "a threshold has no part in $mode" \
-        "$TOOL" compare $mode.npy $mode.threshold.npy
-    run 0 "$mode in perspective" render -q -m $mode --perspective \
-        -o $mode.eye.npy
-    run 6 "perspective changes $mode" \
-        "$TOOL" compare $mode.npy $mode.eye.npy
+    pairs npy $small <<END
+$mode is another picture than over | -m $mode | != | -m over
+$mode in crs | " | = | -m $mode --encoding crs
+$mode in bitmap | " | = | -m $mode --encoding bitmap
+$mode in rle | " | = | -m $mode --encoding rle
+$mode with a threshold, which has no part in it | " | = | -m $mode --threshold 30
+$mode in perspective | " | != | -m $mode --perspective
+END
     run 0 "$mode as PNG" render -q -m $mode -o $mode.png
     run 0 "$mode on a background" render -q -m $mode -o $mode.back.png \
         --background white
     run 0 "$mode as PFM" render -q -m $mode -o $mode.pfm
 done
+told "a threshold" "of all voxels \(no threshold\)" render -m mip --threshold 30 -o t.npy
 check "mip is colours" [ "$(shape mip.npy)" = "'shape': (30, 40, 4)" ]
 check "a mean is values" [ "$(shape mean.npy)" = "'shape': (30, 40)" ]
 check "a sum is values" [ "$(shape sum.npy)" = "'shape': (30, 40)" ]
@@ -71,46 +60,34 @@ check "is spread over the same range" grep -qF "${range:-no range}" "$ERR"
 # printed command.
 for mode in mean mip; do
     for colors in 60:#000000,255:#ff8800 1000:#000000,1255:#ff8800 90:#ff0000; do
-        run 0 "colours at values, $mode" render -v -m $mode -c "$colors" -y \
-            -o "$mode.at.png"
-        command=$(sed -n 's/^snowglass: again: //p' "$ERR")
-        mv "$mode.at.png" "$mode.${colors%%:*}.png"
-        eval "\"\$TOOL\" ${command#snowglass } -q"
-        check "the command again" cmp -s "$mode.${colors%%:*}.png" "$mode.at.png"
+        again "colours at values, $mode" render "$mode.at.png" $small -m $mode -c "$colors"
+        cp "first/$mode.at.png" "$mode.${colors%%:*}.png"
     done
-    run 6 "colours at other values" "$TOOL" compare $mode.60.png $mode.1000.png
+    other_file "colours at other values" $mode.60.png $mode.1000.png
 done
 
 run 0 "iso and its depth" render -m iso --iso 40 -o iso.npy --depth near.npy
 says "mode iso of all voxels"
 check "a depth is values" [ "$(shape near.npy)" = "'shape': (30, 40)" ]
 run 0 "another value" render -q -m iso --iso 120 -o iso2.npy --depth near2.pfm
-run 6 "is another surface" "$TOOL" compare iso.npy iso2.npy
-run 6 "elsewhere" "$TOOL" compare near.npy near2.pfm
+run 6 "is elsewhere" "$TOOL" compare near.npy near2.pfm
 run 4 "a depth that exists is kept" render -q -m iso --iso 40 -o iso3.npy \
     --depth near.npy
 says "near.npy: "
-run 0 "iso unshaded" render -q -m iso --iso 40 --shade none -o flat.npy
-run 6 "is flat" "$TOOL" compare iso.npy flat.npy
-for encoding in crs bitmap rle; do
-    run 0 "iso in $encoding" render -q -m iso --iso 40 --encoding $encoding \
-        -o iso.$encoding.npy
-    run 0 "encoding $encoding does not change iso" \
-        "$TOOL" compare iso.npy iso.$encoding.npy
-done
-run 0 "iso by the original method" render -q -m iso --iso 40 \
-    --method original -o iso.original.npy
-run 0 "is the same" "$TOOL" compare iso.npy iso.original.npy
+pairs npy $small -m iso --iso 40 <<'END'
+iso unshaded is flat | | != | --shade none
+of another value is another | " | != | --iso 120
+in crs | " | = | --encoding crs
+in bitmap | " | = | --encoding bitmap
+in rle | " | = | --encoding rle
+by the original method | " | = | --method original
+END
+again "iso" render keep.npy $small -m iso --iso 40
+again "minip" render keep.npy $small -m minip
 run 0 "iso in perspective" render -q -m iso --iso 40 --perspective -o eye.png
-run 0 "over and its depth" render -q -o solid.npy --depth solid.depth.npy \
-    --opacity 0.3:0,0.31:1
-run 0 "over is what it is without" render -q -o solid2.npy \
-    --opacity 0.3:0,0.31:1
-run 0 "the same picture" "$TOOL" compare solid.npy solid2.npy
-run 0 "a recipe keeps iso" render -q -m iso --iso 40 -y -o keep.npy \
-    --save-config iso.json
-run 0 "and gives it again" "$TOOL" render --config iso.json -q -y -o again.npy
-run 0 "the same surface" "$TOOL" compare iso.npy again.npy
+pairs npy $small --opacity 0.3:0,0.31:1 <<'END'
+over and its depth | --depth solid.depth.npy | = |
+END
 
 run 2 "a movie of sums has one range" "$TOOL" turntable phantom:head \
     --dims 12x12x12 -m sum -o "sum_%02d.png" --frames 2
@@ -119,12 +96,7 @@ run 0 "a movie of sums" "$TOOL" turntable phantom:head --dims 12x12x12 -m sum \
     --range 0,1000 -o "sum_%02d.png" --frames 2 -s 20x20
 run 0 "a movie of maxima" "$TOOL" turntable phantom:head --dims 12x12x12 \
     -m mip -o "mip_%02d.png" --frames 2 -s 20x20
-run 0 "a recipe keeps the mode" render -q -y -m minip -o keep.npy \
-    --save-config keep.json
-run 0 "and gives it again" "$TOOL" render --config keep.json -q -y -o again.npy
-run 0 "the same" "$TOOL" compare keep.npy again.npy
-run 0 "what mip makes no use of" render -m mip --opacity 0:0,200:1 \
-    --light 10,10 -y -o unused.png
-says '^snowglass: note: --opacity has no effect in mode mip$'
+told "what mip makes no use of" '^snowglass: note: --opacity has no effect in mode mip$' \
+    render -m mip --opacity 0:0,200:1 --light 10,10 -y -o unused.png
 says '^snowglass: note: --light has no effect in mode mip$'
 finish

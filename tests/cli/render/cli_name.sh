@@ -9,8 +9,7 @@ cp in/a.nrrd in/1.2.840.113
 cp in/a.nrrd in/c.d.nrrd
 cd out || exit 1
 named() {
-    run 0 "$1" "$TOOL" "$1" -s 20x20
-    says "; to $2\$"
+    told "$1" "; to $2\$" "$TOOL" "$1" -s 20x20
     check "$2 is written" [ -s "$2" ]
     run 4 "$1 again" "$TOOL" "$1" -s 20x20
     says "^snowglass: $2: exists, and is replaced only where it is named; give"

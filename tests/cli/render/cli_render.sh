@@ -6,11 +6,9 @@
 # Every phantom gives a picture that differs from an empty one.
 for name in cube head engine shells marschner-lobb turbulence; do
     small="phantom:$name --dims 24x24x20 -s 40x30"
-    # shellcheck disable=SC2086
     run 0 "phantom:$name" "$TOOL" $small -o $name.png
     check "phantom:$name is a PNG" is_png $name.png
     says "phantom:$name: phantom 24x24x20"
-    # shellcheck disable=SC2086
     run 7 "phantom:$name made transparent" "$TOOL" $small -o empty_$name.png \
         --opacity 0:0
     run 6 "phantom:$name shows something" \
@@ -20,41 +18,38 @@ run 0 "two transparent pictures" \
     "$TOOL" compare empty_cube.png empty_head.png
 
 small="phantom:shells --dims 24x24x20 -s 40x30"
-# shellcheck disable=SC2086
 render() { "$TOOL" $small "$@"; }
 
 run 0 "-q is silent" render -q -o quiet.png
-check "-q is silent: no word" [ ! -s "$ERR" ] 
-run 0 "one line without -q" render -o said.png
+silent
+told "one line without -q" "view \+z; method shear-warp, encoding (crs|bitmap|rle)" \
+    render -o said.png
 check "it is one line" [ "$(wc -l <"$ERR")" -eq 1 ]
-says "view \+z; method shear-warp, encoding (crs|bitmap|rle)"
-run 7 "nothing is visible" render -y -o void.png --opacity 900:0,901:1
-says '^snowglass: note: the picture is empty: no voxel has an opacity'
-run 7 "all is beside the picture" render -y -o void.png --target 5000,0,0
-says '^snowglass: note: the picture is empty: no visible voxel is in view'
-run 7 "a surface of no value" render -y -o void.png -m iso --iso 900
-says '^snowglass: note: the picture is empty: no surface of value 900 '
+while IFS='|' read -r words pattern; do
+    run 7 "nothing is visible: $words" render -y -o void.png $words
+    says "^snowglass: note: the picture is empty: $pattern"
+done <<'END'
+--opacity 900:0,901:1|no voxel has an opacity
+--target 5000,0,0|no visible voxel is in view
+-m iso --iso 900|no surface of value 900 
+END
 check "it is written" is_png void.png
-run 7 "quietly" render -q -y -o void.png --opacity 900:0,901:1
-check "nothing is said" [ ! -s "$ERR" ]
-run 7 "with its figures and configuration" render -q -y -o void.png \
+run 7 "quietly, with its figures and configuration" render -q -y -o void.png \
     --opacity 900:0,901:1 --stats void.json --save-config void.config
+silent
 check "which are written" [ -s void.json -a -s void.config ]
 run 0 "a mean of nothing is a picture of values" render -q -y -o void.npy \
     -m mean --opacity 900:0,901:1
-run 0 "a slice" "$TOOL" phantom cube --dims 1x9x9 -q -o slice.nrrd
-run 0 "from its face" "$TOOL" render slice.nrrd -s 20x20 -y -o void.png
-says '^snowglass: .*view \+x; '
-run 0 "or where the view is chosen" "$TOOL" render slice.nrrd -s 20x20 -y \
-    -o void.png --view +z
-says '^snowglass: .*view \+z; '
-run 0 "-v tells more" render -v -o more.png
-says "^snowglass: seconds: read"
+"$TOOL" phantom cube --dims 1x9x9 -q -o slice.nrrd
+for view in "" +z; do
+    told "a slice from its face, or ${view:-as it is}" "^snowglass: .*view \\${view:-+x}; " \
+        "$TOOL" render slice.nrrd -s 20x20 -y -o void.png ${view:+--view $view}
+done
+told "-v tells more" "^snowglass: seconds: read" render -v -o more.png
 says "^snowglass: bytes: volume"
-run 0 "--progress always" render --progress always -o p.png
-says "^snowglass: rendering$"
+told "--progress always" "^snowglass: rendering$" render --progress always -o p.png
 run 0 "the last of -v -q counts" render -v -q -o r.png
-check "the last of -v -q counts: silent" [ ! -s "$ERR" ]
+silent
 
 # The options of every topic are taken, and those that must change the picture
 # do.
@@ -148,27 +143,19 @@ same --azimuth 50 --azimuth 0
 same --size 9x9 -s 40x30
 
 # The number behind --perspective may be left out, and is only a number.
-run 0 "an eye of 30 degrees" render -q -o eye.npy --perspective
-for way in "--perspective 30" "--perspective=30" "--perspective=60 --perspective"; do
-    # shellcheck disable=SC2086
-    run 0 "$way" render -q -o eye2.npy -y $way
-    run 0 "$way is --perspective" "$TOOL" compare eye.npy eye2.npy
-done
-run 0 "an input behind --perspective" "$TOOL" render -q --perspective \
-    phantom:shells --dims 24x24x20 -s 40x30 --fit volume -o eye3.npy
-run 0 "it is no number" "$TOOL" compare eye.npy eye3.npy
-run 0 "a number and an input behind it" "$TOOL" render -q --perspective 30 \
-    phantom:shells --dims 24x24x20 -s 40x30 --fit volume -o eye4.npy
-run 0 "they are told apart" "$TOOL" compare eye.npy eye4.npy
-run 0 "the exact picture in perspective" \
-    render -q -o eye5.npy --perspective --method footprint
-run 0 "a ray caster in perspective" \
-    render -q -o cast.npy --perspective --method raycast
-run 0 "is near the fast one" \
-    "$TOOL" compare eye.npy cast.npy --tolerance 0.5
-run 0 "the original method in perspective" \
-    render -q -o eye6.npy --perspective --method original
-run 0 "is the exact picture" "$TOOL" compare eye5.npy eye6.npy
+pairs npy $small <<END
+an eye of 30 degrees | --perspective | = | --perspective 30
+with = | " | = | --perspective=30
+the last counts | " | = | --perspective=60 --perspective
+near a ray caster | " | 0.5 | --perspective --method raycast
+exact and original | --perspective --method footprint | = | --perspective --method original
+END
+size="--dims 24x24x20 -s 40x30 --fit volume"
+pairs npy <<END
+an input behind it is no number | render --perspective phantom:shells $size | = | \
+    render phantom:shells --perspective $size
+a number and an input are told apart | " | = | render --perspective 30 phantom:shells $size
+END
 
 # The smallest volumes there are; the sanitizers look on.
 for dims in 1x1x1 1x1x100 1x100x1 100x1x1; do
@@ -181,19 +168,17 @@ run 0 "the picture to standard output" render -q -o - --background none
 check "is a PNG" is_png "$OUT"
 cp "$OUT" stream.png
 run 0 "the same to a file" render -q -o stream_file.png --background none
-check "is the same, byte for byte" cmp -s stream.png stream_file.png
+same_file "is the same, byte for byte" stream.png stream_file.png
 run 0 "16 bits" render -q -o deep.png --bits 16 --background none
 run 0 "16 bits are near the floats" \
     "$TOOL" compare base.npy deep.png --tolerance 0.001
 run 0 "8 bits are near the floats" \
     "$TOOL" compare base.npy stream.png --tolerance 1/255
-run 0 "a background" render -q -o ground.png --background '#ff8000'
-run 6 "a background shows" "$TOOL" compare stream.png ground.png
-run 0 "another background" render -q -o night.png --background navy
-run 6 "differs from the first" "$TOOL" compare night.png ground.png
-run 0 "the same background in words of numbers" \
-    render -q -o ground2.png --background 1,0.50196,0
-run 0 "gives the same picture" "$TOOL" compare ground.png ground2.png
+pairs png $small <<'END'
+a background shows | --background '#ff8000' | != | --background none
+another differs from it | " | != | --background navy
+the same in words of numbers | " | = | --background 1,0.50196,0
+END
 run 0 "PFM" render -q -o base.pfm
 check "PFM begins with PF" [ "$(head -c 2 base.pfm)" = PF ]
 check "NPY has its floats" \
@@ -202,16 +187,13 @@ run 0 "options after the operand, -- before it" \
     "$TOOL" -q -s 9x9 --dims 8x8x8 -o dash.png -- phantom:cube
 raw_cube cube.raw 8
 raw="--dims 8x8x8 --type uint8"
-# shellcheck disable=SC2086
+gzip -k cube.raw
 run 0 "a raw file" "$TOOL" -q cube.raw $raw -s 20x20 -o raw.npy
-# shellcheck disable=SC2086
 check "standard input" bash -c \
     "'$TOOL' -q - $raw -s 20x20 -o stdin.npy <cube.raw"
-run 0 "gives the same picture" "$TOOL" compare raw.npy stdin.npy
-gzip -k cube.raw
-# shellcheck disable=SC2086
+same_file "gives the same picture" raw.npy stdin.npy
 run 0 "a raw file in gzip" "$TOOL" -q cube.raw.gz $raw -s 20x20 -o gz.npy
-run 0 "gives the same picture" "$TOOL" compare raw.npy gz.npy
+same_file "gives the same picture" raw.npy gz.npy
 
 # The figures.
 run 0 "figures to standard output" render -q -o f.png --threshold 10 \
@@ -219,8 +201,8 @@ run 0 "figures to standard output" render -q -o f.png --threshold 10 \
 check "are one line" [ "$(wc -l <"$OUT")" -eq 1 ]
 prints '^\{"version": "[0-9.]+", "volume": \{"dims": \[24, 24, 20\], "type": "[a-z0-9]+", "spacing": \[[-0-9.e]+, [-0-9.e]+, [-0-9.e]+\]\}, "threshold": 10.0, "sparse_ratio": [0-9.e-]+, "encoding": "rle", "method": "shear-warp", "kernel": "tent", "footprint": 2, "threads": [0-9]+, "ranks": 1, "load": 1.0, "isa": "[a-z0-9]+", "quality": "normal", "bytes": \{"volume": [0-9]+, "ea": [0-9]+, "ia": [0-9]+, "pa": [0-9]+, "peak": [0-9]+\}, "seconds": \{"read": [-0-9.e]+, "classify": [-0-9.e]+, "shade": [-0-9.e]+, "encode": [-0-9.e]+, "splat": [-0-9.e]+, "composite": [-0-9.e]+, "warp": [-0-9.e]+, "combine": 0.0, "gather": 0.0, "write": [-0-9.e]+, "frame": [-0-9.e]+, "total": [-0-9.e]+\}, "image": \{"width": 40, "height": 30, "checksum": "[0-9a-f]{16}"\}\}$'
 check "interesting voxels take bytes" [ "$(number ia)" -gt 0 ]
-run 0 "shear-warp by its name" render -q -o name.npy --method shear-warp --stats -
-prints '"method": "shear-warp"'
+printed "shear-warp by its name" '"method": "shear-warp"' \
+    render -q -o name.npy --method shear-warp --stats -
 
 # Noise at a side that goes on beyond it, below the lowest value, is not seen.
 for i in 0 1 2 3 4 5 6 7; do printf '\0\7\3\11\1\10\2\5'; done >noise.raw
@@ -234,30 +216,14 @@ look=$(sed -n 's/.*(look \([0-9.]*\)).*/\1/p' "$ERR")
 check "classify counts the choice of the look" awk -v look="${look:-none}" \
     -v both="$(number classify)" \
     'BEGIN { exit !(look + 0 > 0 && both + 0.0005 >= look) }'
-run 0 "figures of the original method" render -q -o g.png --method original \
-    --stats -
-prints '"encoding": "none", "method": "original"'
+printed "figures of the original method" '"encoding": "none", "method": "original"' \
+    render -q -o g.png --method original --stats -
 run 0 "the picture to standard output, figures to a file" \
     render -q -o - --stats figures.json
 check "PNG and JSON keep apart" grep -q '"checksum"' figures.json
 
-# Interruption: no picture, nothing aside, 130.
-for signal in TERM INT; do
-    rm -f stages
-    set -m # else a job would ignore SIGINT
-    "$TOOL" phantom:head --dims 200x200x200 -s 1000x1000 --progress always \
-        --method original --kernel auto:9 -o late.png 2>stages &
-    job=$!
-    set +m
-    await rendering stages
-    kill -$signal $job
-    wait $job
-    check "SIG$signal while rendering" [ $? -eq 130 ]
-    check "leaves nothing" [ -z "$(ls -A | grep late)" ]
-done
-
-# While the file is written the signal is let go: the picture becomes whole.
-rm stages
+# While the file is written a signal is let go: the picture becomes whole.
+# (cli_interrupt: while it is drawn.)
 "$TOOL" phantom:cube --dims 8x8x8 -s 2000x2000 --bits 16 --progress always \
     -o large.png 2>stages &
 job=$!
@@ -303,8 +269,7 @@ for delay in $delays; do
     timeout --foreground --preserve-status -s TERM $delay "$TOOL" -q phantom:engine \
         --dims 64x64x64 -s 700x700 --bits 16 -o late.png 2>/dev/null
     case $? in
-    130) early=$((early + 1)) && [ ! -e late.png ] || broken=1 ;;
-    143) early=$((early + 1)) && [ ! -e late.png ] || broken=1 ;;
+    130 | 143) early=$((early + 1)) && [ ! -e late.png ] || broken=1 ;;
     0) is_png late.png && "$TOOL" compare late.png late.png >"$OUT" ||
         broken=1 ;;
     *) broken=1 ;;
@@ -315,9 +280,8 @@ check "interrupted at $delays s, $early times early: whole or absent" \
 check "and nothing is left aside" [ -z "$(ls -A | grep snow-)" ]
 # What Slurm has given, where it binds no processes.
 for given in SLURM_CPUS_PER_TASK=1 SLURM_CPUS_ON_NODE=1; do
-    run 0 "$given" env "$given" "$TOOL" phantom:cube --dims 8x8x8 -s 9x9 -q -y \
-        -o slurm.png --stats -
-    prints '"threads": 1,'
+    printed "$given" '"threads": 1,' env "$given" "$TOOL" phantom:cube --dims 8x8x8 \
+        -s 9x9 -q -y -o slurm.png --stats -
 done
 
 finish

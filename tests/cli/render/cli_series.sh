@@ -17,11 +17,10 @@ render() { "$TOOL" render -q "${look[@]}" "$@"; }
 # A picture of one step; numbers may be missing between others.
 for pair in "0 0000" "1 0010" "2 0030" "last 0030" "-1 0030" "-3 0000"; do
     read -r time name <<<"$pair"
-    run 0 "the file itself" render run_"$name".nrrd -o one.png -y
-    run 0 "the pattern at $time" render run_%04d.nrrd --time "$time" -o two.png -y
-    check "which is step $time" cmp -s one.png two.png
-    run 0 "the list at $time" render steps.visit --time "$time" -o two.png -y
-    check "which is step $time too" cmp -s one.png two.png
+    pairs png render "${look[@]}" <<END
+the pattern at $time is step $name | run_$name.nrrd | = | run_%04d.nrrd --time $time
+the list at $time too | " | = | steps.visit --time $time
+END
 done
 run 0 "without --time" "$TOOL" render "${look[@]}" run_%04d.nrrd -o first.png
 says 'run_0000.nrrd: step 0 of 3 .counted from 0. is taken; --time N takes another'
@@ -36,18 +35,15 @@ done
 refused 2 "a step that is not there" 'no step 3; run_%04d.nrrd stands for 3' \
     "$TOOL" info run_%04d.nrrd --time 3
 refused 2 "nor that far from the end" 'no step -4' "$TOOL" info run_%04d.nrrd --time -4
-run 0 "a number of any width" "$TOOL" info run_%T.nrrd --time last
-says 'run_0030.nrrd: step 2 of 3'
+told "a number of any width" 'run_0030.nrrd: step 2 of 3' "$TOOL" info run_%T.nrrd --time last
 refused 3 "another width" 'no file matches' "$TOOL" info run_%d.nrrd
 for name in mixed_007 mixed_8 mixed_09 mixed_10 long_0000000100 long_0000000200; do
     cp run_0010.nrrd $name.nrrd
 done
 run 0 "files of several widths" "$TOOL" movie -q "${look[@]}" mixed_%T.nrrd -o w_%d.png
 check "are all in the movie" [ "$(echo w_*.png)" = "w_0.png w_1.png w_2.png w_3.png" ]
-run 0 "each under its own name" "$TOOL" info mixed_%T.nrrd --time 2
-says 'mixed_09.nrrd: step 2 of 4'
-run 0 "a long number" "$TOOL" info long_%T.nrrd --time last
-says 'long_0000000200.nrrd: step 1 of 2'
+told "each under its own name" 'mixed_09.nrrd: step 2 of 4' "$TOOL" info mixed_%T.nrrd --time 2
+told "a long number" 'long_0000000200.nrrd: step 1 of 2' "$TOOL" info long_%T.nrrd --time last
 rm mixed_09.nrrd
 run 0 "iterations at any distance" "$TOOL" movie -q "${look[@]}" mixed_%T.nrrd -o x_%d.png
 check "are all in the movie too" [ "$(echo x_*.png)" = "x_0.png x_1.png x_2.png" ]
@@ -59,12 +55,10 @@ refused 3 "two of one number" 'another file of mixed_%T.nrrd has this number too
 refused 3 "a pattern without files" 'no file matches' "$TOOL" info no_%d.nrrd
 
 # Physical time: the nearest step.
-run 0 "by time" "$TOOL" info steps.visit --time 0.12
-prints '^times +3 .these values: step 1'
+printed "by time" '^times +3 .these values: step 1' "$TOOL" info steps.visit --time 0.12
 prints '^time +0.1$'
 says 'step 1 of 3 is the nearest, at 0.1'
-run 0 "with a unit, which the list lacks" "$TOOL" info steps.visit --time 9.9s
-prints 'step 2'
+printed "with a unit, which the list lacks" 'step 2' "$TOOL" info steps.visit --time 9.9s
 refused 2 "without times" 'has no physical times' "$TOOL" info run_0000.nrrd --time 0.5
 for time in x 1: 0.5q1 1:2:3 -; do
     [ $time = 1: ] || refused 2 "no time: $time" 'is not a time step' \
@@ -110,13 +104,11 @@ check "and the first stays" cmp -s before.png st_0.png
 # Short movies take four seconds.
 if command -v ffprobe >/dev/null; then
     run 0 "three frames" movie run_0000.nrrd run_0010.nrrd run_0030.nrrd -o a.mp4
-    run 0 "their rate" ffprobe -v error -select_streams v -show_entries \
-        stream=r_frame_rate -of csv=p=0 a.mp4
-    prints '^2/1'
+    printed "their rate" '^2/1' \
+        ffprobe -v error -select_streams v -show_entries stream=r_frame_rate -of csv=p=0 a.mp4
     run 0 "--fps" movie run_0000.nrrd run_0010.nrrd -o b.mp4 --fps 10
-    run 0 "is kept" ffprobe -v error -select_streams v -show_entries \
-        stream=r_frame_rate -of csv=p=0 b.mp4
-    prints '^10/1'
+    printed "is kept" '^10/1' \
+        ffprobe -v error -select_streams v -show_entries stream=r_frame_rate -of csv=p=0 b.mp4
 fi
 
 # A folder with such a Header is a plotfile (tests/oracles/oracle_amr.py).

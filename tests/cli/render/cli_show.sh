@@ -5,6 +5,7 @@
 refused 2 "no terminal" '\-\-show: standard output is not a terminal' \
     "$TOOL" phantom:cube --show
 python3 -c 'import pty, fcntl, termios' 2>/dev/null || exit 77
+need_python
 cat >terminal.py <<'END'
 """Runs a command with its standard output at a pseudo-terminal of 40 x 12."""
 import fcntl, os, pty, struct, subprocess, sys, termios
@@ -29,72 +30,47 @@ END
 unset KITTY_WINDOW_ID TERM_PROGRAM TMUX STY
 export TERM=xterm-256color
 picture="phantom:head --dims 40x40x40 -s 90x60 -q -c hot --background black"
+# shown FILE OPTION...: what a terminal gets.
+shown() { run 0 "shown: ${*:2}" python3 terminal.py "$1" "$TOOL" "${@:2}" -q --show; }
 run 0 "the picture as a file" "$TOOL" $picture -o a.png
-run 0 "in a plain terminal" python3 terminal.py blocks "$TOOL" $picture --show
+shown blocks $picture
 check "no file is written" absent head.png
-run 0 "with an output" python3 terminal.py again "$TOOL" $picture --show \
-    -o b.png
-check "the file is written too" cmp -s a.png b.png
-check "and the same is shown" cmp -s blocks again
+shown again $picture -o b.png
+same_file "the file is written too" a.png b.png
+same_file "and the same is shown" blocks again
 export KITTY_WINDOW_ID=1
-run 0 "in kitty" python3 terminal.py kitty "$TOOL" $picture --show
-check "by its protocol" grep -q _Ga=T kitty
+shown kitty $picture
+check "by kitty's protocol" grep -q _Ga=T kitty
 for inside in TMUX=/tmp/tmux,1,0 STY=1.pts TERM=tmux-256color TERM=screen; do
     run 0 "in kitty, $inside" env $inside python3 terminal.py inside "$TOOL" \
         $picture --show
-    check "$inside: half blocks are shown" cmp -s inside blocks
+    same_file "$inside: half blocks are shown" inside blocks
 done
 # Whatever is written, a PNG is shown: its background, letters and colours.
 "$TOOL" convert -q phantom:head --dims 40x40x40 -o head.nrrd
-for options in "" "-c hot" "-m mip" "-m mean -c viridis"; do
-    shown="head.nrrd -s 200x160 -q $options --show"
-    # shellcheck disable=SC2086
-    run 0 "'$options' as a PNG" python3 terminal.py as_png "$TOOL" $shown
-    # shellcheck disable=SC2086
-    run 0 "'$options' beside a file of floats" python3 terminal.py as_npy \
-        "$TOOL" $shown -y -o shown.npy
-    check "'$options': the same is shown" cmp -s as_png as_npy
+for verb in "slice --at 20" "slice --axis x -c hot" render "render -c hot" "render -m mip" \
+    "render -m mean -c viridis"; do
+    shown as_png $verb head.nrrd -s 200x160
+    shown as_npy $verb head.nrrd -s 200x160 -y -o shown.npy
+    same_file "$verb: the same is shown beside a file of floats" as_png as_npy
 done
-for verb in "slice --at 20" "slice --axis x -c hot"; do
-    run 0 "$verb as a PNG" python3 terminal.py as_png "$TOOL" $verb head.nrrd \
-        -q -s 120x100 --show
-    run 0 "$verb beside a file of values" python3 terminal.py as_values \
-        "$TOOL" $verb head.nrrd -q -s 120x100 --show -y -o values.npy
-    check "$verb: the same is shown" cmp -s as_png as_values
-done
-run 0 "without letters" python3 terminal.py bare "$TOOL" head.nrrd -s 200x160 -q \
-    -m mean -c viridis --show --no-labels
-check "letters are among what is shown" [ "$(cmp -s as_npy bare; echo $?)" = 1 ]
-run 0 "what is written" "$TOOL" head.nrrd -s 200x160 -q -m mean -c viridis -o own.npy
-check "is as without showing" cmp -s shown.npy own.npy
+shown bare $verb head.nrrd -s 200x160 --no-labels
+other_file "letters are among what is shown" as_npy bare
+run 0 "what is written" "$TOOL" $verb head.nrrd -s 200x160 -q -o own.npy
+same_file "is as without showing" shown.npy own.npy
 cat >compare.py <<'END'
 """What was shown beside the levels of the PNG."""
-import base64, re, struct, zlib
-data = open("a.png", "rb").read()
-assert struct.unpack(">II", data[16:24]) == (90, 60) and data[24:26] == b"\x08\x02"
-at, body = 8, b""
-while at < len(data):
-    size, kind = struct.unpack(">I4s", data[at:at + 8])
-    if kind == b"IDAT":
-        body += data[at + 8:at + 8 + size]
-    at += 12 + size
-raw, rows = zlib.decompress(body), []
-for y in range(60):
-    line = bytearray(raw[y * 271 + 1:(y + 1) * 271])
-    for i in range(270):
-        left = line[i - 3] if i >= 3 else 0
-        up = rows[-1][i] if rows else 0
-        corner = rows[-1][i - 3] if rows and i >= 3 else 0
-        p = left + up - corner
-        near = min((abs(p - v), n) for n, v in enumerate((left, up, corner)))[1]
-        line[i] = (line[i] + (0, left, up, (left + up) // 2,
-                              (left, up, corner)[near])[raw[y * 271]]) & 255
-    rows.append(line)
+import base64, re
+from png import levels
+width, height, colors = levels(open("a.png", "rb").read())
+assert (width, height) == (90, 60)
+body = bytes(value for pixel in zip(*colors) for value in pixel)
+rows = [body[270 * y:270 * (y + 1)] for y in range(60)]
 kitty = open("kitty", "rb").read()
 parts = re.findall(rb"\x1b_G([^;]*);([^\x1b]*)\x1b\\", kitty)
 assert parts[0][0] == b"a=T,f=24,s=90,v=60,q=2,m=1" and parts[-1][0] == b"m=0"
 assert all(len(text) <= 4096 for _, text in parts)
-assert b"".join(base64.b64decode(t) for _, t in parts) == b"".join(rows)
+assert b"".join(base64.b64decode(t) for _, t in parts) == body
 shown = open("blocks", "rb").read().decode()
 lines = shown.split("\n")[:-1]
 assert len(lines) <= 11, len(lines)  # 12 rows, less the cursor's

@@ -19,8 +19,7 @@ for cut in 12:13,:,:=sagittal :,7:8,:=coronal :,:,3:4=axial 1:2,2:3,:=axial; do
 done
 run 0 "names of axes may be capital" "$TOOL" slice $head -o c.png -q --axis AXIAL
 check "of the same bytes" cmp -s a.png c.png
-run 0 "a name after the input" "$TOOL" slice $head
-says '; to head.png$'
+told "a name after the input" '; to head.png$' "$TOOL" slice $head
 check "is written" is_png head.png
 
 for at in -1 36 1e9 2.5 nan middle 3um 5mm5; do
@@ -28,23 +27,18 @@ for at in -1 36 1e9 2.5 nan middle 3um 5mm5; do
         "--at: '$at' is no slice across coronal: must be 0 to 35, or a position from" \
         "$TOOL" slice $head -o x.png --axis coronal --at "$at"
 done
-refused 2 "a position outside" 'must be 0 to 29, or a position from -?[0-9.]+mm' \
-    "$TOOL" slice $head -o x.png --at 9999mm
-refused 2 "an axis" "choose from: x, y, z, axial, coronal, sagittal" \
-    "$TOOL" slice $head -o x.png --axis w
-refused 2 "a wide kernel" 'gauss cannot draw a slice; use tent' \
-    "$TOOL" slice $head -o x.png --kernel gauss
-refused 2 "an option of other verbs" 'is not an option of slice but of render' \
-    "$TOOL" slice $head -o x.png --azimuth 30
-refused 2 "opacities" 'is not an option of slice but of render' \
-    "$TOOL" slice $head -o x.png --opacity 0:0,100:1
+refusals 2 "$TOOL" slice $head <<'END'
+-o x.png --at 9999mm|must be 0 to 29, or a position from -?[0-9.]+mm
+-o x.png --axis w|choose from: x, y, z, axial, coronal, sagittal
+-o x.png --kernel gauss|gauss cannot draw a slice; use tent
+-o x.png --azimuth 30|is not an option of slice but of render
+-o x.png --opacity 0:0,100:1|is not an option of slice but of render
+-o x.npy --legend|remove it or name a .png
+END
 refused 3 "no such file" 'absent.nii' "$TOOL" slice absent.nii -o x.png
-refused 2 "a legend in numbers" 'remove it or name a .png' \
-    "$TOOL" slice $head -o x.npy --legend
 check "nothing is written then" absent x.png
 
-run 0 "numbers" "$TOOL" slice $head -o a.npy
-says 'data values'
+told "numbers" 'data values' "$TOOL" slice $head -o a.npy
 check "are an array of rows" grep -aq "'shape': (40, 40)" a.npy
 for suffix in pfm exr tif webp jpg; do
     run 0 "a .$suffix" "$TOOL" slice $head -o "a.$suffix" -q
@@ -53,17 +47,14 @@ run 0 "in 16 bits" "$TOOL" slice $head -o deep.png -q --bits 16
 run 0 "by standard output" "$TOOL" slice $head -o - -q
 check "are the bytes of the file" cmp -s "$OUT" a.png
 
-big="$head -s 300x200 -q"
-run 0 "with letters" "$TOOL" slice $big -o l.png
-run 0 "without" "$TOOL" slice $big -o n.png --no-labels
-run 6 "is another picture" "$TOOL" compare l.png n.png
-run 0 "with bars" "$TOOL" slice $big -o bars.png --legend
-run 6 "is another picture" "$TOOL" compare l.png bars.png
-run 0 "on white" "$TOOL" slice $big -o w.png --background white --no-labels
-run 6 "is another picture" "$TOOL" compare n.png w.png
-"$TOOL" slice $big -o one.npy -j 1
-"$TOOL" slice $big -o two.npy -j 3
-check "any number of threads gives the same bits" cmp -s one.npy two.npy
+pairs png slice $head -s 300x200 <<'END'
+without letters | | != | --no-labels
+with bars | | != | --legend
+on white | --no-labels | != | --no-labels --background white
+END
+pairs npy slice $head <<'END'
+any number of threads | -j 1 | = | -j 3
+END
 
 printf 'NRRD0004\ntype: float\ndimension: 3\nsizes: 4 4 4\nencoding: ascii\n\n' >none.nrrd
 for i in $(seq 64); do echo nan; done >>none.nrrd
@@ -79,27 +70,21 @@ for axis in axial y sagittal; do
     rm file.png
 done
 
-# again NAME OPTIONS...: the command and the configuration give the same bytes.
-again() {
-    local name=$1 command
-    shift
-    run 0 "$name" "$TOOL" slice -v "$@" -o again.png --save-config again.json -y
-    command=$(sed -n 's/^snowglass: again: //p' "$ERR")
-    mv again.png first.png
-    eval "\"\$TOOL\" ${command#snowglass } -q"
-    check "$name: the command again" cmp -s first.png again.png
-    rm again.png
-    run 0 "$name: the configuration" "$TOOL" --config again.json -q
-    check "$name: gives it again" cmp -s first.png again.png
-}
-again "a slice" $head
-again "by position" $head --axis sagittal --at 2.5mm -c viridis --legend
-again "of a usual size" $head -s 512 --at 3 --kernel box
-again "with a window" $head -w 80,100 --background white --bits 16 --no-labels
-again "with a preset" $head --preset ct-soft --crop 5:30,:,2:20
-run 0 "the configuration of another slice" \
-    "$TOOL" slice --config again.json --at 3 -o other.png -q
-run 6 "is another picture" "$TOOL" compare other.png again.png
+# A slice of labels is drawn as such, without being asked.
+{
+    printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 2\nencoding: ascii\n'
+    printf 'Segment0_LabelValue:=7\nSegment0_Name:=liver\nSegment0_Color:=1 0 0\n\n'
+    printf '0 0 7 7 0 0 7 7 0 3 3 7 0 3 3 7 %.0s' 1 2
+} >seg.nrrd
+again "labels, as such" slice again.png seg.nrrd -s 160x160 --legend
+again "a slice" slice again.png $head
+again "by position" slice again.png $head --axis sagittal --at 2.5mm -c viridis --legend
+again "of a usual size" slice again.png $head -s 512 --at 3 --kernel box
+again "with a window" slice again.png $head -w 80,100 --background white --bits 16 --no-labels
+again "with a preset" slice again.png $head --preset ct-soft --crop 5:30,:,2:20
+pairs png slice <<'END'
+the configuration of another slice | --config first.json -y | != | --config first.json -y --at 0
+END
 
 # A volume of 8 GiB, of which a slice is read.
 truncate -s 8G large.raw
@@ -112,23 +97,10 @@ for axis in z y; do
 done
 refused 5 "what does not fit is refused" 'memory' "$TOOL" slice large.raw $raw \
     -o large.png --memory 1M
-# A slice of labels is drawn as such, without being asked.
-{
-    printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 2\nencoding: ascii\n'
-    printf 'Segment0_LabelValue:=7\nSegment0_Name:=liver\nSegment0_Color:=1 0 0\n\n'
-    printf '0 0 7 7 0 0 7 7 0 3 3 7 0 3 3 7 %.0s' 1 2
-} >seg.nrrd
-run 0 "a slice of labels" "$TOOL" slice seg.nrrd -o seg.png -s 160x160 --legend \
-    --save-config seg.json
-says 'labels 0\.\.7'
-run 0 "as asked" "$TOOL" slice seg.nrrd -q -o seg2.png -s 160x160 --legend \
-    --preset labels
-check "is the same" cmp -s seg.png seg2.png
-run 0 "by its recipe" "$TOOL" slice -q --config seg.json -o seg2.png -y
-check "is the same" cmp -s seg.png seg2.png
-run 0 "its background" "$TOOL" slice seg.nrrd -q -o seg3.png -s 160x160 \
-    --legend --background white
-run 6 "is clear" "$TOOL" compare seg.png seg3.png
+told "a slice of labels" 'labels 0\.\.7' "$TOOL" slice seg.nrrd -o seg.png -s 160x160 --legend
+pairs png slice seg.nrrd -s 160x160 --legend <<'END'
+is as asked | | = | --preset labels
+with a clear background | " | != | --background white
+END
 run 0 "in grey" "$TOOL" slice seg.nrrd -o seg4.png --preset linear '--legend=(K)'
-
 finish

@@ -5,9 +5,7 @@
 
 # One frame for all pictures (oracle_fit.py) is not that of each alone.
 small="phantom:engine --dims 32x32x24 -s 60x44 --fit volume"
-# shellcheck disable=SC2086
 turn() { "$TOOL" turntable $small -q "$@"; }
-# shellcheck disable=SC2086
 render() { "$TOOL" $small -q "$@"; }
 left() { find . -name '.*unfinished*' -o -name '*.snow-*' | head -3; }
 clean() { [ -z "$(left)" ]; }
@@ -20,7 +18,6 @@ started() { # started COUNT FILES...: waits until so many of them are there
     local count=$1 i
     shift
     for i in $(seq 6000); do
-        # shellcheck disable=SC2086
         [ "$(ls $* 2>/dev/null | wc -l)" -ge "$count" ] && return 0
         sleep 0.02
     done
@@ -47,66 +44,59 @@ fake() { env PATH="$WORK/bin:$PATH" FAKE="$1" "${@:2}"; }
 # Every frame is the picture of its azimuth.
 for kind in png npy pfm; do
     run 0 "a turn of .$kind" turn --frames 5 --azimuth 10 -o "f_%03d.$kind"
-    for i in $(long_tier && echo 0 1 2) 3 4; do
+    for i in 1 4; do
         azimuth=$(awk "BEGIN { printf \"%.17g\", 10 + 360 * $i / 5 }")
         run 0 "render $azimuth" render --azimuth "$azimuth" -o "one.$kind" -y
         check "frame $i is that, byte for byte" cmp "f_00$i.$kind" "one.$kind"
     done
     check "five frames" [ "$(ls f_*.$kind | wc -l)" -eq 5 ]
 done
-run 0 "other options are those of render" turn --frames 2 -o 'o%d.png' \
-    --background navy --bits 16 --elevation 20 --zoom 1.5 -c viridis
-run 0 "render with them" render -o o.png --azimuth 180 --background navy \
-    --bits 16 --elevation 20 --zoom 1.5 -c viridis
-check "they give one picture" cmp o1.png o.png
+options="--background navy --bits 16 --elevation 20 --zoom 1.5 -c viridis"
+run 0 "other options are those of render" turn --frames 2 -o 'o%d.png' $options
+run 0 "render with them" render -o o.png --azimuth 180 $options
+same_file "they give one picture" o1.png o.png
 run 0 "one frame" turn --frames 1 -o 'single_%d.png'
 check "is one file" [ "$(echo single_*)" = single_0.png ]
 run 0 "percent signs" turn --frames 1 -o '100%%_%02d.png'
 check "are written as one" [ -f '100%_00.png' ]
 run 0 "any number of threads" turn --frames 5 --azimuth 10 -j 8 -o 'j_%03d.png'
-for i in 0 1 2 3 4; do
-    check "makes frame $i the same" cmp f_00$i.png j_00$i.png
-done
+check "makes the same frames" same_bytes "$(echo f_*.png)" "$(echo j_*.png)"
 mkdir folder
 run 0 "a folder" turn --frames 2 -o 'folder/f%d.png'
 check "has its frames" [ -f folder/f1.png ]
 
 # Names that are no pattern.
-while IFS='|' read -r name pattern; do
-    refused 2 "-o $name" "$pattern" "$TOOL" turntable phantom:cube -o "$name"
-done <<'END'
-x.png|cannot hold many frames
-%s.png|a % without a number
-%n.png|a % without a number
-%4d.png|a % without a number
-%-4d.png|a % without a number
-%04ld.png|a % without a number
-%0d.png|a % without a number
-%04d%04d.png|two numbers
-%.png|a % without a number
-%%.png|has no number
-%d/f.png|a folder's name
-f_%04d.bmp|f_0000.bmp
-f_%04d.mp4|a movie is one file
-x.avi|cannot hold many frames
--|cannot hold many frames
+refusals 2 "$TOOL" turntable phantom:cube <<'END'
+-o x.png|cannot hold many frames
+-o %s.png|a % without a number
+-o %n.png|a % without a number
+-o %4d.png|a % without a number
+-o %-4d.png|a % without a number
+-o %04ld.png|a % without a number
+-o %0d.png|a % without a number
+-o %04d%04d.png|two numbers
+-o %.png|a % without a number
+-o %%.png|has no number
+-o %d/f.png|a folder's name
+-o f_%04d.bmp|f_0000.bmp
+-o f_%04d.mp4|a movie is one file
+-o x.avi|cannot hold many frames
+-o -|cannot hold many frames
+-q|no output given
+--frames 0 -o x%d.png|whole number
+-o x%d.npy --background red|work only for PNG
+-o x.mp4 --bits 16|bits works only for PNG
+-o x.mp4 --stats x.mp4|two files
 END
-refused 2 "no output" "no output given" "$TOOL" turntable phantom:cube
-refused 2 "no frames" "whole number" turn --frames 0 -o 'x%d.png'
-refused 2 "a background of floats" "work only for PNG" turn -o 'x%d.npy' \
-    --background red
-refused 2 "bits of a movie" "bits works only for PNG" turn -o x.mp4 --bits 16
-refused 2 "--frames of render" "but of turntable" render --frames 3 -o x.png
 refused 2 "standard input cannot be resumed" "standard input" \
     "$TOOL" turntable - -o 'x%d.png' --resume
 refused 4 "a folder that is missing" "nowhere" turn -o 'nowhere/x%d.png'
 refused 4 "a movie in a folder that is missing" "nowhere" turn -o nowhere/x.mp4
-refused 3 "an input that is missing" "none.nrrd" \
-    "$TOOL" turntable none.nrrd -o 'x%d.png'
-check "leaves nothing" [ -z "$(ls -A | grep '^\.*x')" ]
-refused 3 "the same for a movie" "none.nrrd" \
-    "$TOOL" turntable none.nrrd -o x.mp4
-check "leaves nothing either" [ -z "$(ls -A | grep '^\.*x')" ]
+for out in x%d.png x.mp4; do
+    refused 3 "$out of an input that is missing" "none.nrrd" \
+        "$TOOL" turntable none.nrrd -o $out
+    check "leaves nothing" [ -z "$(ls -A | grep '^\.*x')" ]
+done
 
 # What is there stays, unless told; what is resumed must fit.
 mkdir a
@@ -114,20 +104,18 @@ run 0 "a turn" turn --frames 6 -o 'a/%d.png'
 sum=$(cat a/*.png | sha256sum)
 refused 4 "the same once more" "a/0.png: exists; use --resume" \
     turn --frames 6 -o 'a/%d.png'
-run 0 "the same with --resume" turn --frames 6 -o 'a/%d.png' --resume --stats -
-prints '"frames": \{"rendered": 0, "kept": 6\}'
-refused 4 "--resume with other settings" "'--zoom 2' now" \
-    turn --frames 6 -o 'a/%d.png' --zoom 2 --resume
-refused 4 "--resume of another turn" "frame 1 of 6 .* azimuth 60 .* then" \
-    turn --frames 5 -o 'a/%d.png' --resume
-refused 4 "--resume of fewer frames" "--elevation 3" \
-    turn --frames 6 --elevation 3 -o 'a/%d.png' --resume
+printed "the same with --resume" '"frames": \{"rendered": 0, "kept": 6\}' \
+    turn --frames 6 -o 'a/%d.png' --resume --stats -
+refusals 4 turn <<'END'
+--frames 6 -o 'a/%d.png' --zoom 2 --resume|'--zoom 2' now
+--frames 5 -o 'a/%d.png' --resume|frame 1 of 6 .* azimuth 60 .* then
+--frames 6 --elevation 3 -o 'a/%d.png' --resume|--elevation 3
+END
 check "all of that changed nothing" [ "$(cat a/*.png | sha256sum)" = "$sum" ]
 rm a/2.png
 head -c 100 a/4.png >short && mv short a/4.png
-run 0 "--resume with a frame gone and one cut" turn --frames 6 -o 'a/%d.png' \
-    --resume --stats -
-prints '"rendered": 2, "kept": 4'
+printed "--resume with a frame gone and one cut" '"rendered": 2, "kept": 4' \
+    turn --frames 6 -o 'a/%d.png' --resume --stats -
 check "makes them again" [ "$(cat a/*.png | sha256sum)" = "$sum" ]
 run 0 "-y makes another turn" turn --frames 4 --zoom 2 -o 'a/%d.png' -y
 check "and takes the frames beyond it away" [ "$(ls a | wc -l)" -eq 4 ]
@@ -136,7 +124,6 @@ mkdir b && cp f_000.png b/7.png
 refused 4 "a frame of a stranger" "b/7.png: exists" turn -o 'b/%d.png'
 refused 4 "is not resumed" "without a record" turn -o 'b/%d.png' --resume
 check "and stays" cmp b/7.png f_000.png
-# shellcheck disable=SC2086
 run 7 "a turn of nothing" "$TOOL" turntable $small --frames 2 -o 'void%d.png' \
     --opacity 900:0,901:1
 says 'note: the picture is empty: no voxel has an opacity'
@@ -161,63 +148,38 @@ run 0 "a turn of a file" $v
 touch -d '2001-01-01' v.nrrd
 refused 4 "a file that has changed is not resumed" "other settings" $v --resume
 
-# Killed half-way, at several moments, then resumed: the same bytes.
+# Killed half-way, then resumed: the same bytes.
 big="turntable phantom:engine --dims 64x64x64 -q -s 700x700 --frames 24"
-mkdir whole killed
-# shellcheck disable=SC2086
-run 0 "a longer turn" "$TOOL" $big -o 'whole/%02d.png'
-for moment in 5 $(long_tier && echo 1 12); do
-    rm -rf killed && mkdir killed
-    # shellcheck disable=SC2086
-    "$TOOL" $big -o 'killed/%02d.png' &
-    job=$!
-    started $moment 'killed/*.png'
-    kill -9 $job
-    wait $job 2>/dev/null
-    have=$(ls killed/*.png | wc -l)
+as_whole() { # each frame of killed/
     for f in killed/*.png; do
-        cmp -s "$f" "whole/${f#killed/}" || fail "frame $f of a killed turn"
+        cmp -s "$f" "whole/${f#killed/}" || fail "frame $f $1"
     done
-    # shellcheck disable=SC2086
-    run 0 "resumed after kill -9 with $have frames" "$TOOL" $big \
-        -o 'killed/%02d.png' --resume --stats -
-    check "some were kept" grep -Eq '"kept": [1-9]' "$OUT"
-    check "the frames are the same bytes" same_frames whole killed
-    check "nothing else is left" clean
-done
+}
+mkdir whole killed
+run 0 "a longer turn" "$TOOL" $big -o 'whole/%02d.png'
+"$TOOL" $big -o 'killed/%02d.png' &
+job=$!
+started 5 'killed/*.png'
+kill -9 $job
+wait $job 2>/dev/null
+as_whole "of a killed turn"
+printed "resumed after kill -9" '"kept": [1-9]' \
+    "$TOOL" $big -o 'killed/%02d.png' --resume --stats -
+check "the frames are the same bytes" same_frames whole killed
+check "nothing else is left" clean
 
 # Killed again and again, at any moment.
 rm -rf killed && mkdir killed
 kills=0
 for _ in $(seq 25); do
-    # shellcheck disable=SC2086
     timeout -s KILL 0.$((RANDOM % 20 + 3)) "$TOOL" $big -o 'killed/%02d.png' \
         --resume 2>/dev/null && break
     kills=$((kills + 1))
 done
-for f in killed/*.png; do
-    cmp -s "$f" "whole/${f#killed/}" || fail "frame $f after $kills kills"
-done
-# shellcheck disable=SC2086
+as_whole "after $kills kills"
 run 0 "resumed after $kills kills" "$TOOL" $big -o 'killed/%02d.png' --resume
 check "the frames are the same bytes" same_frames whole killed
 check "nothing else is left" clean
-
-# Interrupted: 130, whole frames, resumed.
-for signal in INT TERM; do
-    rm -rf killed && mkdir killed
-    # shellcheck disable=SC2086
-    set -m # else a job would ignore SIGINT
-    # shellcheck disable=SC2086
-    "$TOOL" $big --frames 2000 -o 'killed/%04d.png' 2>"$ERR" &
-    job=$!
-    set +m
-    started 1 'killed/*.png'
-    kill -$signal $job
-    wait $job
-    check "SIG$signal ends with 130" [ $? -eq 130 ]
-    check "SIG$signal leaves nothing half" clean
-done
 
 # Killed between a frame's line in the record and its name, at any frame: it is
 # made again; killed behind its name, it is kept.
@@ -228,22 +190,19 @@ for lines in 0 1 2; do
     rm -rf killed && mkdir killed && cp named/?.png killed
     head -n -$((2 - lines)) named/.%d.png.frames >killed/.%d.png.frames
     rm -f killed/$((lines + 1)).png killed/$((lines + 2)).png
-    run 0 "after line $lines" turn --frames 3 -o 'killed/%d.png' --resume --stats -
-    prints "\"rendered\": $((2 - lines)), \"kept\": $((lines + 1))"
+    printed "after line $lines" "\"rendered\": $((2 - lines)), \"kept\": $((lines + 1))" \
+        turn --frames 3 -o 'killed/%d.png' --resume --stats -
     rm killed/$lines.png
-    run 0 "before the name of $lines" turn --frames 3 -o 'killed/%d.png' --resume \
-        --stats -
-    prints '"rendered": 1, "kept": 2'
+    printed "before the name of $lines" '"rendered": 1, "kept": 2' \
+        turn --frames 3 -o 'killed/%d.png' --resume --stats -
     check "the frames are the same bytes" same_frames named killed
 done
 
 # Two runs at one place.
 rm -rf killed && mkdir killed
-# shellcheck disable=SC2086
 "$TOOL" $big --frames 2000 -o 'killed/%04d.png' &
 job=$!
 started 2 'killed/*.png'
-# shellcheck disable=SC2086
 refused 4 "a second run at the same place" "another run" \
     "$TOOL" $big --frames 2000 -o 'killed/%04d.png' --resume
 kill -9 $job
@@ -252,7 +211,7 @@ rm -rf killed
 
 # Two that begin together: one is whole, the other takes nothing from it.
 lost=0
-for _ in 1 2 $(long_tier && echo 3 4 5); do
+for _ in 1 2 3; do
     rm -rf both && mkdir both
     turn --frames 6 -o 'both/%d.png' 2>/dev/null &
     turn --frames 6 -o 'both/%d.png' --azimuth 5 2>/dev/null
@@ -335,16 +294,12 @@ prints '"ranks": 1'
 list=$(sed 's/.*"frames": \[\([^]]*\)\].*/\1/' "$OUT" | tr -d , |
     tr ' ' '\n' | sort -g | sed -n 4p)
 check "seconds.frame is their median" awk "BEGIN { exit !($list == $(number frame)) }"
-refused 2 "figures in the output's place" "two files" turn -o x.mp4 \
-    --stats x.mp4
-run 0 "the line of choices" "$TOOL" turntable phantom:engine --dims 16x16x16 \
-    -s 9x9 --frames 2 -o 't%d.png'
+told "the line of choices" "2 frames of 9x9 to t%d.png" "$TOOL" turntable \
+    phantom:engine --dims 16x16x16 -s 9x9 --frames 2 -o 't%d.png'
 check "is one" [ "$(wc -l <"$ERR")" -eq 1 ]
-says "2 frames of 9x9 to t%d.png"
 
 # Movies.
 film="$TOOL turntable $small -q --frames 9"
-# shellcheck disable=SC2086
 {
     run 0 "a movie" fake "" $film -o m.mp4
     check "is the frames' bytes, in order" [ "$(wc -c <m.mp4)" -eq \
@@ -379,9 +334,8 @@ film="$TOOL turntable $small -q --frames 9"
     refused 4 "without ffmpeg" "ffmpeg was not found on the PATH" \
         env PATH=/nonexistent $film -o p.webm
     check "there are frames" [ "$(ls p.webm.frames/*.png | wc -l)" -eq 9 ]
-    run 0 "from which the movie is made" fake "" $film -o p.webm --resume \
-        --stats -
-    prints '"rendered": 0, "kept": 9'
+    printed "from which the movie is made" '"rendered": 0, "kept": 9' \
+        fake "" $film -o p.webm --resume --stats -
     check "and is the same" cmp m.mp4 p.webm
     run 0 "a movie with a background" fake "" $film -o g.gif --background white
     run 1 "has it" cmp -s g.gif m.mp4
@@ -398,20 +352,6 @@ if [ "$has_ffmpeg" ]; then
             [ "$(wc -c <frames.raw)" -eq $((5 * 3 * $([ $kind = gif ] &&
                 echo 61*45 || echo 62*46))) ]
     done
-    big="${big/700x700/300x300}"
-    # shellcheck disable=SC2086
-    run 0 "a longer movie" "$TOOL" $big -o w.mp4
-    # shellcheck disable=SC2086
-    "$TOOL" $big -o k.mp4 &
-    job=$!
-    started 6 'k.mp4.frames/*.png'
-    kill -9 $job
-    wait $job 2>/dev/null
-    check "killed, it is not there" absent k.mp4
-    # shellcheck disable=SC2086
-    run 0 "resumed" "$TOOL" $big -o k.mp4 --resume
-    check "it is the same, byte for byte" cmp w.mp4 k.mp4
-    check "and the folder is gone" absent k.mp4.frames
 else
     echo "skip   real movies: no ffmpeg"
 fi

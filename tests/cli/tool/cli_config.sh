@@ -18,8 +18,7 @@ run 0 "a picture with many wishes is saved" "$TOOL" render \
     --perspective 25 --quality high --isa scalar -j 1 --crop 3:39,2:,:40 \
     --save-config all.json
 run 0 "it gives the same picture" render --config all.json -o b.png
-run 0 "bit for bit" "$TOOL" compare a.png b.png
-check "byte for byte" cmp -s a.png b.png
+same_file "byte for byte" a.png b.png
 run 0 "saved again, it is the same" render --config all.json -o c.png \
     --save-config again.json
 check "but for the output" bash -c 'sed s/a.png/X/ all.json >one &&
@@ -30,10 +29,9 @@ run 0 "and replaced where that is asked" render --config all.json -y
 
 # What is meant for one mode may stand beside another.
 run 0 "another mode" "$TOOL" render --config all.json -m mip -y -o mip.png
-check "no word on what it does not use" bash -c "! grep -q 'no part' '$ERR'"
-run 0 "but what is told" "$TOOL" render --config all.json -m mip -y \
-    --light 3,4 -o mip.png
-says '^snowglass: note: --light has no effect in mode mip$'
+not_said 'no part'
+told "but what is told" '^snowglass: note: --light has no effect in mode mip$' \
+    "$TOOL" render --config all.json -m mip -y --light 3,4 -o mip.png
 
 # The permission to replace files is for one run.
 run 0 "saved with -y" render phantom:cube -s 9x9 -o once.png -y \
@@ -47,28 +45,25 @@ run 0 "opacities of a voxel" render phantom:cube --dims 20x20x20 \
     --spacing 4x4x4 --tf mm.json --config '{"opacity-unit": "voxel"}' -o voxel.png \
     --save-config voxel.json
 run 0 "and again" render --config voxel.json -o again.png
-check "are the same" cmp -s voxel.png again.png
+same_file "are the same" voxel.png again.png
 run 0 "and not those of a millimetre" render phantom:cube --dims 20x20x20 \
     --spacing 4x4x4 --tf mm.json -o mm.png
-check "which differ" [ -z "$(cmp -s voxel.png mm.png && echo same)" ]
+other_file "which differ" voxel.png mm.png
 
-run 0 "nothing is asked" render phantom:cube -o d.png --save-config d.json
-run 0 "and nothing saved but defaults" render --config d.json -o e.png
-check "the same picture" cmp -s d.png e.png
-run 0 "percentiles and a window" render phantom:shells --dims 32x32x32 \
-    -o f.png --range p5,p95 --save-config f.json
-run 0 "are kept" render --config f.json -o g.png
-check "as they are" cmp -s f.png g.png
-run 0 "a window" render phantom:shells --dims 32x32x32 -o h.png \
-    --window 100,120 --save-config h.json
-run 0 "is kept" render --config h.json -o i.png
-check "as a range" cmp -s h.png i.png
+small="phantom:shells --dims 24x20x22 -s 60x50"
+again "what nobody asked for" render d.png phantom:cube
+again "percentiles" render f.png $small --range p5,p95
+again "a window as a range" render h.png $small --window 100,120
+again "spelt in any case" render sa.png $small -m MIP -s 40 --window 300,120 --view Front \
+    --quality HIGH
+again "places of the camera" render pa.png $small --position 500,-300.5,400 \
+    --target 10,8,12 --up 0,1,0.25 --perspective 20
 "$TOOL" phantom cube --dims 16x16x16 -q -o step_0.nrrd && cp step_0.nrrd step_1.nrrd
 run 0 "step 0" "$TOOL" render step_%d.nrrd --time 0 -s 20x20 -o step.png \
     --save-config step.json
 check "is kept" grep -q '"time": 0' step.json
 run 0 "and taken" "$TOOL" render --config step.json -o step_again.png
-check "no word on others" bash -c "! grep -q 'takes another' '$ERR'"
+not_said 'takes another'
 run 0 "no step" render step_%d.nrrd -s 20x20 -o no_step.png --save-config no_step.json
 check "is not kept" bash -c "! grep -q '\"time\"' no_step.json"
 run 0 "to standard output" render phantom:cube -o j.png --save-config -
@@ -100,62 +95,46 @@ if "$TOOL" doctor --json | grep -q '".exr"'; then
     run 0 "a picture that takes none" render --config z.json -o y.png -y
     check "has none, and the first is as it was" cmp -s z.exr before.exr
 fi
-refused 2 "a configuration in the depth's place" 'same file as --depth; name two' \
-    "$TOOL" render phantom:cube -o w.png --depth w.npy --save-config w.npy
-refused 2 "and in the figures'" 'same file as --stats; name two' \
-    "$TOOL" render phantom:cube -o w.png --stats q.json --save-config q.json
 
 # --- the command line counts more ---------------------------------------------
 echo '{"input": "phantom:cube", "size": [50, 40], "range": [10, 20],
        "azimuth": 10, "deterministic": true, "overwrite": false,
        "perspective": 0}' >base.json
-run 0 "a size on the command line" render --config base.json -o k.png \
-    -s 60x30 --window 50,100
-run 0 "is the size" render phantom:cube -o l.png -s 60x30 --window 50,100 --azimuth 10 --deterministic
-check "and the window counts, not the file's range" cmp -s k.png l.png
-run 0 "an input on the command line" render phantom:shells --dims 20x20x20 \
-    --config base.json -o m.png --range 1,200
-run 0 "is the input" render phantom:shells --dims 20x20x20 -o n.png -s 50x40 \
-    --range 1,200 --azimuth 10 --deterministic
-check "of this picture" cmp -s m.png n.png
-run 0 "info takes what is its own" "$TOOL" info --config base.json
-prints 'phantom'
 echo '{"window": [50, 100]}' >w.json
-run 0 "a window in a file" render phantom:cube --config w.json -o o.png
-run 0 "a range on the command line" render phantom:cube --config w.json \
-    -o p.png --range 75,125
-check "which is the same" cmp -s o.png p.png
+shells="phantom:shells --dims 20x20x20"
+pairs png render <<END
+a size and a window on the command line | --config base.json -s 60x30 --window 50,100 | = | \
+    phantom:cube -s 60x30 --window 50,100 --azimuth 10 --deterministic
+an input | $shells --config base.json --range 1,200 | = | \
+    $shells -s 50x40 --range 1,200 --azimuth 10 --deterministic
+a range over a window | phantom:cube --config w.json | = | \
+    phantom:cube --config w.json --range 75,125
+a window over another | phantom:cube --config w.json --window 60,90 | = | \
+    phantom:cube --window 60,90
+END
+printed "info takes what is its own" 'phantom' "$TOOL" info --config base.json
 
 # --- other spellings ----------------------------------------------------------
-run 0 "in any case, with one number for both sides" render \
-    phantom:shells --dims 20x20x20 -o sa.png -m MIP -s 40 --window 300,120 \
-    --view Front --quality HIGH --save-config s.json
-run 0 "as is usual" render phantom:shells --dims 20x20x20 -o sb.png -m mip \
-    -s 40x40 --window 300,120 --view -y --quality high
-check "is the same picture" cmp -s sa.png sb.png
-run 0 "which is kept" render --config s.json -o sc.png
-check "as it is" cmp -s sa.png sc.png
-run 0 "sizes, percentiles and types in capitals" render phantom:shells \
-    --dims 20X20X20 --spacing 1X1X2 -o ca.png -s 40X30 --range P2,P98 \
-    --memory 1GIB --background BLACK --light HEAD
-run 0 "and in small letters" render phantom:shells --dims 20x20x20 \
-    --spacing 1x1x2 -o cb.png -s 40x30 --range p2,p98 --memory 1gib \
-    --background black --light head
-check "are the same" cmp -s ca.png cb.png
+echo '{"input": "phantom:shells", "dims": [20, 20, 20], "mode": "MIP",
+       "size": 40, "window": [300, 120], "view": "Front",
+       "quality": "HIGH"}' >spelt.json
+pairs png render <<END
+in any case, with one number for both sides | \
+    $shells -m MIP -s 40 --window 300,120 --view Front --quality HIGH | = | \
+    $shells -m mip -s 40x40 --window 300,120 --view -y --quality high
+a file takes these spellings too | " | = | --config spelt.json
+sizes, percentiles and types in capitals | phantom:shells --dims 20X20X20 --spacing 1X1X2 \
+    -s 40X30 --range P2,P98 --memory 1GIB --background BLACK --light HEAD | = | \
+    $shells --spacing 1x1x2 -s 40x30 --range p2,p98 --memory 1gib --background black --light head
+END
 printf '\1\2\3\4\5\6\7\10' >eight.raw
-run 0 "a raw file's" "$TOOL" info eight.raw --dims 2X2X1 --type UINT16 \
-    --endian BIG --range FULL --json
-prints '"min": 258.0, "max": 1800.0'
+printed "a raw file's" '"min": 258.0, "max": 1800.0' \
+    "$TOOL" info eight.raw --dims 2X2X1 --type UINT16 --endian BIG --range FULL --json
 if command -v python3 >/dev/null; then
-    python3 -c '
-import struct
-head = "{\"descr\": \"<f4\", \"fortran_order\": False, \"shape\": (4, 4, 4, 3), }"
-head = head.replace("\"", chr(39)).ljust(117) + "\n"
-open("vectors.npy", "wb").write(b"\x93NUMPY\x01\x00" +
-    struct.pack("<H", len(head)) + head.encode() +
-    struct.pack("<192f", *range(192)))'
-    run 0 "a component" "$TOOL" info vectors.npy --component Y --json
-    prints '"min": 1.0, "max": 190.0'
+    need_python
+    python3 -c 'import struct, volumes
+volumes.npy("vectors.npy", "<f4", (4, 4, 4, 3), struct.pack("<192f", *range(192)))'
+    printed "a component" '"min": 1.0, "max": 190.0' "$TOOL" info vectors.npy --component Y --json
     run 0 "all of them" "$TOOL" info vectors.npy --component Magnitude
     run 0 "a picture of one" render vectors.npy --component Y -o va.png \
         -s 9x9 --save-config v.json
@@ -165,29 +144,14 @@ open("vectors.npy", "wb").write(b"\x93NUMPY\x01\x00" +
 else
     skipped "components in capitals" "there is no python3"
 fi
-echo '{"input": "phantom:shells", "dims": [20, 20, 20], "mode": "MIP",
-       "size": 40, "window": [300, 120], "view": "Front",
-       "quality": "HIGH"}' >spelt.json
-run 0 "a file takes these spellings too" render --config spelt.json -o sd.png
-check "for the same picture" cmp -s sa.png sd.png
-echo '{"window": [50, 100]}' >w.json
-run 0 "a pair on the command line" render phantom:cube --config w.json \
-    -o sg.png --window 60,90
-run 0 "counts more than a file" render phantom:cube --window 60,90 \
-    -o sh.png
-check "in both" cmp -s sg.png sh.png
 
 # --- places of the camera -----------------------------------------------------
-run 0 "a place, a target and an up" render phantom:shells --dims 24x20x22 \
-    -o pa.png -s 60x50 --position 500,-300.5,400 --target 10,8,12 --up 0,1,0.25 \
-    --perspective 20 --save-config p.json
-run 0 "are kept" render --config p.json -o pb.png
-check "and give the same picture" cmp -s pa.png pb.png
-run 0 "a view on the command line" render --config p.json --view left -o pc.png
-run 0 "takes the place's place" render phantom:shells --dims 24x20x22 \
-    -o pd.png -s 60x50 --view left --target 10,8,12 --up 0,1,0.25 \
-    --perspective 20
-check "with target and up" cmp -s pc.png pd.png
+run 0 "a place" render $small -o pa.png --position 500,-300.5,400 --target 10,8,12 \
+    --up 0,1,0.25 --perspective 20 --save-config p.json
+pairs png render <<END
+a view takes the place's place, with target and up | --config p.json --view left | = | \
+    $small --view left --target 10,8,12 --up 0,1,0.25 --perspective 20
+END
 
 # --- refused ------------------------------------------------------------------
 refused 3 "a file that is not there" 'none.json: cannot be opened' \
@@ -197,21 +161,22 @@ for file in pipe . /dev/zero; do
     refused 3 "--config $file" "^snowglass: $file: cannot be opened" \
         timeout 10 "$TOOL" render --config $file phantom:cube -o x.png
 done
-echo '{"colour": "red"}' >bad.json
-refused 3 "an unknown key" '"colour" is not a key of a recipe' \
-    "$TOOL" render --config bad.json phantom:cube -o x.png
-echo '{"size": "big"}' >bad.json
-refused 3 "a wrong value" '"size" must be \[width, height\]' \
-    "$TOOL" render --config bad.json phantom:cube -o x.png
-printf '{"size": [1, 2],\n"azimuth": }' >bad.json
-refused 3 "no JSON" 'bad.json: line 2 is not valid JSON' \
-    "$TOOL" render --config bad.json phantom:cube -o x.png
-refused 2 "no input anywhere" 'an operand is missing' \
-    "$TOOL" render --config w.json -o x.png
-refused 4 "a configuration that exists" 'd.json: exists' \
-    "$TOOL" render phantom:cube -o x.png --save-config d.json
-refused 2 "the picture's own place" 'name two files' \
-    "$TOOL" render phantom:cube -o x.png --save-config x.png
+while IFS='|' read -r json pattern; do
+    printf "$json" >bad.json
+    refused 3 "$json" "$pattern" "$TOOL" render --config bad.json phantom:cube -o x.png
+done <<'END'
+{"colour": "red"}|"colour" is not a key of a recipe
+{"size": "big"}|"size" must be \[width, height\]
+{"size": [1, 2],\n"azimuth": }|bad.json: line 2 is not valid JSON
+END
+refusals 2 "$TOOL" render -o x.png <<'END'
+--config w.json|an operand is missing
+phantom:cube --save-config x.png|name two files
+phantom:cube --depth w.npy --save-config w.npy|same file as --depth; name two
+phantom:cube --stats q.json --save-config q.json|same file as --stats; name two
+END
+refused 4 "a configuration that exists" 'depth.json: exists' \
+    "$TOOL" render phantom:cube -o x.png --save-config depth.json
 check "nothing is written then" absent x.png
 
 # --- movies -------------------------------------------------------------------

@@ -3,7 +3,7 @@
 # movie is made: exit code 130 at once, one line, nothing half left behind.
 . "$(dirname "$0")/../../support/shell.sh"
 
-command -v python3 >/dev/null || exit 77
+need_python
 cat >interrupt.py <<'PY'
 """interrupt.py SIGNAL SECONDS FILE COMMAND...: sends the signal so many seconds
 after FILE is there (or, "-": after the tool has begun to listen to signals);

@@ -116,12 +116,10 @@ refused 3 "a module that is missing" \
 refused 2 "and is needed to write" 'b2.tif: needs libsnowglass-tiff.so' \
     render "$MOVED" b2.tif
 check "nothing is written" absent b2.tif
-run 0 "doctor has not got it" "$MOVED" doctor
-prints 'libtiff is missing'
+printed "doctor has not got it" 'libtiff is missing' "$MOVED" doctor
 check "nor among pictures" \
     sh -c "! grep -q 'picture outputs.* .tif' '$OUT'"
-run 0 "nor as JSON" "$MOVED" doctor --json
-prints '"libtiff": null'
+printed "nor as JSON" '"libtiff": null' "$MOVED" doctor --json
 run 0 "all else goes on" render "$MOVED" c.png
 
 head -c 3000 good.so >"$TIFF"

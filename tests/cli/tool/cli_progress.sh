@@ -47,9 +47,7 @@ PY
 watch() { python3 watch.py "$@"; }
 
 if [ "$terminals" ]; then
-    run 0 "on a terminal" watch yes 'reading, [1-9] s' "$TOOL" - -o a.png \
-        -s 32x32
-    prints '^reading'
+    printed "on a terminal" '^reading' watch yes 'reading, [1-9] s' "$TOOL" - -o a.png -s 32x32
     prints 'rendering'
     run 0 "where nothing shall be said" watch yes "" "$TOOL" - -o b.png \
         -s 32x32 --progress never
