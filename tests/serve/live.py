@@ -95,8 +95,7 @@ def steps_and_turns():
     look = page.receive_text("look")
     check("its look", look["low"] == 0 and look["high"] == 1 and
           look["opacity"] == [[0.3, 0], [1, 0.8]], look)
-    page.say({"t": "ask", "what": "histogram"})
-    counts = page.receive_text("histogram")
+    counts = page.ask("histogram")
     check("how often values occur, each voxel once", len(counts["counts"]) == 256
           and sum(counts["counts"]) == 24 * 24 * 30 and
           counts["lo"] < counts["hi"], counts)
@@ -109,9 +108,7 @@ def steps_and_turns():
         with open(f"u_{step:05d}.png", "rb") as file:
             check(f"the picture of step {step} is its file",
                   file.read() == picture)
-    page.say({"t": "set", "n": 1, "recipe": {
-        "azimuth": 70, "elevation": 20, "colormap": "magma",
-        "size": [999, 999]}})
+    page.set(1, azimuth=70, elevation=20, colormap="magma", size=[999, 999])
     found = wait_for(lambda: read().get("azimuth") == 70)
     check("a turn is written into the recipe", found and
           read()["colormap"] == "magma" and read()["output"] ==
@@ -124,26 +121,25 @@ def steps_and_turns():
             break
     check("the simulation has drawn it", step is not None and
           picture != shown[0][1])
-    page.say({"t": "set", "n": 2, "recipe": {"clip": [[1, 0, 0, 105]]}})
+    page.set(2, clip=[[1, 0, 0, 105]])
     check("clip planes are written into it",
           wait_for(lambda: read().get("clip") == [[1, 0, 0, 105]]), read())
     few = wait_for(lambda: 0 < sum(page.receive_text("histogram")["counts"]) <
                    24 * 24 * 30)
     check("and what they take away is not counted", few)
-    page.say({"t": "set", "n": 3, "recipe": {"clip": None}})
+    page.set(3, clip=None)
     check("all of it is back", wait_for(lambda: sum(page.receive_text("histogram")
           ["counts"]) == 24 * 24 * 30) and "clip" not in read(), read())
-    page.say({"t": "ask", "what": "fit"})
-    page.say({"t": "ask", "what": "command"})
+    page.question("fit")
+    page.question("command")
     check("there is no command", "look.json" in page.receive_text("said")["text"])
-    page.say({"t": "ask", "what": "recipe"})
-    check("the recipe", json.loads(page.receive_text("recipe")["text"])["azimuth"]
+    check("the recipe", json.loads(page.ask("recipe")["text"])["azimuth"]
           == 70)
-    page.say({"t": "set", "n": 4, "recipe": {"range": [0, 0.5]}})
+    page.set(4, range=[0, 0.5])
     info = page.receive_text("info")
     check("another range is told, of the same pictures", info["max"] == 0.5 and
           info["name"] == RECIPE["output"], info)
-    page.say({"t": "set", "n": 5, "recipe": {"zoom": "large"}})
+    page.set(5, zoom="large")
     check("a wrong value is answered and not written",
           "zoom" in page.receive_text("said")["text"] and "zoom" not in read())
     end(simulation)

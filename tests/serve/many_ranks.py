@@ -2,7 +2,6 @@
 tests/mpi/mpi_serve.sh as `python3 many_ranks.py TOOL MPIEXEC MPI_TOOL`."""
 import atexit
 import os
-import shlex
 import signal
 import subprocess
 import sys
@@ -10,12 +9,13 @@ import tempfile
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from viewer_client import TOOL, Page, Server, check, finish, slice_is_of_command, \
-    write_channels
+from viewer_client import TOOL, Page, Server, check, finish, is_of_command, run_command, \
+    slice_is_of_command, write_channels
 
 RANKS = 3
 MANY = (sys.argv[2], "-n", str(RANKS), sys.argv[3])
 FOLDER = tempfile.TemporaryDirectory()
+os.chdir(FOLDER.name)
 SMALL = os.path.join(FOLDER.name, "small.nrrd")
 SIDE = 96
 subprocess.run([TOOL, "phantom", "head", "--dims", "60x50x48", "-o", SMALL],
@@ -55,33 +55,13 @@ def end_of(server, seconds=180):
     return server.process.returncode, lines
 
 
-def at_rest(page, n, recipe):
-    page.say({"t": "set", "n": n, "recipe": recipe})
-    return page.receive_picture(2, n)
-
-
-def command_of(page):
-    page.say({"t": "ask", "what": "command"})
-    return shlex.split(page.receive_text("command")["text"])
-
-
-def by_command(words):
-    out = os.path.join(FOLDER.name, "again.png")
-    words[words.index("--output") + 1] = out
-    subprocess.run([TOOL, *words[1:], "-y", "-q"], check=True)
-    with open(out, "rb") as file:
-        return file.read()
-
-
 def is_near(shown, wanted):
     """Within 1/255, as pictures of several ranks are."""
-    files = []
-    for name, content in (("shown", shown), ("wanted", wanted)):
-        files.append(os.path.join(FOLDER.name, name + ".png"))
-        with open(files[-1], "wb") as out:
+    for name, content in (("shown.png", shown), ("wanted.png", wanted)):
+        with open(name, "wb") as out:
             out.write(content)
-    return subprocess.run([TOOL, "compare", *files, "--tolerance", "1.001/255"],
-                          capture_output=True).returncode == 0
+    return not subprocess.run([TOOL, "compare", "shown.png", "wanted.png", "--tolerance",
+                               "1.001/255"], capture_output=True).returncode
 
 
 def answers(page):
@@ -99,7 +79,7 @@ def answers(page):
         page.say({"t": "ask", "what": "slice", "axis": axis, "index": 21,
                   "range": [0, 100], "pane": pane, "n": 1, "exact": True})
         kept["slice " + axis] = page.receive_small(pane)[32:]
-    page.say({"t": "ask", "what": "thumbnail", "preset": "ct-bone", "pane": 4})
+    page.question("thumbnail", preset="ct-bone", pane=4)
     kept["thumbnail"] = len(page.receive_small(4)) > 500
     return kept
 
@@ -126,13 +106,11 @@ def channels():
     atexit.register(many.process.kill)
     page = Page(many)
     for n, state in enumerate(MIXES, 2):
-        shown = at_rest(page, n, state)
-        check(f"channels {n} are the picture of their command",
-              shown == by_command(command_of(page)), state)
+        is_of_command(page, f"channels {n} are the picture of their command", n, **state)
     for colored in True, False:
         slice_is_of_command(page, f"a slice, colored: {colored}", axis="z",
                             index=11, colored=colored)
-    at_rest(page, 9, {"channel": "0,2"})
+    page.rest(9, channel="0,2")
     os.kill(ranks_of(many)[0], signal.SIGINT)
     code, lines = end_of(many)
     check("a job with a channel switched off ends in order",
@@ -148,8 +126,8 @@ def same_as_one(exact):
     shown = pages[0].receive_picture(2)
     check("a picture of the first state", shown is not None)
     for n, state in enumerate(STATES, 2):
-        shown = at_rest(pages[0], n, state)
-        wanted = by_command(command_of(pages[0]))
+        shown = pages[0].rest(n, **state)
+        wanted = run_command(pages[0].ask("command")["text"])
         check(f"state {n} is the picture of its command",
               shown == wanted if exact else is_near(shown, wanted),
               f"{len(shown)} {len(wanted)}")
@@ -159,7 +137,7 @@ def same_as_one(exact):
         infos.append(pages[1].receive_text("info"))
         check("all is told of the volume alike", infos[0] == infos[1], infos)
         for page in pages:
-            at_rest(page, 9, {"size": [SIDE, SIDE], "mode": "over",
+            page.rest(9, **{"size": [SIDE, SIDE], "mode": "over",
                               "azimuth": 25, "elevation": 10, "zoom": 1.5,
                               "perspective": 0, "target": [1, 2, 3]})
         told, wanted = answers(pages[0]), answers(pages[1])
@@ -184,18 +162,17 @@ def newest_and_rest():
     page = Page(server)
     page.receive_picture(2)
     for n in range(2, 200):
-        page.say({"t": "set", "n": n, "recipe": {"azimuth": n, "size": [
-            SIDE, SIDE]}})
+        page.set(n, azimuth=n, size=[ SIDE, SIDE])
     check("the newest state is drawn", page.receive_picture(2, 199) is not None)
-    check("and is what its command says", "199" in command_of(page))
-    page.say({"t": "set", "n": 200, "recipe": {"zoom": "large"}})
+    check("and is what its command says", "199" in page.ask("command")["text"])
+    page.set(200, zoom="large")
     said = page.receive_text("said")
     check("a wrong value is answered", said and "zoom" in said["text"], said)
-    page.say({"t": "set", "n": 201, "recipe": {"crop": [[0, 99], [0, 9], [0, 9]]}})
+    page.set(201, crop=[[0, 99], [0, 9], [0, 9]])
     said = page.receive_text("said")
     check("so is one that only the volume shows", said is not None)
     check("and pictures go on",
-          at_rest(page, 202, {"crop": None}) is not None)
+          page.rest(202, crop=None) is not None)
     time.sleep(1)
     ranks = ranks_of(server)
     before, begin = [seconds_of(rank) for rank in ranks], time.monotonic()
@@ -233,8 +210,7 @@ def histogram_in_place():
         with open(f"/proc/{rank}/clear_refs", "w") as peak:
             peak.write("5")  # begins the peak anew
     before = [memory_of(rank, "VmRSS") for rank in ranks]
-    page.say({"t": "ask", "what": "histogram"})
-    counts = page.receive_text("histogram")["counts"]
+    counts = page.ask("histogram")["counts"]
     more = [memory_of(rank, "VmHWM") - was for rank, was in zip(ranks, before)]
     check("each voxel is counted once", counts == [256 * 320] * 256, counts)
     check("and none is copied for it", max(more) < 2048, f"{more} KiB")
@@ -251,7 +227,7 @@ def lost_rank():
     check("a wait for pages is no fault", server.process.poll() is None)
     lost = ranks_of(server)[2]
     os.kill(lost, signal.SIGSTOP)
-    page.say({"t": "set", "n": 2, "recipe": {"azimuth": 10}})
+    page.set(2, azimuth=10)
     code, lines = end_of(server)
     check("a stopped rank ends the job", code not in (0, None), code)
     check("with one line that names it", len(lines) == 1 and

@@ -3,18 +3,17 @@ import array
 import http.server
 import json
 import os
-import shlex
 import shutil
 import subprocess
 import sys
 import tarfile
 import threading
 import urllib.parse
-import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from viewer_client import (DATA, SHORT, TOOL, Server, check, finish, skip,
+from viewer_client import (DATA, SHORT, TOOL, Server, check, finish, run_command, skip,
                            write_channels)
+from volumes import nrrd
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 WEB = os.path.abspath(sys.argv[3])
@@ -37,104 +36,78 @@ shots = os.path.join(WEB, "pictures")
 os.makedirs(shots, exist_ok=True)
 
 
-def drive(*words):
-    """Runs the page; its lines are this test's."""
-    done = subprocess.run([node, os.path.join(HERE, "web", "viewer.mjs"),
-                           PLAYWRIGHT, chromium, *words], timeout=3600)
-    check("the page", done.returncode == 0, done.returncode)
+PICTURE, SLICE = ("command.txt", "rest.png"), ("slice.txt", "slice.png")
+plans = []  # parts of the page's test, each with a viewer and what it copies
 
 
-def same_bytes(command="command.txt", picture="rest.png"):
-    words = shlex.split(open(os.path.join(shots, command)).read())
-    words[0] = TOOL
-    out = words[words.index("--output") + 1] = os.path.join(shots, "again.png")
-    subprocess.run([*words, "-y", "-q"], check=True)
-    check(f"{picture} has the bytes of the copied command",
-          open(out, "rb").read() ==
-          open(os.path.join(shots, picture), "rb").read())
-
-
-def watch(what, *volume):
+def plan(what, *volume, words=(), copies=()):
     server = Server(*volume)
-    drive(server.url, shots, what)
-    same_bytes()
-    if what != "short":
-        same_bytes("slice.txt", "slice.png")
-    code, said = server.stop()
-    check("it ends in order", code == 0, f"{code} {said}")
+    plans.append((what, server, [server.url, *words], copies))
 
 
-def many_points():
-    points = os.path.join(shots, "points.json")
-    with open(points, "w") as out:
-        json.dump({"snowglass-tf": 1, "values": "data", "opacities": [
-            [i, i / 300] for i in range(300)]}, out)
-    server = Server("phantom:head", "--tf", points)
-    drive(server.url, shots, "points")
-    server.stop()
+def drive():
+    """Runs the page; its lines are this test's."""
+    parts = [",".join([what, *words]) for what, _, words, _ in plans]
+    done = subprocess.run([node, os.path.join(HERE, "web", "viewer.mjs"), PLAYWRIGHT,
+                           chromium, shots, *parts], timeout=3600)
+    check("the page", done.returncode == 0, done.returncode)
+    for what, server, _, copies in plans:
+        for command, picture in copies:
+            same_bytes(f"{what}_{command}", f"{what}_{picture}")
+        if server:
+            code, said = server.stop()
+            check(f"{what} ends in order", code == 0, f"{code} {said}")
 
 
-def masked():
-    server = Server("phantom:head", "--mask", "phantom:head", "--labels", "60-255")
-    drive(server.url, shots, "mask")
-    server.stop()
+def same_bytes(command, picture):
+    with open(os.path.join(shots, command)) as text, \
+            open(os.path.join(shots, picture), "rb") as shown:
+        check(f"{picture} has the bytes of the copied command", run_command(
+            text.read(), out=os.path.join(shots, "again.png")) == shown.read())
 
 
-def opened():
-    server = Server("phantom:head")
-    drive(server.url, shots, "recipes")
-    server.stop()
+def points(name, opacities):
+    """A file of a transfer function."""
+    path = os.path.join(shots, name)
+    with open(path, "w") as out:
+        json.dump({"snowglass-tf": 1, "values": "data", "opacities": opacities}, out)
+    return path
+
+
+def head(name, *dims):
+    """The phantom in a file, and its voxels."""
+    path = os.path.join(shots, name)
+    subprocess.run([TOOL, "convert", "phantom:head", "--dims", "x".join(map(str, dims)),
+                    "-o", path, "-y", "-q"], check=True)
+    with open(path, "rb") as file:
+        return path, *file.read().split(b"\n\n", 1)
 
 
 def overlaid():
     """A head; its bright voxels as labels, left and right; values on half the grid."""
-    base, seg, dose = (os.path.join(shots, name) for name in
-                       ("base.nrrd", "seg.nrrd", "dose.nrrd"))
-    subprocess.run([TOOL, "convert", "phantom:head", "--dims", "48x40x36", "-o", base,
-                    "-y", "-q"], check=True)
-    head, voxels = open(base, "rb").read().split(b"\n\n", 1)
-    subprocess.run([TOOL, "convert", "phantom:head", "--dims", "24x20x18", "-o", dose,
-                    "-y", "-q"], check=True)
+    base, header, voxels = head("base.nrrd", 48, 40, 36)
+    dose, seg = head("dose.nrrd", 24, 20, 18)[0], os.path.join(shots, "seg.nrrd")
     with open(seg, "wb") as out:
-        out.write(head + b"\nSegment0_LabelValue:=1\nSegment0_Name:=left"
+        out.write(header + b"\nSegment0_LabelValue:=1\nSegment0_Name:=left"
                   b"\nSegment1_LabelValue:=2\nSegment1_Name:=right\n\n" +
                   bytes((1 + (i % 48 >= 24)) * (value > 60)
                         for i, value in enumerate(voxels)))
-    for what, *volume in (("overlay", base, "--overlay", seg), ("fused", base, "--overlay", dose),
-                          ("labels", seg)):
-        server = Server(*volume)
-        drive(server.url, shots, what)
-        same_bytes()
-        same_bytes("slice.txt", "slice.png")
-        server.stop()
+    for what, *volume in (("overlay", base, "--overlay", seg),
+                          ("fused", base, "--overlay", dose), ("labels", seg)):
+        plan(what, *volume, copies=(PICTURE, SLICE))
 
 
 def mixed():
-    """Balls of three channels, with names and colours."""
-    place = os.path.join(shots, "told.zarr")
-    shutil.rmtree(place, ignore_errors=True)
-    write_channels(place, True)
-    server = Server(place)
-    drive(server.url, shots, "channels")
-    same_bytes()
-    same_bytes("slice.txt", "slice.png")
-    server.stop()
-    points = os.path.join(shots, "points.json")
-    with open(points, "w") as out:
-        json.dump({"snowglass-tf": 1, "values": "data",
-                   "opacities": [[0, 0], [900, 1]]}, out)
-    for options in ("--component", "1"), ("--tf", points):
-        server = Server(place, *options)
-        drive(server.url, shots, "begun")
-        server.stop()
-    ten = os.path.join(shots, "ten.zarr")
-    shutil.rmtree(ten, ignore_errors=True)
-    write_channels(ten, True, 10)
-    server = Server(ten, "--tf", points)
-    drive(server.url, shots, "many")
-    same_bytes()
-    same_bytes("slice.txt", "slice.png")
-    server.stop()
+    """Balls of three channels, with names and colours; and of ten."""
+    told, ten = (os.path.join(shots, name) for name in ("told.zarr", "ten.zarr"))
+    for place, count in (told, 3), (ten, 10):
+        shutil.rmtree(place, ignore_errors=True)
+        write_channels(place, True, count)
+    two = points("two.json", [[0, 0], [900, 1]])
+    plan("channels", told, copies=(PICTURE, SLICE))
+    plan("begun", told, "--component", "1")
+    plan("begun", told, "--tf", two)
+    plan("many", ten, "--tf", two, copies=(PICTURE, SLICE))
 
 
 class Around(http.server.BaseHTTPRequestHandler):
@@ -159,14 +132,12 @@ def embedded():
     for page in pages:
         threading.Thread(target=page.serve_forever, daemon=True).start()
     origins = [f"http://127.0.0.1:{page.server_port}" for page in pages]
-    server = Server("phantom:head", "--embed", origins[0])
-    drive(server.url, shots, "embed", *origins)
-    server.stop()
+    plan("embed", "phantom:head", "--embed", origins[0], words=origins)
 
 
 def filmed():
-    """A radiologist's way, with a finger in a narrow window, with a mouse in a wide
-    one, on DICOM slices of a chest."""
+    """A radiologist's way, with fingers in a narrow window, on DICOM slices of a
+    chest."""
     packed = os.path.join(DATA, "dicom", "ct_abdomen_20of275.tar.gz")
     if not os.path.exists(packed):
         print("skip   the film: there is no", packed)
@@ -175,45 +146,35 @@ def filmed():
     shutil.rmtree(place, ignore_errors=True)
     with tarfile.open(packed) as scan:
         scan.extractall(place)
-    server = Server(os.path.join(place, "ct_abdomen"))
-    drive(server.url, shots, "film")
-    for name in ("film_narrow", "film_wide"):
-        same_bytes(f"{name}_command.txt", f"{name}_rest.png")
-        same_bytes(f"{name}_slice.txt", f"{name}_slice.png")
-    server.stop()
+    plan("film", os.path.join(place, "ct_abdomen"), copies=(PICTURE, SLICE))
 
 
 def everyday():
     """A CT of four steps, and a viewer that is started again."""
-    base = os.path.join(shots, "base.nrrd")
-    subprocess.run([TOOL, "convert", "phantom:head", "--dims", "48x40x36", "-o", base,
-                    "-y", "-q"], check=True)
-    voxels = open(base, "rb").read().split(b"\n\n", 1)[1]
+    voxels = head("base.nrrd", 48, 40, 36)[2]
     name = os.path.join(shots, "steps.nrrd")
-    with open(name, "wb") as out:
-        out.write(b"NRRD0004\ntype: int16\ndimension: 4\nendian: little\n"
-                  b"encoding: raw\nspace: right-anterior-superior\n"
-                  b"space directions: (4,0,0) (0,4,0) (0,0,4) none\n"
-                  b"kinds: domain domain domain time\n"
-                  b"sizes: 48 40 36 4\n\n")
-        out.write(array.array("h", (
-            8 * value - 1000 + 60 * step * (value > 0)
-            for step in range(4) for value in voxels)).tobytes())
-    server = Server(name)
-    drive(server.url, shots, "steps")
-    server.stop()
-    drive(TOOL, shots, "restarted")
+    nrrd(name, (48, 40, 36, 4), array.array("h", (
+        8 * value - 1000 + 60 * step * (value > 0)
+        for step in range(4) for value in voxels)).tobytes(),
+         "space: right-anterior-superior",
+         "space directions: (4,0,0) (0,4,0) (0,0,4) none",
+         "kinds: domain domain domain time", kind="int16")
+    plan("steps", name)
+    plans.append(("restarted", None, [TOOL], ()))
 
 
-watch("short" if SHORT else "long", "phantom:head")
-if not SHORT:
+if SHORT:
+    plan("short", "phantom:head", copies=[PICTURE])
+else:
+    plan("long", "phantom:head", copies=(PICTURE, SLICE))
     embedded()
     everyday()
-    many_points()
-    masked()
-    opened()
+    plan("points", "phantom:head", "--tf", points(
+        "points.json", [[i, i / 300] for i in range(300)]))
+    plan("mask", "phantom:head", "--mask", "phantom:head", "--labels", "60-255")
+    plan("recipes", "phantom:head")
     overlaid()
     mixed()
-if not SHORT:
     filmed()
+drive()
 finish()

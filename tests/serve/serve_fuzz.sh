@@ -4,7 +4,6 @@
 . "$(dirname "$0")/../support/shell.sh"
 SOURCE=$HERE/..
 flags="-fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -g1 -O1"
-# shellcheck disable=SC2046,SC2086
 clang $flags -D_POSIX_C_SOURCE=200809L -I "$SOURCE/serve" \
     $(pkg-config --cflags jansson) "$SOURCE/fuzz/fuzz_viewer.c" -o fuzzer \
     $(pkg-config --libs jansson) 2>said || {

@@ -9,7 +9,7 @@ import threading
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from viewer_client import (PATIENCE, SANITIZED, SHORT, THREADS, TOOL, Page, Server, check,
+from viewer_client import (PATIENCE, SANITIZED, SHORT, TOOL, Page, Server, check,
                            finish, page_comes)
 
 FOLDER = tempfile.TemporaryDirectory()
@@ -156,14 +156,14 @@ def die_in_a_frame(server, reads):
 def deaths(server):
     """More than may look at once are killed in the middle of a frame."""
     witness = Page(server)
-    witness.say({"t": "set", "n": 1, "recipe": {"size": [600, 600]}})
+    witness.set(1, size=[600, 600])
     check("there is a picture", witness.receive_picture(2, 1) is not None)
     before, count = server.files(), 12 if SHORT else 40
     begun = [die_in_a_frame(server, turn % 2) for turn in range(count)]
     check(f"{count} clients are killed", all(begun), begun)
     check("and leave no file open", until(lambda: server.files() <= before),
           f"{server.files()} {before}")
-    witness.say({"t": "set", "n": 2, "recipe": {"size": [64, 64]}})
+    witness.set(2, size=[64, 64])
     check("another sees the next change", witness.receive_picture(2, 2) is not None)
     witness.close()
 
@@ -181,7 +181,7 @@ def deaf_page(server):
 
 def is_answered(page):
     """Also where the questions of others wait."""
-    page.say({"t": "ask", "what": "command"})
+    page.question("command")
     while True:
         what, message = page.hear()
         if what == "closed" or what == "text" and message["t"] == "said":
@@ -196,13 +196,13 @@ def deaf(server):
     """It says that it has painted what it never took."""
     side = 512 if SANITIZED else 1024
     other, silent = Page(server), deaf_page(server)
-    other.say({"t": "set", "n": 10, "recipe": {"size": [side, side]}})
+    other.set(10, size=[side, side])
     check("the first picture", other.receive_picture(2, 10) is not None)
     before, seen, last = server.kilobytes(), 0, 20 if SHORT else 50
     for n in range(11, last):
         for _ in range(3):
             silent.say({"t": "ack", "n": 0})
-        other.say({"t": "set", "n": n, "recipe": {"azimuth": n}})
+        other.set(n, azimuth=n)
         seen += other.receive_picture(2 if n % 5 == 0 else 0, n) is not None
     check(f"each of {seen} pictures of {side} x {side} comes beside a page that "
           "reads nothing", seen == last - 11, seen)
@@ -210,7 +210,7 @@ def deaf(server):
     check(f"which took {more} kB more", more < 40000 or SANITIZED, more)
     files = server.files()
     for _ in range(400):
-        silent.say({"t": "ask", "what": "recipe"})
+        silent.question("recipe")
     check("nor does an answer wait for 400 that it leaves", is_answered(other))
     check("it is closed", until(lambda: server.files() < files), files)
     silent.close()
@@ -220,7 +220,7 @@ def deaf(server):
 silent = Silent()
 server = Server(SMALL)
 page = Page(server)
-page.say({"t": "set", "n": 1, "recipe": {"size": [64, 64]}})
+page.set(1, size=[64, 64])
 check("there is a first picture", page.receive_picture(2, 1) is not None)
 page.close()
 harms(server)

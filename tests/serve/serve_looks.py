@@ -4,7 +4,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from viewer_client import Page, Server, check, finish, is_of_command
+from viewer_client import check, finish, is_of_command, viewer
 
 FOLDER = tempfile.TemporaryDirectory()
 os.chdir(FOLDER.name)
@@ -32,7 +32,7 @@ def are_near(a, b):
 def drag(page, n, name, quick, first, second, ends):
     """The second range is spread in haste; the look at rest is the same."""
     def say(n, recipe):
-        page.say({"t": "set", "n": n, "recipe": recipe})
+        page.set(n, **recipe)
 
     page.say({"t": "moving", "on": True})
     say(n, first)
@@ -54,21 +54,14 @@ def drag(page, n, name, quick, first, second, ends):
     page.receive_picture(2, n + 3)
 
 
-server = Server("phantom:head", "--dims", "40x40x40", "-q")
-page = Page(server)
-page.say({"t": "set", "n": 0, "recipe": {"size": [64, 64]}})
-page.receive_picture(2)
-drag(page, 10, "a range", True, {"range": [10, 200]}, {"range": [30, 180]}, (30, 180))
-drag(page, 20, "a window", True, {"window": [100, 90]},
-     {"window": [120, 80]}, (20, 140))
-drag(page, 40, "the first range", False, {"azimuth": 3}, {"range": [30, 180]}, (30, 180))
-page.close()
-server.stop()
+with viewer("phantom:head", "--dims", "40x40x40", "-q") as page:
+    page.rest(0, size=[64, 64])
+    drag(page, 10, "a range", True, {"range": [10, 200]}, {"range": [30, 180]}, (30, 180))
+    drag(page, 20, "a window", True, {"window": [100, 90]},
+         {"window": [120, 80]}, (20, 140))
+    drag(page, 40, "the first range", False, {"azimuth": 3}, {"range": [30, 180]}, (30, 180))
 for words in (["--clip", "1,0,0,3"], ["--mask", "phantom:head"]):
-    server = Server("phantom:head", "-q", *words)
-    page = Page(server)
-    info = page.receive_text("info")
-    check(f"with {words[0]} the type is the file's", info["type"] == "uint8", info["type"])
-    page.close()
-    server.stop()
+    with viewer("phantom:head", "-q", *words) as page:
+        info = page.receive_text("info")
+        check(f"with {words[0]} the type is the file's", info["type"] == "uint8", info["type"])
 finish()

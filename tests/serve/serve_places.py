@@ -12,6 +12,7 @@ import zlib
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from viewer_client import TOOL, Page, Server, check, finish
+from dicom import dicom_slice
 
 FOLDER = tempfile.TemporaryDirectory()
 SMALL = os.path.join(FOLDER.name, "small.nrrd")
@@ -35,17 +36,17 @@ def ask_all(page):
             if good(what, message):
                 return True
 
-    page.say({"t": "set", "n": 1, "recipe": {"size": [96, 80], "legend": True}})
+    page.set(1, size=[96, 80], legend=True)
     all_heard = receive_until(lambda what, message: what == "picture" and
                            message[4:9] == struct.pack("<IB", 1, 2))
-    page.say({"t": "set", "n": 2, "recipe": {"time": 7}})
+    page.set(2, time=7)
     all_heard &= receive_until(lambda what, message: what == "text" and
                             message["t"] == "said")
     for kind, asked in (
             ("histogram", {}), ("command", {}), ("movie-command", {}), ("recipe", {}),
             ("value", {"at": [1, 2, 3]}), ("depth", {"x": 0.5, "y": 0.5}),
             ("slice-command", {"axis": "z", "index": 1, "range": [0, 255]})):
-        page.say({"t": "ask", "what": kind, **asked})
+        page.question(kind, **asked)
         all_heard &= receive_until(lambda what, message: what == "text" and
                                 message["t"] in (kind, "command"))
     for pane, asked in ((2, {"what": "slice", "axis": "z", "index": 1, "n": 5,
@@ -188,47 +189,22 @@ SECRETS = ["Zyxwvut^Patient", "ID-QQ4711", "19010203", "Hospital of Qwert",
            "1.2.826.0.1.4711.99", "Doctor^Asdfgh", "head of Zyxwvut"]
 
 
-def element(group, number, kind, value):
-    if isinstance(value, str):
-        value = value.encode()
-    value += (b"\0" if kind == "UI" else b" ") * (len(value) % 2)
-    size = struct.pack("<HI", 0, len(value)) if kind in ("OW", "OB") else \
-        struct.pack("<H", len(value))
-    return struct.pack("<HH", group, number) + kind.encode() + size + value
-
-
 def write_scan(folder):
     """Slices with all that says whose they are."""
-    kind = "1.2.840.10008.5.1.4.1.1.4"
+    name, number, day, place, study, doctor, part = SECRETS
     os.mkdir(folder)
     for z in range(8):
-        name = f"{SECRETS[4]}.3.{z + 1}"
-        meta = (element(2, 2, "UI", kind) + element(2, 3, "UI", name) +
-                element(2, 0x10, "UI", "1.2.840.10008.1.2.1"))
-        numbers = {2: 1, 0x10: 24, 0x11: 20, 0x100: 16, 0x101: 12, 0x102: 11, 0x103: 0}
-        shape = {4: element(0x28, 4, "CS", "MONOCHROME2"),
-                 0x30: element(0x28, 0x30, "DS", "1\\1"),
-                 **{at: element(0x28, at, "US", struct.pack("<H", number))
-                    for at, number in numbers.items()}}
-        body = b"".join((
-            element(8, 0x16, "UI", kind), element(8, 0x18, "UI", name),
-            element(8, 0x20, "DA", SECRETS[2]), element(8, 0x60, "CS", "MR"),
-            element(8, 0x80, "LO", SECRETS[3]), element(8, 0x90, "PN", SECRETS[5]),
-            element(8, 0x1030, "LO", SECRETS[6]), element(8, 0x103E, "LO", SECRETS[6]),
-            element(0x10, 0x10, "PN", SECRETS[0]), element(0x10, 0x20, "LO", SECRETS[1]),
-            element(0x10, 0x30, "DA", SECRETS[2]),
-            element(0x20, 0xD, "UI", SECRETS[4] + ".1"),
-            element(0x20, 0xE, "UI", SECRETS[4] + ".2"),
-            element(0x20, 0x13, "IS", str(z + 1)),
-            element(0x20, 0x32, "DS", f"0\\0\\{2 * z}"),
-            element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0"),
-            *(shape[at] for at in sorted(shape)),
-            element(0x7FE0, 0x10, "OW", b"".join(
-                struct.pack("<H", (x - 10) ** 2 + (y - 12) ** 2 + 30 * z)
-                for y in range(24) for x in range(20)))))
         with open(os.path.join(folder, f"{z}.dcm"), "wb") as out:
-            out.write(bytes(128) + b"DICM" + element(
-                2, 0, "UL", struct.pack("<I", len(meta))) + meta + body)
+            out.write(dicom_slice(
+                z, [(x - 10) ** 2 + (y - 12) ** 2 + 30 * z for y in range(24)
+                    for x in range(24)], 2 * z, about={
+                        (8, 0x18): ("UI", f"{study}.3.{z + 1}"), (8, 0x60): ("CS", "MR"),
+                        (8, 0x20): ("DA", day), (8, 0x80): ("LO", place),
+                        (8, 0x90): ("PN", doctor), (8, 0x1030): ("LO", part),
+                        (8, 0x103E): ("LO", part), (0x10, 0x10): ("PN", name),
+                        (0x10, 0x20): ("LO", number), (0x10, 0x30): ("DA", day),
+                        (0x20, 0xD): ("UI", study + ".1"),
+                        (0x20, 0xE): ("UI", study + ".2")}))
 
 
 def texts_of(png):

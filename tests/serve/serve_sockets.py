@@ -3,22 +3,22 @@ import glob
 import json
 import os
 import re
-import shlex
 import socket
 import stat
 import struct
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
 from viewer_client import (PATIENCE, SANITIZED, SHORT, THREADS, TOOL, Page, Server, ThinLink,
-                           check, drag_over, finish, page_comes)
+                           check, drag_over, finish, is_of_command, page_comes,
+                           run_command, slice_is_of_command, viewer)
 
 FOLDER = tempfile.TemporaryDirectory()
+os.chdir(FOLDER.name)
 SMALL = os.path.join(FOLDER.name, "small.nrrd")
 SIDE = 96
 subprocess.run([TOOL, "phantom", "head", "--dims", "48x48x48", "-o", SMALL],
@@ -95,17 +95,15 @@ def embedded():
 
 
 def strangers(server):
-    other = f"127.0.0.1:{server.port + 1}"
-    for host in ("evil.org", f"evil.org:{server.port}", other, "127.0.0.1",
-                 f"localhost.evil.org:{server.port}"):
+    """tests/serve/test_guard.c has all names, origins and secrets that are refused."""
+    for host in ("evil.org", f"127.0.0.1:{server.port + 1}"):
         status = server.get("/", host=host)[0]
         check(f"host {host} is refused", status == 421, status)
         check(f"host {host} opens no WebSocket",
               not Page(server, host=host, origin=f"http://{host}").is_open)
     check("localhost is no stranger",
           server.get("/", host=f"localhost:{server.port}")[0] == 200)
-    for origin in ("", "null", "http://evil.org", f"http://{other}",
-                   f"https://127.0.0.1:{server.port}", "file://"):
+    for origin in ("", "http://evil.org"):
         check(f"origin '{origin}' is refused",
               not Page(server, origin=origin).is_open)
     for path in ("/", "/viewer.js", "/wsx", "/ws/x"):
@@ -114,10 +112,8 @@ def strangers(server):
     for protocol in ("", "snowglass.2", "http", "door"):
         check(f"protocol '{protocol}' is refused",
               not Page(server, protocol=protocol).is_open)
-    for token in ("x", server.token[:-1], server.token + "0",
-                  server.token[::-1], "0" * 32):
-        code = Page(server, token=token).closed_code()
-        check(f"token of {len(token)} letters is refused", code == 4401, code)
+    code = Page(server, token=server.token[:-1]).closed_code()
+    check("another secret is refused", code == 4401, code)
 
 
 def odd_requests(server):
@@ -138,27 +134,17 @@ def odd_requests(server):
 
 
 def odd_messages(server):
-    """Each ends its own connection, and nothing else."""
+    """Each ends its own connection, and nothing else.  tests/serve/test_message.c has
+    all texts that are refused."""
     cases = {
         "a frame of 2^63 bytes": lambda p: p.send_frame(0x81, b"xxxx",
                                                         length=1 << 63),
         "no mask": lambda p: p.send_frame(0x81, b"{}", mask=False),
-        "3,000 braces": lambda p: p.say(b"{" * 3000),
-        "nine levels": lambda p: p.say(b'{"t":"ack","n":1,"x":' + b"[" * 8 +
-                                       b"]" * 8 + b"}"),
         "a binary message": lambda p: p.send_frame(0x82, b"{}"),
-        "no UTF-8": lambda p: p.send_frame(0x81, b'{"t":"\xff\xfe"}'),
-        "no JSON": lambda p: p.say(b"hello"),
-        "64 KiB and a byte": lambda p: p.say(b'{"t":"ask","what":"' +
-                                            b"x" * 65536 + b'"}'),
         "a reserved bit": lambda p: p.send_frame(0xC1, b"{}"),
         "an unknown opcode": lambda p: p.send_frame(0x83, b"{}"),
         "a file in a recipe": lambda p: p.say(
             {"t": "set", "n": 1, "recipe": {"mask": "/etc/passwd"}}),
-        "an output in a recipe": lambda p: p.say(
-            {"t": "set", "n": 1, "recipe": {"output": "x.png"}}),
-        "a picture too large": lambda p: p.say(
-            {"t": "set", "n": 1, "recipe": {"size": [4097, 10]}}),
         "pieces without an end": lambda p: [
             p.send_frame(0x01 if i == 0 else 0x00, b"x" * 8192)
             for i in range(10)],
@@ -169,20 +155,20 @@ def odd_messages(server):
         say(page)
         check(f"{name} closes", page.closed_code() is not None)
     page = Page(server, hello=False)
-    page.say({"t": "set", "n": 1, "recipe": {}})
+    page.set(1)
     check("what comes before hello closes", page.closed_code() == 4401)
     page = Page(server)
     page.receive_text("info")
-    page.say({"t": "set", "n": 1, "recipe": {"zoom": "large", "preset": 7}})
+    page.set(1, zoom="large", preset=7)
     said = page.receive_text("said")
     check("a wrong value is answered", said and "zoom" in said["text"], said)
     for n, time_of in enumerate(("2:4", "0.3s"), 2):
-        page.say({"t": "set", "n": n, "recipe": {"time": time_of}})
+        page.set(n, time=time_of)
         said = page.receive_text("said")
         check(f"so is time {time_of}", said and '"time"' in said["text"], said)
-    page.say({"t": "set", "n": 4, "recipe": {"time": "last"}})
+    page.set(4, time="last")
     check("the last step is taken", page.receive_picture(2, 4) is not None)
-    page.say({"t": "ask", "what": "nothing"})
+    page.question("nothing")
     check("and so is a wrong question", page.receive_text("said") is not None)
     page.close()
 
@@ -238,11 +224,11 @@ def slow_ones(server):
 def many_pages(server):
     """A page that takes nothing slows no other, and the 33rd is one too many."""
     fast, slow = Page(server), Page(server)
-    fast.say({"t": "set", "n": 1, "recipe": {"size": [SIDE, SIDE]}})
+    fast.set(1, size=[SIDE, SIDE])
     check("the first picture", fast.receive_picture(2) is not None)
     seen = 0
     for n in range(2, 42):  # the slow one acknowledges nothing
-        fast.say({"t": "set", "n": n, "recipe": {"azimuth": n}})
+        fast.set(n, azimuth=n)
         seen += fast.receive_picture(0, n, 10) is not None
     check(f"each of 40 changes is seen beside a slow page: {seen}", seen == 40)
     state = slow.receive_text("state")
@@ -263,7 +249,7 @@ def many_pages(server):
         page.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER,
                                struct.pack("ii", 1, 0))  # as a kill -9
         page.close()
-    fast.say({"t": "set", "n": 50, "recipe": {"azimuth": 0}})
+    fast.set(50, azimuth=0)
     check("the rest is served on", fast.receive_picture(0, 50) is not None)
     fast.close()
 
@@ -275,8 +261,7 @@ def floods(server):
     page.receive_text("info")
     before = server.kilobytes()
     for n in range(1, count + 1):
-        page.say({"t": "set", "n": n, "recipe": {"azimuth": n % 360,
-                                                 "size": [SIDE, SIDE]}})
+        page.set(n, azimuth=n % 360, size=[SIDE, SIDE])
     check(f"after {count} changes the newest is shown",
           page.receive_picture(2, count) is not None)
     more = server.kilobytes() - before
@@ -284,40 +269,23 @@ def floods(server):
     page.close()
 
 
-def same_bytes(server, path, recipe):
+def same_bytes(server, recipe):
     """The picture at rest is the file of the copied command."""
     page = Page(server)
-    page.say({"t": "set", "n": 7, "recipe": {"size": [SIDE, SIDE + 10],
-                                             **recipe}})
-    shown = page.receive_picture(2, 7)
-    page.say({"t": "ask", "what": "command"})
-    command = page.receive_text("command")
-    words = shlex.split(command["text"]) if command else []
+    is_of_command(page, f"{recipe} has the bytes of its command", 7,
+                  **{"size": [SIDE, SIDE + 10], **recipe})
     page.close()
-    if not words or shown is None:
-        check(f"{recipe} has a command", False, command)
-        return
-    out = os.path.join(FOLDER.name, "again.png")
-    words[0] = TOOL
-    words[words.index("--output") + 1] = out
-    done = subprocess.run([*words, "-y", "-q"], capture_output=True, text=True)
-    written = open(out, "rb").read() if done.returncode in (0, 7) else b""
-    check(f"{recipe} has the bytes of the command", shown == written,
-          f"{done.returncode} {done.stderr} {' '.join(words)}")
 
 
 def crop_and_back(server):
     """A crop keeps the object's size; a step back names its zoom itself."""
     page = Page(server)
     before = page.receive_text("state")["recipe"]
-    page.say({"t": "set", "n": 1, "recipe": {"crop": [[12, 36], [12, 36],
-                                                      [12, 36]]}})
+    page.set(1, crop=[[12, 36], [12, 36], [12, 36]])
     cropped = page.receive_text("state")["recipe"]
     check("a crop keeps the scale", cropped["zoom"] < 0.8 * before["zoom"],
           f"{before['zoom']} {cropped['zoom']}")
-    page.say({"t": "set", "n": 2, "recipe": {
-        "crop": None, "zoom": before["zoom"], "target": before["target"]}})
-    page.receive_picture(2, 2)
+    page.rest(2, crop=None, zoom=before["zoom"], target=before["target"])
     page.close()
     page = Page(server)
     now = page.receive_text("state")["recipe"]
@@ -332,8 +300,8 @@ def two_at_once(server):
     for page in (one, other):
         page.receive_text("state")
     for n in range(1, 30):
-        one.say({"t": "set", "n": n, "recipe": {"azimuth": n}})
-        other.say({"t": "set", "n": 100 + n, "recipe": {"elevation": n}})
+        one.set(n, azimuth=n)
+        other.set(100 + n, elevation=n)
     for page, own, key, last in ((one, "azimuth", "elevation", 29),
                                  (other, "elevation", "azimuth", 129)):
         state = {"recipe": {}}
@@ -344,7 +312,7 @@ def two_at_once(server):
             base = 100 if own == "elevation" else 0
             check(f"its n is that of its {own}",
                   state["n"] in (0, base + state["recipe"].get(own, 0)), state)
-    one.say({"t": "set", "n": 77, "recipe": {"zoom": "wrong"}})
+    one.set(77, zoom="wrong")
     state = one.receive_text("state")
     while state and state["n"] != 77:
         state = one.receive_text("state")
@@ -357,7 +325,7 @@ def first_state():
     """What a page sets at once is not lost, nor its first state another one."""
     server = Server("phantom:head")
     page = Page(server)
-    page.say({"t": "set", "n": 1, "recipe": {"zoom": 3.5}})
+    page.set(1, zoom=3.5)
     begin = page.receive_text("state")["recipe"]
     check("the first state is framed", "target" in begin, begin)
     page.receive_picture(2, 1)
@@ -372,11 +340,10 @@ def first_state():
 def thumbnails_wait(server):
     """They come when the picture is final, and no change waits for them."""
     page = Page(server)
-    page.say({"t": "set", "n": 1, "recipe": {"azimuth": 3}})
+    page.set(1, azimuth=3)
     for pane in range(4, 12):
-        page.say({"t": "ask", "what": "thumbnail", "preset": "ct-bone",
-                  "pane": pane})
-    page.say({"t": "ask", "what": "command"})
+        page.question("thumbnail", preset="ct-bone", pane=pane)
+    page.question("command")
     kinds = []
     while len([kind for kind in kinds if kind == "small"]) < 8:
         what, message = page.hear()
@@ -395,9 +362,8 @@ def thumbnails_wait(server):
     check("thumbnails come after pictures and other answers",  # the final one
           {"command", 0, 1} <= set(kinds[:first]), kinds)  # is packed meanwhile
     for pane in range(4, 12):
-        page.say({"t": "ask", "what": "thumbnail", "preset": "ct-bone",
-                  "pane": pane})
-    page.say({"t": "ask", "what": "command"})
+        page.question("thumbnail", preset="ct-bone", pane=pane)
+    page.question("command")
     smalls = 0
     while True:
         what, message = page.hear()
@@ -405,10 +371,10 @@ def thumbnails_wait(server):
             break
         smalls += what == "picture" and message[10] > 0
     check("a command does not wait for thumbnails", smalls < 4, smalls)
-    page.say({"t": "set", "n": 2, "recipe": {"azimuth": 4}})
+    page.set(2, azimuth=4)
     for preset in ("ct-bone", "ct-soft") * 150:  # the newest of a pane is made
-        page.say({"t": "ask", "what": "thumbnail", "preset": preset, "pane": 4})
-    page.say({"t": "ask", "what": "command"})
+        page.question("thumbnail", preset=preset, pane=4)
+    page.question("command")
     texts = []
     while not texts or texts[-1]["t"] not in ("closed", "command"):
         what, message = page.hear()
@@ -424,49 +390,33 @@ def thumbnails_wait(server):
 
 def answers_first():
     """No answer waits for a large picture at rest, which comes all the same."""
-    server = Server("phantom:engine")
-    page = Page(server)
-    side = 1000 if SANITIZED else 3000
-    for n in range(1, 9):  # on a busy machine this page may ask too late
-        page.say({"t": "set", "n": n, "recipe": {"size": [side, side],
-                                                 "azimuth": n}})
-        page.receive_picture(1, n)
-        time.sleep(0.1)  # the picture of quality high is under way
-        page.say({"t": "ask", "what": "value", "at": [1, 2, 3]})
-        kinds = []
-        while "value" not in kinds:
-            what, message = page.hear()
-            kinds.append(message["t"] if what == "text" else what)
-        if "figures" not in kinds:
-            break
-    check("an answer comes before the picture at rest",
-          "figures" not in kinds, kinds)
-    check("which comes then", page.receive_picture(2, n) is not None)
-    page.close()
-    server.stop()
+    with viewer("phantom:engine") as page:
+        side = 1000 if SANITIZED else 3000
+        for n in range(1, 9):  # on a busy machine this page may ask too late
+            page.set(n, size=[side, side], azimuth=n)
+            page.receive_picture(1, n)
+            time.sleep(0.1)  # the picture of quality high is under way
+            page.question("value", at=[1, 2, 3])
+            kinds = []
+            while "value" not in kinds:
+                what, message = page.hear()
+                kinds.append(message["t"] if what == "text" else what)
+            if "figures" not in kinds:
+                break
+        check("an answer comes before the picture at rest",
+              "figures" not in kinds, kinds)
+        check("which comes then", page.receive_picture(2, n) is not None)
 
 
 def movie_command():
     """The turn begins with the picture at rest."""
-    server = Server(SMALL)
-    page = Page(server)
-    page.say({"t": "set", "n": 1, "recipe": {
-        "azimuth": 20, "preset": "ct-bone", "size": [SIDE, SIDE]}})
-    shown = page.receive_picture(2, 1)
-    page.say({"t": "ask", "what": "movie-command"})
-    text = page.receive_text("command")["text"]
-    words = shlex.split(text)
-    words[0] = TOOL
-    words[words.index("--output") + 1] = os.path.join(FOLDER.name, "f_%d.png")
-    done = subprocess.run([*words, "--frames", "2", "-y", "-q"],
-                          capture_output=True, text=True)
-    check("a movie's first picture is the one at rest",
-          text.startswith("snowglass turntable ") and done.returncode == 0 and
-          open(os.path.join(FOLDER.name, "f_0.png"), "rb").read() == shown,
-          f"{text} {done.stderr}")
-    check("it is a movie", "--output small.mp4" in text, text)
-    page.close()
-    server.stop()
+    with viewer(SMALL) as page:
+        shown = page.rest(1, azimuth=20, preset="ct-bone", size=[SIDE, SIDE])
+        text = page.ask("movie-command")["text"]
+        check("a movie's first picture is the one at rest",
+              text.startswith("snowglass turntable ") and
+              run_command(text, "--frames", "2", out="f_%d.png") == shown, text)
+        check("it is a movie", "--output small.mp4" in text, text)
 
 
 def thumbnails(server):
@@ -474,29 +424,22 @@ def thumbnails(server):
     page = Page(server)
     seen = []
     for n, mode in enumerate(("over", "mean", "sum"), 1):
-        page.say({"t": "set", "n": n, "recipe": {
-            "mode": mode, "size": [SIDE, SIDE], "background": "#000000"}})
-        page.receive_picture(2, n)
-        page.say({"t": "ask", "what": "thumbnail", "preset": "ct-bone",
-                  "pane": 4})
+        page.rest(n, mode=mode, size=[SIDE, SIDE], background="#000000")
+        page.question("thumbnail", preset="ct-bone", pane=4)
         seen.append(page.receive_small(4)[32:])
     check("a thumbnail is painted in all modes", seen[1:] == seen[:1] * 2,
           [len(each) for each in seen])
-    page.say({"t": "set", "n": 9, "recipe": {
-        "mode": "over", "size": None, "background": None}})
+    page.set(9, mode="over", size=None, background=None)
     page.close()
 
 
 def fit_at_position():
-    server = Server(SMALL, "--position", "200,10,20")
-    page = Page(server)
-    page.receive_text("state")
-    page.say({"t": "ask", "what": "fit"})
-    said = page.receive_text("said")
-    check("what cannot be framed is told", said and "position" in said["text"],
-          said)
-    page.close()
-    server.stop()
+    with viewer(SMALL, "--position", "200,10,20") as page:
+        page.receive_text("state")
+        page.question("fit")
+        said = page.receive_text("said")
+        check("what cannot be framed is told", said and "position" in said["text"],
+              said)
 
 
 def looks_until(page, kind, n=0):
@@ -525,37 +468,35 @@ def dragged_points(more, grey):
     """A point that is dragged takes the colours of the look before, as the look
     that is made anew has them; that is made when the picture rests.  A side of 64
     is that of the smallest draft: none is smaller."""
-    server = Server(SMALL, *more)
-    page, n = Page(server), 1
-    points = page.receive_text("look")["opacity"]
-    moved = [[value, min(1, 2 * opacity)] for value, opacity in points]
-    page.say({"t": "moving", "on": True})
+    with viewer(SMALL, *more) as page:
+        n = 1
+        points = page.receive_text("look")["opacity"]
+        moved = [[value, min(1, 2 * opacity)] for value, opacity in points]
+        page.say({"t": "moving", "on": True})
 
-    def draft(**recipe):
-        nonlocal n
-        n += 1
-        page.say({"t": "set", "n": n, "recipe": recipe})
-        looks, picture = looks_until(page, "", n)
-        page.say({"t": "ask", "what": "command"})
-        return picture, looks + looks_until(page, "command")[0]
+        def draft(**recipe):
+            nonlocal n
+            n += 1
+            page.set(n, **recipe)
+            looks, picture = looks_until(page, "", n)
+            page.question("command")
+            return picture, looks + looks_until(page, "command")[0]
 
-    draft(size=[64, 64], opacity=points)
-    quick, looks = draft(opacity=moved)
-    check("a dragged point makes no new look", not looks, looks)
-    hot = draft(colormap="hot")[0]
-    anew, looks = draft(colormap=None)
-    check("its picture is that of a look made anew", looks and anew == quick)
-    check("only a picture in colours is packed in colours",
-          (colors_of(anew), colors_of(hot)) == (1 if grey else 3, 3))
-    check("which has changed", draft(opacity=points)[0] != quick)
-    draft(opacity=moved)
-    page.say({"t": "moving", "on": False})
-    look = page.receive_text("look")
-    check("the picture at rest has a new look", look and
-          "opacities as requested" in look["text"] and
-          look["opacity"] == moved, look)
-    page.close()
-    server.stop()
+        draft(size=[64, 64], opacity=points)
+        quick, looks = draft(opacity=moved)
+        check("a dragged point makes no new look", not looks, looks)
+        hot = draft(colormap="hot")[0]
+        anew, looks = draft(colormap=None)
+        check("its picture is that of a look made anew", looks and anew == quick)
+        check("only a picture in colours is packed in colours",
+              (colors_of(anew), colors_of(hot)) == (1 if grey else 3, 3))
+        check("which has changed", draft(opacity=points)[0] != quick)
+        draft(opacity=moved)
+        page.say({"t": "moving", "on": False})
+        look = page.receive_text("look")
+        check("the picture at rest has a new look", look and
+              "opacities as requested" in look["text"] and
+              look["opacity"] == moved, look)
 
 
 def recipe_file():
@@ -566,33 +507,27 @@ def recipe_file():
     raw = os.path.join(FOLDER.name, "small.raw")
     with open(raw, "wb") as out:
         out.write(bytes(i % 48 * 5 for i in range(48 ** 3)))
-    server = Server(raw, "--dims", "48x48x48", "--type", "uint8", "--tf", points)
-    page = Page(server)
-    page.say({"t": "set", "n": 1, "recipe": {"azimuth": 12,
-                                             "size": [SIDE, SIDE]}})
-    shown = page.receive_picture(2, 1)
-    page.say({"t": "ask", "what": "thumbnail", "preset": "", "pane": 4})
-    of_file = page.receive_small(4)
-    page.say({"t": "ask", "what": "thumbnail", "preset": "ct-bone", "pane": 4})
-    check("the first thumbnail is there", of_file and
-          of_file[32:] != page.receive_small(4)[32:])
-    late = Page(server)
-    look = late.receive_text("look")
-    check("a look of many points says how many there are",
-          look["count"] == 300 and len(look["opacity"]) == 256, look["count"])
-    late.close()
-    page.say({"t": "ask", "what": "recipe"})
-    recipe = page.receive_text("recipe")
-    path, out = (os.path.join(FOLDER.name, name)
-                 for name in ("recipe.json", "recipe.png"))
-    with open(path, "w") as file:
-        file.write(recipe["text"])
-    done = subprocess.run([TOOL, "render", "--config", path, "-o", out, "-q"],
-                          capture_output=True, text=True)
-    check("a saved recipe has the bytes of the picture", done.returncode == 0
-          and open(out, "rb").read() == shown, done.stderr or recipe["text"])
-    page.close()
-    server.stop()
+    with viewer(raw, "--dims", "48x48x48", "--type", "uint8", "--tf", points) as page:
+        shown = page.rest(1, azimuth=12, size=[SIDE, SIDE])
+        page.question("thumbnail", preset="", pane=4)
+        of_file = page.receive_small(4)
+        page.question("thumbnail", preset="ct-bone", pane=4)
+        check("the first thumbnail is there", of_file and
+              of_file[32:] != page.receive_small(4)[32:])
+        late = Page(page.server)
+        look = late.receive_text("look")
+        check("a look of many points says how many there are",
+              look["count"] == 300 and len(look["opacity"]) == 256, look["count"])
+        late.close()
+        recipe = page.ask("recipe")
+        path, out = (os.path.join(FOLDER.name, name)
+                     for name in ("recipe.json", "recipe.png"))
+        with open(path, "w") as file:
+            file.write(recipe["text"])
+        done = subprocess.run([TOOL, "render", "--config", path, "-o", out, "-q"],
+                              capture_output=True, text=True)
+        check("a saved recipe has the bytes of the picture", done.returncode == 0
+              and open(out, "rb").read() == shown, done.stderr or recipe["text"])
     saved_paths(raw, points)
 
 
@@ -611,40 +546,11 @@ def saved_paths(raw, points):
              ["small.raw", "inner/points.json"]),
             (os.path.relpath(raw), points, ["small.raw", points]),
             ("phantom:head", None, ["phantom:head", None])):
-        server = Server(volume, *(about + [look] if look else []))
-        page = Page(server)
-        page.say({"t": "ask", "what": "recipe"})
-        tree = json.loads(page.receive_text("recipe")["text"])
-        found = [tree.get("input"), tree.get("tf")]
-        check(f"a recipe of {volume} leads from its folder", found == wanted,
-              found)
-        page.close()
-        server.stop()
-
-
-def ask_slice(page, **asked):
-    """The picture, with its head; None where the answer is that there is none."""
-    page.say({"t": "ask", "what": "slice", "pane": 2, "n": 7, **asked})
-    while True:
-        what, message = page.hear()
-        if what == "closed":
-            return "closed"
-        if what == "text" and message["t"] == "slice":
-            return None
-        if what == "picture" and message[10] == 2:
-            return message
-        if what == "picture" and not message[10]:
-            page.say({"t": "ack", "n": 0})
-
-
-def run_command(text, *changes):
-    words = shlex.split(text)
-    words[0] = TOOL
-    out = words[words.index("--output") + 1] = os.path.join(FOLDER.name,
-                                                            "again.png")
-    done = subprocess.run([*words, *changes, "-y", "-q"], capture_output=True,
-                          text=True)
-    return open(out, "rb").read() if done.returncode == 0 else done.stderr
+        with viewer(volume, *(about + [look] if look else [])) as page:
+            tree = json.loads(page.ask("recipe")["text"])
+            found = [tree.get("input"), tree.get("tf")]
+            check(f"a recipe of {volume} leads from its folder", found == wanted,
+                  found)
 
 
 SLICES = [
@@ -660,42 +566,33 @@ SLICES = [
 
 def slices():
     """They are the pictures of the verb slice, which has the same command."""
-    server = Server(SMALL, "--kernel", "tent")
-    page = Page(server)
-    info = page.receive_text("info")
-    check("the page hears where slices lie",
-          sorted(each["along"] for each in info["slices"]) == [0, 1, 2] and
-          all(sorted([each["along"], each["right"][0], each["down"][0]]) ==
-              [0, 1, 2] for each in info["slices"]), info["slices"])
-    for n, (recipe, asked) in enumerate(SLICES, 1):
-        page.say({"t": "set", "n": n, "recipe": {
-            "preset": None, "clip": None, "crop": None, "colormap": None,
-            "size": [SIDE, SIDE], **recipe}})
-        page.receive_picture(2, n)
-        moving = ask_slice(page, **asked)
-        check(f"slice {n} moves as JPEG", moving and moving[9] == 1 and
-              moving[32:34] == b"\xff\xd8", moving)
-        exact = ask_slice(page, **asked, exact=True)
-        check(f"slice {n} rests as PNG, with its own n", exact and
-              exact[9] == 2 and struct.unpack("<I", exact[4:8]) == (7,))
-        page.say({"t": "ask", "what": "slice-command", **asked})
-        command = page.receive_text("command")["text"]
-        made = run_command(command)
-        check(f"slice {n} has the bytes of its command", made == exact[32:],
-              made if isinstance(made, str) else command)
-        check("which says the slice", f"--axis {asked['axis']}" in command and
-              f"--at {asked['index']}" in command, command)
-    good = SLICES[3][1]
-    for name, wrong in (("no axis", {"axis": "w"}), ("no range", {"range": []}),
-                        ("an empty range", {"range": [3, 3]}),
-                        ("a slice below", {"index": -1}),
-                        ("a slice above", {"index": 38}),
-                        ("a slice far above", {"index": 2 ** 62})):
-        check(f"{name} is answered by none", ask_slice(
-            page, **{**good, **wrong}) is None)
-    check("another comes after that", ask_slice(page, **good))
-    page.close()
-    server.stop()
+    with viewer(SMALL, "--kernel", "tent") as page:
+        info = page.receive_text("info")
+        check("the page hears where slices lie",
+              sorted(each["along"] for each in info["slices"]) == [0, 1, 2] and
+              all(sorted([each["along"], each["right"][0], each["down"][0]]) ==
+                  [0, 1, 2] for each in info["slices"]), info["slices"])
+        for n, (recipe, asked) in enumerate(SLICES, 1):
+            page.rest(n, **{"preset": None, "clip": None, "crop": None, "colormap": None,
+                            "size": [SIDE, SIDE], **recipe})
+            moving = page.slice(**asked)
+            check(f"slice {n} moves as JPEG", moving and moving[9] == 1 and
+                  moving[32:34] == b"\xff\xd8", moving)
+            exact = page.slice(**asked, exact=True)
+            check(f"slice {n} rests as PNG, with its own n", exact and
+                  exact[9] == 2 and struct.unpack("<I", exact[4:8]) == (7,))
+            slice_is_of_command(page, f"slice {n} has the bytes of its command", **asked)
+            command = page.ask("slice-command", **asked)["text"]
+            check("which says the slice", f"--axis {asked['axis']}" in command and
+                  f"--at {asked['index']}" in command, command)
+        good = SLICES[3][1]
+        for name, wrong in (("no axis", {"axis": "w"}), ("no range", {"range": []}),
+                            ("an empty range", {"range": [3, 3]}),
+                            ("a slice below", {"index": -1}),
+                            ("a slice above", {"index": 38}),
+                            ("a slice far above", {"index": 2 ** 62})):
+            check(f"{name} is answered by none", page.slice(**{**good, **wrong}) is None)
+        check("another comes after that", page.slice(**good))
 
 
 def slices_in_little_memory():
@@ -703,34 +600,24 @@ def slices_in_little_memory():
     flat = os.path.join(FOLDER.name, "flat.nrrd")
     subprocess.run([TOOL, "convert", "phantom:head", "--dims", "400x400x20",
                     "-o", flat, "-q"], check=True)
-    server = Server(flat, "-q", "-j", "2", "--memory", "14M")
-    page = Page(server)
-    page.say({"t": "set", "n": 1, "recipe": {"size": [64, 64]}})
-    said = page.receive_text("said")["text"]
-    check("the picture at rest has no room in 14M", "14.0 MiB" in said, said)
-    for axis, index in ("z", 3), ("y", 200), ("x", 80):
-        asked = {"axis": axis, "index": index, "range": [0, 255]}
-        exact = ask_slice(page, **asked, exact=True)
-        page.say({"t": "ask", "what": "slice-command", **asked})
-        made = run_command(page.receive_text("command")["text"], "--memory", "14M")
-        check(f"a slice across {axis} has", exact and made == exact[32:],
-              made if isinstance(made, str) else exact)
-    page.close()
-    server.stop()
+    with viewer(flat, "-q", "-j", "2", "--memory", "14M") as page:
+        page.set(1, size=[64, 64])
+        said = page.receive_text("said")["text"]
+        check("the picture at rest has no room in 14M", "14.0 MiB" in said, said)
+        for axis, index in ("z", 3), ("y", 200), ("x", 80):
+            slice_is_of_command(page, f"a slice across {axis} has", "--memory", "14M",
+                                axis=axis, index=index)
 
 
 def one_channel():
     """A channel that the volume has not is refused as by `render`."""
-    server = Server(SMALL, "-q")
-    page = Page(server)
-    page.say({"t": "set", "n": 1, "recipe": {"size": [SIDE, SIDE], "channel": "5"}})
-    said = page.receive_text("said")["text"]
-    check("a channel that is not there is refused",
-          "channel 5 does not exist; the voxels have 1" in said, said)
-    state = page.receive_text("state")
-    check("and not kept", state and "channel" not in state["recipe"], state)
-    page.close()
-    server.stop()
+    with viewer(SMALL, "-q") as page:
+        page.set(1, size=[SIDE, SIDE], channel="5")
+        said = page.receive_text("said")["text"]
+        check("a channel that is not there is refused",
+              "channel 5 does not exist; the voxels have 1" in said, said)
+        state = page.receive_text("state")
+        check("and not kept", state and "channel" not in state["recipe"], state)
 
 
 def mask_switch():
@@ -742,39 +629,30 @@ def mask_switch():
             out.write(bytes((1 if x < 24 else 2) for x in range(48)) * 48)
     subprocess.run([TOOL, "convert", mask, "--dims", "48x48x48", "--type",
                     "uint8", "-o", mask + ".nrrd", "-q"], check=True)
-    server = Server(SMALL, "--mask", mask + ".nrrd", "--labels", "1")
-    page = Page(server)
-    info = page.receive_text("info")
-    check("a page hears of a mask, and which labels it keeps",
-          info["mask"] is True and info["labels"] == "1", info)
-    state = page.receive_text("state")["recipe"]
-    check("but not of its file", state["mask"] is True and
-          "secret" not in json.dumps(state), state)
-    shown = []
-    for n, change in enumerate(({"size": [SIDE, SIDE]},
-                                {"mask": None, "labels": None},
-                                {"clip": [[1, 0, 0, 3.5]]},
-                                {"mask": True, "labels": "1", "clip": None}), 1):
-        page.say({"t": "set", "n": n, "recipe": change})
-        shown.append(page.receive_picture(2, n))
-        page.say({"t": "ask", "what": "command"})
-        command = page.receive_text("command")["text"]
-        check(f"mask {n}: the picture is its command's",
-              run_command(command) == shown[-1], command)
-        check(f"mask {n}: which names the mask where it is used",
-              ("--mask" in command) == (n in (1, 4)), command)
-    check("the mask is gone, and comes again", shown[0] == shown[3] and
-          shown[0] != shown[1], "")
-    page.close()
-    server.stop()
-    server = Server(SMALL)
-    page = Page(server)
-    check("there is no mask without one",
-          page.receive_text("info")["mask"] is False)
-    page.say({"t": "set", "n": 1, "recipe": {"mask": True, "azimuth": 5}})
-    check("and none to switch", page.receive_picture(2, 1) is not None)
-    page.close()
-    server.stop()
+    with viewer(SMALL, "--mask", mask + ".nrrd", "--labels", "1") as page:
+        info = page.receive_text("info")
+        check("a page hears of a mask, and which labels it keeps",
+              info["mask"] is True and info["labels"] == "1", info)
+        state = page.receive_text("state")["recipe"]
+        check("but not of its file", state["mask"] is True and
+              "secret" not in json.dumps(state), state)
+        shown = []
+        for n, change in enumerate(({"size": [SIDE, SIDE]},
+                                    {"mask": None, "labels": None},
+                                    {"clip": [[1, 0, 0, 3.5]]},
+                                    {"mask": True, "labels": "1", "clip": None}), 1):
+            shown.append(is_of_command(page, f"mask {n}: the picture is its command's", n,
+                                       **change))
+            command = page.ask("command")["text"]
+            check(f"mask {n}: which names the mask where it is used",
+                  ("--mask" in command) == (n in (1, 4)), command)
+        check("the mask is gone, and comes again", shown[0] == shown[3] and
+              shown[0] != shown[1], "")
+    with viewer(SMALL) as page:
+        check("there is no mask without one",
+              page.receive_text("info")["mask"] is False)
+        page.set(1, mask=True, azimuth=5)
+        check("and none to switch", page.receive_picture(2, 1) is not None)
 
 
 def known_volume(name):
@@ -790,91 +668,72 @@ def known_volume(name):
 def newest_values():
     """Values and slices are of the newest state, also while an older one is
     drawn."""
-    server = Server(*known_volume("newest.raw"))
-    page = Page(server)
-    page.say({"t": "set", "n": 1, "recipe": {"size": [1500, 1500]}})
-    page.receive_picture(2, 1)
-    page.say({"t": "moving", "on": True})
-    got, sizes = [], []
-    for n in range(2, 14):
-        page.say({"t": "set", "n": n, "recipe": {
-            "crop": [[n, 48], [0, 48], [0, 48]]}})
-        page.say({"t": "ask", "what": "value", "at": [0, 0, 0]})
-        got.append(page.receive_text("value")["value"])
-        page.say({"t": "set", "n": n, "recipe": {
-            "crop": [[n, 48], [0, 48], [0, 20 + n]]}})
-        slice_ = ask_slice(page, axis="y", index=0, range=[0, 100])
-        sizes.append(struct.unpack("<I", slice_[20:24])[0])
-    check("values are of the newest crop", got == list(range(2, 14)), got)
-    check("slices too", sizes == list(range(22, 34)), sizes)
-    page.close()
-    server.stop()
+    with viewer(*known_volume("newest.raw")) as page:
+        page.rest(1, size=[1500, 1500])
+        page.say({"t": "moving", "on": True})
+        got, sizes = [], []
+        for n in range(2, 14):
+            page.set(n, crop=[[n, 48], [0, 48], [0, 48]])
+            got.append(page.ask("value", at=[0, 0, 0])["value"])
+            page.set(n, crop=[[n, 48], [0, 48], [0, 20 + n]])
+            slice_ = page.slice(axis="y", index=0, range=[0, 100])
+            sizes.append(struct.unpack("<I", slice_[20:24])[0])
+        check("values are of the newest crop", got == list(range(2, 14)), got)
+        check("slices too", sizes == list(range(22, 34)), sizes)
 
 
 def nothing_to_slice():
     """Whoever waits for a slice hears that there is none, and why."""
     raw, *known = known_volume("gone.raw")
-    server = Server(raw, *known)
-    page = Page(server)
-    page.socket.settimeout(20)
-    asked = {"axis": "x", "index": 3, "range": [0, 100]}
-    check("there is a slice at first", ask_slice(page, **asked))
-    os.rename(raw, raw + ".away")
-    page.say({"t": "set", "n": 1, "recipe": {
-        "crop": [[4, 48], [0, 48], [0, 48]]}})
-    page.say({"t": "ask", "what": "slice", "pane": 2, "n": 8, **asked})
-    lines = []
-    while True:
-        what, message = page.hear()
-        if what == "closed" or what == "text" and message["t"] == "slice":
-            break
-        if what == "text" and message["t"] == "said":
-            lines.append(message["text"])
-    check("a file that is gone has no slice", what == "text" and
-          message["pane"] == 2, message)
-    check("and why is said", any("gone.raw" in line for line in lines), lines)
-    page.say({"t": "ask", "what": "value", "at": [1, 2, 3]})
-    check("nor a value", page.receive_text("value")["value"] is None)
-    page.say({"t": "ask", "what": "histogram"})
-    check("nor a histogram", "There is no volume" in
-          page.receive_text("said")["text"])
-    os.rename(raw + ".away", raw)
-    page.say({"t": "set", "n": 2, "recipe": {
-        "crop": [[5, 48], [0, 48], [0, 48]]}})
-    check("it has one when it is back", ask_slice(page, **asked))
-    page.close()
-    server.stop()
+    with viewer(raw, *known) as page:
+        page.socket.settimeout(20)
+        asked = {"axis": "x", "index": 3, "range": [0, 100]}
+        check("there is a slice at first", page.slice(**asked))
+        os.rename(raw, raw + ".away")
+        page.set(1, crop=[[4, 48], [0, 48], [0, 48]])
+        page.question("slice", pane=2, n=8, **asked)
+        lines = []
+        while True:
+            what, message = page.hear()
+            if what == "closed" or what == "text" and message["t"] == "slice":
+                break
+            if what == "text" and message["t"] == "said":
+                lines.append(message["text"])
+        check("a file that is gone has no slice", what == "text" and
+              message["pane"] == 2, message)
+        check("and why is said", any("gone.raw" in line for line in lines), lines)
+        check("nor a value", page.ask("value", at=[1, 2, 3])["value"] is None)
+        page.question("histogram")
+        check("nor a histogram", "There is no volume" in
+              page.receive_text("said")["text"])
+        os.rename(raw + ".away", raw)
+        page.set(2, crop=[[5, 48], [0, 48], [0, 48]])
+        check("it has one when it is back", page.slice(**asked))
 
 
 def taken_back():
     """What only the volume shows to be wrong is said, and leaves the state."""
-    server = Server(SMALL)
-    page = Page(server)
-    page.say({"t": "set", "n": 1, "recipe": {"size": [64, 48], "azimuth": 20}})
-    before = page.receive_picture(2, 1)
-    for n, wrong in enumerate(({"time": 7},
-                               {"crop": [[90, 99], [0, 9], [0, 9]]}), 2):
-        page.say({"t": "set", "n": n, "recipe": wrong})
-        key, = wrong
-        line = page.receive_text("said")["text"]
-        recipe = page.receive_text("state")["recipe"]
-        check(f"a wrong {key} is said, and taken back", key not in recipe and
-              recipe["azimuth"] == 20 and recipe["size"] == [64, 48],
-              f"{line} {recipe}")
-    page.say({"t": "set", "n": 9, "recipe": {"azimuth": 21}})
-    after = page.receive_picture(2, 9)
-    check("what comes after is drawn", after and after != before)
-    page.close()
-    server.stop()
+    with viewer(SMALL) as page:
+        before = page.rest(1, size=[64, 48], azimuth=20)
+        for n, wrong in enumerate(({"time": 7},
+                                   {"crop": [[90, 99], [0, 9], [0, 9]]}), 2):
+            page.set(n, **wrong)
+            key, = wrong
+            line = page.receive_text("said")["text"]
+            recipe = page.receive_text("state")["recipe"]
+            check(f"a wrong {key} is said, and taken back", key not in recipe and
+                  recipe["azimuth"] == 20 and recipe["size"] == [64, 48],
+                  f"{line} {recipe}")
+        after = page.rest(9, azimuth=21)
+        check("what comes after is drawn", after and after != before)
 
 
 def flood_of_slices(page, n):
     """More than wait at a time, fewer than a page may leave unread: how many are
     answered, by none, and as too many."""
-    page.say({"t": "set", "n": n, "recipe": {"size": [3000, 3000 - n]}})
+    page.set(n, size=[3000, 3000 - n])
     for _ in range(150):
-        page.say({"t": "ask", "what": "slice", "pane": 2, "n": 9, "axis": "x",
-                  "index": 3, "range": [0, 100]})
+        page.question("slice", pane=2, n=9, axis="x", index=3, range=[0, 100])
     heard, none, full = 0, 0, 0
     while heard + none < 150:
         what, message = page.hear()
@@ -892,16 +751,13 @@ def flood_of_slices(page, n):
 
 def too_many_slices():
     """Each is answered, also where no more questions can wait."""
-    server = Server(SMALL)
-    page = Page(server)
-    for n in range(1, 10):  # a draft may be over before all are asked
-        heard, none, full = flood_of_slices(page, n)
-        if full or heard + none < 150:
-            break
-    check("each of too many slices is answered", heard + none == 150 and
-          none == full > 0, f"{heard} {none} {full}")
-    page.close()
-    server.stop()
+    with viewer(SMALL) as page:
+        for n in range(1, 10):  # a draft may be over before all are asked
+            heard, none, full = flood_of_slices(page, n)
+            if full or heard + none < 150:
+                break
+        check("each of too many slices is answered", heard + none == 150 and
+              none == full > 0, f"{heard} {none} {full}")
 
 
 def streamed_slices():
@@ -910,81 +766,58 @@ def streamed_slices():
     with open(big, "wb") as out:
         for z in range(320):
             out.write(bytes((x + z) & 255 for x in range(256)) * 256)
-    server = Server(big, "--dims", "256x256x320", "--type", "uint8", "--memory",
-                    "16M")
-    page = Page(server)
-    page.receive_text("info")
-    for at, value in ([1, 2, 3], 4), ([255, 255, 319], 62), ([0, 0, 320], None):
-        page.say({"t": "ask", "what": "value", "at": at})
-        told = page.receive_text("value")
-        check(f"the value at {at} in the file", told["value"] == value, told)
-    for at in ([1, 2, 3], [1, 100, 7], [200, 9, 3], [200, 100, 3]):
-        ask_slice(page, axis="z", index=at[2], range=[0, 255])
-        ask_slice(page, axis="y", index=at[1], range=[0, 255])
-    os.rename(big, big + "x")
-    for at in ([1, 2, 3], [9, 7, 3], [4, 100, 200]):
-        page.say({"t": "ask", "what": "value", "at": at})
-        told = page.receive_text("value")
-        check(f"the value at {at} is of a slice that is there",
-              told["value"] == at[0] + at[2], told)
-    again = ask_slice(page, axis="y", index=100, range=[0, 255], exact=True)
-    check("which is not read again", again is not None)
-    page.say({"t": "ask", "what": "value", "at": [1, 3, 4]})
-    check("another one is", page.receive_text("value")["value"] is None)
-    said = page.receive_text("said")
-    check("which is said to be gone", os.path.basename(big) in json.dumps(said), said)
-    os.rename(big + "x", big)
-    check("its voxels are not in memory", server.kilobytes("VmRSS") < 60000,
-          server.kilobytes("VmRSS"))
-    heard = []
-    page.say({"t": "ask", "what": "histogram", "lo": 0, "hi": 255})
-    page.say({"t": "ask", "what": "value", "at": [1, 2, 3]})
-    while "value" not in heard:
-        heard += [message["t"] for what, message in [page.hear()] if what == "text"]
-    check("it has no histogram, in silence", "said" not in heard and
-          "histogram" not in heard, heard)
-    asked = {"axis": "y", "index": 100, "range": [0, 255]}
-    exact = ask_slice(page, **asked, exact=True)
-    page.say({"t": "ask", "what": "slice-command", **asked})
-    made = run_command(page.receive_text("command")["text"])
-    check("a slice of a volume in its file has its command's bytes",
-          exact and made == exact[32:], made if isinstance(made, str) else "")
-    page.close()
-    server.stop()
+    with viewer(big, "--dims", "256x256x320", "--type", "uint8", "--memory", "16M") as page:
+        page.receive_text("info")
+        for at, value in ([1, 2, 3], 4), ([255, 255, 319], 62), ([0, 0, 320], None):
+            told = page.ask("value", at=at)
+            check(f"the value at {at} in the file", told["value"] == value, told)
+        for at in ([1, 2, 3], [1, 100, 7], [200, 9, 3], [200, 100, 3]):
+            page.slice(axis="z", index=at[2], range=[0, 255])
+            page.slice(axis="y", index=at[1], range=[0, 255])
+        os.rename(big, big + "x")
+        for at in ([1, 2, 3], [9, 7, 3], [4, 100, 200]):
+            told = page.ask("value", at=at)
+            check(f"the value at {at} is of a slice that is there",
+                  told["value"] == at[0] + at[2], told)
+        again = page.slice(axis="y", index=100, range=[0, 255], exact=True)
+        check("which is not read again", again is not None)
+        check("another one is", page.ask("value", at=[1, 3, 4])["value"] is None)
+        said = page.receive_text("said")
+        check("which is said to be gone", os.path.basename(big) in json.dumps(said), said)
+        os.rename(big + "x", big)
+        check("its voxels are not in memory", page.server.kilobytes("VmRSS") < 60000,
+              page.server.kilobytes("VmRSS"))
+        heard = []
+        page.question("histogram", lo=0, hi=255)
+        page.question("value", at=[1, 2, 3])
+        while "value" not in heard:
+            heard += [message["t"] for what, message in [page.hear()] if what == "text"]
+        check("it has no histogram, in silence", "said" not in heard and
+              "histogram" not in heard, heard)
+        slice_is_of_command(page, "a slice of a volume in its file has its command's "
+                            "bytes", axis="y", index=100)
 
 
 def values_and_depths():
     """Against a volume that is known, opaque below z = 30."""
-    server = Server(*known_volume("known.raw"), "--opacity", "0:0,1:1",
-                    "--view", "+z", "--target", "23.5,23.5,23.5", "--fit",
-                    "volume")
-    page = Page(server)
-    page.say({"t": "set", "n": 1, "recipe": {"azimuth": 0}})
-    page.receive_picture(2)
-    for at, value in (([5, 40, 7], 19), ([47, 0, 29], 105), ([1, 1, 30], 0),
-                      ([48, 0, 0], None), ([0, -1, 0], None),
-                      ([0, 2 ** 62, 0], None)):
-        page.say({"t": "ask", "what": "value", "at": at})
-        got = page.receive_text("value")
-        check(f"the value at {at} is {value}", got["value"] == value and
-              got["at"] == at, got)
-    for n, fov in enumerate((0, 30), 2):
-        page.say({"t": "set", "n": n, "recipe": {
-            "perspective": fov, "size": [200, 100]}})
-        page.receive_picture(2, n)
-        page.say({"t": "ask", "what": "depth", "x": 0.55, "y": 0.45})
-        got = page.receive_text("depth")
-        check(f"the object is 6 mm before the target, at {fov} degrees",
-              abs(got["depth"] + 5.5) < 1.1, got)
-        page.say({"t": "ask", "what": "depth", "x": 0.02, "y": 0.05})
-        check("and nothing is in a corner",
-              page.receive_text("depth")["depth"] is None)
-    page.say({"t": "set", "n": 4, "recipe": {"mode": "mip"}})
-    page.receive_picture(2, 4)
-    page.say({"t": "ask", "what": "depth", "x": 0.5, "y": 0.5})
-    check("mode mip has no depth", page.receive_text("depth")["depth"] is None)
-    page.close()
-    server.stop()
+    with viewer(*known_volume("known.raw"), "--opacity", "0:0,1:1", "--view", "+z",
+                "--target", "23.5,23.5,23.5", "--fit", "volume") as page:
+        page.rest(1, azimuth=0)
+        for at, value in (([5, 40, 7], 19), ([47, 0, 29], 105), ([1, 1, 30], 0),
+                          ([48, 0, 0], None), ([0, -1, 0], None),
+                          ([0, 2 ** 62, 0], None)):
+            got = page.ask("value", at=at)
+            check(f"the value at {at} is {value}", got["value"] == value and
+                  got["at"] == at, got)
+        for n, fov in enumerate((0, 30), 2):
+            page.rest(n, perspective=fov, size=[200, 100])
+            got = page.ask("depth", x=0.55, y=0.45)
+            check(f"the object is 6 mm before the target, at {fov} degrees",
+                  abs(got["depth"] + 5.5) < 1.1, got)
+            check("and nothing is in a corner",
+                  page.ask("depth", x=0.02, y=0.05)["depth"] is None)
+        page.rest(4, mode="mip")
+        check("mode mip has no depth", page.ask("depth", x=0.5, y=0.5)["depth"] is None)
 
 
 RECIPES = [
@@ -1022,7 +855,7 @@ def drafts(page, count, azimuth=0):
     got, azimuth = [], azimuth or count
     page.say({"t": "moving", "on": True})
     while len(got) < count:
-        page.say({"t": "set", "n": azimuth, "recipe": {"azimuth": azimuth % 360}})
+        page.set(azimuth, azimuth=azimuth % 360)
         head = b""
         while not (head and head[8] == 0 and
                    struct.unpack("<I", head[4:8])[0] == azimuth):
@@ -1050,8 +883,7 @@ def quality_of_links():
     server = Server("phantom:engine", "--preset", "ct-bone")
     link = ThinLink(server, 1e6, 0.04)
     slow = Page(server, port=link.port)
-    slow.say({"t": "set", "n": 1, "recipe": {"size": [1024, 1024]}})
-    slow.receive_picture(2, 1)
+    slow.rest(1, size=[1024, 1024])
     got = drafts(slow, 20, 100)
     qualities = [quality_of(jpeg) for jpeg in got]
     print(f"       1 Mbit/s, 80 ms: quality {qualities[0]} to {qualities[-1]}, "
@@ -1070,22 +902,6 @@ def quality_of_links():
     server.stop()
 
 
-def quality_here():
-    """On this machine alone; a busy one may have less, so nothing is asked but the
-    first one."""
-    server = Server("phantom:engine", "--preset", "ct-bone")
-    page = Page(server)
-    page.say({"t": "set", "n": 1, "recipe": {"size": [1024, 1024]}})
-    page.receive_picture(2, 1)
-    got = drafts(page, 40, 100)
-    qualities = [quality_of(jpeg) for jpeg in got]
-    sizes = [len(jpeg) // 1000 for jpeg in got]
-    print(f"       loopback: quality {min(qualities)} to {max(qualities)}, "
-          f"{min(sizes)} to {max(sizes)} kB")
-    check("a page begins with 75", qualities[0] == 75, qualities)
-    server.stop()
-
-
 def endings():
     for arguments, code, words in (
             (["no-such-file.nrrd"], 3, "no-such-file"),
@@ -1094,8 +910,6 @@ def endings():
             ([SMALL, "--listen", "nowhere"], 2, "--listen"),
             ([SMALL, "--allow-host", "a b"], 2, "--allow-host"),
             ([SMALL, "--embed", "hub.example.org"], 2, "--embed"),
-            ([SMALL, "--embed", "*"], 2, "--embed"),
-            ([SMALL, "--embed", "https://a.org/; script-src *"], 2, "--embed"),
             ([SMALL, "--listen", "unix:/no/such/folder/x"], 4, "--listen"),
             ([SMALL, "--listen", "8000"], 2, "give a port such as :8000"),
             ([SMALL, "--listen", "unix:"], 2, "no place to listen"),
@@ -1188,7 +1002,7 @@ if not SHORT:
     thumbnails_wait(server)
     thumbnails(server)
 for recipe in RECIPES[::5] if SHORT else RECIPES:
-    same_bytes(server, SMALL, recipe)
+    same_bytes(server, recipe)
 print(f"       peak memory {server.kilobytes('VmHWM') / 1024:.0f} MB")
 check("memory is bounded", server.kilobytes("VmHWM") < 400 * 1024)
 code, said = server.stop()
@@ -1213,7 +1027,6 @@ if not SHORT:
     values_and_depths()
     thin_links()
     quality_of_links()
-    quality_here()
 if not (SHORT or SANITIZED):
     streamed_slices()
 embedded()

@@ -5,6 +5,7 @@ Tests are run as `python3 serve_NAME.py TOOL DATA`; they exit with 77 where the
 viewer is not built."""
 import base64
 import collections
+import contextlib
 import http.client
 import json
 import os
@@ -16,11 +17,12 @@ import sys
 import threading
 import time
 
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 TOOL = os.path.abspath(sys.argv[1])
 DATA = sys.argv[2] if len(sys.argv) > 2 else ""
 SANITIZED = "SNOW_SANITIZED" in os.environ
 THREADS = os.environ.get("SNOW_SANITIZED") == "thread"  # by far the slowest
-PATIENCE = 120 if SANITIZED else 20  # seconds
+PATIENCE = 120  # seconds, which only a test that fails takes
 SHORT = os.environ.get("SNOW_TIER", "short") == "short"  # docs/testing.md
 HELLO = ["jpeg", "png"]
 wrong = 0
@@ -191,7 +193,7 @@ class Page:
                  wants=HELLO, made=None):
         self.socket = made or (socket.create_connection(("127.0.0.1", port))
                                if port else server.connect())
-        self.bytes = b""
+        self.bytes, self.server = b"", server
         key = base64.b64encode(os.urandom(16)).decode()
         origin = f"http://{server.host}" if origin is None else origin
         lines = [f"GET {path} HTTP/1.1", f"Host: {host or server.host}",
@@ -238,6 +240,23 @@ class Page:
         if not isinstance(message, bytes):
             message = json.dumps(message).encode()
         self.send_frame(0x81, message)
+
+    def set(self, n, **recipe):
+        self.say({"t": "set", "n": n, "recipe": {
+            name.replace("_", "-"): value for name, value in recipe.items()}})
+
+    def rest(self, n, **recipe):
+        """Bytes of the picture at rest of a state."""
+        self.set(n, **recipe)
+        return self.receive_picture(2, n)
+
+    def question(self, what, **asked):
+        self.say({"t": "ask", "what": what, **asked})
+
+    def ask(self, what, **asked):
+        """The answer, which is a text; all commands are answered alike."""
+        self.question(what, **asked)
+        return self.receive_text(what if "command" not in what else "command")
 
     def need(self, count):
         while len(self.bytes) < count:
@@ -311,6 +330,20 @@ class Page:
                 return message
             self.say({"t": "ack", "n": 0})
 
+    def slice(self, **asked):
+        """A picture, with its head; None where the answer is that there is none."""
+        self.question("slice", pane=2, n=7, **asked)
+        while True:
+            what, message = self.hear()
+            if what == "closed":
+                return "closed"
+            if what == "text" and message["t"] == "slice":
+                return None
+            if what == "picture" and message[10] == 2:
+                return message
+            if what == "picture" and not message[10]:
+                self.say({"t": "ack", "n": 0})
+
     def closed_code(self):
         """Waits for the close, whatever is said before; None: none came."""
         end = time.monotonic() + PATIENCE
@@ -326,6 +359,16 @@ class Page:
 
     def close(self):
         self.socket.close()
+
+
+@contextlib.contextmanager
+def viewer(*arguments, **how):
+    """A page of a viewer of its own."""
+    server = Server(*arguments, **how)
+    page = Page(server)
+    yield page
+    page.close()
+    server.stop()
 
 
 COUNT, DEEP, HIGH, WIDE = 3, 22, 26, 30
@@ -368,61 +411,45 @@ def write_channels(name, windows, count=COUNT):
                            for y in range(HIGH) for x in range(WIDE)))
 
 
-def run_command(text):
+def run_command(text, *changes, out="again.png"):
     """The bytes of a copied command's picture, or what it says."""
     words = shlex.split(text)
     words[0] = TOOL
-    words[words.index("--output") + 1] = "again.png"
-    done = subprocess.run([*words, "-y", "-q"], capture_output=True, text=True)
-    return open("again.png", "rb").read() if done.returncode == 0 else \
-        done.stderr.encode()
-
-
-def command_of(page, what, **asked):
-    page.say({"t": "ask", "what": what, **asked})
-    return page.receive_text("command")["text"]
+    words[words.index("--output") + 1] = out
+    done = subprocess.run([*words, *changes, "-y", "-q"], capture_output=True)
+    return open(out.replace("%d", "0"), "rb").read() if done.returncode in (0, 7) else \
+        done.stderr
 
 
 def is_of_command(page, name, n, **recipe):
     """Sets a recipe; the picture at rest must be that of its command."""
-    page.say({"t": "set", "n": n, "recipe": recipe})
-    shown, command = page.receive_picture(2, n), command_of(page, "command")
+    shown, command = page.rest(n, **recipe), page.ask("command")["text"]
     made = run_command(command)
     check(name, shown == made, f"{command} {made[:200]}")
     return shown
 
 
-def slice_is_of_command(page, name, **asked):
-    page.say({"t": "ask", "what": "slice", "pane": 2, "n": 7, "exact": True,
-              "range": [0, 255], **asked})
-    shown = None
-    while shown is None:
-        what, message = page.hear()
-        if what == "closed" or (what == "text" and message["t"] == "slice"):
-            shown = b""
-        if what == "picture" and message[10] == 2:
-            shown = message[32:]
-        elif what == "picture":
-            page.say({"t": "ack", "n": 0})
-    command = command_of(page, "slice-command", range=[0, 255], **asked)
-    made = run_command(command)
-    check(name, shown == made, f"{command} {len(shown)} {made[:200]}")
-    return shown
+def slice_is_of_command(page, name, *changes, **asked):
+    asked.setdefault("range", [0, 255])
+    shown = page.slice(**asked, exact=True)
+    command = page.ask("slice-command", **asked)["text"]
+    made = run_command(command, *changes)
+    check(name, shown and shown[32:] == made, f"{command} {made[:200]}")
+    return shown and shown[32:]
 
 
 def drag_over(server, link, side, seconds):
     """Turns the view through a link: pictures a second after the first quarter,
     their kinds and sizes."""
     page = Page(server, port=link.port, wants=("jpeg", "png", "webp"))
-    page.say({"t": "set", "n": 1, "recipe": {"size": [side, side]}})
-    page.receive_picture(2, 1)
+    page.rest(1, size=[side, side])
     page.say({"t": "moving", "on": True})
     stop, kinds, sizes = time.monotonic() + seconds, [], []
 
     def move():
         n = 2
         while time.monotonic() < stop:
-            page.say({"t": "set", "n": n, "recipe": {"azimuth": n % 360}})
+            page.set(n, azimuth=n % 360)
             n += 1
             time.sleep(0.03)
 

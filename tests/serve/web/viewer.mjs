@@ -1,19 +1,20 @@
 // tests/serve/web/viewer.mjs - the page in Chromium, without a GPU.
 //
-//   node viewer.mjs PLAYWRIGHT CHROMIUM URL FOLDER short|long|...
+//   node viewer.mjs PLAYWRIGHT CHROMIUM FOLDER PART,URL[,ORIGIN...]...
 //
-// The URL is the program's path where the test starts viewers of its own.
-// Screenshots, the picture at rest and the command are left in FOLDER.
+// Each part has a viewer of its own, at that URL, and all of them one browser.  The URL
+// is the program's path where a part starts viewers itself.  Screenshots, and the
+// picture at rest and the command of a part, are left in FOLDER.
 import {createServer, request} from 'node:http';
 import {connect} from 'node:net';
 import {readFileSync, writeFileSync} from 'node:fs';
 import {restarted, steps} from './everyday.mjs';
 
-const [playwright, chromium, url, folder, tier, ...words] = process.argv.slice(2);
+const [playwright, chromium, folder, ...parts] = process.argv.slice(2);
 const {chromium: browsers} = await import(playwright);
-const long = tier !== 'short';
 const PATIENCE = 600000; // ms: other programs may have the machine
 let wrong = 0;
+let part = {}; // that runs: its name, url and words
 
 function check(name, good, why = '') {
     console.log(good ? `ok     ${name}` : `FAILED ${name}: ${why}`);
@@ -24,7 +25,7 @@ const browser = await browsers.launch({executablePath: chromium,
     args: ['--no-sandbox', '--disable-gpu', '--disable-software-rasterizer']});
 const said = []; // on the console, and against the policy
 
-async function open(options = {}, address = url) {
+async function open(options = {}, address = part.url) {
     const context = await browser.newContext({viewport: {width: 1000, height: 700},
         acceptDownloads: true, ...options});
     context.setDefaultTimeout(PATIENCE);
@@ -78,10 +79,46 @@ async function answered(page, name, act) {
     await rest(page);
 }
 
+/** An action, and what it causes. */
+async function settle(page, action) {
+    await action;
+    await rest(page);
+}
+
+async function press(page, ...all) {
+    for (const key of all)
+        await page.keyboard.press(key);
+    await rest(page);
+}
+
+const set = (page, changes) => settle(page, page.evaluate(
+    all => window.snowglass.recipe.set(all), changes));
+
+async function enter(field, value) {
+    await field.fill(value);
+    await field.press('Enter');
+}
+
+/** What a dialog shows, which goes away. */
+async function copied(page) {
+    await page.waitForSelector('dialog[open] textarea');
+    const text = await page.locator('dialog textarea').inputValue();
+    await page.keyboard.press('Escape');
+    return text;
+}
+
+async function hold(page, from, to, {button = 'left', steps = 1} = {}) {
+    await page.mouse.move(...from);
+    await page.mouse.down({button});
+    await page.mouse.move(...to, {steps});
+    await page.mouse.up({button});
+}
+
 const keys = page => page.evaluate(() => window.snowglass.recipe.keys);
 
 const frameAll = page => answered(page, 'state', () => page.keyboard.press('r'));
 
+const file = name => `${folder}/${part.name}_${name}`;
 const shot = (page, name) => page.screenshot({path: `${folder}/${name}.png`});
 const middle = async page => {
     const box = await page.locator('.picture canvas').first().boundingBox();
@@ -121,47 +158,35 @@ async function smoke(page) {
     await rest(page);
     const zoomed = await keys(page);
     check('the wheel zooms', zoomed.zoom > 1.3 * now.zoom, zoomed.zoom);
-    for (let i = 0; i < 3; i++)
-        await page.keyboard.press('z');
-    await rest(page);
+    await press(page, 'z', 'z', 'z');
     now = await keys(page);
     check('three steps are undone', now.azimuth === before.azimuth && now.zoom === before.zoom &&
         now.elevation === before.elevation, JSON.stringify(now));
-    await page.keyboard.press('Z');
-    await rest(page);
+    await press(page, 'Z');
     const again = (await keys(page)).azimuth;
     check('and one is done again', again < before.azimuth);
     await page.mouse.click(x, y);
-    await page.keyboard.press('Z');
-    await rest(page);
+    await press(page, 'Z');
     check('a click is no step: another is done again',
         (await keys(page)).elevation > before.elevation);
-    await page.keyboard.press('+');
-    await rest(page);
+    await press(page, '+');
     const near = (await keys(page)).zoom;
     await frameAll(page);
     check('frame all frames', (await keys(page)).zoom < near, (await keys(page)).zoom);
-    await page.keyboard.press('z');
-    await rest(page);
+    await press(page, 'z');
     check('frame all is a step', (await keys(page)).zoom === near, (await keys(page)).zoom);
-    await page.keyboard.press('z');
-    await page.keyboard.press('z');
-    await rest(page);
+    await press(page, 'z', 'z');
     await page.keyboard.press('c');
-    await page.waitForSelector('dialog[open] textarea');
-    const command = await page.locator('dialog textarea').inputValue();
+    const command = await copied(page);
     check('the command is shown', command.startsWith('snowglass render '), command);
-    writeFileSync(`${folder}/command.txt`, command);
-    await page.keyboard.press('Escape');
+    writeFileSync(file('command.txt'), command);
     const coming = page.waitForEvent('download');
     await page.keyboard.press('s');
-    await (await coming).saveAs(`${folder}/rest.png`);
+    await (await coming).saveAs(file('rest.png'));
     await sameAsCanvas(page);
-    await page.evaluate(() => window.snowglass.recipe.set({background: 'none'}));
-    await rest(page);
+    await set(page, {background: 'none'});
     await sameAsCanvas(page);
-    await page.evaluate(() => window.snowglass.recipe.set({background: null}));
-    await rest(page);
+    await set(page, {background: null});
     await shot(page, 'smoke');
 }
 
@@ -232,48 +257,32 @@ async function editor(page) {
     }, index);
     const before = await points();
     const [x, y] = await at(1);
-    await page.mouse.move(box.x + x, box.y + y);
-    await page.mouse.down();
-    await page.mouse.move(box.x + x + 2, box.y + y - 30, {steps: 5});
-    await page.mouse.up();
-    await rest(page);
+    await settle(page, hold(page, [box.x + x, box.y + y], [box.x + x + 2, box.y + y - 30], {steps: 5}));
     let now = await points();
     check('a dragged point is more opaque', now[1][1] > before[1][1], JSON.stringify(now));
     const [px, py] = await at(1);
-    await page.mouse.move(box.x + px, box.y + py);
-    await page.mouse.down({button: 'right'});
-    await page.mouse.move(box.x + px + 2, box.y + py - 30, {steps: 5});
-    await page.mouse.up({button: 'right'});
+    await hold(page, [box.x + px, box.y + py], [box.x + px + 2, box.y + py - 30], {button: 'right', steps: 5});
     check('the right button drags no point', JSON.stringify(await points()) === JSON.stringify(now));
     await page.keyboard.press('Escape');
-    await page.mouse.dblclick(box.x + box.width / 2, box.y + 20);
-    await rest(page);
+    await settle(page, page.mouse.dblclick(box.x + box.width / 2, box.y + 20));
     now = await points();
     check('a double click adds a point', now.length === before.length + 1, now.length);
     await page.getByLabel('value of the chosen point').fill('123');
-    await page.keyboard.press('Enter');
-    await rest(page);
+    await press(page, 'Enter');
     check('which takes an exact number', (await points()).some(point => point[0] === 123));
-    await page.getByRole('button', {name: 'Remove the chosen point'}).click();
-    await rest(page);
+    await settle(page, page.getByRole('button', {name: 'Remove the chosen point'}).click());
     check('and is removed', (await points()).length === before.length);
-    await page.mouse.move(box.x + 3, box.y + 12);
-    await page.mouse.down();
-    await page.mouse.move(box.x + 33, box.y + 12, {steps: 4});
-    await page.mouse.up();
-    await rest(page);
+    await settle(page, hold(page, [box.x + 3, box.y + 12], [box.x + 33, box.y + 12], {steps: 4}));
     const moved = await points();
     check('a drag of empty ground moves all', moved[0][0] > now[0][0], JSON.stringify(moved));
     await shot(page, 'editor');
     await page.locator('summary', {hasText: 'Opacity by gradient'}).click();
-    await page.getByRole('button', {name: 'Add a point beside the chosen one'}).nth(1).click();
-    await rest(page);
+    await settle(page, page.getByRole('button', {name: 'Add a point beside the chosen one'}).nth(1).click());
     check('opacity follows the gradient', (await keys(page))['gradient-opacity']?.length === 2);
     await shot(page, 'gradient');
     await page.getByRole('button', {name: 'The gradient does not matter'}).click();
     await page.locator('summary', {hasText: 'Opacity by gradient'}).click();
-    await page.getByRole('button', {name: /^Opacity of the preset/}).click();
-    await rest(page);
+    await settle(page, page.getByRole('button', {name: /^Opacity of the preset/}).click());
     check('and all is automatic again', !(await keys(page)).opacity);
 }
 
@@ -284,24 +293,20 @@ async function controls(page) {
     const before = now.target;
     await drag(page, 50, 0, 'left', 'Shift');
     check('with Shift a drag moves the volume', String((await keys(page)).target) !== String(before));
-    await page.getByLabel('Mode', {exact: true}).selectOption('mip');
-    await rest(page);
+    await settle(page, page.getByLabel('Mode', {exact: true}).selectOption('mip'));
     await shot(page, 'mip');
-    await page.getByLabel('Mode', {exact: true}).selectOption('iso');
-    await rest(page);
+    await settle(page, page.getByLabel('Mode', {exact: true}).selectOption('iso'));
     now = await keys(page);
     check('mode iso has a value', now.mode === 'iso' && Number.isFinite(now.iso), now.iso);
     await page.getByLabel('Mode', {exact: true}).selectOption('over');
     await page.getByRole('button', {name: /^Opacity of the preset/}).click();
     await page.locator('summary', {hasText: 'Clip'}).click();
-    await page.getByLabel(/clip .*highest/).and(page.locator('input')).first().fill('0');
-    await rest(page);
+    await settle(page, page.getByLabel(/clip .*highest/).and(page.locator('input')).first().fill('0'));
     check('a clip plane is set', (await keys(page)).clip?.length === 1,
         JSON.stringify((await keys(page)).clip));
     await shot(page, 'clip');
     await page.evaluate(() => window.snowglass.recipe.set({clip: [[1, 1, 0, 20]]}));
-    await page.getByLabel(/clip .*highest/).and(page.locator('input')).nth(1).fill('0');
-    await rest(page);
+    await settle(page, page.getByLabel(/clip .*highest/).and(page.locator('input')).nth(1).fill('0'));
     const clip = (await keys(page)).clip;
     check('an oblique plane stays', clip?.length === 2 && clip[0][0] === 1 && clip[0][1] === 1,
         JSON.stringify(clip));
@@ -309,8 +314,7 @@ async function controls(page) {
     await page.locator('summary', {hasText: 'Presets'}).click();
     await page.waitForFunction(() => [...document.querySelectorAll('.presets img')]
         .every(image => !image.hidden));
-    await page.locator('.presets button', {hasText: 'ct-bone'}).first().click();
-    await rest(page);
+    await settle(page, page.locator('.presets button', {hasText: 'ct-bone'}).first().click());
     check('a preset is chosen', (await keys(page)).preset === 'ct-bone');
     await shot(page, 'presets');
     for (const key of ['1', '3', '6', 'ArrowLeft', 'ArrowUp', '+', '-', 'p', 'l', 'm', 'm']) {
@@ -330,8 +334,7 @@ async function marks(page) {
     }));
     await frameAll(page);
     const before = await keys(page);
-    await page.getByLabel('title of the picture').fill('Head, \u00b0C');
-    await page.getByLabel('title of the picture').press('Enter');
+    await enter(page.getByLabel('title of the picture'), 'Head, \u00b0C');
     await page.getByLabel('its axes, with numbers').check();
     await page.waitForFunction(zoom => window.snowglass.recipe.keys.zoom < zoom, before.zoom);
     await rest(page);
@@ -341,8 +344,7 @@ async function marks(page) {
     check('the box is framed', now.zoom < 0.9 * before.zoom, now.zoom);
     await shot(page, 'marks');
     await page.getByLabel('its axes, with numbers').uncheck();
-    await page.getByLabel('title of the picture').fill('');
-    await page.getByLabel('title of the picture').press('Enter');
+    await enter(page.getByLabel('title of the picture'), '');
     await page.waitForFunction(zoom => window.snowglass.recipe.keys.zoom === zoom, before.zoom);
     check('all is as before', !('title' in await keys(page)), '');
     await page.locator('.picture canvas').first().focus(); // where keys are commands
@@ -378,8 +380,7 @@ async function damaged(page) {
         await page.keyboard.press('ArrowLeft');
         await page.waitForTimeout(200);
     }
-    await page.keyboard.press('ArrowLeft');
-    await rest(page);
+    await press(page, 'ArrowLeft');
     check('after damaged pictures others are shown',
         await page.evaluate(() => document.querySelector('.picture canvas').dataset.level === '2'));
 }
@@ -445,10 +446,8 @@ async function slices(page, name = 'slices') {
         `${turned} ${keyed}`);
     await shot(page, name);
     await page.keyboard.press('c');
-    await page.waitForSelector('dialog[open] textarea');
-    writeFileSync(`${folder}/slice.txt`, await page.locator('dialog textarea').inputValue());
-    writeFileSync(`${folder}/slice.png`, Buffer.from(await bytesOf(page, 'page.slices.panes[1].file')));
-    await page.keyboard.press('Escape');
+    writeFileSync(file('slice.txt'), await copied(page));
+    writeFileSync(file('slice.png'), Buffer.from(await bytesOf(page, 'page.slices.panes[1].file')));
     await page.locator('.pane canvas').nth(1).focus();
     await page.keyboard.press('Enter');
     await page.waitForFunction(() => !document.querySelector('.picture').clientWidth);
@@ -513,8 +512,7 @@ async function handles(page) {
     await page.getByRole('button', {name: /^All as it was/}).click();
     await page.locator('details', {has: page.locator('summary', {hasText: 'Clip'})})
         .evaluate(group => { group.open = false; });
-    await page.keyboard.press('k');
-    await rest(page);
+    await press(page, 'k');
     const grips = page.locator('.handle:visible');
     await grips.nth(5).waitFor(); // the section says later that it is open
     check('six handles are on the picture', await grips.count() === 6, await grips.count());
@@ -529,23 +527,17 @@ async function handles(page) {
     const after = await grip.boundingBox(), clip = (await keys(page)).clip;
     check('a handle cuts', clip?.length === 1, JSON.stringify(clip));
     check('and stays under the pointer', Math.abs(after.x - box.x - by) < 3, after.x - box.x);
-    await page.mouse.move(after.x + after.width / 2, after.y + after.height / 2);
-    await page.mouse.down({button: 'right'});
-    await page.mouse.move(x, y, {steps: 4});
-    await page.mouse.up({button: 'right'});
+    await hold(page, [after.x + after.width / 2, after.y + after.height / 2], [x, y], {button: 'right', steps: 4});
     check('but not by the right button', String((await keys(page)).clip) === String(clip));
-    await page.getByRole('button', {name: /^A plane that faces the viewer/}).click();
-    await rest(page);
+    await settle(page, page.getByRole('button', {name: /^A plane that faces the viewer/}).click());
     check('a plane faces the viewer', await grips.count() === 7 && (await keys(page)).clip.length === 2);
     await drag(page, 90, 40);
     await shot(page, 'handles');
     const slider = page.getByRole('slider', {name: 'tilted clip plane 1'}).and(page.locator('input'));
-    await slider.fill('0.5');
-    await rest(page);
+    await settle(page, slider.fill('0.5'));
     const moved = (await keys(page)).clip[1];
     await page.getByRole('button', {name: 'Remove tilted plane 1'}).click();
-    await page.keyboard.press('z');
-    await rest(page);
+    await press(page, 'z');
     check('a tilted plane is moved, removed and back', String((await keys(page)).clip[1]) === String(moved) &&
         moved[3] !== clip[3], String(moved));
     await page.getByRole('button', {name: 'Remove all clip planes'}).click();
@@ -578,11 +570,9 @@ async function handles(page) {
 /** A link restores the state, and two pages see each other's changes. */
 async function together(page) {
     await page.getByRole('button', {name: 'Copy a link to this state'}).click();
-    const link = await page.locator('dialog textarea').inputValue();
-    await page.keyboard.press('Escape');
+    const link = await copied(page);
     const before = await keys(page);
-    await page.keyboard.press('1');
-    await rest(page);
+    await press(page, '1');
     const other = await open({}, link);
     const now = await keys(other);
     check('a link restores the view', now.view === before.view && now.mode === before.mode,
@@ -595,27 +585,11 @@ async function together(page) {
 
 async function touch() {
     const page = await open({viewport: {width: 400, height: 700}, hasTouch: true});
-    const before = await keys(page);
-    const [x, y] = await middle(page);
-    const session = await page.context().newCDPSession(page);
-    const send = (type, points) => session.send('Input.dispatchTouchEvent', {type,
-        touchPoints: points.map(([px, py], id) => ({x: px, y: py, id}))});
-    await after(page, 'pointerup', 1, async () => {
-        await send('touchStart', [[x, y]]);
-        for (let i = 1; i < 6; i++)
-            await send('touchMove', [[x + 10 * i, y]]);
-        await send('touchEnd', []);
-    });
-    await rest(page);
+    const before = await keys(page), hand = await Hand.of(page), [x, y] = await middle(page);
+    await hand.drag([x, y], [x + 50, y]);
     let now = await keys(page);
     check('one finger turns', now.azimuth < before.azimuth, now.azimuth);
-    await after(page, 'pointerup', 2, async () => {
-        await send('touchStart', [[x - 30, y], [x + 30, y]]);
-        for (let i = 1; i < 6; i++)
-            await send('touchMove', [[x - 30 - 8 * i, y], [x + 30 + 8 * i, y]]);
-        await send('touchEnd', []);
-    });
-    await rest(page);
+    await hand.zoom(x, y);
     now = await keys(page);
     check('two fingers zoom', now.zoom > 1.5 * before.zoom, now.zoom);
     await shot(page, 'touch');
@@ -654,7 +628,7 @@ async function schemes(page0) {
 
 /** A proxy that puts a prefix before every path, as portals do. */
 async function prefixed() {
-    const {port, hash} = new URL(url);
+    const {port, hash} = new URL(part.url);
     const prefix = '/node/n17/8000';
     const headers = given => ({...given, host: `127.0.0.1:${port}`});
     const proxy = createServer((asked, answer) => {
@@ -683,13 +657,12 @@ async function prefixed() {
     proxy.close();
 }
 
-/** What a user does, with a finger where there is one, and how many times: each click,
- * drag, turn of the wheel, key, and each scrolling of a window that is too small. */
+/** What a user does with fingers, and how many times: each tap, drag, zoom, key, and
+ * each scrolling of a window that is too small. */
 class Hand {
-    constructor(page, session) {
-        this.page = page;
-        this.session = session; // of fingers; null: a mouse
-        this.count = 0;
+    static async of(page) {
+        const hand = new Hand();
+        return Object.assign(hand, {page, count: 0, session: await page.context().newCDPSession(page)});
     }
 
     send(type, points) {
@@ -708,13 +681,9 @@ class Hand {
     async press(locator) {
         await this.reach(locator);
         this.count++;
-        if (this.session) {
-            await locator.tap({trial: true}); // it can be tapped
-            const {x, y, width, height} = await locator.boundingBox();
-            await this.tap('click', 1, x + width / 2, y + height / 2);
-        } else {
-            await locator.click();
-        }
+        await locator.tap({trial: true}); // it can be tapped
+        const {x, y, width, height} = await locator.boundingBox();
+        await this.tap('click', 1, x + width / 2, y + height / 2);
         await rest(this.page);
     }
 
@@ -751,45 +720,30 @@ class Hand {
     async drag([x, y], [toX, toY]) {
         this.count++;
         const at = i => [x + (toX - x) * i / 8, y + (toY - y) * i / 8];
-        const steps = [1, 2, 3, 4, 5, 6, 7, 8].map(at), {mouse} = this.page;
         await after(this.page, 'pointerup', 1, async () => {
-            if (this.session) {
-                await this.send('touchStart', [[x, y]]);
-                for (const place of steps)
-                    await this.send('touchMove', [place]);
-                await this.send('touchEnd', []);
-            } else {
-                await mouse.move(x, y);
-                await mouse.down();
-                for (const place of steps)
-                    await mouse.move(...place);
-                await mouse.up();
-            }
+            await this.send('touchStart', [[x, y]]);
+            for (let i = 1; i <= 8; i++)
+                await this.send('touchMove', [at(i)]);
+            await this.send('touchEnd', []);
         });
         await rest(this.page);
     }
 
     async twice(x, y) {
         this.count++;
-        await (this.session ? this.tap('dblclick', 2, x, y)
-            : after(this.page, 'dblclick', 1, () => this.page.mouse.dblclick(x, y)));
+        await this.tap('dblclick', 2, x, y);
         await rest(this.page);
     }
 
-    /** About twice as near: fingers go apart, or the wheel is turned. */
+    /** About twice as near: fingers go apart. */
     async zoom(x, y) {
         this.count++;
-        if (!this.session) {
-            await this.page.mouse.move(x, y);
-            await wheel(this.page, -500);
-        } else {
-            await after(this.page, 'pointerup', 2, async () => {
-                await this.send('touchStart', [[x - 30, y], [x + 30, y]]);
-                for (let i = 1; i <= 8; i++)
-                    await this.send('touchMove', [[x - 30 - 5 * i, y], [x + 30 + 5 * i, y]]);
-                await this.send('touchEnd', []);
-            });
-        }
+        await after(this.page, 'pointerup', 2, async () => {
+            await this.send('touchStart', [[x - 30, y], [x + 30, y]]);
+            for (let i = 1; i <= 8; i++)
+                await this.send('touchMove', [[x - 30 - 5 * i, y], [x + 30 + 5 * i, y]]);
+            await this.send('touchEnd', []);
+        });
         await rest(this.page);
     }
 }
@@ -798,14 +752,14 @@ class Hand {
 const ACTIONS_MOST = 8;
 
 /** A radiologist's way: bone, a joint, window and level, a cut, slices, the command. */
-async function film(name, options) {
-    const page = await open(options);
-    const hand = new Hand(page, options.hasTouch ? await page.context().newCDPSession(page) : null);
+async function film() {
+    const page = await open({viewport: {width: 400, height: 700}, hasTouch: true, colorScheme: 'light'});
+    const hand = await Hand.of(page);
     const canvas = page.locator('.picture canvas').first();
     const step = async what => {
-        await shot(page, `film_${name}_${what}`);
-        console.log(`       ${name} ${what}: ${hand.count} actions`);
-        check(`${name} ${what} takes few actions`, hand.count <= ACTIONS_MOST, hand.count);
+        await shot(page, `film_${what}`);
+        console.log(`       ${what}: ${hand.count} actions`);
+        check(`${what} takes few actions`, hand.count <= ACTIONS_MOST, hand.count);
         hand.count = 0;
     };
     const seen = async what => {
@@ -817,10 +771,10 @@ async function film(name, options) {
         const box = await canvas.boundingBox(), side = Math.min(box.width, box.height);
         return [box.x + box.width / 2 + right * side, box.y + box.height / 2 + down * side];
     };
-    const keep = async (file, button) => {
+    const keep = async (what, button) => {
         await hand.press(button);
         await page.waitForSelector('dialog[open] textarea');
-        writeFileSync(`${folder}/film_${name}_${file}.txt`, await page.locator('dialog textarea').inputValue());
+        writeFileSync(file(`${what}.txt`), await page.locator('dialog textarea').inputValue());
     };
     await seen('1_opened');
     const presets = page.locator('summary', {hasText: 'Presets'});
@@ -886,7 +840,7 @@ async function film(name, options) {
     await step('9_alone');
     await hand.press(one);
     await slicesRest(page);
-    writeFileSync(`${folder}/film_${name}_slice.png`,
+    writeFileSync(file('slice.png'),
         Buffer.from(await bytesOf(page, 'page.slices.panes[0].file')));
     await keep('slice', page.getByRole('button', {name: /^The command that makes the slice/}).first());
     await step('10_slice_command');
@@ -897,18 +851,10 @@ async function film(name, options) {
     await hand.key('Escape');
     const coming = page.waitForEvent('download');
     await hand.press(page.getByRole('button', {name: /^Save the picture/}));
-    await (await coming).saveAs(`${folder}/film_${name}_rest.png`);
+    await (await coming).saveAs(file('rest.png'));
     await hand.press(page.getByRole('button', {name: /^All as it was/}));
     await seen('12_reset');
     await page.context().close();
-}
-
-if (tier === 'film') {
-    await film('narrow', {viewport: {width: 400, height: 700}, hasTouch: true, colorScheme: 'light'});
-    await film('wide', {viewport: {width: 1600, height: 1000}, colorScheme: 'dark'});
-    check('nothing is on the console', said.length === 0, said.join(' | '));
-    await browser.close();
-    process.exit(wrong ? 1 : 0);
 }
 
 /** Before the server has said anything nothing can be pressed, and nothing throws. */
@@ -921,7 +867,7 @@ async function unready() {
             static OPEN = 1;
         };
     });
-    await page.goto(url);
+    await page.goto(part.url);
     await page.waitForSelector('.bottom button');
     const enabled = await page.locator('.bottom button:enabled').count();
     check('buttons wait for the volume', enabled === 0, enabled);
@@ -936,7 +882,7 @@ async function unready() {
 async function embedded() {
     const context = await browser.newContext(), page = await context.newPage();
     page.setDefaultTimeout(PATIENCE);
-    const [may, mayNot] = words;
+    const {url, words: [may, mayNot]} = part;
     await page.goto(`${may}/?${encodeURIComponent(url)}`);
     const frame = page.frames()[1];
     await frame.waitForFunction(() => window.snowglass?.page.rest);
@@ -954,10 +900,7 @@ async function embedded() {
 async function manyPoints() {
     const page = await open();
     const box = await page.locator('.editor').first().boundingBox();
-    await page.mouse.move(box.x + 3, box.y + 12);
-    await page.mouse.down();
-    await page.mouse.move(box.x + 33, box.y + 12, {steps: 4});
-    await page.mouse.up();
+    await hold(page, [box.x + 3, box.y + 12], [box.x + 33, box.y + 12], {steps: 4});
     check('it is told that they are too many', /too many/.test(
         await page.locator('.said').textContent()));
     check('and none is changed', !(await keys(page)).opacity);
@@ -972,15 +915,13 @@ async function manyPoints() {
 async function masked() {
     const page = await open();
     const flip = async () => {
-        await page.getByLabel('only what the mask keeps').evaluate(box => box.click());
-        await rest(page);
+        await settle(page, page.getByLabel('only what the mask keeps').evaluate(box => box.click()));
     };
     const {labels} = await keys(page);
     await flip();
     let now = await keys(page);
     check('a mask is switched off with its labels', labels && !now.mask && !now.labels, now.labels);
-    await page.reload();
-    await rest(page);
+    await settle(page, page.reload());
     await flip();
     now = await keys(page);
     check('and on with them', now.mask && now.labels === labels, now.labels);
@@ -991,17 +932,13 @@ async function masked() {
 async function keepBoth(page) {
     await slicesRest(page);
     await rest(page);
-    writeFileSync(`${folder}/rest.png`, Buffer.from(await bytesOf(page, 'page.page.rest')));
-    writeFileSync(`${folder}/slice.png`, Buffer.from(await bytesOf(page, 'page.slices.panes[0].file')));
+    writeFileSync(file('rest.png'), Buffer.from(await bytesOf(page, 'page.page.rest')));
+    writeFileSync(file('slice.png'), Buffer.from(await bytesOf(page, 'page.slices.panes[0].file')));
     await page.evaluate(() => window.snowglass.slices.command(window.snowglass.slices.panes[0]));
-    await page.waitForSelector('dialog[open] textarea');
-    writeFileSync(`${folder}/slice.txt`, await page.locator('dialog textarea').inputValue());
-    await page.keyboard.press('Escape');
+    writeFileSync(file('slice.txt'), await copied(page));
     await page.getByRole('button', {name: /^Copy the command that makes this/}).click();
-    await page.waitForSelector('dialog[open] textarea');
-    const command = await page.locator('dialog textarea').inputValue();
-    writeFileSync(`${folder}/command.txt`, command);
-    await page.keyboard.press('Escape');
+    const command = await copied(page);
+    writeFileSync(file('command.txt'), command);
     return command;
 }
 
@@ -1015,42 +952,34 @@ async function overlaid() {
         return String(await bytesOf(page, 'page.slices.panes[0].file'));
     };
     const both = await sliced();
-    await page.getByLabel('right', {exact: true}).uncheck();
-    await rest(page);
+    await settle(page, page.getByLabel('right', {exact: true}).uncheck());
     const one = await sliced();
     let now = await keys(page);
     check('a label is switched off', now.overlay === true &&
         now['overlay-look'] === '1:0.5,2:0', now['overlay-look']);
     check('in slices too', one !== both);
-    await page.getByLabel('colour of left').fill('#00ff00');
-    await rest(page);
+    await settle(page, page.getByLabel('colour of left').fill('#00ff00'));
     now = await keys(page);
     check('a label of an overlay has a colour', now['overlay-look'] === 'labels,1:#00ff00,1:0.5,2:0', JSON.stringify(now));
     await shot(page, 'overlay');
     const green = await sliced();
     check('and in slices', green !== one);
     await page.locator('.picture canvas').first().focus();
-    await page.keyboard.press('z');
-    await rest(page);
+    await press(page, 'z');
     check('that is undone', await sliced() === one);
-    await page.keyboard.press('Z');
-    await rest(page);
+    await press(page, 'Z');
     check('and done again', await sliced() === green);
-    await page.evaluate(() => window.snowglass.recipe.set({clip: [[1, 0, 0, 0]]}));
-    await rest(page);
+    await set(page, {clip: [[1, 0, 0, 0]]});
     check('slices show what clip planes cut', await sliced() === green);
     const command = await keepBoth(page);
     check('the command has the overlay', command.includes('--overlay-look'), command);
-    await page.evaluate(() => window.snowglass.recipe.set({clip: null, mode: 'mip'}));
-    await rest(page);
+    await set(page, {clip: null, mode: 'mip'});
     check('a projection has slices with it', await sliced() === green);
     await page.evaluate(() => window.snowglass.recipe.set({mode: null}));
-    await page.getByLabel('seg.nrrd').uncheck();
-    await rest(page);
+    await settle(page, page.getByLabel('seg.nrrd').uncheck());
     const none = await sliced();
     check('the overlay is switched off', !(await keys(page)).overlay && none !== green && none !== both);
-    await page.getByLabel('seg.nrrd').check();
-    await rest(page);
+    await settle(page, page.getByLabel('seg.nrrd').check());
     check('and on again', await sliced() === green);
     await page.context().close();
 }
@@ -1069,22 +998,19 @@ async function recipes() {
         await page.waitForFunction(text => document.querySelector('.said').textContent.includes(text), name);
         return page.locator('.said').textContent();
     };
-    await page.evaluate(() => window.snowglass.recipe.set({azimuth: 30, preset: 'ct-bone', legend: true}));
-    await rest(page);
+    await set(page, {azimuth: 30, preset: 'ct-bone', legend: true});
     const picture = String(await bytesOf(page, 'page.page.rest'));
     const coming = page.waitForEvent('download');
     await page.getByRole('button', {name: /^Save the recipe/}).click();
     const text = readFileSync(await (await coming).path(), 'utf8');
-    await page.getByRole('button', {name: /^All as it was/}).click();
-    await rest(page);
+    await settle(page, page.getByRole('button', {name: /^All as it was/}).click());
     const before = await keys(page);
     await choose(page, 'state.json', text);
     await page.waitForFunction(() => window.snowglass.recipe.keys.azimuth === 30);
     await rest(page);
     check('a recipe that was saved is opened', String(await bytesOf(page, 'page.page.rest')) === picture,
         JSON.stringify(await keys(page)));
-    await page.keyboard.press('z');
-    await rest(page);
+    await press(page, 'z');
     check('which is one step', JSON.stringify((await keys(page)).azimuth) === JSON.stringify(before.azimuth) &&
         !(await keys(page)).legend, JSON.stringify(await keys(page)));
     await page.evaluate(recipe => {
@@ -1109,10 +1035,8 @@ async function recipes() {
 /** A segmentation alone: its labels take colours, which command and link have. */
 async function labelled() {
     const page = await open();
-    await page.getByLabel('colour of right').fill('#2040ff');
-    await rest(page);
-    await page.getByLabel('colour of left').fill('#ffee00');
-    await rest(page);
+    await settle(page, page.getByLabel('colour of right').fill('#2040ff'));
+    await settle(page, page.getByLabel('colour of left').fill('#ffee00'));
     const now = await keys(page);
     check('labels have colours', now.preset === 'labels' && now.colormap === '1:#ffee00,2:#2040ff',
         JSON.stringify(now));
@@ -1125,14 +1049,11 @@ async function labelled() {
     await keepBoth(page);
     await shot(page, 'labels');
     await page.getByRole('button', {name: /^Copy a link/}).click();
-    const link = await page.locator('dialog textarea').inputValue();
-    await page.keyboard.press('Escape');
+    const link = await copied(page);
     const painted = String(await bytesOf(page, 'page.page.rest'));
-    await page.getByLabel('Colours', {exact: true}).first().selectOption('viridis');
-    await rest(page);
+    await settle(page, page.getByLabel('Colours', {exact: true}).first().selectOption('viridis'));
     check('a map is of values', await page.evaluate(() => window.snowglass.page.look.labels.length === 0));
-    await page.getByRole('button', {name: /^All as it was/}).click();
-    await rest(page);
+    await settle(page, page.getByRole('button', {name: /^All as it was/}).click());
     check('their own colours come back', !(await keys(page)).colormap &&
         String(await bytesOf(page, 'page.page.rest')) !== painted);
     await page.context().close();
@@ -1148,25 +1069,20 @@ async function fused() {
     const page = await open({viewport: {width: 1600, height: 1000}});
     await page.keyboard.press('x');
     await slicesRest(page);
-    await page.getByLabel('highest value of the range of the overlay').fill('150');
-    await page.keyboard.press('Enter');
-    await page.getByRole('slider', {name: 'opacity of the overlay'}).fill('0.8');
-    await rest(page);
+    await enter(page.getByLabel('highest value of the range of the overlay'), '150');
+    await settle(page, page.getByRole('slider', {name: 'opacity of the overlay'}).fill('0.8'));
     await page.locator('details', {has: page.locator('summary', {hasText: 'Overlay'})})
         .getByLabel('Colours').selectOption('viridis');
     await page.locator('summary', {hasText: 'Colours'}).click();
     await page.getByLabel('colour 2', {exact: true}).fill('#ff2040');
-    await page.getByLabel('value of colour 2').fill('77');
-    await page.keyboard.press('Enter');
+    await enter(page.getByLabel('value of colour 2'), '77');
     await page.getByRole('button', {name: 'Remove colour 1', exact: true}).click();
     await page.getByRole('button', {name: 'Add a colour'}).click();
-    await page.getByLabel('in the colours of the look').evaluate(box => box.click());
-    await rest(page);
+    await settle(page, page.getByLabel('in the colours of the look').evaluate(box => box.click()));
     const map = (await keys(page)).colormap;
     check('colours are chosen', /^77:#ff2040(,[\d.]+:#[\da-f]{6}){4}$/.test(map), map);
     await page.getByLabel('highest value of the range', {exact: true}).fill('200');
-    await page.keyboard.press('Enter');
-    await rest(page);
+    await press(page, 'Enter');
     check('and go with the range', /^77:#ff2040.*,200:#[\da-f]{6}$/.test((await keys(page)).colormap),
         (await keys(page)).colormap);
     const command = await keepBoth(page), now = await keys(page);
@@ -1174,9 +1090,7 @@ async function fused() {
     now['overlay-look']);
     check('which the command has', /--overlay-look viridis,/.test(command), command);
     await shot(page, 'fused');
-    await page.evaluate(() => window.snowglass.recipe.set({colormap: null,
-        range: [100000, 100001]}));
-    await rest(page);
+    await set(page, {colormap: null, range: [100000, 100001]});
     await page.locator('details', {has: page.locator('summary', {hasText: 'Look'})})
         .getByLabel('Colours').selectOption(':');
     await rest(page);
@@ -1204,52 +1118,41 @@ async function mixed() {
     await page.getByLabel('in the colours of the look').evaluate(box => box.click());
     await slicesRest(page);
     await shot(page, 'channels');
-    await rowOf('GFP').uncheck();
-    await rest(page);
+    await settle(page, rowOf('GFP').uncheck());
     check('one is switched off', /^0:blue:20\.\.900:1,2:#ff8000:20\.\.900:1$/.test(await list()), await list());
-    await rowOf('GFP').check();
-    await rest(page);
+    await settle(page, rowOf('GFP').check());
     check('and on again, as it was', (await list()).endsWith(',1:green:20..900:1'), await list());
     await section.getByLabel('colour of Cy5').fill('#ff00c0');
-    await section.getByLabel('highest value of the range of DAPI').fill('700');
-    await page.keyboard.press('Enter');
-    await section.getByRole('slider', {name: 'opacity of GFP'}).fill('0.5');
-    await rest(page);
+    await enter(section.getByLabel('highest value of the range of DAPI'), '700');
+    await settle(page, section.getByRole('slider', {name: 'opacity of GFP'}).fill('0.5'));
     check('colour, range and opacity are taken', (await list()).split(',').sort().join() ===
         '0:blue:20..700:1,1:green:20..900:0.5,2:#ff00c0:20..900:1', await list());
     const ranges = await list();
-    await section.getByLabel('lowest value of the range of DAPI').fill('800');
-    await page.keyboard.press('Enter');
+    await enter(section.getByLabel('lowest value of the range of DAPI'), '800');
     await section.getByLabel('highest value of the range of GFP').fill('20');
-    await page.keyboard.press('Enter');
-    await rest(page);
+    await press(page, 'Enter');
     check('a range with nothing in it is not taken', await list() === ranges, await list());
     await drag(page, 0, -60, 'right');
     const before = await list();
     check('a right drag moves all ranges', /^0:blue:6\d\.\d*\.\.7\d\d/.test(before), before);
     await drag(page, 0, 80, 'right', 'Control');
     check('and with Ctrl all opacities', /:0\.257$/.test(await list()), await list());
-    await page.keyboard.press('z');
-    await rest(page);
+    await press(page, 'z');
     check('a drag is undone', await list() === before, await list());
     const command = await keepBoth(page);
     check('the command has the list', command.includes(`--channel ${before.replace(/:1(?=,|$)/g, '')}`),
         `${command} ${before}`);
     await page.locator('summary', {hasText: 'Presets'}).click();
-    await page.getByRole('button', {name: /^Preset linear/}).click();
-    await rest(page);
+    await settle(page, page.getByRole('button', {name: /^Preset linear/}).click());
     check('a preset shows one', await list() === '0' && !await rowOf('GFP').isChecked() &&
         await page.locator('.editor').first().isVisible(), await list());
-    await rowOf('Cy5').check();
-    await rest(page);
+    await settle(page, rowOf('Cy5').check());
     check('another makes them two', /^0,2:#ff00c0/.test(await list()) && !('preset' in await keys(page)),
         await list());
-    await rowOf('Cy5').uncheck();
-    await rest(page);
+    await settle(page, rowOf('Cy5').uncheck());
     await rowOf('DAPI').click();
     check('the last one stays', await rowOf('DAPI').isChecked(), await list());
-    await section.getByRole('button', {name: /^All channels/}).click();
-    await rest(page);
+    await settle(page, section.getByRole('button', {name: /^All channels/}).click());
     check('all are back', !await list() && await rowOf('Cy5').isChecked(), await list());
     await page.context().close();
     const small = await open({viewport: {width: 400, height: 700}, hasTouch: true});
@@ -1263,11 +1166,9 @@ async function begun() {
     const rowOf = name => page.locator('details', {has: page.locator('summary', {hasText: 'Channels'})})
         .getByLabel(name, {exact: true});
     const drawn = () => page.evaluate(() => window.snowglass.page.look.channels.filter(one => one[2]).length);
-    await rowOf('Cy5').check();
-    await rest(page);
+    await settle(page, rowOf('Cy5').check());
     check('two are drawn', await drawn() === 2, JSON.stringify(await keys(page)));
-    await page.getByRole('button', {name: /^All channels/}).click();
-    await rest(page);
+    await settle(page, page.getByRole('button', {name: /^All channels/}).click());
     check('all are drawn', await drawn() === 3, JSON.stringify(await keys(page)));
     check('without the component', !('component' in await keys(page)));
     await page.context().close();
@@ -1280,8 +1181,7 @@ async function many() {
     const boxes = section.getByRole('checkbox');
     const on = async () => Promise.all((await boxes.all()).map(async box => Number(await box.isChecked())));
     check('each channel has a box', await boxes.count() === 10, await boxes.count());
-    await section.getByRole('button', {name: /^All channels/}).click();
-    await rest(page);
+    await settle(page, section.getByRole('button', {name: /^All channels/}).click());
     const list = (await keys(page)).channel;
     check('eight are drawn', list === '0,1,2,3,4,5,6,7' && String(await on()) === '1,1,1,1,1,1,1,1,0,0',
         `${list} ${await on()}`);
@@ -1291,10 +1191,8 @@ async function many() {
     await rest(page); // by which time a slow machine has taken the line away
     check('a ninth is refused with what to do', /up to 8/.test(line), line);
     check('and its box is as the picture', String(await on()) === '1,1,1,1,1,1,1,1,0,0', String(await on()));
-    await section.getByLabel('dye 3', {exact: true}).click();
-    await rest(page);
-    await section.getByLabel('channel 8', {exact: true}).click();
-    await rest(page);
+    await settle(page, section.getByLabel('dye 3', {exact: true}).click());
+    await settle(page, section.getByLabel('channel 8', {exact: true}).click());
     check('but takes the place of another', String(await on()) === '1,1,1,0,1,1,1,1,1,0', String(await on()));
     await page.locator('.picture canvas').first().focus();
     await page.keyboard.press('x');
@@ -1304,37 +1202,36 @@ async function many() {
     await page.context().close();
 }
 
-const tools = {answered, check, folder, keys, open, rest, said, slicesRest, wheel};
-const alone = {steps: () => steps(tools),
-    restarted: () => restarted(tools, url), embed: embedded, points: manyPoints, mask: masked, overlay: overlaid, labels: labelled, recipes, fused, channels: mixed, begun, many};
-if (alone[tier]) {
-    await alone[tier]();
-    check('nothing is on the console', said.length === 0, said.join(' | '));
-    await browser.close();
-    process.exit(wrong ? 1 : 0);
+/** What the short tier looks at. */
+async function first() {
+    await unready();
+    const page = await open();
+    await smoke(page);
+    await names(page);
+    await costs(page);
+    return page;
 }
 
-await unready();
-const page = await open();
-await smoke(page);
-await names(page);
-await costs(page);
-if (long) {
-    await page.reload();
-    await rest(page);
-    await letterboxed(page);
-    await reconnected(page);
-    await damaged(page);
-    await editor(page);
-    await controls(page);
-    await marks(page);
-    await slices(page);
-    await handles(page);
-    await together(page);
-    await touch();
-    await schemes(page);
-    await prefixed();
+async function all() {
+    const page = await first();
+    await settle(page, page.reload());
+    for (const look of [letterboxed, reconnected, damaged, editor, controls, marks, slices, handles, together,
+        touch, schemes, prefixed])
+        await look(page);
+    await page.context().close();
 }
-check('nothing is on the console, nor against the policy', said.length === 0, said.join(' | '));
+
+const tools = {answered, check, folder, keys, open, rest, said, slicesRest, wheel};
+const known = {short: first, long: all, film, steps: () => steps(tools),
+    restarted: () => restarted(tools, part.url), embed: embedded, points: manyPoints, mask: masked,
+    overlay: overlaid, labels: labelled, recipes, fused, channels: mixed, begun, many};
+for (const each of parts) {
+    const [name, url, ...words] = each.split(',');
+    part = {name, url, words};
+    said.length = 0;
+    console.log(`--- ${name}`);
+    await known[name]().catch(error => check(name, false, error.stack));
+    check('nothing is on the console, nor against the policy', said.length === 0, said.join(' | '));
+}
 await browser.close();
 process.exit(wrong ? 1 : 0);
