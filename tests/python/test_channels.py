@@ -2,108 +2,44 @@
 
     SNOWGLASS=build/snowglass PYTHONPATH=build/python python3 -m unittest -v
 """
-import json
 import os
-import shlex
-import struct
 import subprocess
-import tempfile
-import unittest
-import warnings
 
 import numpy
 
 import snowglass as sg
-from test_snowglass import PICTURES, plain, resident
+from beside import PICTURES, InFolder, plain, resident
+from volumes import channel_words, nifti
+import volumes
 
-TOOL = os.environ.get("SNOWGLASS", "snowglass")
 NZ, NY, NX = 6, 16, 20
 Z, Y, X = numpy.mgrid[0:NZ, 0:NY, 0:NX]
 ARRAYS = [(20 + 4 * c + 200 * ((X - 5 - 4 * c) ** 2 + (Y - 8) ** 2 +
                                4 * (Z - 3) ** 2 < 30) + (X + 3 * Y + Z) % 7)
           .astype(numpy.uint8) for c in range(3)]
-NAMED = "".join(f'<Channel ID="Channel:0:{n}" Name="{name}" Color="{color}"/>'
-                for n, (name, color) in enumerate((
-                    ("DAPI", 65535), ("GFP", 16711935), ("far red", -16776961))))
+NAMED = channel_words(("DAPI", 65535), ("GFP", 16711935), ("far red", -16776961))
 
 
 def ome_tiff(path, channels, words=""):
-    """A stack whose pages are the channels of each slice."""
-    text = ('<OME xmlns="http://www.openmicroscopy.org/Schemas/OME/2016-06">'
-            f'<Image><Pixels DimensionOrder="XYCZT" SizeX="{NX}" SizeY="{NY}" '
-            f'SizeC="{len(channels)}" SizeZ="{NZ}" SizeT="1" Type="uint8" '
-            f'PhysicalSizeX="0.5" PhysicalSizeY="0.5" PhysicalSizeZ="1">{words}'
-            '</Pixels></Image></OME>').encode() + b"\0"
-    out = bytearray(b"II*\0" + struct.pack("<I", 0)) + text + b"\0" * (len(text) % 2)
-    link = 4
-    for n in range(NZ * len(channels)):
-        data = len(out)
-        out += channels[n % len(channels)][n // len(channels)].tobytes()
-        struct.pack_into("<I", out, link, len(out))
-        tags = [(256, 3, 1, NX), (257, 3, 1, NY), (258, 3, 1, 8), (259, 3, 1, 1),
-                (262, 3, 1, 1), (270, 2, len(text), 8), (273, 4, 1, data),
-                (277, 3, 1, 1), (278, 3, 1, NY), (279, 4, 1, NX * NY)]
-        tags = [tag for tag in tags if n == 0 or tag[0] != 270]
-        out += struct.pack("<H", len(tags))
-        for tag in tags:
-            out += struct.pack("<HHII", *tag)
-        link = len(out)
-        out += struct.pack("<I", 0)
-    with open(path, "wb") as file:
-        file.write(bytes(out))
+    volumes.ome_tiff(path, (NX, NY, NZ), [
+        channel[z].tobytes() for z in range(NZ) for channel in channels], words)
 
 
 def rgb_nifti(path):
     ball = (numpy.indices((16, 16, 16)) - 8) ** 2
     voxels = numpy.where(ball.sum(axis=0)[..., None] < 40, (210, 120, 60), 0)
-    head = bytearray(352)
-    struct.pack_into("<i", head, 0, 348)
-    struct.pack_into("<8h", head, 40, 3, 16, 16, 16, 1, 1, 1, 1)
-    struct.pack_into("<3h", head, 68, 0, 128, 24)
-    struct.pack_into("<8f", head, 76, *[1] * 8)
-    struct.pack_into("<f", head, 108, 352)
-    head[344:348] = b"n+1\0"
-    with open(path, "wb") as file:
-        file.write(bytes(head) + voxels.astype(numpy.uint8).tobytes())
+    nifti(path, (16, 16, 16), (128, 24), voxels.astype(numpy.uint8).tobytes())
 
 
-class Channels(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        ome_tiff(cls.path("ome.tif"), ARRAYS, NAMED)
-        ome_tiff(cls.path("plain.tif"), ARRAYS)
-        ome_tiff(cls.path("two.tif"), ARRAYS[:2])
-        rgb_nifti(cls.path("rgb.nii"))
-
-    @classmethod
-    def path(cls, name):
-        return os.path.join(cls.folder.name, name)
+class Channels(InFolder):
+    file = "ome.tif"
 
     def setUp(self):
-        caught = warnings.catch_warnings()
-        caught.__enter__()
-        self.addCleanup(caught.__exit__, None, None, None)
-        warnings.simplefilter("error")
-        self.file = self.path("ome.tif")
-
-    def bytes_of(self, name):
-        with open(self.path(name), "rb") as file:
-            return file.read()
-
-    def same(self, image, *words):
-        """The files of a picture and of the command line."""
-        subprocess.run([TOOL, *words, "-o", self.path("tool.png"), "-q", "-y"],
-                       check=True)
-        image.save(self.path("ours.png"))
-        self.assertEqual(self.bytes_of("tool.png"), self.bytes_of("ours.png"))
-
-    def round_trip(self, image, volume=None):
-        recipe = json.loads(json.dumps(image.recipe))
-        again = sg.render(**recipe) if volume is None else \
-            sg.render(volume, **recipe)
-        self.assertEqual(again.checksum, image.checksum)
+        super().setUp()
+        ome_tiff("ome.tif", ARRAYS, NAMED)
+        ome_tiff("plain.tif", ARRAYS)
+        ome_tiff("two.tif", ARRAYS[:2])
+        rgb_nifti("rgb.nii")
 
     def test_what_a_file_says(self):
         info = sg.Volume(self.file).info
@@ -113,43 +49,43 @@ class Channels(unittest.TestCase):
         self.assertEqual([each["color"] for each in info["channels"]],
                          [(0, 0, 1), (0, 1, 0), (1, 0, 0)])
         self.assertTrue(all(each["shown"] for each in info["channels"]))
-        own = sg.Volume(self.path("rgb.nii")).info["channels"]
+        own = sg.Volume("rgb.nii").info["channels"]
         self.assertEqual([each["window"] for each in own][:3], [(0, 255)] * 3)
         alone = sg.Volume("phantom:head", dims=(8, 8, 8)).info
         self.assertEqual((alone["channel_count"], alone["channels"]), (1, []))
-        ome_tiff(self.path("lone.tif"), ARRAYS[1:2],
+        ome_tiff("lone.tif", ARRAYS[1:2],
                  '<Channel ID="Channel:0:0" Name="GFP"/>')
-        lone = sg.Volume(self.path("lone.tif"), channel="gfp")
+        lone = sg.Volume("lone.tif", channel="gfp")
         self.assertEqual(lone.info["channels"][0]["name"], "GFP")
         with self.assertRaisesRegex(ValueError, "the file has no channels"):
-            sg.Volume(self.path("lone.tif"), channel="DAPI")
+            sg.Volume("lone.tif", channel="DAPI")
 
     def test_all_that_a_file_shows(self):
-        for name in ("ome.tif", "plain.tif", "two.tif", "rgb.nii"):
-            path = self.path(name)
-            for words, options in (([], {}), (["-m", "mip"], {"mode": "mip"}),
-                                   (["--legend"], {"legend": True})):
-                with self.subTest(name, words=words):
-                    image = sg.Volume(path).render(size=240, **options)
-                    self.same(image, "render", path, "-s", "240", *words)
-                    self.round_trip(image)
-                    if options:
-                        self.same(image, *shlex.split(image.command)[1:])
-
-    def test_looks_of_all(self):
-        volume = sg.Volume(self.file)
-        for words, look in (
-                (["--range", "30,180"], sg.Look(range=(30, 180))),
-                (["--opacity", "40:0,200:0.4"],
-                 sg.Look(opacity=[(40, 0), (200, 0.4)])),
-                (["--gradient-opacity", "0:0,60:1"],
-                 sg.Look(gradient_opacity=[(0, 0), (60, 1)])),
-                (["--scale", "log"], sg.Look(scale="log")),
-                (["--scale", "symlog:5"], sg.Look(scale="symlog:5"))):
-            with self.subTest(words):
-                image = volume.render(look, size=80)
-                self.same(image, "render", self.file, "-s", "80", *words)
+        labels, crop, plane = "labels.nrrd", ((2, 18), (0, 16), (0, 6)), (1, 0, 0, 4)
+        self.tool("convert", self.file, "--channel", "2", "-o", labels)
+        for name, words, opening, options in (
+                ("plain.tif", [], {}, {}),
+                ("two.tif", ["--legend"], {}, {"legend": True}),
+                ("rgb.nii", ["-m", "mip"], {}, {"mode": "mip"}),
+                ("ome.tif", ["--range", "30,180", "--legend"], {},
+                 {"look": sg.Look(range=(30, 180)), "legend": True}),
+                ("ome.tif", ["--opacity", "40:0,200:0.4"], {},
+                 {"look": sg.Look(opacity=[(40, 0), (200, 0.4)])}),
+                ("ome.tif", ["--gradient-opacity", "0:0,60:1", "--scale", "symlog:5"], {},
+                 {"look": sg.Look(gradient_opacity=[(0, 0), (60, 1)], scale="symlog:5")}),
+                ("ome.tif", ["--crop", "2:18,0:16,0:6"], {"crop": crop}, {}),
+                ("ome.tif", ["--clip", "1,0,0,4"], {"clip": [plane]}, {}),
+                ("ome.tif", ["--overlay", labels, "--overlay-look", "100:0,200:1"], {},
+                 {"overlay": labels,
+                  "overlay_look": sg.Look(opacity=[(100, 0), (200, 1)])})):
+            with self.subTest(name, words=words):
+                image = sg.Volume(name, **opening).render(size=240, **options)
+                self.same(image, "render", name, "-s", "240", *words)
                 self.round_trip(image)
+        for words, options in ((["--crop", "2:18,0:16,0:6"], {"crop": crop}),
+                               (["--clip", "1,0,0,4"], {"clip": [plane]})):
+            self.same(sg.render(sg.Volume(self.file), size=80, **options),
+                      "render", self.file, "-s", "80", *words)
 
     def test_lists(self):
         for words, given in (
@@ -167,8 +103,6 @@ class Channels(unittest.TestCase):
                     self.same(images[1], "render", self.file, "-s", "240", "-m",
                               mode, "--legend", "--channel", words)
                     self.round_trip(images[1])
-                    if mode == "over":
-                        self.same(images[0], *shlex.split(images[1].command)[1:])
 
     def test_one_is_grey(self):
         for given in ("GFP", ["gfp"], "1", {"GFP": None}, 1):
@@ -181,40 +115,24 @@ class Channels(unittest.TestCase):
         self.same(image, "render", self.file, "-s", "80", "--channel", "GFP")
 
     def test_slices(self):
-        for name in ("ome.tif", "rgb.nii"):
-            for axis in ("z", "x"):
-                with self.subTest(name, axis=axis):
-                    image = sg.Volume(self.path(name)).slice(axis, legend=True,
-                                                             size=240)
-                    self.same(image, "slice", self.path(name), "--axis", axis,
-                              "--legend", "-s", "240")
-                    self.round_trip(image)
+        for name, axis in (("ome.tif", "z"), ("rgb.nii", "x")):
+            image = sg.Volume(name).slice(axis, legend=True, size=240)
+            self.same(image, "slice", name, "--axis", axis, "--legend", "-s", "240")
+            self.round_trip(image)
         image = sg.Volume(self.file, channel="0:red:30..90").slice("z", 3)
         self.same(image, "slice", self.file, "--axis", "z", "--at", "3",
                   "--channel", "0:red:30..90")
 
     def test_turntables(self):
         for mode in ("over", "mip"):
-            subprocess.run([TOOL, "turntable", self.file, "--frames", "2", "-s",
-                            "60", "-m", mode, "-o", self.path("tool_%d.png"),
-                            "-q", "-y"], check=True)
-            sg.Volume(self.file).turntable(self.path("turn_%d.png"), frames=2,
-                                           size=60, mode=mode)
-            for n in range(2):
-                self.assertEqual(self.bytes_of(f"turn_{n}.png"),
-                                 self.bytes_of(f"tool_{n}.png"))
-        self.assertNotEqual(self.bytes_of("turn_0.png"),
-                            self.bytes_of("turn_1.png"))
-
-    def test_crops_cut_all(self):
-        crop = ((2, 18), (0, 16), (0, 6))
-        for image in (sg.Volume(self.file, crop=crop).render(size=80),
-                      sg.render(sg.Volume(self.file), size=80, crop=crop)):
-            self.same(image, "render", self.file, "-s", "80", "--crop",
-                      "2:18,0:16,0:6")
+            self.same_frames(
+                lambda *to, **more: sg.Volume(self.file).turntable(
+                    *to, size=60, mode=mode, **more),
+                "turntable", self.file, "-s", "60", "-m", mode)
+        self.assertNotEqual(self.bytes_of("ours_0.png"), self.bytes_of("ours_1.png"))
 
     def test_pipes_draw_one(self):
-        pipe = self.path("pipe")
+        pipe = "pipe"
         os.mkfifo(pipe)
         with self.assertRaisesRegex(ValueError, "can be read once"):
             sg.Volume(pipe, channel="0,1")
@@ -225,24 +143,10 @@ class Channels(unittest.TestCase):
         self.assertEqual(image.checksum, sg.Volume(
             self.file, channel=0).render(size=80).checksum)
 
-    def test_overlays_lie_in_front_and_planes_cut_all(self):
-        labels = self.path("labels.nrrd")
-        subprocess.run([TOOL, "convert", self.file, "--channel", "2", "-q", "-y",
-                        "-o", labels], check=True)
-        volume = sg.Volume(self.file)
-        look = sg.Look(opacity=[(100, 0), (200, 1)])
-        self.same(volume.render(size=80, overlay=labels, overlay_look=look),
-                  "render", self.file, "-s", "80", "--overlay", labels,
-                  "--overlay-look", "100:0,200:1")
-        words = ["render", self.file, "-s", "80", "--clip", "1,0,0,4"]
-        clipped = sg.Volume(self.file, clip=[(1, 0, 0, 4)])
-        self.same(clipped.render(size=80), *words)
-        self.same(sg.render(volume, size=80, clip=[(1, 0, 0, 4)]), *words)
-
     def test_masks_cut_all(self):
         mask = numpy.zeros(ARRAYS[0].shape, numpy.uint8)
         mask[:, :8] = 1
-        path = self.path("mask.nrrd")
+        path = "mask.nrrd"
         volume = sg.Volume(self.file)
         sg.Volume(mask, affine=volume.affine, unit=volume.info["unit"]).save(path)
         expected = sg.Volume(self.file, mask=path).render(size=60)
@@ -281,10 +185,7 @@ class Channels(unittest.TestCase):
     def test_what_is_wrong_is_said(self):
         for given, why in (
                 ("0,YFP", "no channel 'YFP'; the file has 0 DAPI, 1 GFP, 2 far"),
-                ("0,3", "channel 3 does not exist; the voxels have 3"),
-                ("0:puce", "'puce' is no colour: give red"),
-                ("0:5..x", "'5..x' is no range"), ("0:9..3", "is no range"),
-                ("0:1.5", "'1.5' is no opacity"), ("0,,1", "names no channel"),
+                ("0:5..x", "'5..x' is no range"), ("0,,1", "names no channel"),
                 ({}, "names no channel"), ([-1], "'-1' is below 0"),
                 ([0] * 9, "up to 8 are shown together")):
             with self.subTest(given):
@@ -299,8 +200,8 @@ class Channels(unittest.TestCase):
             viewer = volume.view(size=(80, 60))
         self.addCleanup(viewer.close)
         self.assertEqual(viewer.recipe["channel"], 1)
-        again = sg.render(volume, **viewer.recipe)
-        self.assertEqual(again.checksum, viewer.image.checksum)
+        self.assertEqual(sg.render(volume, **viewer.recipe).checksum,
+                         viewer.image.checksum)
 
     def test_close_gives_all_back(self):
         volume = sg.Volume(self.file)
@@ -309,7 +210,6 @@ class Channels(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "is closed"):
             volume.render(size=40)
         self.assertEqual(sg.Volume(self.file).render(size=40).checksum, checksum)
-
 
     @plain
     def test_memory_stays_flat(self):
@@ -330,18 +230,16 @@ class Channels(unittest.TestCase):
         self.assertLess(resident() - before, 1 << 20)
 
 
-class Arrays(unittest.TestCase):
+class Arrays(InFolder):
     COLORS = ["blue", "#00ff00", "red"]
 
     def test_the_picture_is_that_of_their_file(self):
         names = ["DAPI", "GFP", "far red"]
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "ome.tif")
-            ome_tiff(path, ARRAYS, NAMED)
-            file = sg.Volume(path)
-            drawn = [file.render(size=80).checksum,
-                     file.render(size=80, mode="mip").checksum,
-                     file.slice("z").checksum]
+        ome_tiff("ome.tif", ARRAYS, NAMED)
+        file = sg.Volume("ome.tif")
+        drawn = [file.render(size=80).checksum,
+                 file.render(size=80, mode="mip").checksum,
+                 file.slice("z").checksum]
         for arrays in (ARRAYS, numpy.array(ARRAYS)):
             volume = sg.Volume.channels(arrays, colors=self.COLORS, names=names,
                                         affine=file.affine,
@@ -352,8 +250,7 @@ class Arrays(unittest.TestCase):
                               volume.render(size=80, mode="mip").checksum,
                               volume.slice("z").checksum], drawn)
             image = volume.render(size=80, azimuth=20)
-            again = sg.render(volume, **image.recipe)
-            self.assertEqual(again.checksum, image.checksum)
+            self.round_trip(image, volume)
 
     def test_a_channel_of_one_value_is_not_seen(self):
         flat = numpy.full_like(ARRAYS[0], 77)
@@ -388,7 +285,3 @@ class Arrays(unittest.TestCase):
             sg.Volume.channels(["a.tif", "b.tif"])
         with self.assertRaisesRegex(ValueError, "a viewer shows one"):
             sg.Volume.channels(ARRAYS).view()
-
-
-if __name__ == "__main__":
-    unittest.main()

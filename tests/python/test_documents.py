@@ -89,7 +89,3 @@ class Documents(unittest.TestCase):
                                capture_output=True, text=True)
         self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
         self.assertEqual(ended.stdout.count("at most"), 4, ended.stdout)
-
-
-if __name__ == "__main__":
-    unittest.main()

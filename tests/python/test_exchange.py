@@ -183,7 +183,3 @@ class Progress(unittest.TestCase):
             bars(stage, fraction)
         self.assertEqual([(bar.desc, bar.n, bar.closed) for bar in Bar.all],
                          [("read", 60, True), ("draw", 100, True), ("draw", 20, False)])
-
-
-if __name__ == "__main__":
-    unittest.main()

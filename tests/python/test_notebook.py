@@ -32,7 +32,3 @@ class Notebook(unittest.TestCase):
             self.assertEqual(done.returncode, 0)
             self.assertGreater(sg.Image.load(
                 os.path.join(folder, "rest.png")).width, 300)
-
-
-if __name__ == "__main__":
-    unittest.main()

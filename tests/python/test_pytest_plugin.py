@@ -46,7 +46,3 @@ class Plugin(unittest.TestCase):
             self.assertIn("the limit is", text)
             self.assertTrue(os.path.exists(
                 os.path.join(folder, "baseline", "head.failed.png")))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,25 +4,19 @@ byte: the same defaults, letters, bars, background, colours of values.
     SNOWGLASS=build/snowglass PYTHONPATH=build/python python3 -m unittest -v
 """
 import json
-import os
 import shlex
 import shutil
 import subprocess
-import tempfile
-import unittest
-import warnings
 
 import numpy
 
 import snowglass as sg
-
-TOOL = os.environ.get("SNOWGLASS", "snowglass")
-LONG = os.environ.get("SNOW_TIER", "short") != "short"
+from beside import TIER, InFolder
 
 
 def some(cases, count):
     """The first ones; all in the long tier."""
-    return cases if LONG else cases[:count]
+    return cases if TIER != "short" else cases[:count]
 
 
 def patient():
@@ -59,57 +53,38 @@ def plate():
     return sg.Volume(array)
 
 
-class Same(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-        caught = warnings.catch_warnings()
-        caught.__enter__()
-        self.addCleanup(caught.__exit__, None, None, None)
-        warnings.simplefilter("error")
-
-    def path(self, name):
-        return os.path.join(self.folder.name, name)
-
-    def bytes_of(self, name):
-        with open(self.path(name), "rb") as file:
-            return file.read()
-
+class Same(InFolder):
     def file_of(self, make):
-        path = self.path(make.__name__ + ".nrrd")
-        if not os.path.exists(path):
+        path = make.__name__ + ".nrrd"
+        if path not in self.files:
             make().save(path)
+            self.files.add(path)
         return path
 
-    def tool(self, verb, make, *words):
-        subprocess.run([TOOL, verb, self.file_of(make), "-y", "-q", *words],
-                       check=True)
+    def setUp(self):
+        super().setUp()
+        self.files = set()
 
-    def same(self, make, words, options, saving=None, suffix=".png"):
+    def same_as_file(self, make, words, options, saving=None, suffix=".png"):
         """A picture of a file by both, and of the array itself."""
-        tool, ours = "tool" + suffix, "ours" + suffix
-        self.tool("render", make, "-s", "180x150", "-o", self.path(tool),
-                  *words)
-        for volume in (sg.Volume(self.file_of(make)), make()):
-            volume.render(size=(180, 150), **options).save(
-                self.path(ours), **(saving or {}))
-            self.assertEqual(sg.compare(self.path(tool),
-                                        self.path(ours)).largest, 0)
-            self.assertEqual(self.bytes_of(tool), self.bytes_of(ours))
+        self.same([volume.render(size=(180, 150), **options)
+                   for volume in (sg.Volume(self.file_of(make)), make())],
+                  "render", self.file_of(make), "-s", "180x150", *words, suffix=suffix,
+                  **(saving or {}))
 
 
 class Pictures(Same):
     def test_defaults(self):
         for make in (patient, spots, cloud, plate):
             with self.subTest(make.__name__):
-                self.same(make, [], {})
+                self.same_as_file(make, [], {})
 
     def test_names_of_views_mean_the_same_side(self):
         for view in some(["axial", "back", "coronal", "sagittal", "front",
                           "top", "-x"], 2):
             for make in some([patient, spots], 1):
                 with self.subTest(view, make=make.__name__):
-                    self.same(make, ["--view", view], {"view": view})
+                    self.same_as_file(make, ["--view", view], {"view": view})
 
     def test_letters_legend_and_scale_bar(self):
         for mode in some(["over", "mip", "mean", "minip", "sum", "iso"], 3):
@@ -117,10 +92,10 @@ class Pictures(Same):
             options = {"mode": mode, **({"iso": 60} if mode == "iso" else {})}
             for make in some([patient, spots], 1):
                 with self.subTest(mode, make=make.__name__):
-                    self.same(make, words, options)
-                    self.same(make, [*words, "--legend"],
+                    self.same_as_file(make, words, options)
+                    self.same_as_file(make, [*words, "--legend"],
                               {**options, "legend": True})
-                    self.same(make, [*words, "--legend", "scale", "--no-labels"],
+                    self.same_as_file(make, [*words, "--legend", "scale", "--no-labels"],
                               {**options, "legend": "scale", "letters": False})
 
     def test_looks(self):
@@ -135,7 +110,7 @@ class Pictures(Same):
                  sg.Look(opacity=[(-500, 0), (700, 0.8)]))], 2):
             for mode in some(["over", "mip", "mean"], 1):
                 with self.subTest(words, mode=mode):
-                    self.same(patient, [*words, "-m", mode, "--legend"],
+                    self.same_as_file(patient, [*words, "-m", mode, "--legend"],
                               {"look": look, "mode": mode, "legend": True})
 
     def test_cameras_and_lights(self):
@@ -157,7 +132,7 @@ class Pictures(Same):
                 (["--method", "raycast"], {"method": "raycast"})], 2):
             for make in some([patient, cloud], 1):
                 with self.subTest(words, make=make.__name__):
-                    self.same(make, words, options)
+                    self.same_as_file(make, words, options)
 
     def test_backgrounds_bits_and_formats(self):
         for words, saving, suffix in [
@@ -169,39 +144,17 @@ class Pictures(Same):
                 ([], {}, ".webp"), ([], {}, ".jpg"), ([], {}, ".npy"),
                 ([], {}, ".pfm"), ([], {}, ".exr"), ([], {}, ".tif")]:
             with self.subTest(words, suffix=suffix):
-                self.same(patient, words, {}, saving, suffix)
-        self.same(patient, ["-m", "mean"], {"mode": "mean"}, {}, ".npy")
-
-    def test_slices(self):
-        grey = sg.Look(range=(-200, 900))
-        for make, axis, at in some([
-                (patient, "axial", "14"), (spots, "axial", "12"),
-                (patient, "x", "20"), (patient, "coronal", "18"),
-                (spots, "sagittal", "15")], 2):
-            for words, options in [
-                    (["--legend"], {"legend": True}),
-                    (["--range", "-200,900"], {"look": grey}),
-                    (["-s", "200x170", "--legend", "--range", "-200,900"],
-                     {"size": (200, 170), "legend": True, "look": grey}),
-                    (["-s", "200", "-c", "viridis", "--range", "0,90"],
-                     {"size": 200, "look": sg.Look(cmap="viridis",
-                                                   clim=(0, 90))})]:
-                with self.subTest(make.__name__, axis=axis, words=words):
-                    self.tool("slice", make, "--axis", axis, "--at", at, "-o",
-                              self.path("t.png"), *words)
-                    make().slice(axis, int(at), **options).save(
-                        self.path("p.png"))
-                    self.assertEqual(self.bytes_of("t.png"),
-                                     self.bytes_of("p.png"))
+                self.same_as_file(patient, words, {}, saving, suffix)
+        self.same_as_file(patient, ["-m", "mean"], {"mode": "mean"}, {}, ".npy")
 
     def test_what_is_shown_is_what_is_saved(self):
         image = patient().render(size=200, legend=True)
-        image.save(self.path("a.png"))
+        image.save("a.png")
         self.assertEqual(image.png(), self.bytes_of("a.png"))
         self.assertEqual(image._repr_png_(), self.bytes_of("a.png"))
         plain = patient().render(size=200, letters=False)
-        plain.save(self.path("b.png"))
-        levels = numpy.asarray(sg.Image.load(self.path("b.png")))[..., :3]
+        plain.save("b.png")
+        levels = numpy.asarray(sg.Image.load("b.png"))[..., :3]
         numpy.testing.assert_array_equal(plain.to_rgb(),
                                          numpy.rint(levels * 255))
         self.assertEqual(plain.to_rgb()[0, 0].tolist(), [20, 20, 20])
@@ -211,11 +164,8 @@ class Pictures(Same):
 
 class Commands(Same):
     def test_the_tool_takes_them(self):
-        spots().save(self.path("a.nrrd"))
-        spots().save(self.path("-dash.nrrd"))
-        here = os.getcwd()
-        os.chdir(self.folder.name)
-        self.addCleanup(os.chdir, here)
+        spots().save("a.nrrd")
+        spots().save("-dash.nrrd")
         for path, opening, options in [
                 ("a.nrrd", {"spacing": 2}, {}),
                 ("a.nrrd", {"spacing": numpy.float32(1.5)}, {}),
@@ -224,22 +174,12 @@ class Commands(Same):
                                 "opacity_length": 0}),
                 ("-dash.nrrd", {}, {"azimuth": -20})]:
             with self.subTest(path, opening=opening, options=options):
-                image = sg.Volume(path, **opening).render(
-                    size=(64, 48), **options)
-                image.save("p.png")
-                words = shlex.split(image.command)
-                subprocess.run([TOOL, *words[1:], "-o", "t.png", "-y", "-q"],
-                               check=True)
-                self.assertEqual(self.bytes_of("t.png"),
-                                 self.bytes_of("p.png"))
-                again = sg.render(**image.recipe)
-                self.assertEqual(sg.compare(again, image).largest, 0)
+                image = sg.Volume(path, **opening).render(size=(64, 48), **options)
+                self.same(image, *shlex.split(image.command)[1:])
+                self.same_picture(sg.render(**image.recipe), image)
 
     def test_slices(self):
-        patient().save(self.path("a.nrrd"))
-        here = os.getcwd()
-        os.chdir(self.folder.name)
-        self.addCleanup(os.chdir, here)
+        patient().save("a.nrrd")
         volume = sg.Volume("a.nrrd")
         for axis, at, look, options in [
                 ("axial", None, None, {}),
@@ -250,27 +190,20 @@ class Commands(Same):
                                           "letters": False, "threads": 1})]:
             with self.subTest(axis, at=at, options=options):
                 image = volume.slice(axis, at, look, **options)
-                image.save("p.png")
                 words = shlex.split(image.command)
                 self.assertEqual(words[:3], ["snowglass", "slice", "a.nrrd"])
-                subprocess.run([TOOL, *words[1:], "-o", "t.png", "-y", "-q"],
-                               check=True)
-                self.assertEqual(self.bytes_of("t.png"),
-                                 self.bytes_of("p.png"))
+                self.same(image, *words[1:])
                 with open("r.json", "w", encoding="utf-8") as file:
                     json.dump({**image.recipe, "output": "c.png"}, file)
-                subprocess.run([TOOL, "slice", "--config", "r.json", "-y", "-q"],
-                               check=True)
-                self.assertEqual(self.bytes_of("c.png"),
-                                 self.bytes_of("p.png"))
+                self.tool("slice", "--config", "r.json")
+                self.same_bytes("c.png", "ours.png")
                 again = sg.render(**image.recipe)
                 self.assertEqual(again.stats, image.stats | {
                     "axis": axis.lower()})
-                self.assertEqual(sg.compare(again, image).largest, 0)
+                self.same_picture(again, image)
         recipe = patient().slice("y", 5, size=40).recipe  # of an array
         self.assertNotIn("input", recipe)
-        self.assertEqual(sg.compare(sg.render(patient(), **recipe),
-                                    patient().slice("y", 5, size=40)).largest, 0)
+        self.same_picture(sg.render(patient(), **recipe), patient().slice("y", 5, size=40))
 
 
 class Movies(Same):
@@ -283,37 +216,28 @@ class Movies(Same):
                 (["--fit", "volume", "--azimuth", "20", "--view", "left"],
                  {"fit": "volume", "azimuth": 20, "view": "left"})], 1):
             with self.subTest(words):
-                self.tool("turntable", patient, "-s", "120x90", "--frames", "3",
-                          "-o", self.path("t_%d.png"), *words)
-                sg.Volume(self.file_of(patient)).turntable(
-                    self.path("p_%d.png"), frames=3, size=(120, 90), **options)
-                for n in range(3):
-                    self.assertEqual(self.bytes_of(f"t_{n}.png"),
-                                     self.bytes_of(f"p_{n}.png"))
+                self.same_frames(
+                    lambda *to, **more: sg.Volume(self.file_of(patient)).turntable(
+                        *to, size=(120, 90), **options, **more),
+                    "turntable", self.file_of(patient), "-s", "120x90", *words, frames=3)
         with self.assertRaisesRegex(ValueError, "same range"):
-            patient().turntable(self.path("p_%d.png"), frames=2, mode="sum")
+            patient().turntable("p_%d.png", frames=2, mode="sum")
 
     def test_odd_sides(self):
         if not shutil.which("ffmpeg"):
             self.skipTest("ffmpeg is not installed")
         for suffix in some([".mp4", ".webm", ".gif"], 1):
             with self.subTest(suffix):
-                words = ["-s", "101x75", "--frames", "3", "--fps", "10"]
-                self.tool("turntable", patient, *words, "-o",
-                          self.path("t" + suffix))
-                patient().turntable(self.path("p" + suffix), frames=3, fps=10,
-                                    size=(101, 75))
+                self.tool("turntable", self.file_of(patient), "-s", "101x75", "--frames",
+                          "3", "--fps", "10", "-o", "t" + suffix)
+                patient().turntable("p" + suffix, frames=3, fps=10, size=(101, 75))
                 self.assertEqual(self.frames_of("t" + suffix),
                                  self.frames_of("p" + suffix))
                 self.assertEqual(len(set(self.frames_of("p" + suffix))), 3)
 
     def frames_of(self, name):
         listed = subprocess.run(
-            ["ffmpeg", "-v", "error", "-i", self.path(name), "-f", "framemd5",
+            ["ffmpeg", "-v", "error", "-i", name, "-f", "framemd5",
              "-"], check=True, capture_output=True, text=True).stdout
         return [line.split()[-1] for line in listed.splitlines()
                 if not line.startswith("#")]
-
-
-if __name__ == "__main__":
-    unittest.main()

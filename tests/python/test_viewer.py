@@ -1,26 +1,22 @@
 """The viewer of notebooks by its widget's protocol: what a page says, and what the
 kernel answers.  anywidget itself is not needed."""
-import io
 import json
 import os
 import shlex
 import struct
 import subprocess
 import sys
-import tempfile
 import threading
 import time
-import unittest
 
 import numpy
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "stand_ins"))
 import snowglass as sg  # noqa: E402
+from beside import InFolder  # noqa: E402
 from snowglass import _viewing, viewer  # noqa: E402
 from snowglass._drawing import Drawing  # noqa: E402
-
-TOOL = os.environ.get("SNOWGLASS", "snowglass")
 
 
 class Frame:
@@ -82,6 +78,14 @@ class Page:
         return self.wait(lambda: next((each for each in self.said[since:]
                                        if each["t"] == kind), None))
 
+    def question(self, what, **asked):
+        self.say(t="ask", what=what, **asked)
+
+    def ask(self, what):
+        """What is answered by a text of the kind, or as a remark (said)."""
+        self.question(what)
+        return self.text(what)["text"]
+
     def rest(self, n=None):
         """The picture at rest of the newest state."""
         n = self.n if n is None else n
@@ -89,23 +93,30 @@ class Page:
                          self.frames[-1].n >= n and self.frames[-1])
 
 
-class Viewers(unittest.TestCase):
+def block():
+    array = numpy.zeros((24, 28, 32), numpy.int16)
+    array[6:18, 8:20, 10:22] = 700
+    return array
+
+
+class Viewers(InFolder):
+    strict = False
+
     def open(self, volume, *words, **options):
         widget = viewer.Viewer(volume, *words, **{"size": (96, 80), **options})
         self.addCleanup(widget.close)
         page = Page(widget)
         page.say(t="hello")
+        page.rest()
         return widget, page
+
+    def saved(self, **options):
+        """The head in a file."""
+        self.head().save("head.nrrd")
+        return sg.Volume("head.nrrd", **options)
 
     def head(self):
         return sg.Volume("phantom:head", dims=(48, 48, 40))
-
-    def pixels(self, frame):
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "a.png")
-            with open(path, "wb") as file:
-                file.write(frame.bytes)
-            return numpy.asarray(sg.Image.load(path))
 
     def test_it_begins_with_what_a_page_needs(self):
         widget, page = self.open(self.head(), "mr-default", azimuth=20)
@@ -124,27 +135,18 @@ class Viewers(unittest.TestCase):
         self.assertEqual(widget.traits["height"], 540)
 
     def test_the_picture_at_rest_is_that_of_its_command(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "head.nrrd")
-            self.head().save(path)
-            _, page = self.open(sg.Volume(path))
-            page.rest()
-            page.set(azimuth=-33.5, preset="ct-bone", legend=True,
-                     clip=[[1, 0, 0, 30]], size=[120, 100])
-            frame = page.rest()
-            self.assertEqual((frame.kind, frame.width, frame.height),
-                             (2, 120, 100))
-            page.say(t="ask", what="command")
-            words = shlex.split(page.text("command")["text"])
-            self.assertEqual(words[:2], ["snowglass", "render"])
-            words[words.index("--output") + 1] = os.path.join(folder, "b.png")
-            subprocess.run([TOOL, *words[1:], "-q"], check=True)
-            with open(os.path.join(folder, "b.png"), "rb") as file:
-                self.assertEqual(file.read(), frame.bytes)
+        _, page = self.open(self.saved())
+        page.set(azimuth=-33.5, preset="ct-bone", legend=True,
+                 clip=[[1, 0, 0, 30]], size=[120, 100])
+        frame = page.rest()
+        self.assertEqual((frame.kind, frame.width, frame.height), (2, 120, 100))
+        words = shlex.split(page.ask("command"))
+        self.assertEqual(words[:2], ["snowglass", "render"])
+        self.tool(*words[1:], "-o", "b.png")
+        self.assertEqual(self.bytes_of("b.png"), frame.bytes)
 
     def test_drafts_while_it_moves(self):
         _, page = self.open(self.head(), size=(64, 64))
-        page.rest()
         count = len(page.frames)
         page.say(t="moving", on=True)
         n = page.set(azimuth=45)
@@ -159,7 +161,6 @@ class Viewers(unittest.TestCase):
 
     def test_a_page_gets_no_more_than_it_acknowledges(self):
         _, page = self.open(self.head(), size=(64, 64))
-        page.rest()
         page.acknowledges = False
         n = page.set(azimuth=1)
         page.wait(lambda: page.frames[-1].n == n)
@@ -176,7 +177,6 @@ class Viewers(unittest.TestCase):
 
     def test_pages_see_each_other(self):
         widget, page = self.open(self.head(), size=(64, 64))
-        page.rest()
         other = Page(widget, "b")
         other.say(t="hello")
         other.rest()
@@ -197,28 +197,25 @@ class Viewers(unittest.TestCase):
     def test_what_is_asked(self):
         volume = self.head()
         _, page = self.open(volume)
-        page.rest()
-        page.say(t="ask", what="histogram")
+        page.question("histogram")
         histogram = page.text("histogram")
         self.assertEqual(sum(histogram["counts"]),
                          volume.statistics["finite"])
-        page.say(t="ask", what="thumbnail", preset="ct-bone", pane=7)
+        page.question("thumbnail", preset="ct-bone", pane=7)
         thumbnail = page.wait(lambda: next(
             (each for each in page.frames if each.pane == 7), None))
         self.assertEqual((thumbnail.width, thumbnail.height), (96, 96))
         page.set(zoom=0.3)
-        page.say(t="ask", what="fit")
+        page.question("fit")
         page.wait(lambda: page.last("state")["recipe"]["zoom"] > 0.6)
-        page.say(t="ask", what="recipe")
-        recipe = json.loads(page.text("recipe")["text"])
+        recipe = json.loads(page.ask("recipe"))
         self.assertEqual(recipe["input"], "phantom:head")
         frame = page.rest()
         same = sg.render(**recipe)
         self.assertEqual(same.png(), frame.bytes)
 
     def test_arrays(self):
-        array = numpy.zeros((24, 28, 32), numpy.int16)
-        array[6:18, 8:20, 10:22] = 700
+        array = block()
         for given, axes in ((array, "zyx"), (array.T, "xyz")):
             volume = sg.Volume(given, axes=axes, spacing=(1, 1, 2))
             _, page = self.open(volume, sg.Look(colors=[
@@ -230,11 +227,11 @@ class Viewers(unittest.TestCase):
             n = page.set(crop=None, clip=[[0, 0, 1, 20]])
             clipped = page.rest(n)
             self.assertNotEqual(clipped.bytes, whole.bytes)
-            page.say(t="ask", what="command")
+            page.question("command")
             self.assertIn("no recipe", page.text("said")["text"])
             page.set(preset="ct-bone", clip=None)
             page.rest()
-            page.say(t="ask", what="command")
+            page.question("command")
             self.assertIn("snowglass.render(volume, **",
                           page.text("command")["text"])
             n = page.set(time=3)
@@ -242,7 +239,6 @@ class Viewers(unittest.TestCase):
 
     def test_what_is_wrong_is_said(self):
         widget, page = self.open(self.head(), size=(64, 64))
-        page.rest()
         for keys, line in (({"mask": "/etc/passwd"}, "cannot set mask"),
                            ({"size": [0, 5]}, "1 to 4096"),
                            ({"preset": "nope"}, "no preset 'nope'"),
@@ -252,7 +248,7 @@ class Viewers(unittest.TestCase):
                 page.set(**keys)
                 self.assertIn(line, page.text("said", count)["text"])
         count = len(page.said)
-        page.say(t="ask", what="depth", x=0.5, y=0.5)
+        page.question("depth", x=0.5, y=0.5)
         self.assertIn("has no depth", page.text("said", count)["text"])
         for message in ({"t": "set", "page": "a"}, {"t": "what", "page": "a"},
                         {"t": "set", "n": 1, "recipe": {}, "page": "z"}, 7,
@@ -264,7 +260,6 @@ class Viewers(unittest.TestCase):
 
     def test_a_preset_takes_the_shape_of_the_look_away(self):
         _, page = self.open(self.head(), size=(64, 64))
-        page.rest()
         shape = dict.fromkeys(("colormap", "opacity", "gradient_opacity",
                                "range", "scale"))  # as panel.js does
         for preset in ("ct-bone", None):
@@ -275,7 +270,6 @@ class Viewers(unittest.TestCase):
 
     def test_more_pages_than_are_kept(self):
         widget, page = self.open(self.head(), size=(64, 64))
-        page.rest()
         second = Page(widget, "second")
         second.say(t="hello")
         second.rest()
@@ -296,7 +290,6 @@ class Viewers(unittest.TestCase):
 
     def test_a_page_that_is_gone_while_it_moves(self):
         widget, page = self.open(self.head(), size=(64, 64))
-        page.rest()
         other = Page(widget, "b")
         other.say(t="hello")
         other.rest()
@@ -311,8 +304,7 @@ class Viewers(unittest.TestCase):
         self.assertGreaterEqual(time.monotonic() - begin, 0.9)
 
     def test_a_clipped_volume_is_as_the_array_lies(self):
-        array = numpy.zeros((24, 28, 32), numpy.int16)
-        array[6:18, 8:20, 10:22] = 700
+        array = block()
         given = {"spacing": (1, 1.5, 2)}
         plain = sg.Volume(array, **given)
         turned = sg.Volume(numpy.asfortranarray(array), **given)
@@ -339,8 +331,7 @@ class Viewers(unittest.TestCase):
 
     def test_a_look_of_its_own_is_edited(self):
         colors = [(0, (1, 0, 0)), (700, (1, 1, 0))]
-        array = numpy.zeros((24, 28, 32), numpy.int16)
-        array[6:18, 8:20, 10:22] = 700
+        array = block()
         volume = sg.Volume(array)
         for look in (sg.Look(colors=colors, opacity=[(100, 0), (700, 1)]),
                      sg.Look(range="robust")):
@@ -354,87 +345,67 @@ class Viewers(unittest.TestCase):
                 again = page.rest(page.set(opacity=None))
                 self.assertEqual(again.bytes, whole.bytes)
         page.rest(page.set(range=[0, 700]))  # is a recipe now
-        page.say(t="ask", what="command")
-        self.assertIn("'range': [0, 700]", page.text("command")["text"])
+        self.assertIn("'range': [0, 700]", page.ask("command"))
 
     def test_a_crop_of_a_part_of_a_file(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "head.nrrd")
-            whole = self.head()
-            whole.save(path)
-            part = sg.Volume(path, crop=((8, 44), (4, 0), (10, 30)),
-                             memory=1 << 30)
-            voxels = numpy.asarray(part)
-            self.assertEqual(voxels.shape, (20, 44, 36))
-            drawing = Drawing(part, None)
-            recipe = {"crop": [[2, 30], [6, 0], [0, 12]], "size": [64, 64]}
-            drawing.apply(recipe)
-            self.assertTrue(numpy.array_equal(
-                numpy.asarray(drawing.volume), voxels[:12, 6:, 2:30]))
-            self.assertEqual(drawing.recipe(recipe)["crop"],
-                             [[10, 38], [10, 48], [10, 22]])
-            with self.assertRaisesRegex(ValueError, "along z: .* 0:20"):
-                drawing.apply({"crop": [[0, 0], [0, 0], [0, 25]]})
-            small = sg.Volume(path, crop=((0, 8), (0, 8), (0, 8)),
-                              memory=1 << 20)
-            self.assertEqual(Drawing(small, None)._open(
-                {"crop": [[0, 4], [0, 0], [0, 0]]})._memory, 1 << 20)
+        part = self.saved(crop=((8, 44), (4, 0), (10, 30)), memory=1 << 30)
+        voxels = numpy.asarray(part)
+        self.assertEqual(voxels.shape, (20, 44, 36))
+        drawing = Drawing(part, None)
+        recipe = {"crop": [[2, 30], [6, 0], [0, 12]], "size": [64, 64]}
+        drawing.apply(recipe)
+        self.assertTrue(numpy.array_equal(
+            numpy.asarray(drawing.volume), voxels[:12, 6:, 2:30]))
+        self.assertEqual(drawing.recipe(recipe)["crop"],
+                         [[10, 38], [10, 48], [10, 22]])
+        with self.assertRaisesRegex(ValueError, "along z: .* 0:20"):
+            drawing.apply({"crop": [[0, 0], [0, 0], [0, 25]]})
+        small = sg.Volume("head.nrrd", crop=((0, 8), (0, 8), (0, 8)), memory=1 << 20)
+        self.assertEqual(Drawing(small, None)._open(
+            {"crop": [[0, 4], [0, 0], [0, 0]]})._memory, 1 << 20)
 
     def test_a_recipe_with_parts_of_the_data(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "head.nrrd")
-            self.head().save(path)
-            file, array = sg.Volume(path), sg.Volume(numpy.asarray(self.head()))
-            for volume in (file, array):
-                widget, page = self.open(volume, "mr-default", size=(64, 64))
-                page.rest()
-                for keys in ({"clip": [[1, 0, 0, 0]]},
-                             {"crop": [[0, 24], [0, 0], [0, 0]]}):
-                    frame = page.rest(page.set(**keys))
-                    image = sg.render(volume, **widget.recipe)
-                    self.assertEqual(image.png(), frame.bytes)
-            with self.assertRaisesRegex(ValueError, "time: .* array"):
-                sg.render(array, time=2)
-            with self.assertRaisesRegex(ValueError, "dims, mask: "):
-                sg.render(file, mask="a.nii", dims=(1, 2, 3))
-            phantom = self.head()  # what its recipe has of it is its own
-            same = phantom.render("mr-default", size=64)
-            again = {**same.recipe}
-            self.assertEqual(again.pop("input"), "phantom:head")
-            self.assertEqual(
-                sg.compare(sg.render(phantom, **again), same).largest, 0)
+        file, array = self.saved(), sg.Volume(numpy.asarray(self.head()))
+        for volume in (file, array):
+            widget, page = self.open(volume, "mr-default", size=(64, 64))
+            for keys in ({"clip": [[1, 0, 0, 0]]},
+                         {"crop": [[0, 24], [0, 0], [0, 0]]}):
+                frame = page.rest(page.set(**keys))
+                image = sg.render(volume, **widget.recipe)
+                self.assertEqual(image.png(), frame.bytes)
+        with self.assertRaisesRegex(ValueError, "time: .* array"):
+            sg.render(array, time=2)
+        with self.assertRaisesRegex(ValueError, "dims, mask: "):
+            sg.render(file, mask="a.nii", dims=(1, 2, 3))
+        phantom = self.head()  # what its recipe has of it is its own
+        same = phantom.render("mr-default", size=64)
+        again = {**same.recipe}
+        self.assertEqual(again.pop("input"), "phantom:head")
+        self.same_picture(sg.render(phantom, **again), same)
 
     def test_a_part_of_a_clipped_file_is_known(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "head.nrrd")
-            self.head().save(path)
-            volume = sg.Volume(path, clip=[(1, 0, 0, 10)], crop=((4, 0),) * 3)
-            _, page = self.open(volume, "mr-default", size=(64, 64))
-            page.rest()
-            frame = page.rest(page.set(crop=[[0, 0], [0, 30], [0, 0]],
-                                       clip=[[0, 1, 0, 12]]))
-            page.say(t="ask", what="recipe")
-            recipe = json.loads(page.text("recipe")["text"])
-            self.assertEqual(recipe["crop"], [[4, 48], [4, 34], [4, 40]])
-            self.assertEqual(recipe["clip"], [[1, 0, 0, 10], [0, 1, 0, 12]])
-            self.assertEqual(sg.render(**recipe).png(), frame.bytes)
-            for given in (volume, sg.Volume(numpy.asarray(self.head()))):
-                image = sg.render(given, "mr-default", size=64,
-                                  clip=[[0, 1, 0, 12]])
-                same = sg.render(**image.recipe) if given is volume else \
-                    sg.render(given, **image.recipe)
-                self.assertEqual(sg.compare(same, image).largest, 0)
-                self.assertIn([0, 1, 0, 12], image.recipe["clip"])
+        volume = self.saved(clip=[(1, 0, 0, 10)], crop=((4, 0),) * 3)
+        _, page = self.open(volume, "mr-default", size=(64, 64))
+        frame = page.rest(page.set(crop=[[0, 0], [0, 30], [0, 0]],
+                                   clip=[[0, 1, 0, 12]]))
+        recipe = json.loads(page.ask("recipe"))
+        self.assertEqual(recipe["crop"], [[4, 48], [4, 34], [4, 40]])
+        self.assertEqual(recipe["clip"], [[1, 0, 0, 10], [0, 1, 0, 12]])
+        self.assertEqual(sg.render(**recipe).png(), frame.bytes)
+        for given in (volume, sg.Volume(numpy.asarray(self.head()))):
+            image = sg.render(given, "mr-default", size=64, clip=[[0, 1, 0, 12]])
+            again = () if given is volume else (given,)
+            self.same_picture(sg.render(*again, **image.recipe), image)
+            self.assertIn([0, 1, 0, 12], image.recipe["clip"])
 
     def test_the_thread_ends(self):
         widget, page = self.open(self.head(), size=(64, 64))
-        page.rest()
         thread = widget._viewing.thread
 
         def gone(*_):
             raise OSError("the connection is closed")
         widget.send = gone
-        page.say(t="ask", what="histogram")
+        page.question("histogram")
         time.sleep(0.3)
         self.assertTrue(thread.is_alive())  # and goes on
         del widget.send
@@ -468,7 +439,3 @@ class Viewers(unittest.TestCase):
         self.assertNotRegex(text, r"(?m)^(import|export (?!default))")
         self.assertEqual(text.count("export default {render};"), 1)
         self.assertNotRegex(text, "innerHTML|https?://")
-
-
-if __name__ == "__main__":
-    unittest.main()
