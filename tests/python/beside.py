@@ -16,7 +16,9 @@ import snowglass as sg
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)),
                                 "..", "support"))
 # Other processes begin in the folders of tests.
-os.environ["PYTHONPATH"] = os.path.dirname(os.path.dirname(os.path.abspath(sg.__file__)))
+if "PYTHONPATH" in os.environ:
+    os.environ["PYTHONPATH"] = os.pathsep.join(map(
+        os.path.abspath, os.environ["PYTHONPATH"].split(os.pathsep)))
 TOOL = os.path.abspath(os.environ.get("SNOWGLASS", "snowglass"))
 TIER = os.environ.get("SNOW_TIER", "short")
 PICTURES = {"short": 60, "long": 300, "release": 10000}[TIER]

@@ -137,9 +137,8 @@ def same_as_one(exact):
         infos.append(pages[1].receive_text("info"))
         check("all is told of the volume alike", infos[0] == infos[1], infos)
         for page in pages:
-            page.rest(9, **{"size": [SIDE, SIDE], "mode": "over",
-                              "azimuth": 25, "elevation": 10, "zoom": 1.5,
-                              "perspective": 0, "target": [1, 2, 3]})
+            page.rest(9, size=[SIDE, SIDE], mode="over", azimuth=25, elevation=10,
+                      zoom=1.5, perspective=0, target=[1, 2, 3])
         told, wanted = answers(pages[0]), answers(pages[1])
         for name in wanted:
             check(f"{name} is answered alike", told[name] == wanted[name],

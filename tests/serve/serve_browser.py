@@ -132,7 +132,7 @@ def embedded():
     for page in pages:
         threading.Thread(target=page.serve_forever, daemon=True).start()
     origins = [f"http://127.0.0.1:{page.server_port}" for page in pages]
-    plan("embed", "phantom:head", "--embed", origins[0], words=origins)
+    plan("embed", *HEAD, "--embed", origins[0], words=origins)
 
 
 def filmed():
@@ -163,16 +163,17 @@ def everyday():
     plans.append(("restarted", None, [TOOL], ()))
 
 
+HEAD = "phantom:head", "--dims", "128x128x128"  # a page waits for each picture of it
 if SHORT:
-    plan("short", "phantom:head", copies=[PICTURE])
+    plan("short", *HEAD, copies=[PICTURE])
 else:
-    plan("long", "phantom:head", copies=(PICTURE, SLICE))
+    plan("long", *HEAD, copies=(PICTURE, SLICE))
     embedded()
     everyday()
-    plan("points", "phantom:head", "--tf", points(
-        "points.json", [[i, i / 300] for i in range(300)]))
-    plan("mask", "phantom:head", "--mask", "phantom:head", "--labels", "60-255")
-    plan("recipes", "phantom:head")
+    plan("points", *HEAD, "--tf", points("points.json", [[i, i / 300] for i in range(300)]))
+    plan("mask", head("head.nrrd", 128, 128, 128)[0], "--mask",
+         os.path.join(shots, "head.nrrd"), "--labels", "60-255")
+    plan("recipes", *HEAD)
     overlaid()
     mixed()
     filmed()

@@ -105,7 +105,7 @@ def only_values():
         check("a factor is refused", '"overlay-look"' in said, said)
         is_of_command(page, "and not kept", 3, azimuth=20)
         is_of_command(page, "opacities at labels are taken", 4,
-                      **{"overlay-look": "1:0.5,2:0"})
+                      overlay_look="1:0.5,2:0")
 
 
 names()

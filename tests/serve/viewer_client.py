@@ -337,7 +337,7 @@ class Page:
             what, message = self.hear()
             if what == "closed":
                 return "closed"
-            if what == "text" and message["t"] == "slice":
+            if what == "text" and message["t"] == "slice" and message["pane"] == 2:
                 return None
             if what == "picture" and message[10] == 2:
                 return message

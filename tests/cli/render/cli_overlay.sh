@@ -210,7 +210,7 @@ render w.nrrd -o z.png --overlay-look 1,2|is of an overlay; give --overlay FILE 
 render w.nrrd -o z.png --overlay pipe --labels 1|pipe: an overlay is read from a file; write it to one
 slice w.nrrd -o z.png --overlay -|an overlay is read from a file
 render w.nrrd -o z.png --overlay seg.nrrd -m mip|overlay: needs mode over
-render w.nrrd -o z.png --overlay seg.nrrd --method footprint|needs method shear-warp or raycast; remove --method footprint
+render w.nrrd -o z.png --overlay seg.nrrd --method footprint|needs method shear-warp or raycast; remove --
 render w.nrrd -o z.png --overlay seg.nrrd --kernel box|overlay: needs kernel tent or bspline; remove --kernel box
 END
 refusals 3 "$TOOL" <<'END'

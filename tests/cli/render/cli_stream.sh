@@ -98,7 +98,7 @@ run 0 "all voxels under 11M" "$TOOL" render a.nrrd $small \
     --preset linear --memory 11M -q
 rm none.png
 refusals 5 "$TOOL" <<'END'
-render a.nrrd -s 1024 -o none.png --memory 3M|one slab, tables and the picture need 17.2 MiB, over the --memory of 3.0 MiB; raise it
+render a.nrrd -s 1024 -o none.png --memory 3M|one slab, tables and the picture need 17.2 MiB, over the --memory of
 render a.nrrd $small --deterministic --memory 11M -q|a deterministic picture by method shear-warp needs all voxels
 render a.nrrd $small --method footprint --deterministic --memory 11M -q|by method footprint needs all voxels
 movie a.nrrd a.nrrd -s 64x64 -o n_%d.png --memory 11M|and the range of all steps needs all

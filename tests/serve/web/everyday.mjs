@@ -82,6 +82,7 @@ async function time({check, rest}, page, its) {
         check('and stops', await slider.inputValue() === at);
     }
     await slider.fill('0');
+    await rest(page);
 }
 
 async function looks({check}, page, its) {
@@ -251,7 +252,8 @@ async function planes({check, keys, rest, wheel}, page, its) {
 
 /** A viewer of its own: [process, URL]. */
 async function start(tool, ...options) {
-    const server = spawn(tool, ['serve', 'phantom:head', ...options], {stdio: ['ignore', 'pipe', 'ignore']});
+    const server = spawn(tool, ['serve', 'phantom:head', '--dims', '128x128x128', ...options],
+        {stdio: ['ignore', 'pipe', 'ignore']});
     const [line] = await once(createInterface(server.stdout), 'line');
     return [server, line];
 }

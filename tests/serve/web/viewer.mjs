@@ -527,7 +527,8 @@ async function handles(page) {
     const after = await grip.boundingBox(), clip = (await keys(page)).clip;
     check('a handle cuts', clip?.length === 1, JSON.stringify(clip));
     check('and stays under the pointer', Math.abs(after.x - box.x - by) < 3, after.x - box.x);
-    await hold(page, [after.x + after.width / 2, after.y + after.height / 2], [x, y], {button: 'right', steps: 4});
+    await hold(page, [after.x + after.width / 2, after.y + after.height / 2], [x, y],
+        {button: 'right', steps: 4});
     check('but not by the right button', String((await keys(page)).clip) === String(clip));
     await settle(page, page.getByRole('button', {name: /^A plane that faces the viewer/}).click());
     check('a plane faces the viewer', await grips.count() === 7 && (await keys(page)).clip.length === 2);
