@@ -1,4 +1,8 @@
-"""What the tests of the package share: a folder, and the command line beside it."""
+"""What the tests of the package share: a folder, and the command line beside it.
+
+    cd tests/python && SNOWGLASS=../../build/snowglass PYTHONPATH=../../build/python \\
+        python3 -m unittest -v test_tool
+"""
 import importlib.util
 import json
 import os

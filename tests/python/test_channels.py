@@ -1,7 +1,4 @@
-"""Channels: pictures are those of the command line, however channels are chosen.
-
-    SNOWGLASS=build/snowglass PYTHONPATH=build/python python3 -m unittest -v
-"""
+"""Channels: pictures are those of the command line, however channels are chosen."""
 import os
 import subprocess
 

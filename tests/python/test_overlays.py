@@ -1,7 +1,4 @@
-"""Overlays: pictures are those of the command line, whatever the overlay is.
-
-    SNOWGLASS=build/snowglass PYTHONPATH=build/python python3 -m unittest -v
-"""
+"""Overlays: pictures are those of the command line, whatever the overlay is."""
 import numpy
 
 import snowglass as sg

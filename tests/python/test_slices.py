@@ -1,7 +1,4 @@
-"""Slices and recipes of the Python package, beside NumPy and the command line.
-
-    SNOWGLASS=build/snowglass PYTHONPATH=build/python python3 -m unittest -v
-"""
+"""Slices and recipes of the Python package, beside NumPy and the command line."""
 import json
 
 import numpy

@@ -1,8 +1,5 @@
 """The Python package: pictures are those of the command line, arrays are used in
-place, errors are the library's own lines, threads take turns.
-
-    SNOWGLASS=build/snowglass PYTHONPATH=build/python python3 -m unittest -v
-"""
+place, errors are the library's own lines, threads take turns."""
 import contextlib
 import gc
 import itertools

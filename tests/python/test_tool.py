@@ -1,8 +1,5 @@
 """Pictures and movies of the package are those of the command line, byte for
-byte: the same defaults, letters, bars, background, colours of values.
-
-    SNOWGLASS=build/snowglass PYTHONPATH=build/python python3 -m unittest -v
-"""
+byte: the same defaults, letters, bars, background, colours of values."""
 import json
 import shlex
 import shutil
