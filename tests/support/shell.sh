@@ -130,7 +130,8 @@ printed() {
 
 # Of the last run: nothing was said, no line matches.
 silent() { check "$NAME: nothing is said" [ ! -s "$ERR" ]; }
-not_said() { check "$NAME: does not say '$1'" bash -c '! grep -Eq -- "$1" "$2"' - "$1" "$ERR"; }
+not_said() { check "$NAME: does not say '$1'" unmatched "$1" "$ERR"; }
+unmatched() { ! matches "$@"; }
 
 # same_file NAME FILE FILE, other_file NAME FILE FILE
 same_file() { check "$1" cmp -s "$2" "$3"; }
@@ -146,8 +147,8 @@ pairs() {
     shift
     while IFS='|' read -r name one relation two; do
         name=${name%"${name##*[! ]}"} relation=${relation// /}
-        [ "${one// /}" = '"' ] || make ".one.$suffix" "$name" "$one" "$@"
-        make ".two.$suffix" "$name, and" "$two" "$@"
+        [ "${one// /}" = '"' ] || draw_pair ".one.$suffix" "$name" "$one" "$@"
+        draw_pair ".two.$suffix" "$name, and" "$two" "$@"
         case $relation in
         =) same_file "$name: the same" ".one.$suffix" ".two.$suffix" ;;
         !=) other_file "$name: others" ".one.$suffix" ".two.$suffix" ;;
@@ -160,7 +161,7 @@ pairs() {
     done
 }
 
-make() {
+draw_pair() {
     local file=$1 name=$2 more=$3
     shift 3
     rm -f "$file"
