@@ -80,14 +80,6 @@ static int usage_error(const char *what, const char *value) {
     return SNOW_STATUS_BAD_USAGE;
 }
 
-/* The quick run has volumes of its own. */
-static int check_quick(const bench_options *options) {
-    if (options->quick && options->data)
-        return usage_error("--quick has its own volumes; leave out",
-                           options->data);
-    return -1;
-}
-
 /* So have sweeps. */
 static int check_speed(const bench_options *options) {
     bool sweeps = options->sweep || options->chart;
@@ -118,7 +110,11 @@ static int check(const bench_entry *entry, const char *kernel,
     out->kernel = (snow_kernel)found;
     if (!out->runs)
         out->runs = out->quick ? 1 : 7;
-    return entry->of == BENCH_OF_SPEED ? check_speed(out) : check_quick(out);
+    if (entry->of == BENCH_OF_SPEED)
+        return check_speed(out);
+    if (out->quick && out->data) /* it has volumes of its own */
+        return usage_error("--quick has its own volumes; leave out", out->data);
+    return -1;
 }
 
 /* An option, and the benchmarks that have it. */

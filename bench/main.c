@@ -5,19 +5,18 @@
 #include "run/log.h"
 #include "run/start.h"
 
-/* What is no business of all ranks is that of the first. */
-static int run(int argc, char **argv) {
-    if (!bench_for_all(argc, argv) && !process_talks())
-        return SNOW_STATUS_OK;
-    int done = bench_main(argc, argv);
-    return done == SNOW_STATUS_OK ? finish_stdout() : done;
-}
-
 int tool_run(int argc, char **argv, const process_start *how) {
     process_begin(how);
     interrupt_install();
     int done = process_meet(CONTINUE, VERB_BENCH, 0);
-    done = process_agree(done == CONTINUE ? run(argc, argv) : done);
+    /* What is no business of all ranks is that of the first. */
+    if (done == CONTINUE && !bench_for_all(argc, argv) && !process_talks())
+        done = SNOW_STATUS_OK;
+    else if (done == CONTINUE)
+        done = bench_main(argc, argv);
+    if (done == SNOW_STATUS_OK)
+        done = finish_stdout();
+    done = process_agree(done);
     if (process_ranks() >
         1) /* whose launcher ends all with the first to fail */
         interrupt_mute();

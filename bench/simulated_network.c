@@ -172,14 +172,6 @@ static void complete_message(node *n, snow_message *message) {
     message->handle = NULL;
 }
 
-/* The ranks take turns: others may compute while this one waits. */
-static snow_status wait_inner(node *n, queued_message *l) {
-    pthread_mutex_unlock(&n->cluster->baton);
-    snow_status status = snow_comm_wait_all(n->inner, &l->inner, 1);
-    pthread_mutex_lock(&n->cluster->baton);
-    return status;
-}
-
 /* After a failure no rank waits for messages in flight. */
 static snow_status give_up(node *n, snow_message *messages, int count,
                            snow_status status) {
@@ -208,9 +200,15 @@ static snow_status wait_all(void *self, snow_message *messages, int count) {
     snow_message *next;
     enter(n);
     snow_status status = SNOW_STATUS_OK;
-    for (int i = 0; i < count && status == SNOW_STATUS_OK; i++)
-        if (messages[i].handle)
-            status = wait_inner(n, messages[i].handle);
+    /* The ranks take turns: others may compute while this one waits. */
+    for (int i = 0; i < count && status == SNOW_STATUS_OK; i++) {
+        queued_message *l = messages[i].handle;
+        if (!l)
+            continue;
+        pthread_mutex_unlock(&n->cluster->baton);
+        status = snow_comm_wait_all(n->inner, &l->inner, 1);
+        pthread_mutex_lock(&n->cluster->baton);
+    }
     if (status != SNOW_STATUS_OK)
         return give_up(n, messages, count, status);
     while ((next = earliest(messages, count)) != NULL)

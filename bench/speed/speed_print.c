@@ -26,12 +26,6 @@
 
 #define PI 3.14159265358979323846
 
-static double voxels_of(const speed_row *row, const speed_result *result) {
-    return row->way->method == SNOW_METHOD_ORIGINAL
-               ? (double)row->stats.voxels
-               : (double)result->interesting;
-}
-
 /* Image pixels to the face of a voxel: its area as the camera sees it over
  * that of a pixel (snowglass/view.h gives the pitch).  For upright grids only,
  * as all volumes here are. */
@@ -62,18 +56,15 @@ static double flops_of(const speed_case *job, const speed_row *row,
     } else {
         taps = k * k * pixels_per_voxel(job, row->stats.slice_axis);
     }
-    return 2 * (job->color ? 4 : 2) * voxels_of(row, result) * taps;
+    const double voxels = row->way->method == SNOW_METHOD_ORIGINAL
+                              ? (double)row->stats.voxels
+                              : (double)result->interesting;
+    return 2 * (job->color ? 4 : 2) * voxels * taps;
 }
 
 static double encoded_bytes(const speed_row *row) {
     return (double)(row->stats.ea_bytes + row->stats.ia_bytes +
                     row->stats.pa_bytes);
-}
-
-/* All volumes are of 8 bits, so that voxels are bytes. */
-static double bytes_of(const speed_row *row) {
-    return speed_is_baseline(row->way) ? (double)row->stats.voxels
-                                       : encoded_bytes(row);
 }
 
 /* Figures that follow from those measured; NaN where there is none. */
@@ -121,7 +112,11 @@ static figures figures_of(const speed_machine *machine, const speed_case *job,
         const machine_power *power = &machine->power[i];
         if (power->threads != row->threads)
             continue;
-        out.read_share = bytes_of(row) / seconds / power->read_bytes;
+        /* All volumes are of 8 bits, so that voxels are bytes. */
+        const double bytes = speed_is_baseline(row->way)
+                                 ? (double)row->stats.voxels
+                                 : encoded_bytes(row);
+        out.read_share = bytes / seconds / power->read_bytes;
         out.flop_share = flops_of(job, row, result) / seconds / power->flops;
     }
     if (!speed_is_baseline(row->way) && row->stats.interesting > 0)

@@ -97,12 +97,6 @@ static bool has_encoded(const snow_stats *stats) {
                               stats->seconds_encode > 0);
 }
 
-/* Of footprint with the classification, which sheared does as it encodes. */
-static double encode_seconds(const snow_stats *stats) {
-    bool sheared = stats->method == SNOW_METHOD_SHEAR_WARP;
-    return stats->seconds_encode + (sheared ? 0 : stats->seconds_classify);
-}
-
 /* One picture, whose figures are kept unless it warms up. */
 static snow_status draw(speed_session *session, speed_row *row,
                         row_samples *samples, int step, bool warming) {
@@ -122,12 +116,6 @@ static snow_status draw(speed_session *session, speed_row *row,
     return SNOW_STATUS_OK;
 }
 
-static bool has_enough(const row_samples *samples) {
-    if (samples->count && samples->spent > SLOW_SECONDS * samples->count)
-        return samples->count >= 2;
-    return samples->spent > BUDGET_SECONDS && samples->count >= FRAMES_LEAST;
-}
-
 /* A way's turn in a run.  Caches do not matter to a picture that takes as long
  * as a whole turn. */
 static snow_status draw_burst(speed_session *session, speed_row *row,
@@ -136,7 +124,11 @@ static snow_status draw_burst(speed_session *session, speed_row *row,
                 samples->spent > BURST_SECONDS * (double)samples->count;
     int most = session->options->quick ? 1 : BURST_MOST;
     double end = samples->spent + BURST_SECONDS;
-    if (has_enough(samples))
+    const bool enough =
+        samples->count && samples->spent > SLOW_SECONDS * samples->count
+            ? samples->count >= 2
+            : samples->spent > BUDGET_SECONDS && samples->count >= FRAMES_LEAST;
+    if (enough)
         return SNOW_STATUS_OK;
     snow_status status =
         slow ? SNOW_STATUS_OK : draw(session, row, samples, run, true);
@@ -165,7 +157,10 @@ static snow_status draw_anew(speed_session *session, speed_row *row,
     const snow_stats *stats = speed_stats(session, way_of(row));
     if (!has_encoded(stats) || samples->encodes == RUNS_MOST)
         return SNOW_STATUS_OK;
-    samples->encode[samples->encodes] = 1e3 * encode_seconds(stats);
+    /* Shear-warp classifies as it encodes. */
+    bool sheared = stats->method == SNOW_METHOD_SHEAR_WARP;
+    samples->encode[samples->encodes] =
+        1e3 * (stats->seconds_encode + (sheared ? 0 : stats->seconds_classify));
     samples->anew[samples->encodes++] = 1e3 * stats->seconds_frame;
     return draw_still(session, row);
 }

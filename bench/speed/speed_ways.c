@@ -68,10 +68,6 @@ bool speed_is_baseline(const speed_way *way) {
 /* No method of the library. */
 #define ORIGINAL_TABLE 31
 
-static int method_of(const speed_way *way) {
-    return way->tabled ? ORIGINAL_TABLE : (int)way->method;
-}
-
 /* --- the words of --only -------------------------------------------------- */
 
 static const struct {
@@ -136,11 +132,6 @@ bool speed_filter_takes(const speed_filter *filter, speed_kind kind,
     return !taken || taken >> value & 1;
 }
 
-/* Whether a method was asked for by name. */
-static bool is_named(const speed_filter *filter, snow_method method) {
-    return filter->taken[SPEED_METHOD] >> method & 1;
-}
-
 /* Raycast is slow, and measured where it is asked for.
  * A kind that a way does not have (the quality of a footprint) restricts it
  * not. */
@@ -150,9 +141,12 @@ static bool passes(const speed_filter *filter, bool sweep,
                      way->method == SNOW_METHOD_RAYCAST;
     if (sweep && !way->charted)
         return false;
-    if (way->method == SNOW_METHOD_RAYCAST && !is_named(filter, way->method))
+    const bool named = filter->taken[SPEED_METHOD] >> way->method & 1;
+    if (way->method == SNOW_METHOD_RAYCAST && !named)
         return false;
-    return speed_filter_takes(filter, SPEED_METHOD, method_of(way)) &&
+    return speed_filter_takes(filter, SPEED_METHOD,
+                              way->tabled ? ORIGINAL_TABLE
+                                          : (int)way->method) &&
            speed_filter_takes(filter, SPEED_KERNEL, (int)way->kernel) &&
            (speed_is_baseline(way) ||
             speed_filter_takes(filter, SPEED_ENCODING, (int)way->encoding)) &&

@@ -133,14 +133,6 @@ static snow_status equip(snow_comm *comm, const figure_job *job,
     return snow_comm_agree_status(comm, status);
 }
 
-static snow_status render(snow_comm *comm, const figure_job *job,
-                          figure_node *node, snow_image **image) {
-    const snow_ranks_options how = {.size = sizeof how,
-                                    .combining = job->cluster->combining};
-    return snow_ranks_render(node->frame, comm, node->volume, node->transfer,
-                             &node->view, &node->settings, &how, image);
-}
-
 /* Collective.  What the nodes' local images took of this machine. */
 static snow_status compare_nodes(snow_comm *comm, const figure_node *node,
                                  figure_time *out) {
@@ -162,7 +154,11 @@ static snow_status time_picture(snow_comm *comm, figure_job *job,
     double start = snow_comm_seconds(comm);
     snow_image_free(*image);
     *image = NULL;
-    snow_status status = render(comm, job, node, image);
+    const snow_ranks_options how = {.size = sizeof how,
+                                    .combining = job->cluster->combining};
+    snow_status status =
+        snow_ranks_render(node->frame, comm, node->volume, node->transfer,
+                          &node->view, &node->settings, &how, image);
     figure_time taken = {.seconds = snow_comm_seconds(comm) - start};
     status = snow_comm_agree_status(comm, status);
     if (status == SNOW_STATUS_OK)

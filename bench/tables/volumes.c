@@ -99,11 +99,6 @@ static snow_status map_head(snow_context *context, bench_volume *out) {
     return snow_volume_wrap(context, &info, out->mapped, &out->volume);
 }
 
-static bool is_vti(const char *path) {
-    size_t length = strlen(path);
-    return length > 4 && strcmp(path + length - 4, ".vti") == 0;
-}
-
 /* What was opened is kept in words for the table: figures of a phantom are no
  * figures of the real volume. */
 static snow_status open_file(snow_context *context, const bench_source *source,
@@ -120,7 +115,8 @@ static snow_status open_file(snow_context *context, const bench_source *source,
     char path[PATH_BYTES];
     spell_path(options, source->file, path, sizeof path);
     snprintf(out->source, sizeof out->source, "%s", source->file);
-    if (is_vti(path))
+    size_t length = strlen(path);
+    if (length > 4 && strcmp(path + length - 4, ".vti") == 0)
         return bench_vti_open(context, path, &out->mapped, &out->file);
     return snow_volume_open(context, path, &source->options, &out->file);
 }
@@ -147,17 +143,14 @@ const snow_look bench_linear_look = {.size = sizeof bench_linear_look,
                                      .low = 0,
                                      .high = 255};
 
-/* For tests: an eighth of the phantom along each side. */
-static void make_tiny(bench_source *source) {
-    for (int axis = 0; axis < 3; axis++)
-        source->options.dims[axis] = axis < 2 ? 32 : 14;
-}
-
 snow_status bench_volume_open(snow_context *context, bench_set set,
                               const bench_options *options, bench_volume *out) {
     bench_source source = sources[set];
-    if (options->quick)
-        make_tiny(&source);
+    if (options->quick) {
+        /* For tests: an eighth of the phantom along each side. */
+        for (int axis = 0; axis < 3; axis++)
+            source.options.dims[axis] = axis < 2 ? 32 : 14;
+    }
     snow_status status = bench_source_open(context, &source, options, out);
     if (status == SNOW_STATUS_OK) {
         status = snow_transfer_new_for_volume(out->volume, &bench_linear_look,
